@@ -1,5 +1,5 @@
-//! Time of commands without a robot: help, and completion candidates. Complete processes, alternating, compared with a
-//! process that only starts and ends.
+//! Time of commands without a robot: help, and completion candidates. The benchmark runs complete processes in turn,
+//! and compares them with a process that only starts and ends.
 //!
 //! `cargo bench --bench startup`
 
@@ -14,7 +14,7 @@ use anyhow::ensure;
 use common::table::{Goal, Row, Table};
 use common::{Work, median, run_alternately};
 
-/// Number of runs of each.
+/// Number of runs of each command.
 const FULL: usize = 200;
 const QUICK: usize = 2;
 
@@ -92,7 +92,7 @@ fn compare<const N: usize>(
     Ok(table)
 }
 
-/// The binary of the same build, in an empty environment.
+/// Returns a command with the binary of the same build, in an empty environment.
 fn armctl(args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
     for name in ["ARMCTL_CONFIG", "ARMCTL_TARGET", "ARMCTL_TIMEOUT", "ARMCTL_RETRIES", "ARMCTL_ENCODING"] {
@@ -102,7 +102,7 @@ fn armctl(args: &[&str]) -> Command {
     command
 }
 
-/// Command of the scripts in `completions/` at a Tab.
+/// Returns the command that the scripts in `completions/` run when the user presses Tab.
 fn tab(words: &[&str]) -> Command {
     let mut command = armctl(&["--"]);
     command.env("ARMCTL_COMPLETE", "zsh").args(words);

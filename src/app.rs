@@ -1,4 +1,4 @@
-//! Command line program: from arguments to an exit code.
+//! The command line program: from the arguments of the process to an exit code.
 
 mod assignments;
 mod batch;
@@ -29,6 +29,8 @@ use self::parser::{Parser, Refusal};
 use self::prepare::{Invocation, PreparedCommand};
 use crate::cli::{Cli, Words};
 use armctl_files as files;
+#[cfg(unix)]
+use armctl_frame::background::{DETACHED, close_inherited_files};
 use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::flags::Globals;
 use armctl_frame::guardian;
@@ -38,7 +40,7 @@ use armctl_frame::output::{ColorChoice, Format, Screen, jq};
 use armctl_frame::run::RunError;
 use armctl_frame::settings::target::Family;
 
-/// Runs a command line, including the program name. Returns the exit code.
+/// Runs a command line that includes the program name. Returns the exit code.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     let args: Vec<OsString> = args.into_iter().collect();
     if let Some(served) = guardian::serve(&args) {
@@ -48,9 +50,13 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         return exit(jq::worker::serve());
     }
     if let Some(answer) = complete::answer(&args) {
-        // If the shell has closed the pipe, the error does not matter.
+        // An error is ignored: the shell may have closed the pipe.
         let _ = Screen::new(Format::Table, ColorChoice::Never, true, 0).data(&answer);
         return ExitCode::SUCCESS;
+    }
+    #[cfg(unix)]
+    if args.iter().any(|word| word == DETACHED) {
+        close_inherited_files();
     }
     let mut args = with_family(args);
     if let Some(version) = parser::version(&args) {
@@ -97,11 +103,11 @@ fn exit(done: Result<(), Kind>) -> ExitCode {
     done.map_or_else(|kind| ExitCode::from(kind.exit()), |()| ExitCode::SUCCESS)
 }
 
-/// If the binary was started with the name of a family (through a link), inserts this subcommand.
+/// Inserts the subcommand of a family, if the binary was started through a link with the name of this family.
 fn with_family(mut args: Vec<OsString>) -> Vec<OsString> {
     let name = args.first().and_then(|name| Path::new(name).file_stem()).and_then(|name| name.to_str());
     if let Some(family) = name.and_then(|name| name.parse::<Family>().ok()) {
-        // In usage lines, the family follows after this name.
+        // Usage lines show this name, followed by the family.
         args[0] = "armctl".into();
         let asks_version = args.get(1).is_some_and(|word| word == "--version" || word == "-V");
         if !asks_version {
@@ -123,29 +129,28 @@ async fn run(cli: Cli) -> Result<(), RunError> {
     }
 }
 
-/// Runs the command on this thread.
+/// Runs a command on this thread.
 fn on_this_thread(done: impl Future<Output = Result<(), RunError>>) -> Result<(), RunError> {
     check_descriptors()?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().context("start")?;
     let done = runtime.block_on(done);
-    // A thread that waits for stdin or a name server must not delay the exit.
+    // A thread that still waits for stdin or a name server must not delay the exit.
     runtime.shutdown_background();
     done
 }
 
-/// File descriptors that the simplest command needs.
+/// Number of file descriptors that the simplest command needs.
 #[cfg(unix)]
 const NEEDED_DESCRIPTORS: usize = 20;
 
-/// Checks that enough file descriptors are available, because the runtime and the signal handler would panic without
-/// them.
+/// Checks that enough file descriptors are available. Without them, the runtime and the signal handler would panic.
 #[cfg(unix)]
 fn check_descriptors() -> Result<(), Failure> {
     let pairs: Result<Vec<_>, _> =
         (0..NEEDED_DESCRIPTORS / 2).map(|_| std::os::unix::net::UnixStream::pair()).collect();
     pairs.map(|_| ()).map_err(|error| {
         Failure::io("start", &error)
-            .hint(format!("too few open files are allowed: {NEEDED_DESCRIPTORS} more are needed. See `ulimit -n`"))
+            .hint(format!("raise the limit of open files (`ulimit -n`): armctl needs {NEEDED_DESCRIPTORS} more"))
     })
 }
 
@@ -166,7 +171,7 @@ fn screen(globals: &Globals) -> Screen {
         .with_questions(!globals.no_input)
 }
 
-/// Prints a failure once, in the requested format. Returns its kind.
+/// Prints a failure in the requested format, unless it was already reported. Returns its kind.
 fn report_failure(screen: &Screen, RunError { failure, envelope, is_reported: told }: RunError) -> Kind {
     let kind = failure.kind;
     if !told && kind != Kind::PipeClosed {
@@ -179,13 +184,14 @@ fn report_failure(screen: &Screen, RunError { failure, envelope, is_reported: to
     kind
 }
 
-/// Prints the result of the parser: help, version and lists of verbs to stdout, errors to stderr; as JSON if requested.
+/// Prints the result of the parser. Help, version and lists of verbs are printed to stdout, and errors to stderr. If
+/// the line requests JSON, an error is JSON.
 fn refuse(args: &[OsString], refusal: &Refusal, is_json: bool, pager: bool) -> Result<(), Kind> {
     let is_json = is_json || wants_json(args).unwrap_or_else(prepare::wants_json);
     let format = if is_json { Format::Json } else { Format::Table };
     let screen = Screen::new(format, color(args), false, 0).with_pager(pager);
     match refusal {
-        // A noun without a verb prints its list of verbs, except for JSON.
+        // If the verb after a noun is missing, the list of verbs is printed. With JSON, this is an error.
         Refusal::Verb(text, _) if !is_json => print_text(&screen, text),
         Refusal::Text(text) => print_text(&screen, text),
         Refusal::Mistake(error) if !is_json => {
@@ -196,13 +202,13 @@ fn refuse(args: &[OsString], refusal: &Refusal, is_json: bool, pager: bool) -> R
     }
 }
 
-/// Prints a text to stdout, with the pager.
+/// Prints a text to stdout. A long text is shown with the pager.
 fn print_text(screen: &Screen, text: &StyledStr) -> Result<(), Kind> {
     let text = if screen.stdout_color() { text.ansi().to_string() } else { text.to_string() };
     screen.read(&text).map_err(|failure| report_failure(screen, failure.into()))
 }
 
-/// Color option of a line that could not be parsed.
+/// Returns the color option of a line that could not be parsed.
 fn color(args: &[OsString]) -> ColorChoice {
     let mut words = args.iter().skip(1).map(|arg| arg.to_str().unwrap_or_default()).take_while(|arg| *arg != "--");
     let value = words.by_ref().find_map(|word| match word {
@@ -214,7 +220,7 @@ fn color(args: &[OsString]) -> ColorChoice {
     value.and_then(|value| ColorChoice::from_str(value, false).ok()).unwrap_or(ColorChoice::Auto)
 }
 
-/// Whether a line that could not be parsed asks for JSON; `None` if it has no format option.
+/// Whether a line that could not be parsed requests JSON. `None` if the line has no format option.
 fn wants_json(args: &[OsString]) -> Option<bool> {
     let is_json = |format: &str| matches!(format.trim_start_matches('='), "json" | "jsonl");
     let mut words = args.iter().skip(1).map(|arg| arg.to_str().unwrap_or_default()).take_while(|arg| *arg != "--");
@@ -225,7 +231,7 @@ fn wants_json(args: &[OsString]) -> Option<bool> {
             _ if word.starts_with("--") => {
                 ["--output=", "--format="].into_iter().find_map(|flag| word.strip_prefix(flag))
             }
-            // Short flags can be combined; the last one can have its value in the next word.
+            // Short flags can be combined. The value of the last flag may be the next word.
             _ => match word
                 .strip_prefix('-')
                 .and_then(|flags| flags.trim_start_matches(['q', 'v', 'y']).strip_prefix('o'))

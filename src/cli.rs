@@ -1,4 +1,4 @@
-//! Command line: global flags and the first word.
+//! Command line: the global flags and the first word.
 
 use std::fmt;
 
@@ -41,15 +41,15 @@ pub const LONG_VERSION: &str = concat!(
     after_help = "Exit codes, targets, output, safety and scripting: `armctl help TOPIC`."
 )]
 pub struct Words<C: Subcommand> {
-    /// Flags of every command.
+    /// Flags that every command has.
     #[command(flatten)]
     pub globals: Globals,
-    /// The first word.
+    /// The command.
     #[command(subcommand)]
     pub command: C,
 }
 
-/// The whole command line.
+/// A complete command line.
 pub type Cli = Words<Top>;
 
 /// The first word of a command line.
@@ -64,16 +64,16 @@ pub enum Top {
     Batch(Batch),
     /// Full-screen jog and teach panel
     Teach(Teach),
-    /// Commands that every family shares
+    /// Commands that all families share
     #[command(flatten)]
     Common(common::Common),
 }
 
-/// Name of a family and the words after it.
+/// Name of a family, and the words after it.
 pub struct FamilyWord {
     /// Family.
     pub family: Family,
-    /// Words after it.
+    /// Words after the name of the family.
     pub typed: FamilyLine,
 }
 
@@ -119,10 +119,10 @@ mod tests {
 
     use super::Cli;
 
-    /// Commands whose `--wait TIME` is a response timeout.
+    /// Commands in which `--wait TIME` is a response timeout.
     const OTHERS: [&str; 2] = ["armctl yerc file cmos", "armctl robots discover"];
 
-    /// Subcommands that accept only one of the two options.
+    /// Finds subcommands that accept only one of the two options.
     fn selectors(command: &Command, path: &str, found: &mut Vec<String>) {
         let has = |long: &str| command.get_arguments().any(|argument| argument.get_long() == Some(long));
         if has("wait") != has("no-wait") && !OTHERS.contains(&path) {

@@ -1,4 +1,4 @@
-//! armctl talks to industrial robot controllers.
+//! armctl controls industrial robot controllers from a terminal, from a script, or from a Rust program.
 //!
 //! The crates of the workspace, in the order in which a command line passes them:
 //!
@@ -23,20 +23,20 @@
 //!
 //! # As a library
 //!
-//! A program that controls a robot needs only [`client`]. `examples/` has an example for each family.
-//! This is `examples/yerc.rs`:
+//! A program that communicates with a controller itself needs only [`client`]. `examples/` has one example for each
+//! family. This is `examples/yerc.rs`:
 //!
 //! ```rust,ignore
 #![doc = include_str!("../examples/yerc.rs")]
 //! ```
 //!
-//! and this is `examples/yrcx.rs`:
+//! This is `examples/yrcx.rs`:
 //!
 //! ```rust,ignore
 #![doc = include_str!("../examples/yrcx.rs")]
 //! ```
 //!
-//! and this is `examples/toyo.rs`:
+//! This is `examples/toyo.rs`:
 //!
 //! ```rust,ignore
 #![doc = include_str!("../examples/toyo.rs")]

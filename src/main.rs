@@ -1,4 +1,4 @@
-//! The `armctl` binary: words in, exit code out. `armctl::app` is where it begins.
+//! The `armctl` binary. `armctl::app` contains the program.
 
 use std::process::ExitCode;
 

@@ -1,5 +1,5 @@
-//! Mistakes of the operator and problems of the environment, through the built binary: exit code, message with a hint,
-//! no lost data.
+//! Mistakes of the operator and problems of the environment, tested with the built binary: exit code, message with a
+//! hint, no lost data.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -72,7 +72,7 @@ fn reports_syntax_errors_in_the_requested_format() {
     }
 }
 
-/// A simulator on real ports, until the end of the test.
+/// A simulator on real ports. It runs until the end of the test.
 struct Server {
     process: Child,
     url: String,
@@ -106,7 +106,7 @@ fn signal(process: &Child, name: &str) {
     assert!(Command::new("kill").arg(format!("-{name}")).arg(process.id().to_string()).status().unwrap().success());
 }
 
-/// Whether this process was started with SIGHUP (signal 1) ignored; `false` if unknown.
+/// Whether this process was started with SIGHUP (signal 1) ignored. `false` if this is unknown.
 #[cfg(unix)]
 fn is_hangup_ignored() -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
@@ -148,14 +148,14 @@ fn watch_without_pause_ends_on_the_first_signal() {
     let mut lines = BufReader::new(watch.stdout.take().unwrap()).lines();
     lines.next().unwrap().unwrap();
     signal(&watch, "INT");
-    // Continue to read, so that the pipe does not fill up. The thread ends with the process.
+    // The output is read to its end, so that the pipe does not fill up. The thread ends with the process.
     assert!(lines.all(|line| line.is_ok()));
     assert_eq!(watch.wait().unwrap().code(), Some(130));
 }
 
 #[test]
 fn one_recording_contains_every_run_of_a_watch() {
-    /// Packets in a capture file (blocks of type 6).
+    /// Number of packets in a capture file (blocks of type 6).
     fn packets(record: &[u8]) -> usize {
         let word = |at: usize| u32::from_le_bytes(record[at..at + 4].try_into().unwrap());
         let (mut at, mut count) = (0, 0);
@@ -185,7 +185,8 @@ fn one_recording_contains_every_run_of_a_watch() {
 #[test]
 fn rejects_unsupported_commands_before_the_question() {
     let home = tempfile::tempdir().unwrap();
-    // Without --yes and without a terminal, a motion fails with exit code 7.
+    // For a supported command, the question comes next: a motion without `--yes` and without a terminal fails with exit
+    // code 7.
     let line = "yerc move joint --to 1,2,3,4,5,6 --speed 1% --group R8";
     fails(&armctl(home.path(), &format!("-t udp://127.0.0.1:9?model=fs100 {line}")), 2, &["robot number is 8"]);
     fails(&armctl(home.path(), &format!("-t udp://127.0.0.1:9?model=dx200 {line}")), 7, &["--yes"]);
@@ -223,7 +224,7 @@ fn reports_the_result_if_stdout_is_full() {
     fails(&output, 1, &["succeeded, but the report could not be written", "no space left"]);
     let output = command(home.path(), "--sim yerc status").stdout(full()).output().unwrap();
     fails(&output, 1, &["error: stdout: no space left"]);
-    // One of several files is missing; this failure is reported also if the report cannot be written.
+    // One of the two files is missing. This failure is reported even if the report cannot be written.
     let output =
         command(home.path(), "--sim yerc file get TESTJOB.JBI NOPE.JBI --json").stdout(full()).output().unwrap();
     fails(&output, 9, &["NOPE.JBI", "0xE29C"]);

@@ -1,4 +1,5 @@
-//! Limits of memory, files, filters, tables and reaction time, through the binary, with limits of the operating system.
+//! Limits of memory, files, filters, tables and reaction time, tested with the binary under limits of the operating
+//! system.
 #![cfg(unix)]
 
 use std::io::Write as _;
@@ -48,8 +49,8 @@ fn signal(child: &Child, name: &str) {
     assert!(Command::new("kill").args(["-s", name, &pid]).status().expect("kill runs").success());
 }
 
-/// A capture with raw IP packets of one TCP connection. Each has this many bytes; its IP length is 0, as with
-/// offloading.
+/// Creates a capture with raw IP packets of one TCP connection, each with this content. The IP length is 0, as a
+/// network card with offloading reports it.
 fn capture(path: &Path, packets: u32, content: &[u8]) {
     let mut file = std::io::BufWriter::new(std::fs::File::create(path).expect("it works here"));
     file.write_all(&[&0xA1B2_C3D4_u32.to_be_bytes()[..], &[0, 2, 0, 4], &[0; 12], &[0, 0, 0, 101]].concat())
@@ -81,7 +82,7 @@ fn limits_the_memory_for_many_small_messages() {
 #[test]
 fn reads_a_capture_in_pieces() {
     let folder = folder();
-    // Packets of no family: half a gigabyte, with memory for a quarter.
+    // The packets belong to no family. They have half a gigabyte; the memory limit is a quarter of a gigabyte.
     capture(&folder.path().join("large.pcap"), 8000, &vec![b'x'; 65_000]);
     for family in ["yerc", "yrcx", "toyo"] {
         let output = limited(folder.path(), "-v 250000", &["decode", family, "large.pcap"]);
@@ -142,14 +143,14 @@ fn limits_the_length_of_a_script_line() {
 #[test]
 fn limits_time_and_memory_of_filters() {
     let folder = folder();
-    // Below the normal limit of a filter, to reach the limit sooner.
+    // The memory limit of the process is lower than the limit of a filter, so that the test is faster.
     let status =
         |filter: &str| limited(folder.path(), "-v 300000", &["--sim", "yerc", "status", &format!("--jq={filter}")]);
     let deep = "(".repeat(20_000) + "1" + &")".repeat(20_000);
     for filter in ["def f: 1 + f; f", "def f: [f]; f", "[repeat(1)]", "reduce range(1000000) as $i (0; [.])", &deep] {
         end_within_limit(&status(filter), 5, "it needs too much memory, or its recursion is too deep");
     }
-    end_within_limit(&status("reduce range(1000) as $i (0; [.])"), 5, "nested levels");
+    end_within_limit(&status("reduce range(1000) as $i (0; [.])"), 5, " levels");
     for (filter, expected) in [
         ("nan, [nan]", "null\n[null]\n"),
         ("infinite, -infinite", "1.7976931348623157e+308\n-1.7976931348623157e+308\n"),
@@ -161,7 +162,7 @@ fn limits_time_and_memory_of_filters() {
         assert_eq!(stdout(&output), expected, "{filter}");
     }
     end_within_limit(&status(".[0]"), 5, "Cannot index object with number");
-    // As with jq, outputs before an error are printed.
+    // Like in jq, the outputs before the error are printed.
     let output = status("1, error(\"late\")");
     end_within_limit(&output, 5, "late");
     assert_eq!(stdout(&output), "1\n");
@@ -178,7 +179,7 @@ fn filter_failure_after_a_change_is_no_usage_error() {
         end_within_limit(&output, 1, "succeeded, but the report could not be written");
     }
     end_within_limit(&run(folder.path(), &["--config", "robots.toml", "robots", "show", "cell"]), 0, "");
-    // A filter that does not compile is reported before anything is sent.
+    // A filter that does not compile is reported before any request is sent.
     end_within_limit(
         &run(folder.path(), &["--sim", "yerc", "var", "set", "B0=1", "--jq", ".["]),
         2,
@@ -186,18 +187,18 @@ fn filter_failure_after_a_change_is_no_usage_error() {
     );
 }
 
-/// Ends at one signal, sent while the process computes.
+/// Checks that the process ends at the first signal, which is sent while the filter is computed.
 #[cfg(target_os = "linux")]
 fn ends_on_first_signal(folder: &Path, words: &[&str], name: &str) {
     let child = armctl(folder, words).spawn().expect("it works here");
-    // The filter runs in a separate process, once it has started.
+    // The filter runs in a separate process. Wait until this process has started.
     let pid = child.id();
     let children = || std::fs::read_to_string(format!("/proc/{pid}/task/{pid}/children")).unwrap_or_default();
     while children().trim().is_empty() {
         std::thread::yield_now();
     }
     let worker = children().trim().to_owned();
-    // After some ticks of CPU time, the worker only computes.
+    // After some ticks of CPU time, the worker process runs only the filter.
     let ticks = || {
         let stat = std::fs::read_to_string(format!("/proc/{worker}/stat")).unwrap_or_default();
         stat.rsplit(')').next().and_then(|rest| rest.split(' ').nth(12)?.parse::<u64>().ok()).unwrap_or_default()
@@ -209,7 +210,7 @@ fn ends_on_first_signal(folder: &Path, words: &[&str], name: &str) {
     let output = child.wait_with_output().expect("it works here");
     assert_eq!(output.status.code(), Some(130), "{name}: {}", stderr(&output));
     assert!(stderr(&output).contains("interrupted"), "{name}: {}", stderr(&output));
-    // The worker ends, too.
+    // The worker process also ends.
     while Path::new(&format!("/proc/{worker}")).exists() {
         std::thread::yield_now();
     }
@@ -286,7 +287,7 @@ fn inventory_keeps_its_permissions_and_link() {
 #[test]
 fn reports_a_missing_descriptor_limit() {
     let folder = folder();
-    // With fewer, the system cannot load the program.
+    // With fewer than 5 descriptors, the system cannot load the program.
     for most in 5..12 {
         let output = limited(folder.path(), &format!("-n {most}"), &["--sim", "yerc", "status"]);
         end_within_limit(&output, 1, "ulimit -n");

@@ -1,4 +1,5 @@
-//! Bytes of the protocols: golden frames, captures, tables, properties, random bytes. No sockets, no binary.
+//! Bytes of the protocols: golden frames, captures, tables, properties, random bytes. The tests use no sockets and do
+//! not run the binary.
 
 mod capture_files;
 mod captures;

@@ -1,5 +1,6 @@
-//! Capture files: random bytes, and comparison with tshark if it is installed. The files in `tests/cli/files/` were
-//! assembled by hand from the specifications of the formats; the transcript `captures` shows their content.
+//! Capture files: tests with random bytes, and comparison with tshark if it is installed. The files in
+//! `tests/cli/files/` were written by hand from the specifications of the formats. The transcript `captures` shows
+//! their content.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -18,7 +19,7 @@ fn file(name: &str) -> Vec<u8> {
     std::fs::read(path(name)).expect("the file is in the repository")
 }
 
-/// Packet and bytes of all datagrams.
+/// Packet number and bytes of all datagrams.
 fn datagrams(file: &[u8]) -> Vec<(u64, Vec<u8>)> {
     let mut all = Vec::new();
     let messages = read(file, |message| {
@@ -36,7 +37,7 @@ fn reads_times_of_every_clock() {
     let summary = read(&*file("lines.pcapng"), |message| times.push((message.number, message.time.as_secs_f64())));
     let first = summary.expect("it is a capture").first.as_secs_f64();
     times.sort_by_key(|(number, _)| *number);
-    // Nanoseconds, 1/1024 s, nanoseconds, microseconds, and a packet without a time.
+    // The interfaces of the file count time in nanoseconds, 1/1024 s and microseconds. One packet has no time.
     let expected = [(3, 0.002), (5, 4.0 / 1024.0), (6, 0.006), (7, 0.005), (8, 1.0), (9, 1.01), (10, 1.01), (11, 1.03)];
     for ((number, time), (expected_number, expected)) in times.iter().zip(expected) {
         assert_eq!(*number, expected_number);
@@ -106,7 +107,7 @@ proptest! {
             bytes[at] = byte;
         }
         let mut heard = 0;
-        // No packet is read twice, so there cannot be more messages than packets.
+        // No packet is read twice, so the messages cannot have more bytes than the file.
         let _ = read(&*bytes, |message| heard += message.bytes.len());
         prop_assert!(heard <= bytes.len());
     }

@@ -1,7 +1,7 @@
-//! Replay of request and answer pairs that were captured from a controller.
+//! Replay of requests and answers that were captured from a controller.
 //!
-//! The file is not part of the project; `ARMCTL_YERC_CAPTURES` names it. The controller is a YRC1000. Its requests for
-//! these commands are those of a DX200, and armctl recognizes it by its software.
+//! The file is not part of the project; the variable `ARMCTL_YERC_CAPTURES` has its path. The controller is a YRC1000.
+//! Its requests for these commands are those of a DX200, and armctl recognizes the model by the software version.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 #![expect(clippy::needless_pass_by_value, reason = "queries are built where they are sent")]
@@ -25,7 +25,7 @@ use armctl_controller::yerc::wire::{AnswerFrame, Division, RequestFrame, Status}
 
 const SKIPPED: &str = "skipped: ARMCTL_YERC_CAPTURES does not name the file of captured pairs";
 
-/// Captured requests and answers.
+/// Pairs of a captured request and its answer.
 fn pairs() -> Option<Vec<(Vec<u8>, Vec<u8>)>> {
     let path = std::env::var_os("ARMCTL_YERC_CAPTURES")?;
     let json: serde_json::Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
@@ -35,12 +35,12 @@ fn pairs() -> Option<Vec<(Vec<u8>, Vec<u8>)>> {
     Some(pairs.iter().map(|pair| (bytes(pair, "tx"), bytes(pair, "rx"))).collect())
 }
 
-/// The simulator has other values, but its frames must have the same form: same header, same status, and the same data
-/// length. For axes, the length depends on the number of fitted axes.
+/// The simulator has other values, but its frames must have the same form: same header, same status, and same data
+/// length. For axes, the data length depends on the number of fitted axes.
 #[test]
 fn simulator_answers_match_captured_answers() {
     let Some(pairs) = pairs() else { return println!("{SKIPPED}") };
-    // This controller omits the words of axes that are not fitted; others send them.
+    // This controller omits the words of axes that are not fitted. Other controllers send these words.
     let start = Start::parse("model = 'yrc1000'\ntrim_axes = true", |_| Err("there are no files".to_owned())).unwrap();
     let mut simulator = Simulator::new(start);
     for (sent, received) in pairs {
@@ -54,7 +54,7 @@ fn simulator_answers_match_captured_answers() {
     }
 }
 
-/// Answers like the captured controller on the loopback interface. Copies the id of the request.
+/// Answers on the loopback interface with the captured answers. Each answer gets the id of its request.
 fn replayer(pairs: Vec<(Vec<u8>, Vec<u8>)>) -> SocketAddr {
     const ID: usize = 11;
     let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
@@ -74,7 +74,7 @@ fn replayer(pairs: Vec<(Vec<u8>, Vec<u8>)>) -> SocketAddr {
     address
 }
 
-/// Without a model in the settings, the client asks once, when something depends on the model.
+/// If the settings have no model, the client asks the controller once, when a request depends on the model.
 #[tokio::test]
 async fn recognizes_the_captured_controller_by_its_software() {
     let Some(pairs) = pairs() else { return println!("{SKIPPED}") };
@@ -119,7 +119,7 @@ fn replays_captured_pairs() {
 }
 
 fn replay(request: &Request, sent: &[u8], id: u8, answer: &AnswerFrame<'_>) {
-    // Only running-time counters have instances above 255; they are distinguished below.
+    // Only running-time counters have instances above 255. The code below distinguishes these instances.
     let instance = u8::try_from(request.instance).unwrap_or(u8::MAX);
     match (request.command, instance) {
         (0x70, slot) => {

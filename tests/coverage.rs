@@ -1,7 +1,7 @@
-//! Every command and service of the manuals that armctl sends is reached by a named command line.
+//! Named command lines reach every command and service of the manuals that armctl sends.
 //!
 //! Each line runs with `--dry-run`, and must show frames with the given command, instance, attribute and service. `raw`
-//! is not in the list, because it reaches everything by numbers; it has its own test.
+//! is not in the list, because it can send every command by its number. It has its own test.
 
 use std::collections::BTreeSet;
 use std::process::Command;
@@ -21,7 +21,7 @@ const WRITE: u8 = 0x34;
 const DX200: &str = "udp://127.0.0.1?model=dx200";
 const FS100: &str = "udp://127.0.0.1?model=fs100";
 
-/// A command line for a DX200, and the frames that it shows (sections 3.3.1 to 3.3.42 and 3.4.1 to 3.4.5).
+/// Command lines for a DX200, each with the frames that it shows (sections 3.3.1 to 3.3.42 and 3.4.1 to 3.4.5).
 #[rustfmt::skip]
 const LINES: &[(&str, &[Head])] = &[
     ("alarm list --no-texts", &[(0x70, 1, 0, GET_ALL), (0x70, 4, 0, GET_ALL)]),
@@ -120,7 +120,7 @@ const LINES: &[(&str, &[Head])] = &[
     ("file cmos --start-only", &[(0, 0, 0, 0x16)]),
 ];
 
-/// Command lines for an FS100, for commands with another address there.
+/// Command lines for an FS100. On this model, these commands have another address.
 #[rustfmt::skip]
 const ON_FS100: &[(&str, &[Head])] = &[
     ("job show --task 5", &[(0x73, 6, 0, GET_ALL)]),
@@ -131,7 +131,7 @@ const ON_FS100: &[(&str, &[Head])] = &[
     ("job select A --task 5", &[(0x87, 15, 0, SET_ALL)]),
 ];
 
-/// Frames of a dry run.
+/// Frames that a dry run shows.
 fn frames(target: &str, line: &str) -> Vec<Vec<u8>> {
     let words = ["--json", "--dry-run", "-t", target, "yerc"].into_iter().chain(line.split_ascii_whitespace());
     let output = Command::new(env!("CARGO_BIN_EXE_armctl")).args(words).output().expect("armctl starts");
@@ -141,13 +141,13 @@ fn frames(target: &str, line: &str) -> Vec<Vec<u8>> {
     frames.iter().map(|frame| bytes(frame["hex"].as_str().expect("hexadecimal"))).collect()
 }
 
-/// Bytes of a frame; bytes that depend on an answer (`??`) become 0. They are never in the header.
+/// Bytes of a frame. A byte that depends on an answer is shown as `??`; here it is 0. The header has no such bytes.
 fn bytes(hex: &str) -> Vec<u8> {
     let byte = |digits| if digits == "??" { 0 } else { u8::from_str_radix(digits, 16).expect("hexadecimal") };
     (0..hex.len()).step_by(2).map(|at| byte(&hex[at..at + 2])).collect()
 }
 
-/// Division and header of a frame; the division is 1 for robot commands, 2 for files.
+/// Division and header of a frame. Division 1 is for robot commands, division 2 is for files.
 fn head(frame: &[u8]) -> (u8, Head) {
     assert_eq!(&frame[..4], b"YERC");
     let word = |at: usize| u16::from_le_bytes([frame[at], frame[at + 1]]);
@@ -175,7 +175,8 @@ fn every_command_and_service_is_reachable() {
     let job = tempfile::Builder::new().suffix(".JBI").tempfile().expect("a temporary file");
     std::fs::write(job.path(), "/JOB\r\n//NAME A\r\n//POS\r\n///NPOS 0,0,0,0,0,0\r\n//INST\r\nNOP\r\nEND\r\n").unwrap();
     let sent = frames(DX200, &format!("file put {} --as A.JBI", job.path().display()));
-    // The list with its acknowledgement, the file, and the list after a last answer without a block number.
+    // The list and its acknowledgement, and the request and the only block of the file. The list and its
+    // acknowledgement follow again, for a controller whose last acknowledgement has no block number.
     let services: Vec<u8> = sent.iter().map(|frame| head(frame).1.3).collect();
     assert_eq!(services, [0x32, 0x32, 0x15, 0x15, 0x32, 0x32], "file put");
     reached.insert((0, 0x15));
@@ -185,7 +186,7 @@ fn every_command_and_service_is_reachable() {
     assert_eq!(commands, printed);
     let files: Vec<u8> = reached.iter().filter(|(command, _)| *command == 0).map(|(_, service)| *service).collect();
     assert_eq!(files, [0x09, 0x15, 0x16, 0x32]);
-    // Everything that can be read and written, single and multiple.
+    // Everything that can be read and written, as single elements and as several elements.
     for command in (0x78..=0x81).chain([0x8C]) {
         let services: Vec<u8> = reached.iter().filter(|(c, _)| *c == command).map(|(_, service)| *service).collect();
         assert_eq!(services.len(), 2, "{command:#x}: {services:x?}");
@@ -201,7 +202,7 @@ fn fetches_the_batch_backup_by_its_path() {
     assert_eq!(&sent[0][32..], b"/SPDRV/CMOSBK.BIN");
 }
 
-/// Attributes without a named command line are reached by numbers.
+/// Attributes without a named command line are read by their numbers.
 #[test]
 fn raw_reads_a_single_field() {
     for (line, expected) in [
@@ -213,12 +214,13 @@ fn raw_reads_a_single_field() {
         let sent = frames(DX200, line);
         let (request, before) = sent.split_last().expect("the request");
         assert_eq!(head(request), (1, expected), "{line}");
-        // A position is read before it is overwritten.
+        // A position is read before it is overwritten, so all frames before the last one are reads.
         assert!(before.iter().all(|frame| head(frame).1.3 == GET_ALL), "{line}");
     }
 }
 
-/// FS 3.3.39 prints 25 words, DX 3.3.39 26: the reserved words precede the form, so the following words shift by one.
+/// FS 3.3.39 has 25 words, and DX 3.3.39 has 26. In the FS manual, the reserved words come before the form, so the
+/// words after them move by one.
 #[test]
 fn cartesian_move_of_25_words_matches_the_fs100_manual() {
     let line = "move linear --to 1,-2,3,-4,5,-0 --speed 70mm/s --coordinate user --user 63 --tool 62 --form back,lower \

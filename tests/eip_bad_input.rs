@@ -1,5 +1,5 @@
-//! The binary against faulty boards: wrong numbers in the URL, an existing owner, a target that is silent, resets, or
-//! answers nonsense. Each case has its message, hint and exit code.
+//! Runs the binary with faulty boards: wrong numbers in the URL, an existing owner, a target that is silent, resets
+//! connections, or sends invalid answers. Each case has its message, hint and exit code.
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -18,7 +18,7 @@ fn armctl(target: &str, line: &str) -> Command {
     command
 }
 
-/// Exit code, kind, code, message and hint of a failure, which must be the only output.
+/// Exit code, kind, code, message and hint of a failure. The failure must be the only output.
 fn error_of(target: &str, line: &str) -> (i32, String, String, String, String) {
     let Output { status, stdout, stderr } = armctl(target, line).output().unwrap();
     let stderr = String::from_utf8(stderr).unwrap();
@@ -30,7 +30,7 @@ fn error_of(target: &str, line: &str) -> (i32, String, String, String, String) {
     (status.code().unwrap(), text("kind"), text("code"), message, text("hint"))
 }
 
-/// Asserts the failure without its kind.
+/// Asserts all parts of a failure except its kind.
 #[track_caller]
 fn assert_error(target: &str, line: &str, exit: i32, code: &str, message: &str, hint: &str) {
     let (found_exit, _, found_code, found_message, found_hint) = error_of(target, line);
@@ -38,7 +38,7 @@ fn assert_error(target: &str, line: &str, exit: i32, code: &str, message: &str, 
     assert_eq!(found, (exit, code, message, hint), "{line} on {target}");
 }
 
-/// `armctl sim yrcx` on free ports; it ends with the test.
+/// `armctl sim yrcx` on free ports. The process ends with the test.
 struct Board {
     process: Child,
     target: String,
@@ -72,7 +72,7 @@ const SIZE: &str = "set the sizes that a probe of the target finds";
 #[test]
 fn reports_wrong_instance_numbers() {
     let board = Board::start(&[]);
-    let point = "exchange the instances of input and output, or probe the target for those it has";
+    let point = "swap the instances of input and output, or probe the target to find its assemblies";
     for (query, code, message, hint) in [
         (
             "in_size=50",
@@ -105,7 +105,7 @@ fn reports_wrong_instance_numbers() {
         assert_eq!((exit, &*kind, &*found), (3, "refused", code), "{query}: {message}");
         assert!(message.contains(part) && !hint.is_empty(), "{query}: {message}; {hint}");
     }
-    // The board still works afterwards.
+    // The board still works after this.
     assert!(armctl(&board.target, "yrcx info servo").output().unwrap().status.success());
 }
 
@@ -115,7 +115,7 @@ fn monitor_connections_report_the_same_errors() {
     let (exit, _, _, message, hint) = error_of(&board.start_with("in=101"), "yrcx io get");
     assert_eq!(exit, 3);
     assert!(message.contains("to a read-only client") && hint.contains("role=input_only"), "{message}; {hint}");
-    let hint = "check in and in_size of the URL: `yrcx eip probe` finds both";
+    let hint = "check in and in_size of the URL; use `yrcx eip probe` to find the values";
     assert_error(&board.start_with("in=1"), "yrcx io get", 5, "", "the input assembly has 0 bytes, not 48", hint);
     assert_error(
         &board.start_with("in_size=50"),
@@ -138,8 +138,8 @@ fn reports_an_existing_owner() {
         3,
         "0x0106",
         "another master, such as a PLC, commands the controller: ForwardOpen was refused: ownership conflict (0x01/0x0106)",
-        "`yrcx io get` and `yrcx status` can read its signals at the same time. To command the controller, stop the owner's \
-         connection first: remove the controller from the PLC's scan list, or close the session",
+        "stop the owner's connection first: remove the controller from the PLC's scan list, or close the session. \
+         `yrcx io get` and `yrcx status` can read the signals at the same time",
     );
     let (exit, _, code, message, _) =
         error_of(&board.target, &format!("yrcx eip set 4 150 3 {} --yes", "00".repeat(48)));
@@ -156,7 +156,8 @@ fn reports_an_existing_owner() {
     assert_eq!(owner.wait().unwrap().code(), Some(130));
 }
 
-/// Layer `owner` of `robots check`, and the owner in the report of `yrcx eip probe` without and with `--try`.
+/// State of the layer `owner` in `robots check`, and the owner in the report of `yrcx eip probe`, without and with
+/// `--try`.
 fn owner(target: &str) -> (Value, Value, Value) {
     let data = |line: &str| {
         let output = armctl(target, line).output().unwrap();
@@ -171,7 +172,7 @@ fn owner(target: &str) -> (Value, Value, Value) {
 
 #[test]
 fn finds_the_owner_from_a_single_report() {
-    // A read shows the state that the board reports. Only a try shows what the board refuses.
+    // A read shows the state that the board reports. Only `--try` shows what the board refuses.
     for (fault, is_said) in [("trailing", true), ("unowned", false)] {
         let board = Board::start(&["--fault", fault]);
         assert_eq!(owner(&board.target), ("ok".into(), false.into(), false.into()), "{fault}");
@@ -187,7 +188,7 @@ fn finds_the_owner_from_a_single_report() {
     }
 }
 
-/// Relays connections to a board one by one, and returns the bytes from the clients.
+/// Relays connections to a board, one after the other. Records the bytes from the clients.
 fn recorded(board: &Board) -> (String, Arc<Mutex<Vec<u8>>>) {
     let (_, place) = board.target.split_once("://").unwrap();
     let board = place.split('?').next().unwrap().to_owned();
@@ -200,7 +201,7 @@ fn recorded(board: &Board) -> (String, Arc<Mutex<Vec<u8>>>) {
             let mut server = TcpStream::connect(&board).unwrap();
             let (mut from, mut to) = (server.try_clone().unwrap(), client.try_clone().unwrap());
             thread::spawn(move || {
-                // Either end may close first.
+                // Either end may close the connection first.
                 let _ = std::io::copy(&mut from, &mut to);
                 let _ = to.shutdown(Shutdown::Both);
             });
@@ -217,14 +218,15 @@ fn recorded(board: &Board) -> (String, Arc<Mutex<Vec<u8>>>) {
     (target, sent)
 }
 
-/// A board that accepts an owner connection is commanded from then on, so monitoring commands must never request one.
+/// A board that accepts an owner connection is under the control of this client. Therefore, monitoring commands must
+/// never request such a connection.
 #[test]
 fn only_try_requests_an_owner_connection() {
     let board = Board::start(&[]);
     let (target, sent) = recorded(&board);
     let opens = || {
         let sent = std::mem::take(&mut *sent.lock().unwrap());
-        // ForwardOpen and LargeForwardOpen, for the connection manager (volume 1, 3-5.5.2).
+        // ForwardOpen and LargeForwardOpen requests to the connection manager (volume 1, 3-5.5.2).
         [0x54, 0x5B].map(|service| sent.windows(6).filter(|bytes| **bytes == [service, 2, 0x20, 6, 0x24, 1]).count())
     };
     for line in ["yrcx eip probe", "robots check", "yrcx eip identity", "yrcx status"] {
@@ -255,11 +257,12 @@ fn serializes_concurrent_connections() {
     }
 }
 
-const NO_ADDRESS: &str = "check the address; check that the controller is on and its EtherNet/IP board enabled";
+const NO_ADDRESS: &str = "check the address; check that the controller is on, and that its EtherNet/IP board is \
+                          enabled";
 
 #[test]
 fn reports_faults_of_the_board() {
-    const LINK: &str = "check the connection: `-v` counts received packets";
+    const LINK: &str = "check the connection: use `-v` to count received packets";
     for (fault, line, message, hint) in [
         ("mute", "yrcx info servo", "no answer to RegisterSession within 400 ms", NO_ADDRESS),
         ("mute", "yrcx io get", "no answer to RegisterSession within 400 ms", NO_ADDRESS),
@@ -273,8 +276,8 @@ fn reports_faults_of_the_board() {
         (
             "frozen",
             "yrcx info servo",
-            "no answer to servo-status: the controller did not start it",
-            "`yrcx status` shows the state of the controller",
+            "no answer to servo-status: the controller did not start the command",
+            "use `yrcx status` to see the state of the controller",
         ),
         ("stall", "yrcx info servo", "the controller sends no data", LINK),
         ("wrong-id", "yrcx info servo", "the controller sends no data", LINK),
@@ -287,7 +290,8 @@ fn reports_faults_of_the_board() {
         assert!(exit == 5 && message.contains("cannot decode"), "{line}: {exit} {message}");
         assert_eq!(hint, "check that this is the address of an EtherNet/IP device");
     }
-    // Stale, duplicate and miscounted images are skipped; a counter that does not change counts as silence.
+    // The client skips duplicate images and images with an old or wrong counter. If all images are skipped, the board
+    // counts as silent.
     for (fault, works) in [("double", true), ("half-rate", true), ("stale", false), ("wrong-sequence", false)] {
         let board = Board::start(&["--fault", fault]);
         let output = armctl(&board.target, "yrcx info servo").output().unwrap();
@@ -301,8 +305,8 @@ fn never_repeats_a_change_whose_answer_is_lost() {
     let board = Board::start(&["--fault", "frozen"]);
     let (exit, kind, _, message, hint) = error_of(&board.target, "yrcx motor off --yes");
     assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");
-    assert_eq!(hint, "`yrcx status` shows whether servos and motor power are on");
-    // The old value is read first; without an answer nothing is written.
+    assert_eq!(hint, "use `yrcx status` to see whether servos and motor power are on");
+    // The old value is read first. Without an answer to this read, nothing is written.
     let board = Board::start(&["--fault", "reset"]);
     let (exit, kind, _, message, _) = error_of(&board.target, "yrcx eip set 0xF5 1 3 0200");
     assert_eq!((exit, &*kind), (4, "no_answer"), "{message}");
@@ -312,12 +316,12 @@ fn never_repeats_a_change_whose_answer_is_lost() {
     assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");
     assert_eq!(
         message,
-        "sent once; the result is unknown: the TCP connection ended before the answer to Set_Attribute_Single"
+        "the request was sent once, and the result is unknown: the TCP connection ended before the answer to Set_Attribute_Single"
     );
     assert_eq!(hint, "read the value with `yrcx eip get 0xf5 1 3`");
 }
 
-/// A TCP server that runs `serve` for each connection; it ends with the process.
+/// A TCP server that calls `serve` for each connection. The server ends with the process.
 fn other_server(serve: fn(TcpStream)) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let target = format!("eip://{}", listener.local_addr().unwrap());
@@ -341,7 +345,7 @@ fn reports_a_target_that_is_not_a_board() {
     for line in ["yrcx info servo", "yrcx io get", "yrcx eip identity", "status", "yrcx eip set 0xF5 1 3 00"] {
         for target in [&http, &closes, &silent] {
             let (exit, kind, _, message, hint) = match line {
-                // For discovery, an unreachable address is a line of the report.
+                // `status` reports an unreachable address as a result.
                 "status" => {
                     let output = armctl(target, line).output().unwrap();
                     let envelope: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -359,7 +363,7 @@ fn reports_a_target_that_is_not_a_board() {
     assert_error("eip://board.invalid", "yrcx io get", 4, "", "cannot find host 'board.invalid'", hint);
 }
 
-/// An answer to ListIdentity (volume 2, 2-4.2) with a name that would clear a terminal.
+/// An answer to ListIdentity (volume 2, 2-4.2) with a product name that would clear a terminal.
 fn hostile_identity(context: &[u8]) -> Vec<u8> {
     let name = b"\x1b[2J\x07evil\r\n\"<&\xff";
     let mut item = [&[1, 0][..], &[0, 2, 0xAF, 0x12, 10, 0, 0, 9], &[0; 8]].concat();
@@ -405,13 +409,13 @@ fn escapes_the_identity_of_unknown_devices() {
 #[cfg(target_os = "linux")]
 #[test]
 fn discovers_all_devices_of_a_network() {
-    // A board on all addresses receives broadcasts of the loopback network.
+    // A board that listens on all addresses receives broadcasts of the loopback network.
     let Ok(socket) = UdpSocket::bind("0.0.0.0:0") else { return println!("skipped: no port") };
     let port = socket.local_addr().unwrap().port();
     thread::spawn(move || {
         let mut buffer = [0; 64];
         while let Ok((24.., from)) = socket.recv_from(&mut buffer) {
-            // The first bytes of the context are the maximum response delay in milliseconds.
+            // The context begins with the maximum response delay in milliseconds.
             assert_eq!(buffer[12..14], 500u16.to_le_bytes());
             socket.send_to(&hostile_identity(&buffer[12..20]), from).unwrap();
         }

@@ -1,5 +1,5 @@
-//! The program in other environments: terminal widths, locales, no home folder, a read-only home folder, closed
-//! descriptors, and the names of the families as program names.
+//! Runs the program in different environments: terminal widths, locales, no home folder, a read-only home folder,
+//! closed descriptors, and names of the families as program names.
 #![cfg(unix)]
 
 use std::fs::File;
@@ -12,7 +12,7 @@ use serialport::{SerialPort as _, TTYPort};
 
 const BINARY: &str = env!("CARGO_BIN_EXE_armctl");
 
-/// A command in its own folder without environment variables of this process.
+/// A command that runs in this folder, without the environment variables of the test process.
 fn armctl(line: &str, folder: &Path) -> Command {
     let mut command = Command::new(BINARY);
     command.args(line.split(' ')).current_dir(folder).env_clear().env("HOME", folder);
@@ -28,11 +28,11 @@ fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).expect("stderr is UTF-8")
 }
 
-/// A terminal with this number of columns.
+/// A pseudo-terminal with this number of columns.
 struct Terminal {
     screen: TTYPort,
     name: String,
-    /// Keeps the terminal open, because a closed terminal discards its output.
+    /// Keeps the other end of the terminal open, because a closed terminal discards its output.
     _open: TTYPort,
 }
 
@@ -57,7 +57,7 @@ impl Terminal {
         child.expect("the binary starts")
     }
 
-    /// Output of the command, until it contains `enough` or the command has ended.
+    /// Reads the output of the command until it contains `enough` or the command has ended.
     fn read(&mut self, child: &mut Child, enough: impl Fn(&str) -> bool) -> (String, Option<ExitStatus>) {
         let mut written = Vec::new();
         loop {
@@ -88,7 +88,7 @@ fn tables_fit_terminals_of_every_width() {
     let folder = tempfile::tempdir().unwrap();
     for columns in [40, 80, 300] {
         let shown = Terminal::new(columns).run(armctl("--sim yerc alarm history --color never", folder.path()));
-        // Wide characters: more columns than characters.
+        // The text has wide characters, so a line can have fewer characters than columns.
         assert!(shown.lines().all(|line| line.chars().count() <= usize::from(columns)), "{columns}:\n{shown}");
         assert!(shown.contains("SYNCHRONIZING") && shown.contains("2025/11/02 06:12"), "{columns}:\n{shown}");
         let is_table = shown.contains("LIST ");
@@ -130,7 +130,7 @@ fn watch_redraws_in_place_on_capable_terminals() {
         command.env("TERM", term);
         Terminal::new(80).run(command)
     };
-    // Nine lines up, and all lines below removed.
+    // The cursor moves up nine lines, and all lines below are removed.
     assert_eq!(watch("xterm").matches("\x1b[9A\r\x1b[J").count(), 2);
     assert!(!watch("dumb").contains('\x1b'));
 }
@@ -140,7 +140,7 @@ fn uses_color_on_capable_terminals_only() {
     let folder = tempfile::tempdir().unwrap();
     let shown = |line: &str, variables: &[(&str, &str)]| {
         let mut command = armctl(line, folder.path());
-        // The long text waits in the pager.
+        // A long text would wait in the pager for a key.
         command.env("PAGER", "cat").envs(variables.iter().copied());
         Terminal::new(80).run(command)
     };
@@ -182,7 +182,7 @@ fn works_without_a_home_folder() {
 #[test]
 fn names_a_read_only_home_folder() {
     let folder = tempfile::tempdir().unwrap();
-    // Permissions do not stop root, so use a file instead of a folder.
+    // Permissions do not restrict root. Therefore, the home folder is a file, in which nothing can be created.
     let home = folder.path().join("home");
     std::fs::write(&home, "").unwrap();
     let run = |line: &str| armctl(line, folder.path()).env("HOME", &home).output().unwrap();
@@ -240,7 +240,7 @@ fn shows_progress_and_restores_the_terminal() {
     for (line, progress) in [
         ("-t sim:?baud=9600 toyo program put long.toyo", "steps"),
         ("-t sim:?baud=9600 toyo backup saved", "0/"),
-        // A peer that answers at once.
+        // This controller answers without a delay.
         ("-t sim:?state=big.toml yerc file get BIG.DAT", "BIG.DAT"),
         ("-t sim:?state=big.toml yerc backup copies", "BIG.DAT"),
     ] {

@@ -1,9 +1,9 @@
-//! Runs the programs of `examples/` to their end and checks their output.
+//! Runs the programs in `examples/` until they end, and checks their output.
 
 use std::path::Path;
 use std::process::Command;
 
-/// Output of an example. `cargo test` builds it next to the binary.
+/// Output of an example. `cargo test` builds the examples into a folder next to the binary.
 #[track_caller]
 fn run(example: &str) -> String {
     let built = Path::new(env!("CARGO_BIN_EXE_armctl")).with_file_name("examples").join(example);

@@ -1,6 +1,6 @@
-//! Random datagrams to the simulator and to the sessions: no panic, no growth, no endless wait.
+//! Random datagrams to the simulator and to the sessions. They must cause no panic, no growth and no endless wait.
 //!
-//! The datagrams are noise or nearly valid frames; nearly valid frames find more mistakes.
+//! The datagrams are noise or nearly valid frames. Nearly valid frames find more mistakes.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -18,12 +18,13 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 
-/// A header and the maximum data of a frame.
+/// Maximum length of a frame: the header and the maximum data.
 const LARGEST: usize = 32 + MAX_DATA;
-/// Longest pause between two datagrams: longer than the simulator keeps an idle transfer and a session waits.
+/// Longest pause between two datagrams, in milliseconds. It is longer than the timer of an idle transfer in the
+/// simulator and than the timeout of a session.
 const LONGEST: u64 = 6000;
 
-/// Damage of a frame in transit.
+/// Damage to a frame during its transmission.
 #[derive(Debug, Clone)]
 enum Damage {
     None,
@@ -62,7 +63,7 @@ fn damage() -> impl Strategy<Value = Damage> {
     ]
 }
 
-/// Noise of this length; faster to generate than a strategy per byte.
+/// Random bytes of this length. This is faster than one strategy per byte.
 fn noise(len: std::ops::RangeInclusive<usize>) -> impl Strategy<Value = Vec<u8>> {
     (len, any::<u64>()).prop_map(|(len, seed)| {
         let mut bytes = vec![0; len];
@@ -71,12 +72,12 @@ fn noise(len: std::ops::RangeInclusive<usize>) -> impl Strategy<Value = Vec<u8>>
     })
 }
 
-/// Numbers around every limit of block numbers.
+/// Block numbers near every limit.
 fn block() -> impl Strategy<Value = u32> {
     prop_oneof![0_u32..5, (0_u32..5).prop_map(|block| block | LAST_BLOCK), any::<u32>()]
 }
 
-/// A client frame, mostly as in the table of commands.
+/// A client frame; most frames are valid according to the table of commands.
 fn request() -> impl Strategy<Value = Vec<u8>> {
     let instance = prop_oneof![4 => 0_u16..40, 1 => any::<u16>()];
     let data = prop_oneof![
@@ -115,12 +116,13 @@ fn frame(
     RequestFrame { division, ack, id, block, command, instance, attribute, service, data }.emit()
 }
 
-/// One datagram for the simulator: delay in milliseconds, port, sender, bytes.
+/// One datagram for the simulator: delay in milliseconds, whether it goes to the file port, number of the sender,
+/// bytes.
 type Sent = (u64, bool, u64, Vec<u8>);
 
 fn sent() -> impl Strategy<Value = Sent> {
     let wait = prop_oneof![Just(0_u64), 0_u64..50, 0_u64..=LONGEST];
-    // One in ten goes to the wrong port.
+    // One frame in ten goes to the wrong port.
     (wait, 0_u8..10, 0_u64..3, request(), damage()).prop_map(|(wait, port, peer, frame, damage)| {
         let is_file = frame[9] == 2;
         (wait, is_file != (port == 0), peer, damage.of(&frame))
@@ -146,8 +148,8 @@ proptest! {
             simulator.receive(now, division, peer, &bytes);
             received += 1;
             answers.append(&mut drain(&mut simulator, now));
-            // A client must not be able to make the simulator flood another one: a batch backup answers later, but
-            // once.
+            // A client must not be able to make the simulator flood another client. A batch backup is answered later,
+            // but only once.
             prop_assert!(answers.len() <= received, "{} answers to {received} datagrams", answers.len());
             if let Some(wake) = simulator.wake() {
                 prop_assert!(wake > now, "due at {wake:?}, and it is {now:?}");
@@ -158,7 +160,7 @@ proptest! {
             let answer = AnswerFrame::parse(&outgoing.bytes).unwrap();
             prop_assert_eq!(answer.division, outgoing.division);
         }
-        // The simulator still works.
+        // After this, the simulator must still answer.
         now += Duration::from_secs(60);
         drain(&mut simulator, now);
         let status = (0..100).find_map(|_| {
@@ -171,7 +173,7 @@ proptest! {
     }
 }
 
-/// The number of unfetched answers is limited.
+/// The simulator limits the number of answers that nobody has fetched.
 #[test]
 fn simulator_limits_its_cached_answers() {
     let mut simulator = Simulator::new(Start::default());
@@ -181,7 +183,7 @@ fn simulator_limits_its_cached_answers() {
     assert_eq!(drain(&mut simulator, Now::ZERO).len(), 4096);
 }
 
-/// An answer to a session: id and service of the last request, the rest random.
+/// An answer to a session. By default, it has the id of the last request. The rest is random.
 type Answer = (u64, Option<u8>, u32, Status, Vec<u8>, Damage);
 
 fn answer() -> impl Strategy<Value = Answer> {
@@ -189,7 +191,7 @@ fn answer() -> impl Strategy<Value = Answer> {
         6 => Just(Status::OK),
         1 => select(vec![0xD8FA, 0xFFF6, 0xE444, 0xE29C, 0xE4A1, 0x2010]).prop_map(Status::refused),
         1 => (any::<u8>(), 0_u8..3, any::<u32>()).prop_map(|(code, size, added)| {
-            // Limited to the size of such an answer.
+            // The added status is limited to the size that its field has.
             let added = if size == 0 { 0 } else if size == 1 { added & 0xFFFF } else { added };
             Status { code, added_size: size, added }
         }),
@@ -200,7 +202,7 @@ fn answer() -> impl Strategy<Value = Answer> {
     (wait, id, block(), status, data, damage())
 }
 
-/// Runs a session that gets the answers of a script, and then silence, to its end.
+/// Runs a session to its end. The session gets the answers of a script, and after them no answers.
 fn run<S: Session>(session: &mut S, script: Vec<Answer>, feed: impl Fn(&mut S)) -> Result<(), TestCaseError> {
     let deadline = Policy::default().patience();
     let (mut now, mut last, mut script) = (Now::ZERO, Vec::<u8>::new(), script.into_iter());
@@ -239,7 +241,7 @@ fn run<S: Session>(session: &mut S, script: Vec<Answer>, feed: impl Fn(&mut S)) 
                 answers += 1;
             }
             Step::Done(_) => {
-                // At most one frame per answer, and the repetitions of the last frame.
+                // A session sends at most one frame per answer, and repetitions of the last frame.
                 let most = answers + 2 + usize::try_from(Policy::default().retries).unwrap() * (answers + 1);
                 prop_assert!(sends <= most, "{sends} frames for {answers} answers");
                 prop_assert!(matches!(session.poll(now + deadline), Step::Done(_)), "the end does not last");

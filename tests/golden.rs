@@ -1,7 +1,9 @@
-//! Golden frames of the YERC family, from the FS100 and DX200 manuals (`data/yerc-frames.json` cites the section of each).
+//! Golden frames of the YERC family, from the FS100 and DX200 manuals (`data/yerc-frames.json` cites the section of
+//! each).
 //!
-//! Client frames are built from typed values and compared byte by byte. Controller frames are parsed into typed values,
-//! compared with the expected values, and written again. If a test fails, the code is wrong: do not change the bytes.
+//! Client frames are built from typed values and compared byte by byte with the golden frames. Controller frames are
+//! parsed into typed values, compared with the expected values, and written again. If a test fails, the code is wrong:
+//! do not change the bytes.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 #![expect(clippy::needless_pass_by_value, reason = "queries are built where they are sent")]
@@ -114,7 +116,7 @@ fn refuses_invalid_frames() {
     }
 }
 
-/// Names of both files in the M vectors: the text of a job, padded to complete blocks.
+/// Text of both job files in the M vectors. It is padded to complete blocks.
 fn job_text(lines: usize, size: usize) -> Vec<u8> {
     let mut text = b"/JOB\r\n//NAME TESTJOB\r\n//INST\r\n///ATTR SC,RW\r\n///GROUP1 RB1\r\nNOP\r\n".to_vec();
     for line in 0..lines {
@@ -147,9 +149,9 @@ fn position(kind: PositionKind, user: u32, axes: [i32; 8]) -> Position {
     Position { kind, form: Form(0), tool: 0, user, extended: ExtendedForm(0), axes: Axes::full(axes) }
 }
 
-/// Id, and the frame built from typed values.
+/// Id of each client frame, and the frame built from typed values.
 fn client_frames() -> Vec<(&'static str, Vec<u8>)> {
-    // Form of a register write that only the outline shows and no query builds: 3.2.2 against 3.3.10.
+    // Only the outline in 3.2.2 shows this form of a register write; 3.3.10 differs, and no query builds this form.
     let outline = Request { command: 0x79, instance: 10, attribute: 0, service: 2, data: vec![0x34, 0x12] };
     let mut frames = vec![
         ("M01", send(0, ReadStatus)),
@@ -226,7 +228,7 @@ fn write_frames() -> Vec<(&'static str, Vec<u8>)> {
 }
 
 fn order_frames() -> Vec<(&'static str, Vec<u8>)> {
-    // Full-width characters in the pendant language, "robot stopped".
+    // Full-width characters in the language of the pendant. They mean "robot stopped".
     let message = b"\x83\x8d\x83\x7b\x83\x62\x83\x67\x92\xe2\x8e\x7e";
     let straight = CartesianMove {
         layout: MoveLayout::Words26,
@@ -280,7 +282,7 @@ type Read = Box<dyn Fn(&[u8]) -> Vec<u8>>;
 struct Expected {
     block: u32,
     status: Status,
-    /// Parses the data, asserts its value, writes it again.
+    /// Parses the data, asserts its value, and writes the data again.
     read: Read,
 }
 
@@ -288,7 +290,7 @@ fn answer(read: impl Fn(&[u8]) -> Vec<u8> + 'static) -> Expected {
     Expected { block: LAST_BLOCK, status: Status::OK, read: Box::new(read) }
 }
 
-/// Successful write: no data.
+/// Answer to a successful write. It has no data.
 fn acknowledgement(query: impl Query<Answer = ()> + 'static) -> Expected {
     answer(move |data| {
         query.decode(data).unwrap();
@@ -312,7 +314,7 @@ fn file_data(block: u32, content: Vec<u8>) -> Expected {
     Expected { block, status: Status::OK, read }
 }
 
-/// Names of the M list: 69 jobs.
+/// Job names of the list in the M vectors: 69 jobs.
 fn list_text() -> Vec<u8> {
     (0..69).flat_map(|n| format!("JOB{n:05}.JBI\r\n").into_bytes()).collect()
 }
@@ -525,7 +527,7 @@ fn invalid_frames() -> Vec<(&'static str, Refusal)> {
     ]
 }
 
-/// A vector of the file.
+/// A golden frame from the file.
 struct Vector(Json);
 
 impl Vector {
@@ -562,7 +564,7 @@ fn check_header(name: &str, vector: &Vector, size: usize, ack: bool, id: u8, blo
     assert_eq!(number(&fields["division"]), division, "{name}");
 }
 
-/// The explanation covers every byte once and has no problem.
+/// Checks that the explanation covers every byte once and reports no problem.
 fn explain(id: &str, frame: &[u8], sender: Sender) {
     assert_eq!(Sender::guess(frame), sender, "{id}");
     let description = describe(frame, sender, None);
@@ -587,7 +589,7 @@ fn request_of(frame: &RequestFrame<'_>) -> Request {
     }
 }
 
-/// A JSON number, or a text in hexadecimal.
+/// Number from a JSON number, or from a text in hexadecimal.
 fn number(value: &Json) -> u64 {
     value.as_u64().unwrap_or_else(|| {
         let text = value.as_str().unwrap_or_else(|| panic!("no number: {value}"));

@@ -1,7 +1,7 @@
-//! Every request and answer that the Toyo manual prints, parsed and formatted, character for character.
+//! Every request and answer in the Toyo manual, parsed and formatted, character for character.
 //!
-//! For a misprint (`flags` has `typo`), the file has the reason and the corrected text. If a test fails, do not change the
-//! test.
+//! For a misprint (`flags` has `typo`), the file has the reason and the corrected text. If a test fails, do not change
+//! the test.
 
 use armctl_controller::toyo::request::{Answer, Request};
 use serde::Deserialize;
@@ -40,7 +40,7 @@ fn transcripts() -> Transcripts {
     serde_json::from_str(include_str!("data/toyo-transcripts.json")).expect("the transcripts are well-formed")
 }
 
-/// Asserts that a request and its answer are parsed completely and formatted unchanged.
+/// Asserts that a request and its answer can be parsed completely, and are equal after they are formatted again.
 fn check_pair(about: &str, tx: &str, rx: &str) {
     let request = Request::parse(tx).unwrap_or_else(|error| panic!("{about}: {tx}: {error}"));
     request.check().unwrap_or_else(|error| panic!("{about}: {tx}: {error}"));
@@ -78,7 +78,7 @@ fn every_printed_pair_is_parsed_and_made_again() {
     }
 }
 
-/// A misprint is never sent. A misprint in blanks or digits is still parsed.
+/// The codec never sends a misprint. It still parses a misprint in blanks or digits.
 #[test]
 fn misprints_are_never_sent() {
     for pair in transcripts().pairs {

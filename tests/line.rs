@@ -1,4 +1,4 @@
-//! Sessions, transports and simulators on links with loss, duplication and delay, in virtual time, and with programs of
+//! Sessions, transports and simulators: on links with loss, duplication and delay in virtual time, and with programs of
 //! other authors.
 
 mod eip;

@@ -1,6 +1,6 @@
-//! `armctl serve metrics` and `armctl publish` as services: `promtool` and Prometheus read the pages and the files of
-//! `docs/monitoring/`; notifications to the service manager and the journal; the end of a service. Tests that need a
-//! missing program are skipped with a message.
+//! `armctl serve metrics` and `armctl publish` as services. `promtool` and Prometheus read the pages and the files of
+//! `docs/monitoring/`. Other tests check notifications to the service manager, the journal, and the end of a service. A
+//! test that needs a missing program is skipped with a message.
 
 #![expect(clippy::print_stdout, reason = "a test that is skipped says so")]
 
@@ -19,7 +19,7 @@ use tempfile::TempDir;
 
 use crate::support::simulator::Simulator;
 
-/// A process that ends with the test.
+/// A process that ends when the value is dropped.
 struct Service {
     process: Child,
 }
@@ -42,7 +42,7 @@ impl Drop for Service {
     }
 }
 
-/// A folder with an inventory of these robots: name, family, target.
+/// Creates a folder with an inventory of these robots: name, family, target.
 fn create_inventory(robots: &[(&str, &str, &str)]) -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     write(folder.path(), robots);
@@ -63,7 +63,7 @@ fn armctl(folder: &Path) -> Command {
     command
 }
 
-/// Serves metrics on a free port and returns its address.
+/// Starts a metrics service on a free port, and returns its address.
 fn serve(mut command: Command) -> (Service, SocketAddr) {
     command.args(["serve", "metrics", "--listen", "127.0.0.1:0", "--watch", "100ms"]).stdout(Stdio::piped());
     let mut process = command.spawn().expect("it starts");
@@ -74,7 +74,7 @@ fn serve(mut command: Command) -> (Service, SocketAddr) {
     (Service { process }, place)
 }
 
-/// Header and body of the page at a path.
+/// Gets the page at a path. Returns its header and its body.
 fn get(at: SocketAddr, path: &str, accept: &str) -> (String, String) {
     let mut stream = TcpStream::connect(at).expect("somebody listens");
     write!(stream, "GET {path} HTTP/1.1\r\nHost: {at}\r\nAccept: {accept}\r\nConnection: close\r\n\r\n").expect("sent");
@@ -88,9 +88,9 @@ fn page(at: SocketAddr) -> String {
     get(at, "/metrics", "text/plain").1
 }
 
-/// Repeats a request until the answer is as expected.
+/// Repeats a request until it returns a value.
 fn wait_until<T>(what: &str, mut ask: impl FnMut() -> Option<T>) -> T {
-    /// Time limit for a wait.
+    /// Maximum time for the repetition.
     const TIMEOUT: Duration = Duration::from_secs(120);
 
     let began = Instant::now();
@@ -103,7 +103,7 @@ fn wait_until<T>(what: &str, mut ask: impl FnMut() -> Option<T>) -> T {
     }
 }
 
-/// Whether a program is installed; prints the reason if a test is skipped.
+/// Whether a program is installed. If it is not, prints why the test is skipped.
 fn has_program(program: &str) -> bool {
     let found = Command::new(program).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok();
     if !found {
@@ -112,7 +112,7 @@ fn has_program(program: &str) -> bool {
     found
 }
 
-/// Whether a process can have its own network and mounts.
+/// Whether a process can have its own network and its own mounts.
 fn has_namespaces() -> bool {
     let alone = Command::new("unshare").args(["-Urnm", "true"]).stderr(Stdio::null()).status();
     let has = alone.is_ok_and(|status| status.success());
@@ -137,7 +137,7 @@ fn promtool(words: &[&str]) {
     assert_success(&output);
 }
 
-/// One simulator of each family and one unreachable robot.
+/// One simulator of each family, and an inventory that also has an unreachable robot.
 fn mixed_fleet() -> (Vec<Simulator>, TempDir) {
     let simulators: Vec<Simulator> = ["yerc", "yrcx", "toyo"].map(Simulator::start).into();
     let urls: Vec<&str> = simulators.iter().map(|simulator| simulator.url.as_str()).collect();
@@ -151,7 +151,7 @@ fn mixed_fleet() -> (Vec<Simulator>, TempDir) {
     (simulators, folder)
 }
 
-/// Waits until all four robots are known.
+/// Waits until the page has a state for all four robots. Returns the page.
 fn known_metrics(at: SocketAddr) -> String {
     wait_until("all robots are known", || {
         let page = page(at);
@@ -166,7 +166,7 @@ fn serves_pages_in_the_requested_format() {
     let text = known_metrics(at);
     assert!(text.contains("armctl_robot_up{robot=\"cell3\",family=\"yerc\"} 1\n"), "{text}");
     assert!(text.contains("armctl_robot_up{robot=\"gone\",family=\"toyo\"} 0\n"), "{text}");
-    // The page of the documentation shows existing metrics.
+    // Every metric on the page of the documentation must exist.
     let shown = std::fs::read_to_string(documentation_folder("README.md")).expect("the page is there");
     let shown = shown.split("```text\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a page");
     for line in shown.lines() {
@@ -253,12 +253,12 @@ fn prometheus_scrapes_metrics_and_fires_alerts() {
     };
     wait_until("three answer", || (names(ask("armctl_robot_up == 1")) == ["cell3", "loader", "press"]).then_some(()));
     wait_until("it is read", || ask("up{job=\"armctl\"}").iter().any(|(_, value)| value == "1").then_some(()));
-    // X, Y and Z of one robot, four axes of another. A YRCX reports no position if no session has its command
-    // connection.
+    // One robot has X, Y and Z, and another robot has four axes. A YRCX reports no position if no session holds its
+    // command connection.
     wait_until("positions are there", || (ask("armctl_axis_position_meters").len() == 3 + 4).then_some(()));
     let rate = "histogram_quantile(0.99, sum by (robot, le) (rate(armctl_poll_duration_seconds_bucket[1m])))";
     wait_until("a histogram is one", || ask(rate).iter().any(|(_, value)| value != "NaN").then_some(()));
-    // In OpenMetrics, the family name of a counter has no `_total`.
+    // In OpenMetrics, the name of a counter family does not end in `_total`.
     wait_until("its type is known", || {
         let alert_state = get(prometheus, "/api/v1/metadata?metric=armctl_polls", "*/*").1;
         alert_state.contains("\"counter\"").then_some(())
@@ -272,7 +272,7 @@ fn prometheus_scrapes_metrics_and_fires_alerts() {
     wait_until("and all are in the list", || (names(ask(pending)).len() == 4).then_some(()));
 }
 
-/// Starts a Prometheus that reads metrics at an address five times per second.
+/// Starts Prometheus, which reads metrics from this address five times per second.
 fn prometheus(folder: &Path, at: SocketAddr) -> (Service, SocketAddr) {
     let config = std::fs::read_to_string(documentation_folder("prometheus.yml")).expect("it is there");
     let config = config.replace("127.0.0.1:9464", &at.to_string()).replace(": 5s", ": 200ms");
@@ -293,7 +293,7 @@ fn prometheus(folder: &Path, at: SocketAddr) -> (Service, SocketAddr) {
 fn query(at: SocketAddr, question: &str) -> Option<Value> {
     let escaped: String = question.bytes().map(|byte| format!("%{byte:02x}")).collect();
     let (head, body) = get(at, &format!("/api/v1/query?query={escaped}"), "application/json");
-    // A long answer is in chunks, each after a line with its length.
+    // A long answer is sent in chunks, each after a line with its length.
     let body = if head.to_lowercase().contains("transfer-encoding: chunked") { join_chunks(&body) } else { body };
     serde_json::from_str(&body).ok()
 }
@@ -328,8 +328,8 @@ fn follows_added_and_removed_robots() {
     assert!(page(at).contains("armctl_inventory_last_reload_successful 1\n"));
 }
 
-/// Runs as a service with one reachable robot. Checks the notifications to the manager, additional ones of this
-/// service, and the end at SIGTERM.
+/// Runs a service with one reachable robot. Checks the notifications to the service manager, with the additional text
+/// `besides`, and the end at SIGTERM.
 fn is_managed(words: &[&str], besides: &str) {
     let folder = create_inventory(&[("cell3", "yerc", "sim:"), ("gone", "toyo", "tcp://127.0.0.1:1")]);
     let path = folder.path().join("notify");
@@ -352,7 +352,7 @@ fn is_managed(words: &[&str], besides: &str) {
 #[test]
 fn notifies_the_service_manager_and_ends_on_sigterm() {
     is_managed(&["serve", "metrics", "--listen", "127.0.0.1:0"], "");
-    // A missing broker does not delay the service manager.
+    // A missing broker must not delay the notifications to the service manager.
     is_managed(&["publish", "mqtt://127.0.0.1:1"], "; not connected to mqtt://127.0.0.1:1");
 }
 
@@ -370,7 +370,7 @@ fn idle_connections_do_not_block_a_page() {
         })
         .collect();
     assert!(page(at).contains("armctl_"), "there is a page");
-    // The newest connections are still open, because their time limit has not passed.
+    // The newest connections are still open, because their time limit has not passed yet.
     for mut stream in silent.into_iter().skip(40) {
         stream.set_nonblocking(true).expect("set");
         let read = stream.read(&mut [0; 1]).map_err(|error| error.kind());
@@ -378,7 +378,7 @@ fn idle_connections_do_not_block_a_page() {
     }
 }
 
-/// Log of a service, as a journal if it is one, once it has a line with all of these texts.
+/// Log file of a service. The environment of the service can declare this file to be the journal.
 struct Log {
     path: PathBuf,
     _service: Service,
@@ -389,7 +389,7 @@ impl Log {
         let path = folder.join("log");
         let file = std::fs::File::create(&path).expect("a file");
         let stat = file.metadata().expect("it is there");
-        // A variable inherited from a terminal is not that of the journal.
+        // A service that is started from a terminal can inherit the variable. The inode is then not that of its stderr.
         let inode = if is_journal { stat.ino() } else { stat.ino() + 1 };
         command.env("JOURNAL_STREAM", format!("{}:{inode}", stat.dev())).stderr(file).stdout(Stdio::null());
         Self { path, _service: Service { process: command.spawn().expect("it starts") } }
@@ -433,7 +433,7 @@ fn journal_gets_priorities_and_fields_and_a_file_gets_text() {
     assert!(line.starts_with("warning: gone (tcp://127.0.0.1:1)") && !line.contains("kind="), "{line}");
 }
 
-/// In its own namespace, where the journal is this test.
+/// Runs in its own namespace, in which this test replaces the journal.
 #[test]
 fn journal_entries_have_fields() {
     if !has_namespaces() {
@@ -465,7 +465,7 @@ fn journal_entries_have_fields() {
 fn warns_about_a_reachable_port() {
     let folder = create_inventory(&[("cell3", "yerc", "sim:")]);
     let log = folder.path().join("log");
-    // In its own empty network.
+    // Runs in its own namespace with an empty network.
     if !has_namespaces() {
         return;
     }
@@ -495,7 +495,7 @@ fn systemd_accepts_the_units() {
     let folder = tempfile::tempdir().expect("a folder");
     let hardening = ["armctl-metrics.service", "armctl-publish.service"].map(|name| {
         let text = std::fs::read_to_string(documentation_folder(name)).expect("it is there");
-        // Ready, watched, restarted, and with a valid command line.
+        // The unit reports when it is ready, is watched and restarted, and has a valid command line.
         for wanted in ["Type=notify", "WatchdogSec=", "Restart=on-failure", "DynamicUser=yes", "NoNewPrivileges=yes"] {
             assert!(text.contains(wanted), "{name}: {wanted}");
         }

@@ -1,8 +1,8 @@
-//! The pictures of the terminal in `docs/pictures/` show the output of the program.
+//! The pictures of a terminal in `docs/pictures/` show the output of the program.
 //!
-//! Each picture is a shell session in its own folder, drawn as a terminal of [`COLUMNS`] shows it. `ARMCTL_BLESS=1
-//! cargo test --test terminal pictures::` draws them again. Output that changes between runs is fixed: the simulators
-//! start with states from files, and [`without_times`] replaces all times by one.
+//! Each picture is a shell session in its own folder, drawn as a terminal with [`COLUMNS`] columns shows it.
+//! `ARMCTL_BLESS=1 cargo test --test terminal pictures::` draws the pictures again. Output must not change between
+//! runs: the simulators start with states from files, and [`without_times`] replaces all times by one time.
 #![cfg(unix)]
 
 use std::path::Path;
@@ -10,10 +10,10 @@ use std::process::{Command, Stdio};
 
 use anstyle_svg::Term;
 
-/// Width of the terminal; longer lines wrap.
+/// Width of the terminal. Longer lines are wrapped.
 const COLUMNS: usize = 90;
 
-/// Pictures: name, and typed commands.
+/// Pictures: name, and the typed commands.
 const PICTURES: [(&str, &[&str]); 5] = [
     ("fleet", &["armctl status"]),
     ("alarm", &["armctl -r weld2 yerc alarm list", "armctl -r tray toyo alarm list", "armctl explain yrcx 12.600"]),
@@ -31,10 +31,10 @@ const PICTURES: [(&str, &[&str]); 5] = [
     ("check", &["cat pick.toyo", "armctl toyo program check pick.toyo"]),
 ];
 
-/// The panel of `armctl teach`, which its own test draws.
+/// The panel of `armctl teach`. The test of the panel draws this picture.
 const OTHER_PICTURES: [&str; 1] = ["teach"];
 
-/// Files in the folder.
+/// Files in the folder of each session.
 const FILES: [(&str, &str); 5] = [
     (
         "robots.toml",
@@ -96,7 +96,7 @@ fn every_picture_is_used() {
     assert_eq!(files, PICTURES.len() + OTHER_PICTURES.len(), "a picture that nobody draws");
 }
 
-/// Content of the terminal: the commands after their prompts, and their output.
+/// Content of the terminal: a prompt with each command, followed by the output.
 fn session(typed: &[&str]) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     for (name, content) in FILES {
@@ -118,7 +118,7 @@ fn session(typed: &[&str]) -> String {
     shown
 }
 
-/// Text with the same duration for all motions.
+/// Text in which every motion has the same duration.
 fn without_times(text: &str) -> String {
     let Some((before, rest)) = text.split_once("moved to point 19 in ") else { return text.to_owned() };
     let (time, after) = rest.split_once(" s\n").expect("a time ends with its unit");
@@ -136,7 +136,7 @@ fn drawn(shown: &str) -> String {
 const GREY: anstyle::Color = anstyle::Color::Rgb(anstyle::RgbColor(0xcc, 0xcc, 0xcc));
 const NIGHT: anstyle::Color = anstyle::Color::Rgb(anstyle::RgbColor(0x16, 0x1b, 0x22));
 
-/// A line, broken at the terminal width.
+/// Breaks a line at the width of the terminal.
 fn wrapped(line: &str) -> String {
     let mut out = String::new();
     let mut column = 0;

@@ -1,4 +1,4 @@
-//! Properties of the YERC codec: values round-trip, and no bytes cause a panic.
+//! Properties of the YERC codec: values are equal after encoding and decoding, and no bytes cause a panic.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -102,7 +102,7 @@ fn request() -> impl Strategy<Value = Request> {
     prop_oneof![3 => known, 1 => any]
 }
 
-/// Bytes that often look like a frame.
+/// Random bytes that often look like a frame.
 fn datagram() -> impl Strategy<Value = Vec<u8>> {
     let mangled = (request(), any::<u8>(), vec((any::<prop::sample::Index>(), any::<u8>()), 0..6), any::<u16>())
         .prop_map(|(request, id, changes, cut)| {
@@ -340,7 +340,7 @@ proptest! {
     }
 }
 
-/// Data of an answer in which the first byte of each element is `first_byte` of its number.
+/// Data of an answer. The first byte of each element is the result of `first_byte` for the number of the element.
 fn answer(step: &impl Query, first_byte: impl Fn(u16) -> u8) -> Vec<u8> {
     let request = step.request();
     let size = request.row().unwrap().size();

@@ -1,13 +1,13 @@
-//! Runs the console blocks of the README and of `docs/` with the built binary and compares what they print.
+//! Runs the console blocks of the README and of `docs/` with the built binary, and compares the output.
 //!
-//! The blocks below one `##` heading, and those before the first one, are one shell session in its own folder with its
-//! own home and without `ARMCTL_…` variables. `...` on a separate line matches any lines, `[..]` any text within a
-//! line. A command can fail only if the next command is `echo $?`. Envelopes must match their schemas. Sections with
-//! `udp://127.0.0.1:10040`, `tcp://127.0.0.1:4001` or `eip://127.0.0.1:44818` get a simulator on free ports. TOML
-//! blocks that begin with `# NAME.toml` become files in the folders of the page's sessions. Blocks with the language
-//! `sh` (installation, real controllers) are not run.
+//! The blocks below one `##` heading, and those before the first heading, are one shell session. A session has its own
+//! folder and home, and no `ARMCTL_…` variables. `...` on a separate line matches any lines, and `[..]` matches any
+//! text within a line. A command may fail only if the next command is `echo $?`. Envelopes must match their schemas.
+//! Sections with `udp://127.0.0.1:10040`, `tcp://127.0.0.1:4001` or `eip://127.0.0.1:44818` get a simulator on free
+//! ports. TOML blocks that begin with `# NAME.toml` become files in the folders of the page's sessions. Blocks with the
+//! language `sh` (installation, real controllers) are not run.
 //!
-//! `ARMCTL_BLESS=1 cargo test --test terminal readme::` writes what was printed into the blocks that differ.
+//! `ARMCTL_BLESS=1 cargo test --test terminal readme::` writes the output into the blocks that differ.
 #![cfg(unix)]
 
 use std::fmt::Write as _;
@@ -21,12 +21,12 @@ use snapbox::IntoData as _;
 
 use crate::support::schemas;
 
-/// Families, and the addresses of their simulators in the blocks.
+/// Families, and the addresses that the blocks show for their simulators.
 const DOCUMENTED: [(&str, &str); 3] =
     [("yerc", "udp://127.0.0.1:10040"), ("toyo", "tcp://127.0.0.1:4001"), ("yrcx", "eip://127.0.0.1:44818")];
-/// Separator of the commands of a block in the shell output.
+/// Separator in the output of the shell, between two commands of a block.
 const MARK: &str = "\u{1}--next--";
-/// Pages with blocks.
+/// Pages with console blocks.
 const PAGES: [&str; 13] = [
     "README.md",
     "docs/tasks.md",
@@ -50,7 +50,7 @@ fn console_blocks_match_the_output() {
     let sessions: Vec<Session> = pages.iter().flat_map(Page::sessions).collect();
     let outcomes = run_in_parallel(&sessions, |session| run(&session.shown, &session.files));
     let mut wrong = Vec::new();
-    // From the end, so that a written section does not move the earlier ones.
+    // Starts with the last section, so that a rewritten section does not move the sections before it.
     for (session, ended) in sessions.iter().zip(outcomes).rev() {
         let place = format!("{}, {}", PAGES[session.page], session.heading);
         let printed = match ended {
@@ -77,14 +77,14 @@ fn console_blocks_match_the_output() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A page with blocks.
+/// A page with console blocks.
 struct Page {
     number: usize,
     path: PathBuf,
     text: String,
 }
 
-/// The blocks below one heading: a shell session.
+/// The blocks below one heading, which form a shell session.
 struct Session {
     page: usize,
     heading: String,
@@ -118,7 +118,7 @@ impl Page {
     }
 }
 
-/// Runs the work for each item on some more threads than there are cores, because the work mostly waits.
+/// Calls `work` for each item, in three threads per core, because the work mostly waits.
 fn run_in_parallel<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
     let next = AtomicUsize::new(0);
     let threads = std::thread::available_parallelism().map_or(1, usize::from) * 3;
@@ -171,13 +171,13 @@ fn every_link_has_a_target() {
     assert_eq!(wrong, [""; 0], "links that lead nowhere");
 }
 
-/// Paths of files in the pages for developers; a placeholder such as NAME is not a path.
+/// Every path of a file in the pages for developers must exist. A placeholder such as NAME is not a path.
 #[test]
 fn every_path_in_the_developer_pages_exists() {
     let mut missing = Vec::new();
     for page in ["CONTRIBUTING.md", "docs/architecture.md"] {
         let text = std::fs::read_to_string(root().join(page)).expect("the page exists");
-        // Code in a block is an example.
+        // Code in a block is an example, so its paths are not checked.
         let prose: String = text.split("```").step_by(2).collect();
         for path in prose.split('`').skip(1).step_by(2).filter(|word| word.contains('/')) {
             let is_path = path.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || "_-./".contains(c));
@@ -194,7 +194,7 @@ fn every_path_in_the_developer_pages_exists() {
 fn recipes_work_with_jq() {
     const PAGE: &str = "docs/scripting.md";
     if Command::new("jq").arg("--version").stdout(Stdio::null()).status().is_err() {
-        // `.ci/run` installs jq; elsewhere the recipes run only with --jq.
+        // `.ci/run` installs jq. On other machines, the recipes run only with `--jq`.
         return;
     }
     let text = std::fs::read_to_string(root().join(PAGE)).expect("the page is there");
@@ -219,13 +219,13 @@ fn recipes_work_with_jq() {
     assert!(recipes > 10, "{PAGE} has only {recipes} recipes");
 }
 
-/// A block with `--json | jq -rc FILTER` instead of `--jq FILTER`, and the number of replacements.
+/// Replaces `--jq FILTER` in a block by `--json | jq -rc FILTER`. Returns the block and the number of replacements.
 fn with_pipes(block: &str) -> (String, usize) {
     let mut parts = block.split(" --jq ");
     let mut produced = parts.next().unwrap_or_default().to_owned();
     let mut found = 0;
     for part in parts {
-        // A quoted filter ends with its quote, another one with the word.
+        // A quoted filter ends with its quote. Another filter ends with the word.
         let end = match part.strip_prefix('\'') {
             Some(quoted) => quoted.find('\'').map(|end| end + 2),
             None => part.find(|c: char| c.is_whitespace() || c == ')'),
@@ -237,7 +237,7 @@ fn with_pipes(block: &str) -> (String, usize) {
     (produced, found)
 }
 
-/// Output of the commands of a page, with numbers in a common notation and without times.
+/// Output of the commands of a page, without times and with the same notation for equal numbers.
 fn print_output(page: &str) -> String {
     let lines = page.lines().filter(|line| !line.starts_with("$ ") && !line.starts_with("> "));
     let mut printed: String = lines.flat_map(|line| [line, "\n"]).collect();
@@ -248,7 +248,7 @@ fn print_output(page: &str) -> String {
     untimed.flat_map(|line| [line, "\n"]).collect()
 }
 
-/// Checks a line with one or several envelopes against the schemas.
+/// Checks all envelopes in a line against the schemas.
 fn check_promise(line: &str) -> Result<(), String> {
     let envelopes = match serde_json::from_str(line) {
         Ok(serde_json::Value::Array(several)) => several,
@@ -259,7 +259,7 @@ fn check_promise(line: &str) -> Result<(), String> {
     envelopes.try_for_each(|envelope| schemas::check(envelope).map_err(|why| format!("{why} in\n{line}")))
 }
 
-/// Commands of the first block below a heading of the README.
+/// Commands in the first block below a heading of the README.
 fn first_block(heading: &str) -> Vec<String> {
     let readme = std::fs::read_to_string(root().join("README.md")).expect("README.md");
     let (_, after) = readme.split_once(heading).expect("a section that says how to start");
@@ -281,7 +281,7 @@ fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Ranges of the sections, with their headings.
+/// Range of each section, with the heading of the section.
 fn sections(text: &str) -> Vec<Range<usize>> {
     let headings = text.match_indices("\n## ").map(|(at, _)| at + 1);
     let starts: Vec<usize> = std::iter::once(0).chain(headings).collect();
@@ -295,7 +295,7 @@ fn files(text: &str) -> Vec<(String, String)> {
     blocks(text, "toml").into_iter().filter_map(|range| named(&text[range])).collect()
 }
 
-/// Ranges of the contents of the blocks of a language.
+/// Byte ranges of the contents of all blocks with this language.
 fn blocks(text: &str, language: &str) -> Vec<Range<usize>> {
     let mut blocks = Vec::new();
     let mut inside = None;
@@ -315,7 +315,7 @@ fn blocks(text: &str, language: &str) -> Vec<Range<usize>> {
     blocks
 }
 
-/// Runs the commands of a section's blocks in one session, and returns the blocks with their output.
+/// Runs the commands of all blocks of a section in one session. Returns the blocks with their output.
 fn run(blocks: &[String], files: &[(String, String)]) -> Result<Vec<String>, String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     for (name, content) in files {
@@ -331,7 +331,7 @@ fn run(blocks: &[String], files: &[(String, String)]) -> Result<Vec<String>, Str
     }
     let output = shell(&script, folder.path())?;
     let output = simulators.iter().fold(output, |output, simulator| simulator.documented(&output));
-    // The output of a command precedes its mark, its exit code follows it.
+    // The output of a command comes before its mark, and its exit code comes after the mark.
     let mut rest = output.as_str();
     let mut pages = Vec::new();
     for block in &blocks {
@@ -351,7 +351,7 @@ fn run(blocks: &[String], files: &[(String, String)]) -> Result<Vec<String>, Str
     Ok(pages)
 }
 
-/// Commands of a block: lines that begin with `$ `, continued by lines that begin with `> `.
+/// Commands of a block. A command begins with `$ `, and its continuation lines begin with `> `.
 fn commands(block: &str) -> Vec<String> {
     let mut commands: Vec<String> = Vec::new();
     for line in block.lines() {
@@ -382,7 +382,7 @@ fn shell(script: &str, folder: &Path) -> Result<String, String> {
     String::from_utf8(output.stdout).map_err(|error| error.to_string())
 }
 
-/// A simulator on free ports; it ends with the block.
+/// A simulator on free ports. It ends with the shell session.
 struct Simulator {
     process: Child,
     target: String,
@@ -409,7 +409,7 @@ impl Simulator {
     }
 
     fn documented(&self, output: &str) -> String {
-        // Messages also contain addresses without the scheme.
+        // Messages can also contain an address without its scheme.
         let address = |url: &str| url.split_once("://").map_or_else(String::new, |(_, address)| address.to_owned());
         output.replace(&self.target, self.documented).replace(&address(&self.target), &address(self.documented))
     }

@@ -1,4 +1,4 @@
-//! `armctl repl` on a terminal: prompt, completion, history, Ctrl-C, questions, shared link, every exit.
+//! `armctl repl` on a terminal: prompt, completion, history, Ctrl-C, questions, shared link, every way to exit.
 #![cfg(unix)]
 
 use std::process::Command;
@@ -9,7 +9,7 @@ use tempfile::TempDir;
 use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 
-/// A user with a home folder.
+/// The environment of a user: a home folder.
 struct Desk {
     folder: TempDir,
 }
@@ -26,14 +26,14 @@ impl Desk {
         command
     }
 
-    /// Starts the prompt.
+    /// Starts `armctl repl` and waits for its first message.
     fn repl(&self, line: &str) -> Terminal {
         let mut repl = Terminal::start(self.command(line), 100, 30).expect("a terminal");
         repl.wait_for_text("ends the prompt.");
         repl
     }
 
-    /// Data of a command in another process.
+    /// `data` of a command that another process runs.
     fn data(&self, line: &str) -> Value {
         let output = self.command(&format!("{line} --json")).output().expect("it runs");
         assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
@@ -84,7 +84,7 @@ fn ctrl_c_stops_the_motion_but_not_the_prompt() {
     repl.wait_for_text("HOLD is off");
     repl.wait_for_text("yerc> ");
     repl.press("half a line");
-    // The grey suggestion of an earlier line comes and goes.
+    // The prompt can also show a gray suggestion from an earlier line.
     repl.wait_for_text("a line");
     repl.press("\x03");
     repl.wait_for_text("yerc> ");
@@ -114,7 +114,7 @@ fn termination_restores_the_terminal() {
     for signal in ["TERM", "HUP", "QUIT"] {
         let desk = Desk::new();
         let mut repl = desk.repl("yrcx repl --sim");
-        // Before that, the terminal itself echoes.
+        // Before the prompt is shown, the terminal itself echoes keys.
         repl.wait_for_text("yrcx>");
         repl.press("half a line");
         repl.wait_for_text("half a line");

@@ -1,5 +1,5 @@
-//! Dangerous cases, with the program against faulty controllers: commands sent twice, motions without confirmation,
-//! unread axes moved to 0, a Ctrl-C that does not stop the robot.
+//! Dangerous cases, tested with the program and faulty controllers: commands sent twice, motions without confirmation,
+//! motions that move unread axes to 0, a Ctrl-C that does not stop the robot.
 
 #![cfg(unix)]
 
@@ -29,24 +29,24 @@ impl ReceivedRequest {
         Self { command: word(24), instance: word(26), service: frame[29], data: frame[32..].to_vec() }
     }
 
-    /// Whether it only reads (FS and DX 3.3, 3.4.3, 3.4.4).
+    /// Whether the request only reads (FS and DX 3.3, 3.4.3, 3.4.4).
     fn is_read(&self) -> bool {
         matches!(self.service, 0x01 | 0x0E | 0x32 | 0x33)
     }
 }
 
-/// Reaction of a controller to a request.
+/// How a controller reacts to a request.
 enum Reaction {
     Silence,
     Answer(Vec<u8>),
     Refuse(u16),
 }
 
-/// Two UDP ports, and all requests that arrived there.
+/// A controller with two UDP ports. It stores all requests.
 struct Controller {
     url: String,
     requests: Arc<Mutex<Vec<ReceivedRequest>>>,
-    /// Signals every request.
+    /// Gets every received request.
     request_added: Receiver<ReceivedRequest>,
     is_over: Arc<AtomicBool>,
     servers: Vec<JoinHandle<()>>,
@@ -94,7 +94,7 @@ impl Controller {
         self.start(words).wait_with_output().expect("armctl ends")
     }
 
-    /// Waits for a request.
+    /// Waits until a matching request arrives.
     fn wait_for(&self, wanted: impl Fn(&ReceivedRequest) -> bool) {
         while !wanted(&self.request_added.recv_timeout(Duration::from_secs(30)).expect("the request comes")) {}
     }
@@ -133,7 +133,7 @@ fn words(words: &[i32]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
-/// A robot R1 with servo power that moves after a motion command, and stops at HOLD.
+/// A robot R1 with servo power. It moves after a motion command and stops at HOLD.
 fn robot(mut peculiar: impl FnMut(&ReceivedRequest) -> Option<Reaction> + Send + 'static) -> Controller {
     let (mut x, mut moving) = (0, false);
     Controller::new(move |asked| {
@@ -147,7 +147,7 @@ fn robot(mut peculiar: impl FnMut(&ReceivedRequest) -> Option<Reaction> + Send +
                 words(&[0, 0, 0, 0, 0, x, 0, 0, 0, 0, 0])
             }
             (0x75, _) => return Reaction::Refuse(0xA001),
-            // Play, one cycle, command remote, servo on.
+            // Mode play, one cycle, remote control by commands, servo on.
             (0x72, _) => words(&[0xC2 | i32::from(moving) << 3, 0x40]),
             (0x86 | 0x8A | 0x8B, _) => {
                 moving = true;
@@ -174,7 +174,7 @@ fn stderr(output: &Output) -> String {
 const MOVE: &str = "move pulse joint --pulses 90000,0,0,0,0,0 --speed 10% --yes";
 const HOLD_ON: &[u8] = &[1, 0, 0, 0];
 
-/// Every command, and the query for its outcome in the message.
+/// Every state-changing command, and the query in the message with which the user can find out the outcome.
 const ORDERS: [(&str, &str); 24] = [
     ("servo on --yes", "yerc status"),
     ("servo off --yes", "yerc status"),
@@ -207,7 +207,8 @@ fn sends_a_command_once_and_reports_an_unknown_outcome() {
     std::thread::scope(|scope| {
         for (order, hint) in ORDERS {
             scope.spawn(move || {
-                // A refused read before the command does not prevent the command: the position is not defined yet.
+                // The command is sent even if the controller refuses a read before it: here, the position is not
+                // defined yet.
                 let controller =
                     Controller::new(|asked| if asked.is_read() { Reaction::Refuse(0xB005) } else { Reaction::Silence });
                 let output = controller.run(&format!("{order} --timeout 700ms --retries 9"));
@@ -219,7 +220,7 @@ fn sends_a_command_once_and_reports_an_unknown_outcome() {
     });
 }
 
-/// The timeout applies to each try; retries are additional tries.
+/// The timeout applies to each attempt, and the retries are additional attempts.
 #[test]
 fn sends_a_read_once_plus_retries() {
     for (retries, within) in [(0, "300ms"), (2, "900ms"), (4, "1.5s")] {
@@ -233,7 +234,7 @@ fn sends_a_read_once_plus_retries() {
     }
 }
 
-/// To set one signal, its group of eight is read, changed and written. Without the read nothing is written.
+/// To set one signal, its group of eight signals is read, changed and written. If the read fails, nothing is written.
 #[test]
 fn does_not_write_a_signal_of_an_unread_group() {
     let controller = Controller::new(|_| Reaction::Silence);
@@ -282,12 +283,12 @@ fn read_only_robot_refuses_commands_even_with_yes() {
         assert!(stderr(&output).contains("read-only"), "{order}: {}", stderr(&output));
     }
     assert_eq!(*controller.requests.lock().unwrap(), []);
-    // A stop is always allowed.
+    // A stop is always allowed, also on a read-only robot.
     assert_eq!(run("hold on").status.code(), Some(0));
     assert_eq!(run("status").status.code(), Some(0));
 }
 
-/// A pattern can match any number of robots, so each robot must be named.
+/// A pattern can match any number of robots. Therefore, a motion requires the name of each robot.
 #[test]
 fn patterns_do_not_move_robots() {
     let controllers = [robot(|_| None), robot(|_| None)];
@@ -312,7 +313,7 @@ fn patterns_do_not_move_robots() {
     assert!(controllers.iter().all(|controller| controller.changes().len() == 1));
 }
 
-/// A busy base, or an open screen, does not mean that its axes are at 0.
+/// A controller can refuse to report axes, because it is busy or a screen is open. Unread axes must not count as 0.
 #[test]
 fn does_not_move_unread_axes_to_zero() {
     for (instance, code) in [(11, 0xD8FA), (11, 0x2150), (11, 0xCFFF), (1, 0x3070)] {
@@ -323,7 +324,7 @@ fn does_not_move_unread_axes_to_zero() {
         assert!(stderr(&output).contains("nothing was sent"), "{code:#x}: {}", stderr(&output));
         assert_eq!(controller.changes(), [], "{code:#x}");
     }
-    // If the line names every axis, the other axes need not be read.
+    // If the command line names every axis, the current position is not needed.
     let controller = robot(|asked| (asked.command == 0x75).then_some(Reaction::Refuse(0x2150)));
     let all = "move pulse joint --pulses 1,2,3,4,5,6,0,0 --base-axes 0,0,0 --speed 10% --yes --no-wait";
     let output = controller.run(all);
@@ -342,7 +343,7 @@ fn unanswered_read_before_a_move_prevents_the_move() {
     }
 }
 
-/// From the time when the command is sent, Ctrl-C sends HOLD on: with an answer, without one, and during the motion.
+/// After the command is sent, Ctrl-C sends HOLD on: after an answer, without an answer, and during the motion.
 #[test]
 fn ctrl_c_stops_the_robot_first() {
     for (name, orders_are_answered, polls) in [("unanswered", false, 0), ("accepted", true, 0), ("under way", true, 3)]
@@ -363,7 +364,7 @@ fn ctrl_c_stops_the_robot_first() {
     }
 }
 
-/// The stop is repeated until it is confirmed, with all options.
+/// The client repeats the stop until the controller confirms it, whatever the options are.
 #[test]
 fn repeats_a_lost_stop() {
     let mut lost_stop = 12;
@@ -380,7 +381,7 @@ fn repeats_a_lost_stop() {
     assert_eq!(controller.changes().iter().filter(|asked| asked.command == 0x83).count(), 13);
 }
 
-/// Without an answer, the stop is sent for three seconds, and the missing confirmation is reported.
+/// Without an answer, the client repeats the stop for three seconds. It then reports that the stop is not confirmed.
 #[test]
 fn repeats_and_reports_an_unconfirmed_hold() {
     let controller = Controller::new(|_| Reaction::Silence);
@@ -390,7 +391,7 @@ fn repeats_and_reports_an_unconfirmed_hold() {
     assert_eq!(controller.changes().len(), 15);
 }
 
-/// A second Ctrl-C, or TERM, ends the process at once: here during an unconfirmed stop.
+/// A second Ctrl-C, or a TERM, ends the process at once. Here, the stop is not confirmed yet.
 #[test]
 fn second_ctrl_c_ends_the_process_at_once() {
     for signal in ["INT", "TERM"] {
@@ -399,16 +400,16 @@ fn second_ctrl_c_ends_the_process_at_once() {
         controller.wait_for(|asked| asked.command == 0x72);
         interrupt(&child);
         controller.wait_for(|asked| asked.command == 0x83);
-        // A signal shortly after the first one counts as the same.
+        // A signal that comes shortly after the first one counts as the same signal, so the signal is repeated.
         while child.try_wait().unwrap().is_none() {
-            // The process may have ended in the meantime.
+            // The process may have ended since the check.
             let pid = child.id().to_string();
             let _sent = Command::new("kill").args(["-s", signal, &pid]).stderr(Stdio::null()).status();
             std::thread::yield_now();
         }
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
-        assert!(stderr(&output).contains("again: ended at once"), "{}", stderr(&output));
+        assert!(stderr(&output).contains("again: armctl ended at once"), "{}", stderr(&output));
     }
 }
 
@@ -435,7 +436,7 @@ fn on_interrupt_leave_sends_nothing_and_reports_it() {
     assert_eq!(controller.changes().len(), 1);
 }
 
-/// A Ctrl-C before the own command does not stop the motion of another client.
+/// If Ctrl-C comes before this client has sent its command, the client does not stop the motion of another client.
 #[test]
 fn ctrl_c_before_the_command_sends_nothing() {
     let controller = robot(|asked| (asked.command == 0x75).then_some(Reaction::Silence));
@@ -447,7 +448,7 @@ fn ctrl_c_before_the_command_sends_nothing() {
     assert!(stderr(&output).contains("no motion command was sent"), "{}", stderr(&output));
 }
 
-/// A capture file that cannot be written is reported before anything is sent.
+/// armctl reports a capture file that it cannot write before it sends anything to the controller.
 #[test]
 #[cfg(target_os = "linux")]
 fn reports_a_full_disk_of_a_trace_before_the_command() {
@@ -456,11 +457,11 @@ fn reports_a_full_disk_of_a_trace_before_the_command() {
     assert_eq!((output.status.code(), controller.changes()), (Some(1), Vec::new()), "{}", stderr(&output));
 }
 
-/// A controller serves one transfer at a time, and keeps an interrupted one open until its timer ends.
+/// A controller serves one transfer at a time. It keeps an interrupted transfer open until a timer expires.
 #[test]
 fn interrupted_transfer_does_not_block_other_commands() {
     let folder = tempfile::tempdir().unwrap();
-    // Large enough that no transfer ends before its interruption.
+    // The files are so large that no transfer ends before it is interrupted.
     std::fs::write(folder.path().join("state.toml"), "[[file]]\nname = \"BIG.DAT\"\nsize = 67108864\n").unwrap();
     std::fs::write(folder.path().join("UP.CND"), vec![b'x'; 16 << 20]).unwrap();
     let state = folder.path().join("state.toml");
@@ -480,7 +481,7 @@ fn interrupted_transfer_does_not_block_other_commands() {
     let mut child = command("file get BIG.DAT --dir -").spawn().unwrap();
     child.stdout.as_mut().unwrap().read_exact(&mut [0; 1000]).unwrap();
     interrupt(&child);
-    // Its remaining output must not fill the pipe.
+    // The remaining output is read, so that it does not fill the pipe.
     let mut rest = Vec::new();
     child.stdout.take().unwrap().read_to_end(&mut rest).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130));

@@ -1,4 +1,4 @@
-//! `armctl session` with processes, sockets and signals. Tests wait for conditions, never for times.
+//! `armctl session` with processes, sockets and signals. The tests wait for conditions, never for a fixed time.
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -13,14 +13,14 @@ use std::process::{Child, ChildStderr, Command, Output, Stdio};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A user with an inventory and a runtime folder.
+/// The environment of a user: an inventory and a runtime folder.
 struct Desk {
     folder: TempDir,
     program: PathBuf,
 }
 
 impl Desk {
-    /// With robots by name, family and target.
+    /// Creates an inventory with these robots: name, family, target.
     fn new(robots: &[(&str, &str, &str)]) -> Self {
         let desk = Self { folder: tempfile::tempdir().unwrap(), program: env!("CARGO_BIN_EXE_armctl").into() };
         let robots: Vec<String> = robots
@@ -46,19 +46,19 @@ impl Desk {
         self.command(words).output().unwrap()
     }
 
-    /// Data of a command that succeeds.
+    /// `data` of a command that must succeed.
     fn data(&self, words: &str) -> Value {
         let output = self.run(&format!("{words} --json"));
         assert!(output.status.success(), "{words}: {}", stderr(&output));
         serde_json::from_slice::<Value>(&output.stdout).unwrap()["data"].clone()
     }
 
-    /// First session of the list.
+    /// First session of the session list.
     fn listed_sessions(&self) -> Value {
         self.data("session list")["sessions"][0].clone()
     }
 
-    /// Polls the first session until it has the expected state.
+    /// Polls the first session until the condition is true.
     fn until(&self, condition: impl Fn(&Value) -> bool) -> Value {
         loop {
             let session = self.listed_sessions();
@@ -68,7 +68,7 @@ impl Desk {
         }
     }
 
-    /// Session files with this extension.
+    /// Returns the session files with this extension.
     fn files(&self, extension: &str) -> Vec<PathBuf> {
         let Ok(found) = std::fs::read_dir(self.folder.path().join("run/armctl")) else { return Vec::new() };
         found
@@ -85,7 +85,7 @@ impl Drop for Desk {
     }
 }
 
-/// A process and its stderr lines.
+/// A process, and a reader for its stderr.
 struct Running {
     process: Child,
     stderr: BufReader<ChildStderr>,
@@ -93,7 +93,7 @@ struct Running {
 }
 
 impl Running {
-    /// Starts it, and waits for the first line on stdout if required.
+    /// Starts the process. If `speaks` is set, waits for the first line on stdout.
     fn start(mut command: Command, speaks: bool) -> Self {
         let mut process = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let mut first = String::new();
@@ -104,14 +104,14 @@ impl Running {
         Self { process, stderr, first: first.trim_end().to_owned() }
     }
 
-    /// A session in the foreground.
+    /// Starts a session in the foreground.
     fn session(desk: &Desk, robot: &str) -> Self {
         let session = Self::start(desk.command(&format!("-r {robot} session open")), true);
         assert!(session.first.contains("held by process"), "{}", session.first);
         session
     }
 
-    /// Waits for this text on stderr.
+    /// Waits until stderr contains this text.
     fn wait_for_message(&mut self, part: &str) {
         let mut line = String::new();
         while !line.contains(part) {
@@ -121,7 +121,7 @@ impl Running {
         }
     }
 
-    /// The next line that begins with this text.
+    /// The next line on stderr that begins with this text.
     fn line(&mut self, beginning: &str) -> String {
         let mut line = String::new();
         while !line.starts_with(beginning) {
@@ -136,7 +136,7 @@ impl Running {
         assert!(Command::new("kill").args(["-s", signal, &pid]).status().unwrap().success());
     }
 
-    /// Exit code and remaining output.
+    /// Waits for the end. Returns the exit code and the remaining output.
     fn end(mut self) -> (Option<i32>, String) {
         let mut rest = String::new();
         self.stderr.read_to_string(&mut rest).unwrap();
@@ -146,18 +146,18 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It may have ended already.
+        // The process may have ended already.
         self.process.kill().unwrap_or_default();
         self.process.wait().unwrap();
     }
 }
 
-/// A simulator on this address, or on a free one. Its target is its first output.
+/// A simulator on this address; port 0 selects a free port. The first output line of the simulator is its target.
 fn simulator(desk: &Desk, family: &str, address: &str) -> Running {
     serve_simulator(desk, &format!("{family} --bind {address}"))
 }
 
-/// A simulator with these arguments.
+/// Starts a simulator with these arguments.
 fn serve_simulator(desk: &Desk, words: &str) -> Running {
     let mut command = desk.command(&format!("sim {words} --console --jq .data.target"));
     command.stdin(Stdio::piped());
@@ -170,7 +170,7 @@ fn serve_simulator(desk: &Desk, words: &str) -> Running {
     simulator
 }
 
-/// A simulated YRCX, and a user with the robot `cell`. The long timeout allows for a busy machine.
+/// A simulated YRCX, and a user whose inventory has it as `cell`. The long timeout allows for a busy machine.
 fn cell_arguments() -> (Running, Desk) {
     let simulator = simulator(&Desk::new(&[]), "yrcx", "127.0.0.1:0");
     let desk = Desk::new(&[("cell", "yrcx", &format!("{}?rpi=5ms&multiplier=512", simulator.first))]);
@@ -180,7 +180,7 @@ fn cell_arguments() -> (Running, Desk) {
 /// A motion that takes minutes.
 const SLOW_MOVE: &str = "-r cell yrcx move --to 900,0,0,0 --speed-of-max 0.1 --yes";
 
-/// Such a motion, once the controller executes it.
+/// Starts [`SLOW_MOVE`], and waits until the controller executes the motion.
 fn start_motion(desk: &Desk) -> Running {
     let mut moving = Running::start(desk.command(&format!("{SLOW_MOVE} -vv")), false);
     moving.wait_for_message("<- WO 0100");
@@ -213,7 +213,7 @@ fn completion_asks_a_controller_only_through_its_session() {
     assert!(tab("armctl -r c").starts_with("+cell\tudp://"));
     assert_eq!(tab("armctl -r cell yerc job select TE"), "", "it opens no link of its own");
     let _session = Running::session(&desk, "cell");
-    // A busy machine may be slow to complete.
+    // On a busy machine, completion may be too slow for the first try.
     while tab("armctl -r cell yerc job select TE") != "+TESTJOB\n" {}
     while !tab("yerc -r cell file get TOOL").contains("+TOOL.CND\tcnd") {}
     assert_eq!(tab("armctl -r cell --no-session yerc job select TE"), "");
@@ -234,7 +234,7 @@ fn commands_use_a_session_automatically() {
         assert!(!stderr.contains("closed"), "no fault of the link: {stderr}");
     }
     assert_eq!(desk.data("-r cell yrcx status")["alarm"], false, "the connection stayed open");
-    // The same device by its URL has the same session; another URL has none.
+    // A command that names the device by its URL uses the same session.
     let url = desk.listed_sessions()["target"].as_str().unwrap().to_owned();
     assert!(stderr(&desk.run(&format!("-t {url} yrcx status -v"))).contains("through the session"));
     fails(&desk.run("-r cell --no-session --yes yrcx info servo"), 3, "[0x0106]");
@@ -294,7 +294,7 @@ fn reports_and_handles_state_of_a_dead_client() {
     assert!(stderr(&output).contains("a client ended and left a command running"), "{}", stderr(&output));
 
     assert!(desk.run("-r cell yrcx stop").status.success());
-    // The motion ends a moment after the stop; until then its output is read.
+    // The motion ends a moment after the stop. Until then, new commands are refused.
     let mut next = (0..100).map(|_| desk.run("-r cell yrcx info servo"));
     let next = next.find(|next| next.status.success()).expect("the motion ends");
     assert!(stderr(&next).contains("another client left move-mm "), "{}", stderr(&next));
@@ -308,7 +308,7 @@ fn stops_the_jog_of_a_killed_client() {
     let mut jogging = Running::start(desk.command("-r cell yrcx jog pulse 1 + --for 1m --yes -vv"), false);
     jogging.wait_for_message("<- WO 0100");
     jogging.signal("KILL");
-    session.wait_for_message("armctl sends its stop signals");
+    session.wait_for_message("armctl sends the stop signals of the client");
     desk.until(|session| session["under_way"] == false);
     let next = desk.run("-r cell yrcx info servo");
     assert!(next.status.success() && stderr(&next).contains("12.400 stopped by the stop input"), "{}", stderr(&next));
@@ -328,7 +328,7 @@ fn motion_with_no_wait_continues_after_its_command() {
     assert_eq!(desk.data("-r cell yrcx status --full")["position"]["x_mm"], 10.0);
 }
 
-/// The session process is killed during a command: the command reports this and an unknown outcome.
+/// The session process is killed during a command. The command reports this, and that the outcome is unknown.
 #[test]
 fn command_reports_its_killed_session() {
     for (family, words, until) in [
@@ -363,11 +363,11 @@ fn killed_session_makes_the_outcome_unknown() {
         "{said}"
     );
     assert_eq!((desk.files("sock").len(), desk.listed_sessions()["link"].as_str()), (1, Some("dead")));
-    assert!(stderr(&desk.run("-r cell yrcx status")).contains(
-        "the session process has ended, so the command runs \
-        without it"
-    ));
-    // A stale socket does not prevent a new session. The adapter detects the lost owner after a moment.
+    assert!(
+        stderr(&desk.run("-r cell yrcx status"))
+            .contains("the session process has ended, so the command runs without a session")
+    );
+    // A stale socket does not prevent a new session. The adapter needs a moment to detect the lost owner.
     while !desk.run("-r cell session open --background").status.success() {}
     assert_eq!(desk.listed_sessions()["link"], "up");
     let killed = desk.listed_sessions()["pid"].to_string();
@@ -411,7 +411,7 @@ fn reopens_a_lost_link() {
 
 #[test]
 fn session_keeps_each_fieldbus_and_its_end_is_an_alarm() {
-    // The longest timeouts, for a busy machine.
+    // The longest possible timeouts, for a busy machine.
     for (words, patience, alarm) in
         [("--bus devicenet", "&rate=10s", "12.541"), ("--bus profibus", "&watchdog=60s&slot=500ms", "12.561")]
     {
@@ -435,7 +435,7 @@ fn session_keeps_each_fieldbus_and_its_end_is_an_alarm() {
 #[test]
 fn reports_the_stop_input_after_a_lost_link_returns() {
     const REPORTED: &str = "the connection was lost; the connection is up again, and the stop input SI(06) is on";
-    // Through a session, and on a direct connection of the command.
+    // First through a session, then with a direct connection of the command.
     for is_held in [true, false] {
         let (simulator, desk) = cell_arguments();
         let mut session = is_held.then(|| Running::session(&desk, "cell"));
@@ -453,6 +453,25 @@ fn reports_the_stop_input_after_a_lost_link_returns() {
     }
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn background_session_keeps_no_file_of_its_starter_open() {
+    let (_simulator, desk) = cell_arguments();
+    let inherited = desk.folder.path().join("inherited");
+    let command = desk.command("-r cell session open --background --json");
+    let open = format!("exec 7>'{}' 8</dev/null 9>&1; exec \"$0\" \"$@\"", inherited.display());
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &open]).arg(command.get_program()).args(command.get_args()).stdin(Stdio::null());
+    shell.env_clear().envs(command.get_envs().filter_map(|(name, value)| Some((name, value?))));
+    // If the session kept descriptor 9 open, this would wait for its end.
+    let output = shell.output().unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    let opened: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let files = std::fs::read_dir(format!("/proc/{}/fd", opened["data"]["pid"])).unwrap();
+    let files: Vec<PathBuf> = files.filter_map(|file| std::fs::read_link(file.unwrap().path()).ok()).collect();
+    assert!(inherited.exists() && !files.is_empty() && !files.contains(&inherited), "{files:?}");
+}
+
 #[test]
 fn background_session_is_ready_when_reported() {
     let (_simulator, desk) = cell_arguments();
@@ -466,7 +485,7 @@ fn background_session_is_ready_when_reported() {
     fails(&desk.run("session close elsewhere"), 2, "no session of 'elsewhere' is open");
     assert_eq!(desk.data("session close cell")["sessions"][0]["became"], "closed");
     assert_eq!(desk.data("session list")["sessions"].as_array().unwrap().len(), 0);
-    // The session and its connection have ended, so a new one is possible.
+    // The session and its connection have ended, so a new session is possible.
     desk.data("-r cell session open --background");
 
     let no_session = Desk::new(&[("cell", "yrcx", "eip://127.0.0.1:1"), ("yas", "yerc", "udp://127.0.0.1:1")]);
@@ -487,7 +506,7 @@ fn session_forwards_datagrams() {
         let written = &desk.data("-r cell yerc var set B0=7")["items"][0];
         assert_eq!((&written["old"], &written["new"]), (&old.into(), &7.into()), "{written}");
     }
-    // Files need many datagrams, on the other port.
+    // A file transfer needs many datagrams, and it uses the other port.
     let file = desk.folder.path().join("COUNT.JBI");
     let saved = desk.run(&format!("-r cell yerc file get COUNT.JBI --dir {}", desk.folder.path().display()));
     assert!(saved.status.success() && file.exists(), "{}", stderr(&saved));
@@ -542,7 +561,7 @@ fn simulator_in_a_session_keeps_its_state() {
     assert_eq!(desk.data("-r y yerc var get B0")["items"][0]["value"], 42);
     desk.data("-r t toyo counter set 7 42");
     assert_eq!(desk.data("-r t toyo counter get 7")["items"][0]["value"], 42);
-    // Without a session, a simulator starts with its default state.
+    // Without a session, each command has a new simulator with the default state.
     assert_eq!(desk.data("--no-session -r t toyo counter get 7")["items"][0]["value"], 0);
     assert_eq!(desk.data("session close --all")["sessions"].as_array().unwrap().len(), 3);
 }
@@ -555,5 +574,5 @@ fn does_not_trust_a_folder_of_another_user() {
     std::fs::set_permissions(&folder, std::fs::Permissions::from_mode(0o755)).unwrap();
     fails(&desk.run("-r x session open"), 1, "other users have access to it");
     let output = desk.run("-r x yrcx status");
-    assert!(output.status.success() && stderr(&output).contains("sessions are not used"), "{}", stderr(&output));
+    assert!(output.status.success() && stderr(&output).contains("armctl does not use sessions"), "{}", stderr(&output));
 }

@@ -1,4 +1,5 @@
-//! `armctl setup` on a terminal: from no inventory to a named, checked, read-only robot; every exit.
+//! `armctl setup` on a terminal. It starts without an inventory and ends with a named, checked, read-only robot. Every
+//! way to exit is tested.
 #![cfg(unix)]
 
 use std::process::Command;
@@ -8,7 +9,7 @@ use tempfile::TempDir;
 use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 
-/// A user with an inventory.
+/// The environment of a user, who may have an inventory.
 struct Desk {
     folder: TempDir,
 }
@@ -25,17 +26,17 @@ impl Desk {
         Terminal::start(command, 80, 24).expect("a terminal")
     }
 
-    /// The inventory; `None` without a file.
+    /// Text of the inventory; `None` if there is no file.
     fn inventory(&self) -> Option<String> {
         std::fs::read_to_string(self.folder.path().join("robots.toml")).ok()
     }
 }
 
-/// Key presses for the next entry of a list.
+/// Keys that select another entry of a list.
 const SECOND_ENTRY: &str = "\x1b[B";
 const THIRD_ENTRY: &str = "\x1b[B\x1b[B";
 
-/// Answers each question.
+/// Answers each question, in this order.
 fn answer(setup: &mut Terminal, answers: &[(&str, &str)]) {
     for (question, answer) in answers {
         setup.wait_for_text(question);
@@ -50,8 +51,8 @@ fn adds_a_checked_named_read_only_robot() {
     let mut setup = desk.setup();
     answer(&mut setup, &[("Where is the robot?", ""), ("a URL:", &address.to_string())]);
     answer(&mut setup, &[("Which controller is it?", "")]);
-    setup.wait_for_text("answers a status request");
-    setup.wait_for_text("dx200, by its software");
+    setup.wait_for_text("the controller answers a status request");
+    setup.wait_for_text("dx200, read from the software");
     answer(&mut setup, &[("Name [cell1]:", "cell 3"), ("Name [cell1]:", "cell3"), ("Read-only", "")]);
     setup.wait_for_text("read_only = true");
     answer(&mut setup, &[("Write this to robots.toml? [Y/n]", "")]);
@@ -121,14 +122,14 @@ fn escape_and_signals_write_nothing_and_restore_the_terminal() {
     }
 }
 
-/// The terminal modes are restored, and the cursor is visible.
+/// Asserts that the terminal modes are restored and the cursor is visible.
 fn assert_terminal_restored(terminal: &Terminal, way: &str) {
     assert!(terminal.is_restored(), "{way}");
     let written = String::from_utf8_lossy(&terminal.written);
     assert!(written.rfind("\x1b[?25h") > written.rfind("\x1b[?25l"), "{way}: {written:?}");
 }
 
-/// A line on a terminal that may lack a name.
+/// Runs a command line on a terminal. The program asks for a missing name.
 fn line(desk: &Desk, words: &[&str]) -> Terminal {
     let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
     command.env_clear().env("HOME", desk.folder.path()).env("TERM", "xterm-256color").env("LANG", "C.UTF-8");
@@ -143,8 +144,8 @@ fn offers_a_choice_for_a_missing_name() {
     select.wait_for_text("> COUNT");
     select.reads_keys();
     select.press("WAIT\r");
-    // The terminal is narrower than the line.
-    select.wait_for_text("question:\n  armctl --config robots.toml --sim yerc");
+    // The command line is longer than a line of the terminal, so it wraps.
+    select.wait_for_text("this list:\n  armctl --config robots.toml --sim yerc");
     select.wait_for_text("WAITIN is selected");
     assert_eq!(select.end().code(), Some(0));
     assert_terminal_restored(&select, "chosen");

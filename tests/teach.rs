@@ -1,5 +1,5 @@
-//! `armctl teach` on a terminal, against simulated controllers: each key is one limited step, and every end of the
-//! panel stops the motion.
+//! `armctl teach` on a terminal, with simulated controllers. Each key is one limited step, and every end of the panel
+//! stops the motion.
 #![cfg(unix)]
 
 use std::process::{Command, Output};
@@ -10,7 +10,7 @@ use tempfile::TempDir;
 use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 
-/// A user, and a controller with servo power.
+/// The environment of a user, and a controller with servo power.
 struct Desk {
     folder: TempDir,
     family: &'static str,
@@ -23,7 +23,7 @@ impl Desk {
         Self { folder, family, controller: Simulator::start(family) }
     }
 
-    /// A controller with this state (TOML).
+    /// A controller that starts in this state (TOML).
     fn in_state(family: &'static str, state: &str) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("state.toml");
@@ -32,7 +32,7 @@ impl Desk {
         Self { folder, family, controller }
     }
 
-    /// A controller whose axes can move.
+    /// Creates a controller whose axes can move.
     fn with_power(family: &'static str) -> Self {
         let desk = Self::new(family);
         let on = desk.run(&[family, "servo", "on", "--yes"]);
@@ -59,8 +59,8 @@ impl Desk {
         envelope["data"].clone()
     }
 
-    /// Repeats the command until the controller accepts it: its guardian or adapter may still handle the end of
-    /// another.
+    /// Repeats the command until it succeeds: the guardian or the adapter may not have finished the end of another
+    /// command yet.
     fn reported_states(&self, words: &str) -> Value {
         let words: Vec<&str> = words.split(' ').chain(["--json"]).collect();
         let mut outputs = (0..MAX_POLLS).map(|_| self.run(&words));
@@ -68,7 +68,7 @@ impl Desk {
         serde_json::from_slice::<Value>(&output.stdout).expect("an envelope")["data"].clone()
     }
 
-    /// The panel at its question.
+    /// Starts the panel, which first asks for a confirmation.
     fn ask_panel(&self, words: &[&str]) -> Terminal {
         let command = self.command(&[&["teach", self.family], words].concat());
         let mut teach = Terminal::start(command, 100, 30).expect("a terminal");
@@ -76,7 +76,7 @@ impl Desk {
         teach
     }
 
-    /// The panel, once it shows the robot.
+    /// Starts the panel, and waits until it shows the robot.
     fn panel(&self, words: &[&str]) -> Terminal {
         let mut teach = self.ask_panel(words);
         teach.press("y\r");
@@ -85,8 +85,8 @@ impl Desk {
         teach
     }
 
-    /// A panel in the middle of a step: ten millimetres at one millimetre per second, long enough to test during the
-    /// step.
+    /// A panel in the middle of a step of ten millimeters at one millimeter per second. The step is long enough for a
+    /// test.
     fn is_moving(&self, start: f64) -> Terminal {
         let mut teach = self.panel(&[]);
         teach.press("<++");
@@ -97,18 +97,18 @@ impl Desk {
         teach
     }
 
-    /// Waits until X of the base differs from `start`, so that the step is in progress.
+    /// Waits until X of the base differs from `start`, which shows that the step is in progress.
     fn wait_for_motion_from(&self, start: f64) {
         assert!((0..MAX_POLLS).any(|_| self.x() > start), "nothing moves");
     }
 
-    /// X of the base.
+    /// X of the robot in base coordinates.
     fn x(&self) -> f64 {
         self.data("yerc position --coordinates base")["positions"][0]["x_mm"].as_f64().expect("a number")
     }
 }
 
-/// Number of polls after which an event is considered absent.
+/// Number of polls for an event. If the event does not occur within these polls, the test fails.
 const MAX_POLLS: usize = 2000;
 
 #[test]
@@ -193,30 +193,30 @@ fn stops_a_step_when_the_program_is_killed() {
     let mut teach = desk.panel(&[]);
     teach.press("<+");
     teach.wait_for_picture("step 1 mm");
-    // Keys during a step are not stored.
+    // Keys that are pressed during a step are discarded.
     teach.press("\x1b[C\x1b[C\x1b[C\x1b[C");
     teach.wait_for_picture("MOVING");
     desk.wait_for_motion_from(start);
     teach.child.kill().expect("it is killed");
     teach.child.wait().expect("it is our child");
-    // The guardian stops it, and nothing follows.
+    // The guardian stops the robot, and no further step follows.
     assert!((0..MAX_POLLS).any(|_| desk.data("yerc status")["held"] == true), "{}", desk.data("yerc status"));
     assert!((0..MAX_POLLS).any(|_| desk.data("yerc status")["running"] == false), "it does not stop");
     assert!(desk.x() < start + 1.0 + 1e-6, "{start} {}", desk.x());
 }
 
-/// Ends the process of the panel in this way during a motion: the robot must stop before the target.
+/// The process of the panel is killed or frozen during a motion. The robot must stop before it reaches the target.
 #[test]
 fn stops_a_motion_when_the_program_is_killed_or_frozen() {
     for signal in ["KILL", "STOP"] {
-        // Half a metre at a tenth of the speed.
+        // The motion is half a meter, at a tenth of the speed.
         let desk = Desk::with_power("toyo");
         desk.data("toyo home --yes");
         desk.data("toyo param set M10 P --yes");
         desk.data("toyo override set 10 --yes");
         desk.data("toyo point set 5 x=500 y=0 z=0 r=0 --yes");
         let mut teach = desk.panel(&[]);
-        // Before that, a terminal in normal mode may interpret Enter.
+        // Before the panel is drawn, the terminal is in normal mode and may interpret Enter.
         teach.wait_for_picture("step 0.1 mm");
         teach.press("g5\r");
         teach.wait_for_picture("y moves to point 5");
@@ -228,7 +228,8 @@ fn stops_a_motion_when_the_program_is_killed_or_frozen() {
         assert!((0..MAX_POLLS).any(|_| desk.reported_states("toyo status")["running"] == false), "it does not stop");
         assert!(x() < 500.0, "{signal}: {}", x());
 
-        // Ten millimetres at one per second. Until the adapter detects its missing master, it accepts no other.
+        // A step of ten millimeters at one millimeter per second. The adapter accepts no other master until it detects
+        // that the first master is gone.
         let desk = Desk::in_state("yrcx", "[[robot]]\nauto_speed = 10\n");
         let x = || desk.reported_states("yrcx position --yes")["positions"][0]["x_mm"].as_f64().expect("a number");
         let mut teach = desk.panel(&[]);
@@ -247,7 +248,7 @@ fn stops_a_motion_when_the_program_is_killed_or_frozen() {
     }
 }
 
-/// Ends the panel; a frozen one is killed by its guardian.
+/// Ends the panel with a signal. A frozen panel is killed by its guardian.
 fn end(mut teach: Terminal, signal: &str) {
     teach.signal(signal);
     teach.child.wait().expect("it is our child");

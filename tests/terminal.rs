@@ -1,4 +1,4 @@
-//! The built binary as used by people and scripts: transcripts, exit codes, questions, prompts, bad input, documents.
+//! Uses the built binary like people and scripts do: transcripts, exit codes, questions, prompts, bad input, documents.
 #![cfg(unix)]
 
 mod support {

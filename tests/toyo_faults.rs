@@ -1,8 +1,8 @@
-//! The session of toyo on lines that lose, double, damage, delay or echo characters.
+//! The session of the Toyo family on lines that lose, double, damage, delay or echo characters.
 //!
-//! The tests run in virtual time against a controller that counts its executions. Blocks have a fixed width and no
+//! The tests run in virtual time, with a controller that counts its executions. Blocks have a fixed width and no
 //! checksum. One lost or doubled character is detected. A lost and a doubled character in the same block are not
-//! detected, and neither is noise that changes a digit. Under such faults only the number of executions is checked.
+//! detected, and neither is noise that changes a digit. For these faults, only the number of executions is checked.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -23,15 +23,15 @@ const BITS: u32 = 11;
 const BAUD: u32 = 9600;
 const TIMEOUT: Duration = Duration::from_secs(1);
 
-/// A controller with counters. Each order sets a counter to a unique value.
+/// A controller with counters. Each order sets one counter to a value that no other order uses.
 #[derive(Debug, Default)]
 struct Counters {
     framer: Framer,
     is_damaged: bool,
     counters: HashMap<i32, i32>,
-    /// Number of times that each value was set.
+    /// How often each value was set.
     executed: HashMap<i32, u32>,
-    /// Number of all executions.
+    /// Total number of executions.
     executions: u32,
     answers: Vec<Vec<u8>>,
 }
@@ -63,7 +63,7 @@ impl Peer for Counters {
     fn receive(&mut self, _now: Duration, _channel: usize, bytes: &[u8]) {
         for byte in bytes {
             let Some(framed) = self.framer.push(*byte).0 else { continue };
-            // A block with a parity error is not answered (TO 1-3).
+            // A controller does not answer a block with a parity error (TO 1-3).
             if !std::mem::take(&mut self.is_damaged)
                 && let Framed::Block(block) = framed
             {
@@ -86,18 +86,18 @@ impl Peer for Counters {
     }
 }
 
-/// Results on one line.
+/// Results of the exchanges on one line.
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Tally {
     answered: u32,
     refused: u32,
     open: u32,
-    /// Reads with another value than the stored one.
+    /// Reads that returned another value than the stored one.
     wrong: u32,
-    /// Orders that were executed several times; `lost`: confirmed orders that were not executed.
+    /// Orders that were executed more than once. `lost` counts confirmed orders that were not executed.
     doubled: u32,
     lost: u32,
-    /// Executed orders, whatever their result.
+    /// Number of executed orders, whatever their result was.
     executions: u32,
 }
 
@@ -117,7 +117,7 @@ async fn exchange(line: &mut LineSession, wire: &mut InProcessLine<Counters>, be
     }
 }
 
-/// Runs a hundred orders, with a read after each.
+/// Runs a hundred orders, with a read after each order.
 async fn run_exchanges(faults: &str, seed: u64) -> Tally {
     const EXCHANGES: i32 = 100;
     let pace = Pace::new(BAUD, BITS);
@@ -166,7 +166,7 @@ fn virtual_time() -> tokio::runtime::Runtime {
     tokio::runtime::Builder::new_current_thread().enable_time().start_paused(true).build().expect("a runtime")
 }
 
-/// Each fault alone, and combinations, with many seeds.
+/// Tests each fault alone and combinations of faults, with many seeds.
 #[test]
 fn faults_never_double_lose_or_confuse_orders() {
     let grid = [
@@ -177,7 +177,7 @@ fn faults_never_double_lose_or_confuse_orders() {
         "parity=1%",
         "parity=10%",
         "delay=0..50ms",
-        // Later than the timeout, but within the time in which a late answer is discarded.
+        // An answer can come after the timeout, but still within the time in which a late answer is discarded.
         "delay=0..900ms",
         "echo",
         "echo,drop=1%",
@@ -194,7 +194,7 @@ fn faults_never_double_lose_or_confuse_orders() {
             all.open += tally.open;
             all.refused += tally.refused;
         }
-        // The faults must have an effect, and some orders must succeed.
+        // The faults must have an effect, but some orders must also succeed.
         let has_effect = faults == "delay=0..50ms" || faults == "echo" || all.open + all.refused > 0;
         assert!(has_effect && all.answered > 0, "{faults}: {all:?}");
     }
@@ -219,8 +219,8 @@ fn faultless_line_is_as_fast_as_its_characters() {
         assert_eq!(tally, Tally { answered: 100, executions: 100, ..Tally::default() });
         began.elapsed()
     });
-    // "@MCST CN01=0001\r\n" and "@OK\r\n", "@MCNT CN=01\r\n" and "@MCNT CN01=0001\r\n": 17 + 5 + 13 + 17 characters. The
-    // controller answers at the CR, while the LF comes.
+    // "@MCST CN01=0001\r\n" and "@OK\r\n", "@MCNT CN=01\r\n" and "@MCNT CN01=0001\r\n" have 17 + 5 + 13 + 17
+    // characters. The controller answers at the CR of a request, so the LF of a request needs no additional time.
     let characters = Pace::new(BAUD, BITS).time(100 * (16 + 5 + 12 + 17));
     assert!(time >= characters && time < characters + Duration::from_millis(200), "{time:?} for {characters:?}");
 }

@@ -1,7 +1,7 @@
-//! External programs between `armctl` and the simulated Toyo controller. `socat` makes a serial port from a TCP connection,
-//! and `ser2net` makes a TCP port from a serial port. Both pass bytes as adapters and device servers do.
+//! Other programs between `armctl` and the simulated Toyo controller. `socat` makes a serial port from a TCP
+//! connection, and `ser2net` makes a TCP port from a serial port. Both pass bytes like adapters and device servers do.
 //!
-//! If a program is absent, its test prints that and passes; with `CI=true` it must be present.
+//! If a program is absent, its test prints a message and passes. With `CI=true`, the program must be present.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 #![expect(clippy::print_stdout, reason = "a test that is skipped says so")]
@@ -21,7 +21,7 @@ struct Running(Child);
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // The process can have ended already.
+        // The process may already have ended.
         self.0.kill().unwrap_or_default();
         self.0.wait().unwrap();
     }
@@ -33,7 +33,8 @@ enum ConnectionType {
     PseudoTerminal,
 }
 
-/// Serves a simulated controller until the process ends; returns its address, or the path of its port.
+/// Serves a simulated controller until the process ends. Returns the address of the controller, or the path of its
+/// port.
 fn serve(connection: ConnectionType) -> String {
     let (sender, target) = mpsc::channel();
     std::thread::spawn(move || {
@@ -57,7 +58,7 @@ fn serve(connection: ConnectionType) -> String {
     target.recv().unwrap()
 }
 
-/// Whether a program is installed; in CI it must be.
+/// Whether a program is installed. In CI, the program must be installed.
 fn is_installed(program: &str, ask: &str) -> bool {
     let asked = Command::new(program).arg(ask).stdout(Stdio::null()).stderr(Stdio::null()).status();
     let is_there = asked.is_ok();
@@ -68,7 +69,7 @@ fn is_installed(program: &str, ask: &str) -> bool {
     is_there
 }
 
-/// Data of a command line that must succeed.
+/// `data` of a command line that must succeed.
 #[track_caller]
 fn data(target: &str, words: &[&str]) -> Value {
     let folder = tempfile::tempdir().unwrap();
@@ -87,7 +88,7 @@ fn data(target: &str, words: &[&str]) -> Value {
     envelope["data"].clone()
 }
 
-/// Runs the first commands of a technician over the connection.
+/// Runs typical first commands of a technician over the connection.
 fn assert_commands_work(target: &str) {
     assert_eq!(data(target, &["status"])["homed"], false);
     data(target, &["home"]);
@@ -117,7 +118,7 @@ fn commands_work_through_socat() {
         .spawn()
         .map(Running)
         .unwrap();
-    // socat prints when both ends are open.
+    // socat prints this line when both ends are open.
     let stderr = BufReader::new(socat.0.stderr.take().unwrap());
     let mut lines = stderr.lines();
     assert!(lines.by_ref().any(|line| line.unwrap().contains("starting data transfer")), "socat ended");
@@ -141,7 +142,7 @@ fn commands_work_through_ser2net() {
     ];
     std::fs::write(&file, lines.join("\n") + "\n").unwrap();
     let _running = start_ser2net(&file);
-    // ser2net prints nothing when it listens.
+    // ser2net prints nothing when it starts to listen.
     while TcpStream::connect((Ipv4Addr::LOCALHOST, port)).is_err() {
         std::thread::yield_now();
     }
@@ -159,7 +160,7 @@ fn start_ser2net(file: &Path) -> Running {
     Running(child)
 }
 
-/// A free port; `ser2net` cannot select one itself.
+/// A free port, because `ser2net` cannot select one.
 fn free_port() -> u16 {
     TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap().local_addr().unwrap().port()
 }

@@ -1,5 +1,5 @@
-//! Programs of a Toyo controller through the binary, on a served simulator: names in their text, stored source texts, and
-//! the number of steps that a put reads.
+//! Programs of a Toyo controller, tested with the binary and a served simulator: names in their text, stored source
+//! texts, and the number of steps that a `put` reads.
 
 #![cfg(unix)]
 
@@ -14,7 +14,7 @@ use crate::support::simulator::Simulator;
 const NAMED: &str = "# pick and place\nSPD V=5            # slow\nnext: MOVP pick\nTIMP dwell=1.5\n\
                      JMPC TAG=next parts>=5\nEND\n";
 
-/// A controller with the inventory name `cell`, and names for points, timers and counters.
+/// A controller with the name `cell` in the inventory, and an inventory with names for points, timers and counters.
 struct Desk {
     folder: TempDir,
     _controller: Simulator,
@@ -62,7 +62,7 @@ impl Desk {
         Put { data: envelope["data"].clone(), blocks }
     }
 
-    /// Writes steps without a record in the files of this user, as a person at the pendant does.
+    /// Writes steps as a person at the pendant does: the files of this user have no record of them.
     #[track_caller]
     fn write_at_pendant(&self, step: &str, text: &str) {
         let state = tempfile::tempdir().expect("a folder");
@@ -74,14 +74,14 @@ impl Desk {
     }
 }
 
-/// Result of a put.
+/// Result of a `put` command.
 struct Put {
     data: Value,
     blocks: String,
 }
 
 impl Put {
-    /// Sent blocks that begin with a word, with their counts.
+    /// Sent blocks that begin with this word, each with the number of times that it was sent.
     fn sent(&self, word: &str) -> BTreeMap<&str, usize> {
         let mut sent = BTreeMap::new();
         for (_, block) in self.blocks.lines().filter_map(|line| line.split_once("-> ")) {
@@ -93,7 +93,7 @@ impl Put {
         sent
     }
 
-    /// Number of steps that were read.
+    /// Returns the number of steps that armctl read.
     fn read(&self) -> usize {
         self.sent("@RSTX").len()
     }
@@ -140,7 +140,7 @@ fn get_returns_the_source_text_while_the_steps_are_unchanged() {
     let shown = String::from_utf8(differs.stdout).expect("UTF-8");
     assert_eq!(differs.status.code(), Some(8));
     assert!(shown.contains("-TIMP TN2=003.5\n+TIMP TN2=001.5\n"), "{shown}");
-    // The text is returned with its steps.
+    // When the steps are the same as before, the source text is returned again.
     desk.write_at_pendant("4", "TIMP TN2=1.5\n");
     assert_eq!(desk.text(&["get"]), NAMED);
 }
@@ -154,7 +154,7 @@ fn put_reads_only_the_steps_that_it_needs() {
     assert_eq!((put.read(), put.sent("@WSTX").len()), (7, 1), "the steps of the program, and the next one");
     assert_eq!((&put.data["unread_steps"], &put.data["cells_unchanged"]), (&1993.into(), &6.into()));
     assert_eq!(desk.put(&changed, &["--read-all"]).read(), 2000);
-    // A part is compared alone.
+    // A `put` of a part reads only the steps of this part.
     assert_eq!(desk.put("SPD V=3\n", &["--at", "1"]).read(), 1);
     assert_eq!(desk.put(&changed, &[]).read(), 2000, "a command changed steps after that");
 }
@@ -164,16 +164,17 @@ fn put_finds_steps_from_the_pendant_that_affect_the_program() {
     let desk = Desk::new();
     let base = "next: SPD V=5\nJMP TAG=next\n";
     desk.put(base, &[]);
-    // A routine that is not called yet.
+    // The person at the pendant has added a routine that no program calls yet.
     desk.write_at_pendant("5", "TAG TAG=7\nEND\n");
     let put = desk.put(&base.replace('5', "6"), &[]);
     assert_eq!(put.read(), 4, "its tags are unchanged, and its end does not run into the next steps");
-    // The program was made longer.
+    // The person at the pendant has made the program longer.
     desk.write_at_pendant("4", "SPD V=1\n");
     let put = desk.put(base, &[]);
     assert_eq!((put.read(), &put.data["cleared_steps"]), (2000, &3.into()));
     for program in [
-        // A tag that can exist twice, a last step that continues, a computed jump.
+        // One program per case: a tag that may exist twice, a last step that continues with the next step, and a
+        // computed jump.
         "next: SPD V=5\nJMP TAG=next\nTAG TAG=7\nEND\n",
         "next: SPD V=5\nJMPC TAG=next CN1<3\n",
         "next: SPD V=5\nBRAC CN=1 OFS=1\nJMP TAG=next\n",

@@ -1,5 +1,5 @@
-//! Properties of the Toyo codec: written values have full width and read back, values out of range are never written, and
-//! no text causes a panic.
+//! Properties of the Toyo codec. Written values have the full width and can be read again, values out of range are
+//! never written, and no text causes a panic.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -17,7 +17,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 
-/// All layouts of both directions, each with the text before it in its block.
+/// All layouts of both directions. Each has the text that comes before it in a block.
 fn layouts() -> Vec<(&'static str, Layout)> {
     let requests = ROWS.iter().flat_map(|row| row.requests).map(|layout| ("@", *layout));
     let answers = ROWS.iter().flat_map(|row| row.answers).map(|layout| ("@", *layout));
@@ -27,7 +27,7 @@ fn layouts() -> Vec<(&'static str, Layout)> {
     requests.chain(answers).chain(parameters).chain(instructions).chain(records).collect()
 }
 
-/// A valid value of a field, selected by a number.
+/// A valid value of a field; `pick` selects the value.
 fn value(field: &Field, pick: u32) -> Value {
     let [low, high, ..] = pick.to_le_bytes();
     if field.starred && pick.is_multiple_of(8) {
@@ -48,7 +48,7 @@ fn value(field: &Field, pick: u32) -> Value {
     }
 }
 
-/// Values for the fields of a layout; RSMV always passes (ambiguity R4).
+/// Values for the fields of a layout. RSMV always has the word PASS (ambiguity R4).
 fn values(layout: &Layout, picks: &[u32]) -> Vec<Value> {
     let passes = layout.text.starts_with(Op::Rsmv.row().word);
     let values = layout.fields.iter().zip(picks).map(|(field, pick)| match value(field, *pick) {
@@ -62,7 +62,7 @@ fn picks() -> impl Strategy<Value = Vec<u32>> {
     vec(any::<u32>(), 12)
 }
 
-/// Width of a value in bytes, from its format alone.
+/// Width of a value in bytes, calculated only from the format of the field.
 fn width(field: &Field, value: &Value) -> usize {
     match (field.form, value) {
         (Form::Number(number), _) => {
@@ -77,7 +77,7 @@ fn width(field: &Field, value: &Value) -> usize {
     }
 }
 
-/// Lines that are often similar to a block.
+/// Lines; many of them are similar to a block.
 fn line() -> impl Strategy<Value = String> {
     let block = (any::<Index>(), picks(), vec((any::<Index>(), any::<char>()), 0..4), any::<Index>()).prop_map(
         |(row, picks, changes, cut)| {
@@ -98,7 +98,7 @@ fn line() -> impl Strategy<Value = String> {
     prop_oneof![4 => block, 1 => any::<String>(), 1 => "@[A-Z]{4}( [A-Z0-9=+.<>/*-]{0,16}){0,6}"]
 }
 
-/// Records of a valid program: each used tag exists exactly once; RSMV passes.
+/// Records of a valid program. Each used tag exists exactly once, and RSMV has the word PASS.
 fn steps() -> impl Strategy<Value = Vec<Record>> {
     vec((select(&INSTRUCTIONS[..]), picks()), 0..60).prop_map(|rows| {
         let mut tags = std::collections::BTreeSet::new();
@@ -244,7 +244,7 @@ proptest! {
     #[test]
     fn blocks_in_range_have_no_problem(row: Index, picks in picks()) {
         let row = &ROWS[row.index(ROWS.len())];
-        // These fields belong to another table, or are not specified (ambiguity C5).
+        // These fields belong to another table, or the manual does not specify them (ambiguity C5).
         let opaque = |layout: &&Layout| !layout.fields.iter().any(|field| ["body", "key", "text", "point"].contains(&field.name) && field.form == Form::Text);
         for (layouts, sender) in [(row.requests, Sender::Host), (row.answers, Sender::Controller)] {
             for layout in layouts.iter().filter(opaque) {
@@ -281,7 +281,7 @@ proptest! {
     }
 }
 
-/// Lines that are often similar to a program line.
+/// Lines; many of them are similar to a line of a program.
 fn text_line() -> impl Strategy<Value = String> {
     let words = select(&INSTRUCTIONS[..]).prop_map(|row| row.word);
     let mangled = (words, "( ?[a-zA-Z=<>0-9.+:#;-]{0,8}){0,5}").prop_map(|(word, rest)| format!("{word} {rest}"));

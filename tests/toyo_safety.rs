@@ -1,5 +1,5 @@
-//! Safety of a machine behind a Toyo controller, tested with the binary and a controller of the test: no axis continues to
-//! jog, Ctrl-C stops a program, and no order is sent twice.
+//! Safety of a machine with a Toyo controller, tested with the binary and a controller in the test. No axis continues
+//! to jog, Ctrl-C stops a program, and no order is sent twice.
 
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
@@ -13,7 +13,7 @@ use std::time::Duration;
 
 use crate::support::simulator::Simulator;
 
-/// Fault of the line at a block.
+/// Fault of the line that occurs at a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum BlockFault {
     None,
@@ -21,14 +21,14 @@ enum BlockFault {
     Disconnect,
 }
 
-/// A controller with origin and servo power, whose axis 1 moves during a jog or a program.
+/// A controller with a known origin and servo power. Its axis 1 moves during a jog or a program.
 #[derive(Default)]
 struct Machine {
     host: bool,
     jogs: bool,
     runs: bool,
     x: i32,
-    /// Current task, starting with 0.
+    /// Current task. The first task is 0.
     task: u8,
 }
 
@@ -63,7 +63,7 @@ impl Machine {
     }
 }
 
-/// A controller behind a device server, and the blocks that it receives.
+/// A controller behind a device server. It stores the blocks that it receives.
 struct Controller {
     url: String,
     incoming: Receiver<String>,
@@ -72,7 +72,7 @@ struct Controller {
 }
 
 impl Controller {
-    /// Serves one connection.
+    /// Starts a controller that serves one connection.
     fn new(mut fault: impl FnMut(&str) -> BlockFault + Send + 'static) -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let url = format!("tcp://{}", listener.local_addr().unwrap());
@@ -105,7 +105,7 @@ impl Controller {
         command
     }
 
-    /// Waits for this number of equal blocks.
+    /// Waits until this block was received `count` times.
     fn wait_for(&mut self, block: &str, count: usize) {
         for _ in 0..count {
             while let received = self.incoming.recv_timeout(Duration::from_secs(30)).expect("the block comes")
@@ -117,7 +117,7 @@ impl Controller {
         }
     }
 
-    /// All received blocks, and the final state of the machine.
+    /// Returns all received blocks and the final state of the machine.
     fn end(mut self) -> (Vec<String>, Machine) {
         let machine = self.server.join().unwrap();
         self.received.extend(self.incoming.try_iter());
@@ -153,10 +153,10 @@ fn assert_axis_stopped(controller: Controller) -> Vec<String> {
     received
 }
 
-/// Every signal that a process can handle stops the axis, also those of keys that suspend a process.
+/// Every signal that a process can handle stops the axis. This includes the signals of the keys that suspend a process.
 #[test]
 fn every_signal_that_ends_the_process_stops_the_jog() {
-    // A test under nohup gets no SIGHUP.
+    // Under nohup, the test does not receive SIGHUP.
     let ignored = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = ignored.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigIgn:")?.trim(), 16).ok());
     for (name, messages) in [
@@ -183,7 +183,7 @@ fn every_signal_that_ends_the_process_stops_the_jog() {
     }
 }
 
-/// Ctrl-C before the answer to the jog, and during an unanswered status or position read.
+/// Ctrl-C comes before the answer to the jog, or during a status or position read that gets no answer.
 #[test]
 fn ctrl_c_during_a_missing_answer_stops_the_jog() {
     for unanswered in [GO, "@STAS SNO=0", "@MPST"] {
@@ -203,7 +203,7 @@ fn ctrl_c_during_a_missing_answer_stops_the_jog() {
         }
         signal(&child, "INT");
         let output = child.wait_with_output().unwrap();
-        // The timeout can come before the signal.
+        // The timeout can expire before the signal arrives.
         assert!(matches!(output.status.code(), Some(130 | 4 | 6)), "{unanswered}: {}", errors(&output));
         let (received, machine) = controller.end();
         assert!(!machine.jogs && count(&received, STOP) > 0, "{unanswered}: {received:?}");
@@ -235,7 +235,7 @@ fn a_lost_line_during_a_jog_has_a_hint_to_press_the_emergency_stop() {
     assert!(message.contains("press the emergency stop") && message.contains("`toyo stop --jog`"), "{message}");
 }
 
-/// Ctrl-C after the order was sent, after its acceptance, and during the motion.
+/// Ctrl-C comes after the order was sent, after its acceptance, or during the motion.
 #[test]
 fn ctrl_c_stops_a_running_program() {
     for (words, order) in [("run sequential 1 --wait", "@SPST 0001"), ("home", "@HOME")] {
@@ -273,7 +273,7 @@ fn on_interrupt_leave_does_not_stop_the_program() {
     assert!(machine.runs && count(&received, "@STOP") == 0, "{received:?}");
 }
 
-/// An order without an answer is sent once, and its outcome is reported as unknown.
+/// An order without an answer is sent only once, and its outcome is reported as unknown.
 #[test]
 fn an_unanswered_order_is_sent_once() {
     for (words, order) in [
@@ -302,7 +302,7 @@ fn an_unanswered_order_is_sent_once() {
     }
 }
 
-/// Serves one connection after the other as a device server with a controller, until the test ends. `fault` selects the
+/// A device server with a controller. It serves one connection after the other until the test ends. `fault` selects the
 /// blocks at which it disconnects.
 fn serve_connections(mut fault: impl FnMut(&str) -> BlockFault + Send + 'static) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
@@ -348,7 +348,7 @@ fn changes_of_a_killed_command_are_reported_until_they_are_undone() {
     signal(&jog, "KILL");
     jog.wait().unwrap();
     let messages = || errors(&toyo(&url, state.path(), "position").output().unwrap());
-    assert!(messages().contains("the host is still ON and was OFF before; `toyo host off`"));
+    assert!(messages().contains("the host is still ON, and was OFF before; use `toyo host off`"));
     // The guardian stops the jog.
     assert!((0..1000).any(|_| !messages().contains("the robot still runs")), "{}", messages());
     let messages = errors(&toyo(&url, state.path(), "position").output().unwrap());
@@ -359,7 +359,7 @@ fn changes_of_a_killed_command_are_reported_until_they_are_undone() {
     assert_eq!(messages, "");
 }
 
-/// Sends a block as another client of the device server, and disconnects.
+/// Sends a block as another client of the device server, and then disconnects.
 fn send_as_other_client(url: &str, block: &str) {
     let mut stream = std::net::TcpStream::connect(url.trim_start_matches("tcp://")).unwrap();
     stream.write_all(format!("{block}\r\n").as_bytes()).unwrap();
@@ -381,22 +381,25 @@ fn a_host_switched_on_by_another_client_is_reported() {
     send_as_other_client(&url, "@HSON");
     let message = messages("status");
     assert!(message.contains("another client switched the host ON, which disables the start input"), "{message}");
-    assert!(message.contains("`toyo host off` releases the host"), "{message}");
+    assert!(message.contains("use `toyo host off` to release the host"), "{message}");
     assert_eq!(
         messages("status --watch=20ms --count 3").matches("another client switched the host ON").count(),
         1,
         "the notice is printed once"
     );
-    // Only a command that reads the host state reports it.
+    // The message appears only for a command that reads the host state.
     assert!(messages("stop").is_empty() && messages("position").is_empty());
     send_as_other_client(&url, "@SPST 0001");
     let message = messages("status");
     assert!(message.contains("another client switched the host ON and started a program"), "{message}");
-    assert!(message.contains("`toyo stop` stops it and `toyo host off` releases the host"), "{message}");
+    assert!(
+        message.contains("use `toyo stop` to stop the program and `toyo host off` to release the host"),
+        "{message}"
+    );
     messages("stop");
     messages("host off");
     assert_eq!(messages("status"), "");
-    // A host that this user switched ON is not reported.
+    // A host that this user has switched ON is not reported.
     messages("raw @HSON");
     assert_eq!(messages("status"), "");
     messages("host off");
@@ -417,7 +420,7 @@ fn a_task_selected_by_another_client_is_reported() {
     send_as_other_client(&url, "@CTSK TASK=02");
     let message = messages("task get");
     assert!(message.contains("another client selected task 2"), "{message}");
-    assert!(message.contains("`toyo task set 1` selects task 1"), "{message}");
+    assert!(message.contains("use `toyo task set 1` to select task 1"), "{message}");
     messages("task set 2");
     assert_eq!(messages("task get"), "");
     send_as_other_client(&url, "@CTSK TASK=03");
@@ -439,7 +442,7 @@ fn a_watch_continues_after_a_reconnect() {
     let lines = String::from_utf8_lossy(&watch.stdout).into_owned();
     let ok: Vec<bool> = lines.lines().map(|line| line.contains(r#""ok":true"#)).collect();
     assert_eq!(ok, [true, true, false, true, true, true], "{lines}");
-    // `--until` also continues.
+    // With `--until`, the watch also continues after a lost connection.
     let mut position_reads = 0;
     let url = serve_connections(move |block| {
         position_reads += u32::from(block == "@STAS SNO=0");
@@ -450,7 +453,8 @@ fn a_watch_continues_after_a_reconnect() {
     assert_eq!(until.status.code(), Some(8), "{}", errors(&until));
 }
 
-/// A serial port has one host. The error names the process that has it, and the command that ends it.
+/// Only one program can use a serial port. The error names the process that uses the port, and the command that ends
+/// this process.
 #[test]
 fn a_busy_serial_port_names_the_process_that_uses_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -463,11 +467,11 @@ fn a_busy_serial_port_names_the_process_that_uses_it() {
     assert_eq!(stop.status.code(), Some(4), "{}", errors(&stop));
     for part in [
         format!("another armctl, process {pid}, uses "),
-        format!("hint: use `kill {pid}`: it stops its motion and ends"),
+        format!("hint: use `kill {pid}` to stop its motion and end it"),
     ] {
         assert!(errors(&stop).contains(&part), "{part}: {}", errors(&stop));
     }
-    // The hint works: the process stops its motion and frees the port.
+    // The command in the hint works: the process stops its motion and releases the port.
     signal(&home, "TERM");
     assert_eq!(home.wait().unwrap().code(), Some(130));
     let status = toyo(&simulator.url, folder.path(), "status --json --jq .data.running --no-session").output().unwrap();

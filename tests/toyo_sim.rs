@@ -1,4 +1,4 @@
-//! `armctl sim toyo` as a process: TCP port or pseudo-terminal, console, end.
+//! `armctl sim toyo` as a process: TCP port or pseudo-terminal, console, end of the process.
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -8,7 +8,7 @@ use std::process::{Child, ChildStderr, Command, Output, Stdio};
 
 use serde_json::Value;
 
-/// A simulator process that serves.
+/// A process that serves a simulator.
 struct Served {
     process: Child,
     stderr: BufReader<ChildStderr>,
@@ -17,7 +17,7 @@ struct Served {
 }
 
 impl Served {
-    /// Starts a simulator and waits until it serves.
+    /// Starts a simulator, and waits until it accepts connections.
     fn start(folder: &Path, words: &str) -> Self {
         let mut process = armctl(folder, &format!("sim toyo {words} --jq .data.target"))
             .stdin(Stdio::piped())
@@ -31,7 +31,7 @@ impl Served {
         Self { process, stderr, target: target.trim_end().to_owned() }
     }
 
-    /// Data of a command line for the simulator.
+    /// `data` of a command line for the simulator.
     fn data(&self, folder: &Path, words: &str) -> Value {
         let output = armctl(folder, &format!("--json -t {} toyo {words}", self.target)).output().unwrap();
         assert!(output.status.success(), "{words}: {}", stderr(&output));
@@ -39,7 +39,7 @@ impl Served {
         envelope["data"].clone()
     }
 
-    /// A line on stderr.
+    /// The next line on stderr.
     fn next_message(&mut self) -> String {
         let mut line = String::new();
         self.stderr.read_line(&mut line).unwrap();
@@ -56,7 +56,7 @@ impl Served {
 
 impl Drop for Served {
     fn drop(&mut self) {
-        // The process can have ended already.
+        // The process may already have ended.
         self.process.kill().unwrap_or_default();
         self.process.wait().unwrap();
     }
@@ -88,7 +88,7 @@ fn a_pseudo_terminal_has_its_link_until_the_simulator_ends() {
     }
 }
 
-/// Reads the envelopes of a watch up to one with this `ok`.
+/// Reads the envelopes of a watch until one has this value of `ok`.
 fn read_until(lines: &mut impl Iterator<Item = std::io::Result<String>>, ok: bool) {
     let is_so = |line: &String| line.contains(&format!(r#""ok":{ok}"#));
     assert!(lines.map_while(Result::ok).any(|line| is_so(&line)), "none came that has ok: {ok}");
@@ -116,7 +116,7 @@ fn a_watch_continues_after_its_port_is_unplugged_and_plugged_in() {
             let pid = watch.id().to_string();
             assert!(Command::new("kill").args(["-INT", pid.as_str()]).status().unwrap().success());
         }
-        // The awaited condition is true on the new controller.
+        // The condition of `--until` is true on the new controller, so this watch ends by itself.
         assert_eq!(watch.wait().unwrap().code(), Some(if state.is_empty() { 130 } else { 0 }));
     }
 }
@@ -134,7 +134,7 @@ fn the_console_switches_inputs() {
     assert!(served.next_message().contains("inptu"));
     drop(console);
     assert!(served.next_message().trim().is_empty() && served.next_message().contains("`help`"), "a hint follows");
-    // It serves also after the end of the console.
+    // The simulator continues to serve after its console has ended.
     assert_eq!(served.data(folder.path(), "io get IN1.3")["items"][0]["value"], true);
 }
 
@@ -153,6 +153,6 @@ fn a_line_has_a_baud_rate_and_an_address_has_one_simulator() {
 fn a_simulator_on_all_interfaces_prints_a_warning() {
     let folder = tempfile::tempdir().unwrap();
     let mut served = Served::start(folder.path(), "--bind 0.0.0.0:0");
-    assert_eq!(served.next_message(), "warning: others on the network can reach this simulator\n");
+    assert_eq!(served.next_message(), "warning: other computers on the network can reach this simulator\n");
     assert_eq!(served.end("-INT"), Some(0));
 }

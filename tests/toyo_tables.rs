@@ -1,5 +1,5 @@
-//! Comparison of the tables of the Toyo protocol with `data/toyo-tables.json`, which has the words, forms, ranges, units and
-//! marks of the manual. Intended differences are listed with their reasons.
+//! Comparison of the tables of the Toyo protocol with `data/toyo-tables.json`. This file has the words, forms, ranges,
+//! units and marks of the manual. Intended differences are listed with their reasons.
 
 use std::collections::BTreeSet;
 
@@ -14,8 +14,8 @@ use armctl_controller::toyo::table::palletizing::RECORDS;
 use armctl_controller::toyo::table::parameters::PARAMETERS;
 use serde::Deserialize;
 
-/// Intended differences, each with the ambiguity of the manual or the reason. `any` means that the manual has no value.
-/// Axes and tasks are not distinguished.
+/// Intended differences, each with the ambiguity of the manual or another reason. `any` means that the manual has no
+/// value. A difference is listed once for all axes or tasks.
 const ON_PURPOSE: [(&str, &str); 15] = [
     ("SYSP answer TAIL: form enum, ours text", "C11: nobody says what the last word is"),
     ("RPLD answer PR: range 1 to 8, ours 1 to 16", "C15: there are 16 programs"),
@@ -97,7 +97,8 @@ struct RecordRow {
     fields: Vec<FieldRow>,
 }
 
-/// `form` is `d3.1` for digits, `sd4.2` with a sign, `cmp2` and `cmple` for comparisons; `|*` if asterisks are possible.
+/// `form` is `d3.1` for digits, `sd4.2` for digits with a sign, `cmp2` and `cmple` for comparisons. `|*` is added if
+/// asterisks are possible.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FieldRow {
@@ -105,7 +106,7 @@ struct FieldRow {
     form: String,
     min: Option<String>,
     max: Option<String>,
-    /// Valid range, if a legend accepts more.
+    /// Valid range, if the legend in the manual accepts more values.
     valid_min: Option<String>,
     valid_max: Option<String>,
     words: Option<Vec<String>>,
@@ -133,7 +134,7 @@ fn tables() -> Tables {
     serde_json::from_str(include_str!("data/toyo-tables.json")).expect("the tables are well-formed")
 }
 
-/// Collected differences.
+/// Differences that the test found.
 #[derive(Default)]
 struct Differences(BTreeSet<String>);
 
@@ -141,7 +142,7 @@ impl Differences {
     #[expect(clippy::needless_pass_by_value, reason = "the many calls read better")]
     fn assert_same<T: PartialEq + std::fmt::Display>(&mut self, place: &str, what: &str, theirs: T, ours: T) {
         if theirs != ours {
-            // An equal difference of several axes or tasks is listed once.
+            // If a difference is equal for several axes or tasks, it is listed once.
             let place = place.split(' ').map(|word| {
                 let bare = word.replace(|c: char| c.is_ascii_digit(), "");
                 if matches!(&bare[..], "AX" | "TA_STN" | "ER" | "MS") { bare } else { word.to_owned() }
@@ -217,7 +218,7 @@ fn form_of(field: &Field) -> String {
     if field.starred { format!("{form}|*") } else { form }
 }
 
-/// Commands whose block contains a row of another table, and those with one form for all screens.
+/// Commands whose block contains a row of another table, and commands that have one form for all screens.
 const BY_SAMPLE: [&str; 9] = ["WPAR", "RPAR", "WSTX", "RSTX", "WPLT", "RPLT", "MINP", "MOUT", "MNIN"];
 
 fn command(differences: &mut Differences, theirs: &CommandRow, ours: &Row) {
@@ -323,7 +324,7 @@ fn every_status_bit_matches_the_manual() {
         let low: Vec<u8> = own().filter(|bit| bit.is_low).map(|bit| bit.bit).collect();
         assert_eq!(low, theirs.active_low, "page {}", theirs.page);
         assert_eq!(theirs.kind == "code", theirs.page == 1);
-        // Program kind and run mode have two bits each.
+        // The program kind and the run mode take two bits each.
         assert_eq!(theirs.groups.len(), if theirs.page == 2 { 2 } else { 0 });
     }
 }

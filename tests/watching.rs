@@ -1,17 +1,18 @@
-//! Watches of several robots with an unreachable one.
+//! Watches of several robots, one of which is unreachable.
 
 #![cfg(unix)]
 
 use std::io::{BufRead as _, BufReader};
-use std::net::TcpListener;
+use std::net::{SocketAddr, TcpListener, UdpSocket};
 use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::support::simulator::Simulator;
 
-/// A user with two robots: `here`, and `late` at a closed port.
+/// The environment of a user with two robots: `here`, and `late`, whose port is closed.
 struct Desk {
     folder: TempDir,
     _here: Simulator,
@@ -39,6 +40,42 @@ impl Desk {
         command.env("ARMCTL_CONFIG", inventory).args(["-r", "here", "-r", "late", "--no-session", "status"]);
         command.args(words.split(' ')).stdin(Stdio::null()).stdout(Stdio::piped());
         command
+    }
+}
+
+#[test]
+fn for_bounds_the_wait_for_a_silent_robot() {
+    // Both take what is sent, and never answer.
+    let (udp, tcp) = (UdpSocket::bind("127.0.0.1:0"), TcpListener::bind("127.0.0.1:0"));
+    let address = |found: std::io::Result<SocketAddr>| found.expect("an address").to_string();
+    let udp = udp.expect("a port");
+    let tcp = tcp.expect("a port");
+    let (yerc, toyo, yrcx) = (
+        format!("udp://{}", address(udp.local_addr())),
+        format!("tcp://{}", address(tcp.local_addr())),
+        format!("eip://{}", address(tcp.local_addr())),
+    );
+    let folder = tempfile::tempdir().expect("a folder");
+    for (target, words, exit) in [
+        (&yerc, "wait idle", 4),
+        (&yerc, "wait B5=3", 4),
+        (&yerc, "yerc status --until idle", 4),
+        (&yerc, "yerc var watch B0", 4),
+        (&toyo, "wait idle", 4),
+        (&toyo, "toyo status --until idle", 4),
+        (&toyo, "wait reachable=false", 0),
+        (&yrcx, "wait idle", 4),
+        (&yrcx, "yrcx status --until idle", 4),
+    ] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        command.env_clear().env("HOME", folder.path()).env("XDG_RUNTIME_DIR", folder.path()).stdin(Stdio::null());
+        command.args(["-t", target, "--timeout", "30s"]).args(words.split(' ')).args(["--for", "200ms"]);
+        let start = Instant::now();
+        let output = command.output().expect("armctl runs");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(exit), "{target} {words}: {said}");
+        assert!(start.elapsed() < Duration::from_secs(20), "{target} {words}: {:?}", start.elapsed());
+        assert!(exit == 0 || said.contains("no answer within 200ms (--for)"), "{said}");
     }
 }
 

@@ -1,5 +1,5 @@
-//! The yerc commands, through the built binary, with a controller that refuses or corrupts some answers: each item has
-//! its own result.
+//! The yerc commands, tested with the built binary and a controller that refuses or corrupts some answers. Each item
+//! has its own result.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -14,10 +14,10 @@ use armctl_controller::yerc::simulator::{Simulator, Start};
 use armctl_controller::yerc::wire::{ANSWER_BIT, AnswerFrame, Division, LAST_BLOCK, RequestFrame, Status};
 use serde_json::{Value, json};
 
-/// Reaction to a request instead of the simulated answer.
+/// Answer to a request that replaces the answer of the simulator; `None` keeps the simulated answer.
 type Spoil = fn(&RequestFrame<'_>) -> Option<Vec<u8>>;
 
-/// A simulated controller on real ports with some corrupted answers, until the end of the tests.
+/// A simulated controller on real ports, with some corrupted answers. It runs until the end of the tests.
 fn controller(state: &str, spoil: Spoil) -> String {
     recording(state, spoil).0
 }
@@ -25,7 +25,7 @@ fn controller(state: &str, spoil: Spoil) -> String {
 /// Requests that a controller received, in order.
 type Received = Arc<Mutex<Vec<Vec<u8>>>>;
 
-/// A controller with its received requests.
+/// A controller that also stores the requests that it receives.
 fn recording(state: &str, spoil: Spoil) -> (String, Received) {
     let received = Received::default();
     let record = Received::clone(&received);
@@ -71,7 +71,7 @@ fn refused(request: &RequestFrame<'_>, code: u16) -> Option<Vec<u8>> {
     Some(answer(request, LAST_BLOCK, Status::refused(code), &[]))
 }
 
-/// Exit code, stdout and stderr, as JSON if possible.
+/// Runs a command line. Returns the exit code, stdout and stderr, as JSON if possible.
 fn run(folder: &Path, target: &str, words: &str) -> (i32, Value, Value) {
     let output = Command::new(env!("CARGO_BIN_EXE_armctl"))
         .args(["-t", target, "--json", "--timeout", "2s", "yerc"])
@@ -200,13 +200,15 @@ fn falls_back_to_single_reads_of_registers_and_signals() {
 }
 
 #[test]
-fn reports_items_written_before_a_refusal() {
+fn reports_items_written_beside_a_refusal() {
     let target = controller("", |request| if request.instance == 20 { refused(request, 0x2110) } else { None });
-    let (exit, _, error) = at_target(&target, "register set 1=1 20=2 30=3");
-    let message = error["error"]["message"].as_str().unwrap();
-    assert_eq!(exit, 9, "{error}");
-    assert!(message.contains("written: register 1; not written: register 20, 30"), "{message}");
-    assert!(message.contains("0x79 (instance 20)"), "{message}");
+    let (exit, set, _) = at_target(&target, "register set 1=1 20=2 30=3");
+    let items = set["data"]["items"].as_array().unwrap();
+    let written: Vec<&Value> = items.iter().map(|item| &item["written"]).collect();
+    assert_eq!((exit, written), (9, vec![&json!(true), &json!(false), &json!(true)]), "{set}");
+    assert_eq!(items[1]["error"]["asked"], "M20");
+    let message = set["error"]["message"].as_str().unwrap();
+    assert!(message.starts_with("1 of 3 failed: M20: ") && message.contains("0x79 (instance 20)"), "{message}");
 }
 
 #[test]
@@ -231,7 +233,7 @@ fn omits_missing_axes() {
             );
         }
     }
-    // If the controller does not report it, it is unknown.
+    // If the controller does not report which axes exist, the report has all eight axes.
     let untold = controller("", |request| if request.command == 0x74 { refused(request, 0x2150) } else { None });
     let (exit, data, _) = at_target(&untold, "torque");
     assert_eq!((exit, data["data"]["torque_raw"].as_object().map(serde_json::Map::len)), (0, Some(8)));
@@ -239,13 +241,13 @@ fn omits_missing_axes() {
 
 #[test]
 fn single_word_of_a_position_rewrites_the_position() {
-    // 0x10 is not listed for P (3.3.16).
+    // The manual does not list the service 0x10 for P variables (3.3.16).
     let target = controller("", |request| {
         if request.command == 0x7F && request.service == 0x10 { refused(request, 0xA001) } else { None }
     });
     let (exit, set, error) = at_target(&target, "var set P1.tool=0x2 P1.axis1=5 --yes");
     assert_eq!(exit, 0, "{error}");
-    // Both words of the line change the same position, which is one item.
+    // Both assignments of the line change the same position, which is one item.
     let items = set["data"]["items"].as_array().unwrap();
     assert_eq!((items.len(), &items[0]["name"]), (1, &json!("P1")), "{set}");
     assert_eq!((&items[0]["old"]["tool"], &items[0]["new"]["tool"]), (&json!(0), &json!(2)), "{set}");
@@ -328,7 +330,7 @@ fn warns_about_a_renamed_job_and_verifies_a_plain_last_ack() {
         .output()
         .unwrap();
     let told = String::from_utf8_lossy(&output.stderr);
-    assert!(told.contains("B.JBI has //NAME OTHER but is sent as B"), "{told}");
+    assert!(told.contains("B.JBI has //NAME OTHER, but armctl sends it as B"), "{told}");
 
     let unlisted = controller("plain_last_ack = true", |request| {
         let is_list = request.division == Division::File && request.service == 0x32;
@@ -365,7 +367,7 @@ fn can_ignore_the_date_in_a_header() {
     assert_eq!((exit, diff["data"]["files"][0]["hunks"].as_array().map(Vec::len)), (8, Some(1)), "{diff}");
 }
 
-/// Whether a frame matches a line of a dry run; request numbers differ.
+/// Whether a frame matches a line of a dry run. The id of the request may differ.
 fn frames_shown(line: &Value, frame: &[u8]) -> bool {
     let shown = line["hex"].as_str().unwrap();
     let byte = |index: usize| shown.get(2 * index..2 * index + 2);

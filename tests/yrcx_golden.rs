@@ -1,9 +1,10 @@
 //! Golden words of the YRCX family: the 97 worked examples of the manual (`data/yrcx-examples.json` cites the section
 //! of each) and the places of all fields (`data/yrcx-layouts.json`).
 //!
-//! What an example says is built into words and compared; its words are read and compared with what it says; both for
-//! commands and for answers. Words that the manual misprints are there twice, as printed and corrected, and named in
-//! `misprinted`. If one of these fails, the code is wrong: do not change the words.
+//! The meaning of an example is encoded into words and compared with its words. The words are also decoded and compared
+//! with the meaning. Both are done for commands and for answers. Words that the manual misprints are in the file twice,
+//! as printed and corrected, and are named in `misprinted`. If a test fails, the code is wrong: do not change the
+//! words.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -41,7 +42,7 @@ fn parses_commands_into_values() {
             assert_eq!(&found, text, "{} {key}", example.id());
         }
         for (key, value) in order.values().iter() {
-            // What is not said is a flag that follows, or not given: 0.
+            // A value that the example does not mention is a flag or a mode that another value determines, or it is 0.
             let follows = key.name().ends_with("_flag")
                 || matches!(key, Key::SpeedMode | Key::Selection)
                 || *value == Value::Int(0);
@@ -126,10 +127,10 @@ fn parses_misprinted_commands_literally() {
     for id in ["4.2.23-point", "4.2.23-direct-mm", "4.2.23-direct-pulse"] {
         assert_eq!((value(id, Key::PushForce), value(id, Key::PushTime)), (Some(50), Some(50)), "{id}");
     }
-    // A word of five digits is no word.
+    // The manual prints five digits here, which is not a valid word.
     assert_eq!(printed("4.2.1-direct-pulse"), None);
     let refusal = printed("4.6.3-reset").unwrap().unwrap_err();
-    assert_eq!(refusal.to_string(), "WI1: bits 0x0100 are set, which must be 0 here");
+    assert_eq!(refusal.to_string(), "WI1: bits 0x0100 must be 0 here, but are set");
 }
 
 #[test]
@@ -205,7 +206,7 @@ fn refuses_invalid_commands_before_sending() {
         ),
         (
             Command::ProgramRun.order().with(Key::ProgramName, "pick"),
-            "WI6 program_name: 'pick' does not fit; allowed: 1 to 16 of A-Z, 0-9 and _",
+            "WI6 program_name: 'pick' is not valid; allowed: 1 to 16 characters from A-Z, 0-9 and _",
         ),
         (
             Command::ProgramRun.order(),
@@ -258,7 +259,7 @@ fn every_field_has_the_position_of_the_manual() {
     }
 }
 
-/// Compares the bits that fields cover; expected are rows of first word, last word, bits, and perhaps a range.
+/// Compares the bits of the fields with the expected rows: first word, last word, bits, and sometimes a range.
 fn check_places(name: &str, fields: &[&Field], expected: &Json) {
     let mut table = [0_u16; 16];
     for field in fields {
@@ -272,7 +273,7 @@ fn check_places(name: &str, fields: &[&Field], expected: &Json) {
     assert_eq!(hex(&table), hex(&manual), "{name}");
 }
 
-/// Compares the ranges of commands; answers are not held to any.
+/// Compares the ranges of command fields. Answer fields have no ranges.
 fn check_ranges(name: &str, fields: &[&Field], expected: &Json) {
     for row in expected.as_array().unwrap() {
         let Some(range) = row.get(3) else { continue };
@@ -299,7 +300,7 @@ fn mask_of(bits: &str) -> u16 {
     (u16::MAX >> (15 - high + low)) << low
 }
 
-/// One worked example.
+/// One worked example of the manual.
 struct Example(Json);
 
 impl Example {
@@ -316,7 +317,7 @@ impl Example {
         pairs.map(|(key, text)| (Key::from_name(key).unwrap(), text.as_str().unwrap().to_owned())).collect()
     }
 
-    /// What the example means, built by the codec.
+    /// The command of the example, built by the codec from its meaning.
     fn order(&self) -> Order {
         let mut draft = self.row().command.order();
         for (key, text) in self.strings("request") {
@@ -342,7 +343,7 @@ impl Example {
     }
 }
 
-/// What a value says, in the words of the field that takes the text.
+/// Text of a value. If several fields have the key, the field that shows `text` is used.
 fn shown_values(fields: impl Iterator<Item = &'static Field>, values: &Values, key: Key, text: &str) -> String {
     let value = values.value(key).unwrap_or_else(|| panic!("{key} is not there"));
     let texts: Vec<String> = fields.filter(|field| field.key == key).map(|field| field.show(value)).collect();
@@ -362,7 +363,7 @@ fn strings_of(list: &Json) -> Vec<&str> {
     list.as_array().unwrap().iter().map(|item| item.as_str().unwrap()).collect()
 }
 
-/// Words as printed; `None` if one is none.
+/// Words as printed; `None` if one of them is not a valid word.
 fn words_of(list: &Json) -> Option<Words> {
     let word = |text: &str| u16::from_str_radix(text.strip_prefix("0x")?, 16).ok();
     let words: Vec<u16> = strings_of(list).into_iter().map(word).collect::<Option<_>>()?;

@@ -1,4 +1,4 @@
-//! The binary against its own simulator over real sockets: faults of the link, ownership of the controller, Ctrl-C.
+//! Runs the binary with its own simulator over real sockets: faults of the link, ownership of the controller, Ctrl-C.
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -114,7 +114,7 @@ fn one_owner_and_several_listeners() {
 
     let (code, stderr) = failure_of(&simulator.run("yrcx status --full"));
     assert!(code == 3 && stderr.contains("[0x0106]") && stderr.contains("another master"), "{code} {stderr}");
-    assert!(stderr.contains("hint: `yrcx io get` and `yrcx status` can read its signals"), "{stderr}");
+    assert!(stderr.contains("`yrcx io get` and `yrcx status` can read the signals"), "{stderr}");
     let mut listener = armctl();
     listener.args([
         "-t",

@@ -1,5 +1,5 @@
-//! Properties of the YRCX family: valid commands round-trip, no words cause a panic, and for every signal sequence of a
-//! controller, a command is sent once and its words are cleared.
+//! Properties of the YRCX family. Valid commands round-trip, and no words cause a panic. For every signal sequence of a
+//! controller, a command is sent once, and its words are cleared after it.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -18,7 +18,7 @@ use armctl_controller::yrcx::table::{Charset, Field, Form, ROWS, Row, Show};
 use armctl_controller::yrcx::value::{Key, Value, Values};
 use proptest::prelude::*;
 
-/// Words of a command that mostly begin with a code.
+/// Words of a command; most of them begin with a command code.
 fn any_command() -> impl Strategy<Value = Words> {
     let code = prop_oneof![
         4 => (0..ROWS.len(), 0_u16..5).prop_map(|(row, robot)| {
@@ -33,14 +33,14 @@ fn any_command() -> impl Strategy<Value = Words> {
     })
 }
 
-/// A valid command of any row.
+/// A valid command of any row of the table.
 fn any_order() -> impl Strategy<Value = Order> {
     (0..ROWS.len(), any::<Words>(), any::<[u32; 8]>()).prop_filter_map("a rule of the row", |(row, words, dice)| {
         Order::parse(&with_valid_fields(&ROWS[row], words, &dice)).ok()
     })
 }
 
-/// Makes every relevant field valid, and clears the rest. Parameters get the required axis and value.
+/// Makes every used field valid, and clears the other fields. A parameter gets the axis and the value that it requires.
 fn with_valid_fields(row: &Row, random: Words, dice: &[u32; 8]) -> Words {
     let mut words = random;
     words[0] = row.code | (random[0] & 0xF000 & if row.has_robot() { 0xF000 } else { 0 });
@@ -138,10 +138,10 @@ proptest! {
         let answer = Answer::parse(&order, &wo).unwrap();
         let Answer::Done(values) = &answer else { panic!("done is done") };
         prop_assert_eq!(values.iter().count(), keys(values));
-        // Numbers that are not in the manual are read, but not written.
+        // A number that is not in the manual can be read, but not written.
         if let Ok(words) = answer.words(&order) {
             let again = Answer::parse(&order, &words).unwrap();
-            // A text can end in fill characters.
+            // A text can end with fill characters, so the words are compared only after one round trip.
             prop_assert_eq!(again.words(&order).unwrap(), words);
         }
     }

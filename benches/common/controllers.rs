@@ -1,4 +1,4 @@
-//! Simulated controllers on the loopback, in this process.
+//! Simulated controllers on the loopback interface, in this process.
 
 use std::future::Future;
 use std::net::{Ipv4Addr, SocketAddr};
@@ -18,20 +18,20 @@ use tokio::task::LocalSet;
 
 use super::runtime;
 
-/// Names of the families, in the order of a fleet.
+/// Names of the controller families, in the order that a fleet uses.
 pub const FAMILIES: [&str; 3] = ["yerc", "toyo", "yrcx"];
 
-/// Response delays of the controllers.
+/// Delays of the controllers' answers.
 #[derive(Clone, Copy, Default)]
 pub struct Delays {
-    /// Delay of a datagram, as in `--fault delay=`.
+    /// Delay of a datagram, in the format of `--fault delay=`.
     pub answer: Option<&'static str>,
     /// Baud rate of a serial line.
     pub baud: Option<u32>,
 }
 
-/// Serves this number of controllers of each family until the process ends. Returns their inventory: `yerc0` and so on,
-/// each with one of the tags `shard0` and so on.
+/// Serves this number of controllers of each family until the process ends. Returns their inventory. The robots have
+/// the names `yerc0` and so on, and each has one of the tags `shard0` and so on.
 pub fn serve(fleet: [usize; 3], delays: Delays, shards: usize) -> anyhow::Result<String> {
     let (tell, told) = mpsc::channel();
     std::thread::spawn(move || {
@@ -52,7 +52,7 @@ pub fn serve(fleet: [usize; 3], delays: Delays, shards: usize) -> anyhow::Result
                 }
             }
         }
-        // If one fails to start, the list below is too short.
+        // If a controller fails to start, the list below is too short.
         drop(tell);
         runtime().map(|runtime| runtime.block_on(local))
     });
@@ -61,14 +61,14 @@ pub fn serve(fleet: [usize; 3], delays: Delays, shards: usize) -> anyhow::Result
     Ok(entries.concat())
 }
 
-/// Serves a simulator, and prints the reason of its end.
+/// Serves a simulator, and prints why it ended.
 pub async fn serve_until_failure(served: impl Future<Output = anyhow::Result<()>>) {
     if let Err(error) = served.await {
         println!("a simulated controller ended: {error:#}");
     }
 }
 
-/// A free port on the loopback.
+/// A free port on the loopback interface.
 pub const ANY: SocketAddr = SocketAddr::new(std::net::IpAddr::V4(Ipv4Addr::LOCALHOST), 0);
 
 async fn yerc(tell: impl FnOnce(String) -> anyhow::Result<()>, delays: Delays) -> anyhow::Result<()> {
@@ -94,7 +94,7 @@ async fn toyo(tell: impl FnOnce(String) -> anyhow::Result<()>, delays: Delays) -
 
 async fn yrcx(tell: impl FnOnce(String) -> anyhow::Result<()>) -> anyhow::Result<()> {
     let start = yrcx_controller::simulator::Start::default();
-    // It has threads of its own.
+    // The server runs on its own threads.
     let server = yrcx::eip::simulated::serve(start, Listen::anywhere(Ipv4Addr::LOCALHOST), SimulatorFaults::default())?;
     tell(format!("eip://{}", server.address()))?;
     std::future::pending().await

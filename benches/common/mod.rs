@@ -1,4 +1,4 @@
-//! Common parts of the benchmarks: order of measurements, and the report.
+//! Common parts of the benchmarks: the order of the measurements, and the report.
 
 #![allow(dead_code, reason = "each benchmark uses its part")]
 
@@ -13,10 +13,10 @@ use tokio::runtime::Runtime;
 
 use table::Table;
 
-/// Function that measures a comparison with this effort.
+/// Function that measures a comparison with this amount of work.
 pub type Compare<E> = fn(&E) -> anyhow::Result<Table>;
 
-/// Runs the comparisons of the command line, or all.
+/// Runs the comparisons that the command line names. Without a name, runs all comparisons.
 pub fn run<E>(comparisons: &[(&str, Compare<E>)], full: &E, quick: &E) -> anyhow::Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     // `cargo bench` passes this argument, `cargo test` does not.
@@ -40,12 +40,12 @@ pub fn runtime() -> anyhow::Result<Runtime> {
     Ok(tokio::runtime::Builder::new_current_thread().enable_all().build()?)
 }
 
-/// Work of a contender in a round.
+/// Work of one contender in one round.
 pub trait Work: FnMut() -> anyhow::Result<()> {}
 
 impl<F: FnMut() -> anyhow::Result<()>> Work for F {}
 
-/// Seconds of each contender in each round, after one round that is not counted.
+/// Returns the seconds of each contender in each round. The first round is not counted.
 pub fn run_alternately<const N: usize>(
     rounds: usize,
     mut contenders: [&mut dyn Work; N],
@@ -68,7 +68,7 @@ pub fn measure_time(work: &mut dyn Work) -> anyhow::Result<Duration> {
     Ok(start.elapsed())
 }
 
-/// Speed relative to `base`, for each round.
+/// Returns the speed relative to `base`: the median over all rounds.
 pub fn ratio(base: &[f64], other: &[f64]) -> f64 {
     median(&base.iter().zip(other).map(|(base, other)| base / other).collect::<Vec<_>>())
 }

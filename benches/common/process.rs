@@ -1,4 +1,4 @@
-//! Process statistics of Linux.
+//! Statistics of a process on Linux.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use anyhow::Context as _;
 /// CPU time of a process (proc(5)): fields 14 and 15, in hundredths of a second.
 pub fn cpu_time(process: u32) -> anyhow::Result<Duration> {
     let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).context("this takes a Linux with /proc")?;
-    // The name, in parentheses, can contain blanks.
+    // The name of the process is in parentheses and can contain blanks.
     let (_, fields) = stat.rsplit_once(')').context("no name in /proc")?;
     let fields: Vec<&str> = fields.split_ascii_whitespace().collect();
     let ticks = |at: usize| -> anyhow::Result<u64> { Ok(fields.get(at).context("too few fields in /proc")?.parse()?) };

@@ -30,7 +30,7 @@ impl fmt::Display for Goal {
     }
 }
 
-/// A contender.
+/// A row of the report: one contender.
 pub struct Row {
     name: &'static str,
     figure: String,
@@ -43,22 +43,22 @@ impl Row {
         Self { name, figure, ratio: String::new(), goal: None }
     }
 
-    /// Speed relative to the minimal contender.
+    /// Adds the speed relative to the minimal contender.
     pub fn compared_with(self, ratio: f64, goal: Goal) -> Self {
         Self { ratio: format!("{ratio:.2} of bare"), ..self }.goal(ratio, goal)
     }
 
-    /// Speed of armctl relative to this contender.
+    /// Adds the speed of armctl relative to this contender.
     pub fn compared_with_armctl(self, ratio: f64, goal: Goal) -> Self {
         Self { ratio: format!("armctl {ratio:.2} x"), ..self }.goal(ratio, goal)
     }
 
-    /// Ratio to something else, without a goal.
+    /// Adds the ratio to another figure, without a goal.
     pub fn times(self, ratio: f64, what: &str) -> Self {
         Self { ratio: format!("{ratio:.2} x {what}"), ..self }
     }
 
-    /// Ratio to the theoretical minimum.
+    /// Adds the ratio to the theoretical minimum.
     pub fn with_comparison(self, ratio: f64, what: &str, goal: Goal) -> Self {
         Self { ratio: format!("{ratio:.3} of {what}"), ..self }.goal(ratio, goal)
     }
@@ -68,7 +68,7 @@ impl Row {
     }
 }
 
-/// A comparison.
+/// Table of one comparison.
 pub struct Table {
     title: String,
     rows: Vec<Row>,

@@ -1,8 +1,8 @@
 //! Timing of images compared with a bare timer loop, duration of a remote command, and number of connections of one
-//! process. Each line has its goal next to the measured value.
+//! process. Each line shows the goal next to the measured value.
 //!
-//! `cargo bench --bench eip` measures everything, with `-- spread trips commands many` only that; `-- --quick`, and
-//! `cargo test --benches`, only check that it works.
+//! `cargo bench --bench eip` measures everything, with `-- spread trips commands many` only the named parts. `--
+//! --quick` and `cargo test --benches` only check that the benchmark works.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 
@@ -36,12 +36,12 @@ const SIZE: u16 = 48;
 const MANY_CONNECTIONS: u32 = 50;
 /// Scan time of a controller.
 const SCAN_MS: f64 = 5.0;
-/// Maximum spread of images above that of a bare loop.
+/// Maximum spread of the images, relative to the spread of a bare loop.
 const GOAL: f64 = 1.2;
 
-/// Amount of measurements.
+/// Amount of work.
 struct Effort {
-    /// Duration of each round of spread.
+    /// Duration of each round of the measurement `spread`.
     time: Duration,
     rounds: u32,
     many: Duration,
@@ -52,7 +52,7 @@ const FULL: Effort = Effort { time: Duration::from_secs(5), rounds: 11, many: Du
 const QUICK: Effort =
     Effort { time: Duration::from_millis(300), rounds: 1, many: Duration::from_millis(500), trips: 3 };
 
-/// Measures and prints.
+/// Function that measures and prints.
 type Measure = fn(&Effort) -> anyhow::Result<()>;
 
 /// Measurements, by their argument.
@@ -76,7 +76,8 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Deviation of the intervals between images from 10 ms: ours, and those of two bare loops at the same time.
+/// Measures how much the intervals between images differ from 10 ms. Two bare loops run at the same time for
+/// comparison.
 fn spread(effort: &Effort) -> anyhow::Result<()> {
     println!("interval between images to the device, RPI 10 ms: deviation                p50       p99       max");
     let mut ratios = Vec::new();
@@ -116,7 +117,7 @@ fn spread(effort: &Effort) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Time until the answer of the device to a new image.
+/// Measures the time until the device answers a new image.
 fn trips(effort: &Effort) -> anyhow::Result<()> {
     println!("from a new image until what the device makes of it is back: median");
     for rpi in [5, 10, 20].map(Duration::from_millis) {
@@ -133,7 +134,7 @@ fn trips(effort: &Effort) -> anyhow::Result<()> {
             let is_back = |image: &[u8]| image.first() == Some(&mark);
             runtime.block_on(connection.until(|view| view.input.as_ref().is_some_and(|input| is_back(&input.image))));
             times.push(start.elapsed().as_secs_f64() * 1000.0);
-            // At another time within the interval in the next round.
+            // The next round starts at another time within the interval.
             thread::sleep(Duration::from_micros(fastrand::u64(..u64::try_from(rpi.as_micros())?)));
         }
         runtime.block_on(connection.close())?;
@@ -142,8 +143,8 @@ fn trips(effort: &Effort) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Duration of a remote read command on a simulated controller with its scans, from the call to the report, when the
-/// controller is ready for the next one.
+/// Measures the duration of a remote read command on a simulated controller with its scans. The time starts with the
+/// call and ends with the report, when the controller is ready for the next command.
 fn commands(effort: &Effort) -> anyhow::Result<()> {
     println!("servo status, from giving it to the report: median");
     for rpi in [5, 10, 20].map(Duration::from_millis) {
@@ -165,7 +166,7 @@ fn commands(effort: &Effort) -> anyhow::Result<()> {
                 let start = Instant::now();
                 answers.push(link.ask(&order).await?.elapsed.as_secs_f64() * 1000.0);
                 times.push(start.elapsed().as_secs_f64() * 1000.0);
-                // At another time within the interval in the next round.
+                // The next round starts at another time within the interval.
                 tokio::time::sleep(Duration::from_micros(fastrand::u64(..u64::try_from(rpi.as_micros())?))).await;
             }
             Yrcx::close(link, &screen).await?;
@@ -182,7 +183,7 @@ fn commands(effort: &Effort) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Fifty connections at 10 ms, with watchdogs at both ends: with our adapter, and with another one.
+/// Opens fifty connections at 10 ms, with watchdogs at both ends: with our adapter, and with another adapter.
 fn many_connections(effort: &Effort) -> anyhow::Result<()> {
     println!(
         "{MANY_CONNECTIONS} connections at 10 ms, watchdogs of 160 ms at both ends, {} s",
@@ -262,7 +263,7 @@ fn bare_loop(to: SocketAddrV4, time: Duration) -> anyhow::Result<Vec<Instant>> {
     Ok(sent)
 }
 
-/// The same loop with tokio's timer.
+/// The same loop, with tokio's timer.
 fn runtime_loop(to: SocketAddrV4, time: Duration) -> anyhow::Result<Vec<Instant>> {
     let (socket, image) = bare_image(to)?;
     runtime()?.block_on(async {
@@ -279,7 +280,7 @@ fn runtime_loop(to: SocketAddrV4, time: Duration) -> anyhow::Result<Vec<Instant>
     })
 }
 
-/// A socket to the adapter, and an image for it that belongs to no connection.
+/// Returns a socket to the adapter, and an image that belongs to no connection of the adapter.
 fn bare_image(to: SocketAddrV4) -> anyhow::Result<(UdpSocket, Vec<u8>)> {
     let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;
     socket.connect(to)?;
@@ -317,7 +318,7 @@ fn median(all: &mut [f64]) -> f64 {
     all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// Returns the last image.
+/// Application that returns the last image.
 #[derive(Debug, Default)]
 struct Mirror {
     image: Vec<u8>,
@@ -341,7 +342,7 @@ impl Application for Mirror {
     }
 }
 
-/// An adapter with an output assembly for each of several owners.
+/// Returns the configuration of an adapter with one output assembly for each of several owners.
 fn setup(owners: u32) -> Setup {
     let identity = Identity {
         address: SocketAddrV4::new(Ipv4Addr::LOCALHOST, PORT),
@@ -366,7 +367,7 @@ const fn output(index: u32) -> u32 {
     150 + index
 }
 
-/// Watchdogs of 16 intervals, as in real plants.
+/// Settings with watchdogs of 16 intervals, as in real plants.
 fn settings() -> Settings {
     Settings {
         output: output(0),

@@ -1,5 +1,5 @@
-//! Eight PROFINET devices every 8 ms from one process, through one network card: no watchdog may expire.
-//! `cargo bench --bench fieldbus -- devices 600` runs for ten minutes.
+//! Eight PROFINET devices with a cycle of 8 ms, controlled by one process through one network card. No watchdog may
+//! expire. `cargo bench --bench fieldbus -- devices 600` runs for ten minutes.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -17,13 +17,14 @@ use super::virtual_time::resting;
 use super::{Effort, namespaces};
 
 const CYCLE: Duration = Duration::from_millis(8);
-/// Default of a target.
+/// Default watchdog time of a target.
 const WATCHDOG: Duration = Duration::from_millis(320);
 const DEVICES: usize = 8;
-/// Interval of the checks of the last frames.
+/// Interval at which the age of the last frames is checked.
 const SAMPLE_INTERVAL: Duration = Duration::from_millis(4);
 
-/// Starts a bridge with a device in its own network namespace at each port, and then this program as their controller.
+/// Script that starts a bridge with a device in its own network namespace at each port. It then starts this program as
+/// the controller of the devices.
 const CHILD_VARIABLE: &str = r#"
 ip link add pn0 type bridge
 ip addr add 192.168.80.1/24 dev pn0
@@ -75,7 +76,7 @@ pub fn compare(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// The controller of all devices; prints a line with its results.
+/// Runs the controller of all devices, and prints a line with the results.
 pub fn hold() -> anyhow::Result<()> {
     let time = Duration::from_secs_f64(std::env::var("SECONDS_EACH")?.parse()?);
     let runtime = runtime()?;

@@ -1,10 +1,10 @@
-//! Cost of the fieldbuses of a yrcx: exchanges compared with the theoretical bit times, comparison of masters, and the
-//! duration of a command through a session.
+//! Costs of the fieldbuses of a yrcx controller: exchanges compared with the theoretical bit times, comparison of
+//! masters, and the duration of a command through a session.
 //!
 //! `cargo bench --bench fieldbus` measures everything, with `-- devicenet profibus masters status profinet devices`
-//! only that; `-- --quick`, and `cargo test --benches`, only check that it works. Lines in virtual time do not depend
-//! on this machine. Comparisons with network namespaces also run this program inside of them; the variable `ROLE`
-//! selects its part.
+//! only the named parts. `-- --quick` and `cargo test --benches` only check that the benchmark works. Lines in virtual
+//! time do not depend on this machine. Comparisons with network namespaces also run this program inside of the
+//! namespaces; the variable `ROLE` selects its part.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 
@@ -27,9 +27,9 @@ use std::time::Duration;
 
 use common::run;
 
-/// Amount of measurements.
+/// Amount of work.
 struct Effort {
-    /// Number of exchanges of a line in virtual time.
+    /// Number of exchanges for a line in virtual time.
     exchanges: u32,
     /// Duration of each run of a master, and number of runs.
     time: Duration,

@@ -1,5 +1,6 @@
-//! Comparison of PROFIBUS masters, on pseudo-terminals with a slave of minimal delay: ours, and those of the crate
-//! `profirust` and of PyPI's `pyprofibus`, if `ARMCTL_PROFIBUS_PEERS` is the folder made by `tests/profibus/install`.
+//! Comparison of PROFIBUS masters on pseudo-terminals, with a slave of minimal delay. The masters are ours, the one of
+//! the crate `profirust`, and the one of PyPI's `pyprofibus`. The last one runs only if `ARMCTL_PROFIBUS_PEERS` is the
+//! folder that `tests/profibus/install` created.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -24,9 +25,9 @@ use super::common::table::{Goal, Row, Table};
 use super::common::{median, ratio, runtime};
 use super::virtual_time::{Echo, resting};
 
-/// Maximum answer delay of a slave; the same for all of them.
+/// Maximum delay of an answer of the slave. It is the same for all masters.
 const SLOT: Duration = Duration::from_millis(8);
-/// The same in bits at 1.5 Mbit/s.
+/// The same delay in bits at 1.5 Mbit/s.
 const SLOT_BITS: u16 = 12_000;
 const SIZE: usize = 48;
 
@@ -43,7 +44,7 @@ pub fn compare(effort: &Effort) -> anyhow::Result<Table> {
     let mut table = Table::new("PROFIBUS DP, exchanges of 48 bytes each way a second, on a pseudo-terminal");
     let figure = |all: &[f64]| format!("{:.0} /s", median(all));
     table.row(Row::new("armctl, one cycle after the other", figure(&ours)));
-    // More is better, so the ratio is inverse to that of times.
+    // A higher number is better, so the ratio is the inverse of a ratio of times.
     let comparison =
         |name, all: &[f64]| Row::new(name, figure(all)).compared_with_armctl(ratio(&ours, all), Goal::MoreThan(1.0));
     table.row(comparison("profirust 0.6", &rust));
@@ -55,12 +56,12 @@ pub fn compare(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// A slave in a thread.
+/// A slave that a thread shares with the measurement.
 #[derive(Debug, Clone)]
 struct Shared(Arc<Mutex<Slave<Echo>>>);
 
 impl Shared {
-    /// Exchanges per second in this time, after the first ones.
+    /// Measures the exchanges per second during this time, after the first exchanges.
     fn speed(&self, time: Duration, mut turn: impl FnMut()) -> anyhow::Result<f64> {
         const WARM_UP_EXCHANGES: u64 = 10;
 
@@ -86,7 +87,7 @@ fn rate() -> anyhow::Result<Rate> {
     Rate::from_name("1.5M").context("a speed")
 }
 
-/// Runs a slave on a pseudo-terminal while `master` uses it.
+/// Runs a slave on a pseudo-terminal while the function `master` uses it.
 fn with_slave(master: impl FnOnce(&Shared, &str) -> anyhow::Result<f64>) -> anyhow::Result<f64> {
     let shared = Shared(Arc::new(Mutex::new(Slave::new(Setup::stand_in(rate()?), Echo::default()))));
     let runtime = runtime()?;

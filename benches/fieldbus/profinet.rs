@@ -1,7 +1,9 @@
-//! Our PROFINET controller and that of PyPI's `profinet-py`, each with the simulated device on another network card:
-//! time until data, timing of frames compared with a bare timer loop in the same minute, and CPU time.
+//! Comparison of our PROFINET controller and the controller of PyPI's `profinet-py`. Each is connected to the simulated
+//! device through another network card. Measured are the time until data, the timing of frames compared with a bare
+//! timer loop in the same minute, and CPU time.
 //!
-//! Needs user namespaces, and `ARMCTL_PROFINET_PEERS` for the other controller; missing parts are reported.
+//! The benchmark needs user namespaces, and `ARMCTL_PROFINET_PEERS` for the other controller. Missing parts are
+//! reported.
 
 use std::net::UdpSocket;
 use std::thread;
@@ -20,7 +22,8 @@ use super::{Effort, namespaces};
 
 const CYCLE: Duration = Duration::from_millis(16);
 
-/// Runs the contenders one after the other, with the same recorder of their frames; each prints its figures on a line.
+/// Script that runs the contenders one after the other, with the same recorder of their frames. Each contender prints
+/// its figures on a line.
 const CHILD_VARIABLE: &str = r#"
 $THERE "$ARMCTL" sim yrcx --bus profinet --interface pd0 > "$FOLDER/sim" 2>&1 & D=$!
 until grep -q 'profinet://' "$FOLDER/sim"; do kill -0 $D || exit 1; done

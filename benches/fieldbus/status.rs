@@ -1,7 +1,7 @@
-//! Duration of reads through a session, over each fieldbus: complete processes, compared with one that only prints its
-//! version and one that does nothing. Signals are part of the cyclic data; a status needs remote commands for servos
-//! and position, which take some cycles of the fieldbus each. The controllers are `armctl sim` in other processes, that
-//! of PROFINET in another network namespace.
+//! Duration of reads through a session, over each fieldbus. Complete processes are compared with a process that only
+//! prints its version, and with a process that does nothing. Signals are part of the cyclic data. A status needs remote
+//! commands for servos and position, and each of these takes some cycles of the fieldbus. The controllers are `armctl
+//! sim` in other processes; the PROFINET controller runs in another network namespace.
 
 use std::process::{Command, Stdio};
 
@@ -11,7 +11,7 @@ use super::common::table::{Goal, Row, Table};
 use super::common::{Work, median, run_alternately};
 use super::{Effort, namespaces};
 
-/// Starts controllers with a session each, and then this program to measure.
+/// Script that starts controllers with a session each, and then this program for the measurement.
 const CHILD_VARIABLE: &str = r#"
 export HOME="$FOLDER" XDG_RUNTIME_DIR="$FOLDER" XDG_CONFIG_HOME="$FOLDER/config"
 unset ARMCTL_TARGET ARMCTL_ROBOT
@@ -34,7 +34,7 @@ kill $ALL
 wait
 "#;
 
-/// Commands, with their names in the table; the goal is for signals.
+/// Commands, with their names in the table. The goal applies to signals.
 const RUNS: [(&str, &[&str]); 10] = [
     ("true", &[]),
     ("armctl --version", &["--version"]),
@@ -72,13 +72,13 @@ pub fn compare(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// Line of [`measure`] for one command.
+/// Parses a line of [`measure`] for one command.
 fn figures(line: &str) -> Option<(f64, f64)> {
     let (median, most) = line.strip_prefix("measured ")?.split_once(' ')?;
     Some((median.parse().ok()?, most.parse().ok()?))
 }
 
-/// Runs all commands alternately; prints a line for each with median and 99th percentile in milliseconds.
+/// Runs all commands in turn. Prints a line for each with median and 99th percentile in milliseconds.
 pub fn measure() -> anyhow::Result<()> {
     let rounds = std::env::var("COMMANDS")?.parse()?;
     let mut works = RUNS.map(|(_, words)| move || run(words));
@@ -91,7 +91,7 @@ pub fn measure() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Runs a command to its end; without words, a process that does nothing.
+/// Runs a command to its end. Without words, runs a process that does nothing.
 fn run(words: &[&str]) -> anyhow::Result<()> {
     let mut command = Command::new(if words.is_empty() { "true" } else { env!("CARGO_BIN_EXE_armctl") });
     let status = command.args(words).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status()?;

@@ -1,4 +1,4 @@
-//! Master and slave on lines with exact bit times, with separate clocks.
+//! Master and slave on lines with exact bit times. Each has its own clock.
 
 use std::time::Duration;
 
@@ -21,19 +21,19 @@ use super::common::table::{Goal, Row, Table};
 
 const SIZE: usize = 48;
 const LINK: u64 = 1;
-/// Time limit of a working run.
+/// Time limit of a run that works.
 const LONGEST: Duration = Duration::from_secs(3600);
 /// Maximum duration of an exchange relative to its bit times.
 const GOAL: Goal = Goal::AtMost(1.1, "x");
 
-/// Word of SI(00) and SI(06).
+/// Returns the image with the signals SI(00) and SI(06) on.
 pub fn resting() -> Vec<u8> {
     let mut image = vec![0; SIZE];
     image[32] = 0x41;
     image
 }
 
-/// Returns its outputs as inputs.
+/// Application that returns its outputs as inputs.
 #[derive(Debug)]
 pub struct Echo(Vec<u8>);
 
@@ -69,8 +69,8 @@ impl Application for Echo {
     fn master_gone(&mut self, _: Duration) {}
 }
 
-/// Polls of 48 bytes: time from the first bit of a poll to the last of its answer, compared with the bits of those 14
-/// frames.
+/// Measures polls of 48 bytes: the time from the first bit of a poll to the last bit of its answer, compared with the
+/// bits of these 14 frames.
 pub fn devicenet(effort: &Effort) -> anyhow::Result<Table> {
     const FRAMES: usize = 14;
     const CYCLE: Duration = Duration::from_millis(4);
@@ -123,7 +123,7 @@ pub fn devicenet(effort: &Effort) -> anyhow::Result<Table> {
         }
         frames.truncate(if frames.len() >= FRAMES { 0 } else { FRAMES });
         let next = scanner.wake().into_iter().chain(device.wake()).chain(bus.wake()).min().unwrap_or(LONGEST);
-        // Work that is due at once is done at the top of the loop.
+        // Work that is due now is done at the start of the next pass of the loop.
         now = if has_passed { now } else { next.max(now + Duration::from_nanos(100)) };
     }
     let span = polls.last().zip(polls.first()).map_or(Duration::ZERO, |(last, first)| last.saturating_sub(*first));
@@ -136,8 +136,8 @@ pub fn devicenet(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// Consecutive exchanges, compared with the bits of both telegrams, the pause before them, and the maximum answer
-/// delay.
+/// Measures consecutive exchanges, compared with the bits of both telegrams, the pause before them, and the maximum
+/// delay of the answer.
 pub fn profibus(effort: &Effort) -> anyhow::Result<Table> {
     let mut table = Table::new("PROFIBUS DP, 48 bytes each way, one cycle after the other, in virtual time");
     for (name, of_line, of_cycle) in

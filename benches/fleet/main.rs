@@ -1,8 +1,8 @@
-//! Duration of `armctl status` for a fleet of mixed families, compared with its slowest controller alone.
+//! Duration of `armctl status` for a fleet of mixed families, compared with the slowest controller of the fleet alone.
 //!
-//! Complete processes with one inventory. The controllers are simulators on the loopback, all in this process, so that
-//! they share the cores with the command. `cargo bench --bench fleet` measures 200 of them; `-- --quick`, and `cargo
-//! test --benches`, only check that it works.
+//! The benchmark runs complete processes with one inventory. The controllers are simulators on the loopback interface,
+//! all in this process, so they share the CPU cores with the command. `cargo bench --bench fleet` measures 200
+//! controllers. `-- --quick` and `cargo test --benches` only check that the benchmark works.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 
@@ -34,13 +34,14 @@ fn main() -> anyhow::Result<()> {
     run(&COMPARISONS, &FULL, &QUICK)
 }
 
-/// Realistic controllers: a Yaskawa answers after some milliseconds, a Toyo has a line of 9600 baud.
+/// Measures realistic controllers: a Yaskawa controller answers after some milliseconds, a Toyo controller has a line
+/// of 9600 baud.
 fn lines(effort: &Effort) -> anyhow::Result<Table> {
     let table = Table::new(format!("status of {} controllers on lines as they are", total(effort)));
     compare(table, effort, Some(Goal::AtMost(2.0, "x")), Delays { answer: Some("2..8ms"), baud: Some(9600) })
 }
 
-/// Controllers that answer at once: only the work of this machine remains, for both ends.
+/// Measures controllers that answer at once. Only the work of this machine remains, for command and controllers.
 fn parallel_queries(effort: &Effort) -> anyhow::Result<Table> {
     let table = Table::new(format!("status of {} controllers that answer at once", total(effort)));
     compare(table, effort, None, Delays::default())

@@ -1,11 +1,12 @@
-//! CPU time and memory of `armctl serve metrics` that polls the controllers of a plant once per second.
+//! CPU time and memory of `armctl serve metrics`, which polls the controllers of a plant once per second.
 //!
-//! The controllers of all families are simulated on the loopback in this process. The command is a separate process, or
-//! four that share the robots by tags. It is read every five seconds, like by Prometheus. CPU time (including the
-//! kernel) and memory are those of Linux statistics.
+//! The controllers of all families are simulated on the loopback interface in this process. The command is a separate
+//! process, or four processes that share the robots by tags. The metrics are read every five seconds, as Prometheus
+//! does. CPU time (including the kernel) and memory are read from the statistics of Linux.
 //!
-//! `cargo bench --bench plant` watches 500 controllers for a minute, then 2,000 with four processes; `-- metrics
-//! --seconds=600` the 500 for ten minutes; `-- --quick`, and `cargo test --benches`, only check that it works.
+//! `cargo bench --bench plant` watches 500 controllers for a minute, then 2,000 controllers with four processes. `--
+//! metrics --seconds=600` watches 500 controllers for ten minutes. `-- --quick` and `cargo test --benches` only check
+//! that the benchmark works.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 
@@ -40,9 +41,9 @@ const QUICK: Effort = Effort { plant: [3, 2, 1], time: Duration::from_millis(500
 const SHARDS: usize = 4;
 /// Time until every link is open and the memory use is stable.
 const WARM_UP: u32 = 6;
-/// Interval of the reads, as usual for Prometheus.
+/// Interval of the reads; usual for Prometheus.
 const SCRAPE: Duration = Duration::from_secs(5);
-/// Limits of a process: percent of a core, and MB.
+/// Limits of a process: percent of a CPU core, and MB.
 const HALF: f64 = 50.0;
 const MEMORY: f64 = 64.0;
 
@@ -54,14 +55,14 @@ fn main() -> anyhow::Result<()> {
     run(&comparisons, &full, &QUICK)
 }
 
-/// A plant, and one process.
+/// Measures a plant with one process.
 fn metrics(effort: &Effort) -> anyhow::Result<Table> {
     let count: usize = effort.plant.iter().sum();
     let title = format!("serve metrics: {count} controllers once a second, for {} s", effort.time.as_secs());
     watched_plant(Table::new(title), effort.plant, effort.time, 1)
 }
 
-/// A larger plant, and a process for each of its parts.
+/// Measures a larger plant with one process for each part of it.
 fn shards(effort: &Effort) -> anyhow::Result<Table> {
     let plant = effort.plant.map(|count| count * SHARDS);
     let (count, time) = (plant.iter().sum::<usize>(), effort.time.as_secs());
@@ -76,7 +77,7 @@ struct Reading {
     page: String,
 }
 
-/// Watches the plant with this number of processes.
+/// Watches the plant with this number of processes, and adds the results to the table.
 fn watched_plant(mut table: Table, plant: [usize; 3], time: Duration, processes: usize) -> anyhow::Result<Table> {
     let folder = tempfile::tempdir()?;
     std::fs::write(folder.path().join("robots.toml"), serve(plant, Delays::default(), processes)?)?;
@@ -124,13 +125,13 @@ fn watched_plant(mut table: Table, plant: [usize; 3], time: Duration, processes:
     Ok(table)
 }
 
-/// Sum of all samples of a metric.
+/// Returns the sum of all samples of a metric.
 fn sum(page: &str, name: &str) -> f64 {
     let lines = page.lines().filter(|line| line.strip_prefix(name).is_some_and(|rest| rest.starts_with('{')));
     lines.filter_map(|line| line.rsplit(' ').next()?.parse::<f64>().ok()).sum()
 }
 
-/// A service, until it is dropped.
+/// A running service. It stops when it is dropped.
 struct Service(Child, SocketAddr);
 
 impl Service {

@@ -1,9 +1,10 @@
-//! Time until a change of a controller is at the broker, in poll intervals; and check that an absent broker causes no
-//! loss.
+//! Time, in poll intervals, until a change of a controller reaches the broker. The benchmark also checks that nothing
+//! is lost while the broker is absent.
 //!
-//! One `armctl publish` polls simulators on the loopback once per second, all in this process. The broker in this
-//! process acknowledges messages and notes their times. The controllers switch HOLD on and off at independent times.
-//! `cargo bench --bench publish` uses 300 of them; `-- --quick`, and `cargo test --benches`, only check that it works.
+//! One `armctl publish` polls simulators on the loopback interface once per second, all in this process. The broker in
+//! this process acknowledges messages and records their times. The controllers switch HOLD on and off at independent
+//! times. `cargo bench --bench publish` uses 300 controllers. `-- --quick` and `cargo test --benches` only check that
+//! the benchmark works.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 
@@ -39,7 +40,7 @@ const FULL: Effort = Effort { robots: 300, changes: 10, gone: Duration::from_sec
 const QUICK: Effort = Effort { robots: 4, changes: 3, gone: Duration::from_secs(3) };
 /// Poll interval.
 const INTERVAL: Duration = Duration::from_secs(1);
-/// Interval of the changes of a controller: longer than a poll interval, so that each change is polled.
+/// Interval of the changes of a controller. It is longer than a poll interval, so that each change is polled.
 const CHANGE: Duration = Duration::from_millis(2700);
 
 fn main() -> anyhow::Result<()> {
@@ -47,14 +48,14 @@ fn main() -> anyhow::Result<()> {
     run(&comparisons, &FULL, &QUICK)
 }
 
-/// Time of each change of HOLD, and of its message at the broker.
+/// Times of each change of HOLD, and of its message at the broker.
 #[derive(Default)]
 struct Measurements {
     changed_at: Moments,
     published_at: Moments,
 }
 
-/// By controller and state of HOLD.
+/// Times by controller and state of HOLD.
 type Moments = HashMap<(usize, bool), Vec<Instant>>;
 
 type Shared = Arc<Mutex<Measurements>>;
@@ -93,7 +94,7 @@ fn outage(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// Delay from each change to the broker, in poll intervals, ascending.
+/// Returns the delays from each change to the broker, in poll intervals, in ascending order.
 fn published(effort: &Effort, gone: Option<Duration>) -> anyhow::Result<Vec<f64>> {
     let book = Shared::default();
     let folder = tempfile::tempdir()?;
@@ -111,7 +112,7 @@ fn published(effort: &Effort, gone: Option<Duration>) -> anyhow::Result<Vec<f64>
         let told: usize = book.published_at.values().map(Vec::len).sum();
         told >= robots + robots * usize::try_from(at_least).unwrap_or(usize::MAX)
     };
-    // Every controller is known before the first one changes.
+    // Wait until every controller is known, before the first controller changes.
     wait_until(&book, Duration::from_secs(60), |book| is_complete(book, 0))?;
     go.send(true)?;
     if let Some(gone) = gone {
@@ -189,7 +190,7 @@ async fn controller(
             begun = go.changed() => begun?,
         }
     }
-    // At times that are independent of each other and of the polls.
+    // The changes start at times that are independent of each other and of the polls.
     let phase = CHANGE.mul_f64(fastrand::f64());
     let mut ticks = interval_at(tokio::time::Instant::now() + phase, CHANGE);
     let mut left = changes;
@@ -207,7 +208,7 @@ async fn controller(
     }
 }
 
-/// A broker that acknowledges messages, and notes the HOLD states in them.
+/// A broker that acknowledges messages, and records the HOLD states in them.
 struct FakeBroker {
     url: String,
     is_away: Arc<Mutex<bool>>,
@@ -240,14 +241,15 @@ impl FakeBroker {
         *self.is_away.lock().unwrap_or_else(PoisonError::into_inner) = is_away;
         if is_away {
             for line in self.lines.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
-                // The connection may be closed already.
+                // An error is ignored: the connection may be closed already.
                 let _closed = line.shutdown(std::net::Shutdown::Both);
             }
         }
     }
 }
 
-/// Reads packets of one client until it disconnects. A message without acknowledgement is repeated, and counts once.
+/// Reads packets of one client until it disconnects. A message without an acknowledgement is sent again by the client,
+/// and counts only once.
 fn serve_client(mut stream: TcpStream, book: &Shared) -> Option<()> {
     loop {
         let mut head = [0; 1];
@@ -283,7 +285,7 @@ fn handle_packet(book: &Shared, topic: &[u8], payload: &[u8]) -> Option<()> {
     let envelope: serde_json::Value = serde_json::from_slice(payload).ok()?;
     let is_held = envelope["data"]["held"].as_bool()?;
     {
-        // A repeated state is not a change.
+        // A message that repeats the state is not a change.
         let book = book.lock().unwrap_or_else(PoisonError::into_inner);
         let count = |key: bool| book.published_at.get(&(number, key)).map_or(0, Vec::len);
         let is_new = if is_held { count(true) < count(false) } else { count(false) <= count(true) };

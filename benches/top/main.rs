@@ -1,10 +1,10 @@
-//! CPU time of `armctl top` that polls 50 controllers ten times per second.
+//! CPU time of `armctl top`, which polls 50 controllers ten times per second.
 //!
-//! The controllers are simulated on the loopback in threads of this process: most of them yerc, some toyo and yrcx.
-//! `top` is a separate process on a pseudo-terminal whose output is read. Its CPU time is that of Linux statistics,
-//! including the kernel.
+//! The controllers are simulated on the loopback interface in threads of this process: most of them yerc, some toyo and
+//! yrcx. `top` is a separate process on a pseudo-terminal, and its output is read. The CPU time of `top` is read from
+//! the statistics of Linux, including the kernel.
 //!
-//! `cargo bench --bench top`; `-- --quick`, and `cargo test --benches`, only check that it works.
+//! The benchmark is `cargo bench --bench top`. `-- --quick` and `cargo test --benches` only check that it works.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 

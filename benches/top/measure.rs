@@ -1,4 +1,4 @@
-//! The measurement.
+//! Measurement of `armctl top`.
 
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -21,14 +21,14 @@ struct Effort {
 const FULL: Effort = Effort { fleet: [40, 5, 5], time: Duration::from_secs(10), every: "100ms" };
 const QUICK: Effort = Effort { fleet: [2, 1, 1], time: Duration::from_millis(300), every: "100ms" };
 
-/// Maximum percentage of a core.
+/// Maximum percentage of a CPU core.
 const QUARTER: f64 = 25.0;
 
 pub fn main() -> anyhow::Result<()> {
     run(&[("top", top)], &FULL, &QUICK)
 }
 
-/// All robots in a list, and one of them in detail.
+/// Measures all robots in a list, and one robot in detail.
 fn top(effort: &Effort) -> anyhow::Result<Table> {
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("robots.toml");
@@ -52,7 +52,7 @@ fn top(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// CPU time as a percentage of a core, during this time.
+/// Returns the CPU time during this time, as a percentage of a CPU core.
 fn share(terminal: &mut Terminal, time: Duration) -> anyhow::Result<f64> {
     let (began, before) = (Instant::now(), cpu_time(terminal.child.id())?);
     while began.elapsed() < time {

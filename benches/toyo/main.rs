@@ -1,7 +1,7 @@
 //! Use of a serial line, and speed of offline program commands.
 //!
-//! `cargo bench --bench toyo` measures everything (the line takes one and a half minutes), with `-- check` only that;
-//! `-- --quick`, and `cargo test --benches`, only check that it works.
+//! `cargo bench --bench toyo` measures everything (the line takes one and a half minutes), with `-- check` only the
+//! named part. `-- --quick` and `cargo test --benches` only check that the benchmark works.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 
@@ -33,7 +33,7 @@ use common::{measure_time, median, run, run_alternately, runtime};
 const BAUD: u32 = 9600;
 const BITS: u32 = 11;
 
-/// Amount of work; enough for figures, or only for a check.
+/// Amount of work: either enough for figures, or only enough for a check.
 struct Effort {
     points: i32,
     steps: usize,
@@ -53,7 +53,8 @@ fn main() -> anyhow::Result<()> {
     run(&COMPARISONS, &FULL, &QUICK)
 }
 
-/// Rows of the coordinate table over a line of 9600 baud, compared with the time of their characters.
+/// Measures reads of rows of the coordinate table over a line of 9600 baud, compared with the transmission time of the
+/// characters.
 fn points(effort: &Effort) -> anyhow::Result<Table> {
     let address = serve()?;
     let runtime = runtime()?;
@@ -65,7 +66,8 @@ fn points(effort: &Effort) -> anyhow::Result<Table> {
             for row in 1..=effort.points {
                 let request = Request::read_parameter(table, Some(row))?;
                 let answer = link.raw(&request).await?;
-                // With CR and LF; the controller may answer during the last LF of a request.
+                // Both lines end with CR and LF. The LF of the request is not counted, because the controller may
+                // answer while the LF is transmitted.
                 characters += request.text().len() + 1 + answer.text().len() + 2;
             }
             anyhow::Ok(())
@@ -80,7 +82,7 @@ fn points(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// A program with the maximum number of steps.
+/// Measures the check of a program with the maximum number of steps.
 fn check(effort: &Effort) -> anyhow::Result<Table> {
     let text = long_program(effort.steps);
     let [times] = run_alternately(
@@ -101,7 +103,7 @@ fn check(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// Jumps, calls, counters and moves, with one label in ten steps.
+/// Returns a program with jumps, calls, counters and moves, and with one label in ten steps.
 fn long_program(steps: usize) -> String {
     const BODY: [&str; 9] = [
         "MOVP a PT=1 CN=0 S V=0 POST",
@@ -125,7 +127,7 @@ fn long_program(steps: usize) -> String {
     lines.join("\n")
 }
 
-/// A loop of a counter and a jump in the simulator, with a clock from the test.
+/// Measures a loop of a counter and a jump in the simulator. The benchmark controls the clock.
 fn instructions(effort: &Effort) -> anyhow::Result<Table> {
     let [times] = run_alternately(
         effort.runs,
@@ -170,7 +172,7 @@ fn serve() -> anyhow::Result<SocketAddr> {
     told.recv().context("the server listens")
 }
 
-/// Connects like a command.
+/// Connects like a command of armctl.
 fn connect(runtime: &tokio::runtime::Runtime, address: SocketAddr) -> anyhow::Result<Link> {
     let selection = Selection { target: Some(format!("tcp://{address}").parse()?), ..Selection::default() };
     let sources = Sources { selection, ..Sources::default() };

@@ -1,4 +1,4 @@
-//! Minimal client: a blocking socket, without sessions, retries, and nearly without checks.
+//! Minimal client: a blocking socket, without sessions and retries, and nearly without checks.
 
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
@@ -9,7 +9,7 @@ use armctl_controller::yerc::wire::{HEADER_LEN, LAST_BLOCK, MAX_FRAME};
 
 use crate::peers::{ACK, BLOCK, STATUS_ANSWER, STATUS_REQUEST, block};
 
-/// The loopback loses nothing; if it does, the run ends instead of hanging.
+/// The loopback interface loses nothing. If a datagram is still lost, the run ends after this time and does not hang.
 const TIMEOUT: Duration = Duration::from_secs(5);
 
 fn open(peer: SocketAddr) -> io::Result<UdpSocket> {
@@ -36,7 +36,7 @@ impl Echo {
     }
 }
 
-/// A file client that accepts blocks in the order of arrival.
+/// A file client that accepts the blocks in the order in which they arrive.
 pub struct Download {
     socket: UdpSocket,
     request: Vec<u8>,

@@ -1,11 +1,11 @@
-//! Speed of armctl compared with minimal programs for the same work.
+//! Speed of armctl compared with minimal programs that do the same work.
 //!
-//! Every comparison alternates its contenders in each round, so that other load affects all of them. The figures are
-//! medians, and a ratio is the median of the ratios of adjacent runs. Everything uses the loopback and servers of the
-//! same kind: a thread that blocks in its socket.
+//! Every comparison runs its contenders in turn in each round, so that other load affects all of them. The figures are
+//! medians, and a ratio is the median of the ratios of adjacent runs. Everything uses the loopback interface and the
+//! same kind of server: a thread that blocks in its socket.
 //!
-//! `cargo bench --bench yerc` measures everything, with `-- status download` only that; `-- --quick`, and `cargo test
-//! --benches`, only check that it works.
+//! `cargo bench --bench yerc` measures everything, with `-- status download` only the named parts. `-- --quick` and
+//! `cargo test --benches` only check that the benchmark works.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports to whoever runs it")]
 
@@ -33,7 +33,7 @@ use peers::Controller;
 
 const MIB: u64 = 1024 * 1024;
 
-/// Amount of work; enough for figures, or only for a check.
+/// Amount of work: either enough for figures, or only enough for a check.
 struct Effort {
     status_rounds: usize,
     exchanges: u32,
@@ -57,7 +57,8 @@ fn main() -> anyhow::Result<()> {
     run(&COMPARISONS, &FULL, &QUICK)
 }
 
-/// Status round trips: our link, a bare echo of the same size, the client of `moto-hses-client`.
+/// Measures round trips of a status request: our link, a bare echo of the same size, and the client of
+/// `moto-hses-client`.
 fn status(effort: &Effort) -> anyhow::Result<Table> {
     let controller = Controller::start(0)?;
     let runtime = runtime()?;
@@ -97,7 +98,7 @@ fn status(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// Download without storing: our link, and a bare loop that checks the block number.
+/// Measures a download that is not stored: our link, and a bare loop that checks the block number.
 fn download(effort: &Effort) -> anyhow::Result<Table> {
     let size = effort.download;
     let controller = Controller::start(size)?;
@@ -130,7 +131,7 @@ fn download(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// `armctl yerc status` from start to exit, compared with a process that does nothing.
+/// Measures `armctl yerc status` from start to exit, compared with a process that does nothing.
 fn start(effort: &Effort) -> anyhow::Result<Table> {
     let controller = Controller::start(0)?;
     let mut status = process::armctl(&controller, &["yerc", "status"]);
@@ -146,7 +147,7 @@ fn start(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// Peak memory of a large download.
+/// Measures the peak memory of a large download.
 fn memory(effort: &Effort) -> anyhow::Result<Table> {
     let controller = Controller::start(effort.big)?;
     let folder = tempfile::tempdir()?;
@@ -161,7 +162,7 @@ fn memory(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
-/// Connects like a command.
+/// Connects like a command of armctl.
 fn connect(runtime: &Runtime, controller: &Controller) -> anyhow::Result<Link> {
     let target = controller.url().parse()?;
     let selection = Selection { target: Some(target), ..Selection::default() };

@@ -8,39 +8,40 @@ use armctl_controller::yerc::wire::{AnswerFrame, Division, HEADER_LEN, LAST_BLOC
 
 /// Size of the largest frame.
 const BUFFER: usize = 2048;
-/// Offset of the request id, which the answer repeats (FS and DX 3.1).
+/// Offset of the request id. The answer contains the same id (FS and DX 3.1).
 pub const ID: usize = 11;
 /// Offset of the block number.
 pub const BLOCK: usize = 12;
 /// Offset of the flag that distinguishes an ACK from a request.
 pub const ACK: usize = 10;
 
-/// Size of the frames of a status exchange: request without data, answer with two words.
+/// Sizes of the frames of a status exchange: a request without data, and an answer with two words.
 pub const STATUS_REQUEST: usize = HEADER_LEN;
 /// See [`STATUS_REQUEST`].
 pub const STATUS_ANSWER: usize = HEADER_LEN + 8;
 
 /// The two servers of a controller. They end with the process.
 pub struct Controller {
-    /// Answers every request like a status request.
+    /// Robot server: answers every request like a status request.
     pub robot: SocketAddr,
-    /// Has one file with any name.
+    /// File server: has one file, and accepts every file name.
     pub file: SocketAddr,
 }
 
 impl Controller {
-    /// Starts it with a file of `size` bytes.
+    /// Starts both servers, with a file of `size` bytes.
     pub fn start(size: u64) -> io::Result<Self> {
         Ok(Self { robot: serve(status())?, file: serve(file(size))? })
     }
 
-    /// Target of a command line.
+    /// Returns the target for a command line.
     pub fn url(&self) -> String {
         format!("udp://{}?file_port={}", self.robot, self.file.port())
     }
 }
 
-/// Answers datagrams on a free port with the content that `respond` writes into the buffer, if any.
+/// Answers datagrams on a free port. `respond` writes the content of the answer into the buffer; an empty buffer means
+/// no answer.
 fn serve(mut respond: impl FnMut(&[u8], &mut Vec<u8>) + Send + 'static) -> io::Result<SocketAddr> {
     let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;
     let address = socket.local_addr()?;
@@ -49,7 +50,7 @@ fn serve(mut respond: impl FnMut(&[u8], &mut Vec<u8>) + Send + 'static) -> io::R
         let mut answer = Vec::with_capacity(BUFFER);
         while let Ok((len, client)) = socket.recv_from(&mut buffer) {
             respond(&buffer[..len], &mut answer);
-            // The client may have closed its socket.
+            // An error is ignored: the client may have closed its socket.
             if !answer.is_empty() {
                 let _gone = socket.send_to(&answer, client);
             }
@@ -58,7 +59,7 @@ fn serve(mut respond: impl FnMut(&[u8], &mut Vec<u8>) + Send + 'static) -> io::R
     Ok(address)
 }
 
-/// Play mode, servo on: the same answer except for the id.
+/// Answers with play mode and servo on. All answers are equal except for the id.
 fn status() -> impl FnMut(&[u8], &mut Vec<u8>) {
     let mut frame = answer(Division::Robot, 0x81, LAST_BLOCK, &[0x42, 0, 0, 0, 0x40, 0, 0, 0]);
     move |request, out| {
@@ -68,7 +69,7 @@ fn status() -> impl FnMut(&[u8], &mut Vec<u8>) {
     }
 }
 
-/// Block 1 for a request, the next block for each ACK, nothing for the last ACK.
+/// Answers a request with block 1 and each ACK with the next block. The last ACK gets no answer.
 fn file(size: u64) -> impl FnMut(&[u8], &mut Vec<u8>) {
     let content = [0xA5; MAX_DATA];
     let blocks = u32::try_from(size.div_ceil(MAX_DATA as u64)).expect("files of a benchmark are small");

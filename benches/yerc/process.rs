@@ -9,11 +9,11 @@ use anyhow::{Context as _, ensure};
 
 use crate::peers::Controller;
 
-/// Interval of the memory reads. The figure is a high-water mark, so only an increase after the last read can be
+/// Interval at which the memory is read. The value is a high-water mark, so only an increase after the last read can be
 /// missed.
 const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
-/// The binary of the same build, for `controller`.
+/// Returns a command with the binary of the same build, for `controller`.
 pub fn armctl(controller: &Controller, args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
     command.arg("--target").arg(controller.url()).args(args);
@@ -23,7 +23,7 @@ pub fn armctl(controller: &Controller, args: &[&str]) -> Command {
     run_silently(command)
 }
 
-/// A process that only starts and ends.
+/// Returns a process that only starts and ends.
 pub fn run_empty_process() -> Command {
     run_silently(Command::new("true"))
 }
@@ -40,7 +40,7 @@ pub fn assert_success(command: &mut Command) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Peak resident memory in bytes.
+/// Measures the peak resident memory in bytes.
 pub fn peak_memory(command: &mut Command) -> anyhow::Result<u64> {
     let mut child = command.spawn()?;
     let path = format!("/proc/{}/status", child.id());

@@ -1,5 +1,5 @@
-//! Conversion of `NAME=VALUE` for commands with another form of their arguments: two words (`counter set 1 0`), or a
-//! flag (`point set 7 --mm 1,2,3,4`).
+//! Conversion of `NAME=VALUE` for commands that expect another form: two words (`counter set 1 0`), or a flag (`point
+//! set 7 --mm 1,2,3,4`).
 
 use std::ffi::OsString;
 
@@ -8,7 +8,7 @@ use clap::Command;
 use super::typed_line::TypedLine;
 use armctl_frame::setting::Pair;
 
-/// The line in the form that its command expects; `None` if no conversion is necessary.
+/// Converts a command line to the form that its command expects. Returns `None` if no conversion is necessary.
 pub fn split_assignments(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
     if !args.iter().any(|word| word == "set") {
         return None;
@@ -22,7 +22,7 @@ pub fn split_assignments(args: &[OsString], whole: &Command) -> Option<Vec<OsStr
     if let Some(Pair { name, is_list }) = Pair::of(verb) {
         let (word, value) = typed.rest.get(name)?.split_once('=')?;
         let values: Vec<&str> = if is_list { value.split(',').collect() } else { vec![value] };
-        // A value must not become a flag.
+        // A value must not be interpreted as a flag.
         if values.iter().any(|value| value.starts_with('-') && value.parse::<f64>().is_err()) {
             return None;
         }
@@ -50,7 +50,7 @@ mod tests {
     use super::*;
     use crate::cli::Cli;
 
-    /// All verbs that read numbered items, with the ends of a range.
+    /// All verbs that read numbered items, with the first and last item of a range.
     const RANGES: &[(&str, &str, &str)] = &[
         ("toyo accel-table get", "1", "3"),
         ("toyo counter get", "1", "3"),
@@ -76,7 +76,7 @@ mod tests {
         ("yrcx var get", "SGI1", "SGI3"),
     ];
 
-    /// Verbs that read something else: names, one program, numbers of an object.
+    /// Verbs that read other things: names, one program, the numbers of an object.
     const NO_RANGES: [&str; 6] = [
         "toyo palletizing get",
         "toyo param get",
@@ -86,7 +86,7 @@ mod tests {
         "yrcx param get",
     ];
 
-    /// All verbs that set something, in the common form.
+    /// All `set` commands, in the form that they have in common.
     const SETTINGS: &[&str] = &[
         "toyo accel-table set 5=0.25",
         "toyo counter set 1=0",
@@ -115,8 +115,8 @@ mod tests {
         "yrcx var set SGR1=-0.5",
     ];
 
-    /// Exceptions: verbs with a single object, numbered objects without a name, and inventory settings, which have
-    /// their own test.
+    /// Exceptions: verbs with a single object, numbered objects without a name, and settings of the inventory, which
+    /// have their own test.
     const NO_SETTINGS: [&str; 7] = [
         "names set",
         "robots set",
@@ -131,7 +131,7 @@ mod tests {
         shlex::split(&format!("armctl {line}")).unwrap().into_iter().map(Into::into).collect()
     }
 
-    /// Collects the verbs with this name below a command.
+    /// Collects the paths of the commands below `command` that `is_one` selects.
     fn verbs(command: &Command, path: &str, is_one: &dyn Fn(&Command) -> bool, found: &mut BTreeSet<String>) {
         for verb in command.get_subcommands() {
             let path = format!("{path} {}", verb.get_name());

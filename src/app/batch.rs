@@ -1,7 +1,7 @@
 //! `armctl batch`: runs the commands of a file over links that stay open.
 //!
-//! The whole file is checked before anything is sent: words, flags, robots, and the gate. Then the lines run in order,
-//! up to the first failure.
+//! The whole file is checked before anything is sent: words, flags, robots, and the gate. The lines then run in order
+//! until the first failure.
 
 use std::cell::RefCell;
 use std::ffi::OsString;
@@ -27,15 +27,15 @@ use armctl_frame::run::{RunError, begin_trace};
 use armctl_frame::script_line::{Line, Origin};
 use armctl_frame::session_manager::SessionManager;
 
-/// Envelopes that are written together at the end.
+/// Envelopes that are collected and written together at the end.
 type Results = Rc<RefCell<Vec<Value>>>;
 
-/// Runs the lines of a file.
+/// Runs the commands in a file.
 pub async fn run(globals: Globals, batch: Batch) -> Result<(), RunError> {
     refuse_repetition(&globals)?;
     let text = read(&batch.file)?;
     catch_interrupts();
-    // A filter is applied to each envelope separately.
+    // With `--jq`, the filter is applied to each envelope separately, so the output is one JSON value for each line.
     let format = if globals.jq.is_some() { Some(Format::Jsonl) } else { globals.format };
     let globals = Globals { format, json: globals.json && globals.jq.is_none(), ..globals };
     let screen = screen(&globals);
@@ -52,11 +52,11 @@ pub async fn run(globals: Globals, batch: Batch) -> Result<(), RunError> {
     done
 }
 
-/// Rejects repetition options, because they belong to a line and not to the file.
+/// Rejects the options for repetition, because they belong to a single line and not to the file.
 pub fn refuse_repetition(globals: &Globals) -> Result<(), Failure> {
     if globals.watch.is_some() || globals.count.is_some() || globals.until.is_some() {
         return Err(Failure::usage("--watch, --count and --until cannot apply to a batch")
-            .hint("add them to the line of the command"));
+            .hint("write them after a command in the file"));
     }
     Ok(())
 }
@@ -87,7 +87,7 @@ struct Planned {
 }
 
 impl Plan<'_> {
-    /// Prepares all lines, or returns all their errors.
+    /// Prepares all lines. If there are errors, returns the errors of all lines.
     fn lines(&self, text: &str) -> Result<Vec<Planned>, Failure> {
         let file: Arc<str> = self.batch.file.display().to_string().into();
         let mut parser = Parser::default();
@@ -145,11 +145,11 @@ impl Plan<'_> {
             results: self.results.clone(),
         };
         let Invocation::Task(task) = command.into() else {
-            return Err(Failure::usage("this command is not possible in a file").hint("see `armctl help batch`"));
+            return Err(Failure::usage("this command cannot run from a file").hint("see `armctl help batch`"));
         };
         let ready = PreparedCommand::new(globals, Some(self.globals), task, Some(line))?;
         if let Some(why) = ready.why_not_in_batch() {
-            return Err(Failure::usage(format!("this command is not possible in a file: {why}"))
+            return Err(Failure::usage(format!("this command cannot run from a file: {why}"))
                 .hint("run it in another terminal"));
         }
         ready.check_gate()?;
@@ -183,7 +183,7 @@ impl Plan<'_> {
         let Some((origin, first)) = failed.first() else { return Ok(()) };
         let message = if self.batch.keep_going && started == all {
             let line_numbers: Vec<String> = failed.iter().map(|(origin, _)| origin.line.to_string()).collect();
-            format!("{} of {all} commands failed, in line {}", failed.len(), line_numbers.join(", "))
+            format!("{} of {all} commands failed; lines: {}", failed.len(), line_numbers.join(", "))
         } else {
             format!("stopped at {}; {} done before it, {} not started", origin, started - failed.len(), all - started)
         };

@@ -1,4 +1,4 @@
-//! Check for global flags that have no effect on a command; they are errors.
+//! Check for global flags that have no effect on a command. Such flags are errors.
 
 use super::prepare::Task;
 use crate::command::common::Common;
@@ -7,14 +7,14 @@ use armctl_frame::failure::Failure;
 use armctl_frame::flags::Globals;
 use armctl_frame::gate::OnInterrupt;
 
-/// Groups of global flags that a command uses, in addition to output flags.
+/// Groups of global flags that a command uses. All commands also use the output flags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent group of flags")]
 struct Uses {
     robots: bool,
-    /// Link options.
+    /// Flags for the link, for example the timeout.
     link: bool,
-    /// `--watch` and other repetition options.
+    /// `--watch` and the other flags for repetition.
     repeat: bool,
     /// `--yes` and `--dry-run`.
     gate: bool,
@@ -55,7 +55,7 @@ impl Uses {
             Common::Robots(Robots::List) | Common::Names(_) => Self { robots: true, ..NONE },
             Common::Robots(Robots::Discover(_)) => Self { link: true, gate: true, ..NONE },
             Common::Explain(_) => Self { robots: true, link: true, ..NONE },
-            // These show the settings that would be used, or make a connection check.
+            // These commands show the settings that would be used, or check a connection.
             Common::Robots(Robots::Show(_)) | Common::Setup(_) => Self { link: true, ..NONE },
             Common::Robots(_)
             | Common::Sim(_)
@@ -77,10 +77,10 @@ pub fn check(globals: &Globals, task: &Task) -> Result<(), Failure> {
     }
 }
 
-/// A flag as typed, if present, and whether a command uses it.
+/// A flag as the user typed it, if present, and the function that returns whether a command uses it.
 type Flag = (Option<&'static str>, fn(Uses) -> bool);
 
-/// All flags of the line. `--for` is missing, because it belongs to `--until` or to the command itself.
+/// Returns all flags of the line. `--for` is not included, because it belongs to `--until` or to the command itself.
 fn global_flags(globals: &Globals) -> [Flag; 17] {
     let Globals { sim, target, robot, all, tag, trace, yes, dry_run, .. } = globals;
     let Globals { on_interrupt, timeout, retries, encoding, no_session, watch, count, until, check, .. } = globals;
@@ -108,7 +108,7 @@ fn global_flags(globals: &Globals) -> [Flag; 17] {
 fn unused_flag(flag: &str, task: &Task) -> Failure {
     let hint = match (flag, task) {
         ("--tag", Task::Common(Common::Robots(Robots::Add(_)))) => {
-            "use --with-tag to give the new robot a tag; --tag selects robots".to_owned()
+            "use --with-tag to give the new robot a tag; --tag only selects robots".to_owned()
         }
         _ => format!("remove {flag}"),
     };

@@ -1,4 +1,4 @@
-//! Comparison of every line in `command/leaves` with the gate.
+//! Comparison of each line in `command/example_lines` with the decisions of the gate.
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
@@ -27,7 +27,7 @@ use armctl_frame::settings::{Selection, Sources};
 const STOPS: [&str; 7] =
     ["stop", "yerc stop", "yerc hold on", "yerc job stop", "yrcx emergency-stop", "yrcx stop", "toyo stop"];
 
-/// Two unreachable robots per family; the second is read-only.
+/// Two unreachable robots per family. The second robot is read-only.
 const ROBOTS: &str = r#"
 [[robot]]
 name = "yerc"
@@ -52,7 +52,7 @@ target = "tcp://127.0.0.1:2"
 read_only = true
 "#;
 
-/// A non-interactive run for selected robots.
+/// Returns a non-interactive run for the selected robots.
 fn run(selection: Selection) -> Run {
     let inventory = Inventory::parse(ROBOTS, "robots.toml").unwrap();
     Run {
@@ -72,7 +72,7 @@ fn named(name: &str) -> Selection {
     Selection { robots: vec![name.to_owned()], ..Selection::default() }
 }
 
-/// Intent of a line, and the decisions of the gate.
+/// Intent of a line, and what the gate decides about it.
 struct Seen {
     intent: Intent,
     alone: Result<(), Failure>,
@@ -136,7 +136,7 @@ fn gate_checks_every_command() {
                     || !intent.text.is_empty(),
             ),
             ("nobody to ask", refused(&alone) == is_asked),
-            // Commands whose requests depend on the robot only read from a read-only robot.
+            // The commands `backup` and `diff` select their requests by robot: for a read-only robot, they only read.
             (
                 "a read-only robot",
                 refused(&read_only) == (*risk > Read && !is_stop)

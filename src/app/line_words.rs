@@ -1,16 +1,17 @@
-//! Splitting of a line into words, as a shell does.
+//! Splits a line into words, like a shell.
 
 use armctl_frame::batch::is_name;
 
-/// Splits a line: quotes, backslashes and `#` as in a shell. Empty for an empty line or a comment.
+/// Splits a line into words, with quotes, backslashes and `#` as in a shell. The result is empty for an empty line or a
+/// comment.
 pub fn split(line: &str) -> Result<Vec<String>, String> {
     let words = shlex::split(line).ok_or("a closing quote, or the character after a backslash, is missing")?;
-    // For lines copied from the documentation.
+    // A line copied from the documentation starts with the program name.
     let has_program_name = words.first().is_some_and(|word| word == "armctl");
     Ok(words.into_iter().skip(usize::from(has_program_name)).collect())
 }
 
-/// Replaces `${NAME}` in a word by its value; `$${` means `${`.
+/// Replaces `${NAME}` in a word by the value of the variable. `$${` stands for `${`.
 pub fn expand_variables<'a>(word: &str, value: impl Fn(&str) -> Option<&'a str>) -> Result<String, String> {
     let mut expanded = String::new();
     let mut rest = word;
@@ -23,7 +24,7 @@ pub fn expand_variables<'a>(word: &str, value: impl Fn(&str) -> Option<&'a str>)
             continue;
         }
         expanded.push_str(before);
-        let (name, after) = after.split_once('}').ok_or_else(|| format!("'{rest}' has no }}"))?;
+        let (name, after) = after.split_once('}').ok_or_else(|| format!("'{rest}' has no closing }}"))?;
         if !is_name(name) {
             return Err(format!("'{name}' is not a variable name"));
         }
@@ -54,7 +55,7 @@ mod tests {
         assert_eq!(expand_variables("${job}", value).unwrap(), "WELD 1");
         assert_eq!(expand_variables("B${n}=${n}", value).unwrap(), "B3=3");
         assert_eq!(expand_variables(".a as $x | $${n}", value).unwrap(), ".a as $x | ${n}");
-        assert!(expand_variables("${job", value).unwrap_err().contains("no }"));
+        assert!(expand_variables("${job", value).unwrap_err().contains("no closing }"));
         assert!(expand_variables("${none}", value).unwrap_err().contains("--set none="));
         assert!(expand_variables("${a b}", value).is_err());
     }

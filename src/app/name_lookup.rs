@@ -1,4 +1,4 @@
-//! Command lines with names in place of addresses.
+//! Command lines that contain names instead of addresses.
 
 use std::ffi::OsString;
 
@@ -8,8 +8,9 @@ use crate::cli::{Cli, Top};
 use armctl_frame::flags::Globals;
 use armctl_frame::names;
 
-/// Parses a line that can contain names for addresses. `all`: global flags for all lines, if there are several.
-/// `among`: other lines run in this process, where simulators live on.
+/// Parses a line that may contain names instead of addresses. `all` contains the global flags for all lines, if there
+/// are several lines. `among` is `true` if this process also runs other lines; its simulators then stay alive between
+/// lines.
 pub fn parse(parser: &mut Parser, args: &[OsString], all: Option<&Globals>, among: bool) -> Result<Cli, Refusal> {
     let (parsed, is_named) = names::detect_names(|| parser.parse(args));
     if !is_named {

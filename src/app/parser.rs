@@ -16,7 +16,7 @@ use crate::command::{families, missing_verbs};
 use armctl_frame::failure::Failure;
 use armctl_frame::settings::target::Family;
 
-/// Version text, if the line only asks for it. This avoids building the commands.
+/// Returns the version text if the line requests only the version. The commands are not built for this.
 pub fn version(args: &[OsString]) -> Option<String> {
     let [_, flag] = args else { return None };
     let version = match flag.to_str()? {
@@ -27,26 +27,26 @@ pub fn version(args: &[OsString]) -> Option<String> {
     Some(format!("armctl {version}\n"))
 }
 
-/// Parser. Building all commands takes longer than a short command, so it first builds only the commands named in the
-/// line. The complete tree is kept for the next line.
+/// Parser for command lines. Building all commands takes longer than a short command runs. The parser therefore first
+/// builds only the commands that the line names. The complete tree is kept for the next line.
 #[derive(Debug, Default)]
 pub struct Parser {
     all: Option<Command>,
-    /// Commands built for the last line only.
+    /// Commands that were built only for the last line.
     last: Option<Command>,
 }
 
-/// Reason why a line is not a command.
+/// Reason why a line cannot be run as a command.
 pub enum Refusal {
-    /// A request for a text: help or version.
+    /// The line requests a text: help or version.
     Text(StyledStr),
-    /// The verb is missing: the help with the list of verbs, and the list alone.
+    /// The verb is missing. The values are the help with the list of verbs, and the list alone.
     Verb(StyledStr, String),
-    /// A help request for an unknown topic.
+    /// The line requests help for an unknown topic.
     Unknown(Failure),
     /// A syntax error.
     Mistake(clap::Error),
-    /// A name that cannot be looked up.
+    /// A name in the line could not be looked up.
     Failed(Failure),
 }
 
@@ -69,7 +69,7 @@ impl Refusal {
                 if path.iter().try_fold(&whole, |command, word| command.find_subcommand(word)).is_some() {
                     return Self::Text(page(&whole, &path, is_long));
                 }
-                // Not a command of the family, but a topic or a common command.
+                // The word is not a command of the family, but a help topic or a common command.
                 let words: Vec<String> = rest[1..].iter().map(|word| (*word).to_owned()).collect();
                 help::text(&words, true, Cli::command).map_or_else(Self::Unknown, |text| Self::Text(text.into()))
             }
@@ -82,7 +82,7 @@ impl Refusal {
         }
     }
 
-    /// The refusal as a failure.
+    /// Converts the refusal to a failure.
     pub fn failure(&self) -> Failure {
         match self {
             Self::Text(_) => Failure::usage("this command prints text, not data").hint("run it in a terminal"),
@@ -99,20 +99,20 @@ impl Refusal {
     }
 }
 
-/// Owner of a command word.
+/// The commands to which a word belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Owner {
-    /// A family.
+    /// The word is a command of a family.
     Family,
-    /// All families, or the word is the name of a family.
+    /// The word is a common command of all families, or the name of a family.
     All,
-    /// Not a command.
+    /// The word is not a command.
     None,
 }
 
 impl Parser {
-    /// Parses a line, including the program name. If the reduced tree fails, the complete tree produces the error,
-    /// because its text is better.
+    /// Parses a line that includes the program name. If parsing with the reduced tree fails, the complete tree produces
+    /// the error, because its error text is better.
     pub fn parse(&mut self, args: &[OsString]) -> Result<Cli, Refusal> {
         let reduced = match parse_first_word(args) {
             Some(FirstWord::Family(family)) => {
@@ -130,7 +130,7 @@ impl Parser {
         read(all, args).map_err(|error| Refusal::new(error, args, all))
     }
 
-    /// Owner of a word, with this family first.
+    /// Returns the owner of a word. The commands of this family are checked first.
     pub fn owner(&mut self, word: &str, family: Option<Family>) -> Owner {
         let all = build_commands::<Top>(&mut self.all);
         let of_family = family.and_then(|family| all.find_subcommand(family.name())?.find_subcommand(word));
@@ -143,8 +143,8 @@ impl Parser {
         }
     }
 
-    /// Leaks the trees: freeing some thousand parts would take a quarter of the time of a short command, and the
-    /// process is about to exit.
+    /// Leaks the command trees. Freeing their thousands of parts would take a quarter of the time of a short command,
+    /// and the process is about to exit.
     pub fn abandon(self) {
         std::mem::forget(self);
     }
@@ -163,7 +163,7 @@ fn read<C: Subcommand>(command: &mut Command, args: &[OsString]) -> Result<Words
     words.map_err(|error| error.format(command))
 }
 
-/// Owner of the first word, as far as known without the values of flags.
+/// Owner of the first word, if it can be determined without the values of flags.
 enum FirstWord {
     Family(Family),
     Common,
@@ -176,7 +176,7 @@ fn parse_first_word(args: &[OsString]) -> Option<FirstWord> {
     })
 }
 
-/// Parses with only the commands named in the line; `None` if that fails.
+/// Parses with only the commands that the line names. Returns `None` if this fails.
 fn parse_named_commands(last: &mut Option<Command>, family: Family, args: &[OsString]) -> Option<Words<FamilyWord>> {
     let is_named = |name: &str| args.iter().any(|word| word == name);
     let word = families::of(family).lay_out(Command::new(family.name()), &is_named);
@@ -221,7 +221,7 @@ impl<C: Subcommand> Words<C> {
 mod tests {
     use super::*;
 
-    /// Names and arguments of a command and all its verbs.
+    /// Returns the names and arguments of a command and of all its verbs.
     fn shape(command: &Command) -> Vec<String> {
         let own = command.get_arguments().map(|argument| argument.get_id().to_string());
         let verbs = command.get_subcommands().filter(|verb| verb.get_name() != "repl");

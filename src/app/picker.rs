@@ -1,4 +1,4 @@
-//! Interactive selection of a missing name from the completion candidates.
+//! Interactive selection of a missing name. The choices are the completion candidates.
 
 use std::ffi::OsString;
 use std::time::Duration;
@@ -18,12 +18,12 @@ use armctl_frame::output::{ColorChoice, Format, Screen};
 use armctl_frame::prompt::ask;
 use armctl_frame::run::RunError;
 
-/// Time limit for the list of a controller.
+/// Time limit for reading the choices from a controller.
 const LIST_TIMEOUT: Duration = Duration::from_secs(3);
-/// Flag that forbids questions.
+/// Flag that disables questions.
 const NO_INPUT: &str = "--no-input";
 
-/// The line with the selected value; `None` without candidates or without a terminal.
+/// Returns the line with the value that the user selected. Returns `None` without candidates or without a terminal.
 pub fn complete_line(args: &[OsString], refusal: &Refusal) -> Option<Result<Vec<OsString>, RunError>> {
     let Refusal::Mistake(error) = refusal else { return None };
     if !can_choose(args) {
@@ -41,7 +41,8 @@ pub fn complete_line(args: &[OsString], refusal: &Refusal) -> Option<Result<Vec<
     Some(ask_value(args, &what, &found, has_first))
 }
 
-/// Whether a person can choose: no JSON output, and not forbidden by the line or the environment.
+/// Whether the user can select a value: the output is not JSON, and neither the line nor the environment forbids
+/// questions.
 fn can_choose(args: &[OsString]) -> bool {
     let is_json = wants_json(args).unwrap_or_else(super::prepare::wants_json);
     let format = if is_json { Format::Json } else { Format::Table };
@@ -49,7 +50,7 @@ fn can_choose(args: &[OsString]) -> bool {
     screen.with_questions(args.iter().all(|word| word != NO_INPUT)).can_choose()
 }
 
-/// The missing argument or flag value at the end of a line.
+/// Returns the name of the argument or flag value that is missing at the end of a line.
 fn missing_argument(error: &clap::Error, args: &[OsString]) -> Option<String> {
     match (error.kind(), error.get(ContextKind::InvalidArg)?) {
         (ErrorKind::MissingRequiredArgument, ContextValue::Strings(missing)) => {
@@ -81,7 +82,7 @@ fn ask_value(args: &[OsString], what: &str, found: &[Candidate], has_first: bool
             None => value.clone(),
         })
         .collect();
-    let question = format!("{what} (type to search, Enter selects, Esc cancels)");
+    let question = format!("{what} (type to search, Enter to select, Esc to cancel)");
     let asked = move || screen.ask_one_of(&question, &options, has_first);
     let mut selected = None;
     on_this_thread(async {
@@ -94,7 +95,7 @@ fn ask_value(args: &[OsString], what: &str, found: &[Candidate], has_first: bool
     let line: Vec<OsString> = [args, &[value.into()]].concat();
     let words: Vec<&str> = line.iter().skip(1).filter_map(|word| word.to_str()).collect();
     if let Ok(words) = shlex::try_join(words) {
-        screen.note_command("the same command without the question:", &format!("armctl {words}"));
+        screen.note_command("the same command without this list:", &format!("armctl {words}"));
     }
     Ok(line)
 }

@@ -32,13 +32,13 @@ use armctl_frame::{AnyCommand, FamilyArguments};
 pub enum Invocation {
     /// A command.
     Task(Task),
-    /// A command file.
+    /// A file of commands.
     Batch(Batch),
     /// The teach panel.
     Teach(Teach),
-    /// A prompt; these words precede each line.
+    /// A prompt. These words precede each line that the user types.
     Prompt(Vec<String>),
-    /// Only the name of a family: a prompt, if there is a terminal.
+    /// Only the name of a family. If there is a terminal, this means a prompt.
     Bare(Vec<String>),
 }
 
@@ -47,7 +47,7 @@ pub enum Invocation {
 pub enum Task {
     /// A command of a family, with the options of the family.
     Family(FamilyArguments, Box<dyn AnyCommand>),
-    /// A command common to all families.
+    /// A command that all families have in common.
     Common(Common),
 }
 
@@ -79,11 +79,12 @@ pub struct PreparedCommand {
 }
 
 impl PreparedCommand {
-    /// Reads flags, environment and inventory once. `all`: global flags for all lines, if there are several.
+    /// Reads flags, environment and inventory once. `all` contains the global flags for all lines, if there are several
+    /// lines.
     pub fn new(globals: Globals, all: Option<&Globals>, task: Task, line: Option<Line>) -> Result<Self, Failure> {
         flags::check(&globals, &task)?;
         let globals = match all {
-            // Even at the prompt of a robot, this lists the whole inventory.
+            // At the prompt of a robot, this command still lists the whole inventory.
             Some(all) if matches!(task, Task::Common(Common::Robots(Robots::List))) => {
                 globals.within(&all.clone().without_robot())
             }
@@ -118,7 +119,7 @@ impl PreparedCommand {
         self.task.go(&self.run).await
     }
 
-    /// Checks what can be refused without a connection: missing robots, the gate.
+    /// Checks everything that can be refused without a connection: missing robots, and the gate.
     pub fn check_gate(&self) -> Result<(), Failure> {
         match &self.task {
             Task::Family(_, command) => self.run.check_gate(&**command),
@@ -132,7 +133,8 @@ impl PreparedCommand {
         }
     }
 
-    /// Reason why the command is not possible in a command file: it does not end, or its output is not a result.
+    /// Returns the reason why the command is not possible in a command file: the command does not end, or its output is
+    /// not a result.
     pub fn why_not_in_batch(&self) -> Option<&'static str> {
         match &self.task {
             Task::Common(common) => common.why_not_in_batch(),
@@ -158,7 +160,7 @@ impl Task {
             Self::Common(Common::Robots(robots)) if robots.makes_inventory() => Need::InventoryOrNone,
             Self::Common(Common::Setup(_)) => Need::InventoryOrNone,
             Self::Common(Common::Session(session)) if !session.opens() => Need::Names,
-            // The folder of the inventory also contains alarms.toml.
+            // The folder of the inventory also contains `alarms.toml`.
             Self::Common(Common::Explain(_)) => Need::Names,
             Self::Common(common) if !common.is_about_robots() => Need::Nothing,
             Self::Family(..) | Self::Common(_) => Need::Inventory,
@@ -166,16 +168,16 @@ impl Task {
     }
 }
 
-/// What a command needs from inventory and environment.
+/// Parts of inventory and environment that a command needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Need {
-    /// Nothing: mistakes there do not matter. `help` must work to explain them.
+    /// The command needs neither. Mistakes in them are ignored: `help` must also work while a user corrects a mistake.
     Nothing,
-    /// Names of robots, without their inventory entries.
+    /// The command needs names of robots, without their inventory entries.
     Names,
-    /// The inventory; a file named by the user must exist.
+    /// The command needs the inventory. If the user names the file, it must exist.
     Inventory,
-    /// The inventory, which is created if it does not exist.
+    /// The command needs the inventory, or creates it if it does not exist.
     InventoryOrNone,
 }
 
@@ -209,7 +211,8 @@ fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Fail
     })
 }
 
-/// Selected robots and their settings. `among`: other lines run in this process, where simulators live on.
+/// Returns the selected robots and their settings. `among` is `true` if this process also runs other lines; its
+/// simulators then stay alive between lines.
 pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Failure> {
     let mut selection = Selection {
         sim: globals.sim,
@@ -231,7 +234,7 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
     if let (Some(names), false) = (names, selection.has_flags()) {
         (selection.robots, selection.from_environment) = (names, true);
     }
-    // Also for a robot given by address, because its entry can be read-only.
+    // The inventory is also read if a robot is selected by address, because the entry of the robot may be read-only.
     let mut location = location(globals.config)?;
     if let (Location::Named(path), Need::InventoryOrNone) = (&location, need) {
         location = Location::Default(path.clone());
@@ -258,13 +261,14 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
     Ok(Sources { selection, flags, environment, inventory })
 }
 
-/// Parses names or patterns of robots, separated by commas.
+/// Parses robot names or patterns that are separated by commas.
 fn names(text: &str) -> Result<Vec<String>, String> {
     let names: Vec<String> = text.split(',').map(str::trim).filter(|name| !name.is_empty()).map(Into::into).collect();
     if names.is_empty() { Err(format!("no robot name in '{text}'")) } else { Ok(names) }
 }
 
-/// `ARMCTL_OUTPUT`, if the line has no format option. Help and interactive commands ignore it.
+/// Returns the format from `ARMCTL_OUTPUT`, if the line has no format option. Help and interactive commands ignore the
+/// variable.
 pub fn format_of_environment(cli: &Cli) -> Result<Option<Format>, Failure> {
     let asks = !cli.globals.says_format() && !matches!(cli.command, Top::Common(Common::Help(_) | Common::Top(_)));
     if asks { variable(OUTPUT, format) } else { Ok(None) }
@@ -291,7 +295,8 @@ fn location(config: Option<PathBuf>) -> Result<Location, Failure> {
     }))
 }
 
-/// Value of an environment variable. An empty one counts as not set. An invalid one is an error with its name.
+/// Returns the value of an environment variable. An empty variable counts as not set. An error contains the name of the
+/// variable.
 fn variable<T>(name: &str, parse: impl FnOnce(&str) -> Result<T, String>) -> Result<Option<T>, Failure> {
     let Some(value) = std::env::var_os(name).filter(|value| !value.is_empty()) else { return Ok(None) };
     let wrong = |why: String| Failure::usage(format!("{name}: {why}")).hint(format!("correct it, or unset {name}"));

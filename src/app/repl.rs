@@ -1,8 +1,8 @@
-//! `armctl repl`: command lines over a link that stays open.
+//! `armctl repl`: runs command lines over a link that stays open.
 //!
-//! At a terminal it is interactive: after an error, the next line can be typed. Input from a pipe is a script: it stops
-//! at the first error, with its exit code. A line is parsed and executed like a separate process, with the flags of the
-//! REPL before its own.
+//! On a terminal, the prompt is interactive: after an error, the user can type the next line. Input from a pipe is a
+//! script: it stops at the first error, with the exit code of this error. Each line is parsed and executed like a
+//! separate process. The flags of the REPL precede the flags of the line.
 
 mod assistant;
 mod editor;
@@ -44,7 +44,7 @@ pub fn can_type() -> bool {
     std::io::stdin().is_terminal()
 }
 
-/// Prints the commands of a family that was named without a terminal for a prompt.
+/// Prints the commands of a family. Used if the command line is only the name of the family and there is no terminal.
 pub fn usage(screen: &Screen, prefix: &[String]) -> RunError {
     if let Err(Refusal::Text(help)) = Parser::default().parse(&family_help(prefix)) {
         screen.usage(&help);
@@ -53,7 +53,7 @@ pub fn usage(screen: &Screen, prefix: &[String]) -> RunError {
     RunError { is_reported: true, ..Failure::usage("a command is missing").into() }
 }
 
-/// Runs lines until the user leaves or the script ends.
+/// Runs lines until the user leaves the prompt or the script ends.
 pub async fn run(globals: Globals, prefix: Vec<String>) -> Result<(), RunError> {
     refuse_repetition(&globals)?;
     catch_interrupts();
@@ -62,16 +62,16 @@ pub async fn run(globals: Globals, prefix: Vec<String>) -> Result<(), RunError> 
     if can_type() { Box::pin(repl.read_lines()).await } else { Box::pin(repl.script()).await }
 }
 
-/// Common state of all lines.
+/// State that all lines share.
 struct Repl {
     globals: Globals,
     screen: Screen,
     meaning: LineParser,
-    /// Robot for lines without a selection, if it is one robot of a known family.
+    /// Robot for lines that select no robot. Present only if this is one robot of a known family.
     robot: Option<Robot>,
 }
 
-/// What to do after a line.
+/// The next action after a line.
 enum Next {
     /// Run the next line.
     Line,
@@ -86,7 +86,7 @@ impl Repl {
         let sources = sources(globals.clone(), Need::Inventory, true)?;
         let names_nobody = sources.selection.is_empty() && sources.inventory.default.is_none();
         let robots = if names_nobody { Vec::new() } else { sources.robots(family)? };
-        // A simulator without a family can be of any family, until a line names one.
+        // A simulator without a family can belong to any family, until a line names the family.
         let is_any = family.is_none() && sources.selection.sim;
         let robot = match &robots[..] {
             [robot] if !sources.selection.is_plural() && !is_any => Some(robot.clone()),
@@ -114,15 +114,16 @@ impl Repl {
         terminal: &Terminal,
         manager: &SessionManager,
     ) -> Result<(), RunError> {
-        // If the end of a connection stops the robot, the command that needs it opens it after a confirmation.
+        // If the end of the connection would stop the robot, the connection is not opened here. The command that needs
+        // it opens it after a confirmation.
         if let Some(robot) = &self.robot
             && !self.globals.dry_run
             && !matches!(families::of(robot.family).driver().entry(robot, ConnectMode::Control), Entry::Stops(_))
         {
             line_of(manager, "repl").hold(robot, self.globals.trace.as_deref(), &self.screen).await?;
         }
-        self.screen.note("Tab completes, `help` lists the commands, `exit` or Ctrl-D ends the prompt.");
-        // Ctrl-C clears a line. On an empty line, only a second one leaves.
+        self.screen.note("Tab completes a word, `help` lists the commands, `exit` or Ctrl-D ends the prompt.");
+        // Ctrl-C clears the line. On an empty line, the user must press Ctrl-C twice to leave.
         let mut is_second = false;
         let mut is_new = true;
         loop {
@@ -142,7 +143,7 @@ impl Repl {
                 typed = editor.read(prompt) => typed,
                 how = termination_request() => {
                     terminal.restore_control().await;
-                    // The cursor is still after the typed text.
+                    // The cursor is still behind the typed text, so a new line is started.
                     self.screen.ask_note("");
                     return Err(interrupted(how));
                 }
@@ -151,7 +152,7 @@ impl Repl {
                 Input::Line(text) => text,
                 Input::Interrupted if is_second => return Err(interrupted("Ctrl-C again")),
                 Input::Interrupted => {
-                    self.screen.note("Ctrl-C again, `exit` or Ctrl-D ends the prompt.");
+                    self.screen.note("Press Ctrl-C again, or type `exit`, to end the prompt.");
                     is_second = true;
                     continue;
                 }
@@ -159,7 +160,7 @@ impl Repl {
                 Input::Failed(failure) => return Err(failure.into()),
             };
             is_second = false;
-            // Pasted text can have several lines.
+            // Pasted text can contain several lines.
             for line in text.lines() {
                 match Box::pin(self.run_line(line, manager)).await {
                     Next::Line => {}
@@ -173,7 +174,7 @@ impl Repl {
         }
     }
 
-    /// Runs lines from a pipe or file, up to the first error.
+    /// Runs the lines from a pipe or file until the first error.
     async fn script(mut self) -> Result<(), RunError> {
         let screen = self.screen;
         let (manager, thread): (SessionManager, ManagerThread) = host::start(move |text| screen.note(text))?;
@@ -221,7 +222,7 @@ impl Repl {
         let Words { globals, command } =
             match name_lookup::parse(&mut self.meaning.parser, &args, Some(&self.globals), true) {
                 Ok(words) => words,
-                // In a script, a missing verb is an error.
+                // In a script, a line without a verb is an error.
                 Err(error @ Refusal::Verb(..)) if !can_type() => return failed(&self.screen, error.failure().into()),
                 Err(error) => {
                     return refuse(&args, &error, self.screen.is_json(), false)
@@ -241,16 +242,18 @@ impl Repl {
             Invocation::Teach(_) => Err(Failure::usage("the teach panel needs its own terminal")
                 .hint("end the prompt, then run `armctl teach`")
                 .into()),
-            Invocation::Prompt(_) => Err(Failure::usage("the prompt already runs").hint("end it with `exit`").into()),
+            Invocation::Prompt(_) => {
+                Err(Failure::usage("the interactive prompt is already open").hint("end it with `exit`").into())
+            }
             Invocation::Bare(prefix) => Err(usage(&screen, &prefix)),
         };
         done.map_or_else(|stopped| failed(&screen, stopped), |()| Next::Line)
     }
 }
 
-/// Next line of a script; `None` at its end.
+/// Reads the next line of a script; `None` at the end of the script.
 async fn line(script: impl AsyncBufRead + Unpin, number: usize) -> Result<Option<String>, Failure> {
-    /// Line limit; input without line ends is not a script.
+    /// Maximum length of a line. Input without line ends is not a script.
     const LONGEST: u64 = 1 << 20;
 
     let mut bytes = Vec::new();
@@ -258,7 +261,7 @@ async fn line(script: impl AsyncBufRead + Unpin, number: usize) -> Result<Option
     let length = read.context("stdin")?;
     if u64::try_from(length).unwrap_or(u64::MAX) >= LONGEST {
         return Err(Failure::usage(format!("line {number} of stdin is longer than 1 MiB"))
-            .hint("write one command per line: `armctl help repl`"));
+            .hint("write one command per line; see `armctl help repl`"));
     }
     if length == 0 {
         return Ok(None);

@@ -1,4 +1,4 @@
-//! Other spellings of `teach`: `yerc position teach P5`, `yerc var set P5=here`, `toyo point set 5 here`, `toyo point
+//! Other spellings of `teach`. `yerc position teach P5`, `yerc var set P5=here`, `toyo point set 5 here`, `toyo point
 //! teach 5` and `yrcx point set 19 here` mean `teach`. `yrcx point set 19 @FILE` means `--position FILE`. `explain
 //! 12.600` means `explain yrcx 12.600`.
 
@@ -11,15 +11,15 @@ use crate::command::families::FAMILIES;
 use armctl_frame::face::Face;
 use armctl_frame::settings::target::Family;
 
-/// Word for the current position of the robot.
+/// Word that means the current position of the robot.
 const HERE: &str = "here";
 
-/// The line in the form of its command; `None` if it has no other spelling.
+/// Converts a line to the usual spelling of its command. Returns `None` if the line has the usual spelling already.
 pub fn rewrite_spelling(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
     rewrite_teach(args, whole).or_else(|| rewrite_explain(args, whole))
 }
 
-/// Families that have a code; of a code that none has, those with codes of its form.
+/// Returns the families that have a code. If no family has it, returns the families whose codes have this form.
 pub fn families_with(code: &str) -> Vec<Family> {
     let bare = |code: &str| {
         let code = code.to_ascii_lowercase();
@@ -33,7 +33,7 @@ pub fn families_with(code: &str) -> Vec<Family> {
     FAMILIES.iter().filter(|face| face.explains(code)).map(|face| face.family()).collect()
 }
 
-/// `explain CODE` with the family, if only one has the code.
+/// Adds the family to `explain CODE`, if only one family has the code.
 fn rewrite_explain(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
     let typed = TypedLine::new(args, whole);
     let (["explain"], [code], [at]) = (&typed.path[..], &typed.rest[..], &typed.rest_positions[..]) else {
@@ -45,7 +45,7 @@ fn rewrite_explain(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> 
     Some(line)
 }
 
-/// A command line that means `teach`.
+/// Converts a command line that means `teach`.
 fn rewrite_teach(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
     let typed = TypedLine::new(args, whole);
     let (family, path) = typed.path.split_first()?;
@@ -63,7 +63,8 @@ fn rewrite_teach(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
     for (at, word) in typed.rest_positions.iter().zip(replacements) {
         *line.get_mut(*at)? = word.map(OsString::from);
     }
-    // `position teach` and `point teach` lose their noun; `var set` and `point set` become the verb.
+    // In `position teach` and `point teach`, the noun is removed. In `var set` and `point set`, both words are replaced
+    // by `teach`.
     let path: &[Option<&str>] = if is_file {
         &[]
     } else if typed.path.len() == 2 {

@@ -1,5 +1,5 @@
-//! Suggestions for mistyped command lines: words in the wrong place or order (`armctl job select`, `armctl get file`),
-//! synonyms, missing values, wrong separators.
+//! Suggestions for mistyped command lines. They cover words in the wrong place or order (`armctl job select`, `armctl
+//! get file`), synonyms, missing values, and wrong separators.
 
 mod synonyms;
 
@@ -17,11 +17,11 @@ use armctl_controller::nearest::nearest;
 use armctl_frame::failure::decimal_point;
 use armctl_frame::settings::target::Family;
 
-/// Limit of suggestions.
+/// Maximum number of suggestions.
 const MAX_SUGGESTIONS: usize = 4;
 
 /// Adds a suggestion to the error, if there is one. A command that moves a robot, deletes or overwrites is never
-/// suggested, because the line could be repeated without thought.
+/// suggested, because the user could repeat the line without thinking.
 pub fn add_suggestion(mut error: clap::Error, args: &[OsString], whole: &Command) -> clap::Error {
     let typed = TypedLine::new(args, whole);
     let tip = match error.kind() {
@@ -29,21 +29,25 @@ pub fn add_suggestion(mut error: clap::Error, args: &[OsString], whole: &Command
             .or_else(|| suggest_families(&error, &typed))
             .or_else(|| suggest_place(&mut error, ContextKind::InvalidSubcommand, &typed, whole)),
         ErrorKind::UnknownArgument => {
-            // A flag is never meant as a value, but a negative number can be.
+            // A flag is never meant as a value, so this suggestion is removed. A negative number may be meant as a
+            // value.
             let is_flag = |value: &ContextValue| matches!(value, ContextValue::String(word) if word.starts_with("--"));
             if error.get(ContextKind::InvalidArg).is_some_and(is_flag) {
                 error.remove(ContextKind::Suggested);
             }
             remove_unlike_flag(&mut error, &typed, whole);
             let tip = suggest_alternative(&mut error, &typed)
+                .or_else(|| suggest_format(&mut error))
+                .or_else(|| suggest_range(args, &typed, whole))
                 .or_else(|| suggest_place(&mut error, ContextKind::InvalidArg, &typed, whole))
+                .or_else(|| suggest_needed_flag(&error, args, &typed, whole))
                 .or_else(|| suggest_quotes(&error, args, &typed, whole))
                 .or_else(|| suggest_flag_or_value(&mut error, &typed, whole));
             let has_tip = error.get(ContextKind::SuggestedArg).or(error.get(ContextKind::Suggested)).is_some();
             tip.or_else(|| suggest_example(&typed.path).filter(|_| !has_tip))
         }
         ErrorKind::MissingRequiredArgument if typed.path == ["robots", "discover"] => {
-            // Its --for limits a condition that it does not have.
+            // The flag `--for` limits a condition, and this command has no condition.
             error = clap::Error::new(ErrorKind::UnknownArgument);
             error.insert(ContextKind::InvalidArg, ContextValue::String("--for".to_owned()));
             plain_usage(&mut error, &typed, whole);
@@ -64,7 +68,7 @@ pub fn add_suggestion(mut error: clap::Error, args: &[OsString], whole: &Command
     error
 }
 
-/// Alternative for something that a family does not have.
+/// Suggests an alternative for a feature that a family does not have.
 fn suggest_alternative(error: &mut clap::Error, typed: &TypedLine<'_>) -> Option<String> {
     let path = typed.path.join(" ");
     let invalid = match error.get(ContextKind::InvalidArg) {
@@ -77,7 +81,7 @@ fn suggest_alternative(error: &mut clap::Error, typed: &TypedLine<'_>) -> Option
     Some((*instead).to_owned())
 }
 
-/// Families that have a code for which no family was given.
+/// Suggests the families that have a code, if the line contains a code but no family.
 fn suggest_families(error: &clap::Error, typed: &TypedLine<'_>) -> Option<String> {
     let Some(ContextValue::String(code)) = error.get(ContextKind::InvalidSubcommand) else { return None };
     if typed.path != ["explain"] || !code.chars().any(|one| one.is_ascii_digit()) {
@@ -89,7 +93,25 @@ fn suggest_families(error: &clap::Error, typed: &TypedLine<'_>) -> Option<String
     Some(format!("add the family of the code: {}", lines.join(" or ")))
 }
 
-/// Suggestion for a flag that is a value here, or a value that belongs to a flag.
+/// Suggestion for a format that is typed as a flag.
+fn suggest_format(error: &mut clap::Error) -> Option<String> {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else { return None };
+    let format = ["csv", "jsonl", "table"].into_iter().find(|format| word.strip_prefix("--") == Some(format))?;
+    error.remove(ContextKind::SuggestedArg);
+    Some(format!("use -o {format}"))
+}
+
+/// Suggestion for numbers that are selected with `--from` and `--to`.
+fn suggest_range(args: &[OsString], typed: &TypedLine<'_>, whole: &Command) -> Option<String> {
+    let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
+    let has = |flag: &str| command.get_arguments().any(|argument| argument.get_long() == Some(flag));
+    let words = args.iter().rev().map_while(|word| word.to_str()?.parse::<u32>().ok());
+    let numbers: Vec<u32> = words.collect();
+    let (from, to) = (numbers.iter().min()?, numbers.iter().max()?);
+    (has("from") && has("to")).then(|| format!("name the first and the last with flags: --from {from} --to {to}"))
+}
+
+/// Suggests the correct form for a flag that is a plain value here, or for a value that belongs to a flag.
 fn suggest_flag_or_value(error: &mut clap::Error, typed: &TypedLine<'_>, whole: &Command) -> Option<String> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else { return None };
     let word = word.clone();
@@ -107,20 +129,48 @@ fn suggest_flag_or_value(error: &mut clap::Error, typed: &TypedLine<'_>, whole: 
         return None;
     }
     let takes_value = |argument: &&Arg| argument.get_action().takes_values() && !argument.is_global_set();
-    // Where one of several flags is needed, the value belongs to one of them.
+    let flags = needed_flags(command).unwrap_or_else(|| {
+        let flags = command.get_arguments().filter(takes_value);
+        flags.filter_map(|argument| Some(format!("--{}", argument.get_long()?))).collect()
+    });
+    if flags.len() > MAX_SUGGESTIONS {
+        return Some(format!("type the value after its flag: see `armctl {} -h`", typed.path.join(" ")));
+    }
+    after_flag(&flags)
+}
+
+/// Suggestion for a value of a flag that is missing, where one of several flags is needed.
+fn suggest_needed_flag(
+    error: &clap::Error,
+    args: &[OsString],
+    typed: &TypedLine<'_>,
+    whole: &Command,
+) -> Option<String> {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else { return None };
+    let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
+    let flags = needed_flags(command)?;
+    let is_typed = |flag: &String| args.iter().any(|word| word.to_str().is_some_and(|word| word.starts_with(flag)));
+    if word.starts_with("--") || flags.iter().any(is_typed) {
+        return None;
+    }
+    after_flag(&flags)
+}
+
+/// Flags with a value of which one is needed; `None` if the command has no such flags.
+fn needed_flags(command: &Command) -> Option<Vec<String>> {
     let needed: Vec<_> = command.get_groups().filter(|group| group.is_required_set()).collect();
-    let is_needed = |argument: &&Arg| {
-        needed.is_empty() || needed.iter().any(|group| group.get_args().any(|id| id == argument.get_id()))
-    };
-    let flags: Vec<String> = command
-        .get_arguments()
-        .filter(|argument| takes_value(argument) && is_needed(argument))
-        .filter_map(|argument| Some(format!("--{}", argument.get_long()?)))
-        .collect();
+    let is_needed = |argument: &&Arg| needed.iter().any(|group| group.get_args().any(|id| id == argument.get_id()));
+    let takes_value = |argument: &&Arg| argument.get_action().takes_values();
+    let flags = command.get_arguments().filter(is_needed).filter(takes_value);
+    let flags: Vec<String> = flags.filter_map(|argument| Some(format!("--{}", argument.get_long()?))).collect();
+    (!flags.is_empty()).then_some(flags)
+}
+
+fn after_flag(flags: &[String]) -> Option<String> {
     (!flags.is_empty()).then(|| format!("type the value after its flag: {}", flags.join(", ")))
 }
 
-/// Correct place of the wrong word.
+/// Suggests the correct place for the wrong word.
 fn suggest_place(error: &mut clap::Error, kind: ContextKind, typed: &TypedLine<'_>, whole: &Command) -> Option<String> {
     let Some(ContextValue::String(word)) = error.get(kind) else { return None };
     let word = word.clone();
@@ -128,28 +178,32 @@ fn suggest_place(error: &mut clap::Error, kind: ContextKind, typed: &TypedLine<'
     if kind == ContextKind::InvalidArg && (word.starts_with('-') || typed.path.len() > 1) {
         return None;
     }
-    let (safe, dangerous): (Vec<Suggestion>, Vec<Suggestion>) =
-        lines(&word, typed, whole).into_iter().partition(|line| risk(&line.0, whole).is_none());
+    // The path without the wrong word leads no further.
+    let lines = lines(&word, typed, whole).into_iter().filter(|line| parse_words(&line.0) != typed.path);
+    let (safe, dangerous): (Vec<Suggestion>, Vec<Suggestion>) = lines.partition(|line| risk(&line.0, whole).is_none());
     let mut commands_by_risk: BTreeMap<&str, BTreeSet<String>> = BTreeMap::new();
     for line in &dangerous {
-        if let (Some((_, noun)), Some(risk)) = (parse_words(&line.0).split_last(), risk(&line.0, whole)) {
+        let words = parse_words(&line.0);
+        let is_noun = find_command(&words, whole).0.is_some_and(Command::has_subcommands);
+        let noun = if is_noun { &words[..] } else { &words[..words.len().saturating_sub(1)] };
+        if let Some(risk) = risk(&line.0, whole) {
             commands_by_risk.entry(risk).or_default().insert(format!("`armctl {} -h`", noun.join(" ")));
         }
     }
-    let dangerous = commands_by_risk
-        .into_iter()
-        .map(|(risk, helps)| format!("one that {risk}: see {}", helps.into_iter().collect::<Vec<_>>().join(", ")));
+    let dangerous = commands_by_risk.into_iter().map(|(risk, helps)| {
+        format!("a command that {risk}: see {}", helps.into_iter().collect::<Vec<_>>().join(", "))
+    });
     let mut lines: Vec<String> = safe.into_iter().map(|line| line.format_line()).collect();
     lines.extend(dangerous);
     if lines.is_empty() || lines.len() > MAX_SUGGESTIONS {
         return None;
     }
-    // The word is spelled correctly, so a similar word is not meant.
+    // The word is a correct command word, so the suggestion of a similar word is removed.
     error.remove(ContextKind::SuggestedSubcommand);
     Some(format!("the command is {}", lines.join(" or ")))
 }
 
-/// Effect of a dangerous command; `None` for others.
+/// Returns the effect of a dangerous command; `None` for all other commands.
 fn risk(line: &str, whole: &Command) -> Option<&'static str> {
     let words = parse_words(line);
     if !may_do_harm(&words, whole) {
@@ -164,7 +218,7 @@ fn risk(line: &str, whole: &Command) -> Option<&'static str> {
     })
 }
 
-/// Suggestion for a value with blanks, or for numbers separated by blanks.
+/// Suggests quotes for a value with blanks, or a comma for numbers that are separated by blanks.
 fn suggest_quotes(error: &clap::Error, args: &[OsString], typed: &TypedLine<'_>, whole: &Command) -> Option<String> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else { return None };
     let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
@@ -179,14 +233,14 @@ fn suggest_quotes(error: &clap::Error, args: &[OsString], typed: &TypedLine<'_>,
     let is_number = |word: &&str| word.parse::<f64>().is_ok();
     let is_value = |word: &&str| !word.starts_with('-') || is_number(word);
     let first = words[..at].iter().rposition(|word| !is_value(word) || typed.typed_path.contains(word))? + 1;
-    // Only the last argument can have been meant with blanks.
+    // Only the last argument may be a value with blanks.
     let is_of_flag = words[first - 1].starts_with('-');
     let others = if is_of_flag { 0 } else { command.get_positionals().count().saturating_sub(1) };
     let values: Vec<&str> = words[first..].iter().copied().take_while(is_value).skip(others).collect();
     if values.len() < 2 {
         return None;
     }
-    // A range is not part of a text.
+    // A value with a range is not part of a text.
     if values.iter().any(|value| value.contains("..")) {
         return None;
     }
@@ -203,7 +257,7 @@ fn suggest_quotes(error: &clap::Error, args: &[OsString], typed: &TypedLine<'_>,
     })
 }
 
-/// Suggestion for `NAME=VALUE` with an unquoted text: `S1=HELLO WORLD`.
+/// Suggests quotes for `NAME=VALUE` with a text of several words, for example `S1=HELLO WORLD`.
 fn suggest_quoted_text(error: &clap::Error, args: &[OsString]) -> Option<String> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidValue) else { return None };
     let words: Vec<&str> = args.iter().filter_map(|word| word.to_str()).collect();
@@ -213,7 +267,7 @@ fn suggest_quoted_text(error: &clap::Error, args: &[OsString]) -> Option<String>
     Some(format!("put a value with spaces in quotes: {quote}{pair} {word}{quote}"))
 }
 
-/// Suggestion for the format flag used as a folder flag.
+/// Suggests the folder flag if the user typed the format flag with a folder.
 fn suggest_folder(error: &clap::Error, typed: &TypedLine<'_>, whole: &Command) -> Option<String> {
     let Some(ContextValue::String(flag)) = error.get(ContextKind::InvalidArg) else { return None };
     let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
@@ -221,7 +275,7 @@ fn suggest_folder(error: &clap::Error, typed: &TypedLine<'_>, whole: &Command) -
     (has_folder && flag.starts_with("--output")).then(|| "use --dir for the folder; --output is the format".to_owned())
 }
 
-/// Suggestion for an invalid number.
+/// Returns a suggestion for an invalid number.
 fn suggest_number(why: &str) -> Option<String> {
     if let Some((least, most)) = why.split_once(" is not in ").and_then(|(_, range)| range.split_once("..=")) {
         return Some(format!("write a number from {least} to {most}"));
@@ -233,21 +287,21 @@ fn suggest_number(why: &str) -> Option<String> {
     decimal_point(why).or_else(|| is_std.then(|| "write a whole number".to_owned()))
 }
 
-/// Suggestion for all files: a pattern, because `--all` selects robots.
+/// Suggests a pattern if the user asks for all files, because `--all` selects robots.
 fn suggest_pattern(args: &[OsString], typed: &TypedLine<'_>) -> Option<String> {
     let is_meant = typed.path == ["yerc", "file", "get"] && args.iter().any(|word| word == "--all");
     is_meant
         .then(|| "use '*' for all files, '*.JBI' for all jobs; --all selects all robots in the inventory".to_owned())
 }
 
-/// Suggestion for a missing value.
+/// Returns a suggestion for a missing value.
 fn suggest_value(error: &clap::Error, typed: &TypedLine<'_>, whole: &Command) -> Option<String> {
     let Some(ContextValue::Strings(missing)) = error.get(ContextKind::InvalidArg) else { return None };
     let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
     let is_missing = |argument: &&Arg| missing.first().is_some_and(|first| *first == argument.to_string());
     let argument = command.get_arguments().find(is_missing);
     if missing.iter().any(|argument| argument.starts_with("--until")) {
-        return Some("add a condition such as --until idle; --for limits its time".to_owned());
+        return Some("add a condition, for example --until idle; --for sets the longest wait".to_owned());
     }
     let values = argument?.get_possible_values();
     let names: Vec<&str> = values.iter().map(clap::builder::PossibleValue::get_name).collect();
@@ -257,13 +311,13 @@ fn suggest_value(error: &clap::Error, typed: &TypedLine<'_>, whole: &Command) ->
     }
 }
 
-/// Example of a command that is not dangerous.
+/// Returns an example of the command, if the command is not dangerous.
 fn suggest_example(path: &[&str]) -> Option<String> {
     let mut lines = example_lines::examples(path).filter(|_| example_lines::preselects(path));
     lines.next().map(|line| format!("example: `armctl {line}`"))
 }
 
-/// Removes a similar flag that does not resemble the typed one enough.
+/// Removes the suggestion of a flag that does not resemble the typed flag enough.
 fn remove_unlike_flag(error: &mut clap::Error, typed: &TypedLine<'_>, whole: &Command) {
     let (Some(ContextValue::String(word)), Some(ContextValue::String(similar))) =
         (error.get(ContextKind::InvalidArg), error.get(ContextKind::SuggestedArg))
@@ -278,7 +332,7 @@ fn remove_unlike_flag(error: &mut clap::Error, typed: &TypedLine<'_>, whole: &Co
     }
 }
 
-/// Usage of the command alone, instead of one with flags that were not meant.
+/// Replaces the usage text by the usage of the command alone, without flags that the user did not mean.
 fn plain_usage(error: &mut clap::Error, typed: &TypedLine<'_>, whole: &Command) {
     let mut whole = whole.clone();
     whole.build();
@@ -288,13 +342,13 @@ fn plain_usage(error: &mut clap::Error, typed: &TypedLine<'_>, whole: &Command) 
     }
 }
 
-/// Whether the words lead to a dangerous command, including its aliases.
+/// Whether the words lead to a dangerous command. Aliases are included.
 fn may_do_harm(words: &[&str], whole: &Command) -> bool {
     let (command, path) = find_command(words, whole);
     is_dangerous(&path, command.is_some_and(Command::has_subcommands))
 }
 
-/// The command of these words, and the words with its primary names.
+/// Returns the command of these words, and the words with the primary names of the commands.
 fn find_command<'a>(words: &[&'a str], whole: &'a Command) -> (Option<&'a Command>, Vec<&'a str>) {
     let mut command = Some(whole);
     let path = words.iter().map(|word| {
@@ -305,10 +359,11 @@ fn find_command<'a>(words: &[&'a str], whole: &'a Command) -> (Option<&'a Comman
     (command, path)
 }
 
-/// A read verb is never a misspelled write verb, such as `get` and `set`.
+/// Verbs that read. A verb that reads is never suggested as a correction of a verb that writes, for example `get` for
+/// `set`.
 const READS: [&str; 5] = ["get", "list", "show", "read", "ls"];
 
-/// Removes dangerous commands from the similar words.
+/// Removes dangerous commands from the suggested similar words.
 fn remove_dangerous(error: &mut clap::Error, path: &[&str], whole: &Command) {
     let Some(similar) = error.remove(ContextKind::SuggestedSubcommand) else { return };
     let typed = match error.get(ContextKind::InvalidSubcommand) {
@@ -336,7 +391,7 @@ fn remove_dangerous(error: &mut clap::Error, path: &[&str], whole: &Command) {
     }
 }
 
-/// A suggested command line, and what follows it.
+/// A suggested command line, and the text that follows it.
 struct Suggestion(String, &'static str);
 
 impl Suggestion {
@@ -353,7 +408,7 @@ fn parse_words(line: &str) -> Vec<&str> {
     line.split(' ').filter(|word| *word != "…" && !word.starts_with('-')).collect()
 }
 
-/// Command lines with the word in its correct place.
+/// Command lines in which the word is in its correct place.
 fn lines(word: &str, typed: &TypedLine<'_>, whole: &Command) -> Vec<Suggestion> {
     let words = typed.words();
     if word.parse::<Family>().is_ok() {
@@ -385,7 +440,7 @@ fn lines(word: &str, typed: &TypedLine<'_>, whole: &Command) -> Vec<Suggestion> 
     .unwrap_or_default()
 }
 
-/// Combines suggestions for each family into one, if a command for all families exists.
+/// If a command for all families exists, replaces the suggestions for the single families by this command.
 fn common_lines(lines: Vec<Suggestion>, whole: &Command) -> Vec<Suggestion> {
     let shared = match &lines[..] {
         [Suggestion(first, _), _, ..] => first.split_once(' ').map(|(_, words)| words.to_owned()),
@@ -397,14 +452,14 @@ fn common_lines(lines: Vec<Suggestion>, whole: &Command) -> Vec<Suggestion> {
     if exists && lines.iter().all(is_same) { vec![Suggestion::new(shared)] } else { lines }
 }
 
-/// Suggestion for a verb before its noun.
+/// Suggests the correct order if the verb comes before its noun.
 fn reverse_words(family: &Command, words: &[&str]) -> Vec<Suggestion> {
     let [verb, noun, ..] = words else { return Vec::new() };
     let exists = family.find_subcommand(noun).is_some_and(|noun| noun.find_subcommand(verb).is_some());
     if exists { vec![Suggestion::new(format!("{} {noun} {verb}", family.get_name()))] } else { Vec::new() }
 }
 
-/// Suggestions from the table of synonyms: the entry with the most words.
+/// Returns suggestions from the table of synonyms. The entry that matches the most words is used.
 fn replace_synonym(words: &[&str], family: Option<Family>) -> Vec<Suggestion> {
     let typed = |entry: &&(&str, &[&str])| words.starts_with(&entry.0.split(' ').collect::<Vec<_>>());
     let Some((_, ways)) = synonyms::LINES.iter().filter(typed).max_by_key(|(words, _)| words.len()) else {
@@ -415,7 +470,7 @@ fn replace_synonym(words: &[&str], family: Option<Family>) -> Vec<Suggestion> {
     ways.iter().filter(fits).map(|way| Suggestion::new(*way)).collect()
 }
 
-/// Suggestion for a noun with a synonym of its verb.
+/// Suggests the verbs of a noun if the user typed a synonym of a verb.
 fn find_sibling_verbs(family: &Command, words: &[&str]) -> Vec<Suggestion> {
     let [noun, verb, ..] = words else { return Vec::new() };
     let Some(command) = family.find_subcommand(noun) else { return Vec::new() };
@@ -424,7 +479,7 @@ fn find_sibling_verbs(family: &Command, words: &[&str]) -> Vec<Suggestion> {
     found.map(|verb| Suggestion::new(format!("{} {noun} {verb}", family.get_name()))).into_iter().collect()
 }
 
-/// Suggestion for a word that is a command of a family, or a verb of one of its nouns.
+/// Suggests a line for a word that is a command of a family, or a verb of one of its nouns.
 fn collect_subcommands(family: &Command, word: &str) -> Vec<Suggestion> {
     let name = family.get_name();
     if let Some(command) = family.find_subcommand(word) {
@@ -468,6 +523,7 @@ mod tests {
             assert_eq!(tip(line).as_deref(), Some(expected), "{line}");
         }
         assert_eq!(tip("armctl toyo get"), None);
+        assert_eq!(tip("armctl toyo run 1"), None, "the path so far leads no further");
         assert_eq!(tip("armctl status nonsense").as_deref(), Some("example: `armctl status`"));
     }
 
@@ -504,7 +560,7 @@ mod tests {
         }
         let absent = tip("armctl yerc origin").unwrap();
         assert!(
-            absent.starts_with("the protocol has no return to origin") && !absent.contains("job start"),
+            absent.starts_with("the protocol has no command for a return to origin") && !absent.contains("job start"),
             "{absent}"
         );
     }
@@ -549,12 +605,19 @@ mod tests {
             ("armctl --count 1,5 yerc status", "write a whole number"),
             ("armctl yerc file get A.JBI --output saved", "use --dir for the folder; --output is the format"),
             ("armctl yerc job start --name WELD", "type NAME without --name"),
+            ("armctl yrcx point set 19 1,2,3,4", "type the value after its flag: --mm, --pulse, --position"),
             ("armctl yrcx move 19", "type the value after its flag: --point, --to, --to-pulse"),
             ("armctl robots discover --for 3s", "robots discover ends by itself: remove --for"),
             (
                 "armctl toyo run point 1 --speed 10",
-                "the speed override scales all speeds: see `armctl toyo override -h`",
+                "no command sets the speed of one move; the stored override scales all of them: `armctl toyo override set 10`",
             ),
+            ("armctl toyo program get 5 6 7", "name the first and the last with flags: --from 5 --to 7"),
+            ("armctl yerc move joint P2", "type the value after its flag: see `armctl yerc move joint -h`"),
+            ("armctl alarm history --csv", "use -o csv"),
+            ("armctl compare a b", "the command is `armctl diff`"),
+            ("armctl names add clamp 27010", "the command is `armctl names set NAME ADDRESS -r ROBOT`"),
+            ("armctl toyo program run", "the command is one that moves or powers the robot: see `armctl toyo run -h`"),
             ("armctl toyo io in", "the command is `armctl toyo io list`"),
             ("armctl explain 28", "add the family of the code: `armctl explain yerc 28` or `armctl explain toyo 28`"),
         ] {
@@ -567,7 +630,6 @@ mod tests {
     fn suggests_an_example_unless_it_is_dangerous() {
         for (line, expected) in [
             ("armctl yerc status x", "example: `armctl yerc status`"),
-            ("armctl toyo program get 5 6 7", "example: `armctl toyo program get`"),
             ("armctl yerc var get B0 --bananas", "example: `armctl yerc var get B0`"),
             ("armctl robots list --bananas", "example: `armctl robots list`"),
         ] {

@@ -1,4 +1,4 @@
-//! `armctl teach`: runs the command lines of the panel over a link that stays open.
+//! `armctl teach`: runs the command lines of the teach panel over a link that stays open.
 
 use std::cell::RefCell;
 use std::ffi::OsString;
@@ -27,7 +27,7 @@ use armctl_frame::session_manager::SessionManager;
 use armctl_frame::settings::Robot;
 use armctl_frame::{ConnectMode, Entry};
 
-/// Shows the panel until the user leaves.
+/// Shows the teach panel until the user leaves it.
 pub async fn run(globals: Globals, teach: Teach) -> Result<(), RunError> {
     refuse_repetition(&globals)?;
     let screen = screen(&globals);
@@ -37,7 +37,7 @@ pub async fn run(globals: Globals, teach: Teach) -> Result<(), RunError> {
     begin_trace(globals.trace.as_deref())?;
     let gate = Gate { yes: globals.yes, dry_run: false, on_interrupt: globals.on_interrupt };
     authority::confirm_intent(gate, &screen, &robot, &intent(&teach, &robot)).await?;
-    // Link messages would damage the screen. The commands report link errors.
+    // Messages about the link would damage the screen, so they are dropped. The commands report link errors.
     let (manager, thread) = host::start(|_| {})?;
     let lines = Lines { globals: line_globals(&globals), manager, robot: robot.clone(), parser: RefCell::default() };
     let panel = families::of(robot.family).panel();
@@ -49,7 +49,7 @@ pub async fn run(globals: Globals, teach: Teach) -> Result<(), RunError> {
     Ok(outcome?)
 }
 
-/// The one robot of the panel.
+/// Selects the robot of the panel. There must be exactly one.
 fn select_robot(globals: &Globals, teach: &Teach) -> Result<Robot, Failure> {
     let sources = sources(globals.clone(), Need::Inventory, true)?;
     if sources.selection.sim && teach.family.is_none() {
@@ -69,7 +69,7 @@ fn check_globals(globals: &Globals, screen: &armctl_frame::output::Screen) -> Re
     if globals.dry_run {
         return wrong(
             "has no dry run: keys move the robot",
-            "use --dry-run with its commands, such as `yerc move relative`",
+            "use --dry-run with a single command, for example `yerc move relative`",
         );
     }
     if screen.format != Format::Table || globals.jq.is_some() {
@@ -81,7 +81,7 @@ fn check_globals(globals: &Globals, screen: &armctl_frame::output::Screen) -> Re
     Ok(())
 }
 
-/// One confirmation for all keys, including the effects of the link itself.
+/// Returns the intent for one confirmation. It covers all keys, and the effects of the link itself.
 fn intent(teach: &Teach, robot: &Robot) -> Intent {
     let intent = teach.intent();
     match families::of(robot.family).driver().entry(robot, ConnectMode::Control) {
@@ -90,12 +90,12 @@ fn intent(teach: &Teach, robot: &Robot) -> Intent {
     }
 }
 
-/// Flags of each line: confirmed, JSON output, quiet.
+/// Returns the flags of each line: confirmed, JSON output, quiet.
 fn line_globals(globals: &Globals) -> Globals {
     Globals { yes: true, json: true, format: None, quiet: true, verbose: 0, ..globals.clone() }
 }
 
-/// Runs command lines of the robot's family.
+/// Runs command lines for the robot's family.
 struct Lines {
     globals: Globals,
     manager: SessionManager,

@@ -1,4 +1,4 @@
-//! Words of a command line: those of the command, and the rest.
+//! Words of a command line, divided into the words of the command and the rest.
 
 use std::ffi::OsString;
 
@@ -7,20 +7,20 @@ use clap::{Arg, Command};
 /// Words of a command line, without flags and their values.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct TypedLine<'a> {
-    /// Words of the command, by their primary names.
+    /// Words of the command. An alias is replaced by the primary name.
     pub path: Vec<&'a str>,
-    /// Words of the command, as typed (can be aliases).
+    /// Words of the command as the user typed them. They may be aliases.
     pub typed_path: Vec<&'a str>,
-    /// Their positions in the line.
+    /// Positions of the command's words in the line.
     pub path_positions: Vec<usize>,
     /// Words after the command.
     pub rest: Vec<&'a str>,
-    /// Their positions in the line.
+    /// Positions of the words after the command in the line.
     pub rest_positions: Vec<usize>,
 }
 
 impl<'a> TypedLine<'a> {
-    /// Analyzes a line, including the program name.
+    /// Analyzes a line that includes the program name.
     pub fn new(args: &'a [OsString], whole: &'a Command) -> Self {
         let mut typed = Self::default();
         let mut commands = vec![whole];
@@ -46,13 +46,13 @@ impl<'a> TypedLine<'a> {
         typed
     }
 
-    /// All words, as typed.
+    /// All words as the user typed them.
     pub fn words(&self) -> Vec<&'a str> {
         [&self.typed_path[..], &self.rest].concat()
     }
 }
 
-/// Whether the word after a flag is its value.
+/// Whether the word after a flag is the value of the flag.
 fn has_value_after(flag: &str, commands: &[&Command]) -> bool {
     let known = |is_it: &dyn Fn(&Arg) -> bool| {
         let found = commands.iter().flat_map(|command| command.get_arguments()).find(|argument| is_it(argument));

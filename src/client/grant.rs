@@ -7,8 +7,8 @@ use std::sync::{Arc, OnceLock};
 use armctl_controller::Risk;
 use thiserror::Error;
 
-/// The highest risk that a client may send. Clones share one limit: raising one raises all. The client checks the
-/// limit before every request.
+/// The highest risk that a client may send. Clones share one limit: a call of [`Grant::raise`] on one clone raises the
+/// limit of all clones. The client checks the limit before every request.
 #[derive(Debug, Clone)]
 pub struct Grant(Arc<GrantState>);
 
@@ -33,7 +33,7 @@ impl fmt::Debug for Hook {
 pub struct NotAuthorized {
     /// Name of the request.
     pub what: String,
-    /// Its risk.
+    /// Risk of the request.
     pub risk: Risk,
 }
 
@@ -47,16 +47,17 @@ impl Grant {
 
     /// The highest authorized risk.
     pub fn get(&self) -> Risk {
-        // `raise` and `of` are the only writers, and both store the number of a risk.
+        // `raise` and `up_to` are the only functions that write the number, and both write the number of a risk.
         RISKS[usize::from(self.0.highest.load(Ordering::Relaxed)).min(RISKS.len() - 1)]
     }
 
-    /// Raises the limit; it is never lowered.
+    /// Raises the limit. A lower risk than the current limit has no effect.
     pub fn raise(&self, risk: Risk) {
         self.0.highest.fetch_max(risk as u8, Ordering::Relaxed);
     }
 
-    /// Checks one request, as the last step before it is sent. Calls the motion hook if it is an authorized motion.
+    /// Checks one request. The client calls this function directly before it sends the request. If the request is an
+    /// authorized motion, the motion hook is called.
     pub fn check(&self, risk: Risk, what: &str) -> Result<(), NotAuthorized> {
         if risk > self.get() {
             return Err(NotAuthorized { what: what.to_owned(), risk });
@@ -67,14 +68,14 @@ impl Grant {
         Ok(())
     }
 
-    /// Sets the hook that runs before each motion is sent. Only the first hook of a grant counts.
+    /// Sets the hook that runs before each motion is sent. Only the first hook is kept; later calls have no effect.
     pub fn on_motion(&self, hook: impl Fn() + Send + Sync + 'static) {
         let _ = self.0.on_motion.set(Hook(Box::new(hook)));
     }
 }
 
 impl Default for Grant {
-    /// Read only.
+    /// Authorizes reads only.
     fn default() -> Self {
         Self::up_to(Risk::Read)
     }

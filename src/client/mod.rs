@@ -1,18 +1,19 @@
-//! Clients of robot controllers. A client connects to one controller, sends requests, transfers files and returns
-//! typed errors.
+//! Clients of robot controllers. A client connects to one controller, sends requests, transfers files and returns typed
+//! errors.
 //!
-//! A client drives the sessions of its family (protocol only, without sockets or clock) over a transport (bytes
-//! only). It has no settings, prompts or output texts. A [`Watcher`] observes the frames and events.
+//! A client runs the protocol sessions of its family (they have no sockets and no clock) over a transport (which
+//! carries bytes only). A client has no settings, prompts or output texts. A [`Watcher`] observes the frames and
+//! events.
 //!
-//! Three rules hold in every client:
+//! Three rules apply to every client:
 //!
-//! - **Authorization.** Every request is checked against a [`Grant`] first. The default grant allows only reads. A
-//!   stop is always allowed.
-//! - **A refusal is an answer.** A refusal by the controller is data with a code. `try_ask` returns it; `ask` turns
-//!   it into an error.
-//! - **A change is sent once.** If its answer is lost, the error says that the outcome is unknown.
+//! - **Authorization.** The client checks every request against a [`Grant`] before it sends the request. The default
+//!   grant allows only reads. A stop is always allowed.
+//! - **A refusal is an answer.** A refusal by the controller is data with a code. `try_ask` returns the refusal as a
+//!   value; `ask` returns it as an error.
+//! - **A change is sent once.** If the answer to a change is lost, the error reports that the outcome is unknown.
 //!
-//! A client in a dry run records in a [`Plan`] what it would send. It has no answers.
+//! A client in a dry run records in a [`Plan`] the frames that it would send. It receives no answers.
 
 use std::time::Duration;
 

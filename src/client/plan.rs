@@ -5,10 +5,10 @@ use serde_json::{Value, json};
 /// The frames of a dry run, in the order of sending.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Plan {
-    /// One object per frame: its bytes under the key of its family (`hex`, `wi`, `bits`, `text`), and `about` and
-    /// `depends_on` if there is a [`Reason`].
+    /// One JSON object per frame. The bytes of the frame are under the key of the controller family (`hex`, `wi`,
+    /// `bits` or `text`). If the frame has a [`Reason`], the object also has `about` and `depends_on`.
     pub frames: Vec<Value>,
-    /// The planned action for each file or part of a long task, in the format of the command.
+    /// The planned action for each file or part of a long task. The command that plans the task defines the format.
     pub items: Vec<Value>,
     /// A description of later steps whose frames are not known yet.
     pub then: Option<String>,
@@ -17,29 +17,29 @@ pub struct Plan {
 /// Why a frame of a plan is sent.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Reason<'a> {
-    /// Its purpose.
+    /// Purpose of the frame.
     pub about: Option<&'a str>,
-    /// The earlier answer that decides its content, or whether it is sent.
+    /// The earlier answer that decides the content of the frame, or whether the frame is sent.
     pub depends_on: Option<&'a str>,
 }
 
 impl<'a> Reason<'a> {
-    /// A frame with this purpose.
+    /// Returns a reason with this purpose and without a dependency.
     pub fn about(about: &'a str) -> Self {
         Self { about: Some(about), depends_on: None }
     }
 
-    /// Adds the earlier answer that decides the content of the frame, or whether it is sent.
+    /// Adds the earlier answer that decides the content of the frame, or whether the frame is sent.
     #[must_use]
     pub fn depending_on(self, what: &'a str) -> Self {
         Self { depends_on: Some(what), ..self }
     }
 }
 
-/// Name and readable value of a field of a motion request: `("speed", "50.0 mm/s")`.
+/// Name and readable value of a field of a motion request, for example `("speed", "50.0 mm/s")`.
 pub type ReadableField = (String, String);
 
-/// Adds the readable fields, if there are any, to a frame.
+/// Adds the readable fields to a frame. Without fields, the frame stays as it is.
 pub fn with_fields(mut frame: Value, fields: &[ReadableField]) -> Value {
     if let Some(frame) = frame.as_object_mut().filter(|_| !fields.is_empty()) {
         let field = |(name, value): &ReadableField| json!({ "name": name, "value": value });
@@ -48,7 +48,7 @@ pub fn with_fields(mut frame: Value, fields: &[ReadableField]) -> Value {
     frame
 }
 
-/// Merges the fields of two variants of a request: a value that differs becomes `?`.
+/// Merges the fields of two variants of a request. If the values of a field differ, the merged value is `?`.
 pub fn merge_fields(one: Vec<ReadableField>, other: &[ReadableField]) -> Vec<ReadableField> {
     let of = |(index, (name, value)): (usize, ReadableField)| {
         let is_same = other.get(index).is_some_and(|(_, other)| *other == value);
@@ -58,7 +58,7 @@ pub fn merge_fields(one: Vec<ReadableField>, other: &[ReadableField]) -> Vec<Rea
 }
 
 impl Plan {
-    /// Records a frame, which already has the key of its family.
+    /// Records a frame. The frame already contains its bytes under the key of the controller family.
     pub fn note(&mut self, mut frame: Value, reason: Reason<'_>) {
         if let Some(frame) = frame.as_object_mut() {
             for (key, text) in [("about", reason.about), ("depends_on", reason.depends_on)] {

@@ -8,8 +8,8 @@ use armctl_transport::tap::Direction;
 /// Local and remote address of a connection.
 pub type Ends = (SocketAddr, SocketAddr);
 
-/// An observer: a trace, a log, a counter. `E` is the event type of the family. A watcher does not change the
-/// behaviour of the client.
+/// An observer of a client, for example a trace, a log or a counter. `E` is the event type of the controller family. A
+/// watcher does not change the behavior of the client.
 pub trait Watcher<E>: Debug + Send {
     /// A frame was sent or received.
     fn frame(&mut self, direction: Direction, ends: Ends, bytes: &[u8]) {

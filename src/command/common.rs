@@ -1,4 +1,4 @@
-//! Commands that are about no single controller.
+//! Commands for robots of any family, and commands without a robot.
 
 use clap::Subcommand;
 
@@ -11,7 +11,7 @@ use super::fleet::{backup, names, robots, session, setup, tools, top};
 use super::fleet::{publish, serve};
 use armctl_frame::run::{Run, RunError};
 
-/// Commands that every family shares.
+/// Commands without a family name.
 #[derive(Debug, Subcommand)]
 pub enum Common {
     /// Set up a robot step by step: address, check, name
@@ -24,11 +24,11 @@ pub enum Common {
     /// Signals of robots: get, list, watch
     #[command(subcommand)]
     Io(io::Io),
-    /// Show where robots stand
+    /// Show the positions of robots
     Position,
-    /// Stop robots, whatever moves them
+    /// Stop the motion of robots
     Stop,
-    /// Wait until robots are idle, homed, faulted, or as a condition says
+    /// Wait for a condition of robots: idle, homed, faulted, and others
     Wait(Wait),
     /// Full-screen live monitor
     Top(top::Top),
@@ -39,7 +39,7 @@ pub enum Common {
     #[cfg(feature = "plant")]
     #[command(subcommand)]
     Serve(serve::Serve),
-    /// The inventory: list, add, set, edit, and more; check and discover
+    /// Inventory: list, add, set, edit and more; check and discover
     #[command(subcommand)]
     Robots(robots::Robots),
     /// Names of signals, variables and registers: list, set
@@ -48,11 +48,11 @@ pub enum Common {
     /// Keep a connection open for later commands: open, list, close
     #[command(subcommand)]
     Session(session::Session),
-    /// Save everything a controller stores to a folder
+    /// Save all data of a controller to a folder
     Backup(backup::Backup),
     /// Restore a backup
     Restore(backup::Restore),
-    /// Compare a backup with another one or a controller, or two controllers
+    /// Compare backups or controllers with each other
     Diff(backup::Diff),
     /// Run a simulator as a network or serial server
     Sim(tools::Sim),
@@ -73,7 +73,7 @@ pub enum Common {
 }
 
 impl Common {
-    /// Whether it asks or lists robots, and so needs the inventory.
+    /// Whether the command reads or lists robots, and therefore needs the inventory.
     pub fn is_about_robots(&self) -> bool {
         match self {
             #[cfg(feature = "plant")]
@@ -98,7 +98,8 @@ impl Common {
         }
     }
 
-    /// Whether it is for all robots of the inventory where none is named, and for the simulators of all families.
+    /// Whether the command applies to all robots of the inventory if none is selected, and to the simulators of all
+    /// families.
     pub fn is_for_all(&self) -> bool {
         match self {
             Self::Status(_) | Self::Io(_) | Self::Position | Self::Top(_) => true,
@@ -109,20 +110,25 @@ impl Common {
         }
     }
 
-    /// Why it is nothing for a line of a file: it would never end, or writes something else than results.
+    /// Reason why the command cannot be a line of a batch file: it would not end, or it prints text that is not a
+    /// result.
     pub fn why_not_in_batch(&self) -> Option<&'static str> {
         match self {
-            Self::Session(session) if session.stays() => Some("it holds a link until it is ended; add --background"),
+            Self::Session(session) if session.stays() => {
+                Some("it keeps a connection open until you end it; add --background")
+            }
             Self::Sim(sim) if sim.is_list() => None,
-            Self::Sim(_) => Some("it serves until it is ended"),
+            Self::Sim(_) => Some("it serves until you end it"),
             #[cfg(feature = "plant")]
-            Self::Serve(_) => Some("it serves until it is ended"),
-            Self::Top(_) => Some("it is a view for a terminal"),
+            Self::Serve(_) => Some("it serves until you end it"),
+            Self::Top(_) => Some("it is a full-screen display"),
             #[cfg(feature = "plant")]
-            Self::Publish(_) => Some("it goes on until it is ended"),
-            Self::Setup(_) => Some("it asks at the terminal; `robots add` needs no answers"),
-            Self::Robots(robots::Robots::Edit) => Some("it opens an editor; `robots set` needs none"),
-            Self::Completions(_) | Self::Man(_) | Self::Schema(_) | Self::Help(_) => Some("it prints a text to read"),
+            Self::Publish(_) => Some("it publishes until you end it"),
+            Self::Setup(_) => Some("it asks questions at the terminal; use `robots add` instead"),
+            Self::Robots(robots::Robots::Edit) => Some("it opens an editor; use `robots set` instead"),
+            Self::Completions(_) | Self::Man(_) | Self::Schema(_) | Self::Help(_) => {
+                Some("it prints a text, not a result")
+            }
             Self::Status(_)
             | Self::Alarm(_)
             | Self::Io(_)
@@ -140,7 +146,7 @@ impl Common {
         }
     }
 
-    /// Does it; `root` makes the whole command line.
+    /// Runs the command; `root` creates the whole command line.
     pub async fn run(self, run: &Run, root: fn() -> clap::Command) -> Result<(), RunError> {
         match self {
             Self::Setup(setup) => Box::pin(setup.run(run)).await,

@@ -1,5 +1,5 @@
-//! Lines of every command: the examples of its help. Those for robots come with what they do at most, are held against the
-//! gate by tests, and are the reason why no tip proposes a dangerous one.
+//! Example lines of every command, for its help. Lines for robots have their maximum risk. Tests compare this risk with
+//! the gate, and suggestions use it to avoid dangerous commands.
 
 mod toyo;
 mod without_robot;
@@ -8,10 +8,10 @@ mod yrcx;
 
 use armctl_controller::Risk::{self, Destroy, Read, Write};
 
-/// A line, and what it does at most. What stops the robot is marked by its own test.
+/// An example line and its maximum risk. The gate tests mark the lines that stop a robot.
 pub type ExampleLine = (&'static str, Risk);
 
-/// Lines of the commands for robots of any family.
+/// Example lines of the commands for robots of any family.
 const COMMON: &[ExampleLine] = &[
     ("status", Read),
     ("status --watch 5s", Read),
@@ -45,30 +45,31 @@ const COMMON: &[ExampleLine] = &[
     ("diff cell3 cell4 --only '*.JBI'", Write),
 ];
 
-/// All lines for robots: of every command the usual ones, and where its words decide what it does, one of each.
+/// All example lines for robots: the usual lines of every command, and one line per effect if the words of the command
+/// decide its effect.
 pub fn robot_lines() -> impl Iterator<Item = &'static ExampleLine> {
     [COMMON, yerc::LINES, yrcx::LINES, toyo::LINES].into_iter().flatten()
 }
 
-/// The lines of the command of these words.
+/// Example lines of the command with these words.
 pub fn examples(path: &[&str]) -> impl Iterator<Item = &'static str> {
     all().filter(move |line| starts_with_words(line, path))
 }
 
-/// Every line.
+/// All example lines.
 pub fn all() -> impl Iterator<Item = &'static str> {
     robot_lines().map(|(line, _)| *line).chain(without_robot::LINES.iter().copied())
 }
 
-/// Whether a command can move a robot, or delete or overwrite what a person wrote; of a noun, whether all of its verbs
-/// can. `path` are its words.
+/// Whether a command can move a robot, or delete or overwrite user data. For a noun: whether all its verbs can. `path`
+/// has the words of the command.
 pub fn is_dangerous(path: &[&str], is_noun: bool) -> bool {
     let mut lines = robot_lines().filter(|(line, _)| starts_with_words(line, path)).peekable();
     let is_one = |(_, risk): &ExampleLine| *risk >= Destroy;
     lines.peek().is_some() && if is_noun { lines.all(is_one) } else { lines.any(is_one) }
 }
 
-/// Whether a list of the values that a command lacks may preselect the first: not where Enter alone would delete
+/// Whether a list of missing values may preselect the first value. It may not if Enter alone would then delete
 /// something, or move or stop a robot.
 pub fn preselects(path: &[&str]) -> bool {
     !is_dangerous(path, false)

@@ -1,4 +1,4 @@
-//! The controller families: one line each. Nothing else lists them.
+//! List of the controller families, with one line per family. No other place lists them.
 
 use clap::ArgMatches;
 use clap::error::ErrorKind;
@@ -10,20 +10,20 @@ use armctl_toyo::link::Toyo;
 use armctl_yerc::link::Yerc;
 use armctl_yrcx::link::Yrcx;
 
-/// Every family, in the order help texts list them.
+/// All families, in the order of the help texts.
 pub static FAMILIES: [&dyn Face; 3] = [&Registered::<Yerc>::FACE, &Registered::<Yrcx>::FACE, &Registered::<Toyo>::FACE];
 
-/// A family by its name.
+/// Returns the family with this name.
 ///
 /// # Panics
 ///
-/// If a family has no line above, which a test rules out.
+/// If the family is missing in the list above, which a test excludes.
 pub fn of(family: Family) -> &'static dyn Face {
     let face = FAMILIES.iter().find(|face| face.family() == family);
     *face.expect("each family has a line; a test holds that")
 }
 
-/// The family that words name, with what stands behind it.
+/// Takes the family name from the parsed words. Returns the family and the arguments after its name.
 pub fn by_name(matches: &mut ArgMatches) -> Result<(Family, ArgMatches), clap::Error> {
     let (name, behind) = matches.remove_subcommand().ok_or_else(|| clap::Error::new(ErrorKind::MissingSubcommand))?;
     let family = name.parse().map_err(|_| clap::Error::new(ErrorKind::InvalidSubcommand))?;

@@ -1,8 +1,8 @@
-//! The nouns and verbs that all families share, and what a family says that lacks one.
+//! Nouns and verbs that all families share, and explanations for the families that lack one.
 
 use armctl_frame::failure::Failure;
 
-/// Verbs of every family. Where a controller cannot do one, [`MISSING`] has a sentence for it.
+/// Verbs of every family. If a controller does not support a verb, [`MISSING`] explains that.
 pub const SHARED: &[&str] = &[
     "status",
     "position",
@@ -78,62 +78,71 @@ pub const SHARED: &[&str] = &[
     "explain",
 ];
 
-/// What a family lacks: its words behind `armctl`, what it says, and what to use instead.
+/// Commands that a family lacks: words after `armctl`, reason, and what to use instead.
 #[rustfmt::skip]
 pub const MISSING: &[(&str, &str, &str)] = &[
-    ("yerc counter", "a Yaskawa controller has no counters", "jobs count in variables: `armctl yerc var get B0`"),
-    ("yerc timer", "the protocol does not read timers", "`armctl yerc hours` reads the operating hours"),
+    ("yerc counter", "a Yaskawa controller has no counters",
+        "use a variable, because jobs count in variables: `armctl yerc var get B0`"),
+    ("yerc timer", "the protocol does not read timers", "use `armctl yerc hours` to read the operating hours"),
     ("yerc param", "the protocol does not read single parameters",
-        "`armctl yerc file get '*.PRM'` downloads the parameter files"),
-    ("yerc register list", "the protocol does not list registers in use",
-        "`armctl yerc register get 0..99` reads a range"),
+        "use `armctl yerc file get '*.PRM'` to download the parameter files"),
     ("yerc point", "taught points of a Yaskawa controller are position variables P, BP and EX",
-        "`armctl yerc var get P5` reads one; see `armctl yerc var -h`"),
-    ("yerc job get", "jobs are files on a Yaskawa controller", "`armctl yerc file get WELD.JBI` downloads one"),
+        "use `armctl yerc var get P5` to read a point; see `armctl yerc var -h`"),
+    ("yerc job get", "jobs are files on a Yaskawa controller", "use `armctl yerc file get WELD.JBI` to download a job"),
     ("yerc job put", "jobs are files on a Yaskawa controller", "see `armctl yerc file put -h`"),
-    ("yerc job search", "the protocol does not search in jobs", "`armctl yerc job show --source` shows the line that runs"),
-    ("yerc job check", "the controller checks a job when it is loaded", "see `armctl yerc file put -h`"),
-    ("yerc jog", "the protocol has no jog", "moves by distances are its steps: see `armctl yerc move relative -h`"),
+    ("yerc job search", "the protocol does not search in jobs",
+        "use `armctl yerc job show --source` to see the line that runs"),
+    ("yerc job check", "the controller checks a job when the job is loaded", "see `armctl yerc file put -h`"),
+    ("yerc jog", "the protocol has no jog", "use moves by distances as jog steps: see `armctl yerc move relative -h`"),
     ("yerc override", "the protocol does not set the speed override",
-        "moves take `--speed`: see `armctl yerc move joint -h`; `armctl yerc job show` shows the override of a job"),
+        "set `--speed` of a move: see `armctl yerc move joint -h`; use `armctl yerc job show` to see the override of \
+         a job"),
     ("yerc home", "the protocol has no return to origin",
-        "a job can move to the home position: see `armctl yerc job -h`; the mechanical origin is set at the pendant"),
-    ("yerc explain", "codes are explained without a connection", "`armctl explain yerc CODE`"),
+        "start a job that moves to the home position: see `armctl yerc job -h`; set the mechanical origin at the \
+         pendant"),
+    ("yerc explain", "no connection is necessary to explain a code", "use `armctl explain yerc CODE`"),
 
-    ("yrcx counter", "a YRCX has no counters", "programs count in variables: `armctl yrcx var get SGI0`"),
-    ("yrcx timer", "the fieldbus does not read timers", "`armctl yrcx program show` shows the tasks"),
-    ("yrcx override", "a YRCX has a manual, an automatic and a program speed",
-        "`armctl yrcx info speed` reads them; to set one, see `armctl yrcx speed -h`"),
-    ("yrcx point delete", "the fieldbus does not delete points", "to replace a point, see `armctl yrcx point set -h`"),
-    ("yrcx program list", "the fieldbus does not list programs", "`armctl yrcx program show` shows which one each task runs"),
-    ("yrcx program get", "the fieldbus carries no texts of programs", "use the maker's support software"),
-    ("yrcx program put", "the fieldbus carries no texts of programs", "use the maker's support software"),
-    ("yrcx program search", "the fieldbus carries no texts of programs", "`armctl yrcx program show` shows which line runs"),
-    ("yrcx program check", "the fieldbus carries no texts of programs", "use the maker's support software"),
-    ("yrcx program stop", "programs stop by a signal", "`armctl yrcx stop` stops the robot program"),
-    ("yrcx names", "a YRCX keeps no names of signals", "`armctl names set NAME ADDRESS` gives one in robots.toml"),
-    ("yrcx explain", "codes are explained without a connection", "`armctl explain yrcx CODE`"),
-    ("yrcx hold", "a YRCX has no hold", "`armctl yrcx stop` stops the robot program"),
+    ("yrcx counter", "a YRCX has no counters",
+        "use a variable, because programs count in variables: `armctl yrcx var get SGI0`"),
+    ("yrcx timer", "the fieldbus does not read timers", "use `armctl yrcx program show` to see the tasks"),
+    ("yrcx override", "a YRCX has no override, but a manual, an automatic and a program speed",
+        "use `armctl yrcx info speed` to read the speeds; see `armctl yrcx speed -h` to set a speed"),
+    ("yrcx point delete", "the fieldbus does not delete points", "replace the point: see `armctl yrcx point set -h`"),
+    ("yrcx program list", "the fieldbus does not list programs",
+        "use `armctl yrcx program show` to see the program of each task"),
+    ("yrcx program get", "the fieldbus does not transfer the texts of programs", "use the maker's support software"),
+    ("yrcx program put", "the fieldbus does not transfer the texts of programs", "use the maker's support software"),
+    ("yrcx program search", "the fieldbus does not transfer the texts of programs",
+        "use `armctl yrcx program show` to see the line that runs"),
+    ("yrcx program check", "the fieldbus does not transfer the texts of programs", "use the maker's support software"),
+    ("yrcx program stop", "a signal stops the programs", "use `armctl yrcx stop` to stop the robot program"),
+    ("yrcx names", "a YRCX stores no names of signals",
+        "use `armctl names set NAME ADDRESS` to set a name in robots.toml"),
+    ("yrcx explain", "no connection is necessary to explain a code", "use `armctl explain yrcx CODE`"),
+    ("yrcx hold", "a YRCX has no hold", "use `armctl yrcx stop` to stop the robot program"),
 
     ("toyo var", "a Toyo controller has no variables",
-        "it has counters, timers and parameters: `armctl toyo counter get 1`, `armctl toyo timer get 1`, `armctl toyo param list`"),
-    ("toyo timer set", "only programs set timers", "`armctl toyo timer get 1` reads one"),
-    ("toyo timer dump", "a timer runs, so a file of timers has no use", "`armctl toyo timer list -o csv` prints the timers"),
-    ("toyo timer restore", "only programs set timers", "`armctl toyo timer get 1` reads one"),
+        "use counters, timers and parameters: `armctl toyo counter get 1`, `armctl toyo timer get 1`, `armctl toyo \
+         param list`"),
+    ("toyo timer set", "only programs set timers", "use `armctl toyo timer get 1` to read a timer"),
+    ("toyo timer dump", "a timer changes all the time, so a file of timers has no use",
+        "use `armctl toyo timer list -o csv` to print the timers"),
+    ("toyo timer restore", "only programs set timers", "use `armctl toyo timer get 1` to read a timer"),
     ("toyo point delete", "the protocol does not delete points",
-        "a point with all axes at 0 counts as empty: see `armctl toyo point set -h`"),
-    ("toyo program start", "programs of three kinds are started by `armctl toyo run`", "see `armctl toyo run -h`"),
-    ("toyo program stop", "one command stops all that moves", "`armctl toyo stop` stops it"),
+        "set all axes of the point to 0, which counts as empty: see `armctl toyo point set -h`"),
+    ("toyo program start", "`armctl toyo run` starts the three kinds of programs", "see `armctl toyo run -h`"),
+    ("toyo program stop", "one command stops programs and motions", "use `armctl toyo stop` to stop the robot"),
     ("toyo program select", "each task has one sequential program",
-        "`armctl toyo task set 2` selects the task; see `armctl toyo palletizing -h` for the others"),
-    ("toyo move", "the protocol moves to taught points only", "see `armctl toyo run -h`"),
-    ("toyo names", "a Toyo controller keeps no names of signals", "`armctl names set NAME ADDRESS` gives one in robots.toml"),
-    ("toyo explain", "codes are explained without a connection", "`armctl explain toyo CODE`"),
-    ("toyo hold", "the protocol has no hold", "`armctl toyo stop` stops what moves"),
+        "use `armctl toyo task set 2` to select the task; see `armctl toyo palletizing -h` for palletizing programs"),
+    ("toyo move", "the protocol moves only to taught points", "see `armctl toyo run -h`"),
+    ("toyo names", "a Toyo controller stores no names of signals",
+        "use `armctl names set NAME ADDRESS` to set a name in robots.toml"),
+    ("toyo explain", "no connection is necessary to explain a code", "use `armctl explain toyo CODE`"),
+    ("toyo hold", "the protocol has no hold", "use `armctl toyo stop` to stop programs and motions"),
 ];
 
-/// What is said of a line whose words lead to what a family lacks. `path` are those that lead to a command, by its own
-/// names.
+/// Failure for a line with a command that the family lacks. `path` has the words that lead to a command, by its own
+/// name and not by an alias.
 pub fn missing(path: &[&str], rest: &[&str]) -> Option<Failure> {
     let typed: Vec<&str> = path.iter().chain(rest).copied().collect();
     let is_meant = |(words, ..): &&(&str, &str, &str)| {
@@ -152,13 +161,13 @@ mod tests {
     use crate::cli::Cli;
     use armctl_frame::settings::target::Family;
 
-    /// Whether words lead to a command, by its own name or another.
+    /// Whether the words lead to a command, by its own name or by an alias.
     fn exists(line: &str) -> bool {
         let root = Cli::command();
         line.split(' ').try_fold(&root, |command, word| command.find_subcommand(word)).is_some()
     }
 
-    /// The line by the commands' own names, as far as it leads.
+    /// The line with aliases replaced by the commands' own names, as far as the words lead to a command.
     fn own_names(line: &str) -> String {
         let root = Cli::command();
         let mut command = Some(&root);

@@ -1,6 +1,6 @@
 //! Commands that are not of one family.
 //!
-//! | module | holds |
+//! | module | contents |
 //! |---|---|
 //! | [`families`] | the list of families |
 //! | [`fleet`] | commands for robots of any family: status, top, backup, robots, session |

@@ -2,19 +2,19 @@
 
 use std::fmt;
 
-/// Limit of stored errors; a file with more is probably of another type.
+/// Maximum number of stored errors. A file with more errors is probably of another type.
 const MOST: usize = 100;
 
 /// A finding at a position of the text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Finding {
-    /// How bad it is.
+    /// Severity of the finding.
     pub severity: Severity,
     /// Line, from 1.
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// The problem, and what is expected.
+    /// The problem, and what the parser expected.
     pub message: String,
     /// What to do, or a suggestion.
     pub hint: Option<String>,
@@ -87,7 +87,7 @@ impl Findings {
         self.add(Severity::Note, at, message.into(), None);
     }
 
-    /// Number of errors, also those above the limit.
+    /// Number of errors, including the errors beyond the limit, which are not stored.
     pub const fn errors(&self) -> usize {
         self.errors
     }
@@ -97,14 +97,14 @@ impl Findings {
         self.errors >= MOST
     }
 
-    /// Only the errors, in text order.
+    /// Returns only the errors, in text order.
     pub fn into_errors(self) -> Vec<Finding> {
         let mut errors = self.sorted();
         errors.retain(|finding| finding.severity == Severity::Error);
         errors
     }
 
-    /// All findings, in text order.
+    /// Returns all findings, in text order.
     pub fn sorted(mut self) -> Vec<Finding> {
         self.list.sort_by_key(|finding| (finding.line, finding.column, finding.severity));
         self.list

@@ -1,8 +1,8 @@
 //! Protocols of the controllers, without I/O.
 //!
-//! Nothing here opens a socket, reads a clock or uses the command line. A session is a state machine: it receives
-//! time and bytes and returns the next step. A driver elsewhere moves the bytes. So the same session runs against a
-//! socket, a simulator in this process, and a fault injector in virtual time.
+//! Nothing here opens a socket, reads a clock or uses the command line. A session is a state machine: it receives time
+//! and bytes and returns the next step. A driver outside of this module moves the bytes. Because of this, the same
+//! session can run against a socket, against a simulator in this process, and against a fault injector in virtual time.
 
 use std::time::Duration;
 
@@ -24,16 +24,16 @@ pub mod yrcx;
 /// Time since an origin that the driver chooses. It never runs backwards.
 pub type Now = Duration;
 
-/// Effect of a command. A command with several effects has the highest one.
+/// Risk of a command. A command with several effects has the highest risk of these effects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Risk {
-    /// Reads only; can be repeated.
+    /// The command only reads data. It can be repeated.
     Read,
     /// Changes a value that can be set again: a variable, a signal, a counter, a selection, an alarm reset.
     Write,
-    /// Deletes or overwrites work of a person: jobs, programs, files, points, parameters.
+    /// Deletes or overwrites data that a person made: jobs, programs, files, points, parameters.
     Destroy,
-    /// Moves the robot, or powers it, or starts a job.
+    /// Moves the robot, switches servo power, or starts a job.
     Motion,
 }
 
@@ -72,7 +72,9 @@ pub trait Session {
     /// Returns the next step at `now`. Call it until it returns [`Step::Wait`] or [`Step::Done`].
     fn poll(&mut self, now: Now) -> Step<Self::Outcome>;
 
-    /// Takes bytes that arrived at `now`; bytes of other exchanges are counted and ignored. Pass one datagram, then
-    /// poll until [`Step::Wait`] before the next: a datagram in between may be dropped.
+    /// Processes bytes that arrived at `now`. Bytes of other exchanges are counted and ignored.
+    ///
+    /// Pass one datagram, then poll until [`Step::Wait`] before you pass the next datagram. A datagram that is passed
+    /// earlier may be dropped.
     fn handle(&mut self, now: Now, bytes: &[u8]);
 }

@@ -1,7 +1,7 @@
-//! User-defined names of signals, variables, registers and the like, with their addresses.
+//! User-defined names of signals, variables, registers and other objects, with their addresses.
 //!
-//! A name is looked up only if a text is not an address, so it never hides an address. Names of the inventory have
-//! priority over names of the controller. Case matters only between names that differ in nothing else.
+//! A text is looked up as a name only if it is not an address, so a name never hides an address. Names of the inventory
+//! have priority over names of the controller. Upper and lower case matter only if two names are otherwise equal.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -15,7 +15,7 @@ pub enum Kind {
     Variable,
     /// A register.
     Register,
-    /// A port, or a bit of one.
+    /// A port, or a bit of a port.
     Port,
     /// A bit of an input port.
     Input,
@@ -87,7 +87,7 @@ pub struct Grammar {
 }
 
 impl Grammar {
-    /// Whether a text has the form of an address, even of a nonexistent one. A name must not.
+    /// Whether a text has the form of an address, even if no such address exists. A name must not have this form.
     pub fn is_shaped(self, text: &str) -> bool {
         let text = text.trim_start_matches('#');
         let digits = text.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(text.len());
@@ -102,7 +102,7 @@ impl Grammar {
 /// Maximum length of a name in bytes: four times the limit of a pendant.
 pub const LONGEST: usize = 128;
 
-/// Why a text cannot be used as a name; `None` if it can.
+/// Returns the reason why a text cannot be used as a name, or `None` if it can be used.
 pub fn unusable(grammar: Grammar, text: &str) -> Option<&'static str> {
     if text.trim().is_empty() || text.trim() != text {
         Some("it is empty, or begins or ends with a blank")
@@ -113,7 +113,7 @@ pub fn unusable(grammar: Grammar, text: &str) -> Option<&'static str> {
     } else if text.starts_with('-') {
         Some("it begins with a dash, like a flag")
     } else if grammar.is_shaped(text) {
-        Some("it looks like an address")
+        Some("it has the form of an address")
     } else {
         None
     }
@@ -124,7 +124,7 @@ pub fn unusable(grammar: Grammar, text: &str) -> Option<&'static str> {
 pub enum Found<'a> {
     /// One match.
     One(&'a Name),
-    /// All of these have the name.
+    /// Several matches.
     Several(Vec<&'a Name>),
     /// No match.
     None,
@@ -141,7 +141,8 @@ pub struct Names {
 }
 
 impl Names {
-    /// Keeps the order. The label of an address is its first name.
+    /// Creates a collection and keeps the order of the names. The label of an address is the first name of this
+    /// address.
     pub fn new(all: Vec<Name>) -> Self {
         let mut by_address = HashMap::with_capacity(all.len());
         let mut by_name: HashMap<String, Vec<usize>> = HashMap::with_capacity(all.len());
@@ -152,7 +153,7 @@ impl Names {
         Self { all, by_address, by_name }
     }
 
-    /// All items, in order.
+    /// All names, in order.
     pub fn iter(&self) -> impl Iterator<Item = &Name> {
         self.all.iter()
     }
@@ -171,7 +172,7 @@ impl Names {
         self.all.get(*at).map(|name| name.name.as_str())
     }
 
-    /// Looks up a name among these kinds.
+    /// Looks up a name among the objects of these kinds.
     pub fn find(&self, kinds: &[Kind], text: &str) -> Found<'_> {
         let alike = self.by_name.get(&text.to_lowercase()).map(Vec::as_slice).unwrap_or_default();
         let alike = || alike.iter().filter_map(|at| self.all.get(*at)).filter(|name| kinds.contains(&name.kind));

@@ -1,8 +1,8 @@
 //! Suggestion for a mistyped word.
 
-/// The most similar word in `known`, if it is similar enough. Ignores case.
+/// The word in `known` that is most similar, if it is similar enough. Upper and lower case do not matter.
 pub fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
-    // Long words are not typing mistakes, and the comparison would be slow.
+    // A word of this length is not a typing mistake, and the comparison would be slow.
     if word.len() > 64 {
         return None;
     }
@@ -11,7 +11,8 @@ pub fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
     scored.filter(|(score, _)| *score > 0.75).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, other)| other)
 }
 
-/// Similarity. A single typing mistake adds 1: short words have a low similarity otherwise.
+/// Similarity of two words. A difference of a single typing mistake adds 1, because the similarity of short words is
+/// low otherwise.
 fn likeness(word: &str, other: &str) -> f64 {
     let slip = if word.len() > 2 && strsim::osa_distance(word, other) == 1 { 1.0 } else { 0.0 };
     strsim::jaro_winkler(word, other) + slip

@@ -2,8 +2,8 @@
 //! cells.
 //!
 //! Columns can be in any order, and cells can be quoted. Columns whose name begins with `comment` are ignored. If the
-//! separator is not a comma, numbers may have a decimal comma. Points and commas must not be mixed: a point could
-//! then be a thousands separator.
+//! separator is not a comma, numbers may have a decimal comma. A table must not mix decimal points and decimal commas:
+//! in such a table, a point could be a thousands separator.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -58,7 +58,7 @@ impl Dialect {
 /// A column of a table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Column {
-    /// Its name.
+    /// Name of the column.
     pub name: String,
     /// Whether the cells are numbers, with a decimal point.
     pub is_number: bool,
@@ -110,7 +110,7 @@ struct Cell {
 }
 
 impl Row {
-    /// Position of a cell; after the last cell, the start of the row.
+    /// Position of a cell. After the last cell, it is the start of the row.
     pub fn place(&self, index: usize) -> SourceLocation {
         SourceLocation { line: self.line, column: self.cells.get(index).map_or(1, |cell| cell.column) }
     }
@@ -133,7 +133,7 @@ impl Row {
 }
 
 impl Sheet {
-    /// Parses a table; `None` after an error, which is added to the findings.
+    /// Parses a table. Returns `None` after an error, and adds the error to the findings.
     pub fn read(bytes: &[u8], expected: &str, findings: &mut Findings) -> Option<Self> {
         let before = findings.errors();
         let lines = source::lines(bytes, findings);
@@ -154,19 +154,21 @@ impl Sheet {
                 break;
             }
             let Some(row) = row(line, number, separator, findings) else { continue };
-            // Spreadsheets leave lines of separators only.
+            // Spreadsheets write lines that contain only separators.
             if row.cells.iter().all(|cell| cell.text.trim().is_empty()) {
                 continue;
             }
             if row.cells.len() == head.cells.len() {
                 rows.push(row);
             } else {
-                let message = format!("{} cells for {} columns", row.cells.len(), head.cells.len());
+                let message =
+                    format!("the row has {} cells, but the table has {} columns", row.cells.len(), head.cells.len());
                 findings.error(SourceLocation { line: number, column: 1 }, message, None);
             }
         }
         let mut sheet = Self { dialect: Dialect { separator, decimal_comma: false }, head, rows };
-        // Empty cells are common in files with semicolons: without other evidence these have decimal commas.
+        // A semicolon suggests decimal commas, unless a cell has a decimal point. With tabs, a cell must have a decimal
+        // comma.
         sheet.dialect.decimal_comma = separator == ';' && !sheet.own_cells().any(|text| is_decimal(text, '.'))
             || separator != ',' && sheet.own_cells().any(|text| is_decimal(text, ','));
         Some(sheet)
@@ -196,7 +198,7 @@ impl Sheet {
         self.head.cells.iter().position(|cell| cell.text.trim().eq_ignore_ascii_case(name))
     }
 
-    /// Index of each of these columns, if present. Any other column except a comment is an error.
+    /// Index of each of these columns, if the column is present. Any other column except a comment is an error.
     pub fn columns<S: AsRef<str>>(&self, known: &[S], expected: &str, findings: &mut Findings) -> Vec<Option<usize>> {
         let mut places = vec![None; known.len()];
         for (at, Cell { text: name, .. }) in self.head.cells.iter().enumerate() {
@@ -219,13 +221,13 @@ impl Sheet {
         places
     }
 
-    /// Position after the column names.
+    /// Position after the last column name.
     pub fn end_of_head(&self) -> SourceLocation {
         let behind = |cell: &Cell| cell.column + cell.text.chars().count();
         SourceLocation { line: self.head.line, column: self.head.cells.last().map_or(1, behind) }
     }
 
-    /// A cell as a number with a decimal point.
+    /// Returns a cell as the text of a number with a decimal point.
     pub fn number<'r>(&self, row: &'r Row, index: usize) -> Result<Cow<'r, str>, &'static str> {
         let text = row.text(index);
         match (self.dialect, text.contains(',')) {
@@ -239,8 +241,8 @@ impl Sheet {
     }
 }
 
-/// Updates the rows of a table. Comments, order, and rows without a new value stay unchanged, byte for byte. New rows
-/// are appended. The first of `columns` identifies a row; `canonical` normalizes that key.
+/// Updates the rows of a table. Comments, the order, and rows without a new value stay unchanged, byte for byte. New
+/// rows are appended. The first of `columns` identifies a row; `canonical` normalizes the text of this column.
 pub fn update(
     bytes: &[u8],
     columns: &[Column],
@@ -263,7 +265,7 @@ pub fn update(
         let new = |at: usize| {
             let index = places.iter().position(|place| *place == Some(at))?;
             let (column, cell) = (columns.get(index)?, row.get(index)?);
-            // An empty comment does not replace one that the user wrote.
+            // An empty comment does not replace a comment that the user wrote.
             let is_none = cell.is_empty() && is_comment(&column.name);
             (!is_none).then(|| sheet.dialect.cell(column, cell).into_owned())
         };
@@ -291,7 +293,7 @@ pub fn update(
     Some(updated)
 }
 
-/// Whether a spreadsheet would compute the text as a formula, or remove its apostrophe.
+/// Whether a spreadsheet would evaluate the text as a formula, or remove its apostrophe.
 fn is_formula(text: &str) -> bool {
     let rest = text.trim_start_matches('\'');
     rest.starts_with(['=', '+', '-', '@']) && (rest.len() < text.len() || text.parse::<f64>().is_err())
@@ -314,7 +316,7 @@ fn is_decimal(text: &str, mark: char) -> bool {
     digits(whole.trim_start_matches(['+', '-'])) && !decimals.is_empty() && digits(decimals)
 }
 
-/// The cells of a line. An unclosed or misplaced quote is added to the findings.
+/// Returns the cells of a line. An unclosed or misplaced quote is added to the findings.
 fn row(line: &str, number: usize, separator: char, findings: &mut Findings) -> Option<Row> {
     let column = |at: usize| line.get(..at).map_or(1, |before| before.chars().count() + 1);
     let told = cells(line, separator).map_err(|at| {
@@ -324,7 +326,7 @@ fn row(line: &str, number: usize, separator: char, findings: &mut Findings) -> O
     Some(Row { line: number, cells: cells.collect() })
 }
 
-/// The cells of a line with their byte offsets, or the offset of a wrong quote.
+/// Returns the cells of a line with their byte offsets, or the offset of a wrong quote.
 fn cells(line: &str, separator: char) -> Result<Vec<(usize, Cow<'_, str>)>, usize> {
     let trimmed =
         |text: &str| text.len() - text.trim_start_matches(|c: char| c != separator && c.is_whitespace()).len();
@@ -353,7 +355,7 @@ fn cells(line: &str, separator: char) -> Result<Vec<(usize, Cow<'_, str>)>, usiz
     }
 }
 
-/// The text of a quoted cell, and its end.
+/// Returns the text of a quoted cell and the offset of its end.
 fn quoted(line: &str, start: usize) -> Result<(String, usize), usize> {
     let mut text = String::new();
     let mut at = start + 1;
@@ -417,7 +419,7 @@ mod tests {
         assert!(errors("point;x_mm;remark\n")[0].contains("unknown column 'remark'"));
         assert!(errors("point;x_mn\n")[0].contains("did you mean x_mm?"));
         assert!(errors("point,x_mm,X_mm\n")[0].contains("appears twice"));
-        assert!(errors("point,x_mm\n1\n")[0].contains("1 cells for 2 columns"));
+        assert!(errors("point,x_mm\n1\n")[0].contains("the row has 1 cells, but the table has 2 columns"));
         assert!(errors("point,x_mm\n1,\"2\n")[0].contains("wrong quotes"));
         assert!(errors("")[0].contains("the file is empty"));
     }

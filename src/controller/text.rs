@@ -1,9 +1,9 @@
 //! Text encodings of controllers. A robot has one encoding, which depends on the language of its pendant.
 //!
 //! Decoding never fails: an invalid byte becomes `\xNN`. Encoding never guesses: a character that is missing in the
-//! encoding is an error that names it. ASCII is the same in every encoding here, including 0x5C (backslash) and 0x7E
-//! (tilde). [`Encoding::name`] is for names of files and jobs: it keeps the bytes if the text does not encode to
-//! them.
+//! encoding is an error, and the error names the character. ASCII is the same in every encoding here, including 0x5C
+//! (backslash) and 0x7E (tilde). [`Encoding::name`] is for names of files and jobs: if the decoded text does not encode
+//! to the same bytes, the name also contains the bytes.
 
 use std::fmt::{self, Write as _};
 use std::str::FromStr;
@@ -69,7 +69,7 @@ pub enum EncodeError {
         character: char,
         /// Position in characters, from 1.
         position: usize,
-        /// The encoding that lacks it.
+        /// The encoding that does not have the character.
         encoding: Encoding,
     },
     /// A NUL, which would end the text on the controller.
@@ -85,17 +85,17 @@ pub enum EncodeError {
         len: usize,
         /// Size of the field in bytes.
         max: usize,
-        /// The encoding it was measured in.
+        /// The encoding in which the length was measured.
         encoding: Encoding,
     },
 }
 
-/// A name of a controller: text, and bytes if the text does not encode to them.
+/// A name on a controller: its text, and also its bytes if the text does not encode to these bytes.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Name {
     /// Text of the name. It may contain control characters; the output escapes them.
     pub text: String,
-    /// The bytes in hexadecimal, if [`text`](Self::text) encodes to other bytes.
+    /// The bytes in hexadecimal. `None` if [`text`](Self::text) encodes to exactly these bytes.
     pub hex: Option<String>,
 }
 
@@ -110,7 +110,7 @@ impl Encoding {
         NAMES.into_iter().find(|(encoding, ..)| *encoding == self).map_or("", |(_, name, _)| name)
     }
 
-    /// Decodes bytes. An invalid byte becomes `\xNN`; NULs stay, see [`until_nul`].
+    /// Decodes bytes. An invalid byte becomes `\xNN`. NULs are kept; see [`until_nul`].
     pub fn decode(self, bytes: &[u8]) -> String {
         let Some(table) = self.table() else {
             return bytes.iter().copied().map(char::from).collect();
@@ -120,7 +120,7 @@ impl Encoding {
         let mut read = 0;
         loop {
             let rest = bytes.get(read..).unwrap_or_default();
-            // Worst-case capacity, so that one call decodes up to the next invalid byte.
+            // The worst-case capacity, so that one call decodes all bytes up to the next invalid byte.
             text.reserve(decoder.max_utf8_buffer_length_without_replacement(rest.len()).unwrap_or(0));
             let (result, used) = decoder.decode_to_string_without_replacement(rest, &mut text, true);
             read += used;
@@ -173,7 +173,8 @@ impl Encoding {
         Name { text, hex }
     }
 
-    /// Encodes a name as displayed. `\x80` to `\xff` are single bytes, as [`decode`](Self::decode) writes them.
+    /// Encodes a name as displayed. The escapes `\x80` to `\xff` become single bytes; [`decode`](Self::decode) writes
+    /// such escapes.
     pub fn encode_name(self, shown: &str) -> Result<Vec<u8>, EncodeError> {
         let mut bytes = Vec::with_capacity(shown.len());
         let mut rest = shown;
@@ -193,8 +194,8 @@ impl Encoding {
         Ok(bytes)
     }
 
-    /// Appends the bytes of a character if they decode to it. Some tables send a similar character (a backslash for the
-    /// yen sign), which would damage names.
+    /// Appends the bytes of a character if they decode to the same character. Some conversion tables encode a similar
+    /// character instead (a backslash for the yen sign), which would damage names.
     fn push(self, character: char, bytes: &mut Vec<u8>) -> Option<()> {
         if character.is_ascii() {
             bytes.push(u8::try_from(character).ok()?);
@@ -250,7 +251,7 @@ impl fmt::Display for Encoding {
     }
 }
 
-/// The bytes before the first NUL, or all bytes: a text may fill its field.
+/// The bytes before the first NUL, or all bytes. A text that fills its field has no NUL.
 pub fn until_nul(bytes: &[u8]) -> &[u8] {
     let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
     bytes.get(..end).unwrap_or(bytes)
@@ -408,7 +409,7 @@ mod tests {
         assert_eq!(Encoding::ShiftJis.name(b"\x82\xC4.JBI"), Name { text: "て.JBI".into(), hex: None });
         let odd = Encoding::ShiftJis.name(b"\x85\x41.JBI");
         assert_eq!((odd.text.as_str(), odd.hex.as_deref()), ("\\x85A.JBI", Some("85412e4a4249")));
-        // The Windows table has this character twice, and the text encodes to only one of the codes.
+        // The Windows table has this character twice. Encoding produces only one of the two codes.
         let twin = Encoding::ShiftJis.name(b"\x87\x90");
         assert_eq!((twin.text.as_str(), twin.hex.as_deref()), ("≒", Some("8790")));
     }
@@ -443,7 +444,7 @@ mod tests {
 
         #[test]
         fn utf8_shows_every_byte(bytes in proptest::collection::vec(any::<u8>(), 0..64)) {
-            // A literal escape in the name would count as a byte, so the test uses no backslashes.
+            // The test uses no backslashes: a literal escape in the name would become a byte.
             prop_assume!(!bytes.contains(&b'\\'));
             prop_assert_eq!(Encoding::Utf8.encode_name(&Encoding::Utf8.decode(&bytes)).unwrap(), bytes);
         }

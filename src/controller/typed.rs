@@ -57,10 +57,10 @@ fn after_0x(text: &str) -> Option<&str> {
     text.strip_prefix("0x").or_else(|| text.strip_prefix("0X"))
 }
 
-/// Parses one item or a range with both ends included: `5`, `1..5`, `1-5`, `B0..B9`, `B0-9`.
+/// Parses one item, or a range that includes both ends: `5`, `1..5`, `1-5`, `B0..B9`, `B0-9`.
 ///
 /// # Errors
-/// An error of `read`, or ends in the wrong order.
+/// If `read` fails, or if the ends are in the wrong order.
 pub fn range<T: PartialOrd, E: From<RangeError>>(
     text: &str,
     read: impl Fn(&str) -> Result<T, E>,
@@ -82,7 +82,7 @@ pub fn range<T: PartialOrd, E: From<RangeError>>(
 /// `read` accepts.
 ///
 /// # Errors
-/// An error of `read` for the whole text, or ends in the wrong order.
+/// If `read` fails for the whole text, or if the ends are in the wrong order.
 pub fn series<T>(text: &str, read: impl Fn(&str) -> Result<T, String>) -> Result<Vec<T>, String> {
     let wrong = match read(text) {
         Ok(one) => return Ok(vec![one]),
@@ -98,7 +98,7 @@ pub fn series<T>(text: &str, read: impl Fn(&str) -> Result<T, String>) -> Result
     Ok(numbers.filter_map(|number| read(&format!("{begins}{number}")).ok()).collect())
 }
 
-/// Letters before the number of a name.
+/// The letters before the number of a name.
 fn letters(name: &str) -> &str {
     &name[..name.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(name.len())]
 }
@@ -109,7 +109,7 @@ pub fn once<T: Copy + Eq + Hash>(given: impl IntoIterator<Item = T>) -> Vec<T> {
     given.into_iter().filter(|item| seen.insert(*item)).collect()
 }
 
-/// Formats numbers, with ranges for consecutive ones: `7, 2..5`.
+/// Formats numbers, with a range for consecutive numbers: `7, 2..5`.
 pub fn runs<T: Copy + Display + Into<i64>>(numbers: &[T], separator: &str) -> String {
     let mut runs: Vec<(T, T)> = Vec::new();
     for &number in numbers {
@@ -124,18 +124,18 @@ pub fn runs<T: Copy + Display + Into<i64>>(numbers: &[T], separator: &str) -> St
     runs.iter().map(run).collect::<Vec<_>>().join(", ")
 }
 
-/// Splits a name and its value: `B0=7`.
+/// Splits a text into a name and a value: `B0=7`.
 ///
 /// # Errors
-/// The message names both parts and shows the example.
+/// If the `=` is missing. The message names both parts and shows the example.
 pub fn setting<'t>(text: &'t str, name: &str, value: &str, example: &str) -> Result<(&'t str, &'t str), String> {
-    text.split_once('=').ok_or_else(|| format!("write {name}, '=' and {value}, as in {example}"))
+    text.split_once('=').ok_or_else(|| format!("write {name}, '=' and {value}, for example {example}"))
 }
 
 /// Parses the state of a signal: `on` or `1`, `off` or `0`.
 ///
 /// # Errors
-/// Any other text.
+/// If the text is none of these.
 pub fn state(text: &str) -> Result<bool, String> {
     match text {
         "on" | "1" => Ok(true),
@@ -219,7 +219,7 @@ mod tests {
     fn settings_and_states_say_what_is_expected() {
         assert_eq!(setting("B0=7=8", "a variable", "a value", "B0=255"), Ok(("B0", "7=8")));
         let error = setting("B0", "a variable", "a value", "B0=255").unwrap_err();
-        assert_eq!(error, "write a variable, '=' and a value, as in B0=255");
+        assert_eq!(error, "write a variable, '=' and a value, for example B0=255");
         assert_eq!((state("on"), state("0")), (Ok(true), Ok(false)));
         assert_eq!(state("2").unwrap_err(), "'2' is not a valid state; use on or off");
     }

@@ -1,7 +1,7 @@
 //! Exact conversion between decimal text and protocol integers.
 //!
-//! It uses no floating point: a value is sent exactly as typed, or rejected. The constants are the resolutions of
-//! Yaskawa controllers (FS and DX 3.3.39); other families define their own.
+//! The conversion uses no floating point: a value is sent exactly as typed, or it is rejected. The constants are the
+//! resolutions of Yaskawa controllers (FS and DX 3.3.39). Other families define their own resolutions.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use super::typed::integer;
 
-/// A decimal unit: symbol, and number of decimals of a protocol step.
+/// A decimal unit: its symbol, and the number of decimals in the resolution of the protocol.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Unit {
     /// Symbol for display.
@@ -53,7 +53,7 @@ pub enum UnitError {
         symbol: &'static str,
     },
     /// The value does not fit 32 bits.
-    #[error("'{text}' {symbol} is out of range; {lowest} to {highest} fit")]
+    #[error("'{text}' {symbol} is out of range; the range is {lowest} to {highest}")]
     Range {
         /// The text.
         text: String,
@@ -92,7 +92,8 @@ impl Unit {
         }
         let padding = usize::from(self.decimals) - fraction.len();
         let digits = whole.bytes().chain(fraction.bytes()).chain(std::iter::repeat_n(b'0', padding));
-        // Saturation means "out of range" below, so a thousand digits cannot overflow.
+        // The sum saturates, so that a text of a thousand digits does not overflow. A saturated sum is out of range
+        // below.
         let magnitude = digits.fold(0_i64, |sum, digit| sum.saturating_mul(10).saturating_add(i64::from(digit - b'0')));
         i32::try_from(if negative { -magnitude } else { magnitude }).map_err(|_| UnitError::Range {
             text: shorten(text),
@@ -102,7 +103,7 @@ impl Unit {
         })
     }
 
-    /// [`Unit::parse`], which also accepts hexadecimal after `0x` for units without decimals, such as pulses.
+    /// Parses like [`Unit::parse`], and also accepts hexadecimal after `0x` for units without decimals, such as pulses.
     pub fn parse_steps(self, text: &str) -> Result<i32, UnitError> {
         let is_hex = text.trim_start_matches(['-', '+']).get(..2).is_some_and(|head| head.eq_ignore_ascii_case("0x"));
         let steps = integer(text).filter(|_| is_hex && self.decimals == 0);
@@ -117,13 +118,13 @@ impl Unit {
         Quantity { unit: self, value: value as i64 }
     }
 
-    /// [`Unit::show`] for unsigned words.
+    /// Formats an unsigned word like [`Unit::show`].
     pub const fn show_unsigned(self, value: u32) -> Quantity {
         Quantity { unit: self, value: value as i64 }
     }
 }
 
-/// A protocol integer with its unit; displays as decimal text without the symbol.
+/// A protocol integer with its unit. Displays as decimal text without the symbol.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Quantity {
     unit: Unit,

@@ -1,6 +1,6 @@
-//! Safe access to local files. Reading accepts only regular files with a size limit, because a device or a pipe may
-//! be endless or block. Writing replaces a file from a temporary draft next to it; drafts of killed runs are removed
-//! later.
+//! Safe access to local files. Only regular files up to a size limit are read, because a read of a device or a pipe may
+//! block or never end. A file is written to a temporary draft next to it, and the draft then replaces the file. Drafts
+//! that a killed process left are removed later.
 
 mod program;
 
@@ -14,31 +14,31 @@ use tempfile::NamedTempFile;
 
 pub use self::program::this_program;
 
-/// Size limit of user-written files: inventories, command files, simulator states.
+/// Size limit of files that users write: inventories, command files, simulator states.
 pub const SETTINGS: u64 = 16 << 20;
 
 /// Opens a regular file for reading.
 ///
 /// # Errors
-/// `IsADirectory` for a folder, `Unsupported` for another file that is not regular.
+/// `IsADirectory` for a folder, `Unsupported` for any other file that is not regular.
 pub fn open(path: &Path) -> io::Result<File> {
-    // Checked before, because opening a device or a pipe may have effects or block.
+    // The type is checked before the open, because opening a device or a pipe may have effects or block.
     check_regular(&path.metadata()?)?;
     let file = open_nonblocking(path)?;
-    // Checked again, because the path may lead to another file now.
+    // The type is checked again, because the path may lead to another file now.
     check_regular(&file.metadata()?)?;
     Ok(file)
 }
 
-/// An error of the system without its number, which does not help a technician.
+/// Formats a system error without its number. The number does not help a technician.
 pub fn plain(error: &io::Error) -> String {
     error.to_string().split(" (os error").next().unwrap_or_default().to_owned()
 }
 
-/// Reads a regular file of at most `most` bytes.
+/// Reads a regular file of at most `limit` bytes.
 ///
 /// # Errors
-/// As [`open`]; `FileTooLarge` above the limit.
+/// The errors of [`open`]; `FileTooLarge` above the limit.
 pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     read_limited(open(path)?, limit)
 }
@@ -46,13 +46,13 @@ pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
 /// Reads a text file of at most `most` bytes.
 ///
 /// # Errors
-/// As [`read`]; `InvalidData` if it is not UTF-8.
+/// The errors of [`read`]; `InvalidData` if the file is not UTF-8.
 pub fn text(path: &Path, most: u64) -> io::Result<String> {
     String::from_utf8(read(path, most)?).map_err(|_| io::Error::new(ErrorKind::InvalidData, "the text is not UTF-8"))
 }
 
-/// Reads stdin, up to a limit. The bytes are kept, because a command that asks for confirmation is planned first and
-/// reads its input twice.
+/// Reads stdin, up to a limit. The bytes are kept in memory: a command that asks for confirmation is planned first, and
+/// therefore reads its input twice.
 ///
 /// # Errors
 /// `FileTooLarge` above the limit.
@@ -67,10 +67,10 @@ pub fn stdin(most: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Reads a regular file, or stdin for `-`, up to a limit.
+/// Reads a regular file up to a limit. With the path `-`, reads stdin instead.
 ///
 /// # Errors
-/// As [`read`] and [`stdin`].
+/// The errors of [`read`] and [`stdin`].
 pub fn input(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     if path == Path::new("-") { stdin(most) } else { read(path, most) }
 }
@@ -95,7 +95,7 @@ fn check_regular(found: &std::fs::Metadata) -> io::Result<()> {
     }
 }
 
-/// Opens a path without blocking, in case it has become a pipe.
+/// Opens a path without blocking. The path may have become a pipe after it was checked.
 #[cfg(unix)]
 fn open_nonblocking(path: &Path) -> io::Result<File> {
     use std::os::unix::fs::OpenOptionsExt as _;
@@ -111,30 +111,31 @@ fn open_nonblocking(path: &Path) -> io::Result<File> {
 
 /// Prefix and suffix of draft names.
 const DRAFT: (&str, &str) = (".armctl-", ".part");
-/// Attempts to create a draft while another process removes it.
+/// Number of attempts to create a draft, if another process removes it at the same time.
 const MAX_TRIES: u32 = 10;
 
-/// Called before the first draft is created.
+/// Function that is called before each draft is created.
 static DRAFT_HOOK: OnceLock<fn()> = OnceLock::new();
 
-/// Sets a function that runs before each draft of this process: it keeps a signal from ending the process while a
-/// draft exists. Only the first call counts.
+/// Sets a function that is called before each draft of this process. With it, the program ensures that a signal does
+/// not end the process while a draft exists. Only the first call has an effect.
 pub fn set_draft_hook(prepare: fn()) {
     DRAFT_HOOK.get_or_init(|| prepare);
 }
 
-/// Drafts of this process.
+/// Paths of the drafts of this process.
 static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Removes the drafts of this process, just before it exits.
+/// Removes the drafts of this process. The program calls this function directly before it exits.
 pub fn remove_drafts() {
     for path in DRAFTS.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
-        // The draft may have become a file already.
+        // An error is ignored: the draft may have replaced its file already.
         let _ = std::fs::remove_file(path);
     }
 }
 
-/// Creates a draft, locked while it exists. It has the permissions of a normal new file, not those of a secret one.
+/// Creates a draft, which is locked while it exists. The draft has the permissions of a normal new file, not those of a
+/// private file.
 pub fn draft_in(folder: &Path) -> io::Result<NamedTempFile> {
     static SWEPT_FOLDERS: Mutex<Option<HashSet<PathBuf>>> = Mutex::new(None);
 
@@ -158,19 +159,20 @@ pub fn draft_in(folder: &Path) -> io::Result<NamedTempFile> {
         tries += 1;
         {
             let mut drafts = DRAFTS.lock().unwrap_or_else(PoisonError::into_inner);
-            // The missing ones have become files.
+            // Drafts that no longer exist have replaced their files.
             drafts.retain(|path| path.exists());
             drafts.push(file.path().to_owned());
         }
-        // Before the lock, another run may have removed the draft as abandoned.
+        // Another process may have removed the draft as abandoned before it was locked. In this case, a new draft is
+        // created.
         if (lock(file.as_file()) && is_linked(file.as_file())) || tries >= MAX_TRIES {
             return Ok(file);
         }
     }
 }
 
-/// Removes the drafts of killed runs: those that no process has locked. Returns how many were removed, and how many
-/// could not be removed.
+/// Removes the drafts of killed processes. No process has locked these drafts. Returns how many drafts were removed,
+/// and how many could not be removed.
 pub fn sweep(folder: &Path) -> (usize, usize) {
     let drafts = abandoned_drafts(folder);
     // A draft that cannot be removed does no harm.
@@ -191,8 +193,8 @@ fn abandoned_drafts(folder: &Path) -> Vec<PathBuf> {
     drafts.filter(is_dead).collect()
 }
 
-/// Replaces the content of a file, or creates it with its folder. An existing file keeps its permissions, and a
-/// symbolic link stays one.
+/// Replaces the content of a file. Creates the file and its folder if they do not exist. An existing file keeps its
+/// permissions, and a symbolic link stays a link.
 pub fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let folder = folder_of(&path);
@@ -207,7 +209,7 @@ pub fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
-/// The folder of a path; `.` for a bare name.
+/// Returns the folder of a path. For a name without a folder, this is `.`.
 pub fn folder_of(path: &Path) -> PathBuf {
     match path.parent() {
         Some(parent) if parent != Path::new("") => parent.to_owned(),
@@ -215,14 +217,14 @@ pub fn folder_of(path: &Path) -> PathBuf {
     }
 }
 
-/// Exclusive access to a file, from reading to replacing it; released when dropped.
+/// Exclusive access to a file, from reading the file to replacing it. The access ends when the lock is dropped.
 #[derive(Debug)]
 pub struct FileLock {
     _folder: Option<File>,
 }
 
-/// Waits for exclusive access to a file. Locks its folder, so that no lock file remains. If the folder cannot be
-/// locked, as on some network drives, access is not exclusive.
+/// Waits for exclusive access to a file. The function locks the folder of the file, so that no lock file remains. If
+/// the folder cannot be locked, as on some network drives, the access is not exclusive.
 pub fn lock_file(path: &Path) -> io::Result<FileLock> {
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let folder = folder_of(&path);
@@ -242,16 +244,17 @@ fn lock_folder(_: &Path) -> Option<File> {
     None
 }
 
-/// Exclusive use of a folder; released when dropped.
+/// Exclusive use of a folder. It ends when the lock is dropped.
 #[derive(Debug)]
 pub struct FolderLock {
     _folder: Option<File>,
 }
 
-/// Locks a folder for this process. If folders cannot be locked, as on some network drives, every process gets it.
+/// Locks a folder for this process. If the folder cannot be locked, as on some network drives, every process gets the
+/// folder.
 ///
 /// # Errors
-/// [`ErrorKind::WouldBlock`] if another process holds the lock.
+/// [`ErrorKind::WouldBlock`] if another process has locked the folder.
 #[cfg(unix)]
 pub fn claim_folder(folder: &Path) -> io::Result<FolderLock> {
     let file = File::open(folder)?;
@@ -262,7 +265,7 @@ pub fn claim_folder(folder: &Path) -> io::Result<FolderLock> {
     }
 }
 
-/// Without folder locks on this system, every process gets the folder.
+/// Returns the folder without a lock: on this system, folders cannot be locked, and every process gets the folder.
 ///
 /// # Errors
 /// The folder does not exist.
@@ -271,7 +274,7 @@ pub fn claim_folder(folder: &Path) -> io::Result<FolderLock> {
     folder.metadata().map(|_| FolderLock { _folder: None })
 }
 
-/// Locks a file, unless another process holds the lock.
+/// Locks a file. Returns `false` if another process has locked it.
 #[cfg(unix)]
 fn lock(file: &File) -> bool {
     rustix::fs::flock(file, rustix::fs::FlockOperation::NonBlockingLockExclusive).is_ok()
@@ -282,12 +285,12 @@ fn lock(_: &File) -> bool {
     true
 }
 
-/// Whether the system releases a lock when its process ends.
+/// Whether the system releases a lock when the process that owns it ends.
 const fn locks_detect_dead_processes() -> bool {
     cfg!(unix)
 }
 
-/// Whether an open file still has a name.
+/// Whether an open file still has a name in a folder.
 #[cfg(unix)]
 fn is_linked(file: &File) -> bool {
     file.metadata().is_ok_and(|found| std::os::unix::fs::MetadataExt::nlink(&found) > 0)
@@ -298,7 +301,7 @@ fn is_linked(_: &File) -> bool {
     true
 }
 
-/// Formats a size: `16 MiB`.
+/// Formats a size, for example `16 MiB`.
 fn size(bytes: u64) -> String {
     match bytes {
         bytes if bytes >= 1 << 20 => format!("{} MiB", bytes >> 20),

@@ -1,4 +1,4 @@
-//! Client side of sessions: detection of a session that holds the link of a robot, and connection to it.
+//! Client side of sessions: finds the session that has the link of a robot, and connects to it.
 
 use std::path::Path;
 use std::time::Duration;
@@ -17,7 +17,7 @@ use armctl_transport::session::location::{self, Claim, LocationError, SessionFol
 use armctl_transport::session::process;
 use armctl_transport::session::wire::{Info, Peer, Purpose};
 
-/// Session of the robot, if one is open and `--no-session` is not set.
+/// Returns the session of the robot, if one is open and `--no-session` is not set.
 pub async fn attach(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>, Failure> {
     let attached = find_session(robot, access, screen).await?;
     if attached.is_none() && robot.sessions == Sessions::Only {
@@ -27,24 +27,24 @@ pub async fn attach(robot: &Robot, access: &Access, screen: &Screen) -> Result<O
     Ok(attached)
 }
 
-/// Access to a controller that accepts one client.
+/// Access to a controller that accepts only one client.
 pub enum LockResult {
-    /// Through its session.
+    /// Through the session of the controller.
     Session(Box<Attached>),
-    /// With an own link; the claim keeps other processes of this computer from opening one.
+    /// Through a link of this process. While the claim exists, no other process of this computer opens a link.
     Own(Option<Claim>),
 }
 
-/// Session of a link that accepts one client, or the claim to open the link. Waits a short time for another command
-/// that has the claim.
+/// Returns the session of a link that accepts only one client, or the claim to open the link. If another command has
+/// the claim, waits a short time for it.
 pub async fn lock_soon(robot: &Robot, access: &Access, screen: &Screen) -> Result<LockResult, Failure> {
     loop {
         if let Some(attached) = attach(robot, access, screen).await? {
             return Ok(LockResult::Session(attached));
         }
-        // A stop does not wait, and a simulator in this process has no other clients.
+        // A stop must not wait, and a simulator in this process has no other clients.
         let is_alone = robot.target.value.is_simulated() || robot.sessions == Sessions::None || access.is_stop;
-        // Without a session folder, processes cannot coordinate.
+        // Without a session folder, processes cannot coordinate their links.
         let Some(place) = (if is_alone { None } else { SessionFolder::create().ok() }) else {
             return Ok(LockResult::Own(None));
         };
@@ -58,12 +58,12 @@ pub async fn lock_soon(robot: &Robot, access: &Access, screen: &Screen) -> Resul
     }
 }
 
-/// Information about this process for other processes that wait for its link.
+/// Information about this process, for other processes that wait for its link.
 pub fn info(robot: &Robot, access: &Access) -> Info {
     Info::own(&robot.name, robot.family.name(), robot.target.value.url(), &command_line(access))
 }
 
-/// Failure for a link that another command uses.
+/// Failure: another command uses the link.
 pub fn in_use(robot: &Robot, location: &SessionPath) -> Failure {
     let process = location.owner().map_or_else(
         || "another process".to_owned(),
@@ -73,7 +73,7 @@ pub fn in_use(robot: &Robot, location: &SessionPath) -> Failure {
         Kind::NoAnswer,
         format!("{}: the controller accepts one client, and {process} is connected", robot.label()),
     )
-    .hint("wait until it ends, or use `armctl session open` first so that commands share the connection")
+    .hint("wait until that process ends, or use `armctl session open` first, so that commands share the connection")
 }
 
 async fn find_session(robot: &Robot, access: &Access, screen: &Screen) -> Result<Option<Box<Attached>>, Failure> {
@@ -93,22 +93,23 @@ async fn find_session(robot: &Robot, access: &Access, screen: &Screen) -> Result
         Ok(AttachResult::Session(attached)) => attached,
         Ok(AttachResult::Nothing) => return Ok(None),
         Ok(AttachResult::Dead) => {
-            let open = "`armctl session open` opens a new session, `armctl session close` removes the old one";
+            let open = "use `armctl session open` to open a new session, or `armctl session close` to remove the old \
+                        session";
             screen.note(&format!(
-                "{}: the session process has ended, so the command runs without it; {open}",
+                "{}: the session process has ended, so the command runs without a session; {open}",
                 robot.label()
             ));
             return Ok(None);
         }
-        // A folder of another user is not used: there is no session, but the user may expect one.
+        // The session folder of another user is not used. There is no session, but the user may expect one.
         Err(AttachError::Location(error @ LocationError::Unsafe { .. })) => {
-            screen.note(&format!("warning: sessions are not used: {error}"));
+            screen.note(&format!("warning: armctl does not use sessions: {error}"));
             return Ok(None);
         }
         // A controller on UDP accepts a stop from any client.
         Err(AttachError::Silent) if bypasses_session => {
             screen.note(&format!(
-                "{}: {} does not respond, so the stop is sent directly",
+                "{}: {} does not respond, so armctl sends the stop directly",
                 robot.label(),
                 holder(robot)
             ));
@@ -129,7 +130,10 @@ async fn find_session(robot: &Robot, access: &Access, screen: &Screen) -> Result
         screen.note(&format!("{}: a client ended and left a command running: {peer}", robot.label()));
     }
     if let Some(why) = &welcome.down {
-        screen.note(&format!("{}: the session has lost its connection: {why}; reconnecting", robot.label()));
+        screen.note(&format!(
+            "{}: the session has lost its connection: {why}; the session connects again",
+            robot.label()
+        ));
     }
     if access.trace.as_deref().is_some_and(|path| path != Path::new("-")) {
         let missing = "the session itself records packets and addresses (yrcx: `armctl session open --trace FILE`)";
@@ -138,41 +142,41 @@ async fn find_session(robot: &Robot, access: &Access, screen: &Screen) -> Result
     Ok(Some(attached))
 }
 
-/// Time that a stop waits for a session. A running session answers within milliseconds.
+/// Time that a stop waits for a reply from the session. A running session replies within milliseconds.
 const STOP_TIMEOUT: Duration = Duration::from_millis(300);
 
-/// Process that holds the link of a robot.
+/// Process that has the link of a robot.
 fn owner(robot: &Robot) -> Option<Info> {
     SessionFolder::find().ok().flatten()?.location(&session_key(robot)).owner()
 }
 
 fn holder(robot: &Robot) -> String {
-    owner(robot).map_or_else(|| "its session".to_owned(), |owner| format!("its session (process {})", owner.pid))
+    owner(robot).map_or_else(|| "its session".to_owned(), |owner| format!("the session (process {})", owner.pid))
 }
 
-/// Failure for a session that holds the only link and does not respond.
+/// Failure: a session has the only link, but does not respond.
 fn unresponsive_session(robot: &Robot) -> Failure {
     let failure = Failure::new(Kind::NoAnswer, format!("{}: {} does not respond", robot.label(), holder(robot)));
     let Some(Info { pid, .. }) = owner(robot) else { return failure };
     failure.hint(format!(
-        "the process may be suspended: `kill -CONT {pid}` continues it, `kill -KILL {pid}` ends it and frees the \
-         connection"
+        "use `kill -CONT {pid}` to continue the process if it is suspended, or `kill -KILL {pid}` to end the process \
+         and free the connection"
     ))
 }
 
-/// Whether a session holds the robot's link and commands can use it.
+/// Whether a session has the link of the robot, and commands can use this session.
 pub fn is_held(robot: &Robot) -> bool {
     robot.sessions != Sessions::None
         && SessionFolder::find()
             .is_ok_and(|place| place.is_some_and(|place| place.location(&session_key(robot)).is_open()))
 }
 
-/// Whether a session of another process holds the robot's link and commands can use it.
+/// Whether a session of another process has the link of the robot, and commands can use this session.
 pub fn is_held_by_other_process(robot: &Robot) -> bool {
     is_held(robot) && owner(robot).is_some_and(|owner| owner.pid != process())
 }
 
-/// Session key of the robot: its address, or the alias address that its session was opened with.
+/// Session key of the robot: its address, or the alias address with which its session was opened.
 pub fn session_key(robot: &Robot) -> String {
     let own = own_key(robot);
     let Ok(Some(place)) = SessionFolder::find() else { return own };
@@ -183,17 +187,17 @@ pub fn session_key(robot: &Robot) -> String {
     others.find(|(_, address)| robot.has_address(address)).map_or(own, |(location, _)| location.key())
 }
 
-/// Sessions of a family, each with the address that it was opened with.
+/// Sessions of a family, each with the address with which it was opened.
 fn sessions(place: &SessionFolder, family: Family) -> Vec<(SessionPath, Address)> {
-    // An unreadable folder counts as empty; opening a session there reports the error.
+    // An unreadable folder counts as empty. When a session is opened there, the error is reported.
     let locations = place.locations().unwrap_or_default().into_iter();
     let owned = locations
         .filter_map(|location| Some((location.owner().filter(|owner| owner.family == family.name())?, location)));
     owned.filter_map(|(owner, location)| Some((location, owner.target.parse::<Target>().ok()?.address()))).collect()
 }
 
-/// Resolves all addresses of a robot from its network, if one of them may belong to a session, or to a read-only
-/// robot that is to be changed. In that case, it is the same robot.
+/// Resolves all addresses of a robot from its network, if another address may be the same robot: the address of an open
+/// session, or, for a command that changes something, the address of a read-only robot.
 ///
 /// # Errors
 /// If the robot does not answer, so that its identity is unknown.
@@ -207,7 +211,7 @@ pub fn identify(sources: &Sources, driver: &dyn Driver, robot: &mut Robot, chang
     Ok(())
 }
 
-/// Whether a session under another address may hold the robot's link.
+/// Whether a session that was opened with another address may have the link of the robot.
 fn may_be_held(robot: &Robot, own: &Address) -> bool {
     let place = if robot.sessions == Sessions::None { None } else { SessionFolder::find().ok().flatten() };
     place.is_some_and(|place| {
@@ -227,7 +231,7 @@ fn own_key(robot: &Robot) -> String {
     key(family, url)
 }
 
-/// Command line for other clients that wait for the robot.
+/// Command line to show to other clients that wait for the robot.
 fn command_line(access: &Access) -> String {
     if let Some(typed) = &access.typed {
         return typed.to_string();
@@ -239,7 +243,7 @@ fn command_line(access: &Access) -> String {
     std::iter::once(program).chain(words).collect::<Vec<_>>().join(" ")
 }
 
-/// Failure: the session folder cannot be used.
+/// Failure for a session folder that cannot be used.
 pub fn folder_failure(error: &LocationError) -> Failure {
     let failure = Failure::new(Kind::Local, format!("sessions: {error}"));
     match error {
@@ -250,7 +254,7 @@ pub fn folder_failure(error: &LocationError) -> Failure {
     }
 }
 
-/// Failure for a session that exists but cannot be used.
+/// Failure: a session exists, but cannot be used.
 pub fn attach_failure(label: &str, error: &AttachError) -> Failure {
     let hint = "list sessions with `armctl session list`, or bypass the session with --no-session";
     let kind = match error {
@@ -261,36 +265,40 @@ pub fn attach_failure(label: &str, error: &AttachError) -> Failure {
     Failure::new(kind, format!("{label}: {error}")).hint(hint)
 }
 
-/// Failure for a busy session.
+/// Failure: the session is busy.
 pub fn session_busy(label: &str, busy: &SessionBusy) -> Failure {
     match busy {
         SessionBusy::Ended(why) => Failure::new(Kind::NoAnswer, format!("{label}: {why}"))
-            .hint("check the robot; `armctl session open` opens a new session"),
+            .hint("check the robot, then use `armctl session open` to open a new session"),
         SessionBusy::Busy(holder) => {
             let who = holder.as_ref().map_or_else(|| "another client".to_owned(), peer);
-            Failure::new(Kind::NoAnswer, format!("{label}: the link is in use by {who}"))
-                .hint("wait until it ends; you can always stop: `yrcx stop`, `toyo stop`, `yerc hold on`")
+            Failure::new(Kind::NoAnswer, format!("{label}: the link is in use by {who}")).hint(
+                "wait until that client ends; you can always stop the robot with `yrcx stop`, `toyo stop` or `yerc \
+                 hold on`",
+            )
         }
         SessionBusy::ReadOnly => {
             Failure::new(Kind::Rejected, format!("{label} is read-only: the session sent nothing")).hint(
-                "to allow changes, use `armctl robots set NAME read_only=off`, then close the session and open it \
+                "use `armctl robots set NAME read_only=off` to allow changes, then close the session and open it \
                  again",
             )
         }
         SessionBusy::Moved(holder) => {
             let message = format!("{label}: another client is moving the robot: {}; nothing was sent", peer(holder));
-            Failure::new(Kind::Rejected, message)
-                .hint("wait until it ends; you can always stop: `yrcx stop`, `toyo stop`, `yerc hold on`")
+            Failure::new(Kind::Rejected, message).hint(
+                "wait until that client ends; you can always stop the robot with `yrcx stop`, `toyo stop` or `yerc \
+                 hold on`",
+            )
         }
     }
 }
 
-/// Client and start time.
+/// Description of a client: its command and start time.
 pub fn peer(peer: &Peer) -> String {
     format!("process {} (`{}`), since {}", peer.pid, peer.command, format_since(peer.for_ms))
 }
 
-/// Local time that was `for_ms` ago.
+/// Local time `for_ms` milliseconds ago.
 pub fn format_since(for_ms: u64) -> String {
     let then = Timestamp::now().checked_sub(Duration::from_millis(for_ms)).unwrap_or(Timestamp::MIN);
     then.to_zoned(TimeZone::system()).strftime("%Y-%m-%d %H:%M:%S").to_string()

@@ -1,4 +1,4 @@
-//! Confirmation questions, before a command starts and while it runs.
+//! Confirmation questions, before a command starts and while the command runs.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -9,7 +9,7 @@ use crate::output::Screen;
 use crate::settings::Robot;
 use armctl_controller::Risk;
 
-/// Authorizes a command for `robot`, with a question if the risk requires it, before anything is sent.
+/// Authorizes a command for `robot` before anything is sent. Asks the user if the risk requires it.
 pub async fn confirm_intent(gate: Gate, screen: &Screen, robot: &Robot, intent: &Intent) -> Result<(), Failure> {
     if !gate.must_ask(screen, robot, intent)? {
         return Ok(());
@@ -22,13 +22,13 @@ pub async fn confirm_intent(gate: Gate, screen: &Screen, robot: &Robot, intent: 
     ask(screen, robot, Vec::new(), question, "nothing was sent").await
 }
 
-/// Authority of a running command to confirm changes.
+/// Authority with which a running command confirms changes.
 #[derive(Debug, Clone)]
 pub struct Authority<'a> {
     gate: Gate,
     screen: &'a Screen,
     robot: &'a Robot,
-    /// Maximum risk that the command declared.
+    /// Maximum risk that the command declares.
     granted: Risk,
     grant: Grant,
 }
@@ -44,18 +44,13 @@ impl<'a> Authority<'a> {
         Self::new(Gate::default(), screen, robot, Risk::Read, Grant::up_to(Risk::Read))
     }
 
-    /// Authority for a part of the work on another screen.
-    #[must_use]
-    pub fn clone_for<'b>(&self, screen: &'b Screen, robot: &'b Robot) -> Authority<'b> {
-        Authority { gate: self.gate, screen, robot, granted: self.granted, grant: self.grant.clone() }
-    }
-
-    /// Whether a person is asked before a change. In that time, other clients may change data.
+    /// Whether the user is asked before a change. While the user thinks, other clients may change data.
     pub fn asks(&self) -> bool {
         self.gate.needs_yes(self.robot, self.granted) && self.grant.get() < self.granted
     }
 
-    /// Confirms `change`. Nothing has been changed so far. A change that overwrites no user data needs no question.
+    /// Confirms `change`. The controller must be unchanged so far. A change that overwrites no user data needs no
+    /// question.
     pub async fn confirm(&self, change: &Change) -> Result<(), Failure> {
         let risk = self.granted;
         if !change.is_empty() && self.asks() {
@@ -71,17 +66,17 @@ impl<'a> Authority<'a> {
     }
 }
 
-/// Question to the user.
+/// Question to the user, and how the user confirms.
 enum Question {
     Yes(String),
-    /// Description and the word to type.
+    /// Description, and the word that the user must type.
     Word(String, &'static str),
 }
 
-/// Serializes questions.
+/// Only one question is asked at a time.
 static QUESTION_LOCK: Mutex<()> = Mutex::new(());
 
-/// Asks in a separate thread, so that Ctrl-C is handled. `otherwise` describes the state after a no.
+/// Asks in a separate thread, so that Ctrl-C is handled. `otherwise` describes the state after the answer no.
 async fn ask(
     screen: &Screen,
     robot: &Robot,
@@ -89,13 +84,13 @@ async fn ask(
     question: Question,
     otherwise: &str,
 ) -> Result<(), Failure> {
-    // From here on, Ctrl-C (also at the question) ends with a message and an exit code instead of killing the
+    // From now on, Ctrl-C (also at the question) ends the command with a message and an exit code. It does not kill the
     // process.
     catch_interrupts();
     let screen = *screen;
     let who = format!("{} ({}, {})", robot.name, robot.family, robot.target.value.url());
     let asked = tokio::task::spawn_blocking(move || {
-        // Questions for several robots are asked one after the other.
+        // Questions for several robots are asked one after another.
         let _turn = QUESTION_LOCK.lock().unwrap_or_else(PoisonError::into_inner);
         screen.ask_title("REAL CONTROLLER:", &who);
         for line in &lines {

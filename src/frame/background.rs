@@ -18,22 +18,25 @@ use crate::settings::Robot;
 use armctl_transport::session::location::SessionFolder;
 use armctl_transport::session::{detach, process, terminate};
 
+/// Flag of the process in the background.
+pub const DETACHED: &str = "--detached";
+
 /// Result of opening a session.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 pub struct Opened {
     robot: String,
     family: String,
     target: String,
-    /// Process that holds the link.
+    /// Process that has the link.
     pid: u32,
-    /// Whether it runs in the background.
+    /// Whether the process runs in the background.
     background: bool,
     /// Log file of a background session.
     log: Option<String>,
 }
 
 impl Opened {
-    /// Session in this process.
+    /// A session in this process.
     pub fn here(robot: &Robot, background: bool, log: Option<&Path>) -> Self {
         Self {
             robot: robot.name.clone(),
@@ -46,11 +49,11 @@ impl Opened {
     }
 }
 
-/// Start message from the background process, one line.
+/// Start message of the background process, in one line.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Start {
-    /// The link is up.
+    /// The link is open.
     Opened(Opened),
     /// The link could not be opened.
     Failed(Failure),
@@ -63,16 +66,16 @@ impl Report for Opened {
     }
 }
 
-/// Opens a background session for a robot whose inventory entry has `hold = true`.
+/// Opens a background session for a robot. Its inventory entry has `hold = true`.
 pub async fn open_session(robot: &Robot, inventory: Option<&Path>, screen: &Screen) -> Result<(), Failure> {
     let mut words: Vec<OsString> = Vec::new();
     if let Some(path) = inventory {
         words.extend(["--config".into(), path.into()]);
     }
-    words.extend(["-r", &robot.name, "session", "open", "--detached"].map(OsString::from));
+    words.extend(["-r", &robot.name, "session", "open", DETACHED].map(OsString::from));
     let opened = start(robot, words.into_iter()).await?;
     screen.note(&format!(
-        "{}: session opened (process {}); `armctl session close {}` closes it",
+        "{}: session opened (process {}); use `armctl session close {}` to close it",
         robot.label(),
         opened.pid,
         robot.name
@@ -80,20 +83,34 @@ pub async fn open_session(robot: &Robot, inventory: Option<&Path>, screen: &Scre
     Ok(())
 }
 
-/// Starts this program in the background with these arguments, and waits until its link is up.
+/// Closes the files that the starter of this process left open. A lock or pipe of another program must not stay open as
+/// long as the session. Only a process that has opened no file itself may call it.
+#[cfg(unix)]
+pub fn close_inherited_files() {
+    // Without this folder nothing is known of open files.
+    let Ok(open) = std::fs::read_dir("/dev/fd") else { return };
+    let open: Vec<i32> = open.filter_map(|file| file.ok()?.file_name().to_str()?.parse().ok()).collect();
+    for file in open.into_iter().filter(|file| *file > 2) {
+        // One of them was open for the list only, and is closed already.
+        let _ = nix::unistd::close(file);
+    }
+}
+
+/// Starts this program in the background with these arguments, and waits until the background process has opened its
+/// link.
 pub async fn start(robot: &Robot, words: impl Iterator<Item = OsString>) -> Result<Opened, Failure> {
     let folder = SessionFolder::create().map_err(|error| folder_failure(&error))?;
     let log = folder.location(&session_key(robot)).log();
-    let mut child = detach(words, &log).context("this program, in the background")?;
+    let mut child = detach(words, &log).context("cannot start armctl in the background")?;
     let pid = child.pid();
     let line = match interruptible(spawn_blocking(move || child.line())).await {
-        Ok(line) => line.map_err(|error| Failure::local(format!("the background: {error}")))?,
+        Ok(line) => line.map_err(|error| Failure::local(format!("armctl in the background: {error}")))?,
         Err(interrupt) => {
             terminate(pid);
             return Err(interrupt);
         }
     };
-    let line = line.context("the background")?;
+    let line = line.context("no answer from armctl in the background")?;
     match serde_json::from_str(&line) {
         Ok(Start::Opened(opened)) => Ok(opened),
         Ok(Start::Failed(failure)) => Err(failure),

@@ -25,7 +25,7 @@ fn assignment(text: &str) -> Result<(String, String), String> {
     if is_name(name) { Ok((name.to_owned(), value.to_owned())) } else { Err(format!("'{name}' is not a valid name")) }
 }
 
-/// Letters, digits and underscores.
+/// Whether a name consists of letters, digits and underscores.
 pub fn is_name(name: &str) -> bool {
     !name.is_empty() && name.chars().all(|c| c == '_' || c.is_ascii_alphanumeric())
 }

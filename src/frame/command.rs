@@ -17,15 +17,15 @@ use armctl_controller::Risk;
 /// Execution context of a command.
 #[derive(Debug)]
 pub struct Context<'a, F: Family> {
-    /// Robot.
+    /// Robot that the command runs on.
     pub robot: &'a Robot,
     /// Connection to the robot.
     pub link: &'a mut F::Link,
-    /// Screen for progress and notes; reports are returned.
+    /// Screen for progress and notes. Reports are not written to it, but returned.
     pub screen: &'a Screen,
-    /// Whether other robots may run the same command, so that files need one folder per robot.
+    /// Whether other robots may run the same command. In that case, files need one folder per robot.
     pub several: bool,
-    /// Confirms deletions and overwrites when they are known.
+    /// Authority that confirms deletions and overwrites when the command knows them.
     pub authority: Authority<'a>,
 }
 
@@ -44,7 +44,7 @@ pub struct AnyContext<'a> {
 }
 
 impl<'a> AnyContext<'a> {
-    /// Converts to the context of one family; the connection must belong to it.
+    /// Converts to the context of one family. The connection must belong to this family.
     pub fn of<F: Family>(self) -> Result<Context<'a, F>, Failure> {
         let Self { robot, connection, screen, several, authority } = self;
         Ok(Context { robot, link: connection::link::<F>(connection)?, screen, several, authority })
@@ -56,40 +56,40 @@ impl<'a> AnyContext<'a> {
 pub trait Command {
     /// Family of the command.
     type Family: Family;
-    /// Report type.
+    /// Type of the report.
     type Report: Report + 'static;
-    /// `yerc.status`: name in envelopes and schemas.
+    /// Name in envelopes and schemas, such as `yerc.status`.
     const ID: &'static str;
-    /// Maximum risk.
+    /// Maximum risk of the command.
     const RISK: Risk = Risk::Read;
-    /// Completes "This will …" in the question before a motion.
+    /// Text that completes "This will …" in the question before a motion.
     const INTENT: &'static str = "";
-    /// Kind of confirmation for motion, deletion and overwriting.
+    /// Kind of confirmation that motion, deletion and overwriting need.
     const CONFIRMATION: Confirmation = Confirmation::Question;
-    /// Required connection.
+    /// Connection that the command needs.
     const CONNECT_MODE: ConnectMode = ConnectMode::Control;
 
-    /// Risk for these arguments; default [`RISK`](Self::RISK).
+    /// Risk with these arguments. The default is [`RISK`](Self::RISK).
     fn risk(&self) -> Risk {
         Self::RISK
     }
 
-    /// Risk for this robot; at most [`risk`](Self::risk).
+    /// Risk on this robot. It is at most [`risk`](Self::risk).
     fn risk_on(&self, _robot: &Robot) -> Risk {
         self.risk()
     }
 
-    /// Intent for these arguments; default [`INTENT`](Self::INTENT).
+    /// Intent with these arguments. The default is [`INTENT`](Self::INTENT).
     fn intent(&self) -> String {
         Self::INTENT.to_owned()
     }
 
-    /// Confirmation for these arguments; default [`CONFIRMATION`](Self::CONFIRMATION).
+    /// Confirmation with these arguments. The default is [`CONFIRMATION`](Self::CONFIRMATION).
     fn confirmation(&self) -> Confirmation {
         Self::CONFIRMATION
     }
 
-    /// Whether the command stops the robot, which is always allowed.
+    /// Whether the command stops the robot. A stop is always allowed.
     fn is_stop(&self) -> bool {
         false
     }
@@ -99,12 +99,12 @@ pub trait Command {
         false
     }
 
-    /// Whether the command jogs. A jog is stopped even with `--on-interrupt leave`.
+    /// Whether the command is a jog. A jog is stopped even with `--on-interrupt leave`.
     fn jogs(&self) -> bool {
         false
     }
 
-    /// Whether the command repeats until it is stopped, and each run waits for an event.
+    /// Whether the command runs again and again until it is stopped, and each run waits for an event.
     fn is_endless(&self) -> bool {
         false
     }
@@ -119,34 +119,39 @@ pub trait Command {
         true
     }
 
-    /// Runs without a robot, if the command needs none.
+    /// Runs the command without a robot, if it needs none.
     fn run_alone(&self) -> Result<Self::Report, Failure> {
         Err(Failure::local("internal error: this command needs a robot"))
     }
 
-    /// Required connection for these arguments; default [`CONNECT_MODE`](Self::CONNECT_MODE).
+    /// Required connection with these arguments. The default is [`CONNECT_MODE`](Self::CONNECT_MODE).
     fn connect_mode(&self) -> ConnectMode {
         Self::CONNECT_MODE
     }
 
-    /// Line below the table of several robots.
+    /// Line below the table with the reports of several robots.
     fn summary(&self, _envelopes: &[Envelope]) -> Option<String> {
         None
     }
 
-    /// Executes the command. In a dry run, requests that change something are noted and count as done. A read ends
-    /// with the failure [`unknown`](super::dry_run::unknown), and nothing after it can be planned unless the command
-    /// handles it.
+    /// Outcome for a robot that did not answer before the end of `--for`.
+    fn without_answer(&self, _robot: &Robot, failure: Failure) -> Result<Self::Report, Failure> {
+        Err(failure)
+    }
+
+    /// Executes the command. In a dry run, requests that change something are recorded and count as successful. A read
+    /// ends with the failure [`unknown`](super::dry_run::unknown). Unless the command handles this failure, the
+    /// requests after the read are not planned.
     async fn run(&self, context: Context<'_, Self::Family>) -> Result<Self::Report, Failure>;
 }
 
-/// [`Command`] without its types, for the common run loop.
+/// [`Command`] without its associated types, for the common run loop.
 pub trait AnyCommand {
     /// See [`Command::ID`].
     fn id(&self) -> &'static str;
-    /// Intent for the gate: for this robot, or the maximum.
+    /// Intent for the gate. With a robot, its intent on this robot; otherwise the intent with the highest risk.
     fn intent(&self, robot: Option<&Robot>) -> Intent;
-    /// Report, if the command needs no robot.
+    /// Runs the command and returns its report, if the command needs no robot.
     fn without_robot(&self, _screen: &Screen) -> Option<Outcome> {
         None
     }
@@ -166,7 +171,7 @@ pub trait AnyCommand {
     fn uses_files(&self) -> bool {
         false
     }
-    /// Driver for its connections; none if it needs no robot.
+    /// Driver for the connections of the command; `None` if it needs no robot.
     fn driver(&self) -> Option<&'static dyn Driver> {
         None
     }
@@ -178,7 +183,11 @@ pub trait AnyCommand {
     fn summary(&self, _envelopes: &[Envelope]) -> Option<String> {
         None
     }
-    /// Columns of its report, if they are known without one.
+    /// See [`Command::without_answer`].
+    fn without_answer(&self, _robot: &Robot, failure: Failure) -> Outcome {
+        Err(failure)
+    }
+    /// Columns of the report, if they are known before there is a report.
     fn sheet(&self) -> Option<Sheet> {
         None
     }
@@ -192,7 +201,7 @@ impl dyn AnyCommand + '_ {
         self.driver()?.family()
     }
 
-    /// Effect of opening the connection on a robot.
+    /// Effect that opening a connection for the command has on a robot.
     pub fn entry(&self, robot: &Robot) -> Entry {
         self.driver().map_or(Entry::Harmless, |driver| driver.entry(robot, self.connect_mode(robot)))
     }
@@ -254,6 +263,10 @@ impl<C: Command> AnyCommand for C {
 
     fn summary(&self, envelopes: &[Envelope]) -> Option<String> {
         Command::summary(self, envelopes)
+    }
+
+    fn without_answer(&self, robot: &Robot, failure: Failure) -> Outcome {
+        Ok(Box::new(Command::without_answer(self, robot, failure)?))
     }
 
     fn sheet(&self) -> Option<Sheet> {

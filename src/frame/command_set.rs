@@ -11,18 +11,18 @@ use crate::output::Screen;
 use crate::settings::Robot;
 use armctl_controller::Risk;
 
-/// A command of a family that needs no robot, only files or this computer.
+/// A command of a family that needs no robot. It uses only files or this computer.
 pub trait OfflineCommand {
     /// Report type.
     type Report: Report + 'static;
-    /// `toyo.program.check`: name in envelopes and schemas.
+    /// Name in envelopes and schemas, such as `toyo.program.check`.
     const ID: &'static str;
 
     /// Executes the command.
     fn run(&self, screen: &Screen) -> Result<Self::Report, Failure>;
 }
 
-/// An [`OfflineCommand`] in a set of robot commands.
+/// An [`OfflineCommand`] as a member of a set of robot commands.
 #[derive(Debug, clap::Args)]
 pub struct Offline<C: clap::Args> {
     #[command(flatten)]
@@ -55,13 +55,14 @@ impl<C: OfflineCommand + clap::Args + 'static> AnyCommand for Offline<C> {
 
 /// A command, or a group of subcommands.
 pub trait CommandSet {
-    /// Parsed command.
+    /// Converts the parsed arguments to the command.
     fn command(self) -> Box<dyn AnyCommand>;
-    /// Schemas of all its reports.
+    /// Schemas of all reports.
     fn schemas() -> Vec<SchemaEntry>;
-    /// Adds the subcommands that `is_named` accepts. Names that a command line does not contain need no parser.
+    /// Adds the subcommands that `is_named` accepts. If a command line does not contain the name of a subcommand, its
+    /// parser is not needed.
     fn lay_out(command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command;
-    /// Subcommands in their order; the first one below a heading has the heading.
+    /// Names of the subcommands in their order. The first subcommand below a heading also has the heading.
     fn headings() -> Vec<(Option<&'static str>, String)> {
         Vec::new()
     }
@@ -105,8 +106,8 @@ pub fn word(variant: &str) -> String {
     word
 }
 
-/// Declares a clap enum of commands: doc comment, name, and argument type. A text with a colon is the help heading
-/// for the commands after it.
+/// Declares a clap enum of commands: doc comment, name, and argument type. A text with a colon is the help heading of
+/// the commands after it.
 #[macro_export]
 macro_rules! commands {
     ($(#[$meta:meta])* $visibility:vis enum $name:ident {

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use crate::failure::Failure;
 use crate::output::jq::Filter;
 
-/// State names and their filters over an envelope.
+/// Names of states, and their filters over an envelope.
 const STATES: [(&str, &str); 6] = [
     ("idle", ".data.running == false and .data.held != true"),
     ("running", ".data.running == true"),
@@ -15,25 +15,25 @@ const STATES: [(&str, &str); 6] = [
     ("servo-on", ".data.servo_on == true"),
 ];
 
-/// Comparison operators, longer ones first.
+/// Comparison operators. Longer operators come first, so that a prefix search finds them.
 const COMPARISONS: [&str; 7] = [">=", "<=", "!=", "==", "=", ">", "<"];
 
 /// Condition to wait for.
 #[derive(Debug)]
 pub struct Condition {
-    /// Text as typed.
+    /// Condition as the user typed it.
     text: String,
     filter: Filter,
-    /// Keys that the condition uses, each as a path from the envelope.
+    /// Keys that the condition uses, each as a path from the top of the envelope.
     keys: Vec<Vec<String>>,
-    /// Name of `NAME=VALUE`: a key of the report, or an item in it.
+    /// `NAME` in `NAME=VALUE`: a key of the report, or an item in the report.
     name: Option<String>,
 }
 
-/// `NAME=VALUE`, or another comparison of a named value.
+/// `NAME=VALUE`, or a comparison with another operator.
 #[derive(Debug)]
 pub struct Comparison<'a> {
-    /// Name as typed.
+    /// Name as the user typed it.
     pub name: &'a str,
     sign: &'static str,
     value: Value,
@@ -46,6 +46,11 @@ impl Condition {
     /// If the filter is not valid.
     pub fn new(text: &str) -> Result<Self, Failure> {
         let text = text.trim();
+        if serde_json::from_str::<Value>(text).is_ok() {
+            // As a filter, this would be true at once.
+            return Err(Failure::usage(format!("'{text}' is not a condition"))
+                .hint(format!("write the value to wait for, such as {text}=on")));
+        }
         let comparison = Comparison::parse(text);
         let (filter, keys) = match (STATES.iter().find(|(state, _)| *state == text), &comparison) {
             (Some((_, filter)), _) => (each(filter), paths(filter)),
@@ -56,7 +61,8 @@ impl Condition {
         Self::with_filter(text, &filter, keys, name)
     }
 
-    /// Condition for a report that has only the item of this comparison, which may have another spelling there.
+    /// Condition for a report that has only the item of this comparison. The report may spell the name of the item
+    /// differently.
     ///
     /// # Errors
     /// If the filter is not valid.
@@ -69,27 +75,28 @@ impl Condition {
     fn with_filter(text: &str, filter: &str, keys: Vec<Vec<String>>, name: Option<String>) -> Result<Self, Failure> {
         let filter = Filter::new(filter).map_err(|failure| {
             failure.hint(
-                "a condition is one of idle, running, held, faulted, homed, servo-on; NAME=VALUE; or a jq filter such \
-                 as .data.held",
+                "use idle, running, held, faulted, homed or servo-on; or NAME=VALUE; or a jq filter such as \
+                 .data.held",
             )
         })?;
         Ok(Self { text: text.to_owned(), filter, keys, name })
     }
 
-    /// Whether it is about the connection itself, so that a robot that does not answer is no failure.
+    /// Whether the condition is about the connection itself. In that case, a robot that does not answer is not a
+    /// failure.
     pub fn is_about_connection(&self) -> bool {
         self.text.contains("reachable")
     }
 
-    /// Whether the condition is true; for several robots, whether it is true for all of them.
+    /// Whether the condition is true. With several robots, it must be true for all of them.
     ///
     /// # Errors
-    /// The error of the filter.
+    /// If the filter fails.
     pub fn is_met(&self, envelopes: &Value) -> Result<bool, Failure> {
         self.filter.is_true(envelopes)
     }
 
-    /// Message if the condition can never be true, because a report does not have the key.
+    /// Message if the condition can never be true, because a report does not have a key of the condition.
     pub fn check_keys(&self, envelopes: &Value) -> Option<String> {
         let first = envelopes.as_array().and_then(|all| all.first()).unwrap_or(envelopes);
         let data = first["data"].as_object()?;
@@ -97,8 +104,8 @@ impl Condition {
             let is_known = data.contains_key(name) || has_item(&first["data"], name);
             return (!is_known).then(|| {
                 format!(
-                    "'{}': this report has no key and no item {name}, so this may never be true; `armctl wait '{}'` \
-                     reads it",
+                    "'{}': this report has no key and no item {name}, so this condition may never be true; use \
+                     `armctl wait '{}'` to read the item",
                     self.text, self.text
                 )
             });
@@ -106,7 +113,10 @@ impl Condition {
         let missing = self.keys.iter().find(|path| !has(first, path))?;
         let found = path_of(first, missing).map(|keys| keys.join(", ")).unwrap_or_default();
         let place = missing.join(".");
-        Some(format!("'{}': the key .{place} does not exist, so this may never be true; available: {found}", self.text))
+        Some(format!(
+            "'{}': the key .{place} does not exist, so this condition may never be true; available keys: {found}",
+            self.text
+        ))
     }
 }
 
@@ -140,14 +150,14 @@ impl<'a> Comparison<'a> {
         Some(Self { name, sign: if sign == "=" { "==" } else { sign }, value })
     }
 
-    /// Filter over a value. A signal can also be compared with 0 and 1.
+    /// Filter over a value. A signal can also be compared with the numbers 0 and 1.
     fn comparison_filter(&self) -> String {
         let Self { sign, value, .. } = self;
         let bit = "if . == true then 1 elif . == false then 0 else . end";
         if value.is_number() { format!("({bit}) {sign} {value}") } else { format!(". {sign} {value}") }
     }
 
-    /// Filter over an envelope: a key of the report, or else an item with this name.
+    /// Filter over an envelope. It uses the key of the report with this name, or otherwise the item with this name.
     fn filter(&self) -> String {
         let (name, compared) = (json!(self.name), self.comparison_filter());
         let described = format!(
@@ -167,12 +177,12 @@ fn has_item(value: &Value, name: &str) -> bool {
     }
 }
 
-/// Filter applied to one envelope, or to each of several.
+/// Applies a filter to one envelope, or to each of several envelopes.
 fn each(filter: &str) -> String {
     format!("if type == \"array\" then length > 0 and all(.[]; {filter}) else ({filter}) end")
 }
 
-/// Plain paths from `.data` in a filter: `.data.servo_on`.
+/// Plain paths in a filter that begin with `.data`, such as `.data.servo_on`.
 fn paths(filter: &str) -> Vec<Vec<String>> {
     let mut found = Vec::new();
     for (at, _) in filter.match_indices(".data.") {
@@ -188,7 +198,7 @@ fn paths(filter: &str) -> Vec<Vec<String>> {
     found
 }
 
-/// Whether a value has this path; null can have any keys.
+/// Whether a value has this path. A null value counts as a value with any keys.
 fn has(value: &Value, path: &[String]) -> bool {
     let mut value = value;
     for key in path {
@@ -203,7 +213,7 @@ fn has(value: &Value, path: &[String]) -> bool {
     true
 }
 
-/// Available keys at the first missing part of a path.
+/// Keys that are available where the first part of a path is missing.
 fn path_of<'a>(value: &'a Value, path: &[String]) -> Option<Vec<&'a str>> {
     let mut value = value;
     for key in path {
@@ -254,6 +264,7 @@ mod tests {
         assert!(holds(".data.servo_on", &status) && holds(".data.alarms == []", &status));
         assert!(holds(".data.servo_on and (.data.alarms | length) <= 0", &status));
         assert!(Condition::new(".[").is_err() && Condition::new("idel").is_err());
+        assert!(Condition::new("27010").is_err() && Condition::new("true").is_err(), "always true");
     }
 
     #[test]
@@ -271,7 +282,8 @@ mod tests {
         assert_eq!(
             never("idle"),
             Some(
-                "'idle': the key .data.held does not exist, so this may never be true; available: running, position"
+                "'idle': the key .data.held does not exist, so this condition may never be true; available keys: \
+                 running, position"
                     .to_owned()
             )
         );

@@ -1,4 +1,4 @@
-//! Connections to robots: permitted use, and the family-independent interface for the run loop.
+//! Connections to robots: what a command may do with a link, and the family-independent interface for the run loop.
 
 use std::any::Any;
 use std::fmt;
@@ -16,24 +16,24 @@ use crate::output::Screen;
 use crate::settings::{Robot, target};
 use armctl_controller::Risk;
 
-/// Permitted use of a link.
+/// What a command may do with a link.
 #[derive(Debug, Clone)]
 pub struct Access {
-    /// Maximum risk of a sent frame: the last check, after the gate.
+    /// Maximum risk of the frames that may be sent. This is the last check, after the gate.
     pub grant: Grant,
-    /// Whether frames are noted instead of sent.
+    /// Whether frames are recorded instead of sent.
     pub dry_run: bool,
     /// Trace file.
     pub trace: Option<PathBuf>,
-    /// Required connection.
+    /// Connection that the command needs.
     pub mode: ConnectMode,
-    /// Command line, if it differs from that of the process.
+    /// Command line of the command, if it is not the command line of the process.
     pub typed: Option<Arc<str>>,
-    /// Family arguments before the command.
+    /// Arguments of the family that precede the command.
     pub own: FamilyArguments,
     /// Whether a motion continues if this process ends.
     pub leaves_motion: bool,
-    /// Whether it is for a stop, which must not wait.
+    /// Whether the access is for a stop, which must not wait.
     pub is_stop: bool,
 }
 
@@ -45,16 +45,16 @@ impl Access {
     }
 }
 
-/// Family arguments before the command, common to all commands of the family. Only the family can interpret them.
+/// Arguments of a family that precede the command, and apply to all its commands. Only the family can interpret them.
 #[derive(Debug, Clone, Default)]
 pub struct FamilyArguments(Option<Arc<dyn AnyFamilyArguments>>);
 
-/// Family arguments before a command.
+/// Arguments of a family that precede a command.
 pub trait AnyFamilyArguments: Any + fmt::Debug + Send + Sync {
-    /// Adds their effect to the intent of a command.
+    /// Adds the effect of the arguments to the intent of a command.
     fn complete(&self, intent: Intent) -> Intent;
 
-    /// Equivalent words of the command line.
+    /// Words of the command line that are equivalent to the arguments.
     fn words(&self) -> Vec<String>;
 }
 
@@ -64,7 +64,7 @@ impl FamilyArguments {
         Self(Some(Arc::new(arguments)))
     }
 
-    /// Arguments in the family's type, if given.
+    /// Arguments in the type of the family, if the user gave any.
     pub fn get<T: AnyFamilyArguments>(&self) -> Option<&T> {
         let own: &dyn Any = &**self.0.as_ref()?;
         own.downcast_ref()
@@ -84,55 +84,55 @@ impl FamilyArguments {
     }
 }
 
-/// Connection that a command needs. If a controller treats the end of a connection as a fault, like a YRCX, nothing
-/// more than this is opened.
+/// Connection that a command needs. Some controllers, such as a YRCX, treat the end of a connection as a fault. For
+/// this reason, no other connection is opened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ConnectMode {
-    /// Read and command.
+    /// A connection that reads and commands.
     #[default]
     Control,
-    /// Read the signals that the controller sends on its own.
+    /// A connection that receives only the signals that the controller sends on its own.
     Monitor,
-    /// Explicit messages to the network board, which need no connection to the controller (yrcx).
+    /// Explicit messages to the network board. They need no connection to the controller (yrcx).
     Explicit,
 }
 
-/// Effect of a connection on a controller.
+/// Effect that a connection has on a controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Entry {
-    /// Nothing.
+    /// No effect.
     Harmless,
-    /// None, because a session holds the link; a direct connection would have an effect.
+    /// No effect, because the link belongs to a session. A direct connection would have an effect.
     ThroughSession,
-    /// The robot stops when the connection ends; completes "This will …".
+    /// The robot stops when the connection ends. The text completes "This will …".
     Stops(String),
 }
 
-/// A controller family, for its commands.
+/// A controller family, as its commands see it.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Family: Sized + 'static {
-    /// Name; `None` for commands of all families.
+    /// Family; `None` for commands of all families.
     const FAMILY: Option<target::Family>;
-    /// A connection to one robot.
+    /// Connection to one robot.
     type Link: 'static;
-    /// Words of the stop command after the family name; empty if nothing can move.
+    /// Words of the stop command after the family name; empty if the family cannot move anything.
     const STOP: &'static [&'static str];
 
-    /// Connects. A dry run opens nothing.
+    /// Connects to the robot. A dry run opens no connection.
     async fn connect(robot: &Robot, access: Access, screen: &Screen) -> Result<Self::Link, Failure>;
 
-    /// Stops motion that this link started. Returns the result: "the robot was stopped: HOLD is on".
+    /// Stops motion that this link started. Returns the result as a text, such as "the robot was stopped: HOLD is on".
     async fn halt(link: &mut Self::Link) -> Result<String, Failure>;
 
-    /// Whether motion of this link is stopped even with `--on-interrupt leave`.
+    /// Whether the motion of this link is stopped even with `--on-interrupt leave`.
     fn needs_halt(_link: &Self::Link) -> bool {
         false
     }
 
-    /// Frames that a dry run would have sent, in order.
+    /// Frames that a dry run would have sent, in their order.
     fn planned(link: &mut Self::Link) -> Plan;
 
-    /// Checks before a report that all answers belong to the requests.
+    /// Checks, before a report is made, that all answers belong to the requests.
     async fn settle(_link: &mut Self::Link) -> Result<(), Failure> {
         Ok(())
     }
@@ -142,21 +142,21 @@ pub trait Family: Sized + 'static {
         Entry::Harmless
     }
 
-    /// Whether the controller accepts only one client, so that the commands of this computer share its link.
+    /// Whether the controller accepts only one client. In that case, all commands of this computer share its link.
     fn takes_one_client(_robot: &Robot) -> bool {
         false
     }
 
-    /// All addresses of a robot, resolved from its network; empty if each robot has one address.
+    /// All addresses of a robot, resolved from its network; empty if robots of this family have only one address.
     fn addresses(_robot: &Robot) -> Result<Vec<target::Address>, Failure> {
         Ok(Vec::new())
     }
 
-    /// Closes the connection and prints statistics at `-v`.
+    /// Closes the connection. With `-v`, prints statistics.
     async fn close(link: Self::Link, screen: &Screen) -> Result<(), Failure>;
 }
 
-/// A connection to one robot of any family: [`Family`] without its types.
+/// A connection to one robot of any family: [`Family`] without its associated types.
 pub trait Connection {
     /// See [`Family::halt`].
     fn halt(&mut self) -> LocalBoxFuture<'_, Result<String, Failure>>;
@@ -166,11 +166,11 @@ pub trait Connection {
     fn planned(&mut self) -> Plan;
     /// See [`Family::close`].
     fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>>;
-    /// The [`Family::Link`].
+    /// The link, whose type is [`Family::Link`].
     fn as_any(&mut self) -> &mut dyn Any;
 }
 
-/// Driver for the robots of a family: [`Family`] without its types.
+/// Driver for the robots of a family: [`Family`] without its associated types.
 pub trait Driver: Sync {
     /// See [`Family::FAMILY`].
     fn family(&self) -> Option<target::Family>;
@@ -191,7 +191,7 @@ pub trait Driver: Sync {
     ) -> LocalBoxFuture<'a, Result<Box<dyn Connection>, Failure>>;
 }
 
-/// Driver of a family.
+/// The driver of a family.
 pub fn driver<F: Family>() -> &'static dyn Driver {
     &Driving::<F>(PhantomData)
 }
@@ -230,13 +230,13 @@ impl<F: Family> Driver for Driving<F> {
     }
 }
 
-/// Link of a family from a connection; a wrong family is an internal error.
+/// The link of a family, from a connection. A connection of another family is an internal error.
 pub fn link<F: Family>(connection: &mut dyn Connection) -> Result<&mut F::Link, Failure> {
     let link = connection.as_any().downcast_mut();
-    link.ok_or_else(|| Failure::local("internal error: this connection is one of another family"))
+    link.ok_or_else(|| Failure::local("internal error: this connection belongs to another family"))
 }
 
-/// Borrowed link of a family as a [`Connection`], for a command that runs on it.
+/// Link of a family, borrowed as a [`Connection`] for a command that runs on this link.
 pub struct Borrowed<'a, F: Family>(pub &'a mut F::Link);
 
 impl<F: Family> Connection for Borrowed<'_, F> {
@@ -252,7 +252,7 @@ impl<F: Family> Connection for Borrowed<'_, F> {
         F::planned(self.0)
     }
 
-    /// The lender closes it.
+    /// The owner of the link closes it.
     fn close(self: Box<Self>, _screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {
         async { Ok(()) }.boxed_local()
     }
@@ -262,7 +262,7 @@ impl<F: Family> Connection for Borrowed<'_, F> {
     }
 }
 
-/// The link of a family as a [`Connection`].
+/// Owned link of a family as a [`Connection`].
 struct Connected<F: Family>(F::Link);
 
 impl<F: Family> Connection for Connected<F> {

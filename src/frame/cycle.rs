@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::failure::Failure;
 use crate::output::view::Cell;
 
-/// Repetition of a run; each run starts after the end of the previous one.
+/// Repetition of a run. Each run starts after the end of the run before it.
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub struct Repeat {
     /// Run N times, each after the end of the previous run; stop at the first failure
@@ -28,7 +28,7 @@ impl Repeat {
         self.repeat.unwrap_or(1)
     }
 
-    /// Text after the action in a confirmation: ` 20 times`.
+    /// Text that follows the action in a confirmation: ` 20 times`.
     pub fn describe(self) -> String {
         self.repeat.map(|count| format!(" {count} times, one after the other")).unwrap_or_default()
     }
@@ -62,12 +62,12 @@ impl Runs {
         self.times_ms.last().copied()
     }
 
-    /// Text of the next run: `run 2 of 20`; none for a single run.
+    /// Text for the next run: `run 2 of 20`; `None` if the command runs only once.
     pub fn next(&self) -> Option<String> {
         self.repeat.repeat.map(|count| format!("run {} of {count}", self.times_ms.len() + 1))
     }
 
-    /// Failure that ends the runs, with the number of completed runs.
+    /// Adds the number of completed runs to the failure that ended the runs.
     pub fn add_to_failure(&self, failure: Failure) -> Failure {
         let Some(run) = self.next() else { return failure };
         let duration =
@@ -76,7 +76,7 @@ impl Runs {
         Failure { message: format!("{run}: {why}; completed runs: {done}{duration}"), ..failure }
     }
 
-    /// Statistics for a report.
+    /// Statistics for the report.
     pub fn cycle(self) -> Cycle {
         let Self { repeat, times_ms } = self;
         if repeat.repeat.is_none() {
@@ -86,25 +86,25 @@ impl Runs {
     }
 }
 
-/// Report part for repeated runs.
+/// Part of a report for repeated runs.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 pub struct Cycle {
-    /// Time of each of several runs in ms; empty unless the command repeats.
+    /// Time of each run in ms; empty unless the command repeats.
     cycles: Vec<u64>,
-    /// Statistics of these times; null unless there are several.
+    /// Statistics of these times; null unless there are several runs.
     cycle_times: Option<CycleTimes>,
     #[serde(skip)]
     with_stats: bool,
 }
 
 impl Cycle {
-    /// Table rows, if requested.
+    /// Table rows for the statistics, if the user requested them.
     pub fn rows(&self) -> Vec<(&'static str, Cell)> {
         self.cycle_times.iter().filter(|_| self.with_stats).flat_map(CycleTimes::rows).collect()
     }
 }
 
-/// Statistics of the times of runs.
+/// Statistics of the times of several runs.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 struct CycleTimes {
     /// Number of completed runs.
@@ -118,11 +118,11 @@ struct CycleTimes {
 }
 
 impl CycleTimes {
-    /// Statistics of the durations; none without runs.
+    /// Statistics of the durations; `None` without runs.
     fn new(times_ms: &[u64]) -> Option<Self> {
         let mut sorted = times_ms.to_vec();
         sorted.sort_unstable();
-        // Nearest-rank percentile.
+        // Nearest-rank method for the percentile.
         let share = |percent: usize| sorted.get((sorted.len() * percent).div_ceil(100).saturating_sub(1)).copied();
         Some(Self {
             n: sorted.len(),

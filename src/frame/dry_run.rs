@@ -1,4 +1,4 @@
-//! Notes of a dry run instead of sent frames.
+//! Dry run: frames are recorded instead of sent.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -15,13 +15,13 @@ impl From<Plan> for DryRun {
     }
 }
 
-/// Failure for a read in a dry run. It ends the command, unless the command can continue without the answer.
+/// Failure of a read in a dry run. It ends the command, unless the command can continue without the answer.
 pub fn unknown() -> Failure {
     Failure::new(Kind::DryRun, "a dry run has no answer")
 }
 
-/// Whether a failure of a dry run only means a missing answer. A malformed answer counts as well, because a dry run
-/// reads nothing.
+/// Whether a failure of a dry run means only that an answer is missing. A malformed answer also counts, because a dry
+/// run reads nothing.
 pub fn is_end(failure: &Failure) -> bool {
     match failure.kind {
         Kind::DryRun
@@ -35,9 +35,9 @@ pub fn is_end(failure: &Failure) -> bool {
     }
 }
 
-/// Optional answers, for a command that can continue without them.
+/// Answers that may be missing, for a command that can continue without them.
 pub trait Known<T> {
-    /// Answer; `None` in a dry run.
+    /// Returns the answer; `None` in a dry run.
     fn known(self) -> Result<Option<T>, Failure>;
 }
 
@@ -53,7 +53,7 @@ impl<T> Known<T> for Result<T, Failure> {
 /// Report of a dry run.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct DryRun {
-    /// Frames in the order of sending: each under the key of its family, with its purpose if known.
+    /// Frames in the order of sending. Each frame is under the key of its family, with its purpose if it is known.
     #[schemars(extend("items" = {
         "type": "object",
         "properties": {
@@ -70,13 +70,15 @@ pub struct DryRun {
                        "items": {"type": "object", "required": ["name", "value"],
                                  "properties": {"name": {"type": "string"}, "value": {"type": "string"}}}},
             "about": {"description": "Purpose of the frame.", "type": "string"},
-            "depends_on": {"description": "Earlier answer that decides its content, or whether it is sent.",
+            "depends_on": {"description": "Earlier answer that decides the content of the frame, or whether the frame \
+                                           is sent.",
                            "type": "string"}
         },
         "oneOf": [{"required": ["hex"]}, {"required": ["wi"]}, {"required": ["bits"]}, {"required": ["text"]}]
     }))]
     pub frames: Vec<Value>,
-    /// Actions for each file or part: `write`, possibly subject to `depends_on`, or `leave`, with the reason `why`.
+    /// Actions for each file or part: `write`, which may depend on a condition in `depends_on`, or `leave`, with the
+    /// reason in `why`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("items" = {
         "type": "object",
@@ -86,14 +88,14 @@ pub struct DryRun {
             "action": {"enum": ["write", "leave"]},
             "bytes": {"description": "Of a file.", "type": "integer"},
             "values": {"description": "Of a part.", "type": "integer"},
-            "depends_on": {"description": "Answer that decides whether it is written.", "type": "string"},
-            "why": {"description": "Reason why it is not written.", "type": "string"}
+            "depends_on": {"description": "Answer that decides whether the item is written.", "type": "string"},
+            "why": {"description": "Reason why the item is not written.", "type": "string"}
         }
     }))]
     pub items: Vec<Value>,
-    /// Whether the list is complete; if not, the following frames depend on answers and cannot be shown.
+    /// Whether the list is complete. If not, the frames after it depend on answers and cannot be shown.
     pub complete: bool,
-    /// Description of what follows; null if nothing follows.
+    /// Description of the frames after the list; null if the list is complete.
     pub then: Option<String>,
 }
 

@@ -1,5 +1,5 @@
-//! Text that a user edits between reading it from a controller and writing it back. It is always in a file, and the
-//! file stays until the text is on the controller.
+//! Text that a user edits between a read from a controller and the write back to it. The text is always in a file. The
+//! file is kept until the text is on the controller.
 
 use std::path::{Path, PathBuf};
 
@@ -11,14 +11,14 @@ use crate::failure::{Failure, plain};
 use crate::output::{Screen, editor};
 use armctl_files as files;
 
-/// Environment variables for the editor, in the order of priority.
+/// Environment variables with the name of the editor, in the order of priority.
 const VARIABLES: [&str; 2] = ["VISUAL", "EDITOR"];
 /// Default editor.
 const DEFAULT_EDITOR: &str = if cfg!(windows) { "notepad" } else { "vi" };
 /// Maximum size of an edited text.
 const SIZE_LIMIT: u64 = 16 << 20;
 
-/// A text that a user has edited. Its file is removed only when it is no longer needed.
+/// A text that a user has edited. Its file is removed when the text is no longer needed.
 #[derive(Debug)]
 pub struct EditedText {
     path: PathBuf,
@@ -40,7 +40,7 @@ impl EditedText {
         let mut edited = Self { path, original: text.to_vec(), screen, is_needed: false, is_path_reported: false };
         edited.replace(text)?;
         let opened = open_editor(&edited.path);
-        // If the editor fails after a change, the text must be kept.
+        // If the editor fails after the user changed the text, the text must be kept.
         edited.is_needed = edited.is_changed().unwrap_or(true);
         match opened {
             Err(failure) if edited.is_needed => {
@@ -61,7 +61,7 @@ impl EditedText {
         files::read(&self.path, SIZE_LIMIT).map_err(|error| Failure::io(self.path.display(), &error))
     }
 
-    /// Whether the text differs from the original.
+    /// Whether the user changed the text.
     pub fn is_changed(&self) -> Result<bool, Failure> {
         Ok(self.text()? != self.original)
     }
@@ -76,7 +76,7 @@ impl EditedText {
         self.is_needed = false;
     }
 
-    /// Failure with the location of the file and the next step.
+    /// Adds the location of the file and the next step to a failure. The file is kept.
     pub fn keep_file(&mut self, failure: Failure, how: impl FnOnce(&str) -> String) -> Failure {
         if !self.is_needed {
             return failure;
@@ -91,7 +91,7 @@ impl EditedText {
 impl Drop for EditedText {
     fn drop(&mut self) {
         if !self.is_needed {
-            // A file that cannot be removed does no harm.
+            // A file that cannot be removed does no harm, so the error is ignored.
             let _ = std::fs::remove_file(&self.path);
         } else if !self.is_path_reported {
             self.screen.note(&format!("your text is in {}", self.path.display()));
@@ -99,14 +99,14 @@ impl Drop for EditedText {
     }
 }
 
-/// Runs the user's editor and waits for its end.
+/// Runs the editor of the user and waits until the user closes it.
 pub fn open_editor(path: &Path) -> Result<(), Failure> {
     let named = VARIABLES.iter().find_map(|name| std::env::var(name).ok().filter(|line| !line.trim().is_empty()));
     let line = named.unwrap_or_else(|| DEFAULT_EDITOR.to_owned());
     let hint = || format!("set {} to the editor of your choice", VARIABLES.join(" or "));
     let words = shlex::split(&line).filter(|words| !words.is_empty());
     let words = words.ok_or_else(|| Failure::usage(format!("the editor '{line}' is not a command")).hint(hint()))?;
-    // Ctrl-C in the editor is handled by the editor.
+    // The editor itself handles Ctrl-C.
     catch_interrupts();
     let ended = editor::wait_for(&words, path);
     let ended = ended.map_err(|error| Failure::usage(format!("editor '{line}': {}", plain(&error))).hint(hint()))?;

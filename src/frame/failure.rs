@@ -5,11 +5,11 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The class of a failure; it decides the exit code.
+/// Class of a failure. The class determines the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
-    /// The reader of stdout has closed the pipe; not a failure.
+    /// The reader of stdout has closed the pipe. This is not a failure.
     PipeClosed,
     /// Internal error, or a failure of a local file or disk.
     Local,
@@ -17,100 +17,101 @@ pub enum Kind {
     Usage,
     /// The controller refused the request.
     Refused,
-    /// No answer, or the port is absent or busy.
+    /// The controller did not answer, or the port is absent or busy.
     NoAnswer,
-    /// Malformed or unexpected answer.
+    /// The answer is malformed or unexpected.
     Malformed,
-    /// A state-changing request was sent, and its answer was lost.
+    /// A request that changes something was sent, and its answer was lost.
     OutcomeUnknown,
-    /// Rejected by armctl before anything was sent.
+    /// armctl rejected the command before anything was sent.
     Rejected,
     /// The condition of `--until` or `--check` was not met.
     ConditionNotMet,
-    /// Some robots or items failed, others succeeded.
+    /// Some robots or items failed, and others succeeded.
     Mixed,
-    /// Ctrl-C.
+    /// The user pressed Ctrl-C.
     Interrupted,
-    /// A filter ended with this exit code (`halt_error` of jq).
+    /// A filter ended with this exit code (`halt_error` in jq).
     #[serde(skip)]
     Halted(u8),
-    /// A dry run has no answer to continue with. It ends the command and is never printed.
+    /// A dry run has no answer with which the command could continue. This failure ends the command and is never
+    /// printed.
     #[serde(skip)]
     DryRun,
 }
 
 impl Kind {
-    /// Every kind with its exit code and what the code means, in the order of `armctl help exit-codes`.
+    /// Every kind with its exit code and the meaning of the code, in the order of `armctl help exit-codes`.
     pub const TABLE: [(Self, u8, &'static str); 11] = [
-        (Self::PipeClosed, 0, "done (also when the reader of stdout went away)"),
+        (Self::PipeClosed, 0, "done (also when the reader of stdout closed the pipe)"),
         (Self::Local, 1, "internal error, or a local file or disk"),
         (Self::Usage, 2, "usage or configuration"),
         (Self::Refused, 3, "the controller refused"),
         (Self::NoAnswer, 4, "no answer, or port absent or busy"),
         (Self::Malformed, 5, "malformed or unexpected answer"),
-        (Self::OutcomeUnknown, 6, "outcome unknown: a state-changing request was sent, the answer was lost"),
+        (Self::OutcomeUnknown, 6, "outcome unknown: armctl sent a change, but the answer was lost"),
         (Self::Rejected, 7, "rejected by armctl: not confirmed, or a read-only robot"),
         (Self::ConditionNotMet, 8, "condition not met (--until, --check, diff)"),
         (Self::Mixed, 9, "some robots or items failed, some did not"),
         (Self::Interrupted, 130, "interrupted"),
     ];
 
-    /// The process exit code.
+    /// Exit code of the process.
     pub fn exit(self) -> u8 {
         if let Self::Halted(code) = self {
             return code;
         }
-        // Every other kind has a row: a test counts them.
+        // All other kinds have a row in the table: a test checks that.
         Self::TABLE.iter().find(|(kind, ..)| *kind == self).map_or(1, |row| row.1)
     }
 }
 
-/// Ends the process at once with the exit code of `kind`, without waiting for other threads.
+/// Ends the process at once, with the exit code of `kind`. Does not wait for other threads.
 #[expect(clippy::exit, reason = "the process must end at once")]
 pub fn exit_process(kind: Kind) -> ! {
     std::process::exit(kind.exit().into())
 }
 
-/// Failure of a command, with a message and a hint.
+/// Failure of a command, with a message and an optional hint.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Failure {
-    /// The class.
+    /// Kind of the failure.
     pub kind: Kind,
-    /// Code from the controller, such as `0x2060`.
+    /// Error code of the controller, for example `0x2060`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "String")]
     pub code: Option<String>,
-    /// What happened, in a sentence without a full stop.
+    /// What happened, as a sentence without a period at its end.
     pub message: String,
-    /// What to do.
+    /// What the user can do.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "String")]
     pub hint: Option<String>,
 }
 
 impl Failure {
-    /// A failure of `kind` without code or hint.
+    /// Creates a failure of this kind without code and hint.
     pub fn new(kind: Kind, message: impl Into<String>) -> Self {
         Self { kind, code: None, message: message.into(), hint: None }
     }
 
-    /// A mistake on the command line or in a settings file.
+    /// Creates a failure for a mistake on the command line or in a settings file.
     pub fn usage(message: impl Into<String>) -> Self {
         let message = message.into();
         Self { hint: decimal_point(&message), ..Self::new(Kind::Usage, message) }
     }
 
-    /// An internal error, or a failure of the local machine.
+    /// Creates a failure for an internal error, or for an error of the local machine.
     pub fn local(message: impl Into<String>) -> Self {
         Self::new(Kind::Local, message)
     }
 
-    /// A failed operation on a local file: exit 1, or 0 when it is a closed pipe.
+    /// Creates a failure for a failed operation on a local file. The exit code is 1, or 0 if a pipe was closed.
     pub fn io(what: impl fmt::Display, error: &std::io::Error) -> Self {
         use std::io::ErrorKind;
 
         if error.kind() == ErrorKind::BrokenPipe {
-            return Self::new(Kind::PipeClosed, "the reader of stdout went away");
+            return Self::new(Kind::PipeClosed, "the reader of stdout closed the pipe");
         }
         let failure = Self::local(format!("{what}: {}", plain(error)));
         match error.kind() {
@@ -118,11 +119,11 @@ impl Failure {
             ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
                 failure.hint("free some space, and repeat the command")
             }
-            ErrorKind::InvalidData => failure.hint("this file has another format"),
+            ErrorKind::InvalidData => failure.hint("check the file: it has another format"),
             ErrorKind::IsADirectory => failure.hint("name a file, not a folder"),
-            ErrorKind::FileTooLarge => failure.hint("check that it is the file that was meant"),
+            ErrorKind::FileTooLarge => failure.hint("check that this is the correct file"),
             ErrorKind::NotADirectory => failure.hint("check the path: a part of it is a file, not a folder"),
-            ErrorKind::NotFound => failure.hint("check the path; missing folders are not made"),
+            ErrorKind::NotFound => failure.hint("check the path; armctl does not create missing folders"),
             _ => failure,
         }
     }
@@ -135,7 +136,7 @@ impl Failure {
         self
     }
 
-    /// Adds the controller's code.
+    /// Adds the error code of the controller.
     #[must_use]
     pub fn code(mut self, code: impl Into<String>) -> Self {
         self.code = Some(code.into());
@@ -143,7 +144,7 @@ impl Failure {
     }
 }
 
-/// Hint for a message that refuses a number with a decimal comma: `'2,5' is not a number`.
+/// Returns the hint for a message that refuses a number with a decimal comma, for example `'2,5' is not a number`.
 pub fn decimal_point(message: &str) -> Option<String> {
     let quoted = message.split('\'').zip(message.split('\'').skip(1)).skip(1).step_by(2);
     let refused = quoted.filter(|(_, after)| after.starts_with(" is no") && !after.contains("whole"));
@@ -157,7 +158,7 @@ pub fn decimal_point(message: &str) -> Option<String> {
     numbers.next()
 }
 
-/// Text of an I/O error without `(os error 13)`.
+/// Text of an I/O error without the number of the error, for example without `(os error 13)`.
 pub fn plain(error: &std::io::Error) -> String {
     armctl_files::plain(error).to_lowercase()
 }
@@ -170,8 +171,8 @@ impl fmt::Display for Failure {
 
 impl std::error::Error for Failure {}
 
-/// Converts an error with contexts. The contexts precede the message of the inner [`Failure`] or I/O error; its kind and
-/// hint stay the same. Any other error is a local failure.
+/// Converts an error with contexts. If the inner error is a [`Failure`] or an I/O error, the contexts precede its
+/// message, and its kind and hint stay the same. Any other error becomes a local failure.
 impl From<anyhow::Error> for Failure {
     fn from(error: anyhow::Error) -> Self {
         let mut context = String::new();

@@ -12,26 +12,26 @@ use crate::settings::duration;
 use crate::settings::target::TargetArgument;
 use armctl_controller::text::Encoding;
 
-/// Flags that every command takes, at any place of the line.
+/// Flags of every command. They can be at any place of the command line.
 #[derive(Debug, Clone, Args)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
+#[expect(clippy::struct_excessive_bools, reason = "each is an independent flag")]
 pub struct Globals {
-    /// Use the built-in simulator, in this process
+    /// Use the built-in simulator
     #[arg(long, global = true, help_heading = "Which robot", conflicts_with_all = ["target", "robot", "all", "tag"])]
     pub sim: bool,
-    /// Controller by URL, such as udp://192.168.1.31, or by 192.168.1.31, COM3 or /dev/ttyUSB0 (ARMCTL_TARGET)
+    /// Controller by URL, for example udp://192.168.1.31, or by 192.168.1.31, COM3 or /dev/ttyUSB0 (ARMCTL_TARGET)
     #[arg(short, long, global = true, value_name = "URL", add = ValueKind::Url, help_heading = "Which robot", conflicts_with_all = ["robot", "all", "tag"])]
     pub target: Option<TargetArgument>,
-    /// Robots of the inventory: names or patterns with commas (ARMCTL_ROBOT)
+    /// Robots in the inventory: names or patterns, separated by commas (ARMCTL_ROBOT)
     #[arg(short, long, global = true, value_name = "NAME", value_delimiter = ',', add = ValueKind::Robot, help_heading = "Which robot")]
     pub robot: Vec<String>,
-    /// All robots of the inventory
+    /// All robots in the inventory
     #[arg(long, global = true, hide_short_help = true, help_heading = "Which robot")]
     pub all: bool,
-    /// Robots of the inventory with this tag (repeatable)
+    /// Robots in the inventory with this tag (repeatable)
     #[arg(long, global = true, hide_short_help = true, value_name = "TAG", add = ValueKind::Tag, help_heading = "Which robot")]
     pub tag: Vec<String>,
-    /// The inventory, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)
+    /// Inventory file, instead of robots.toml in the configuration folder (ARMCTL_CONFIG)
     #[arg(long, global = true, hide_short_help = true, value_name = "FILE", help_heading = "Which robot")]
     pub config: Option<PathBuf>,
 
@@ -49,7 +49,7 @@ pub struct Globals {
     /// Print JSON (the same as -o json)
     #[arg(long, global = true, help_heading = "Output", conflicts_with = "format", overrides_with = "json")]
     pub json: bool,
-    /// Print the result of a jq filter over the JSON
+    /// Print the result of a jq filter that is applied to the JSON
     #[arg(
         long,
         global = true,
@@ -59,16 +59,16 @@ pub struct Globals {
         help_heading = "Output"
     )]
     pub jq: Option<String>,
-    /// Ask nothing: what would be asked is refused
+    /// Ask no questions; fail if a question is necessary
     #[arg(long, global = true, hide_short_help = true, help_heading = "Safety")]
     pub no_input: bool,
-    /// Only errors and questions on stderr
+    /// Print only errors and questions on stderr
     #[arg(short, long, global = true, hide_short_help = true, help_heading = "Output", conflicts_with = "verbose")]
     pub quiet: bool,
     /// Increase verbosity: -v a summary, -vv frames, -vvv bytes
     #[arg(short, long, global = true, hide_short_help = true, action = clap::ArgAction::Count, help_heading = "Output")]
     pub verbose: u8,
-    /// Colour
+    /// Use of color
     #[arg(
         long,
         global = true,
@@ -78,7 +78,7 @@ pub struct Globals {
         help_heading = "Output"
     )]
     pub color: ColorChoice,
-    /// No colour (the same as --color never)
+    /// No color (the same as --color never)
     #[arg(long, global = true, hide_short_help = true, help_heading = "Output", conflicts_with = "color")]
     pub no_color: bool,
     /// Print long texts without the pager (PAGER)
@@ -91,7 +91,7 @@ pub struct Globals {
     /// Confirm commands that move, delete or overwrite
     #[arg(long, global = true, help_heading = "Safety")]
     pub yes: bool,
-    /// Send nothing; print what would be sent
+    /// Send nothing; print what armctl would send
     #[arg(long, global = true, help_heading = "Safety")]
     pub dry_run: bool,
     /// Effect of Ctrl-C during a motion
@@ -105,17 +105,17 @@ pub struct Globals {
     )]
     pub on_interrupt: OnInterrupt,
 
-    /// Longest wait of each try for its answer: 3s, for toyo 1.5s (ARMCTL_TIMEOUT)
+    /// Time limit of each try: 3s, for toyo 1.5s (ARMCTL_TIMEOUT)
     #[arg(long, global = true, hide_short_help = true, value_name = "TIME", value_parser = duration::parse_some, help_heading = "Link")]
     pub timeout: Option<Duration>,
-    /// Further tries of a read after silence: 3; a read takes at most TIME × (N + 1), a change has one try
+    /// Retries of a read without an answer: 3; a read takes at most TIME × (N + 1), a change is never retried
     /// (ARMCTL_RETRIES)
     #[arg(long, global = true, hide_short_help = true, value_name = "N", help_heading = "Link")]
     pub retries: Option<u32>,
     /// Encoding of names and texts on the controller (ARMCTL_ENCODING)
     #[arg(long, global = true, hide_short_help = true, value_name = "NAME", help_heading = "Link")]
     pub encoding: Option<Encoding>,
-    /// Go to the robot directly, although a session holds its link
+    /// Connect to the robot directly, even if a session is open
     #[arg(long, global = true, hide_short_help = true, help_heading = "Link")]
     pub no_session: bool,
 
@@ -125,20 +125,20 @@ pub struct Globals {
     /// Stop after N reads
     #[arg(long, global = true, hide_short_help = true, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), help_heading = "Repeat")]
     pub count: Option<u64>,
-    /// Repeat a read until this holds: idle, NAME=VALUE, or a jq filter over its JSON
+    /// Repeat a read until this condition is met: idle, NAME=VALUE, or a jq filter over its JSON
     #[arg(long, global = true, hide_short_help = true, value_name = "CONDITION", help_heading = "Repeat")]
     pub until: Option<String>,
-    /// Read once, and end with exit code 8 unless this holds: idle, NAME=VALUE, or a jq filter over the JSON
+    /// Read once, and exit with code 8 unless this condition is met: idle, NAME=VALUE, or a jq filter over the JSON
     #[arg(long, global = true, hide_short_help = true, value_name = "CONDITION", conflicts_with_all = ["watch", "count", "until"], help_heading = "Repeat")]
     pub check: Option<String>,
-    /// How long --until waits before it gives up with exit code 8
+    /// Time after which --until gives up with exit code 8
     #[arg(long = "for", global = true, hide_short_help = true, value_name = "TIME", value_parser = duration::parse, requires = "until", help_heading = "Repeat")]
     pub within: Option<Duration>,
 }
 
 impl Globals {
-    /// Flags of one line, completed with the flags for all lines. A flag of the line for the robot, the format or the
-    /// verbosity replaces all flags of that group.
+    /// Returns the flags of one line, completed with the flags for all lines. If the line has a flag for the robot, the
+    /// format or the verbosity, this flag replaces all flags of the same group.
     #[must_use]
     pub fn within(self, all: &Self) -> Self {
         let names_robot = self.names_robot();
@@ -181,18 +181,18 @@ impl Globals {
         }
     }
 
-    /// Whether a flag selects a robot.
+    /// Whether a flag selects robots.
     pub fn names_robot(&self) -> bool {
         self.sim || self.target.is_some() || !self.robot.is_empty() || self.all || !self.tag.is_empty()
     }
 
-    /// The flags without a robot, for commands about the inventory.
+    /// Returns the flags without the robot. For commands about the inventory.
     #[must_use]
     pub fn without_robot(self) -> Self {
         Self { sim: false, target: None, robot: Vec::new(), all: false, tag: Vec::new(), ..self }
     }
 
-    /// Use of color.
+    /// When to use color.
     pub fn color(&self) -> ColorChoice {
         if self.no_color { ColorChoice::Never } else { self.color }
     }
@@ -202,7 +202,7 @@ impl Globals {
         self.format.is_some() || self.json || self.jq.is_some()
     }
 
-    /// Robot flags as words of a command line.
+    /// Returns the robot flags as words of a command line.
     pub fn robot_words(&self) -> Vec<String> {
         let flag_words = |flag: &str, value: String| vec![flag.to_owned(), value];
         let mut words = Vec::new();

@@ -1,9 +1,9 @@
-//! Safety gate: authorization of a command before anything is sent to a robot.
+//! Safety gate: authorizes a command before anything is sent to a robot.
 //!
-//! A command declares its maximum risk ([`Risk`]). The loop that runs all commands checks it here before anything is
-//! sent. The command then has a [`Grant`], and its link checks each frame against that grant. So a command cannot do
-//! more than was authorized. A command that overwrites data raises its grant later, when it knows what it overwrites
-//! and the user has confirmed it.
+//! A command declares its maximum risk ([`Risk`]). The loop that runs all commands checks the risk here before anything
+//! is sent. The command then gets a [`Grant`], and its link checks each frame against this grant. A command can
+//! therefore not do more than was authorized. A command that overwrites data raises its grant later, when it has read
+//! this data and the user has confirmed the change.
 
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
@@ -12,43 +12,43 @@ pub use armctl_client::Grant;
 use armctl_client::NotAuthorized;
 use armctl_controller::Risk;
 
-/// Effect of Ctrl-C on a motion.
+/// What Ctrl-C does during a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
 pub enum OnInterrupt {
     /// Stop the robot, then disconnect.
     #[default]
     Stop,
-    /// Disconnect only; the motion goes on.
+    /// Disconnect only; the motion continues.
     Leave,
 }
 
-/// Type of confirmation that a command needs.
+/// Type of confirmation that a command requires.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Confirmation {
-    /// A question before anything is sent.
+    /// The user must answer a question before anything is sent.
     #[default]
     Question,
-    /// This word must be typed before anything is sent, because the effect cannot be undone.
+    /// The user must type this word before anything is sent, because the effect cannot be undone.
     Word(&'static str),
-    /// The command asks the question itself, when it knows what it replaces.
+    /// The command itself asks the question, when it has read the data that it replaces.
     WhenKnown,
 }
 
-/// Declaration of a command to the gate.
+/// What a command declares to the gate.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Intent {
-    /// Maximum risk.
+    /// Maximum risk of the command.
     pub risk: Risk,
-    /// Completes "This will …": `start job COUNT`.
+    /// Text that completes "This will …", for example `start job COUNT`.
     pub text: String,
-    /// Type of confirmation.
+    /// Kind of confirmation that the command needs.
     pub confirmation: Confirmation,
-    /// Whether it stops the robot, which is always allowed.
+    /// Whether the command stops the robot. A stop is always allowed.
     pub is_stop: bool,
 }
 
 impl Intent {
-    /// Risk that is granted before the command has asked a question itself.
+    /// Returns the risk that is granted before the command itself asks a question.
     pub fn initial_risk(&self) -> Risk {
         match self.confirmation {
             Confirmation::WhenKnown => self.risk.min(Risk::Write),
@@ -60,11 +60,11 @@ impl Intent {
 impl From<NotAuthorized> for Failure {
     fn from(NotAuthorized { what, risk }: NotAuthorized) -> Self {
         Self::local(format!("internal error: {what} ({}) is not authorized; nothing was sent", risk.name()))
-            .hint("this is a fault of armctl; please report it")
+            .hint("report this error: it is a bug in armctl")
     }
 }
 
-/// Permissions from the command line.
+/// Permissions on the command line.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Gate {
     /// `--yes`.
@@ -76,16 +76,17 @@ pub struct Gate {
 }
 
 impl Gate {
-    /// Whether a question is needed.
+    /// Whether the user must answer a question.
     ///
     /// # Errors
-    /// A question is needed but not possible, or the robot is read-only.
+    /// A question is necessary but not possible, or the robot is read-only.
     pub fn must_ask(&self, screen: &Screen, robot: &Robot, intent: &Intent) -> Result<bool, Failure> {
         self.check_read_only(robot, intent)?;
         if !self.needs_yes(robot, intent.risk) {
             return Ok(false);
         }
-        // The command may find that it replaces nothing. A motion always needs a question.
+        // The command may find that it replaces nothing, and then no question is necessary. A motion always requires a
+        // question.
         let may_be_nothing = intent.confirmation == Confirmation::WhenKnown && intent.risk < Risk::Motion;
         if !screen.can_ask() && !may_be_nothing {
             return Err(not_confirmed(robot, intent.risk, &intent.text));
@@ -93,31 +94,32 @@ impl Gate {
         Ok(true)
     }
 
-    /// Refuses to change a read-only robot. A stop is always allowed.
+    /// Refuses a change of a read-only robot. A stop is always allowed.
     fn check_read_only(&self, robot: &Robot, intent: &Intent) -> Result<(), Failure> {
         if intent.risk == Risk::Read || self.dry_run || intent.is_stop || !robot.read_only.value {
             return Ok(());
         }
         let hint = |name: &str| {
-            format!("the inventory protects this robot; to allow changes: `armctl robots set {name} read_only=off`")
+            format!("allow changes with `armctl robots set {name} read_only=off`: the inventory protects this robot")
         };
         Err(Failure::new(Kind::Rejected, format!("{} is read-only", robot.label())).hint(
             match &robot.read_only_entry {
-                Some(entry) => format!("its address is that of '{entry}' in robots.toml; {}", hint(entry)),
+                Some(entry) => format!("'{entry}' in robots.toml has the same address; {}", hint(entry)),
                 None if robot.read_only.origin == Origin::Defaults => {
-                    "[defaults] in robots.toml make it so, on purpose; `armctl robots edit` changes them".to_owned()
+                    "use `armctl robots edit` to allow changes: [defaults] in robots.toml sets read_only".to_owned()
                 }
                 None => hint(&robot.name),
             },
         ))
     }
 
-    /// Whether a confirmation is needed and `--yes` is missing.
+    /// Whether a confirmation is required, and `--yes` is missing.
     pub fn needs_yes(&self, robot: &Robot, risk: Risk) -> bool {
         risk >= Risk::Destroy && !self.yes && !self.dry_run && !robot.target.value.is_simulated()
     }
 
-    /// Refuses to move several robots, or to overwrite data on them, unless the line names each of them.
+    /// Refuses a motion of several robots, or overwriting data on several robots, unless the command line names each
+    /// robot.
     pub fn check_named_robots(robots: &[(&Robot, Intent)], is_named: impl Fn(&Robot) -> bool) -> Result<(), Failure> {
         let unnamed =
             robots.iter().filter(|(robot, intent)| intent.risk >= Risk::Destroy && !intent.is_stop && !is_named(robot));
@@ -127,62 +129,62 @@ impl Gate {
         let count_text = format!("{} of {} robots", unnamed.len(), robots.len());
         let message = format!("not confirmed: on {count_text} ({}) this would {}", names.join(", "), intent.text);
         Err(Failure::new(Kind::Rejected, message).hint(
-            "name each of them with -r; patterns, --tag and --all are not enough for what moves, deletes or overwrites",
+            "name each robot with -r: patterns, --tag and --all do not confirm a motion, a deletion or an overwrite",
         ))
     }
 }
 
-/// Data that a command deletes or overwrites, for the confirmation.
+/// What a command deletes or overwrites, for the confirmation.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Change {
-    /// Completes "This will …": `overwrite 2 points`.
+    /// Text that completes "This will …", for example `overwrite 2 points`.
     text: String,
     items: Vec<String>,
     notes: Vec<String>,
     is_empty: bool,
 }
 
-/// Maximum number of items in a question; the others are counted.
+/// Maximum number of items that a question lists. Further items are only counted.
 const MAX_ITEMS: usize = 12;
 
 impl Change {
-    /// `text` completes "This will …": `delete 2 files`.
+    /// Creates a change. `text` completes "This will …", for example `delete 2 files`.
     pub fn new(text: impl Into<String>) -> Self {
         Self { text: text.into(), ..Self::default() }
     }
 
-    /// A change that overwrites no user data.
+    /// Creates a change that overwrites no data of the user.
     pub fn none() -> Self {
         Self { is_empty: true, ..Self::default() }
     }
 
-    /// Adds a value that is replaced.
+    /// Adds a value that is replaced, with its old and new value.
     #[must_use]
     pub fn replaces(mut self, what: &str, old: &str, new: &str) -> Self {
         self.items.push(format!("{what}: {old} -> {new}"));
         self
     }
 
-    /// Adds an object that is deleted or overwritten completely.
+    /// Adds an object that is completely deleted or overwritten.
     #[must_use]
     pub fn item(mut self, what: impl Into<String>) -> Self {
         self.items.push(what.into());
         self
     }
 
-    /// Adds a consequence: `a power cycle is needed`.
+    /// Adds a consequence, for example `a power cycle is needed`.
     #[must_use]
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.notes.push(note.into());
         self
     }
 
-    /// Whether no question is needed.
+    /// Whether the change is empty, so that no question is necessary.
     pub fn is_empty(&self) -> bool {
         self.is_empty
     }
 
-    /// Lines to print before the question.
+    /// Returns the lines that are printed before the question.
     pub fn lines(&self) -> Vec<String> {
         let mut lines = vec![format!("This will {}{}", self.text, if self.items.is_empty() { "." } else { ":" })];
         lines.extend(self.items.iter().take(MAX_ITEMS).map(|item| format!("  {item}")));
@@ -193,7 +195,7 @@ impl Change {
         lines
     }
 
-    /// The change in one line.
+    /// Describes the change in one line.
     pub fn format_line(&self) -> String {
         match &self.items[..] {
             [] => self.text.clone(),
@@ -203,14 +205,15 @@ impl Change {
     }
 }
 
-/// Failure because the data changed while the question was open.
+/// Returns the failure for data that changed while the question was open.
 pub fn data_changed(message: impl Into<String>) -> Failure {
-    Failure::new(Kind::Rejected, message).hint("another client changed it: check the state, then repeat the command")
+    Failure::new(Kind::Rejected, message)
+        .hint("check the state, then repeat the command: another client changed the data")
 }
 
-/// Failure because a question is needed but not possible.
+/// Returns the failure for a question that is necessary but not possible.
 pub fn not_confirmed(robot: &Robot, risk: Risk, text: &str) -> Failure {
-    let when = if risk == Risk::Motion { " when nobody is in the cell" } else { "" };
+    let when = if risk == Risk::Motion { " when no person is in the cell" } else { "" };
     Failure::new(Kind::Rejected, format!("not confirmed: on {} this would {text}", robot.label()))
         .hint(format!("pass --yes to confirm{when}, or --dry-run to see what would be sent"))
 }

@@ -1,11 +1,12 @@
-//! Guardian process: stops the robot when the process that moves it dies or hangs.
+//! Guardian process: stops the robot if the process that moves it crashes, is killed or hangs.
 //!
-//! The guardian is another instance of this program in its own process group, with the arguments of the family's stop
-//! command. It reads a pipe from the guarded process. That process writes a byte before it sends a motion, then
-//! heartbeats, and a last byte at its end. The pipe closes when the process ends for any reason. A process without
-//! heartbeats is killed. This frees its serial port, its TCP connection and its place in a session for the stop.
+//! The guardian is another instance of this program in its own process group. Its arguments are the stop command of the
+//! family. The guardian reads a pipe from the guarded process. The guarded process writes a byte before it sends a
+//! motion, then heartbeats, and a last byte at its normal end. The pipe closes whenever the process ends. If the
+//! heartbeats stop, the guardian kills the process. This frees the serial port, the TCP connection and the place in a
+//! session for the stop.
 //!
-//! A session process also has a guardian for the motions of its clients, because the session and the client can end at
+//! A session process also has a guardian for the motions of its clients, because the session and a client can end at
 //! the same time.
 
 use std::cell::RefCell;
@@ -25,28 +26,28 @@ use crate::output::{ColorChoice, Format, Screen};
 use crate::settings::Robot;
 use armctl_files::this_program;
 
-/// Heartbeat interval.
+/// Interval between heartbeats.
 const HEARTBEAT_INTERVAL: Duration = Duration::from_millis(500);
-/// A process without a heartbeat for this time counts as dead.
+/// Time without a heartbeat after which the guarded process counts as hanging.
 const DEAD_AFTER: Duration = Duration::from_secs(2);
 
-/// Time limit for the attempts to stop, and the pause after a failed attempt.
+/// Time limit for all attempts to stop the robot, and the pause between attempts.
 const STOP_TIMEOUT: Duration = Duration::from_secs(30);
 const RETRY_PAUSE: Duration = Duration::from_millis(200);
 
 /// First argument of a guardian that stops the robot.
 const STOP_ARGUMENT: &str = "--guardian=stop";
-/// First argument of a guardian that only kills a hanging process. The session, or the fieldbus adapter, then stops the
-/// robot.
+/// First argument of a guardian that only kills a process that hangs. After that, the session or the fieldbus adapter
+/// stops the robot.
 const KILL_ARGUMENT: &str = "--guardian=end";
 
-/// Bytes from the guarded process.
+/// Bytes that the guarded process writes.
 const MOTION: u8 = b'm';
 const MOTION_END: u8 = b'r';
 const HEARTBEAT: u8 = b'.';
 const DONE: u8 = b'q';
 
-/// This program with the arguments of the command that stops a robot. `words` follow the family name.
+/// Returns this program with the arguments of the command that stops a robot. `words` follow the family name.
 fn stop_command(robot: &Robot, words: &[&str], first: Option<&str>) -> io::Result<Command> {
     let mut command = Command::new(this_program()?);
     command.args(first).args(["--quiet", "-t", robot.target.value.url(), robot.family.name()]);
@@ -57,7 +58,7 @@ fn stop_command(robot: &Robot, words: &[&str], first: Option<&str>) -> io::Resul
     Ok(command)
 }
 
-/// Stops a robot in a separate process, through the session that holds its link. Passes the result to `say`.
+/// Stops a robot in a separate process, through the session that owns its link. Passes the result to `say`.
 pub fn stop_orphan(robot: &Robot, words: &[&str], say: impl Fn(&str) + Send + 'static) {
     let command = stop_command(robot, words, None);
     thread::spawn(move || {
@@ -68,8 +69,8 @@ pub fn stop_orphan(robot: &Robot, words: &[&str], say: impl Fn(&str) + Send + 's
     });
 }
 
-/// Runs the command that stops a robot until it succeeds. A repeated stop does no harm, and another program may block the
-/// link for a moment.
+/// Runs the command that stops a robot until the command succeeds. A repeated stop is harmless. Repeating is necessary,
+/// because another program may use the link for a moment.
 ///
 /// # Errors
 /// The error of the last attempt.
@@ -89,10 +90,10 @@ fn run_until_stopped(stop: &mut Command) -> Result<(), String> {
 }
 
 fn stop_failure(why: &str) -> String {
-    format!("the robot may still move, use the pendant or the emergency stop: {why}")
+    format!("the robot may still move: use the pendant or the emergency stop. Cause: {why}")
 }
 
-/// Starts a guardian. Returns the pipe to it.
+/// Starts a guardian. Returns the pipe to the guardian and its process.
 fn spawn(robot: &Robot, words: &[&str], first: &str) -> io::Result<(Pipe, Child)> {
     let mut command = stop_command(robot, words, Some(first))?;
     #[cfg(not(unix))]
@@ -104,7 +105,7 @@ fn spawn(robot: &Robot, words: &[&str], first: &str) -> io::Result<(Pipe, Child)
 
 type Pipe = Arc<Mutex<Option<ChildStdin>>>;
 
-/// Guards the motion of a command.
+/// Guardian of the motion of a command.
 #[derive(Debug)]
 pub struct Guardian {
     pipe: Pipe,
@@ -112,26 +113,27 @@ pub struct Guardian {
 }
 
 impl Guardian {
-    /// Starts a guardian. `stops`: it stops the robot itself, because no session or adapter does so.
+    /// Starts a guardian. With `stops`, the guardian itself stops the robot, because no session or adapter does this.
     pub fn start(robot: &Robot, words: &[&str], stops: bool) -> Result<Self, Failure> {
         let spawned = spawn(robot, words, if stops { STOP_ARGUMENT } else { KILL_ARGUMENT });
-        let (pipe, child) = spawned.context("the guardian of the motion could not be started; nothing was sent")?;
+        let (pipe, child) =
+            spawned.context("the process that guards the motion could not be started; nothing was sent")?;
         Ok(Self { pipe, child: Some(child) })
     }
 
-    /// Function to call before a motion is sent.
+    /// Returns the function that the caller must call before a motion is sent.
     pub fn before_motion(&self) -> impl Fn() + Send + Sync + 'static {
         let pipe = Arc::clone(&self.pipe);
         move || write(&pipe, MOTION)
     }
 
-    /// Runs the work with heartbeats.
+    /// Runs the work, and sends heartbeats to the guardian until the work ends.
     pub async fn guard<T>(&self, work: impl Future<Output = T>) -> T {
         with_heartbeats(work, || write(&self.pipe, HEARTBEAT)).await
     }
 }
 
-/// Runs the work with heartbeats.
+/// Runs the work, and calls `beat` at intervals until the work ends.
 async fn with_heartbeats<T>(work: impl Future<Output = T>, beat: impl Fn()) -> T {
     let heartbeats = async {
         let mut beats = interval(HEARTBEAT_INTERVAL);
@@ -147,25 +149,25 @@ async fn with_heartbeats<T>(work: impl Future<Output = T>, beat: impl Fn()) -> T
     }
 }
 
-/// Reports the end of the work.
+/// Reports the normal end of the work to the guardian.
 impl Drop for Guardian {
     fn drop(&mut self) {
         write(&self.pipe, DONE);
         self.pipe.lock().unwrap_or_else(PoisonError::into_inner).take();
-        // Collects its exit status, so that no zombie process remains.
+        // The exit status is collected, so that no zombie process remains.
         if let Some(mut child) = self.child.take() {
             thread::spawn(move || child.wait());
         }
     }
 }
 
-/// Guards the motions of session clients. It stops the robot if the session process ends while a client in another process
-/// moves it.
+/// Guardian of the motions of session clients. It stops the robot if the session process ends while a client in another
+/// process moves the robot.
 #[derive(Debug)]
 pub struct SessionGuardian {
     robot: Robot,
     words: &'static [&'static str],
-    /// `None` before the first motion.
+    /// Pipe and process of the guardian; `None` before the first motion.
     started: RefCell<Option<(Pipe, Child)>>,
 }
 
@@ -175,16 +177,19 @@ impl SessionGuardian {
         Self { robot: robot.clone(), words, started: RefCell::default() }
     }
 
-    /// Notes whether a client moves the robot. Starts the guardian at the first motion.
+    /// Reports to the guardian whether a client moves the robot. Starts the guardian at the first motion.
     ///
     /// # Errors
-    /// Text for the user, if the guardian cannot be started.
+    /// A text for the user, if the guardian cannot be started.
     pub fn set_moving(&self, is_moving: bool) -> Result<(), String> {
         let mut started = self.started.borrow_mut();
         if started.is_none() && is_moving {
             let spawned = spawn(&self.robot, self.words, STOP_ARGUMENT);
             *started = Some(spawned.map_err(|error| {
-                format!("the robot is not stopped when this process dies: its guardian could not be started: {error}")
+                format!(
+                    "if armctl dies, the robot does not stop: the process that guards the motion could not be \
+                     started: {error}"
+                )
             })?);
         }
         if let Some((pipe, _)) = &*started {
@@ -193,7 +198,7 @@ impl SessionGuardian {
         Ok(())
     }
 
-    /// Runs the work with heartbeats.
+    /// Runs the work, and sends heartbeats to the guardian until the work ends.
     pub async fn guard<T>(&self, work: impl Future<Output = T>) -> T {
         let heartbeat = || {
             if let Some((pipe, _)) = &*self.started.borrow() {
@@ -205,14 +210,14 @@ impl SessionGuardian {
 }
 
 fn write(pipe: &Mutex<Option<ChildStdin>>, byte: u8) {
-    // The guardian may have been killed.
+    // An error is ignored: the guardian may have been killed.
     if let Some(pipe) = &mut *pipe.lock().unwrap_or_else(PoisonError::into_inner) {
         let _ = pipe.write_all(&[byte]);
     }
 }
 
-/// Runs as a guardian, if the first argument says so: waits for the end of the guarded process, and then runs the stop
-/// command in the other arguments. An error if the robot may still move.
+/// Runs as a guardian if the first argument requests this. Waits for the end of the guarded process, and then runs the
+/// stop command from the other arguments. Returns an error if the robot may still move.
 pub fn serve(args: &[OsString]) -> Option<Result<(), Kind>> {
     let stops = match args.get(1)?.to_str()? {
         STOP_ARGUMENT => true,
@@ -234,7 +239,7 @@ fn print(text: &str) {
     Screen::new(Format::Table, ColorChoice::Never, false, 0).note(text);
 }
 
-/// Waits for the end of the guarded process. Returns whether a motion was in progress.
+/// Waits for the end of the guarded process. Returns whether a motion was in progress at that time.
 fn was_moving_at_end() -> bool {
     let guarded = guarded_process();
     let (sender, bytes) = channel();
@@ -258,7 +263,8 @@ fn was_moving_at_end() -> bool {
             Err(RecvTimeoutError::Timeout) => {
                 is_killed = kill(guarded);
                 print(&format!(
-                    "armctl (process {}) did not respond for {} s while the robot moved: it was ended, to stop the robot",
+                    "armctl (process {}) did not respond for {} s while the robot moved: the process was ended to \
+                     stop the robot",
                     guarded.map_or_else(|| "unknown".to_owned(), |guarded| guarded.to_string()),
                     DEAD_AFTER.as_secs()
                 ));
@@ -275,7 +281,8 @@ fn guarded_process() -> Option<rustix::process::Pid> {
     rustix::process::getppid()
 }
 
-/// Kills the guarded process, unless it has ended, because another process may have its number then.
+/// Kills the guarded process. If the process has already ended, nothing is killed, because another process may have the
+/// same id now.
 #[cfg(unix)]
 fn kill(guarded: Option<rustix::process::Pid>) -> bool {
     use rustix::process::{Signal, getppid, kill_process};
@@ -283,7 +290,7 @@ fn kill(guarded: Option<rustix::process::Pid>) -> bool {
     guarded.filter(|_| getppid() == guarded).is_some_and(|guarded| kill_process(guarded, Signal::KILL).is_ok())
 }
 
-/// Variable with the id of the guarded process, on systems without parent process ids.
+/// Environment variable with the id of the guarded process, on systems without parent process ids.
 #[cfg(not(unix))]
 const GUARDED: &str = "ARMCTL_GUARDED";
 
@@ -292,7 +299,7 @@ fn guarded_process() -> Option<u32> {
     std::env::var(GUARDED).ok()?.parse().ok()
 }
 
-/// Kills the guarded process. Its pipe is open, so its id is still valid.
+/// Kills the guarded process. The pipe of the process is still open, so its id is still valid.
 #[cfg(not(unix))]
 fn kill(guarded: Option<u32>) -> bool {
     let Some(guarded) = guarded else { return false };

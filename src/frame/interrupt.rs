@@ -1,8 +1,8 @@
-//! Ctrl-C and other termination requests as events instead of a killed process.
+//! Ctrl-C and other termination requests as events. They do not kill the process.
 //!
-//! A separate thread receives them, whatever the rest of the process does. The first request is passed to the running
-//! work, which stops the robot. A second one ends the process at once. So does the first, if the work is busy with a
-//! computation and does not react.
+//! A separate thread receives the requests, whatever the rest of the process does. The first request is passed to the
+//! running work, which stops the robot. A second request ends the process at once. The first request also ends the
+//! process if the work is busy with a computation and does not react.
 
 use std::future::Future;
 use std::pin::pin;
@@ -18,7 +18,8 @@ use tokio::task::coop::unconstrained;
 use crate::failure::{Failure, Kind};
 use crate::output::{busy_work, immediate_exit};
 
-/// Reason of the termination request, once received. It stays set, so that nothing new starts, until [`clear_interrupt`].
+/// Reason for the termination request, after one was received. It stays set until [`clear_interrupt`], so that no new
+/// work starts.
 type TerminationRequest = watch::Sender<Option<&'static str>>;
 
 const KEYS: &str = "Ctrl-C";
@@ -30,29 +31,30 @@ const QUIT: &str = "Ctrl-\\ (SIGQUIT)";
 #[cfg(unix)]
 const SUSPEND: &str = "Ctrl-Z (SIGTSTP)";
 
-/// Two requests closer than this count as one: `timeout`, for example, sends each twice.
+/// Two requests within this time count as one. `timeout`, for example, sends each request twice.
 const ECHO_WINDOW: Duration = Duration::from_millis(100);
-/// Time for busy work to react to a request.
+/// Time in which busy work must react to a request.
 const BUSY_TIMEOUT: Duration = Duration::from_millis(500);
 
-/// One listener per process, so that a signal between two waits is not lost.
+/// There is one listener for the whole process, so that no signal is lost between two waits.
 static REQUEST: OnceLock<Result<TerminationRequest, String>> = OnceLock::new();
 
-/// Runs `work` until it ends or a termination request arrives. Of nested calls, the inner one handles it first.
+/// Runs `work` until it ends or a termination request arrives. If calls are nested, the inner call handles the request
+/// first.
 pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failure> {
     let asked = requests()?.subscribe();
     let before = *asked.borrow();
     if let Some(how) = before {
         return Err(Failure::new(Kind::Interrupted, how));
     }
-    // `unconstrained`, because work that exhausts the task budget (a peer that answers at once) must not delay this
-    // wait.
+    // The wait is `unconstrained`, because work that exhausts the task budget must not delay it. Work does so if a peer
+    // answers at once.
     let how = unconstrained(wait(asked, |_| true));
     run_until_request(work, how).await.map_err(|how| Failure::new(Kind::Interrupted, how))
 }
 
-/// Result of `work`, or the request that ended it. The work may wait for the same request, so it is polled once more
-/// after the request has arrived from its thread.
+/// Returns the result of `work`, or the request that ended it. The work may wait for the same request. For this reason
+/// it is polled once more after the request has arrived from its thread.
 async fn run_until_request<T, R>(work: impl Future<Output = T>, request: impl Future<Output = R>) -> Result<T, R> {
     let mut work = pin!(work);
     tokio::select! {
@@ -62,13 +64,13 @@ async fn run_until_request<T, R>(work: impl Future<Output = T>, request: impl Fu
     }
 }
 
-/// From here on, a termination request waits for the next [`interruptible`] instead of killing the process.
+/// From now on, a termination request waits for the next [`interruptible`], and does not kill the process.
 pub fn catch_interrupts() {
-    // If signals cannot be caught, the next call reports it.
+    // If signals cannot be caught, the next call reports the error.
     let _ = requests();
 }
 
-/// Clears a Ctrl-C that ended one of several lines, so that the next line can start. Returns any other termination
+/// Clears a Ctrl-C that ended one line of a script, so that the next line can start. Returns any other termination
 /// request.
 pub fn clear_interrupt() -> Option<&'static str> {
     let asked = requests().ok()?;
@@ -89,7 +91,8 @@ fn requests() -> Result<&'static TerminationRequest, Failure> {
     asked.as_ref().map_err(|why| Failure::local(format!("cannot receive signals: {why}")))
 }
 
-/// Starts the thread. It listens when this function returns, because work may send a request at its first poll.
+/// Starts the thread. When this function returns, the thread already receives signals, because work may send a request
+/// at its first poll.
 fn start() -> std::io::Result<TerminationRequest> {
     let requests = TerminationRequest::default();
     let (ready, is_ready) = mpsc::channel();
@@ -104,11 +107,11 @@ fn start() -> std::io::Result<TerminationRequest> {
             Err(error) => _ = ready.send(Err(error)),
         },
     )?;
-    is_ready.recv().unwrap_or_else(|_| Err(std::io::Error::other("the thread for them has ended")))?;
+    is_ready.recv().unwrap_or_else(|_| Err(std::io::Error::other("the thread for signals has ended")))?;
     Ok(requests)
 }
 
-/// Waits for a matching termination request.
+/// Waits for a termination request for which `counts` is true.
 async fn wait(mut asked: watch::Receiver<Option<&'static str>>, counts: impl Fn(&str) -> bool) -> &'static str {
     let how = asked.wait_for(|how| how.is_some_and(&counts)).await.ok().and_then(|how| *how);
     match how {
@@ -117,10 +120,10 @@ async fn wait(mut asked: watch::Receiver<Option<&'static str>>, counts: impl Fn(
     }
 }
 
-/// Passes on every termination request.
+/// Passes each termination request to the work.
 async fn forward_signals(mut signals: Signals, requests: TerminationRequest) {
     let mut presses = Presses::default();
-    // The work that was running at the last check, while a request is pending.
+    // The work that was running at the last check. It is checked while a request is pending.
     let mut seen = None;
     loop {
         let is_waiting = requests.borrow().is_some();
@@ -142,10 +145,10 @@ async fn forward_signals(mut signals: Signals, requests: TerminationRequest) {
             continue;
         }
         if presses.press(how, requests.borrow().is_some(), Instant::now()) {
-            immediate_exit::exit_now(&format!("{how} again: ended at once; a motion or command may continue"));
+            immediate_exit::exit_now(&format!("{how} again: armctl ended at once; a motion or command may continue"));
         }
         seen = busy_work::current();
-        // The first request stays set, unless it was cleared for the next line.
+        // The first request stays set. A Ctrl-C can be cleared for the next line, so a later request replaces it.
         requests.send_if_modified(|asked| {
             let is_first = asked.is_none_or(|asked| asked == KEYS);
             if is_first {
@@ -156,7 +159,7 @@ async fn forward_signals(mut signals: Signals, requests: TerminationRequest) {
     }
 }
 
-/// Requests since the work reacted to one.
+/// Termination requests since the work last reacted to a request.
 #[derive(Debug, Default)]
 struct Presses {
     count: u32,
@@ -164,8 +167,9 @@ struct Presses {
 }
 
 impl Presses {
-    /// Whether one more request ends the process; `is_waiting` says whether the previous one is pending. Requests
-    /// from a closing terminal do not count, because they come automatically and more than once.
+    /// Records a request, and returns whether it ends the process. `is_waiting` is whether the previous request is
+    /// still pending. Requests from a closing terminal do not count, because they come automatically and more than
+    /// once.
     fn press(&mut self, how: &str, is_waiting: bool, now: Instant) -> bool {
         if !is_waiting {
             *self = Self::default();
@@ -184,13 +188,13 @@ impl Presses {
 /// Number of motions in progress.
 static MOTIONS: AtomicUsize = AtomicUsize::new(0);
 
-/// A motion that this process supervises. During a motion, Ctrl-Z does not suspend the process; it ends the work,
-/// like Ctrl-C.
+/// A motion that this process supervises. During a motion, Ctrl-Z does not suspend the process. It ends the work, like
+/// Ctrl-C.
 #[derive(Debug)]
 pub struct MotionInProgress;
 
 impl MotionInProgress {
-    /// Starts supervision, until it is dropped.
+    /// Starts the supervision. It lasts until the value is dropped.
     pub fn begin() -> Self {
         catch_interrupts();
         MOTIONS.fetch_add(1, Ordering::SeqCst);
@@ -212,7 +216,7 @@ async fn receive(signal: &mut Option<tokio::signal::unix::Signal>) {
     }
 }
 
-/// Termination signals. Signals after its creation count, even before they are awaited.
+/// Termination signals. All signals after the creation of this value count, even before the value is polled.
 #[cfg(unix)]
 struct Signals {
     keys: Option<tokio::signal::unix::Signal>,
@@ -227,7 +231,7 @@ impl Signals {
     fn new() -> Self {
         use tokio::signal::unix::{SignalKind, signal};
 
-        /// Number of SIGTSTP.
+        /// Signal number of SIGTSTP.
         const SIGTSTP: i32 = if cfg!(target_os = "linux") { 20 } else { 18 };
 
         Self {
@@ -250,7 +254,8 @@ impl Signals {
     }
 }
 
-/// Whether the process must outlive its terminal, as under `nohup`. If unknown, hangups are not caught.
+/// Whether the process must continue after its terminal closes, as under `nohup`. If this is unknown, hangups are not
+/// caught.
 #[cfg(unix)]
 fn hangup_is_ignored() -> bool {
     let status = armctl_files::text(std::path::Path::new("/proc/self/status"), armctl_files::SETTINGS);
@@ -287,7 +292,7 @@ mod tests {
     async fn inner_wait_handles_the_request() {
         let (ask, asked) = watch::channel(None);
         let inner = run_until_request(pending::<()>(), wait(asked.clone(), |_| true));
-        // The request arrives after the poll of the work.
+        // The request arrives after the work was polled.
         let outer = poll_fn(|_| {
             ask.send_replace(Some(KEYS));
             Poll::Ready("outer")
@@ -310,7 +315,7 @@ mod tests {
         assert!(!presses.press(KEYS, true, at(50)), "sent twice");
         assert!(!presses.press(KEYS, true, at(99)), "a key that is held down");
         assert!(presses.press(TERMINATE, true, at(120)));
-        // The line has ended, and another line is running.
+        // The first line has ended, and another line is running.
         assert!(!presses.press(KEYS, false, at(400)));
         assert!(presses.press(KEYS, true, at(600)));
     }

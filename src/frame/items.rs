@@ -1,6 +1,7 @@
 //! Results of several items of one command, and the common exit code.
 //!
-//! Some failed: exit 9. All failed: their common exit code, or that of the most severe failure.
+//! If some items failed, the exit code is 9. If all failed, it is the exit code that they have in common, or otherwise
+//! the exit code of the most severe failure.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -9,22 +10,22 @@ use crate::backup::severity;
 use crate::failure::{Failure, Kind};
 use crate::output::view::{Cell, Tone};
 
-/// Failure of one item: `{"asked":"B300","kind":"refused","code":"0xA001","message":…}`.
+/// Failure of one item, for example `{"asked":"B300","kind":"refused","code":"0xA001","message":…}`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct ItemError {
-    /// Item as the operator would type it, or as the report names it.
+    /// Item as the user would type it, or as the report names it.
     asked: String,
     #[serde(flatten)]
     failure: Failure,
 }
 
 impl ItemError {
-    /// Failure of one item; its message need not contain the item.
+    /// Failure of one item. Its message need not name the item.
     pub fn new(asked: impl Into<String>, failure: Failure) -> Self {
         Self { asked: asked.into(), failure }
     }
 
-    /// Failure of a command with only this item.
+    /// Failure of a command that has only this item.
     pub fn failure(&self) -> Failure {
         describe_request(&self.asked, self.failure.clone())
     }
@@ -35,9 +36,9 @@ impl ItemError {
     }
 }
 
-/// Failure that starts with the name of the item.
+/// Failure whose message starts with the name of the item.
 pub fn describe_request(name: &str, failure: Failure) -> Failure {
-    // Failures of a local file with the same name already include it.
+    // Messages about a local file with the same name already contain the name.
     if failure.message.strip_prefix(name).is_some_and(|rest| rest.starts_with([':', ' '])) {
         return failure;
     }
@@ -53,14 +54,15 @@ pub fn shorten(failure: &Failure) -> String {
     }
 }
 
-/// Result of one item, next to its name in a report: `{"ok":true, …}` with its data, or `{"ok":false,"error":{…}}`.
+/// Result of one item, next to the name of the item in a report: `{"ok":true, …}` with its data, or
+/// `{"ok":false,"error":{…}}`.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ItemOutcome<T> {
     /// Whether the item was read or written.
     ok: bool,
     #[serde(flatten)]
     data: Option<T>,
-    /// Reason for the failure.
+    /// Why the item was not read or written.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "ItemError")]
     error: Option<ItemError>,
@@ -75,12 +77,12 @@ impl<T> ItemOutcome<T> {
         }
     }
 
-    /// Converts the data.
+    /// Converts the data of the result.
     pub fn map<U>(&self, make: impl FnOnce(&T) -> U) -> ItemOutcome<U> {
         ItemOutcome { ok: self.ok, data: self.data.as_ref().map(make), error: self.error.clone() }
     }
 
-    /// Data, if any.
+    /// Data, if the item succeeded.
     pub fn data(&self) -> Option<&T> {
         self.data.as_ref()
     }
@@ -97,7 +99,7 @@ impl<T> ItemOutcome<T> {
 }
 
 impl<T> ItemOutcome<Option<T>> {
-    /// Converts a result with optional data; none if there is no data.
+    /// Removes the option from the data. Returns `None` if the result is a success without data.
     pub fn with_defaults(self) -> Option<ItemOutcome<T>> {
         let Self { ok, data, error } = self;
         let data = match data {
@@ -108,7 +110,7 @@ impl<T> ItemOutcome<Option<T>> {
     }
 }
 
-/// Failure of a report of `total` items; `None` if none failed.
+/// Failure of a report of `total` items; `None` if no item failed.
 pub fn verdict<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>) -> Option<Failure> {
     let errors: Vec<&ItemError> = errors.into_iter().collect();
     let first = *errors.first()?;
@@ -117,12 +119,12 @@ pub fn verdict<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>
     }
     let kinds = || errors.iter().map(|error| error.failure.kind);
     let (kind, how_many) = if errors.len() < total {
-        // An interruption decides the exit code, because the user asked for it.
+        // An interruption determines the exit code, because the user requested it.
         let is_interrupted = kinds().any(|kind| kind == Kind::Interrupted);
         let kind = if is_interrupted { Kind::Interrupted } else { Kind::Mixed };
         (kind, format!("{} of {total} failed", errors.len()))
     } else {
-        // The first of equal severity.
+        // Of several kinds with equal severity, the first is used.
         (kinds().rev().max_by_key(|kind| severity(*kind))?, format!("all {total} failed"))
     };
     let representative = errors.iter().find(|error| error.failure.kind == kind).copied().unwrap_or(first);
@@ -132,8 +134,8 @@ pub fn verdict<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>
     Some(Failure { kind, code, message: format!("{how_many}: {}", failure.message), hint: failure.hint })
 }
 
-/// Failure of a command if all items failed for the same reason; there is no report then. If the reasons differ, the
-/// report lists them.
+/// Fails if all items failed for the same reason. In that case there is no report. If the reasons differ, the report
+/// lists them.
 pub fn all_failed<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>) -> Result<(), Failure> {
     let errors: Vec<&ItemError> = errors.into_iter().collect();
     let reason = |error: &ItemError| (error.failure.kind, error.failure.code.clone());

@@ -6,7 +6,7 @@ use serde_json::Value;
 use crate::settings::target::Family;
 use armctl_controller::names::Kind;
 
-/// Kind of value with completion candidates.
+/// Kind of value that has completion candidates.
 #[derive(Debug, Clone, Copy)]
 pub enum ValueKind {
     /// A robot of the inventory.
@@ -15,79 +15,79 @@ pub enum ValueKind {
     RobotOrUrl,
     /// A robot with an open session.
     Session,
-    /// Backup folder.
+    /// A backup folder.
     Backup,
-    /// Inventory tag.
+    /// A tag in the inventory.
     Tag,
-    /// Target URL.
+    /// A target URL.
     Url,
     /// A family.
     Family,
-    /// Help topic, or the words of a command.
+    /// A help topic, or the words of a command.
     HelpWord,
     /// The name of a report.
     Schema,
-    /// Code for `explain`.
+    /// A code for `explain`.
     Code(Family),
-    /// Value from a table of a family.
+    /// A value from a table of a family.
     Listed(fn() -> Vec<Candidate>),
-    /// Value that only a robot of the family can list.
+    /// A value that only a robot of the family can list.
     Asked(Family, Question),
-    /// Name, or a value from a table of a family.
+    /// A name, or a value from a table of a family.
     Named(Family, Named),
 }
 
 /// Allows `#[arg(add = ValueKind::Robot)]`.
 impl clap::builder::ArgExt for ValueKind {}
 
-/// Kinds of names and alternatives.
+/// Names that an argument accepts, and the alternatives to a name.
 #[derive(Debug, Clone, Copy)]
 pub struct Named {
-    /// Kinds of the names.
+    /// Kinds that the name may have.
     pub kinds: &'static [Kind],
-    /// Possible endings of a name: empty, or `=on`.
+    /// Endings that a name can have: empty, or `=on`.
     pub endings: &'static [&'static str],
     /// Candidates in addition to names.
     pub listed: fn() -> Vec<Candidate>,
 }
 
-/// Function that reports all candidates of a kind.
+/// Function that lists all candidates by means of a robot.
 pub type Question = for<'a> fn(&'a dyn Ask) -> LocalBoxFuture<'a, ()>;
 
 /// Completion candidate.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Candidate {
-    /// Whole word.
+    /// The whole word.
     pub value: String,
-    /// One-line description.
+    /// Description in one line.
     pub help: Option<String>,
-    /// Whether more must follow without a space, as after `udp://`.
+    /// Whether more text must follow without a space, as after `udp://`.
     pub is_incomplete: bool,
 }
 
 impl Candidate {
-    /// Whole word; the help may be empty.
+    /// A complete word. The help may be empty.
     pub fn new(value: impl Into<String>, help: impl Into<String>) -> Self {
         let help = Some(help.into()).filter(|help| !help.is_empty());
         Self { value: value.into(), help, is_incomplete: false }
     }
 
-    /// Start of a word.
+    /// Marks the candidate as the start of a word.
     #[must_use]
     pub fn incomplete(self) -> Self {
         Self { is_incomplete: true, ..self }
     }
 }
 
-/// Robot that supplies candidates.
+/// A robot that supplies candidates.
 pub trait Ask {
-    /// Data of a read command; none if the robot does not answer in time.
+    /// Data of a read command; `None` if the robot does not answer in time.
     fn data<'a>(&'a self, words: &'a [&'a str]) -> LocalBoxFuture<'a, Option<Value>>;
-    /// Reports a candidate immediately; late candidates are ignored.
+    /// Adds a candidate immediately. Candidates that come too late are ignored.
     fn add_candidate(&self, candidate: Candidate);
 }
 
-/// Rows of a list in command data.
+/// Rows of a list in the data of a command.
 pub fn rows<'a>(data: Option<&'a Value>, list: &str) -> impl Iterator<Item = &'a Value> {
     data.and_then(|data| data.get(list)?.as_array()).into_iter().flatten()
 }

@@ -1,4 +1,4 @@
-//! Local files: safe local names for the files of a controller, and atomic writes.
+//! Local files: safe names for the files of a controller, and atomic writes.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -20,13 +20,13 @@ pub use armctl_files::folder_of;
 const MAX_LOCAL_NAME: usize = 255;
 /// Buffer size: the data of a few hundred blocks.
 const MAX_BUFFER: usize = 1 << 17;
-/// Reserved device names of Windows, with any extension.
+/// Device names that Windows reserves, with any extension.
 const DEVICES: [&str; 6] = ["CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$"];
-/// Reserved device names with a digit.
+/// Device names that Windows reserves if a digit follows.
 const NUMBERED_DEVICES: [&str; 2] = ["COM", "LPT"];
 
-/// Local name for a file of a controller: the decoded name, with `%XX` for each byte of a character that some file
-/// system, shell or terminal could misinterpret. [`controller_name`] is the inverse.
+/// Local name for a file of a controller. It is the decoded name, but each byte of a character that some file system,
+/// shell or terminal could misinterpret is written as `%XX`. [`controller_name`] is the inverse function.
 pub fn local_name(encoding: Encoding, name: &[u8]) -> String {
     let mut pieces = pieces(encoding, name);
     let last = pieces.len().saturating_sub(1);
@@ -45,7 +45,7 @@ pub fn local_name(encoding: Encoding, name: &[u8]) -> String {
     escape_piece(&pieces)
 }
 
-/// Local name that differs from other names in more than case.
+/// Local name without capital letters, so that it differs from other names in more than upper and lower case.
 fn caseless_name(encoding: Encoding, name: &[u8]) -> String {
     let mut pieces = pieces(encoding, name);
     for piece in &mut pieces {
@@ -54,7 +54,7 @@ fn caseless_name(encoding: Encoding, name: &[u8]) -> String {
     escape_piece(&pieces)
 }
 
-/// Name on the controller of a local file: [`local_name`] escapes are decoded, any other name is unchanged.
+/// Name on the controller for a local file. The escapes of [`local_name`] are decoded; any other name is unchanged.
 pub fn controller_name(encoding: Encoding, local: &str) -> Result<Vec<u8>, EncodeError> {
     if let Some(name) = unescaped(encoding, local)
         && (local_name(encoding, &name) == local || caseless_name(encoding, &name) == local)
@@ -64,14 +64,14 @@ pub fn controller_name(encoding: Encoding, local: &str) -> Result<Vec<u8>, Encod
     encoding.encode(local)
 }
 
-/// Whether a local name in a manifest is a plain file name in its folder.
+/// Whether a local name in a manifest is a plain file name, in the same folder as the manifest.
 pub fn is_plain_file_name(local: &str) -> bool {
     let mut parts = Path::new(local).components();
     let dots = matches!((parts.next(), parts.next()), (Some(Component::Normal(part)), None) if part == local);
     dots && local.chars().all(is_plain_or_escape) && !is_device(local)
 }
 
-/// Assigns unique local names to the files of a controller, also on file systems that ignore case.
+/// Assigns local names to the files of a controller. The names are unique even on file systems that ignore case.
 #[derive(Debug)]
 pub struct LocalNames {
     encoding: Encoding,
@@ -79,17 +79,17 @@ pub struct LocalNames {
 }
 
 impl LocalNames {
-    /// Starts without names.
+    /// Creates the assignment without any names.
     pub fn new(encoding: Encoding) -> Self {
         Self { encoding, taken: HashMap::new() }
     }
 
-    /// Local name for `name`; the same for each call.
+    /// Local name for `name`. Each call with the same name returns the same local name.
     pub fn assign(&mut self, name: &[u8]) -> Result<String, Failure> {
         for local in [local_name(self.encoding, name), caseless_name(self.encoding, name)] {
             if local.is_empty() || local.len() > MAX_LOCAL_NAME {
                 return Err(Failure::local(format!("the name '{}' cannot be a local file name", name.escape_ascii()))
-                    .hint("`yerc file get NAME --dir -` writes the file to stdout"));
+                    .hint("use `yerc file get NAME --dir -` to write the file to stdout"));
             }
             let owner = self.taken.entry(local.to_lowercase()).or_insert_with(|| name.to_vec());
             if owner == name {
@@ -100,7 +100,7 @@ impl LocalNames {
     }
 }
 
-/// Path of a file to be written, checked before anything is sent.
+/// Path of a file that will be written. The path is checked before anything is sent.
 #[derive(Debug, Clone)]
 pub struct Target {
     path: PathBuf,
@@ -108,7 +108,7 @@ pub struct Target {
 }
 
 impl Target {
-    /// The file must not exist unless `replace` is set.
+    /// Creates a target. The file must not exist, unless `replace` is set.
     pub fn new(path: PathBuf, replace: bool) -> Result<Self, Failure> {
         match path.symlink_metadata() {
             Ok(found) if !found.is_file() && !found.is_symlink() => {
@@ -128,7 +128,7 @@ impl Target {
         &self.path
     }
 
-    /// Starts the write; before [`Draft::commit`], the target path does not change.
+    /// Starts to write the file. Until [`Draft::commit`], the target path does not change.
     pub fn begin(&self) -> Result<Draft, Failure> {
         let folder = folder_of(&self.path);
         let file = files::draft_in(&folder).with_context(|| folder.display().to_string())?;
@@ -136,7 +136,7 @@ impl Target {
     }
 }
 
-/// A file that is written next to its target path; removed if dropped.
+/// A file that is written next to its target path. If the draft is dropped, the file is removed.
 #[derive(Debug)]
 pub struct Draft {
     file: BufWriter<NamedTempFile>,
@@ -149,12 +149,12 @@ impl Draft {
         Ok(self.file.write_all(bytes).with_context(|| self.target.path.display().to_string())?)
     }
 
-    /// Moves the complete file to its target path and syncs it to disk.
+    /// Syncs the complete file to disk and moves it to its target path.
     pub fn commit(self) -> Result<(), Failure> {
         let Target { path, replace } = self.target;
         let place = || path.display().to_string();
         let file = self.file.into_inner().map_err(std::io::IntoInnerError::into_error).with_context(place)?;
-        // Some file systems report a full disk only at this point.
+        // Some file systems report a full disk only when the file is synced.
         file.as_file().sync_data().with_context(place)?;
         let kept = if replace { file.persist(&path) } else { file.persist_noclobber(&path) };
         match kept {
@@ -164,7 +164,7 @@ impl Draft {
     }
 }
 
-/// Path for robot `name` in the operator's folder: a subfolder if there are several robots.
+/// Path for robot `name` in the folder that the user gave. With several robots, it is a subfolder.
 pub fn private_folder(folder: &Path, name: &str, several: bool) -> PathBuf {
     if several { folder.join(local_name(Encoding::Utf8, name.as_bytes())) } else { folder.to_owned() }
 }
@@ -176,12 +176,12 @@ pub fn make_folder(folder: &Path) -> Result<(), Failure> {
 
 fn exists(path: &Path) -> Failure {
     Failure::local(format!("{} already exists and was not changed", path.display()))
-        .hint("add --force to replace it, or use another path")
+        .hint("add --force to replace the file, or use another path")
 }
 
-/// A character of a name, or an invalid byte.
+/// A character of a name, or a byte that is not valid in the encoding.
 struct Piece<'a> {
-    /// The character, if it needs no escape.
+    /// The character; `None` if it needs an escape.
     plain: Option<char>,
     bytes: Cow<'a, [u8]>,
 }
@@ -194,7 +194,7 @@ fn pieces(encoding: Encoding, name: &[u8]) -> Vec<Piece<'_>> {
     }
     let mut buffer = [0; 4];
     let piece = |c: char| {
-        // The text converts back to its bytes, so each character can be encoded.
+        // The text was decoded from these bytes, so each of its characters can be encoded.
         let bytes = encoding.encode(c.encode_utf8(&mut buffer)).unwrap_or_default();
         Piece { plain: Some(c).filter(|c| is_plain(*c)), bytes: bytes.into() }
     };
@@ -216,7 +216,7 @@ fn escape_piece(pieces: &[Piece<'_>]) -> String {
     local
 }
 
-/// Bytes of a local name, if [`escape_piece`] can produce it.
+/// Bytes of a local name; `None` if [`escape_piece`] cannot produce this name.
 fn unescaped(encoding: Encoding, local: &str) -> Option<Vec<u8>> {
     let mut name = Vec::with_capacity(local.len());
     let mut rest = local;
@@ -333,7 +333,7 @@ mod tests {
         draft.write(b"whole").unwrap();
         draft.commit().unwrap();
         assert_eq!(Target::new(path.clone(), false).unwrap_err().kind, Kind::Local);
-        // A file that appears during the transfer is not replaced.
+        // The target file appears during the transfer and must not be replaced.
         let late = target.begin().unwrap();
         assert_eq!(late.commit().unwrap_err().kind, Kind::Local);
         assert_eq!(std::fs::read(&path).unwrap(), b"whole");

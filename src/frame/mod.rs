@@ -12,9 +12,9 @@
 //! | [`robot`] | reports that all families share: state, alarms, position, signals, motion, files |
 //! | [`face`] | what the rest of the program can ask of a family |
 //!
-//! A command is a struct of its arguments that implements [`Command`]. A group of subcommands is a clap enum. Both
-//! are [`CommandSet`]s. A line in the family's `commands!` list adds them to the command line, help, man page,
-//! completion and schema.
+//! A command is a struct of its arguments that implements [`Command`]. A group of subcommands is a clap enum. Both are
+//! [`CommandSet`]s. A command becomes part of the command line, help, man page, completion and schema by a line in the
+//! `commands!` list of its family.
 
 pub mod attach;
 pub mod authority;

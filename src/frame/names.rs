@@ -1,9 +1,9 @@
 //! Names instead of addresses: `io get clamp`, `io set clamp=on`, `var get PARTS`.
 //!
-//! Arguments are parsed before their robots are known, and the risk of a line depends on addresses. So a line with a
-//! possible name is parsed twice. The first time, any valid address stands for the name, to find the robots of the
-//! line. The second time, their names are known, and the word is replaced by its address, or rejected. A valid
-//! address is never looked up.
+//! Arguments are parsed before their robots are known, and the risk of a line depends on addresses. For this reason, a
+//! line that may contain a name is parsed twice. The first parse replaces the name by any valid address, to find the
+//! robots of the line. In the second parse, the names of these robots are known, and the word is replaced by its
+//! address, or rejected. A valid address is never looked up as a name.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -26,15 +26,15 @@ use crate::settings::target::Family;
 use armctl_controller::names::{Found, Grammar, Kind, Name, Names, unusable};
 use armctl_controller::nearest::nearest;
 
-/// Treatment of a word that is not an address.
+/// What the parser does with a word that is not an address.
 #[derive(Debug, Clone, Default)]
 enum Mode {
-    /// Reject it.
+    /// Rejects the word.
     #[default]
     Off,
-    /// Accept it as a possible name.
+    /// Accepts the word as a possible name.
     Asking,
-    /// Look it up in the names of these robots.
+    /// Looks up the word in the names of these robots.
     Known(Rc<NameLookup>),
 }
 
@@ -45,12 +45,12 @@ struct NameLookup {
 }
 
 thread_local! {
-    /// Parsing is one call in one thread, and value parsers receive no context.
+    /// A line is parsed in one call in one thread, and value parsers receive no context.
     static MODE: RefCell<Mode> = const { RefCell::new(Mode::Off) };
     static NAME_FOUND: RefCell<bool> = const { RefCell::new(false) };
 }
 
-/// Restores the previous mode, even if a parser panics.
+/// Restores the previous mode when dropped, even if a parser panics.
 struct Restore(Mode);
 
 impl Drop for Restore {
@@ -59,7 +59,7 @@ impl Drop for Restore {
     }
 }
 
-/// Parses with possible names, and returns whether there were any.
+/// Parses and accepts possible names. Also returns whether there were any.
 pub fn detect_names<T>(parse: impl FnOnce() -> T) -> (T, bool) {
     let _restore = Restore(MODE.replace(Mode::Asking));
     NAME_FOUND.replace(false);
@@ -67,15 +67,15 @@ pub fn detect_names<T>(parse: impl FnOnce() -> T) -> (T, bool) {
     (parsed, NAME_FOUND.replace(false))
 }
 
-/// Parses with the names of the robots of the line.
+/// Parses with the names of the robots for which the line is.
 pub fn with_names<T>(family: Family, robots: &[Robot], parse: impl FnOnce() -> T) -> T {
     let robots = robots.iter().map(|robot| (robot.name.clone(), robot.names.clone())).collect();
     let _restore = Restore(MODE.replace(Mode::Known(Rc::new(NameLookup { family, robots }))));
     parse()
 }
 
-/// Parses an argument: a value that `parse` accepts, or a name of these kinds. `any` is an arbitrary address that
-/// `parse` accepts.
+/// Parses an argument: a value that `parse` accepts, or a name of these kinds. `any` is some address that `parse`
+/// accepts; its value does not matter.
 pub fn parse_or_name<T>(
     kinds: &[Kind],
     any: &str,
@@ -85,8 +85,8 @@ pub fn parse_or_name<T>(
     parse_or_name_marked(kinds, any, text, parse).map(|(value, _)| value)
 }
 
-/// Parses an argument, and returns whether `any` replaces a name that is not resolved yet. In that case, nothing
-/// else about it can be checked.
+/// Parses an argument. Also returns whether `any` replaces a name that is not resolved yet. In that case, nothing else
+/// about the argument can be checked.
 pub fn parse_or_name_marked<T>(
     kinds: &[Kind],
     any: &str,
@@ -121,7 +121,7 @@ pub fn parse_or_name_marked<T>(
 }
 
 impl NameLookup {
-    /// Address of a name, if it is the same for all robots; `None` if no robot has the name.
+    /// Address of a name. All robots must have the same address for it. `None` if no robot has the name.
     fn address(&self, kinds: &[Kind], text: &str) -> Result<Option<String>, String> {
         let mut addresses: Vec<(&str, Option<String>)> = Vec::new();
         for (robot, names) in &self.robots {
@@ -149,19 +149,19 @@ impl NameLookup {
         let grammar = grammar(self.family);
         let names = self.robots.iter().flat_map(|(_, names)| names.all().names.iter());
         let names = names.filter(|name| kinds.contains(&name.kind)).map(|name| name.name.as_str());
-        // A name with control characters cannot be typed.
+        // A name with control characters cannot be typed, so it is not suggested.
         nearest(text, names.filter(|name| unusable(grammar, name).is_none())).map(ToOwned::to_owned)
     }
 
-    /// Whether a controller may have names that are not stored.
+    /// Whether a controller may have names that are not stored on this computer.
     fn has_missing_names(&self) -> bool {
         self.robots.iter().any(|(_, names)| names.cache_file().is_some() && names.all().kept.is_none())
     }
 }
 
-/// Message for several addresses with the same name.
+/// Message: several addresses have the same name.
 fn ambiguous(text: &str, several: &[&Name]) -> String {
-    /// Maximum number of listed addresses; others are counted.
+    /// Maximum number of addresses that the message lists. The others are counted.
     const SHOWN: usize = 6;
 
     let describe = |name: &&Name| format!("{} ({} of {})", name.address, name.name, name.source);
@@ -172,11 +172,11 @@ fn ambiguous(text: &str, several: &[&Name]) -> String {
     format!("'{text}' is the name of {}; type the address", described.join(" and of "))
 }
 
-/// Last message about unreadable names.
+/// Last message about names that could not be read.
 static LAST_MESSAGE: Mutex<String> = Mutex::new(String::new());
 
-/// Names of a robot for a report. An error that prevents reading its stored names is printed once and does not
-/// suppress the report.
+/// Names of a robot for a report. If the stored names cannot be read, the error is printed once, and the report is
+/// still made.
 pub fn of_robot<'a>(robot: &'a Robot, screen: &Screen) -> &'a Names {
     let all = robot.names.all();
     if let Some(damage) = &all.damage {
@@ -190,7 +190,7 @@ pub fn of_robot<'a>(robot: &'a Robot, screen: &Screen) -> &'a Names {
     &all.names
 }
 
-/// Name of an address, for a report.
+/// Name for an address, for a report.
 pub fn label(names: &Names, kind: Kind, address: &str) -> Option<String> {
     names.label(kind, address).map(ToOwned::to_owned)
 }
@@ -204,7 +204,7 @@ pub fn candidates(robots: &[Robot], kinds: &[Kind], ending: &str) -> Vec<Candida
     names.map(|name| Candidate::new(format!("{}{ending}", name.name), name.address.clone())).collect()
 }
 
-/// Names of a robot that contain a text, or all names.
+/// Names of a robot that contain a text, or all names of the robot.
 pub fn list(robot: &Robot, filter: Option<&str>) -> Result<Listing, Failure> {
     let all = robot.names.all();
     if let Some(damage) = &all.damage {
@@ -235,17 +235,17 @@ pub fn list(robot: &Robot, filter: Option<&str>) -> Result<Listing, Failure> {
     })
 }
 
-/// Reason why a name cannot be typed instead of its address; `None` if it can.
+/// Reason why the user cannot type a name instead of its address; `None` if the user can.
 fn not_typed(grammar: Grammar, names: &Names, name: &Name) -> Option<String> {
     if let Some(why) = unusable(grammar, &name.name) {
         return Some(why.to_owned());
     }
     match names.find(&[name.kind], &name.name) {
         Found::One(found) if found.address == name.address => None,
-        Found::One(found) => Some(format!("it is the name of {} in {}", found.address, found.source)),
+        Found::One(found) => Some(format!("the name belongs to {} in {}", found.address, found.source)),
         Found::Several(several) => {
             let other = several.iter().find(|other| other.address != name.address);
-            Some(format!("it is also the name of {}", other.map_or("another address", |other| &other.address)))
+            Some(format!("the name also belongs to {}", other.map_or("another address", |other| &other.address)))
         }
         Found::None => None,
     }
@@ -255,28 +255,28 @@ fn not_typed(grammar: Grammar, names: &Names, name: &Name) -> Option<String> {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Listing {
     names: Vec<Listed>,
-    /// Time when the controller's names were read; null if none are stored.
+    /// Time at which the names were read from the controller; null if none are stored.
     #[schemars(with = "Option<String>", extend("format" = "date-time"))]
     read_at: Option<Timestamp>,
-    /// Age of the stored names.
+    /// Age of the stored names in seconds.
     age_s: Option<i64>,
-    /// Files of the stored names.
+    /// Files that contain the stored names.
     files: Vec<KeptFile>,
     #[serde(skip)]
     is_all: bool,
 }
 
-/// A name.
+/// A name and its address.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Listed {
     name: String,
     /// `signal`, `variable`, `register`, `port`, `input`, `output` or `counter`.
     kind: &'static str,
-    /// `#27010`, `B5`, `SO(20)`.
+    /// Address, such as `#27010`, `B5`, `SO(20)`.
     address: String,
     /// `robots.toml`, or the file of the controller.
     source: String,
-    /// Reason why it cannot be typed instead of the address; null if it can.
+    /// Reason why the name cannot be typed instead of the address; null if it can be typed.
     not_typed: Option<String>,
 }
 
@@ -303,7 +303,7 @@ impl Report for Listing {
     }
 }
 
-/// Duration in its largest unit: `3 days`.
+/// Duration in its largest unit, for example `3 days`.
 fn describe_age(seconds: i64) -> String {
     let units = [(86_400, "day"), (3_600, "hour"), (60, "minute"), (1, "second")];
     let (size, unit) = units.into_iter().find(|(size, _)| seconds >= *size).unwrap_or((1, "second"));

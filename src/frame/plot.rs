@@ -5,12 +5,12 @@ use std::collections::VecDeque;
 
 use crate::output::view::{Cell, Section, Table};
 
-/// Number of rounds in a chart.
+/// Maximum number of rounds in a chart.
 const MAX_POINTS: usize = 40;
 /// Bars from the minimum to the maximum.
 const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// Values of earlier rounds.
+/// Values of earlier rounds of a watch.
 #[derive(Debug, Default)]
 pub struct SeriesHistory(RefCell<Vec<Series>>);
 
@@ -28,7 +28,7 @@ struct Series {
 pub struct Plot(Vec<Series>);
 
 impl SeriesHistory {
-    /// Adds the values of a round: name, unit, decimals, value. A different set of names restarts the chart.
+    /// Adds the values of a round: name, unit, decimals, value. If the set of names changes, the chart starts again.
     pub fn add(&self, values: impl IntoIterator<Item = (String, &'static str, usize, f64)>) -> Plot {
         let mut past = self.0.borrow_mut();
         let values: Vec<_> = values.into_iter().collect();
@@ -53,7 +53,7 @@ impl SeriesHistory {
 }
 
 impl Plot {
-    /// Section of a view: one row per value, with minimum and maximum.
+    /// Section of a view. It has one row per value, with minimum and maximum.
     pub fn section(&self) -> Section {
         let mut table = Table::new(&["axis", "now", "unit", "chart", "min", "max"], "nothing to show");
         for Series { name, unit, decimals, values } in &self.0 {
@@ -73,7 +73,7 @@ fn range(values: &VecDeque<f64>) -> (f64, f64) {
     if values.is_empty() { (0.0, 0.0) } else { (minimum, maximum) }
 }
 
-/// One bar per round, the latest at the end; a constant value is a line at the bottom.
+/// One bar per round, the latest at the end. A constant value is a line at the bottom.
 fn bars(values: &VecDeque<f64>) -> String {
     let (least, greatest) = range(values);
     let step = (greatest - least) / 8.0;

@@ -5,7 +5,7 @@ use super::interrupt::interruptible;
 use crate::failure::Failure;
 use crate::output::Screen;
 
-/// Answer to a question. An aborted question restores the terminal.
+/// Asks a question and returns the answer. If the question is aborted, the terminal is restored.
 pub async fn ask<T: Send + 'static>(
     screen: Screen,
     question: impl FnOnce() -> Result<T, Failure> + Send + 'static,

@@ -1,4 +1,5 @@
-//! Limiter of repeated log lines: what a robot or a broker repeats is counted, and printed now and then with its count.
+//! Limiter of repeated log lines. Lines that a robot or a broker repeats are counted, and printed from time to time
+//! with their count.
 
 use std::collections::HashMap;
 use std::time::{Duration, Instant};
@@ -6,56 +7,56 @@ use std::time::{Duration, Instant};
 use crate::output::log::Level;
 use crate::settings::duration;
 
-/// Time in which repeated lines are counted.
+/// Period for which repeated lines are counted.
 const WINDOW: Duration = Duration::from_secs(600);
-/// Lines of one kind that are printed in that time, before the others are only counted.
+/// Number of lines of one kind that are printed within the window. Further lines are only counted.
 const BURST: u32 = 5;
-/// Maximum number of distinct kinds of lines per peer; others count as one kind. A peer may choose the text of its
-/// errors.
+/// Maximum number of distinct kinds of lines per peer. All other lines count as one kind, because a peer may choose the
+/// text of its errors.
 const MAX_KINDS: usize = 16;
 
-/// A line of the log.
+/// A line for the log.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Line {
-    /// Its priority.
+    /// Priority of the line.
     pub level: Level,
-    /// Its text.
+    /// Text of the line.
     pub text: String,
     /// Names and values for the journal.
     pub fields: Vec<(String, String)>,
 }
 
 impl Line {
-    /// A line with these fields.
+    /// Creates a line with these fields.
     pub fn new(level: Level, text: &str, fields: &[(&str, &str)]) -> Self {
         let fields = fields.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned()));
         Self { level, text: text.to_owned(), fields: fields.collect() }
     }
 
-    /// Robot or broker of the line.
+    /// Robot or broker that the line is about.
     fn peer(&self) -> Option<&(String, String)> {
         self.fields.iter().find(|(name, _)| name == "robot" || name == "broker")
     }
 }
 
-/// Lines of one kind.
+/// Count of the lines of one kind.
 #[derive(Debug)]
 struct LineCount {
     since: Instant,
     printed: u32,
-    /// Last suppressed line, its time, and the number of suppressed lines.
+    /// Last suppressed line, its time, and the number of suppressed lines of this kind.
     suppressed: Option<(Line, Instant, u64)>,
 }
 
-/// Limiter for log lines: returns the lines to print.
+/// Limiter for log lines. It returns the lines that are to be printed.
 #[derive(Debug, Default)]
 pub struct RepeatLimiter {
-    /// By peer, and by text with every number as `#`.
+    /// Counts by peer, and then by text. In the text, every number is replaced by `#`.
     counts: HashMap<(String, String), HashMap<String, LineCount>>,
 }
 
 impl RepeatLimiter {
-    /// Lines to print now for this line: due summaries, and the line itself unless it is suppressed.
+    /// Returns the lines to print now: summaries that are due, and this line unless it is suppressed.
     pub fn lines(&mut self, line: Line, now: Instant) -> Vec<Line> {
         let mut lines = self.due(now, false);
         if self.is_printed(&line, now) {
@@ -64,7 +65,7 @@ impl RepeatLimiter {
         lines
     }
 
-    /// Whether this line is printed now. Lines about this computer always are.
+    /// Whether this line is printed now. Lines about this computer are always printed.
     fn is_printed(&mut self, line: &Line, now: Instant) -> bool {
         let Some(peer) = line.peer() else { return true };
         let kinds = self.counts.entry(peer.clone()).or_default();
@@ -82,8 +83,8 @@ impl RepeatLimiter {
         false
     }
 
-    /// Due summaries, in the order of their last lines, so that the last line about a peer is the current state. At
-    /// the end of the service, all are due.
+    /// Returns the summaries that are due, in the order of their last lines. Because of this order, the last line about
+    /// a peer is its current state. At the end of the service, all summaries are due.
     pub fn due(&mut self, now: Instant, is_end: bool) -> Vec<Line> {
         let mut due = Vec::new();
         for kinds in self.counts.values_mut() {
@@ -97,7 +98,7 @@ impl RepeatLimiter {
                 let age = duration::display(Duration::from_secs(age.as_secs()));
                 line.text = format!("{} ({times} in {age})", line.text);
                 due.push((at, line));
-                // Still repeating: from here on, one summary per window.
+                // The line still repeats. From now on there is one summary per window.
                 (seen.since, seen.printed) = (now, BURST);
                 true
             });
@@ -108,9 +109,9 @@ impl RepeatLimiter {
     }
 }
 
-/// Text with each number replaced by `#`, because durations and counts differ between otherwise equal lines.
+/// Text in which each number is replaced by `#`. Durations and counts differ between lines of the same kind.
 fn shape(text: &str) -> String {
-    /// Number of characters that distinguish kinds of lines.
+    /// Maximum number of characters by which kinds of lines are distinguished.
     const SHAPE_LENGTH: usize = 200;
 
     let mut shape = String::new();
@@ -142,7 +143,8 @@ mod tests {
         let due = repeats.due(start + WINDOW, false);
         let texts: Vec<&str> = due.iter().map(|line| &line.text[..]).collect();
         assert_eq!(texts, ["again in 999.1s (995 more times in 10m)"]);
-        // While the line repeats, it is held for the next summary. After a window without it, it is forgotten.
+        // While the line repeats, it is kept for the next summary. After a window without the line, its count is
+        // removed.
         assert!(!repeats.is_printed(&line("again in 7.0s"), start + WINDOW));
         assert_eq!(repeats.due(start + WINDOW * 2, false)[0].text, "again in 7.0s (once more in 10m)");
         assert!(repeats.due(start + WINDOW * 3, false).is_empty());

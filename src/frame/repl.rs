@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-/// Arguments of `repl`: only the options of every command, which apply to each line.
+/// Arguments of `repl`. There are only the options of every command, and they apply to each line.
 #[derive(Debug, Args)]
 #[command(after_help = "For lines and keys, see `armctl help repl`.")]
 pub struct Repl {}

@@ -11,18 +11,18 @@ use crate::output::view::View;
 
 /// Report of a command.
 pub trait Report: Serialize + JsonSchema {
-    /// Rows of a spreadsheet.
+    /// Which rows of the report a spreadsheet contains.
     const ROWS: RowsOf = RowsOf::Lists;
 
     /// View for people.
     fn view(&self) -> View;
 
-    /// Failure of a complete report: a difference, a condition not met, a failed file.
+    /// Failure that a complete report states: a difference, a condition that is not met, a failed file.
     fn failure(&self) -> Option<Failure> {
         None
     }
 
-    /// Rows of this report, [`ROWS`](Self::ROWS).
+    /// Which rows this report has in a spreadsheet. The default is [`ROWS`](Self::ROWS).
     fn rows(&self) -> RowsOf {
         Self::ROWS
     }
@@ -31,9 +31,9 @@ pub trait Report: Serialize + JsonSchema {
 /// A report, or a failure.
 pub type Outcome = Result<Box<dyn AnyReport>, Failure>;
 
-/// [`Report`] without its type.
+/// [`Report`] without its concrete type.
 pub trait AnyReport {
-    /// `data` of the envelope.
+    /// Value for `data` in the envelope.
     fn data(&self) -> Result<Value, Failure>;
     /// See [`Report::view`].
     fn view(&self) -> View;
@@ -72,22 +72,22 @@ pub fn schema_of<R: JsonSchema>() -> Schema {
     SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<R>()
 }
 
-/// Columns of a report.
+/// Spreadsheet columns of a report.
 pub fn sheet_of<R: Report>() -> Sheet {
     Sheet::from_schema(&schema_of::<R>().to_value(), R::ROWS)
 }
 
-/// Schema of a report, by command.
+/// Schema of a report, with the name of its command.
 #[derive(Debug, Clone, Copy)]
 pub struct SchemaEntry {
-    /// `yerc.status`.
+    /// Name of the report, such as `yerc.status`.
     pub id: &'static str,
     /// Creates the schema of `data`.
     pub schema: fn() -> Schema,
 }
 
 impl SchemaEntry {
-    /// Schema of a serialized report: fields that may be omitted are not required.
+    /// Schema of a serialized report. Fields that may be omitted are not required in it.
     pub fn of<R: JsonSchema>(id: &'static str) -> Self {
         Self { id, schema: schema_of::<R> }
     }

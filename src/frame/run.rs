@@ -1,4 +1,4 @@
-//! Run loop for robot commands: select robots, pass the gate, run, report, repeat.
+//! Run loop for robot commands: selects the robots, passes the gate, runs the command, prints the report, and repeats.
 
 mod failure_log;
 mod print;
@@ -12,13 +12,12 @@ use anyhow::Context as _;
 use futures_util::StreamExt as _;
 use futures_util::stream;
 use serde::Serialize;
-use tokio::time::timeout_at;
 
 use self::failure_log::FailureLog;
 pub use self::print::as_value;
 use self::print::{ReportPosition, with_time};
 pub use self::rounds::Repeat;
-use self::rounds::Rounds;
+use self::rounds::{Deadline, Rounds};
 use super::attach::{identify, is_held_by_other_process};
 use super::authority::{self, Authority};
 use super::background;
@@ -26,7 +25,7 @@ use super::command::{AnyCommand, AnyContext};
 use super::connection::{Access, Connection, Entry, FamilyArguments};
 use super::dry_run::{DryRun, Plan, is_end};
 use super::interrupt::{MotionInProgress, catch_interrupts, interruptible};
-use super::report::Outcome;
+use super::report::{AnyReport, Outcome};
 use super::script_line::Line;
 use super::share::open_shared_session;
 use crate::failure::{Failure, Kind};
@@ -42,23 +41,23 @@ use armctl_controller::Risk;
 /// Run options of the command line.
 #[derive(Debug)]
 pub struct Run {
-    /// Output.
+    /// Screen for the output.
     pub screen: Screen,
     /// Robots and their settings.
     pub sources: Sources,
-    /// Permissions.
+    /// Permissions of the command line.
     pub gate: Gate,
-    /// Repetition.
+    /// Options for repetition.
     pub repeat: Repeat,
-    /// `--jq`.
+    /// Filter of `--jq`.
     pub filter: Option<Filter>,
-    /// `--trace`.
+    /// Trace file of `--trace`.
     pub trace: Option<PathBuf>,
-    /// Context of a line in a REPL or batch.
+    /// Context if the command is a line in a REPL or batch.
     pub line: Option<Line>,
-    /// Screen state of a watch.
+    /// What a watch has on the screen.
     pub redraw: Redraw,
-    /// Family arguments before the command.
+    /// Arguments of the family that precede the command.
     pub own: FamilyArguments,
 }
 
@@ -67,9 +66,9 @@ pub struct Run {
 pub struct RunError {
     /// Failure.
     pub failure: Failure,
-    /// Envelope with robot and command.
+    /// Envelope that names robot and command.
     pub envelope: Option<Box<Envelope>>,
-    /// Whether the report on stdout already shows the failure: then only the exit code is set.
+    /// Whether the report on stdout already contains the failure. In that case, only the exit code is set.
     pub is_reported: bool,
 }
 
@@ -95,15 +94,15 @@ impl RunError {
 
 /// Default interval between reads.
 const DEFAULT_INTERVAL: Duration = Duration::from_secs(1);
-/// Maximum number of robots in parallel. It is large enough that a plant with many switched-off robots takes one
-/// timeout, and small enough for an open-file limit of 256.
+/// Maximum number of robots in parallel. It is large enough that a plant with many switched-off robots takes only one
+/// timeout, and small enough for a limit of 256 open files.
 const MAX_PARALLEL: usize = 128;
 
-/// Connection and its granted risk.
+/// Connection, and the risk that is granted for it.
 type Granted = (Box<dyn Connection>, Grant);
 
 impl Run {
-    /// Runs `command` on its robots and reports.
+    /// Runs `command` on its robots and prints the reports.
     pub async fn robots(&self, command: &dyn AnyCommand) -> Result<(), RunError> {
         if let Some(outcome) = command.without_robot(&self.screen) {
             return self.local(command.id(), &*outcome?);
@@ -118,7 +117,7 @@ impl Run {
         }
     }
 
-    /// Robots of a command, after it has been authorized for all of them.
+    /// Robots for a command, after the command was authorized for all of them.
     pub async fn authorize_robots(&self, command: &dyn AnyCommand) -> Result<Vec<Robot>, RunError> {
         let mut robots = self.select_robots(command)?;
         let asks = |robot: &Robot| {
@@ -126,8 +125,8 @@ impl Run {
             intent.risk == Risk::Motion || intent.confirmation != Confirmation::Question
         };
         if robots.iter().any(asks) {
-            // From here on, Ctrl-C (also at a question) ends with a message and an exit code instead of killing the
-            // process.
+            // From now on, Ctrl-C (also at a question) ends the command with a message and an exit code. It does not
+            // kill the process.
             catch_interrupts();
             for robot in &robots {
                 self.check_model(command, robot)
@@ -149,12 +148,12 @@ impl Run {
         Ok(robots)
     }
 
-    /// Runs a command once on [authorized](Self::authorize_robots) robots, without a report.
+    /// Runs a command once on [authorized](Self::authorize_robots) robots. Prints no report.
     pub async fn collect(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Vec<Outcome> {
         run_parallel(robots.iter().map(|robot| self.run_once(command, robot))).await
     }
 
-    /// Robots of a command, if the command is valid for them.
+    /// Robots for a command. The command must be valid for them.
     fn select_robots(&self, command: &dyn AnyCommand) -> Result<Vec<Robot>, Failure> {
         if command.intent(None).risk > Risk::Read && (self.repeat.is_wanted() || self.repeat.check.is_some()) {
             return Err(Failure::usage("--watch, --count, --until and --check need a command that only reads")
@@ -167,7 +166,7 @@ impl Run {
         let mut robots = self.sources.robots(command.family())?;
         self.identify(command, &mut robots)?;
         for robot in &mut robots {
-            // If the session ends in the meantime, the direct connection must not be used without confirmation.
+            // If the session ends before the command runs, a direct connection must not be used without confirmation.
             if !self.gate.dry_run && command.entry(robot) == Entry::ThroughSession {
                 robot.sessions = Sessions::Only;
             }
@@ -177,14 +176,14 @@ impl Run {
                 "at most {MAX_PARALLEL} robots can be watched at a time, not {}",
                 robots.len()
             ))
-            .hint("select fewer with -r or --tag"));
+            .hint("select fewer robots with -r or --tag"));
         }
         let intents: Vec<_> = robots.iter().map(|robot| (robot, self.intent(command, robot))).collect();
         Gate::check_named_robots(&intents, |robot| self.sources.selection.is_typed(&robot.name))?;
         Ok(robots)
     }
 
-    /// Finds robots with an alias address that matters. A dry run sends no request for that.
+    /// Resolves the addresses of the robots for which an alias address matters. A dry run sends no request for this.
     fn identify(&self, command: &dyn AnyCommand, robots: &mut [Robot]) -> Result<(), Failure> {
         let Some(driver) = command.driver().filter(|_| !self.gate.dry_run) else { return Ok(()) };
         for robot in robots {
@@ -199,7 +198,7 @@ impl Run {
         Ok(())
     }
 
-    /// Whether a session is opened for a command, because the robot's entry requires it.
+    /// Whether a session is opened for a command, because the inventory entry of the robot requires it.
     fn opens_session(&self, command: &dyn AnyCommand, robot: &Robot) -> bool {
         let is_wanted = robot.hold.value && !robot.read_only.value && robot.sessions == Sessions::Shared;
         is_wanted
@@ -208,13 +207,14 @@ impl Run {
             && matches!(command.entry(robot), Entry::Stops(_))
     }
 
-    /// Intent for the gate: effect of the command and of its connection.
+    /// Intent for the gate: the effects of the command and of its connection.
     fn intent(&self, command: &dyn AnyCommand, robot: &Robot) -> Intent {
         let intent = self.own.complete(command.intent(Some(robot)));
         let is_free = self.gate.dry_run || intent.is_stop || self.opens_session(command, robot);
         let entry = if is_free { Entry::Harmless } else { command.entry(robot) };
         let Entry::Stops(entry) = entry else { return intent };
-        // A command that confirms later describes its own action then; any other action is part of this question.
+        // If a command confirms its own action later, this question is only about the connection. Otherwise the action
+        // is part of this question.
         let (asks, confirmation) = match intent.confirmation {
             Confirmation::Word(_) => (true, intent.confirmation),
             Confirmation::Question => (intent.risk >= Risk::Destroy, Confirmation::Question),
@@ -224,7 +224,7 @@ impl Run {
         Intent { risk: Risk::Motion, text, confirmation, ..intent }
     }
 
-    /// Finds rejections that need no question: unknown robots, missing permissions.
+    /// Finds rejections for which no question is needed: unknown robots, missing permissions.
     pub fn check_gate(&self, command: &dyn AnyCommand) -> Result<(), Failure> {
         if command.driver().is_none() {
             return Ok(());
@@ -242,7 +242,7 @@ impl Run {
             self.run_once(command, robot).await.map_err(|failure| RunError::for_robot(robot, command, failure))?;
         let printed = self.print(robot, command.id(), &*report, ReportPosition::Alone);
         if let Some(failure) = report.failure() {
-            // A closed or full stdout does not change the failure.
+            // If stdout is closed or full, the failure stays the same.
             let is_reported = printed.is_ok() && self.screen.is_json();
             return Err(RunError { failure, envelope: None, is_reported });
         }
@@ -251,7 +251,7 @@ impl Run {
         checked.map_err(|failure| RunError::for_robot(robot, command, failure))
     }
 
-    /// Evaluates `--check`.
+    /// Evaluates the condition of `--check`.
     fn check(&self, envelopes: &impl Serialize) -> Result<(), Failure> {
         let Some(check) = self.repeat.check.as_ref().filter(|_| !self.gate.dry_run) else { return Ok(()) };
         let envelopes = as_value(envelopes)?;
@@ -265,7 +265,7 @@ impl Run {
         })
     }
 
-    /// Failure to print a report of a completed action, with a note not to repeat the action.
+    /// If the report of a completed action cannot be printed, adds a note to the failure not to repeat the action.
     fn mark_unprinted(&self, risk: Risk, failure: Failure) -> Failure {
         if risk == Risk::Read || failure.kind == Kind::PipeClosed || self.gate.dry_run {
             return failure;
@@ -273,7 +273,7 @@ impl Run {
         failure_after_change(failure)
     }
 
-    /// Repeats a read command on one connection; `among` is set if other robots are watched as well.
+    /// Repeats a read command on one connection. `among` is set if other robots are also watched.
     async fn watch(
         &self,
         command: &dyn AnyCommand,
@@ -281,8 +281,16 @@ impl Run {
         among: Option<ReportPosition<'_>>,
     ) -> Result<(), RunError> {
         let stopped = |failure| RunError::for_robot(robot, command, failure);
-        let (mut link, _) = self.connect(command, robot).await.map_err(stopped)?;
-        let watched = self.watch_over(command, robot, &mut *link, among).await;
+        let every = if command.is_endless() { Duration::ZERO } else { DEFAULT_INTERVAL };
+        let rounds = Rounds::new(&self.repeat, every);
+        let (mut link, _) = match self.connect(command, robot, rounds.deadline()).await {
+            Ok(link) => link,
+            Err(failure) => {
+                let report = command.without_answer(robot, failure).map_err(stopped)?;
+                return self.end_unconnected(command, robot, &*report, &rounds);
+            }
+        };
+        let watched = self.watch_over(command, robot, &mut *link, (rounds, among)).await;
         let closed = link.close(&self.screen).await;
         watched?;
         closed.map_err(stopped)
@@ -293,70 +301,99 @@ impl Run {
         command: &dyn AnyCommand,
         robot: &Robot,
         link: &mut dyn Connection,
-        among: Option<ReportPosition<'_>>,
+        (mut rounds, among): (Rounds<'_>, Option<ReportPosition<'_>>),
     ) -> Result<(), RunError> {
         let stopped = |failure| RunError::for_robot(robot, command, failure);
         let mut silences = FailureLog::new(self, robot);
-        let mut rounds =
-            Rounds::new(&self.repeat, if command.is_endless() { Duration::ZERO } else { DEFAULT_INTERVAL });
+        let mut last = None;
         loop {
             let grant = Grant::up_to(Risk::Read);
-            let attempt = self.attempt(command, robot, link, &grant);
-            let attempted = match rounds.deadline().filter(|_| command.is_endless()) {
-                Some(deadline) => timeout_at(deadline, attempt).await,
-                None => Ok(attempt.await),
-            };
-            let Ok(outcome) = attempted else { return rounds.end().map_err(stopped) };
-            let silence = match outcome {
+            let outcome = self.attempt(command, robot, link, (&grant, rounds.deadline())).await;
+            if failure_of(&outcome).is_some_and(|failure| rounds.is_cut(&failure)) {
+                break;
+            }
+            match &outcome {
                 Ok(report) => {
                     silences.end();
                     let position = among.unwrap_or_else(|| self.round(rounds.is_first(), command.is_endless()));
                     if !self.repeat.is_quiet {
-                        self.print(robot, command.id(), &*report, position)?;
+                        self.print(robot, command.id(), &**report, position)?;
                     }
-                    let is_met = rounds.is_met(&Envelope::of(robot, command.id(), report.data()), &self.screen)?;
-                    let failure = report.failure().filter(|failure| {
-                        self.repeat.is_quiet && failure.kind == Kind::NoAnswer && !self.repeat.allows(failure)
-                    });
-                    if let Some(failure) = failure.as_ref().filter(|_| !is_met && rounds.is_first()) {
-                        return Err(stopped(failure.clone()));
+                    if rounds.is_met(&Envelope::of(robot, command.id(), report.data()), &self.screen)? {
+                        return if self.repeat.is_quiet { self.print_last(command, robot, &**report) } else { Ok(()) };
                     }
-                    if self.repeat.is_quiet && (is_met || (failure.is_none() && rounds.is_last())) {
-                        self.print(robot, command.id(), &*report, ReportPosition::Alone)?;
-                    }
-                    if is_met {
-                        return Ok(());
-                    }
-                    failure
                 }
-                // A watch continues while a robot does not answer; any other failure ends it.
+                // A watch continues while a robot does not answer. Any other failure ends it.
                 Err(failure)
-                    if failure.kind == Kind::NoAnswer && !self.repeat.ends_with(&failure, rounds.is_first()) =>
+                    if failure.kind == Kind::NoAnswer && !self.repeat.ends_with(failure, rounds.is_first()) =>
                 {
                     if self.repeat.is_quiet {
-                        // It is reported at the end if the robot is still silent.
+                        // If the robot still does not answer at the end, the failure is reported then.
                     } else if self.is_for_people() {
-                        silences.report(&failure);
+                        silences.report(failure);
                     } else {
                         self.emit(with_time(Envelope::of(robot, command.id(), Err(failure.clone()))))?;
                     }
-                    Some(failure)
                 }
-                Err(failure) => return Err(self.interrupted(robot, command, failure)?),
-            };
-            if !rounds.next().await.map_err(stopped)? {
-                return match silence {
-                    Some(failure) if self.repeat.is_quiet => Err(stopped(failure)),
-                    Some(failure) => Err(RunError { failure, envelope: None, is_reported: true }),
-                    None => rounds.end().map_err(stopped),
-                };
+                Err(failure) => return Err(self.interrupted(robot, command, failure.clone())?),
+            }
+            let ends = self.silence(&outcome).is_some_and(|silence| self.repeat.ends_with(&silence, rounds.is_first()));
+            last = Some(outcome);
+            if ends || !rounds.next().await.map_err(stopped)? {
+                break;
+            }
+        }
+        let Some(last) = last else { return rounds.end().map_err(stopped) };
+        match (self.silence(&last), last) {
+            (Some(failure), Err(_)) if !self.repeat.is_quiet => {
+                Err(RunError { failure, envelope: None, is_reported: true })
+            }
+            (Some(failure), _) => Err(stopped(failure)),
+            (None, last) => {
+                if let Ok(report) = last
+                    && self.repeat.is_quiet
+                {
+                    self.print_last(command, robot, &*report)?;
+                }
+                rounds.end().map_err(stopped)
             }
         }
     }
 
-    /// Failure that ends a watch. In a stream for programs it is written to stdout in order.
+    /// Ends a watch whose only look ended before there was a connection.
+    fn end_unconnected(
+        &self,
+        command: &dyn AnyCommand,
+        robot: &Robot,
+        report: &dyn AnyReport,
+        rounds: &Rounds<'_>,
+    ) -> Result<(), RunError> {
+        let is_met = rounds.is_met(&Envelope::of(robot, command.id(), report.data()), &self.screen)?;
+        if is_met || !self.repeat.is_quiet {
+            self.print_last(command, robot, report)?;
+        }
+        if is_met {
+            return Ok(());
+        }
+        let stopped = |failure| Err(RunError::for_robot(robot, command, failure));
+        report.failure().map_or_else(|| rounds.end().or_else(stopped), stopped)
+    }
+
+    /// Missing answer of a robot, if it decides how a watch ends. The report of a plain watch shows it as a state.
+    fn silence(&self, outcome: &Outcome) -> Option<Failure> {
+        let counts = outcome.is_err() || self.repeat.until.is_some();
+        let failure = failure_of(outcome).filter(|failure| counts && failure.kind == Kind::NoAnswer)?;
+        (!self.repeat.allows(&failure)).then_some(failure)
+    }
+
+    /// Prints the last report of a wait.
+    fn print_last(&self, command: &dyn AnyCommand, robot: &Robot, report: &dyn AnyReport) -> Result<(), RunError> {
+        Ok(self.print(robot, command.id(), report, ReportPosition::Alone)?)
+    }
+
+    /// Failure that ends a watch. In a stream for programs, it is written to stdout in the order of the reports.
     fn interrupted(&self, robot: &Robot, command: &dyn AnyCommand, failure: Failure) -> Result<RunError, Failure> {
-        // A wait reports once, like a single command.
+        // A wait reports only once, like a command without repetition.
         if self.is_for_people() || self.repeat.is_quiet || failure.kind == Kind::Interrupted {
             return Ok(RunError::for_robot(robot, command, failure));
         }
@@ -364,21 +401,25 @@ impl Run {
         Ok(RunError { failure, envelope: None, is_reported: true })
     }
 
-    /// One run on one connection.
+    /// Runs the command once, on its own connection.
     async fn run_once(&self, command: &dyn AnyCommand, robot: &Robot) -> Outcome {
         if self.gate.dry_run {
             return Ok(Box::new(DryRun::from(self.plan(command, robot, &self.screen).await?)));
         }
-        let (mut link, grant) = self.connect(command, robot).await?;
-        let outcome = self.attempt(command, robot, &mut *link, &grant).await;
-        // The result of the command matters more than that of its trace.
+        let (mut link, grant) = self.connect(command, robot, Deadline::NONE).await?;
+        let outcome = self.attempt(command, robot, &mut *link, (&grant, Deadline::NONE)).await;
+        // The result of the command is more important than the result of its trace.
         let closed = link.close(&self.screen).await;
         let report = outcome?;
         closed.map_err(|failure| Failure { message: format!("succeeded, but {}", failure.message), ..failure })?;
         Ok(report)
     }
 
-    async fn connect(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<Granted, Failure> {
+    async fn connect(&self, command: &dyn AnyCommand, robot: &Robot, end: Deadline) -> Result<Granted, Failure> {
+        end.bound(robot, self.connect_unbounded(command, robot)).await
+    }
+
+    async fn connect_unbounded(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<Granted, Failure> {
         let access = self.access(command, robot);
         let grant = access.grant.clone();
         let access = match &self.line {
@@ -388,7 +429,7 @@ impl Run {
         let goes_on = self.repeat.is_wanted() || command.is_endless();
         let robot = &match command.driver().filter(|_| goes_on) {
             Some(driver) => match open_shared_session(driver, robot).await {
-                // Without a family in common, a robot that is not there has a line as well.
+                // In a command for all families, a robot that does not answer also has a line in the table.
                 Err(failure) if failure.kind == Kind::NoAnswer && driver.family().is_none() => robot.clone(),
                 robot => robot?,
             },
@@ -398,7 +439,7 @@ impl Run {
         Ok((link, grant))
     }
 
-    /// Access of a command at its start.
+    /// Access to the robot at the start of a command.
     fn access(&self, command: &dyn AnyCommand, robot: &Robot) -> Access {
         Access {
             grant: Grant::up_to(command.intent(Some(robot)).initial_risk()),
@@ -424,13 +465,25 @@ impl Run {
         AnyContext { robot, connection, screen, several: self.sources.selection.is_plural(), authority }
     }
 
-    /// Whether motion continues when this process ends. A jog never continues.
+    /// Whether a motion continues when this process ends. A jog never continues.
     fn leaves_motion(&self, command: &dyn AnyCommand) -> bool {
         self.gate.on_interrupt == OnInterrupt::Leave && !command.jogs()
     }
 
-    /// One run, with a guardian if the robot may move.
+    /// One run until the end of `--for`. If it ends first, the robot counts as one that does not answer.
     async fn attempt(
+        &self,
+        command: &dyn AnyCommand,
+        robot: &Robot,
+        link: &mut dyn Connection,
+        (grant, end): (&Grant, Deadline),
+    ) -> Outcome {
+        let attempt = async { Ok(self.attempt_guarded(command, robot, link, grant).await) };
+        end.bound(robot, attempt).await.unwrap_or_else(|failure| command.without_answer(robot, failure))
+    }
+
+    /// Runs the command once. If the robot may move, a guardian is started first.
+    async fn attempt_guarded(
         &self,
         command: &dyn AnyCommand,
         robot: &Robot,
@@ -444,8 +497,8 @@ impl Run {
         guardian.guard(attempt).await
     }
 
-    /// Guardian that stops the robot if this process dies or hangs. With a session of another process, or a fieldbus
-    /// adapter that detects the missing master, the guardian only ends a hanging process.
+    /// Starts a guardian that stops the robot if this process dies or hangs. If a session of another process, or a
+    /// fieldbus adapter, detects that the master is missing, the guardian only ends a process that hangs.
     fn guardian(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<Option<Guardian>, Failure> {
         let intent = command.intent(Some(robot));
         let moves = intent.risk == Risk::Motion && !intent.is_stop && !self.leaves_motion(command);
@@ -456,7 +509,7 @@ impl Run {
         Guardian::start(robot, driver.stop(), stops).map(Some)
     }
 
-    /// One run. Ctrl-C during a motion first stops the robot.
+    /// Runs the command once. Ctrl-C during a motion first stops the robot.
     async fn attempt_alone(
         &self,
         command: &dyn AnyCommand,
@@ -485,12 +538,13 @@ impl Run {
                 message: format!("{}; the command may have been executed completely or in part", interrupt.message),
                 ..interrupt
             }
-            .hint("before you repeat it, read the values that this command writes")),
+            .hint("read the values that this command writes before you repeat the command")),
             Err(interrupt) => Err(interrupt),
         }
     }
 
-    /// Frames that `command` would send: it runs to its end on a link that takes notes and has no answers.
+    /// Frames that `command` would send. The command runs to its end on a link that records the frames and has no
+    /// answers.
     async fn plan(&self, command: &dyn AnyCommand, robot: &Robot, screen: &Screen) -> Result<Plan, Failure> {
         let access = Access { dry_run: true, ..self.access(command, robot) };
         let grant = access.grant.clone();
@@ -505,9 +559,9 @@ impl Run {
         }
     }
 
-    /// Checks before any question whether the controller model supports the command, so that nobody clears a cell for
-    /// a mistyped command. Simulators are skipped, because they need no question and may be of another model than
-    /// configured.
+    /// Checks whether the controller model supports the command. This check comes before any question, so that the user
+    /// does not clear a cell for a mistyped command. Simulators are not checked: they need no question, and may have
+    /// another model than the configured one.
     async fn check_model(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(), Failure> {
         if self.gate.dry_run || robot.target.value.is_simulated() {
             return Ok(());
@@ -515,14 +569,19 @@ impl Run {
         self.plan(command, robot, &self.screen.silenced()).await.map(|_| ())
     }
 
-    /// Truncates the `--trace` file, to which every connection of this command appends. With several lines, only the
-    /// first one truncates it.
+    /// Truncates the `--trace` file. Every connection of this command appends to it. With several lines, only the first
+    /// line truncates the file.
     pub fn begin_trace(&self) -> Result<(), Failure> {
         begin_trace(self.trace.as_deref().filter(|_| !self.gate.dry_run && self.line.is_none()))
     }
 }
 
-/// Truncates the `--trace` file; `-` is not a file.
+/// Failure of a robot, or of its report.
+fn failure_of(outcome: &Outcome) -> Option<Failure> {
+    outcome.as_ref().map_or_else(|failure| Some(failure.clone()), |report| report.failure())
+}
+
+/// Truncates the `--trace` file. `-` is not a file.
 pub fn begin_trace(file: Option<&Path>) -> Result<(), Failure> {
     if let Some(path) = file.filter(|path| path.as_os_str() != "-") {
         std::fs::File::create(path).with_context(|| path.display().to_string())?;
@@ -530,8 +589,8 @@ pub fn begin_trace(file: Option<&Path>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Runs the work of all robots with limited parallelism and returns the results in order. A slow robot delays only
-/// itself.
+/// Runs the work of all robots with limited parallelism, and returns the results in their order. A slow robot delays
+/// only itself.
 async fn run_parallel<T>(work: impl Iterator<Item = impl Future<Output = T>>) -> Vec<T> {
     let numbered = work.enumerate().map(|(number, work)| async move { (number, work.await) });
     let mut done: Vec<(usize, T)> = stream::iter(numbered).buffer_unordered(MAX_PARALLEL).collect().await;
@@ -545,7 +604,7 @@ mod tests {
 
     #[tokio::test(start_paused = true)]
     async fn runs_robots_in_parallel() {
-        // Half of the robots do not answer, as in a plant with switched-off robots, mixed with the others.
+        // Half of the robots do not answer, as in a plant with switched-off robots. They are mixed with the others.
         let silent = |robot: usize| robot.is_multiple_of(2);
         let ask = |robot| async move {
             tokio::time::sleep(Duration::from_millis(if silent(robot) { 2000 } else { 10 })).await;

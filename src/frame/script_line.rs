@@ -1,4 +1,4 @@
-//! A command line in a REPL or batch.
+//! A line of a REPL or batch that contains a command.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -15,23 +15,23 @@ use crate::output::Screen;
 use crate::output::envelope::Envelope;
 use crate::settings::Robot;
 
-/// Context of such a line.
+/// Context of a line in a REPL or batch.
 #[derive(Debug, Clone)]
 pub struct Line {
-    /// Text as typed, for other clients that wait for the robot.
+    /// Line as the user typed it, for other clients that wait for the robot.
     pub typed: Arc<str>,
     /// Manager of the links that stay open between lines.
     pub manager: SessionManager,
-    /// Source location.
+    /// Source location of the line in a batch.
     pub origin: Option<Origin>,
-    /// Collector for envelopes instead of stdout.
+    /// Collects envelopes, if they are not written to stdout.
     pub results: Option<Rc<RefCell<Vec<Value>>>>,
 }
 
 /// Source location of a batch line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Origin {
-    /// File; `-` for stdin.
+    /// File name; `-` for stdin.
     pub file: Arc<str>,
     /// Line number, starting with 1.
     pub line: usize,
@@ -52,14 +52,14 @@ impl Line {
         self.connect(robot, access, screen).await.map(|_| ())
     }
 
-    /// Opens the link for later lines if the command needs one. A simulator is always kept, because it exists only as
-    /// long as its link. Returns the access for the command.
+    /// Opens the link for later lines if the command needs a link. The link to a simulator is always kept open, because
+    /// the simulator exists only as long as its link. Returns the access for the command.
     pub async fn connect(&self, robot: &Robot, access: Access, screen: &Screen) -> Result<Access, Failure> {
         let access = Access { typed: Some(Arc::clone(&self.typed)), ..access };
         if access.mode != ConnectMode::Control && !robot.target.value.is_simulated() {
             return Ok(access);
         }
-        // Some families record in the process that holds the link, others in each line.
+        // Some families record the trace in the process that has the link, others record it in each line.
         let trace = access.trace.clone().filter(|path| path.as_os_str() != "-");
         let holding = Access { trace, mode: ConnectMode::Control, ..access.clone() };
         let is_traced = self.manager.hold(robot, &holding, screen).await? == HeldBy::ThisProcess { records: true };
@@ -74,7 +74,7 @@ impl Line {
         }
     }
 
-    /// Stores the envelope if all are written at the end; otherwise returns it for immediate output.
+    /// Stores the envelope if all envelopes are written at the end. Otherwise returns it, so that it is written now.
     pub fn stop_passing(&self, value: Value) -> Option<Value> {
         let Some(results) = &self.results else { return Some(value) };
         match value {

@@ -39,7 +39,7 @@ pub trait Serve: Sized {
 pub struct Started<S: Serve> {
     /// Report.
     pub report: S::Report,
-    /// Command line that reaches it.
+    /// Command line that connects to the simulator.
     pub reach: String,
     /// Simulator.
     pub server: S::Server,
@@ -52,7 +52,7 @@ pub struct Started<S: Serve> {
 /// A simulator with its server.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Server {
-    /// Serves until something arrives or is due, and handles it. The future may be dropped.
+    /// Serves until an event arrives or is due, and handles the event. The future may be dropped.
     async fn run_until_change(&mut self) -> io::Result<()>;
     /// Executes a console line and returns the result or the reason for a failure.
     fn console(&mut self, line: &str) -> Result<String, String>;
@@ -85,9 +85,9 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
     let Started { report, reach, mut server, address, with_console } = arguments.start().await?;
     run.local(S::ID, &report)?;
     if address.is_some_and(|address| !address.ip().is_loopback()) {
-        run.screen.note("warning: others on the network can reach this simulator");
+        run.screen.note("warning: other computers on the network can reach this simulator");
     }
-    // Programs read the report and know how to end the process.
+    // A program reads the address from the report, and needs no instructions.
     if !run.screen.is_json() {
         let console = if with_console { " or `quit`; `help` lists the console commands" } else { "" };
         run.screen.note(&format!("reach it: {reach}\nend it:   Ctrl-C{console}"));
@@ -112,13 +112,13 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
             Some(Some(line)) if line.trim() == "quit" => return Ok(()),
             Some(Some(line)) => match console_line(&mut server, &line) {
                 Ok(text) => run.screen.note(&text),
-                Err(why) => run.screen.failure(&Failure::usage(why).hint("`help` lists the console commands")),
+                Err(why) => run.screen.failure(&Failure::usage(why).hint("use `help` to list the console commands")),
             },
         }
     }
 }
 
-/// Executes a console line: `fault` is common to all simulators, the other lines are those of the family.
+/// Executes a console line: `fault` is common to all simulators, the other lines belong to the family.
 fn console_line(server: &mut impl Server, line: &str) -> Result<String, String> {
     let line = line.trim();
     if line == "help" {
@@ -136,7 +136,8 @@ fn console_line(server: &mut impl Server, line: &str) -> Result<String, String> 
 /// Console lines of a simulator.
 struct Console<R> {
     input: BufReader<R>,
-    /// Bytes of the next line so far, so that a turn of the simulator does not lose them.
+    /// Received bytes of the next line. They are kept here, so that they are not lost while the simulator handles an
+    /// event.
     buffered: Vec<u8>,
 }
 
@@ -153,9 +154,8 @@ impl<R: AsyncRead + Unpin> Console<R> {
         let room = u64::try_from(Self::LONGEST.saturating_sub(self.buffered.len())).unwrap_or_default();
         (&mut self.input).take(room).read_until(b'\n', &mut self.buffered).await.context("stdin")?;
         if self.buffered.len() >= Self::LONGEST {
-            return Err(
-                Failure::usage("the console line is longer than 64 KiB").hint("`help` lists the console commands")
-            );
+            return Err(Failure::usage("the console line is longer than 64 KiB")
+                .hint("use `help` to list the console commands"));
         }
         let line = std::mem::take(&mut self.buffered);
         Ok((!line.is_empty()).then(|| String::from_utf8_lossy(&line).trim_end_matches(['\n', '\r']).to_owned()))
@@ -170,7 +170,7 @@ async fn next_line<R: AsyncRead + Unpin>(console: &mut Option<Console<R>>) -> Re
     }
 }
 
-/// Command line that reaches a simulator of a family at a URL.
+/// Command line that connects to a simulator of a family at a URL.
 pub fn connect_hint(family: &str, target: &str) -> String {
     format!("armctl -t '{target}' {family} status")
 }
@@ -185,7 +185,7 @@ pub fn address(text: &str, usual_port: u16) -> Result<SocketAddr, String> {
 pub fn bind_failure(on: &str, error: &io::Error) -> Failure {
     let hint = match error.kind() {
         io::ErrorKind::AddrInUse => "stop the other simulator, or choose a free port with --bind 127.0.0.1:0",
-        io::ErrorKind::PermissionDenied => "ports below 1024 need privileges; use a higher port",
+        io::ErrorKind::PermissionDenied => "use a higher port: ports below 1024 need privileges",
         _ => "use an address of this computer with --bind",
     };
     Failure::new(Kind::NoAnswer, format!("cannot listen on {on}: {}", plain(error))).hint(hint)

@@ -1,5 +1,5 @@
-//! Client of the manager of links that stay open between the lines of this process. The manager runs in its own
-//! thread (`fleet/session/host.rs`).
+//! Client of the manager for links that stay open between the lines of this process. The manager runs in its own thread
+//! (`fleet/session/host.rs`).
 
 use std::fmt;
 use std::sync::Arc;
@@ -13,18 +13,18 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
 
-/// Manager of the links for the lines of this process. It has its own thread, so that a busy line does not let a link
-/// drop.
+/// Manager of the links for the lines of this process. The manager has its own thread, so that a busy line does not
+/// cause the loss of a link.
 #[derive(Debug, Clone)]
 pub struct SessionManager {
     requests: mpsc::UnboundedSender<ManagerRequest>,
-    /// Whether a note was printed that links cannot be kept open.
+    /// Whether a note that links cannot be kept open was already printed.
     reports: Arc<AtomicBool>,
 }
 
 /// Request to the manager thread.
 pub enum ManagerRequest {
-    /// Open the link to a robot and report who holds it.
+    /// Open the link to a robot, and report which process has it.
     Hold {
         /// Robot.
         robot: Box<Robot>,
@@ -35,7 +35,7 @@ pub enum ManagerRequest {
         /// Channel for the result.
         done: oneshot::Sender<Result<HeldBy, Failure>>,
     },
-    /// Close all links and report the end.
+    /// Close all links, and report when they are closed.
     End(oneshot::Sender<()>),
 }
 
@@ -45,32 +45,32 @@ impl fmt::Debug for ManagerRequest {
     }
 }
 
-/// Holder of a link.
+/// Which process has a link.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum HeldBy {
-    /// This process.
+    /// This process has the link.
     ThisProcess {
         /// Whether this process records the traffic.
         records: bool,
     },
-    /// A session of another process.
+    /// A session of another process has the link.
     OtherProcess,
-    /// None: the session folder cannot be used; the reason.
+    /// No process has the link, because the session folder cannot be used. Contains the reason.
     None(Failure),
 }
 
 impl SessionManager {
-    /// Client for a thread that handles these requests.
+    /// Creates a client for a thread that handles these requests.
     pub fn new(requests: mpsc::UnboundedSender<ManagerRequest>) -> Self {
         Self { requests, reports: Arc::default() }
     }
 
-    /// Closes all links; `false` if the thread has already ended.
+    /// Closes all links. Returns `false` if the thread has already ended.
     pub fn end(&self, done: oneshot::Sender<()>) -> bool {
         self.requests.send(ManagerRequest::End(done)).is_ok()
     }
 
-    /// Ensures that the link to a robot stays open, and returns its holder.
+    /// Makes the link to a robot stay open, and returns which process has it.
     pub async fn hold(&self, robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldBy, Failure> {
         let (done, is_done) = oneshot::channel();
         let order =

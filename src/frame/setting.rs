@@ -1,19 +1,20 @@
-//! Settings as words of a command line: `NAME=VALUE`.
+//! Arguments of the form `NAME=VALUE`.
 
 use clap::{Arg, Command};
 
-/// Positional arguments of a command that form a name and its value.
+/// Positional arguments of a command for a name and its value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pair {
-    /// Index of the name.
+    /// Position of the name among the positional arguments.
     pub name: usize,
     /// Whether the value can be a comma-separated list.
     pub is_list: bool,
 }
 
 impl Pair {
-    /// Finds the pair of a command that sets a named value: its last two positional arguments. A command with
-    /// `NAME=VALUE` arguments has no pair. Four arguments are coordinates or the numbers of an object.
+    /// Finds the name and value of a command that sets a named value. They are its last two positional arguments. A
+    /// command with `NAME=VALUE` arguments has no pair. A command with four arguments has none either: these are
+    /// coordinates or the numbers of an object.
     pub fn of(verb: &Command) -> Option<Self> {
         let words: Vec<&Arg> = verb.get_positionals().collect();
         let ([_, value] | [_, _, value]) = words[..] else { return None };

@@ -10,44 +10,46 @@ use crate::face::shared_commands::CommonReport;
 use crate::failure::Failure;
 use crate::gate::Change;
 use crate::output::view::View;
+use crate::robot::item::{Item, Written, WrittenItems};
 
-/// Purpose of a read before a write, in a dry run.
+/// Purpose of a read before a write, as a dry run shows it.
 pub const OLD_VALUE: &str = "old value";
-/// Condition of a write in a dry run.
+/// Condition for a write, as a dry run shows it.
 pub const IF_DIFFERENT: &str = "whether the old value differs";
 
-/// Failure before any write.
+/// Adds to a failure that nothing was written.
 pub fn nothing_written(failure: Failure) -> Failure {
     let message = format!("{}; nothing was written", failure.message.trim_end_matches('.'));
     Failure { message, ..failure }
 }
 
-/// Old value of a write: null if it was not read, or if the controller refused to report it.
+/// Old value of a write: null if the value was not read, or if the controller refused to report it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Old(Value);
 
 impl Old {
-    /// Not read: there is no request for it, it is an event without a value, or the command must not wait.
+    /// The value was not read. There is no request for it, it is an event without a value, or the command must not
+    /// wait.
     pub const UNREAD: Self = Self(Value::Null);
 
-    /// Old value; none if the controller refused.
+    /// Old value; `None` if the controller refused to report it.
     pub fn read(value: Option<impl Into<Value>>) -> Self {
         Self(value.map_or(Value::Null, Into::into))
     }
 
-    /// The value, if known.
+    /// The value; `None` if it is unknown.
     pub fn value(&self) -> Option<Value> {
         Some(self.0.clone()).filter(|value| !value.is_null())
     }
 
-    /// Value as text; none if unknown.
+    /// Value as text; `None` if it is unknown.
     pub fn describe(&self) -> Option<String> {
         (!self.0.is_null()).then(|| shown(&self.0))
     }
 }
 
-/// A value that was set. It becomes a report only with its old value, so that no command omits that.
+/// A value that was set. It becomes a report only together with its old value, so that no command omits the old value.
 #[derive(Debug)]
 pub struct NewValue {
     name: String,
@@ -57,12 +59,12 @@ pub struct NewValue {
 }
 
 impl NewValue {
-    /// Name, new value, and text.
+    /// Creates a new value from its name, its JSON value, and its text.
     pub fn of(set: impl Into<String>, new: impl Into<Value>, words: impl Into<String>) -> Self {
         Self { name: set.into(), arguments: Map::new(), new: new.into(), text: words.into() }
     }
 
-    /// Adds a number or a name; none adds nothing.
+    /// Adds a number or a name to the report. A null value is not added.
     #[must_use]
     pub fn with(mut self, name: &str, value: impl Into<Value>) -> Self {
         let value = value.into();
@@ -72,7 +74,7 @@ impl NewValue {
         self
     }
 
-    /// Confirmation: the intent, and old and new value if the old value was read.
+    /// Question about the change: the intent, and the old and new value if the old value was read.
     pub fn question(&self, intent: String, old: &Old) -> Change {
         let change = Change::new(intent);
         let what = self.name.trim_end_matches("_on").replace('_', " ");
@@ -82,19 +84,25 @@ impl NewValue {
         }
     }
 
-    /// Adds the old value.
+    /// Adds the old value, for an item that can be read and written by its name.
+    pub fn into_item(self, kind: &'static str, old: &Old) -> WrittenItems<Value> {
+        let item = Item::new(kind, self.name, Ok(Some(self.new)));
+        WrittenItems::describe(self.text, vec![Written::new(item, old.value(), true)])
+    }
+
+    /// Adds the old value and returns the report.
     pub fn replaces(self, old: Old) -> Done {
         let Self { name: set, arguments: with, new, text: words } = self;
         Done { set, with, old, new, words }
     }
 }
 
-/// Result of a set command: `{"set":"B0","old":1,"new":5}`. JSON has values, the view a sentence.
+/// Result of a set command: `{"set":"B0","old":1,"new":5}`. JSON contains the values, the view is a sentence.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Done {
-    /// Name of the value, as in reads: `servo_on`.
+    /// Name of the value, as read commands report it, for example `servo_on`.
     set: String,
-    /// Index and other arguments: numbers and names.
+    /// Index and other arguments of the command: numbers and names.
     #[serde(flatten)]
     with: Map<String, Value>,
     old: Old,
@@ -125,26 +133,6 @@ impl Report for Done {
     }
 }
 
-/// One of several items that a command wrote, as reads report it, with old and new value.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Written<T> {
-    /// Item.
-    #[serde(flatten)]
-    pub item: T,
-    old: Old,
-    /// New value.
-    new: Value,
-    /// Always true.
-    written: bool,
-}
-
-impl<T> Written<T> {
-    /// Adds old and new value.
-    pub fn new(item: T, old: Old, new: impl Into<Value>) -> Self {
-        Self { item, old, new: new.into(), written: true }
-    }
-}
-
 /// Value as text.
 fn shown(value: &Value) -> String {
     match value {
@@ -154,7 +142,7 @@ fn shown(value: &Value) -> String {
     }
 }
 
-/// Typed number as JSON; null if it is not a number.
+/// A number as typed, as JSON; null if it is not a number.
 pub fn number(text: &str) -> Value {
     let whole = text.parse::<i64>().map(Value::from);
     whole.unwrap_or_else(|_| text.parse::<f64>().map_or(Value::Null, Value::from))

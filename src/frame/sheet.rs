@@ -1,4 +1,4 @@
-//! Spreadsheet table files: target path, and the content that stays on an update.
+//! Spreadsheet table files: the path, and the content that an update keeps.
 
 use std::path::PathBuf;
 
@@ -25,27 +25,27 @@ pub struct SheetManner {
     decimal_comma: bool,
 }
 
-/// Target of rows, checked before the controller is asked.
+/// File for the rows. It is checked before any request to the controller.
 #[derive(Debug)]
 pub struct SheetTarget {
     target: Target,
     dialect: Dialect,
-    /// Existing content that stays.
+    /// Content of the existing file, which an update keeps.
     old: Option<Vec<u8>>,
 }
 
 impl SheetManner {
-    /// Whether an option was given that needs a table file.
+    /// Whether the user gave an option that needs a table file.
     pub fn is_given(&self) -> bool {
         self.force || self.is_of_tables()
     }
 
-    /// Whether an option was given that only tables have.
+    /// Whether the user gave an option that only tables have.
     pub fn is_of_tables(&self) -> bool {
         self.update || self.decimal_comma
     }
 
-    /// Target for the rows of one robot.
+    /// File for the rows of one robot.
     pub fn target(&self, file: PathBuf, several: bool) -> Result<SheetTarget, Failure> {
         if several {
             return Err(text_files::of_one_robot(&file));
@@ -53,7 +53,8 @@ impl SheetManner {
         let exists = file.symlink_metadata().is_ok();
         let old = if self.update && exists { Some(text_files::read(&file)?) } else { None };
         let target = Target::new(file, self.force || self.update);
-        let advice = "add --update to update its values and keep its comments, or --force to replace it";
+        let advice = "add --update to update the values of the file and keep its comments, or --force to replace the \
+                      file";
         let target = target.map_err(|failure| if exists { failure.hint(advice) } else { failure })?;
         let dialect = if self.decimal_comma { Dialect::DECIMAL_COMMA } else { Dialect::COMMAS };
         Ok(SheetTarget { target, dialect, old })
@@ -61,12 +62,13 @@ impl SheetManner {
 }
 
 impl SheetTarget {
-    /// Existing file whose rows get new values.
+    /// Content of the existing file, whose rows get new values.
     pub fn old(&self) -> Option<&[u8]> {
         self.old.as_deref()
     }
 
-    /// Writes the rows atomically and returns the path. The first column identifies a row; `canonical` normalizes it.
+    /// Writes the rows atomically, and returns the path. The first column identifies a row; `canonical` normalizes its
+    /// text.
     pub fn write(
         &self,
         columns: &[Column],
@@ -86,7 +88,7 @@ impl SheetTarget {
     }
 }
 
-/// Canonical spelling of a number: `007` is `7`.
+/// Canonical spelling of a number: `007` becomes `7`.
 pub fn number(text: &str) -> String {
     text.trim().parse::<i64>().map_or_else(|_| text.trim().to_owned(), |number| number.to_string())
 }

@@ -1,4 +1,4 @@
-//! Teach report of all families, and positions from the output of other commands.
+//! Report of `teach` for all families, and positions from the output of other commands.
 
 use std::path::Path;
 
@@ -13,38 +13,38 @@ use crate::output::view::{Cell, Tone, View};
 use crate::robot::position::Position;
 use armctl_files as files;
 
-/// Result of teaching a point: old and new content, and the position of the robot.
+/// Result of teaching a point: the old and new content of the point, and the position of the robot.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Taught {
-    /// `P5`, or the point number.
+    /// Name of the point, for example `P5`, or its number.
     name: String,
-    /// Old content; null if it was not defined.
+    /// Old content; null if the point was not defined.
     old: Option<Position>,
-    /// New content, as read back.
+    /// New content, as read back from the controller.
     new: Position,
     /// Position of the robot.
     position: Position,
-    /// Whether it was written; false if the content was equal.
+    /// Whether the point was written; false if the content was already equal.
     written: bool,
-    /// Family-specific identification of the point.
+    /// Numbers or names that identify the point in its family.
     #[serde(flatten)]
     with: Map<String, Json>,
 }
 
 impl Taught {
-    /// Creates a report from old and new content and the robot position.
+    /// Creates a report from the old content, the new content and the robot position.
     pub fn new(name: impl Into<String>, old: Option<Position>, new: Position, position: Position) -> Self {
         Self { name: name.into(), old, new, position, written: true, with: Map::new() }
     }
 
-    /// Adds a name or a number.
+    /// Adds a name or a number to the report.
     #[must_use]
     pub fn with(mut self, name: &str, value: impl Into<Json>) -> Self {
         self.with.insert(name.to_owned(), value.into());
         self
     }
 
-    /// Marks the point as unchanged, so that nothing was written.
+    /// Marks the point as unchanged if `is_unchanged`. In that case nothing was written.
     #[must_use]
     pub fn unchanged(self, is_unchanged: bool) -> Self {
         Self { written: !is_unchanged, ..self }
@@ -65,24 +65,25 @@ impl Report for Taught {
     }
 }
 
-/// Failure: the point read back differs from the position.
+/// Failure: the point that was read back differs from the robot position.
 pub fn mismatch(name: &str, taught: &str, held: &str) -> Failure {
-    let message = format!("{name} was written but contains {held}; the robot is at {taught}");
+    let message = format!("{name} was written, but contains {held}; the robot is at {taught}");
     Failure::new(Kind::Malformed, message)
-        .hint("the robot moved, or another client wrote the point: check the point, then teach it again")
+        .hint("check the point, then teach it again: the robot moved, or another client wrote the point")
 }
 
 /// Failure: the point was written but could not be read back.
 pub fn unverified(name: &str, failure: Failure, command: &str) -> Failure {
-    let message = format!("{name} was written, but not read back: {}", failure.message);
+    let message = format!("{name} was written, but could not be read back: {}", failure.message);
     Failure { kind: Kind::OutcomeUnknown, message, ..failure }.hint(format!("read the point with `{command}`"))
 }
 
-/// Maximum size: a position needs about a kilobyte, and this leaves room for a whole report.
+/// Maximum size of the input. A position needs about a kilobyte, and this leaves room for a whole report.
 const SIZE_LIMIT: u64 = 1 << 20;
 
-/// Position from the output of another command, in a file or on stdin (`-`), in typed form: `text` of `position
-/// --json`, an item of `get --json`, or the position itself. If a robot has several frames, the axes are used.
+/// Reads a position from the output of another command, in a file or on stdin (`-`), and returns it as the user would
+/// type it. The output can be `text` of `position --json`, an item of `get --json`, or the position itself. If a robot
+/// has several frames, the axes are used.
 pub fn parse_printed_position(path: &Path) -> Result<String, Failure> {
     let json = printed_texts(path)?;
     let rows = ["positions", "items", "variables", "points"].iter().find_map(|list| json.get(*list)?.as_array());
@@ -98,7 +99,8 @@ pub fn parse_printed_position(path: &Path) -> Result<String, Failure> {
     })
 }
 
-/// Text of a position or an item value, or built from named coordinates: `x=1.5 y=2`.
+/// Text of a position or of the value of an item. If there is no text, it is formed from named coordinates: `x=1.5
+/// y=2`.
 fn text(json: &Json) -> Option<String> {
     if let Some(text) = json.get("text").and_then(Json::as_str) {
         return Some(text.to_owned());
@@ -109,7 +111,7 @@ fn text(json: &Json) -> Option<String> {
     if typed.is_empty() { text(json.get("value")?) } else { Some(typed) }
 }
 
-/// JSON in a file or on stdin (`-`); for an envelope, its data.
+/// JSON in a file or on stdin (`-`). Of an envelope, only the data is returned.
 fn printed_texts(path: &Path) -> Result<Json, Failure> {
     let shown = if path == Path::new("-") { "stdin".to_owned() } else { path.display().to_string() };
     let bytes = files::input(path, SIZE_LIMIT).with_context(|| shown.clone())?;

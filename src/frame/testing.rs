@@ -28,14 +28,14 @@ pub fn unlimited_access() -> Access {
     Access { grant: Grant::up_to(Risk::Motion), ..Access::reading(ConnectMode::Control) }
 }
 
-/// Context for a command; all questions are answered with `--yes`.
+/// Context for a command in which all questions are confirmed, as with `--yes`.
 pub fn context<'a, F: Family>(robot: &'a Robot, link: &'a mut F::Link) -> Context<'a, F> {
     let gate = Gate { yes: true, ..Gate::default() };
     let authority = Authority::new(gate, &QUIET, robot, Risk::Motion, Grant::up_to(Risk::Motion));
     Context { robot, link, screen: &QUIET, several: false, authority }
 }
 
-/// Runs a command on a link that the test keeps.
+/// Runs a command on a link that the test continues to own.
 pub async fn run<F: Family>(command: &dyn AnyCommand, context: Context<'_, F>) -> Outcome {
     let Context { robot, link, screen, several, authority } = context;
     let mut borrowed = Borrowed::<F>(link);
@@ -63,17 +63,17 @@ pub fn planned<F: Family>(
     }
 }
 
-/// Frames of [`planned`], without reads of old values.
+/// Frames of [`planned`], without the reads of old values.
 pub fn frames(planned: &Value) -> Vec<Value> {
     complete_frames(planned).into_iter().filter(|frame| frame["about"] != OLD_VALUE).collect()
 }
 
-/// All frames of [`planned`].
+/// All frames of a [`planned`] report.
 pub fn complete_frames(planned: &Value) -> Vec<Value> {
     planned["frames"].as_array().expect("frames").clone()
 }
 
-/// Number of frames of [`planned`] that only read old values.
+/// Number of frames in [`planned`] that only read old values.
 pub fn count_before(planned: &Value) -> usize {
     complete_frames(planned).len() - frames(planned).len()
 }

@@ -1,4 +1,4 @@
-//! Input and output files of the operator.
+//! Input and output files that the user names.
 
 use std::io::ErrorKind;
 use std::path::Path;
@@ -8,26 +8,26 @@ use crate::failure::Failure;
 use armctl_controller::findings::Finding;
 use armctl_files as files;
 
-/// Maximum file size: larger than all data of a controller.
+/// Maximum file size. It is larger than all data of a controller.
 const SIZE_LIMIT: u64 = 16 << 20;
 
-/// Bytes of a file, or of stdin for `-`.
+/// Reads a file, or stdin for `-`.
 pub fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     files::input(path, SIZE_LIMIT).map_err(|error| match error.kind() {
         ErrorKind::FileTooLarge => {
             Failure::usage(format!("{} is larger than the memory of a controller", display_path(path)))
-                .hint("check that it is the right file")
+                .hint("check whether this is the right file")
         }
         _ => Failure::io(display_path(path), &error),
     })
 }
 
-/// File name in reports.
+/// Name of a file in reports.
 pub fn display_path(path: &Path) -> String {
     if path == Path::new("-") { "stdin".to_owned() } else { path.display().to_string() }
 }
 
-/// Target of an optional file for one robot, checked before the controller is asked.
+/// Target for one robot of an optional file. It is checked before any request to the controller.
 pub fn target(file: Option<&Path>, force: bool, several: bool) -> Result<Option<Target>, Failure> {
     let Some(file) = file else { return Ok(None) };
     if several {
@@ -36,10 +36,10 @@ pub fn target(file: Option<&Path>, force: bool, several: bool) -> Result<Option<
     Target::new(file.to_owned(), force).map(Some)
 }
 
-/// Failure for a file that is not possible with several robots.
+/// Failure: the file cannot be used with several robots.
 pub fn of_one_robot(file: &Path) -> Failure {
-    Failure::usage(format!("{} is for one robot", file.display()))
-        .hint("run the command once per robot, each with its own file")
+    Failure::usage(format!("{} is a file for one robot", file.display()))
+        .hint("run the command once for each robot, each time with the file of that robot")
 }
 
 /// Writes a file atomically and returns its path.
@@ -50,7 +50,7 @@ pub fn write(target: &Target, text: &str) -> Result<String, Failure> {
     Ok(target.path().display().to_string())
 }
 
-/// All errors of a file, one line each.
+/// Failure with all errors of a file, one line each.
 pub fn file_failure(name: &str, errors: &[Finding]) -> Failure {
     let lines: Vec<String> = errors
         .iter()
@@ -59,5 +59,5 @@ pub fn file_failure(name: &str, errors: &[Finding]) -> Failure {
             format!("{name}:{line}:{column}: {message}{hint}")
         })
         .collect();
-    Failure::usage(lines.join("\n")).hint("nothing was written; correct the file")
+    Failure::usage(lines.join("\n")).hint("correct the file; nothing was written")
 }

@@ -1,4 +1,4 @@
-//! `--trace` and `-vv`: traffic as text and as a capture file. Each family supplies the text.
+//! `--trace` and `-vv`: traffic as text and as a capture file. Each family supplies the text of its frames.
 
 use std::io;
 use std::net::SocketAddr;
@@ -14,21 +14,21 @@ use crate::output::Screen;
 use armctl_controller::text::hex;
 use armctl_transport::tap::{CaptureWriter, Direction};
 
-/// Trace of sent and received data.
+/// Recording of sent and received data.
 #[derive(Debug)]
 pub struct Trace {
     screen: Screen,
-    /// Text on stderr: 0 nothing, 1 one line per frame, 2 also the bytes.
+    /// Text on stderr: 0 is nothing, 1 is one line per frame, 2 is also the bytes.
     level: u8,
     capture: Option<CaptureWriter>,
-    /// Text lines that wait to be written.
+    /// Text lines that must still be written.
     pending: Option<Vec<String>>,
     /// Reason why the trace is incomplete.
     failure: Option<Failure>,
 }
 
 impl Trace {
-    /// Trace of packets with addresses, as the options request; the capture file is created at once.
+    /// Trace of packets with addresses, as the options request it. The capture file is created at once.
     pub fn of_network(access: &Access, screen: &Screen) -> Result<Self, Failure> {
         Self::open(access, screen, CaptureWriter::append)
     }
@@ -60,7 +60,7 @@ impl Trace {
         Ok(Self { screen: *screen, level, capture, pending: None, failure: None })
     }
 
-    /// Requested text: 0 nothing, 1 one line per frame, 2 also the bytes.
+    /// Text that the user requested: 0 is nothing, 1 is one line per frame, 2 is also the bytes.
     pub fn level(&self) -> u8 {
         self.level
     }
@@ -74,7 +74,7 @@ impl Trace {
         }
     }
 
-    /// Writes a line of text, and its bytes if requested.
+    /// Writes a line of text, and also its bytes if the user requested them.
     pub fn message(&mut self, direction: Direction, text: &str, bytes: &[u8]) {
         if self.level > 1 {
             self.line(direction, &format!("{text}\n   {}", hex(bytes)));
@@ -83,25 +83,26 @@ impl Trace {
         }
     }
 
-    /// Holds text until [`Trace::resume`], because stderr can block.
+    /// Keeps text back until [`Trace::resume`], because stderr can block.
     pub fn pause(&mut self) {
         self.pending.get_or_insert_default();
     }
 
-    /// Writes the held text.
+    /// Writes the text that was kept back.
     pub fn resume(&mut self) {
         for line in self.pending.take().unwrap_or_default() {
             self.screen.note(&line);
         }
     }
 
-    /// Adds a datagram to the capture file; `ends` has the own address first.
+    /// Adds a datagram to the capture file. The first address in `ends` is the own address.
     pub fn datagram(&mut self, direction: Direction, ends: (SocketAddr, SocketAddr), bytes: &[u8]) {
         let (from, to) = write_in_order(direction, ends);
         self.capture(|capture, time| capture.datagram(time, from, to, bytes));
     }
 
-    /// Adds a piece of a stream to the capture file: TCP between two addresses (own address first), or a serial line.
+    /// Adds a piece of a stream to the capture file: TCP between two addresses (the own address first), or a serial
+    /// line.
     pub fn piece(&mut self, direction: Direction, ends: Option<(SocketAddr, SocketAddr)>, bytes: &[u8]) {
         self.capture(|capture, time| match ends.map(|ends| write_in_order(direction, ends)) {
             Some((from, to)) => capture.segment(time, from, to, bytes),
@@ -109,8 +110,8 @@ impl Trace {
         });
     }
 
-    /// Adds to the capture file, with the time. A full disk ends the trace, not the communication: a robot may be
-    /// moving.
+    /// Adds data to the capture file, with the time. A full disk ends the trace but not the communication, because a
+    /// robot may be moving.
     pub fn capture(&mut self, add: impl FnOnce(&mut CaptureWriter, Duration) -> io::Result<()>) {
         let Some(capture) = &mut self.capture else { return };
         if let Err(error) = add(capture, now()) {
@@ -119,19 +120,19 @@ impl Trace {
         }
     }
 
-    /// Closes the trace and reports whether it is complete.
+    /// Closes the trace. Returns a failure if the trace is incomplete.
     pub fn finish(&mut self) -> Result<(), Failure> {
         self.failure.take().map_or(Ok(()), Err)
     }
 }
 
-/// Locks data that a link shares with the observer of its client, such as the trace. A panic leaves it complete,
-/// because it is written frame by frame.
+/// Locks data that a link shares with the observer of its client, such as the trace. Such data is written frame by
+/// frame, so a panic leaves it complete.
 pub fn lock_writer<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Sender and receiver.
+/// Sender and receiver address, in this order.
 fn write_in_order(direction: Direction, (own, other): (SocketAddr, SocketAddr)) -> (SocketAddr, SocketAddr) {
     match direction {
         Direction::Sent => (own, other),
@@ -139,12 +140,12 @@ fn write_in_order(direction: Direction, (own, other): (SocketAddr, SocketAddr)) 
     }
 }
 
-/// Time for the trace, since 1970.
+/// Time for the trace: the duration since 1970.
 pub fn now() -> Duration {
     SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default()
 }
 
-/// Failure for an incomplete trace.
+/// Failure: the trace is incomplete.
 pub fn incomplete(why: &str) -> Failure {
     Failure::local(format!("the --trace file is incomplete: {why}"))
 }

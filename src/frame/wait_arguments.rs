@@ -1,4 +1,4 @@
-//! `--wait` and `--no-wait`: whether a command waits for the end of what it started.
+//! `--wait` and `--no-wait`: whether a command waits for the end of the action that it started.
 
 use std::time::Duration;
 
@@ -6,14 +6,14 @@ use clap::Args;
 
 use crate::settings::duration;
 
-/// Wait option of a motion or other long action; the default is to wait.
+/// Wait option of a motion or another long action. By default, the command waits.
 #[derive(Debug, Clone, Copy, Args)]
 #[group(skip)]
 pub struct MotionEnd {
     /// Wait until the motion has ended (default)
     #[arg(long, overrides_with = "no_wait", hide_short_help = true)]
     wait: bool,
-    /// Return as soon as the controller has accepted it
+    /// Return as soon as the controller has accepted the command
     #[arg(long)]
     no_wait: bool,
 }
@@ -25,7 +25,7 @@ impl MotionEnd {
     }
 }
 
-/// Wait option of a program; the default is not to wait.
+/// Wait option of a program. By default, the command does not wait.
 #[derive(Debug, Clone, Copy, Args)]
 #[group(skip)]
 pub struct ProgramEnd {
@@ -39,7 +39,7 @@ pub struct ProgramEnd {
 }
 
 impl ProgramEnd {
-    /// Time limit of the wait, if the command waits.
+    /// Time limit of the wait; `None` if the command does not wait.
     pub const fn limit(self) -> Option<Option<Duration>> {
         self.wait
     }

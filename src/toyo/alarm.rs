@@ -1,4 +1,4 @@
-//! `toyo alarm list|history|cancel|point`.
+//! Commands `toyo alarm list|history|watch|reset|point`.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -26,19 +26,19 @@ use armctl_frame::watch::{Watch, Watchable, Watched};
 use armctl_frame::{Command, Context, Report, commands};
 
 commands! {
-    /// Alarms.
+    /// Commands for alarms.
     pub enum Alarm {
         /// Show the present alarm with cause and remedy
         #[command(alias = "show")]
         List(List),
         /// Alarm history, the latest first
         History(History),
-        /// Print alarms when they occur and end
+        /// Print alarms when they occur and when they clear
         Watch(Watch<List>),
         /// Reset the alarm
         #[command(alias = "cancel")]
         Reset(Reset),
-        /// The point of the alarm
+        /// Show the point of the alarm
         Point(Point),
     }
 }
@@ -66,48 +66,50 @@ impl Command for List {
 }
 
 impl Watchable for List {
+    type Value = bool;
+
     const WATCH: &'static str = "toyo.alarm.watch";
     const WATCHED: Watched =
         Watched { list: "alarms", name: "code", prefix: "alarm ", label: "text", value: None, empty: "no alarm" };
 }
 
-/// Code of the present error; code 00 if the controller does not report the code.
+/// Code of the present error. It is 00 if the controller does not report the code.
 async fn read_error_code(link: &mut Link) -> Result<Option<u8>, Failure> {
     let status = link.status_of(&[0, 1]).await?;
     Ok((status.has_error() || status.error != errors::NONE).then_some(status.error))
 }
 
-/// The present alarms as a list.
+/// Reads the present alarms as a list.
 pub(super) async fn present_alarms(link: &mut Link) -> Result<Vec<Told>, Failure> {
     Ok(read_error_code(link).await?.map(alarm_from_code).into_iter().collect())
 }
 
-/// Additional keys of a toyo alarm.
+/// Fields that toyo adds to an alarm.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Axis {
-    /// Axis of the alarm.
+    /// Axis that the alarm concerns; null if it concerns no axis.
     #[serde(rename = "axis_number")]
     axis: Option<u8>,
-    /// History: power-off without alarm and time.
+    /// In the history: a power-off, which has no alarm and no time.
     power_off: bool,
-    /// History: the alarm field as received; normally 00.
+    /// In the history: the alarm field as received; normally 00.
     alarm: Option<String>,
 }
 
 impl ExtraColumns for Axis {
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
-        // The text already names the cause.
+        // The text already contains the cause.
         Vec::new()
     }
 }
 
-/// Entry for an alarm, with its causes.
+/// Builds the entry for an alarm code, with its causes.
 fn entry(code: u8) -> AlarmEntry<Axis> {
     let errors::Explanation { axis, .. } = errors::explain(code);
     AlarmEntry { alarm: alarm_from_code(code), own: Axis { axis, power_off: false, alarm: None } }
 }
 
-/// The entry with additions from `alarms.toml`.
+/// Adds the user's texts from `alarms.toml` to the entry.
 fn with_site_texts(entry: AlarmEntry<Axis>, robot: &Robot) -> Result<AlarmEntry<Axis>, Failure> {
     let code = entry.alarm.code.clone().unwrap_or_default();
     Ok(AlarmEntry { alarm: entry.alarm.with(alarms::find(robot, &code)?), ..entry })
@@ -116,7 +118,7 @@ fn with_site_texts(entry: AlarmEntry<Axis>, robot: &Robot) -> Result<AlarmEntry<
 /// Show the alarm history (TO 2-8, EHTR; KCA-20 and KCA-25).
 #[derive(Debug, Args)]
 pub struct History {
-    /// At most N entries
+    /// Maximum number of entries
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u8).range(1..=99))]
     limit: u8,
 }
@@ -144,7 +146,7 @@ impl Command for History {
             progress.print_line(&format!("error history {number} of {} at most", self.limit));
             let record = match link.try_ask(&entry_request(number)).await? {
                 Ok(record) => record,
-                // A controller without history refuses the first entry; a controller with a short history refuses an
+                // A controller without a history refuses the first entry. A controller with a short history refuses an
                 // entry beyond its end.
                 Err(_) if number > 1 => break,
                 Err(_) => link.ask(&entry_request(number)).await?,
@@ -156,7 +158,7 @@ impl Command for History {
     }
 }
 
-/// Entry of the history; `None` if it is empty.
+/// Entry of the history; `None` if the entry is empty.
 fn history_entry(record: &Record) -> Option<AlarmEntry<Axis>> {
     if record.byte("error") == Some(errors::NONE) {
         return None;
@@ -175,7 +177,7 @@ fn history_entry(record: &Record) -> Option<AlarmEntry<Axis>> {
     })
 }
 
-/// Reset the alarm, and check whether it has ended (TO 2-7).
+/// Reset the alarm, and check that no alarm is present any more (TO 2-7).
 #[derive(Debug, Args)]
 pub struct Reset {}
 
@@ -200,7 +202,7 @@ impl Command for Reset {
     }
 }
 
-/// Alarms after a reset.
+/// Report of an alarm reset.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ResetReport {
     #[serde(flatten)]
@@ -232,7 +234,7 @@ impl Report for ResetReport {
     }
 }
 
-/// Show the point of the alarm (TO 2-8, MERP). The manual does not define the form of the answer.
+/// Show the point at which the alarm occurred (TO 2-8, MERP). The manual does not define the form of the answer.
 #[derive(Debug, Args)]
 pub struct Point {}
 
@@ -248,10 +250,10 @@ impl Command for Point {
     }
 }
 
-/// Point of the alarm.
+/// Report of the point at which the alarm occurred.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct PointReport {
-    /// Text of the controller; null without a text.
+    /// Text from the controller; null if it sent none.
     point: Option<String>,
 }
 

@@ -43,16 +43,16 @@ impl Command for Bus {
     }
 }
 
-/// CC-Link.
+/// Settings and errors of CC-Link.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct CcLink {
     station: u8,
-    /// Bits per second: `156K`, `625K`, `2.5M`, `5M` or `10M`.
+    /// Bit rate in bits per second: `156K`, `625K`, `2.5M`, `5M` or `10M`.
     rate: &'static str,
     hardware_version: u8,
-    /// Three error bytes, hexadecimal.
+    /// The three error bytes in hexadecimal.
     errors: [String; 3],
-    /// Two bytes of the main status, hexadecimal.
+    /// The two bytes of the main status in hexadecimal.
     main_status: [String; 2],
 }
 

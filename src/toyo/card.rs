@@ -16,7 +16,7 @@ use armctl_frame::wait_arguments::MotionEnd;
 use armctl_frame::{Command, Context, Report, commands};
 
 commands! {
-    /// The memory card.
+    /// Commands for the memory card.
     pub enum Card {
         /// Restore the controller from the memory card
         Read(Read),
@@ -32,7 +32,7 @@ pub struct Read {
     end: MotionEnd,
 }
 
-/// Write everything to the memory card, replace its content, and wait for the end (TO 2-3).
+/// Write everything to the memory card, and wait for the end (TO 2-3). This replaces the content of the card.
 #[derive(Debug, Args)]
 pub struct Write {
     #[command(flatten)]
@@ -90,14 +90,15 @@ async fn transfer(context: Context<'_, Toyo>, work: AcceptedWork, no_wait: bool)
     Ok(TransferReport { accepted: true, elapsed_ms: end.elapsed_ms, needs_power_cycle: Some(needs_power_cycle) })
 }
 
-/// Result of a transfer.
+/// Report of a transfer from or to the card.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct TransferReport {
     /// Whether the controller accepted the command.
     accepted: bool,
-    /// Time from acceptance to end; null without a wait, or if the transfer ended before the first read.
+    /// Time from acceptance to end. Null if the command did not wait, or if the transfer ended before the first read.
     elapsed_ms: Option<u64>,
-    /// Whether parameter 2 changed, so that the controller executes nothing before a restart; null without a wait.
+    /// Whether parameter 2 changed, so that the controller executes nothing before a restart. Null if the command did
+    /// not wait.
     needs_power_cycle: Option<bool>,
 }
 

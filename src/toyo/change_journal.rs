@@ -1,8 +1,8 @@
-//! Journal of temporary changes, written before each change: the host, the current task, the mode, motion.
+//! Journal of temporary changes: the host, the current task, the mode, motion. It is written before each change.
 //!
-//! A command restores all changes. A killed process cannot. The next command then finds the journal entry, reads
-//! whether the change is still present, and reports how to undo it. The process that owns an entry holds the lock of
-//! its file.
+//! A command restores all its changes. If its process is killed, it cannot do so. The next command then finds the
+//! journal entry, reads whether the change is still present, and reports how to undo it. The process that owns an entry
+//! holds the lock on the file of the entry.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{Seek as _, Write as _};
@@ -15,23 +15,23 @@ use armctl_client::toyo::Moving;
 use armctl_files as files;
 use armctl_frame::local_names::state_folder;
 
-/// Changes that are not restored yet.
+/// Changes that have not been restored yet.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct JournalEntry {
     /// Target URL of the robot.
     robot: String,
     /// Time of the first change in seconds since 1970.
     since: u64,
-    /// The host was OFF and was switched ON.
+    /// Whether the host was OFF, and was switched ON.
     pub host: bool,
-    /// Blocks that restore settings, in the order of the changes: `@CTSK TASK=01`.
+    /// Blocks that restore settings, such as `@CTSK TASK=01`, in the order of the changes.
     pub back: Vec<String>,
     /// Motion that was started: `jog` or `program`.
     pub moving: Option<String>,
 }
 
 impl JournalEntry {
-    /// Whether all changes are restored.
+    /// Whether all changes were restored.
     pub fn is_empty(&self) -> bool {
         !self.host && self.back.is_empty() && self.moving.is_none()
     }
@@ -46,7 +46,7 @@ pub struct ChangeJournal {
     file: Option<(File, PathBuf)>,
 }
 
-/// Journal entry of a process that has ended.
+/// Journal entry that a process left when it ended.
 #[derive(Debug)]
 pub struct AbandonedEntry {
     /// Changes that the process did not restore.
@@ -54,9 +54,9 @@ pub struct AbandonedEntry {
     path: PathBuf,
 }
 
-/// Size limit of an entry.
+/// Maximum size of an entry.
 const MAX_SIZE: u64 = 16 * 1024;
-/// Entries older than this are deleted, because the robot has been used since.
+/// Entries that are older than this are deleted, because the robot has been used since then.
 const MAX_AGE: Duration = Duration::from_secs(30 * 24 * 3600);
 
 impl ChangeJournal {
@@ -74,17 +74,17 @@ impl ChangeJournal {
         Self { folder, entry: JournalEntry { robot: robot.to_owned(), ..JournalEntry::default() }, file: None }
     }
 
-    /// Records that the host is switched ON, or OFF again.
+    /// Records that the host is switched ON, or is OFF again.
     pub fn host(&mut self, is_taken: bool) {
         self.change(|entry| entry.host = is_taken);
     }
 
-    /// Records a change that the block `back` restores.
+    /// Records a change. The block `back` restores it.
     pub fn push(&mut self, back: &str) {
         self.change(|entry| entry.back.push(back.to_owned()));
     }
 
-    /// Removes the last change that the block `back` restores.
+    /// Removes the last change that the block `back` restores, because it was restored.
     pub fn pop(&mut self, back: &str) {
         self.change(|entry| {
             if let Some(last) = entry.back.iter().rposition(|block| block == back) {
@@ -99,7 +99,7 @@ impl ChangeJournal {
         self.change(|entry| entry.moving = moving.map(word));
     }
 
-    /// A journal that cannot be written must not prevent the command.
+    /// If the journal cannot be written, the command must still run.
     fn change(&mut self, change: impl FnOnce(&mut JournalEntry)) {
         let old = self.entry.clone();
         change(&mut self.entry);
@@ -133,18 +133,18 @@ impl ChangeJournal {
         Ok(())
     }
 
-    /// Changes of this process.
+    /// Changes of this process that have not been restored yet.
     pub fn entry(&self) -> &JournalEntry {
         &self.entry
     }
 
-    /// Entries of ended processes for the same robot.
+    /// Entries for the same robot that other processes left when they ended.
     pub fn abandoned_entries(&self) -> Vec<AbandonedEntry> {
         let abandoned = self.paths().filter_map(|path| Some(AbandonedEntry { entry: read_abandoned(&path)?, path }));
         abandoned.filter(|abandoned| abandoned.entry.robot == self.entry.robot).collect()
     }
 
-    /// Whether other running processes have changed settings of the same robot.
+    /// Whether another running process has changed settings of the same robot.
     pub fn has_entry_of_running_process(&self) -> bool {
         let own = self.file.as_ref().map(|(_, path)| path);
         let others = self.paths().filter(|path| Some(path) != own);
@@ -163,7 +163,7 @@ impl ChangeJournal {
 }
 
 impl AbandonedEntry {
-    /// Deletes the entry, because all changes are restored.
+    /// Deletes the entry when all changes were restored.
     pub fn delete(&self) {
         fs::remove_file(&self.path).unwrap_or_default();
     }
@@ -175,7 +175,7 @@ impl AbandonedEntry {
     }
 }
 
-/// The entry in a file, unless the process that wrote it is still running.
+/// The entry in a file; `None` if the process that wrote it is still running.
 fn read_abandoned(path: &Path) -> Option<JournalEntry> {
     let metadata =
         fs::symlink_metadata(path).ok().filter(|metadata| metadata.is_file() && metadata.len() <= MAX_SIZE)?;
@@ -212,7 +212,7 @@ fn is_free(file: &File, _: &fs::Metadata) -> bool {
 #[cfg(not(unix))]
 fn lock(_: &File) {}
 
-/// Without file locks, an entry belongs to an ended process after the longest time that a command can take.
+/// Without file locks, an entry counts as left by an ended process when it is older than the longest command.
 #[cfg(not(unix))]
 fn is_free(_: &File, metadata: &fs::Metadata) -> bool {
     let age = metadata.modified().ok().and_then(|time| time.elapsed().ok());
@@ -233,7 +233,7 @@ mod tests {
         journal.push("@CTSK TASK=01");
         journal.moving(Some(Moving::Jog));
         assert_eq!(file_count(), 1);
-        // The process that wrote it is still running.
+        // The process that wrote the entry is still running.
         #[cfg(unix)]
         assert!(
             journal_of().abandoned_entries().is_empty()
@@ -255,7 +255,7 @@ mod tests {
         let mut journal = journal_of("tcp://cell");
         journal.host(true);
         journal.push("@CTSK TASK=01");
-        // The lock ends with the process, and nothing is restored.
+        // When the process ends, it releases the lock, and nothing was restored.
         drop(journal);
         fs::write(folder.path().join("odd.json"), "{").unwrap();
         assert!(

@@ -1,4 +1,4 @@
-//! Layers of a controller for `armctl robots check`.
+//! Checks of `armctl robots check` that are specific to the controller.
 
 use super::info;
 use super::link::Link;
@@ -16,7 +16,7 @@ use armctl_frame::{Access, Family as _};
 const LAYERS: &[&str] =
     &["line", "answer", "version", "teach pendant", "mode", "slaves", "power cycle", "error", "servo", "origin"];
 
-/// Checks the layers with read requests.
+/// Checks the layers. It sends only read requests.
 pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
     let mut layers = Layers::new(robot.label(), LAYERS);
     match Toyo::connect(robot, access, screen).await {
@@ -38,7 +38,7 @@ async fn check_state(robot: &Robot, link: &mut Link, layers: &mut Layers) {
     layers.ok("answer", "all pages of the status were received");
     match info::version(link).await {
         Ok(version) => layers.ok("version", version),
-        Err(failure) => layers.warn("version", failure.message, "`toyo info` shows details"),
+        Err(failure) => layers.warn("version", failure.message, "use `toyo info` to see details"),
     }
     layers.judge(
         "teach pendant",
@@ -56,7 +56,7 @@ async fn check_state(robot: &Robot, link: &mut Link, layers: &mut Layers) {
     if status.needs_power_cycle() {
         layers.fail_with(
             "power cycle",
-            "parameter 2 was changed, and the controller executes nothing before a restart",
+            "parameter 2 was changed, and the controller executes no command until a restart",
             "switch the controller's power off and on",
         );
     } else {
@@ -69,9 +69,13 @@ async fn check_state(robot: &Robot, link: &mut Link, layers: &mut Layers) {
         layers.ok("error", "none");
     }
     layers.leftover_drafts(&left_over(status));
-    // Servo power without use is only a remark, not a failure.
+    // Servo power without motion is only a remark, and not a failure.
     let is_idle = !status.executing() && !status.homing() && !is_held(robot);
-    let on = if is_idle { "on; no program runs and no session is open: `toyo servo off`" } else { "on" };
-    layers.judge("servo", status.servo_on(), (on, "off"), "motion needs servo power: `toyo servo on`");
-    layers.judge("origin", status.homed(), ("done", "not done"), "motion needs the origin: `toyo home`");
+    let on = if is_idle {
+        "on, but no program runs and no session is open; use `toyo servo off` to switch servo power off"
+    } else {
+        "on"
+    };
+    layers.judge("servo", status.servo_on(), (on, "off"), "use `toyo servo on`: a motion needs servo power");
+    layers.judge("origin", status.homed(), ("done", "not done"), "use `toyo home`: a motion needs the origin");
 }

@@ -1,4 +1,4 @@
-//! The commands of `toyo`, as its help lists them.
+//! Commands of `toyo` in the order of its help.
 
 use super::link::Toyo;
 use super::{
@@ -9,7 +9,7 @@ use armctl_frame::backup::family_backup::Diff;
 use armctl_frame::{Offline, Subcommands, commands};
 
 commands! {
-    /// What can be asked of a Toyo controller.
+    /// Commands for a Toyo controller.
     pub enum Commands {
         "Status and diagnosis":
         /// Show all status flags
@@ -75,11 +75,11 @@ commands! {
         TorqueTable(Subcommands<rows::TorqueTable>),
         /// MVM table (matrix moves)
         Mvm(Subcommands<mvm::Mvm>),
-        /// Save everything the controller stores to a folder
+        /// Save all data of the controller to a folder
         Backup(backup::Backup),
         /// Restore a backup
         Restore(backup::Restore),
-        /// Compare a backup with a second backup, or with the controller
+        /// Compare a backup with another backup or with the controller
         Diff(Diff<Toyo>),
         /// Memory card
         Card(Subcommands<card::Card>),
@@ -95,7 +95,7 @@ commands! {
         /// Timers
         Timer(Subcommands<counter::Timer>),
         "Link":
-        /// List the serial ports of this machine
+        /// List the serial ports of this computer
         Ports(Offline<ports::Ports>),
         /// Send any block and decode the answer
         Raw(raw::Raw),

@@ -74,7 +74,7 @@ pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Cli
     Ok(client)
 }
 
-/// Connector of one client, which can open the line again after a loss.
+/// Connector of one client. It can open the line again after a loss.
 struct Connector {
     endpoint: Endpoint,
     robot: Robot,
@@ -85,7 +85,7 @@ struct Connector {
 }
 
 impl Connector {
-    /// Opens the line, or joins the session that has it open.
+    /// Opens the line, or joins the session that has already opened it.
     async fn open(&self) -> Result<Line, Failure> {
         let Self { endpoint, robot, access, screen, claim } = self;
         if lock_writer(claim).is_none() {
@@ -98,13 +98,14 @@ impl Connector {
     }
 }
 
-/// Opens a line for a session, which opens it again after a loss. A first request checks the controller, because an
-/// open line proves nothing.
+/// Opens a line for a session. The session opens it again after a loss. An open line does not prove that there is a
+/// controller, so a first request checks this.
 pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<shared_link::Line, Failure> {
     let robot = Robot { sessions: Sessions::None, ..robot.clone() };
     let mut link = Toyo::connect(&robot, access.clone(), screen).await?;
     overview(&mut link).await?;
-    // The session uses the same connection, because a device server can need time before it accepts a new one.
+    // The session uses the connection of the check, because a device server can need time before it accepts a new
+    // connection.
     let open = link.into_line().ok_or_else(|| Failure::local("internal error: a dry run has no line"))?;
     let (endpoint, timeout, label) = (endpoint(&robot)?, robot.timeout.value, robot.label());
     Ok(shared_link::Line::new(open, move || {

@@ -1,4 +1,4 @@
-//! `toyo coordinate set`: coordinates for a program that waits for them.
+//! `toyo coordinate set`: sends coordinates to a program that waits for them.
 
 use clap::Args;
 
@@ -17,24 +17,25 @@ use armctl_frame::settings_report::{Done, NewValue, Old};
 use armctl_frame::{Command, Context, commands};
 
 commands! {
-    /// Coordinates that the host supplies.
+    /// Commands for coordinates that the host sends.
     pub enum Coordinate {
-        /// Send coordinates to a waiting RSMV step, which moves there
+        /// Send coordinates to a waiting RSMV step, which moves to them
         Set(Set),
     }
 }
 
-/// Send coordinates to a task. Its waiting or next RSMV step moves to them (TO 2-8, MRSS).
+/// Send coordinates to a task. The waiting or next RSMV step of the task moves to them (TO 2-8, MRSS).
 #[derive(Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub struct Set {
-    /// X, Y, Z and R in mm, -8000.00 to 8000.00, or by name, such as z=12.5 or ax1=12.5; 0 for a missing axis
+    /// X, Y, Z and R in mm, -8000.00 to 8000.00; or by name, for example z=12.5 or ax1=12.5. Use 0 for an axis that
+    /// does not exist
     #[arg(required = true, num_args = 4, value_names = ["X", "Y", "Z", "R"], value_parser = coordinate)]
     values: Vec<String>,
     /// Task of the program
     #[arg(long, value_name = "N", default_value = "1", value_parser = |text: &str| read("task", text))]
     task: Value,
-    /// Row of the speed table, 1 to 10; 0 for the speed of the step
+    /// Row of the speed table, 1 to 10; 0 uses the speed of the step
     #[arg(long = "speed-row", value_name = "ROW", default_value = "0", value_parser = |text: &str| read("speed", text))]
     speed: Value,
 }
@@ -55,7 +56,7 @@ fn field(name: &str) -> &'static Field {
 }
 
 impl Set {
-    /// Text for the speed.
+    /// Text about the speed.
     fn pace(&self) -> String {
         match self.speed {
             Value::Number(0) => "the speed of its step".to_owned(),
@@ -63,7 +64,7 @@ impl Set {
         }
     }
 
-    /// Text after "This will …".
+    /// Text that completes "This will …".
     fn in_words(&self, coordinates: &str) -> String {
         format!(
             "move to {coordinates} with the next RSMV step of task {} at {}",
@@ -92,10 +93,10 @@ impl Command for Set {
         let Self { values, task, speed } = self;
         let Context { link, authority, .. } = context;
         let letters = link.letters().await?;
-        let changes = Changes::read_by("coordinates", &point_table().body(), &letters, values)?;
+        let changes = Changes::read("coordinates", &point_table().body(), &letters, values)?;
         let coordinates = changes.whole().ok_or_else(|| {
-            Failure::usage("coordinates: a value is missing; each axis needs one")
-                .hint("`toyo coordinate set -h` has examples")
+            Failure::usage("coordinates: a value is missing; each axis needs a value")
+                .hint("see `toyo coordinate set -h` for examples")
         })?;
         let values = std::iter::once(task.clone()).chain(coordinates).chain([speed.clone()]).collect();
         let request = Request::new(table::Command::Mrss, values).map_err(|error| wrong(&error))?;
@@ -103,7 +104,8 @@ impl Command for Set {
         let target = format!("{} (mm)", coordinates.in_a_line());
         authority.confirm(&Change::new(self.in_words(&target))).await?;
         link.ask(&request).await?;
-        let words = format!("task {} has {target} at {}", field("task").meaning(task), self.pace());
+        let words =
+            format!("task {} has received {target}, for a move at {}", field("task").meaning(task), self.pace());
         let new =
             NewValue::of("coordinates", serde_json::json!(coordinates), words).with("task", json(field("task"), task));
         let new = if *speed == Value::Number(0) { new } else { new.with("speed_row", json(field("speed"), speed)) };

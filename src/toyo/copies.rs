@@ -1,4 +1,4 @@
-//! Program copies that the controller makes itself.
+//! Copies of programs that the controller makes by itself.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -21,23 +21,23 @@ use armctl_frame::gate::Change;
 use armctl_frame::output::Screen;
 use armctl_frame::output::view::View;
 
-/// A program copy, with the requests that read source and target.
+/// A program copy, and the requests that read source and target.
 #[derive(Debug)]
 pub struct Copy {
-    /// Type of program: `easy program`.
+    /// Type of program, such as `easy program`.
     pub what: &'static str,
     /// Number of the source.
     pub from: i32,
     /// Number of the target.
     pub to: i32,
-    /// Copy command.
+    /// Request that copies the program.
     pub order: Request,
-    /// Read requests of source and target.
+    /// Requests that read the source and the target.
     pub reads: [Vec<Request>; 2],
 }
 
 impl Copy {
-    /// Copies if source and target differ, after confirmation. The target is read back.
+    /// Copies the program after a confirmation, if source and target differ. Then reads the target back.
     pub async fn make(self, link: &mut Link, screen: &Screen, authority: &Authority<'_>) -> Result<Copied, Failure> {
         let Self { what, from, to, order, reads: [source, target] } = self;
         if from == to {
@@ -68,13 +68,17 @@ impl Copy {
         authority.confirm(&replacing(what, (from, to), letters, &target, (&wanted, &found))).await?;
         link.ask(&order).await?;
         let found = ask_all(link, screen, "reading the target again", &target).await.map_err(|failure| {
-            let message = format!("{} was accepted, but not read back: {}", order.text(), failure.message);
+            let message = format!(
+                "the controller accepted {}, but the value could not be read back: {}",
+                order.text(),
+                failure.message
+            );
             Failure::new(Kind::OutcomeUnknown, message).hint(refusal::verification_hint(order.command()))
         })?;
         if differences(&wanted, &found) > 0 {
             return Err(Failure::new(
                 Kind::Malformed,
-                format!("the controller accepted {} and holds something else", order.text()),
+                format!("the controller accepted {}, but the stored value differs", order.text()),
             )
             .hint("check for a second client that writes the same program, and for a worn EEPROM"));
         }
@@ -82,10 +86,10 @@ impl Copy {
     }
 }
 
-/// Condition of the copy.
-const DIFFER: &str = "whether they differ";
+/// Condition for the copy.
+const DIFFER: &str = "whether source and target differ";
 
-/// Change to confirm.
+/// Builds the change that the user must confirm.
 fn replacing(
     what: &str,
     (from, to): (i32, i32),
@@ -113,21 +117,21 @@ fn replacing(
     if lost.is_empty() {
         return Change::none();
     }
-    let change = Change::new(format!("overwrite {what} {to} by {what} {from}"));
+    let change = Change::new(format!("overwrite {what} {to} with {what} {from}"));
     lost.iter().fold(change, |change, (record, [old, new])| {
         let what = record.checked_sub(1).and_then(|index| RECORDS.get(index)).map_or(what, |record| record.name);
         change.replaces(what, old, new)
     })
 }
 
-/// Fields that identify a program and are not content.
+/// Fields that identify a program. They are not content.
 const KEYS: [&str; 2] = ["program", "st"];
 
 fn content(record: &Record) -> Vec<Value> {
     record.pairs().filter(|(field, _)| !KEYS.contains(&field.name)).map(|(_, value)| value.clone()).collect()
 }
 
-/// Number of records that differ in content.
+/// Number of records whose content differs.
 fn differences(one: &[Record], other: &[Record]) -> u32 {
     let differing = one.iter().zip(other).filter(|(one, other)| content(one) != content(other)).count();
     u32::try_from(differing).unwrap_or(u32::MAX)

@@ -22,12 +22,12 @@ use armctl_frame::store::{
 use armctl_frame::watch::Watch;
 
 table_commands! {
-    /// What can be done with counters.
+    /// Commands for counters.
     Counter of Counters {}
 }
 
 commands! {
-    /// Commands for timers, which the protocol can only read.
+    /// Commands for timers. The protocol can only read timers.
     pub enum Timer {
         /// Read timers 1 to 9
         Get(Get<Timers>),
@@ -47,7 +47,7 @@ fn fields() -> &'static [field::Field] {
     table::Command::Mcst.row().requests[0].fields
 }
 
-/// Number of `CN05`, with or without its letters.
+/// Number in a text such as `CN05`. The letters can be missing.
 fn bare<'t>(letters: &str, text: &'t str) -> &'t str {
     let has_letters = text.get(..letters.len()).is_some_and(|front| front.eq_ignore_ascii_case(letters));
     if has_letters { &text[letters.len()..] } else { text }
@@ -66,7 +66,7 @@ impl Store for Counters {
         placeholder: "N",
         range: "Counters, 1 to 99: 5, CN05 or 1-10, or a name",
         reading: None,
-        writing: Some("Counters take 0 to 9999, also while a program runs."),
+        writing: Some("A counter accepts values from 0 to 9999, also while a program runs."),
     };
     const IDS: Ids = ids!("toyo.counter");
     const LABELS: Option<Kind> = Some(Kind::Counter);
@@ -162,7 +162,7 @@ impl Writable for Counters {
             match count(&read_back(link, &order, &read(*counter)).await?) {
                 Some(stored) if stored != new_count => {
                     return Err(stored_otherwise(&order, &format!("the counter is {stored}"))
-                        .hint("a running program can change the counter at the same time"));
+                        .hint("repeat the command; a running program can change the counter at the same time"));
                 }
                 _ => {}
             }
@@ -277,7 +277,7 @@ mod tests {
         bench.data(&["counter", "set", "5", "7"]);
         let set = bench.data(&["counter", "set", "5", "8"])["items"][0].clone();
         assert_eq!((&set["old"], &set["new"]), (&7.into(), &8.into()), "{set}");
-        // A controller that refuses to report the counter accepts the write. A missing counter is not written.
+        // This controller refuses to report the counter, but accepts the write. A missing counter is not written.
         let refuses = |block: &str, count| {
             if block == "@MCNT CN=05" && count == 1 { Fault::Answered("@NG") } else { Fault::None }
         };
@@ -293,7 +293,7 @@ mod tests {
 
     #[test]
     fn a_late_ok_does_not_confirm_the_next_order() {
-        // The client gave up the previous command, and its @OK arrives later.
+        // The client gave up the previous command. The `@OK` for that command arrives later.
         let late = |block: &str, _| match block {
             "@MCST CN05=0007" => Fault::Late(std::time::Duration::from_millis(3010)),
             "@MCST CN06=0001" => Fault::Lost,
@@ -302,7 +302,7 @@ mod tests {
         let (mut bench, received) = Bench::with_faults("host = true\n", late);
         assert_eq!(bench.run(&["counter", "set", "5", "7"]).unwrap_err().kind, Kind::OutcomeUnknown);
         received.borrow_mut().clear();
-        // The command received no `@OK`, so its result is unknown.
+        // The command received no `@OK`, so its outcome is unknown.
         assert_eq!(bench.run(&["counter", "set", "6", "1"]).unwrap_err().kind, Kind::OutcomeUnknown);
         assert_eq!(received.borrow()[..2], ["@MCNT CN=06", "@MCST CN06=0001"], "something harmless is asked first");
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::testing::{Bench, Fault, all_blocks};
 use armctl_controller::toyo::table::commands::{ROWS, Row};
 
-/// A command line and the protocol commands of its dry run, in order.
+/// Command lines, each with the protocol commands of its dry run in order.
 #[rustfmt::skip]
 const LINES: &[(&str, &[&str])] = &[
     ("status", &["STAS"]),
@@ -82,7 +82,8 @@ fn every_command_has_a_command_line() {
     assert!(missing.is_empty(), "no command line sends {missing:?}");
 }
 
-/// Commands that the manual does not mark "host ON" are sent while the teach pendant is ON, and the controller decides.
+/// While the teach pendant is ON, commands that the manual does not mark "host ON" are still sent, and the controller
+/// decides.
 #[test]
 fn with_pendant_on_only_commands_that_need_the_host_are_not_sent() {
     let needs_host = |command: &str| Row::named(command).is_none_or(|row| row.needs_host);
@@ -94,7 +95,7 @@ fn with_pendant_on_only_commands_that_need_the_host_are_not_sent() {
         let sent: BTreeSet<&str> = received.iter().filter_map(|block| block.get(1..5)).collect();
         for command in *commands {
             let is_sent = sent.contains(command);
-            // Equal values are not written.
+            // A value that is already equal is not written.
             let may_be = if needs_host(command) { !is_sent } else { is_sent || outcome.is_ok() };
             assert!(may_be, "{line}: {command}: {outcome:?}");
         }

@@ -15,24 +15,24 @@ use armctl_frame::decode::{self, damage, field_table, in_parentheses, problem_li
 use armctl_frame::failure::Failure;
 use armctl_frame::output::view::{Cell, Section, View};
 
-/// Lines of the Toyo host communication, either direction
+/// Decode lines of the Toyo host communication
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The form of a line shows its sender, and so does -> or <- before it: `armctl decode toyo -` reads the output of \
-                        `--trace -`. The request before an answer explains it. A damaged line is \
-                        explained up to the damage, and the exit code is 5.\n\nOf a capture file, the lines are \
-                        listed as by --trace; NUMBER and TIME are those of Wireshark. A file without lines is no \
-                        failure. A damaged file is listed up to the damage, and the exit code is 1."
+    after_help = "The form of a line shows the sender. A prefix -> or <- also shows the sender, so `armctl decode \
+                  toyo -` reads the output of `--trace -`. A request before an answer explains the answer. A damaged \
+                  line is explained up to the damage, and the exit code is 5.\n\nFor a capture file, the command \
+                  lists the lines as --trace does. NUMBER and TIME are the same as in Wireshark. A file without lines \
+                  is not an error. A damaged file is listed up to the damage, and the exit code is 1."
 )]
 pub struct Decode {
-    /// Lines such as '@STAS SNO=0' or '@STAS SNO=0 ST1=22 ST2=00', - for stdin, or FILE.pcap or FILE.pcapng
+    /// Lines, for example '@STAS SNO=0' or '@STAS SNO=0 ST1=22 ST2=00'; - for stdin; or FILE.pcap or FILE.pcapng
     #[arg(required = true, value_name = "LINE")]
     lines: Vec<String>,
     #[command(flatten)]
     selection: Selection,
 }
 
-/// Marks of the sender in a trace, and the beginning of its explanation.
+/// Marks that a trace uses for the sender, and that begin its explanation.
 const MARKS: [(&str, Sender); 2] = [("->", Sender::Host), ("<-", Sender::Controller)];
 const REMARK: &str = "  # ";
 
@@ -59,7 +59,7 @@ impl Decode {
     fn lines(&self) -> Result<Vec<String>, Failure> {
         let lines =
             if self.lines == ["-"] { stdin()?.lines().map(str::to_owned).collect() } else { joined(&self.lines) };
-        // A block is never empty. The bytes in a trace repeat the line above them.
+        // A block is never empty. In a trace, the bytes repeat the line above them.
         let lines: Vec<String> = lines.into_iter().filter(|line| is_line(line)).collect();
         if lines.is_empty() {
             return Err(Failure::usage("the input has no lines").hint("type lines such as '@STAS SNO=0'"));
@@ -72,7 +72,7 @@ fn is_line(line: &str) -> bool {
     !line.trim().is_empty() && !line.starts_with("   ")
 }
 
-/// Joins arguments that a shell split at blanks. A line begins with its mark or with `@`.
+/// Joins arguments that a shell split at blanks. A line begins with its mark, or with `@`.
 fn joined(arguments: &[String]) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for argument in arguments {
@@ -89,12 +89,12 @@ fn joined(arguments: &[String]) -> Vec<String> {
     lines
 }
 
-/// Explanation of each line. The request before an answer explains it.
+/// Explains each line. An answer is explained with the request before it.
 fn decode_lines(lines: &[String]) -> DecodedLines {
     let mut last_request: Option<Request> = None;
     let lines = lines.iter().map(|line| {
         let (marked, text) = unmarked(line);
-        // The answer to TYPE has the form of its request.
+        // The answer to TYPE has the same form as its request.
         let is_answer = || last_request.as_ref().is_some_and(|request| request.answer(text).is_ok());
         let sender = marked.unwrap_or_else(|| if is_answer() { Sender::Controller } else { Sender::guess(text) });
         let description = describe(text, sender, last_request.take().as_ref());
@@ -106,7 +106,7 @@ fn decode_lines(lines: &[String]) -> DecodedLines {
     DecodedLines { lines: lines.collect() }
 }
 
-/// The line without additions of a trace.
+/// The line without the text that a trace adds.
 fn unmarked(line: &str) -> (Option<Sender>, &str) {
     let trimmed = line.trim_start();
     let marked =
@@ -117,22 +117,22 @@ fn unmarked(line: &str) -> (Option<Sender>, &str) {
     }
 }
 
-/// Explained lines.
+/// Lines with their explanations.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct DecodedLines {
     lines: Vec<DecodedLine>,
 }
 
-/// An explained line.
+/// A line with its explanation.
 #[derive(Debug, Serialize, JsonSchema)]
 struct DecodedLine {
     /// Text of the line.
     text: String,
-    /// Meaning.
+    /// Meaning of the line.
     title: String,
-    /// Section of the manual, if the command is known.
+    /// Section of the manual; null if the command is unknown.
     section: Option<String>,
-    /// `host` or `controller`.
+    /// Sender of the line: `host` or `controller`.
     sender: &'static str,
     fields: Vec<FieldRow>,
     /// Error in the line.

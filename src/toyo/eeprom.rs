@@ -1,7 +1,7 @@
-//! Cells of the EEPROM, each for about a million writes (TO 2-1, note 2).
+//! Cells of the EEPROM. Each cell lasts for about a million writes (TO 2-1, note 2).
 //!
-//! Equal values are therefore not written. Each write is read back, because a worn cell answers `@OK` and keeps its old
-//! value (ambiguity R29).
+//! For this reason, a value that is already equal is not written. Each write is read back, because a worn cell answers
+//! `@OK` and keeps its old value (ambiguity R29).
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -18,30 +18,30 @@ use armctl_frame::output::Screen;
 /// A stored value: its read request, its write request, and the new value.
 #[derive(Debug, Clone)]
 pub struct Cell {
-    /// Read request.
+    /// Request that reads the value.
     pub read: Request,
-    /// Write request.
+    /// Request that writes the value.
     pub write: Request,
-    /// New value, with the field names of the answer.
+    /// New value, with the field names of the answer to the read request.
     pub wanted: Record,
 }
 
 /// Number of written and unchanged cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, JsonSchema)]
 pub struct Cells {
-    /// Written and read back.
+    /// Number of cells that were written and read back.
     pub cells_written: u32,
-    /// The value was already equal.
+    /// Number of cells whose value was already equal.
     pub cells_unchanged: u32,
 }
 
-/// Purpose of the read before a write.
+/// Purpose of the read before a write, for dry runs.
 pub const THERE: &str = "the stored value";
-/// Condition of the write.
-const DIFFERS: &str = "whether it differs from the stored value";
+/// Condition for the write.
+const DIFFERS: &str = "whether the new value differs from the stored value";
 
 impl Cells {
-    /// Sentence for a report: `2 cells written, 1 unchanged`.
+    /// Describes the numbers in a report, for example `2 EEPROM cells written, 1 unchanged`.
     pub fn in_words(self) -> String {
         let Self { cells_written: written, cells_unchanged: unchanged } = self;
         let cells = if written == 1 { "cell" } else { "cells" };
@@ -54,11 +54,11 @@ impl Cells {
 }
 
 impl Link {
-    /// Writes one cell unless it is equal. A dry run records the requests and continues.
+    /// Writes one cell, unless its value is already equal. A dry run records the requests and continues.
     ///
     /// # Errors
-    /// Like [`Link::ask`]; [`Kind::OutcomeUnknown`] if the cell cannot be read back, and [`Kind::Malformed`] if it then
-    /// has another value.
+    /// Like [`Link::ask`]. [`Kind::OutcomeUnknown`] if the cell cannot be read back, and [`Kind::Malformed`] if it has
+    /// another value after the write.
     pub async fn store(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<Option<Record>, Failure> {
         if self.is_dry() {
             self.plan(&cell.read, THERE);
@@ -73,15 +73,15 @@ impl Link {
         Ok(Some(found))
     }
 
-    /// Records in a dry run the requests of [`Link::overwrite`] for a cell that differs: the block that writes it, in
-    /// which `?` stands for kept values, and the request that reads it back.
+    /// In a dry run, records the requests of [`Link::overwrite`] for a cell that differs: the block that writes it, in
+    /// which `?` stands for values that are kept, and the request that reads it back.
     pub async fn plan_overwriting(&mut self, read: &Request, write: &str) -> Result<(), Failure> {
         self.plan_order(write, DIFFERS).await?;
         self.plan_if(read, DIFFERS);
         Ok(())
     }
 
-    /// Writes one cell that is known to differ, and reads it back.
+    /// Writes one cell whose value is known to differ, and reads it back.
     ///
     /// # Errors
     /// Like [`Link::store`].
@@ -91,13 +91,17 @@ impl Link {
             screen.note(&format!("warning: {warning}"));
         }
         let is_stored = self.holds(cell).await.map_err(|failure| {
-            let message = format!("{} was accepted, but not read back: {}", cell.write.text(), failure.message);
+            let message = format!(
+                "the controller accepted {}, but the value could not be read back: {}",
+                cell.write.text(),
+                failure.message
+            );
             Failure::new(Kind::OutcomeUnknown, message).hint(refusal::verification_hint(cell.write.command()))
         })?;
         if !is_stored {
             return Err(Failure::new(
                 Kind::Malformed,
-                format!("the controller accepted {} and holds something else", cell.write.text()),
+                format!("the controller accepted {}, but the stored value differs", cell.write.text()),
             )
             .hint("check for a second client that writes the same cell, and for a worn EEPROM"));
         }
@@ -105,8 +109,8 @@ impl Link {
         Ok(())
     }
 
-    /// Reads something that only some controllers have; `None` if it is refused twice, because a busy controller also
-    /// refuses.
+    /// Reads data that only some controllers have. Returns `None` if the request is refused twice. A busy controller
+    /// also refuses, so a single refusal is not enough.
     pub async fn read_if_there(&mut self, request: &Request) -> Result<Option<Record>, Failure> {
         for _ in 0..2 {
             if let Ok(content) = self.try_ask(request).await? {
@@ -115,7 +119,7 @@ impl Link {
         }
         Ok(None)
     }
-    /// Whether a cell has its new value.
+    /// Whether a cell contains its new value.
     async fn holds(&mut self, cell: &Cell) -> Result<bool, Failure> {
         Ok(cell.is(&self.ask(&cell.read).await?))
     }
@@ -124,13 +128,13 @@ impl Link {
 impl Cell {
     /// Whether the content equals the new value.
     pub fn is(&self, found: &Record) -> bool {
-        // A step contains an instruction, and several instructions have fields of the same names.
+        // A step contains an instruction, and some instructions have fields with the same names.
         let is_other = self.read.command() == Command::Rstx && found.layout() != self.wanted.layout();
         !is_other && self.wanted.pairs().all(|(field, wanted)| found.value(field.name) == Some(wanted))
     }
 }
 
-/// Block that writes a parameter or a row of a table; `?` stands for kept values.
+/// Block that writes a parameter or a row of a table. `?` stands for values that are kept.
 pub fn parameter_sketch(parameter: &Parameter, row: Option<i32>, values: &[Option<Value>]) -> String {
     let values: Vec<_> = row.map(|row| Some(Value::Number(row))).into_iter().chain(values.iter().cloned()).collect();
     format!("@WPAR {}", parameter.layout.sketch(&values).unwrap_or_default())
@@ -149,7 +153,7 @@ pub fn parameter_cell(parameter: &'static Parameter, values: Vec<Value>) -> Resu
     })
 }
 
-/// Whether the answer to a read request is empty: a NOP, or zeros in a table that is cleared to zeros. The manuals do not
+/// Whether the answer to a read is empty: a NOP, or zeros in a table whose cleared rows are zeros. The manuals do not
 /// list factory values of parameters.
 pub fn is_blank(read: &Request, found: &Record) -> bool {
     let content = read.content().ok().flatten();

@@ -22,12 +22,12 @@ use armctl_frame::{Report, ValueKind};
 /// Error code of a Toyo controller, or an instruction of its programs
 #[derive(Debug, Args)]
 pub struct Explain {
-    /// Hexadecimal code, as in 28 or 0xA1; or an instruction, as in MOVP
+    /// Hexadecimal code, for example 28 or 0xA1; or an instruction, for example MOVP
     #[arg(value_name = "CODE|INSTRUCTION", value_parser = subject, add = ValueKind::Code(Family::Toyo))]
     subject: Subject,
 }
 
-/// Subject of an explanation.
+/// What to explain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Subject {
     Code(u8),
@@ -41,7 +41,8 @@ fn subject(text: &str) -> Result<Subject, String> {
         let near = nearest(text, INSTRUCTIONS.iter().map(|row| row.word));
         let near = near.map(|near| format!("; did you mean {near}?")).unwrap_or_default();
         format!(
-            "type two hexadecimal digits, as in 28 (`toyo status` shows the code), or an instruction such as MOVP{near}"
+            "type two hexadecimal digits such as 28 (`toyo status` shows the code), or an instruction such as \
+             MOVP{near}"
         )
     })
 }
@@ -101,19 +102,19 @@ impl face::Explain for Explain {
 /// Axis of a code.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Axis {
-    /// Null if the code concerns no axis.
+    /// Axis of the code; null if the code does not concern an axis.
     #[serde(rename = "axis_number")]
     axis: Option<u8>,
 }
 
 impl ExtraColumns for Axis {
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
-        // The text already names the cause.
+        // The text already contains the cause.
         Vec::new()
     }
 }
 
-/// Alarm with the texts of armctl.
+/// Returns the alarm for a code, with the texts of armctl.
 pub fn alarm_from_code(code: u8) -> Alarm {
     let errors::Explanation { name, cause, remedy, .. } = errors::explain(code);
     Alarm {

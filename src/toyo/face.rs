@@ -1,4 +1,4 @@
-//! Interface of `toyo` to the other parts of the program.
+//! Implementation of the family interface for `toyo`.
 
 use super::alarm;
 use super::backup::{back_up, restore};
@@ -55,7 +55,7 @@ impl Declaration for Toyo {
 
     fn urls() -> Vec<(String, &'static str)> {
         vec![
-            ("serial://".to_owned(), "toyo: a port of this machine, as in serial:///dev/ttyUSB0 or serial://COM3"),
+            ("serial://".to_owned(), "toyo: a port of this machine, such as serial:///dev/ttyUSB0 or serial://COM3"),
             ("tcp://".to_owned(), "toyo: HOST:PORT of a serial device server"),
         ]
     }
@@ -106,7 +106,8 @@ impl Backups for Toyo {
         let current_task = context.robot.read_only.value;
         if current_task {
             context.screen.note(&format!(
-                "{}: the robot is read-only, and selecting a task is a change: only the points and program of the current task",
+                "{}: the robot is read-only, and selecting a task is a change; the backup contains only the points \
+                 and program of the current task",
                 context.robot.label()
             ));
         }

@@ -11,7 +11,8 @@ use armctl_frame::attach::session_busy;
 use armctl_frame::dry_run::unknown;
 use armctl_frame::failure::{Failure, Kind, plain};
 
-/// Failure for an error of the client of robot `label`. [`refusal::explained`] adds the reason of a refusal.
+/// Failure for an error of the client. `label` is the name of the robot. [`refusal::explained`] adds the reason for a
+/// refusal.
 pub fn failure(label: &str, error: Error) -> Failure {
     let about = |kind, what: String| Failure::new(kind, format!("{label}: {what}"));
     match error {
@@ -34,13 +35,16 @@ pub fn failure(label: &str, error: Error) -> Failure {
             let failure = failure(label, *cause);
             Failure { message: format!("the command was not sent: {}", failure.message), ..failure }
         }
-        Error::Malformed { .. } => about(Kind::Malformed, error.to_string())
-            .hint("check baud rate and parity; -vv shows the received bytes, `armctl decode toyo` explains them"),
+        Error::Malformed { .. } => about(Kind::Malformed, error.to_string()).hint(
+            "check baud rate and parity; use -vv to see the received bytes, and `armctl decode toyo` to explain them",
+        ),
         Error::TooMuchData { .. } => about(Kind::Malformed, error.to_string())
             .hint("check for another client of the device server, and check the baud rate"),
         Error::InvalidRequest(error) => misuse(&error),
-        Error::NotUndone { block, cause } => not_undone(label, &not_put_back(&block), cause)
-            .hint("set it with `toyo mode` or `toyo task`; `toyo status` shows the state of the controller"),
+        Error::NotUndone { block, cause } => not_undone(label, &not_put_back(&block), cause).hint(
+            "restore the setting with `toyo mode` or `toyo task`; use `toyo status` to see the state of the \
+             controller",
+        ),
         Error::HostNotReleased(cause) => {
             not_undone(label, "the host is still ON, because the command to switch it OFF failed", cause)
                 .hint("use `toyo host off` to enable the start input again")
@@ -54,7 +58,8 @@ pub fn failure(label: &str, error: Error) -> Failure {
         Error::Session(busy) => session_busy(label, &busy),
         Error::Port { path, error } => not_open(label, &path, &error),
         Error::DeviceServer { host, port, error } => not_connected(label, &host, port, &error),
-        // The cause can pass, such as port permissions that the system sets a moment after the port appears.
+        // The cause may pass. For example, the system sets the permissions of a port only a moment after the port
+        // appears.
         Error::NotReopened(cause) => Failure { kind: Kind::NoAnswer, ..failure(label, *cause) },
         Error::Opener(error) => match error.downcast_ref::<Failure>() {
             Some(failure) => failure.clone(),
@@ -69,7 +74,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
 /// Hint after a request without an answer.
 fn silence(Unanswered { counters, invalid_answer, .. }: &Unanswered) -> &'static str {
     if counters.echoes > 0 {
-        "only an echo was received: check for a loop-back plug, or an RS-485 adapter without a controller"
+        "check for a loop-back plug, or an RS-485 adapter without a controller: armctl received only an echo"
     } else if counters.noise > 0 || invalid_answer.is_some() {
         "check baud rate and parity: the controller uses 9600 baud, 8 data bits, even parity, 1 stop bit"
     } else {
@@ -77,19 +82,19 @@ fn silence(Unanswered { counters, invalid_answer, .. }: &Unanswered) -> &'static
     }
 }
 
-/// Hint for the command that shows whether a command was executed.
+/// Hint with the command that shows whether a command was executed.
 fn verification_hint(request: Option<&Request>) -> &'static str {
-    request.map_or("`toyo status` shows the state of the controller", |request| {
+    request.map_or("use `toyo status` to see the state of the controller", |request| {
         refusal::verification_hint(request.command())
     })
 }
 
 /// Message for a setting that the block `block` did not restore.
 pub fn not_put_back(block: &str) -> String {
-    format!("a temporary change was not restored with {block}")
+    format!("armctl could not restore a temporary change with {block}")
 }
 
-/// Failure for a change that could not be undone, because the controller refused or for another cause.
+/// Failure: a change could not be undone, because the controller refused or for another cause.
 fn not_undone(label: &str, what: &str, cause: Option<Box<Error>>) -> Failure {
     let (kind, why) = match cause.map(|cause| failure(label, *cause)) {
         Some(cause) => (cause.kind, cause.message),
@@ -105,19 +110,19 @@ fn not_stopped(kind: Kind, message: String) -> Failure {
     )
 }
 
-/// Failure for a lost connection.
+/// Failure: the connection was lost.
 fn broken(label: &str, is_shared: bool, error: &io::Error) -> Failure {
     let what = match error.kind() {
         io::ErrorKind::NotConnected if is_shared => format!("the connection is lost: {error}"),
         io::ErrorKind::NotConnected => {
-            "the connection is lost: the cable was unplugged, or the other side closed it".to_owned()
+            "the connection is lost: the cable was unplugged, or the other side closed the connection".to_owned()
         }
         _ => format!("the connection failed: {}", plain(error)),
     };
     Failure::new(Kind::NoAnswer, format!("{label}: {what}")).hint(if is_shared {
-        "`armctl session list` shows the state of the session"
+        "use `armctl session list` to see the state of the session"
     } else {
-        "`toyo ports` lists the serial ports"
+        "use `toyo ports` to list the serial ports"
     })
 }
 
@@ -135,7 +140,7 @@ fn not_open(label: &str, path: &str, error: &OpenError) -> Failure {
             "add your user to the group of the port, usually dialout (`sudo usermod -aG dialout $USER`), and log in again",
         ),
         OpenError::NotSerial => {
-            (Kind::Usage, format!("{path} is not a serial port"), "`armctl toyo ports` lists the serial ports")
+            (Kind::Usage, format!("{path} is not a serial port"), "use `armctl toyo ports` to list the serial ports")
         }
         OpenError::Unsupported(why) => (
             Kind::Usage,
@@ -143,7 +148,7 @@ fn not_open(label: &str, path: &str, error: &OpenError) -> Failure {
             "use other settings in the target URL",
         ),
         OpenError::Io(error) => {
-            (Kind::NoAnswer, format!("{path}: {}", plain(error)), "`armctl toyo ports` lists the serial ports")
+            (Kind::NoAnswer, format!("{path}: {}", plain(error)), "use `armctl toyo ports` to list the serial ports")
         }
     };
     Failure::new(kind, format!("{label}: {what}")).hint(hint)
@@ -161,20 +166,21 @@ fn not_connected(label: &str, host: &str, port: u16, error: &ConnectError) -> Fa
         ConnectError::Unreachable => {
             ("the host cannot be reached".to_owned(), "check the address and the network settings of this computer")
         }
-        ConnectError::TimedOut => {
-            ("the device server does not answer".to_owned(), "check its address, and that it is on")
-        }
+        ConnectError::TimedOut => (
+            "the device server does not answer".to_owned(),
+            "check the address of the device server, and check that the device server is on",
+        ),
         ConnectError::Io(error) => (plain(error), "check the network"),
     };
     Failure::new(Kind::NoAnswer, format!("{label}: {what}")).hint(hint)
 }
 
-/// Failure for values that cannot be sent, as an error of the command line.
+/// Failure: the values on the command line cannot be sent.
 pub fn wrong(error: &LayoutProblem) -> Failure {
-    Failure::usage(error.to_string()).hint("`--help` shows the valid values")
+    Failure::usage(error.to_string()).hint("use `--help` to see the valid values")
 }
 
-/// Failure for a request that cannot be sent.
+/// Failure: the request cannot be sent.
 pub fn misuse(error: &BlockError) -> Failure {
-    Failure::usage(error.to_string()).hint("`--help` shows the valid values")
+    Failure::usage(error.to_string()).hint("use `--help` to see the valid values")
 }

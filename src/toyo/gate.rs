@@ -1,5 +1,5 @@
-//! Tests of every command: its risk, a read-only robot, a missing confirmation, and the agreement of dry run and sent
-//! blocks.
+//! Tests of every command: its risk, a read-only robot, a missing confirmation, and whether a dry run shows the blocks
+//! that are sent.
 
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -15,7 +15,7 @@ use armctl_frame::failure::Kind;
 use armctl_frame::gate::{Confirmation, Gate};
 use armctl_frame::testing::{QUIET, complete_frames};
 
-/// Every command with its highest risk. `FOLDER` is a folder with the files of [`prepared`].
+/// Every command with its highest risk. `FOLDER` stands for a folder with the files of [`prepared`].
 #[rustfmt::skip]
 const LINES: &[(&str, Risk)] = &[
     ("status", Read), ("home", Motion), ("home --sync 1 --no-wait", Motion), ("position", Read), ("host on", Write),
@@ -59,13 +59,13 @@ const LINES: &[(&str, Risk)] = &[
     ("raw @MTSK", Read), ("raw @HSON", Write), ("raw @DSTX~0001", Destroy), ("raw @HOME", Motion),
 ];
 
-/// Start state with programs and points of a user.
+/// Start state of the controller, with programs and points of a user.
 const STATE: &str = "origin = true\nhost = false\ncard = \"empty\"\n\
     points = { 1 = { 1 = [10.0, 20.0, 0.0, 0.0] }, 2 = { 1 = [1.0, 0.0, 0.0, 0.0] } }\n\
     steps = { 1 = [\"TAG TAG=005\", \"SPD V=05\", \"SPD V=06\", \"END\"], \
     2 = [\"HOME\", \"SPD V=01\", \"SPD V=02\", \"END\", \"END\"] }\n";
 
-/// Commands that add to the start state.
+/// Command lines that add data to the start state.
 const BEFORE: [&str; 9] = [
     "point set 2 7 7 7 7",
     "mvm set 2 pieces1=4",
@@ -78,7 +78,7 @@ const BEFORE: [&str; 9] = [
     "mvm set 1 pieces1=3 approach-z=5",
 ];
 
-/// A controller with data of a user, a folder with files, and the blocks that it receives from now on.
+/// A controller with user data, a folder with files, and the blocks that the controller receives from now on.
 fn prepared(line: &str) -> (Bench, ReceivedBlocks, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
@@ -110,7 +110,7 @@ fn words(line: &str, folder: &tempfile::TempDir) -> Vec<String> {
     line.split(' ').map(|word| word.replace("FOLDER", folder).replace('~', " ")).collect()
 }
 
-/// Risk of a block, which can contain `?`.
+/// Risk of a block. The block can contain `?`.
 fn risk(block: &str) -> Risk {
     if block.starts_with("@JGST") {
         let moves = ["+", "-", "?"].iter().any(|way| block.contains(way));
@@ -130,7 +130,7 @@ fn the_table_has_every_command() {
         };
         LINES.iter().map(|(line, _)| id(line)).collect()
     };
-    // The editor has its own transcript.
+    // The editor has a separate transcript.
     let offline = ["toyo.ports", "toyo.program.check", "toyo.program.edit", "toyo.sim.run"];
     let missing: Vec<&str> = super::commands::Commands::schemas().iter().map(|entry| entry.id).collect();
     let missing: Vec<&str> = missing.into_iter().filter(|id| !listed.contains(id) && !offline.contains(id)).collect();
@@ -160,7 +160,7 @@ fn without_confirmation_no_command_changes_anything() {
             received.borrow().iter().filter(|block| risk(block) >= Destroy).cloned().collect();
         if *expected_risk >= Destroy {
             let kind = outcome.as_ref().err().map(|failure| failure.kind);
-            // A block beyond the end is refused in any case.
+            // A block beyond the end is always refused.
             let is_expected =
                 |message: &str| message.starts_with("not confirmed: ") || message.contains("would be lost");
             if kind != Some(Kind::Rejected) || !outcome.as_ref().is_err_and(|failure| is_expected(&failure.message)) {
@@ -195,7 +195,7 @@ fn a_dry_run_shows_the_blocks_that_are_sent() {
         if !planned.iter().any(|frame| risk(&text(frame)) == *expected_risk) {
             wrong.push(format!("{line}: no frame has the risk of the command: {planned:?}"));
         }
-        // The simulator refuses some commands; the blocks sent up to then count.
+        // The simulator refuses some commands. The blocks that were sent before the refusal count.
         let is_complete = bench.run(&words).is_ok_and(|(_, failure)| failure.is_none());
         bench.end();
         if let Err(why) = follows(&planned, &received.borrow(), is_complete && report["complete"] == true) {
@@ -205,8 +205,8 @@ fn a_dry_run_shows_the_blocks_that_are_sent() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Whether the sent blocks match the plan: `?` matches any text, a block that depends on an answer can be absent, and a
-/// block with "until" can repeat.
+/// Checks that the sent blocks match the plan. `?` matches any text, a block that depends on an answer can be absent,
+/// and a block with "until" can repeat.
 fn follows(planned: &[Value], sent: &[String], is_complete: bool) -> Result<(), String> {
     let is_open = |frame: &Value| frame["depends_on"].is_string();
     let is_poll = |frame: &Value| frame["about"].as_str().is_some_and(|about| about.contains("until"));
@@ -254,7 +254,7 @@ fn fits(planned: &str, sent: &str) -> bool {
     let Some(remaining) = rest.strip_prefix(first) else { return false };
     rest = remaining;
     for part in middle {
-        // At least one character for each `?`.
+        // Each `?` stands for at least one character.
         let Some(at) = rest.get(1..).and_then(|rest| if part.is_empty() { Some(rest.len()) } else { rest.find(part) })
         else {
             return false;
@@ -292,7 +292,7 @@ fn a_confirmation_shows_old_and_new_and_empty_cells_need_none() {
     }
     let sent = received.borrow().iter().filter(|block| risk(block) >= Destroy).count();
     assert_eq!(sent, 0);
-    // Equal values and empty cells need no confirmation.
+    // No confirmation is needed for values that are already equal, and for empty cells.
     for line in ["param set P01 ax2=1000", "point set 4 1 2 3 4", "point set 1 9 9 9 9", "easy set 5 1 2 3"] {
         let words: Vec<&str> = line.split(' ').collect();
         if let Err(failure) = bench.run_without_confirmation(&words) {

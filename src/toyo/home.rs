@@ -79,7 +79,7 @@ impl Command for Home {
     }
 }
 
-/// Adds the present position of each axis. A busy controller can refuse to report it.
+/// Adds the current position of each axis to the change. A busy controller may refuse to report it.
 async fn from_where(link: &mut Link, change: Change, letters: Letters) -> Result<Change, Failure> {
     let coordinates = match link.read_position().await {
         Ok(record) => Coordinates::of(&record, letters),
@@ -156,7 +156,11 @@ mod tests {
         let state = "position = [300.0, 0.0, 0.0, 0.0]\n[[event]]\nat_ms = 1000\ndo = \"stop\"\n";
         let failure = Bench::with_faults(state, |_, _| Fault::None).0.run(&["home"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
-        assert!(failure.message.contains("but it ended without the origin; the axes are at X "), "{}", failure.message);
+        assert!(
+            failure.message.contains("but the status shows no origin after the end; the axes are at X "),
+            "{}",
+            failure.message
+        );
     }
 
     #[test]

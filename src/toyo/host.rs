@@ -1,4 +1,4 @@
-//! `toyo host on|off`: host control.
+//! Command `toyo host on|off`: takes or releases host control.
 
 use clap::Args;
 
@@ -15,7 +15,7 @@ use armctl_frame::{Command, Context};
 
 /// Switch the host ON or OFF permanently.
 ///
-/// Other commands do not need `host on`: they switch the host ON and restore its state.
+/// Other commands do not need `host on`: they switch the host ON by themselves and then restore the previous state.
 #[derive(Debug, Args)]
 pub struct Host {
     /// on: the host has control and the start input is disabled; off: the start input has control
@@ -36,7 +36,7 @@ impl Command for Host {
         };
         let old = Old::read(context.link.status_before(2).await?.map(Status::host_on));
         let ordered = context.link.ask(&Request::bare(command)).await;
-        // After a lost answer, the status shows the result of the command.
+        // If the answer was lost, the status shows whether the command was executed.
         ordered.map(|_| ()).or_else(
             |failure| {
                 if failure.kind == Kind::OutcomeUnknown { Ok(()) } else { Err(failure) }
@@ -48,7 +48,7 @@ impl Command for Host {
         {
             return Ok(NewValue::of("host_on", is_on, done).replaces(old));
         }
-        Err(no_effect("the host").hint("`toyo status` shows whether the host is ON"))
+        Err(no_effect("the host").hint("use `toyo status` to see whether the host is ON"))
     }
 }
 
@@ -79,7 +79,7 @@ mod tests {
         bench.data(&["counter", "set", "1", "5"]);
         bench.close().unwrap();
         assert_eq!(received.borrow()[received.borrow().len() - 2..], ["@HSOF", "@STAS SNO=2"]);
-        // The command was not executed, and nothing else was sent.
+        // The controller did not receive the command, and the client sent nothing else that changes something.
         let (mut bench, received) = Bench::with_faults("origin = true\n", lost(Fault::Lost));
         let failure = bench.run(&["home"]).unwrap_err();
         assert!(failure.message.starts_with("the command was not sent: "), "{failure}");

@@ -17,10 +17,11 @@ use armctl_frame::{Command, Context, Report};
 
 /// Show robot type, versions, axes, task and override.
 #[derive(Debug, Args)]
-#[command(after_help = "A missing station refuses to report its version. The report lists refused requests.")]
+#[command(after_help = "The controller refuses to report the version of a missing station. The report lists the \
+                        refused requests.")]
 pub struct Info {}
 
-/// Stations of the controller; 0 is the controller itself.
+/// Numbers of the stations; 0 is the controller itself.
 const STATIONS: [u8; 5] = [0, 1, 2, 3, 4];
 
 impl Command for Info {
@@ -36,7 +37,7 @@ impl Command for Info {
         let versions = STATIONS.map(version);
         let all: Vec<Request> = [&system].into_iter().chain(&versions).chain([&task, &speed]).cloned().collect();
         link.plan_all(&all)?;
-        // Every controller answers this request; each of the others can be refused.
+        // Every controller answers this request. It may refuse each of the other requests.
         let mut about = About::of(&link.ask(&system).await?);
         for request in &all[1..] {
             match link.try_ask(request).await? {
@@ -48,7 +49,7 @@ impl Command for Info {
     }
 }
 
-/// Version of the controller.
+/// Reads the version of the controller.
 pub(super) async fn version(link: &mut Link) -> Result<String, Failure> {
     Ok(meaning(&link.ask(&Request::bare(table::Command::Sysp)).await?, "version"))
 }
@@ -56,21 +57,21 @@ pub(super) async fn version(link: &mut Link) -> Result<String, Failure> {
 /// Identity of a controller.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct About {
-    /// Six digits.
+    /// Robot type: six digits.
     robot_type: String,
-    /// Version of the controller: `3.36`.
+    /// Version of the controller, for example `3.36`.
     version: String,
     /// Language of the teach pendant: `Japanese` or `English`.
     language: String,
     /// Letters of axes 1 to 4.
     axes: Vec<&'static str>,
-    /// End of the answer, which the manual does not explain.
+    /// Last part of the answer. The manual does not explain it.
     tail: String,
     /// Versions of the stations that answered.
     stations: Vec<Station>,
     /// The current task; null if the controller refused to report it.
     task: Option<u8>,
-    /// Null if the controller refused to report it.
+    /// Speed override; null if the controller refused to report it.
     speed_override_percent: Option<u8>,
     /// Requests that the controller refused (`@NG`).
     refused: Vec<String>,
@@ -79,7 +80,7 @@ pub struct About {
 /// A station of the controller.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Station {
-    /// 0 is the controller itself.
+    /// Number of the station; 0 is the controller itself.
     station: u8,
     version: String,
 }
@@ -110,12 +111,12 @@ impl About {
     }
 }
 
-/// Value in the protocol.
+/// Returns a field in the form of the protocol.
 fn field_text(record: &Record, name: &str) -> String {
     record.pairs().find(|(field, _)| field.name == name).map(|(field, value)| field.written(value)).unwrap_or_default()
 }
 
-/// Meaning of a value.
+/// Returns the meaning of a field's value.
 fn meaning(record: &Record, name: &str) -> String {
     let field = record.pairs().find(|(field, _)| field.name == name);
     field.map(|(field, value)| field.meaning(value).into_owned()).unwrap_or_default()

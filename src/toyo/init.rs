@@ -22,12 +22,12 @@ use armctl_frame::output::Screen;
 use armctl_frame::output::view::View;
 use armctl_frame::{Command, Context, Report};
 
-/// Clear memory. Only a backup can restore it.
+/// Clear memory. Only a backup can restore the cleared memory.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The command clears sequential programs and coordinate tables of the current task only (`toyo task get`). On a \
-                        real controller, you confirm by typing the word again, or with --yes. Save the memory first with \
-                        `toyo backup`."
+    after_help = "The command clears sequential programs and coordinate tables of the current task only (`toyo task \
+                  get`). On a real controller, type the word again to confirm, or add --yes. Save the memory first \
+                  with `toyo backup`."
 )]
 pub struct Init {
     /// Memory to clear
@@ -99,7 +99,7 @@ impl Command for Init {
 /// Interval between two reads of the status.
 const POLL_INTERVAL: Duration = Duration::from_millis(200);
 
-/// Waits until the controller has completed the accepted work (ambiguity A3).
+/// Waits until the controller has completed the work that it accepted (ambiguity A3).
 async fn wait_until_cleared(link: &mut Link, screen: &Screen) -> Result<Status, Failure> {
     if link.is_dry() {
         link.plan(&status_page(0), "every 200 ms until the memory is cleared");
@@ -115,7 +115,7 @@ async fn wait_until_cleared(link: &mut Link, screen: &Screen) -> Result<Status, 
     }
 }
 
-/// Failure while waiting for the end.
+/// Failure of the wait. The outcome of the command is then unknown.
 fn unknown_result(failure: Failure) -> Failure {
     if failure.kind == Kind::DryRun {
         return failure;
@@ -127,13 +127,13 @@ fn unknown_result(failure: Failure) -> Failure {
 /// Result of a clear.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ClearReport {
-    /// Word as typed: `points`.
+    /// Memory area as typed, such as `points`.
     cleared: &'static str,
-    /// Text for the word.
+    /// Description of the memory area.
     about: &'static str,
     /// The current task.
     task: Option<u8>,
-    /// Whether the controller executes nothing before a restart.
+    /// Whether the controller needs a restart before it executes anything.
     needs_power_cycle: bool,
 }
 

@@ -13,17 +13,17 @@ use armctl_frame::output::view::{Cell, Section, Table};
 /// An instruction of sequential programs.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct InstructionHelp {
-    /// First word.
+    /// Word that the instruction begins with.
     instruction: &'static str,
-    /// Effect.
+    /// What the instruction does.
     about: &'static str,
-    /// Form in a program.
+    /// Form of the instruction in a program.
     form: String,
     /// Example line of a program.
     example: &'static str,
     /// Section of the manual.
     section: &'static str,
-    /// Controllers that have it; empty for all.
+    /// Controllers that have the instruction; empty for all controllers.
     only_on: Vec<&'static str>,
     /// Operands in order.
     operands: Vec<Operand>,
@@ -32,19 +32,19 @@ pub struct InstructionHelp {
 /// An operand of an instruction.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Operand {
-    /// Name in the form.
+    /// Name of the operand in the form.
     name: &'static str,
-    /// Meaning.
+    /// Meaning of the operand.
     about: &'static str,
     /// Minimum; null if the operand is not a number.
     least: Option<f64>,
     /// Maximum; null if the operand is not a number.
     most: Option<f64>,
-    /// Unit of the number; null without a unit.
+    /// Unit of the number; null if it has no unit.
     unit: Option<&'static str>,
     /// Valid words; empty if the operand is not a word.
     words: Vec<OperandWord>,
-    /// Valid values as text.
+    /// Description of the valid values.
     #[serde(skip)]
     values: String,
 }
@@ -57,7 +57,7 @@ struct OperandWord {
 }
 
 impl InstructionHelp {
-    /// Instruction of a row of the table.
+    /// Creates the description from a row of the instruction table.
     pub fn new(row: &'static Instruction) -> Self {
         Self {
             instruction: row.word,

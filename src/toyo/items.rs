@@ -1,9 +1,5 @@
-//! Batch reads: each item has its own result, and one refusal does not hide the other answers.
-
-use std::collections::BTreeMap;
-
-use schemars::JsonSchema;
-use serde::Serialize;
+//! Reads of several items. Each item has its own result, so that a refusal does not prevent the report of the other
+//! answers.
 
 use super::eeprom::THERE;
 use super::link::{Link, Refusal};
@@ -14,72 +10,11 @@ use armctl_frame::dry_run::unknown;
 use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::output::Screen;
 
-/// Result of one item.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum Item<T> {
-    /// Answered.
-    Answered {
-        #[serde(flatten)]
-        value: T,
-        /// True.
-        ok: bool,
-    },
-    /// Not answered.
-    Failed {
-        /// Key of the item.
-        #[serde(flatten)]
-        key: Key,
-        /// False.
-        ok: bool,
-        /// Reason, with the refused block.
-        error: Failure,
-    },
-}
-
-/// Key of an item: `counter` 5.
-pub type Key = BTreeMap<&'static str, i32>;
-
-/// Answer to each request.
+/// The answer or the failure of each request.
 pub type Answers = Vec<Result<Record, Failure>>;
 
-impl<T> Item<T> {
-    /// Item for an answer. The value has the key `in_manual`.
-    pub fn kept(name: &'static str, number: i32, answer: Result<T, Failure>) -> Self {
-        match answer {
-            Ok(value) => Self::Answered { ok: true, value },
-            Err(error) => Self::Failed { ok: false, key: Key::from([(name, number)]), error },
-        }
-    }
-
-    /// Reason for a missing value.
-    pub fn error(&self) -> Option<&Failure> {
-        if let Self::Failed { error, .. } = self { Some(error) } else { None }
-    }
-}
-
-/// Failure as one word for a table cell.
-pub fn in_a_word(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Refused => "refused",
-        Kind::NoAnswer => "no answer",
-        _ => "no sense",
-    }
-}
-
-/// Failure of a report: the number of failed items, with the message of the first.
-pub fn failure<'f>(all: usize, errors: impl Iterator<Item = Option<&'f Failure>>) -> Option<Failure> {
-    let failed: Vec<&Failure> = errors.flatten().collect();
-    let first = *failed.first()?;
-    if failed.len() == all {
-        return Some(first.clone());
-    }
-    let message = format!("{} of {all} failed: {}", failed.len(), first.message);
-    Some(Failure { kind: Kind::Mixed, message, ..first.clone() })
-}
-
-/// Reads items in order, each with its own result. After a lost connection the remaining items are not read. A dry run
-/// records all requests and ends.
+/// Reads items in order. Each item has its own result. After a lost connection, the remaining items are not read. A dry
+/// run records all requests and ends.
 ///
 /// # Errors
 /// The first failure, if no item was answered.
@@ -87,7 +22,7 @@ pub async fn read_each(link: &mut Link, screen: &Screen, what: &str, requests: &
     read(link, screen, what, requests, 1, |_| false).await
 }
 
-/// Like [`read_each`], up to the first answer for which `is_last` holds.
+/// Like [`read_each`], but ends after the first answer for which `is_last` is true.
 ///
 /// # Errors
 /// Like [`read_each`].
@@ -101,7 +36,7 @@ pub async fn read_until(
     read(link, screen, what, requests, 1, is_last).await
 }
 
-/// Like [`read_each`], with a second attempt after a refusal, because a busy controller also refuses.
+/// Like [`read_each`], but a refused request is sent a second time, because a busy controller also refuses.
 ///
 /// # Errors
 /// Like [`read_each`].
@@ -161,15 +96,20 @@ async fn read(
     }
 }
 
-/// Records in a dry run a request with a second attempt after a refusal by a controller without the item.
+/// In a dry run, records a request that is sent a second time after a refusal, which a controller without the item
+/// sends.
 pub fn plan_twice(link: &mut Link, request: &Request) {
     link.plan(request, THERE);
     if request.parameter().is_some_and(|parameter| !parameter.only_on.is_empty()) {
-        link.plan_if(request, "if it is refused, because a busy controller also refuses");
+        link.plan_if(
+            request,
+            "whether the controller refuses the first request: a busy controller also refuses, so \
+                               armctl sends the request again",
+        );
     }
 }
 
-/// Answer to one request, or the reason for a missing answer. A failure ends all the work.
+/// Answer to one request, or the reason why there is none. A failure ends the whole work.
 async fn outcome(link: &mut Link, request: &Request, times: u8) -> Result<Result<Record, Failure>, Failure> {
     for _ in 1..times {
         match link.try_ask(request).await {
@@ -185,13 +125,13 @@ async fn outcome(link: &mut Link, request: &Request, times: u8) -> Result<Result
     }
 }
 
-/// Whether a failure concerns only one request.
+/// Returns a failure as a result if it concerns only one request, otherwise as an error.
 fn of_one(failure: Failure) -> Result<Result<Record, Failure>, Failure> {
     if matches!(failure.kind, Kind::NoAnswer | Kind::Malformed) { Ok(Err(failure)) } else { Err(failure) }
 }
 
 fn not_asked(request: &Request, silence: &Failure) -> Failure {
-    let message = format!("{} was not sent after a lost answer: {}", request.text(), silence.message);
+    let message = format!("{} was not sent, because an earlier answer was lost: {}", request.text(), silence.message);
     Failure { message, ..silence.clone() }
 }
 
@@ -245,7 +185,7 @@ mod tests {
             data["items"][2]["error"]["message"]
                 .as_str()
                 .unwrap()
-                .starts_with("@MCNT CN=03 was not sent after a lost answer")
+                .starts_with("@MCNT CN=03 was not sent, because an earlier answer was lost")
         );
         assert_eq!(failure.unwrap().kind, Kind::Mixed);
         let failure = with_faults("@MCNT CN=01", Fault::Lost).run(&["counter", "get", "1-9"]).unwrap_err();
@@ -272,11 +212,11 @@ mod tests {
             assert_eq!(odd[0]["raw"], raw, "{entry}");
             let others = data["items"].as_array().unwrap().iter().filter(|entry| entry["in_manual"] == true);
             assert!(others.count() > 50);
-            // A value outside the manual is not written back.
+            // A value that is not in the manual is not written back.
             if id == "P06" {
                 let failure = bench.run(&["param", "set", "P06", "ax1=1"]).unwrap_err();
                 assert!(failure.message.contains("'ax2=+0000.5' is not in the manual"), "{failure}");
-                assert_eq!(failure.hint.unwrap(), "nothing was written; type all values");
+                assert_eq!(failure.hint.unwrap(), "type all values; nothing was written");
             }
             let folder = tempfile::tempdir().unwrap();
             let dumped = bench.data(&["param", "dump", folder.path().join("p.csv").to_str().unwrap(), id]);

@@ -1,4 +1,4 @@
-//! `toyo jog`: motion of one axis for a time or by inching steps. The stop is always sent at the end.
+//! `toyo jog`: moves one axis for a time or by inching steps. The stop is always sent at the end.
 
 use std::convert::Infallible;
 use std::fmt;
@@ -32,12 +32,12 @@ use armctl_frame::{Command, Context, Report};
 /// Jog one axis, and stop it (TO 2-7, 3-2).
 ///
 /// The controller has no dead man's switch. This command stops the axis after its time, after an error or a lost
-/// answer, and at Ctrl-C, Ctrl-\ and Ctrl-Z. If it is killed or frozen, its guardian stops the axis. If the computer
-/// fails or sleeps, or the cable is unplugged, the axis continues: keep the emergency stop at hand. Afterwards use
-/// `toyo stop --jog`.
+/// answer, and at Ctrl-C, Ctrl-\ and Ctrl-Z. If the command is killed or frozen, its guardian stops the axis. If the
+/// computer fails or sleeps, or the cable is unplugged, the axis continues to move. Keep the emergency stop at hand.
+/// After such a failure, use `toyo stop --jog`.
 #[derive(Debug, Args)]
 pub struct Jog {
-    /// Axis, by its letter on the teach pendant or its number
+    /// Axis: its letter on the teach pendant, or its number
     #[arg(value_name = "X|Y|Z|R|1-4", value_parser = parse_axis)]
     axis: Axis,
     /// Direction
@@ -47,21 +47,21 @@ pub struct Jog {
     /// Duration, 100ms to 60s (high and low)
     #[arg(long = "for", value_name = "TIME", value_parser = parse_duration, required_if_eq_any([("speed", "low"), ("speed", "high")]))]
     within: Option<Duration>,
-    /// Number of inching steps
+    /// Number of inching steps (for inch)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=100), conflicts_with = "within")]
     steps: Option<u8>,
 }
 
-/// An axis as typed.
+/// An axis as the user typed it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Axis {
-    /// By its index, 0 to 3, regardless of its letter.
+    /// Index of the axis, 0 to 3, regardless of its letter.
     Index(usize),
-    /// By its letter on the teach pendant (E01).
+    /// Letter of the axis on the teach pendant (E01).
     Letter(String),
 }
 
-/// Possible letters (TO 2-4, E01).
+/// Letters that an axis can have (TO 2-4, E01).
 const LETTERS: [&str; 4] = ["X", "Y", "Z", "R"];
 
 fn parse_axis(text: &str) -> Result<Axis, String> {
@@ -97,13 +97,13 @@ impl fmt::Display for Axis {
 /// An axis of this machine.
 #[derive(Debug, Clone)]
 struct MachineAxis {
-    /// Index, 0 to 3.
+    /// Index of the axis, 0 to 3.
     index: usize,
     letters: Letters,
 }
 
 impl MachineAxis {
-    /// `2 (Z)`; the number alone if the controller reports no letter.
+    /// Text such as `2 (Z)`. If the controller reports no letter, only the number.
     fn in_words(&self) -> String {
         match self.letters.of(self.index) {
             "" => (self.index + 1).to_string(),
@@ -116,7 +116,7 @@ impl MachineAxis {
     }
 }
 
-/// Direction.
+/// Direction of a jog.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Direction {
     /// Plus
@@ -134,11 +134,11 @@ pub enum Speed {
     High,
     /// At the low speed of parameters P08 to P11
     Low,
-    /// By inching steps (parameter P12)
+    /// Inching steps (parameter P12)
     Inch,
 }
 
-/// A jog takes at least the time of an answer, and at most the time that a person can watch it.
+/// A jog takes at least as long as an answer, and at most as long as a person can watch it.
 const SHORTEST: Duration = Duration::from_millis(100);
 const LONGEST: Duration = Duration::from_secs(60);
 
@@ -147,24 +147,24 @@ fn parse_duration(text: &str) -> Result<Duration, String> {
     if (SHORTEST..=LONGEST).contains(&time) {
         return Ok(time);
     }
-    Err(format!("a jog takes {} to {}", duration::display(SHORTEST), duration::display(LONGEST)))
+    Err(format!("the duration of a jog is from {} to {}", duration::display(SHORTEST), duration::display(LONGEST)))
 }
 
-/// Time limit for the begin of a step.
+/// Time limit for the start of a step.
 const START_TIMEOUT: Duration = Duration::from_secs(1);
-/// Time after which an axis at the lowest speed has moved.
+/// Time within which an axis at the lowest speed must have moved.
 const REST_TIME: Duration = Duration::from_millis(500);
 /// Interval between two reads during a step.
 const STEP_POLL_INTERVAL: Duration = Duration::from_millis(20);
-/// Limit of refused reads in a row while an axis moves.
+/// Maximum number of consecutive reads that may be refused while an axis moves.
 const MAX_REFUSALS: u32 = 3;
 
-/// Early end of a motion.
+/// Why a motion ended early.
 #[derive(Debug)]
 enum JogError {
-    /// The command was refused.
+    /// The controller refused the command.
     Refused,
-    /// An error occurred.
+    /// An error occurred in the controller.
     Error,
     /// Another failure.
     Failed(Failure),
@@ -177,7 +177,7 @@ impl From<Failure> for JogError {
 }
 
 impl Jog {
-    /// Word of the protocol for this motion.
+    /// Protocol word for this motion.
     const fn word(&self) -> &'static str {
         match (self.direction, self.speed) {
             (Direction::Plus, Speed::High) => "+H",
@@ -193,19 +193,20 @@ impl Jog {
         jog(self.word(), Some(axis.index))
     }
 
-    /// Records all requests from the jog command on. The number of an axis is known after the letters were read.
+    /// In a dry run, records all requests from the jog command on. The number of the axis depends on the letters, which
+    /// must be read first.
     fn plan(&self, link: &mut Link) {
         link.plan(&position_request(), "position before the jog");
         let steps = self.steps.unwrap_or(1);
         let about = match self.within {
             Some(time) => format!("then {} pass", duration::display(time)),
-            None if steps > 1 => format!("{steps} times, each after the axis stands still"),
+            None if steps > 1 => format!("{steps} times, each time after the axis has stopped"),
             None => "once".to_owned(),
         };
         match &self.axis {
             Axis::Index(index) => link.plan(&jog(self.word(), Some(*index)), &about),
             Axis::Letter(letter) => {
-                let about = format!("{} for axis {letter}, SP for the others; {about}", self.word());
+                let about = format!("{} for axis {letter}, SP for the other axes; {about}", self.word());
                 let reason = Reason::about(&about).depending_on("letters of the axes");
                 link.plan_depending("@JGST X=? Y=? Z=? R=?", reason);
             }
@@ -214,7 +215,7 @@ impl Jog {
         link.plan(&position_request(), "until the stop: position");
     }
 
-    /// Text after "This will …".
+    /// Text that completes "This will …".
     fn in_words(&self, axis: &str) -> String {
         let way = if self.direction == Direction::Plus { "plus" } else { "minus" };
         match (self.speed, self.within) {
@@ -250,7 +251,7 @@ impl Jog {
         }
     }
 
-    /// Moves without an end and watches the axis.
+    /// Moves without an end, and watches the axis until it must stop.
     async fn jog_until(
         &self,
         link: &mut Link,
@@ -262,13 +263,13 @@ impl Jog {
         let began = Instant::now();
         link.try_ask(&self.order(axis)).await?.map_err(|_| JogError::Refused)?;
         *is_accepted = true;
-        // One read of the state is two requests.
+        // A read of the state consists of two requests.
         let mut longest = 2 * began.elapsed();
         let mut detector = RestDetector { start, last: start, was_busy: false, since: Instant::now() };
         loop {
             let began = Instant::now();
             if began + longest > until {
-                // No request must be pending when the stop is sent.
+                // When the stop is sent, no request may be pending.
                 return std::future::pending().await;
             }
             let (is_busy, coordinates) = read_state(link, axis).await?;
@@ -282,7 +283,7 @@ impl Jog {
         }
     }
 
-    /// Moves by inching steps, each after the axis stands still.
+    /// Moves by inching steps. Each step begins after the axis has come to rest.
     async fn run_inching_steps(
         &self,
         link: &mut Link,
@@ -305,7 +306,7 @@ impl Jog {
         Ok(steps)
     }
 
-    /// Moves by one inching step, and returns the position afterwards.
+    /// Moves by one inching step. Returns the position after the step.
     async fn step(&self, link: &mut Link, axis: &MachineAxis, start: Coordinates) -> Result<Coordinates, JogError> {
         link.try_ask(&self.order(axis)).await?.map_err(|_| JogError::Refused)?;
         let (mut last, began) = (start, Instant::now());
@@ -317,10 +318,11 @@ impl Jog {
                 return Ok(current);
             }
             if is_at_rest && began.elapsed() >= START_TIMEOUT {
-                let message = "the step was accepted, but the axis did not move";
+                let message = "the controller accepted the step, but the axis did not move";
                 return Err(JogError::Failed(
-                    Failure::new(Kind::ConditionNotMet, message)
-                        .hint("`toyo param get P12` shows the size of a step, `toyo status` shows the reason"),
+                    Failure::new(Kind::ConditionNotMet, message).hint(
+                        "use `toyo param get P12` to see the size of a step, and `toyo status` to see the reason",
+                    ),
                 ));
             }
             sleep(STEP_POLL_INTERVAL).await;
@@ -328,7 +330,7 @@ impl Jog {
     }
 }
 
-/// Detector for an axis that has come to rest early.
+/// Detects that an axis has come to rest early.
 struct RestDetector {
     start: Coordinates,
     last: Coordinates,
@@ -338,7 +340,8 @@ struct RestDetector {
 }
 
 impl RestDetector {
-    /// Whether the axis has come to rest: no execution, or the same position in several reads after some motion.
+    /// Whether the axis has come to rest: the controller executes nothing, or several reads show the same position
+    /// after some motion.
     fn has_come_to_rest(&mut self, is_busy: bool, coordinates: Coordinates) -> bool {
         if coordinates != self.last {
             self.since = Instant::now();
@@ -351,7 +354,8 @@ impl RestDetector {
     }
 }
 
-/// Reads whether the controller executes, and the position. Refusals of a busy controller are repeated.
+/// Reads whether the controller executes something, and the position. If a busy controller refuses a read, it is
+/// repeated.
 async fn read_state(link: &mut Link, axis: &MachineAxis) -> Result<(bool, Coordinates), JogError> {
     let mut refused = 0;
     loop {
@@ -385,7 +389,7 @@ impl Command for Jog {
         true
     }
 
-    /// The controller reports the letters of the axes.
+    /// Reads the letters of the axes first, because the user can name an axis by its letter.
     async fn run(&self, context: Context<'_, Toyo>) -> Result<JogReport, Failure> {
         if self.within.is_some() && self.speed == Speed::Inch {
             return Err(Failure::usage("an inching step has no duration")
@@ -409,12 +413,13 @@ impl Command for Jog {
         let began = Instant::now();
         let outcome = self.run_jog(link, &display, &axis, start).await;
         if let Err(JogError::Refused) = outcome {
-            // This command caused no motion. Other motion belongs to another client and needs no wait for a stop.
+            // This command caused no motion. If the axis moves, another client moves it, and this command need not wait
+            // for a stop.
             link.stop_refused_motion(Moving::Jog).await;
             display.end();
             return Err(refusal::explained(link, &self.order(&axis)).await);
         }
-        // The stop is sent in any case.
+        // The stop is sent, whatever happened before.
         let elapsed = began.elapsed();
         let end = Coordinates::of(
             &link.stop(Moving::Jog).await.map_err(|failure| still_moving(outcome.as_ref().err(), failure))?,
@@ -428,7 +433,7 @@ impl Command for Jog {
     }
 }
 
-/// Reason of the early end, after the axis has stopped.
+/// Failure with the reason for the early end, after the axis has stopped.
 async fn stopped_early(link: &mut Link, error: JogError, coordinates: &Coordinates) -> Failure {
     let stopped = format!("the axis was stopped at {}", coordinates.in_a_line());
     match error {
@@ -441,7 +446,7 @@ async fn stopped_early(link: &mut Link, error: JogError, coordinates: &Coordinat
     }
 }
 
-/// Failure because the stop was not confirmed.
+/// Failure: the stop was not confirmed.
 fn still_moving(error: Option<&JogError>, failure: Failure) -> Failure {
     let why = match error {
         Some(JogError::Failed(error)) => format!("{}; ", error.message),
@@ -451,7 +456,7 @@ fn still_moving(error: Option<&JogError>, failure: Failure) -> Failure {
         .hint("press the emergency stop; after the controller answers again, use `toyo stop --jog` first")
 }
 
-/// Live display of the position in its own thread, because a blocked terminal must not delay the stop.
+/// Live display of the position. It has its own thread, because a blocked terminal must not delay the stop.
 struct LiveDisplay {
     texts: Sender<String>,
     thread: std::thread::JoinHandle<()>,
@@ -471,7 +476,7 @@ impl LiveDisplay {
     }
 
     fn say(&self, text: String) {
-        // If the thread has ended, only the display is lost.
+        // If the thread has ended, the display is lost, but nothing else.
         self.texts.send(text).unwrap_or_default();
     }
 
@@ -485,15 +490,15 @@ impl LiveDisplay {
 /// Result of a jog.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct JogReport {
-    /// Letter of the axis: `X`, `Y`, `Z` or `R`; empty if the controller does not report it.
+    /// Letter of the axis: `X`, `Y`, `Z` or `R`; empty if the controller does not report one.
     axis: &'static str,
     /// Number of the axis, 1 to 4.
     axis_number: usize,
-    /// Word of the protocol: `+L`.
+    /// Protocol word, such as `+L`.
     word: &'static str,
-    /// Completed inching steps; null for low and high.
+    /// Number of completed inching steps; null for low and high speed.
     steps: Option<u8>,
-    /// Distance; negative in minus direction.
+    /// Distance in mm; negative in minus direction.
     moved_mm: f64,
     #[serde(flatten)]
     motion: Motion,

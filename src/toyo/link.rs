@@ -1,5 +1,5 @@
-//! Connection to a controller for commands: the client, with errors in plain text, a trace of the traffic, and a
-//! journal of temporary changes.
+//! Connection to a controller for commands: the client, with error messages, a trace of the traffic, and a journal of
+//! temporary changes.
 
 mod abandoned_changes;
 mod observer;
@@ -40,7 +40,8 @@ use observer::{Observer, PrintedNotices, SharedObserver};
 #[derive(Debug)]
 pub struct Toyo;
 
-/// A connection to one controller. It dereferences to the client for operations that cannot fail.
+/// A connection to one controller. Operations that cannot fail are available through the client, to which the link
+/// dereferences.
 #[derive(Debug, Deref, DerefMut)]
 pub struct Link {
     #[deref]
@@ -49,11 +50,11 @@ pub struct Link {
     observer: Arc<Mutex<Observer>>,
     screen: Screen,
     label: String,
-    /// Changes that ended processes left on the controller and that were not reported yet.
+    /// Changes that other processes left on the controller when they ended, and that were not reported yet.
     abandoned: Vec<AbandonedEntry>,
-    /// Writes to the EEPROM.
+    /// Log of the writes to the EEPROM.
     pub(super) write_log: WriteLog,
-    /// Source texts of the programs that were written.
+    /// Source texts of the programs that armctl wrote.
     pub(super) sources: Sources,
 }
 
@@ -67,8 +68,8 @@ impl Family for Toyo {
     }
 
     async fn halt(link: &mut Link) -> Result<String, Failure> {
-        let Some(moving) = link.moving() else { return Ok("nothing was sent that moves the robot".to_owned()) };
-        // Stop first and print then, because a blocked terminal must not delay the stop.
+        let Some(moving) = link.moving() else { return Ok("no motion command was sent".to_owned()) };
+        // The stop is sent before anything is printed, because a blocked terminal must not delay it.
         link.send_urgent(moving).await;
         let stop = moving.stop().text();
         link.screen.note(&format!("stopping the robot: {stop}"));
@@ -81,7 +82,7 @@ impl Family for Toyo {
         link.moving() == Some(Moving::Jog)
     }
 
-    /// A serial port and a device server each have one line.
+    /// A serial port and a device server have only one line each.
     fn takes_one_client(robot: &Robot) -> bool {
         matches!(robot.target.value.place, target::Place::Serial(_) | target::Place::Tcp(_))
     }
@@ -99,7 +100,7 @@ impl Family for Toyo {
         link.report_abandoned_changes().await;
         let Link { client, observer, label, mut write_log, .. } = link;
         let (totals, closed) = client.close().await;
-        // Motion that continues on purpose was already reported.
+        // Motion that continues on purpose was already reported, so it is not in the journal.
         lock_writer(&observer).journal.moving(None);
         let Counters { sent, received, .. } = totals.counters;
         screen.detail(1, &format!("{sent} blocks sent, {received} received in {:.1?}", totals.waited));
@@ -113,7 +114,7 @@ impl Family for Toyo {
     }
 }
 
-/// Counters of disturbances, with their names.
+/// Counters of disturbances on the line, with their names.
 fn disturbances(counters: &Counters) -> [(u64, &'static str); 5] {
     let Counters { sent: _, received: _, noise, garbled, foreign, echoes, repeats } = *counters;
     [
@@ -133,7 +134,7 @@ impl Link {
         Traffic { sent: sent.into(), received: received.into(), disturbances }
     }
 
-    /// Wraps a client.
+    /// Creates a link from a client.
     pub(super) fn of(mut client: Client, robot: &Robot, access: &Access, screen: &Screen) -> Result<Self, Failure> {
         let (target, label) = (robot.target.value.to_string(), robot.label());
         let has_files = !robot.target.value.is_simulated();
@@ -158,7 +159,7 @@ impl Link {
         self.client.into_line()
     }
 
-    /// Sends a request; a refusal is a failure.
+    /// Sends a request. A refusal is a failure.
     pub async fn ask(&mut self, request: &Request) -> Result<Record, Failure> {
         match self.try_ask(request).await? {
             Ok(record) => Ok(record),
@@ -166,14 +167,15 @@ impl Link {
         }
     }
 
-    /// Sends a request; a refusal is a valid result.
+    /// Sends a request. A refusal is a valid result.
     pub async fn try_ask(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Failure> {
         self.report_abandoned_changes().await;
         self.before_steps_change(request);
         self.client.try_ask(request).await.map_err(|error| self.failure(error))
     }
 
-    /// Marks the stored source text as uncertain before a command that changes steps in another way than `program put`.
+    /// Marks the stored source text as uncertain. This is done before a command changes steps in another way than
+    /// `program put` does.
     fn before_steps_change(&mut self, request: &Request) {
         let changes =
             [Command::Wstx, Command::Istx, Command::Dstx, Command::Dstl, Command::Cpss, Command::Mint, Command::Rmca];
@@ -182,7 +184,7 @@ impl Link {
         }
     }
 
-    /// Sends a request unchanged, and returns the whole answer, good or bad.
+    /// Sends a request unchanged, and returns the whole answer, even if it is a refusal.
     pub async fn raw(&mut self, request: &Request) -> Result<Answer, Failure> {
         if !is_stop(request) {
             self.report_abandoned_changes().await;
@@ -191,15 +193,15 @@ impl Link {
         self.client.raw(request).await.map_err(|error| self.failure(error))
     }
 
-    /// Sends a block that no table contains, and returns the answer.
+    /// Sends a block that is not in the command table, and returns the answer.
     pub async fn raw_text(&mut self, block: &str) -> Result<String, Failure> {
         self.report_abandoned_changes().await;
         self.sources.doubt();
         self.client.raw_text(block).await.map_err(|error| self.failure(error))
     }
 
-    /// Reads the value that a write replaces; `None` if the controller refuses to report it. A dry run records the
-    /// request and returns `None`. A lost line is a failure, and nothing was written.
+    /// Reads the value that a write replaces. Returns `None` if the controller refuses to report it. A dry run records
+    /// the request and returns `None`. If the line is lost, the failure states that nothing was written.
     pub async fn before(&mut self, question: &Request) -> Result<Option<Record>, Failure> {
         if self.is_dry() {
             self.plan(question, OLD_VALUE);
@@ -208,7 +210,7 @@ impl Link {
         Ok(self.try_ask(question).await.map_err(nothing_written)?.ok())
     }
 
-    /// Reads one page of the status before a write; the other pages are 0.
+    /// Reads one page of the status before a write. The other pages are 0.
     pub async fn status_before(&mut self, page: u8) -> Result<Option<Status>, Failure> {
         let record = self.before(&status_page(page)).await?;
         Ok(record.and_then(|record| record.byte("st1")).map(|byte| Status::default().with(page, byte)))
@@ -219,14 +221,14 @@ impl Link {
         self.status_of(&[0, 1, 2, 3, 4]).await
     }
 
-    /// Reads some pages of the status; the other pages are 0.
+    /// Reads some pages of the status. The other pages are 0.
     pub async fn status_of(&mut self, pages: &[u8]) -> Result<Status, Failure> {
         self.report_abandoned_changes().await;
         self.client.status_of(pages).await.map_err(|error| self.failure(error))
     }
 
-    /// Reads the position of the axes. A refusal is not explained, because the explanation takes time and the
-    /// controller is busy for a moment.
+    /// Reads the position of the axes. The reason for a refusal is not read, because this takes time, and the
+    /// controller is only busy for a moment.
     pub async fn read_position(&mut self) -> Result<Record, Failure> {
         self.report_abandoned_changes().await;
         self.client.read_position().await.map_err(|error| self.failure(error))
@@ -238,13 +240,13 @@ impl Link {
         self.client.letters().await.map_err(|error| self.failure(error))
     }
 
-    /// Converts a position record for a report. If the letters of the axes cannot be read, the report has the numbers
-    /// of the axes.
+    /// Converts a position record for a report. If the letters of the axes cannot be read, the report names the axes by
+    /// number.
     pub async fn coordinates(&mut self, record: &Record) -> Coordinates {
         Coordinates::of(record, self.letters().await.unwrap_or(Letters::UNKNOWN))
     }
 
-    /// Changes a setting temporarily. [`Link::put_back`] or the end of the link restores it with `back`.
+    /// Changes a setting temporarily. [`Link::put_back`], or the end of the link, restores the setting with `back`.
     pub async fn borrow(&mut self, change: &Request, back: Request) -> Result<(), Failure> {
         self.report_abandoned_changes().await;
         match self.client.borrow(change, back).await {
@@ -253,14 +255,15 @@ impl Link {
         }
     }
 
-    /// Restores all settings of [`Link::borrow`]. After a failure it continues, and returns the first failure.
+    /// Restores all settings that [`Link::borrow`] changed. If this fails for a setting, continues with the others and
+    /// returns the first failure.
     pub async fn put_back(&mut self) -> Result<(), Failure> {
         self.client.put_back().await.map_err(|error| self.failure(error))
     }
 
-    /// Stops the motion, and returns the position of rest.
+    /// Stops the motion, and returns the position at rest.
     pub async fn stop(&mut self, moving: Moving) -> Result<Record, Failure> {
-        // Stale changes are reported after the stop.
+        // Changes of earlier processes are reported after the stop.
         let printed = std::mem::replace(&mut lock_writer(&self.observer).printed, PrintedNotices::ALL);
         let stopped = self.client.stop(moving).await;
         let mut observer = lock_writer(&self.observer);
@@ -269,14 +272,14 @@ impl Link {
         stopped.map_err(|error| self.failure(error))
     }
 
-    /// Stops a motion that the controller refused before it began. The stop is sent once.
+    /// Stops a motion that the controller refused before it began. The stop is sent only once.
     pub async fn stop_refused_motion(&mut self, moving: Moving) {
         self.client.stop_refused_motion(moving).await;
         lock_writer(&self.observer).trace.resume();
     }
 
-    /// Detects a lost connection early, and buffers trace text until [`Link::stop`]. Neither long timeouts nor a
-    /// blocked terminal must delay the stop.
+    /// Sets short timeouts that detect a lost connection early, and buffers trace text until [`Link::stop`]. Neither
+    /// long timeouts nor a blocked terminal may delay the stop.
     pub fn use_short_timeouts(&mut self) {
         self.client.use_short_timeouts();
         lock_writer(&self.observer).trace.pause();
@@ -287,28 +290,29 @@ impl Link {
         lock_writer(&self.observer).choose_host(is_on);
     }
 
-    /// Records that the user chose this task as the current one.
+    /// Records that the user chose this task as the current task.
     pub fn choose_task(&mut self, task: u8) {
         lock_writer(&self.observer).choose_task(task);
     }
 
-    /// Records requests in a dry run. Their answers are not known.
+    /// In a dry run, records requests. Their answers are not known.
     pub fn plan_all(&mut self, requests: &[Request]) -> Result<(), Failure> {
         self.client.plan_all(requests).map_err(|error| self.failure(error))
     }
 
-    /// Records a command in a dry run, after the requests that precede every command. The earlier answer `on` decides
-    /// whether it is sent.
+    /// In a dry run, records a command after the requests that precede every command. `on` is the earlier answer that
+    /// determines whether the command is sent.
     pub async fn plan_order(&mut self, text: &str, on: &str) -> Result<(), Failure> {
         self.client.plan_order(text, on).await.map_err(|error| self.failure(error))
     }
 
-    /// Records a temporary change in a dry run. `back` restores the setting; `?` in it is the value that was read.
+    /// In a dry run, records a temporary change. `back` restores the setting; `?` in it stands for the value that was
+    /// read.
     pub async fn plan_to_borrow(&mut self, change: &Request, back: &str, on: &str) -> Result<(), Failure> {
         self.client.plan_to_borrow(change, back, on).await.map_err(|error| self.failure(error))
     }
 
-    /// Failure for an answer that makes no sense.
+    /// Failure: an answer makes no sense.
     pub fn malformed(&self, block: &str, why: &str) -> Failure {
         self.failure(Error::Malformed { block: block.to_owned(), why: why.to_owned() })
     }

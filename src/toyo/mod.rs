@@ -1,4 +1,4 @@
-//! `toyo`: Toyo controllers over RS-232C host communication.
+//! `toyo`: commands for Toyo controllers over RS-232C host communication.
 
 mod alarm;
 pub mod backup;

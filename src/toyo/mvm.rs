@@ -1,4 +1,4 @@
-//! `toyo mvm`: groups of the MVM table. A group has five sheets: corners, pieces, counters, approach, destination.
+//! `toyo mvm`: groups of the MVM table. A group has five sheets: corners, pieces, counters, approach and destination.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -30,7 +30,7 @@ table_commands! {
 #[derive(Debug)]
 pub struct Groups;
 
-/// Sheets with their values: column of a file, heading.
+/// Sheets and their fields: column in a file, and heading.
 const SHEETS: [(&str, &[Field]); 5] = [
     (
         "T4.S1",
@@ -86,21 +86,21 @@ fn reads(group: i32) -> Result<Vec<Request>, Failure> {
 /// A group of the MVM table.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Group {
-    /// Row of the coordinate table of corner P0.
+    /// Row of the coordinate table for corner P0.
     origin_point: i32,
-    /// Row of the coordinate table of corner P1; 0 for none.
+    /// Row of the coordinate table for corner P1; 0 for none.
     p1_point: i32,
-    /// Row of the coordinate table of corner P2; 0 for none.
+    /// Row of the coordinate table for corner P2; 0 for none.
     p2_point: i32,
-    /// Row of the coordinate table of corner P3; 0 for none.
+    /// Row of the coordinate table for corner P3; 0 for none.
     p3_point: i32,
-    /// Pieces towards P1, P2 and P3.
+    /// Number of pieces toward P1, P2 and P3.
     pieces: [i32; 3],
     /// Counters of the pieces.
     counters: [i32; 3],
-    /// `absolute` or `incremental`.
+    /// Approach as a word: `absolute` or `incremental`.
     approach: String,
-    /// `a` or `i`.
+    /// Approach in the protocol: `a` or `i`.
     approach_raw: &'static str,
     approach_z_mm: f64,
     approach_r_mm: f64,
@@ -133,7 +133,7 @@ impl Group {
 impl Store for Groups {
     type Family = Toyo;
     type Key = i32;
-    /// Sheets in order.
+    /// Records of the sheets, in order.
     type Wire = Vec<Record>;
     type Value = Group;
     type More = Listed;
@@ -206,7 +206,7 @@ impl Store for Groups {
     async fn read(&self, link: &mut Link, screen: &Screen, groups: &[i32]) -> Result<Answers<Vec<Record>>, Failure> {
         let requests = groups.iter().copied().map(reads).collect::<Result<Vec<Vec<Request>>, Failure>>()?.concat();
         let sheets = read_each(link, screen, "reading sheets", &requests).await?;
-        // The first refusal fails the whole group.
+        // If a sheet is refused, the whole group fails with the first refusal.
         let whole =
             |sheets: &[Result<Record, Failure>]| sheets.iter().cloned().collect::<Result<Vec<Record>, Failure>>();
         Ok(Answers::of(sheets.chunks(SHEETS.len()).map(whole).collect()))
@@ -243,8 +243,9 @@ impl Writable for Groups {
                 (None, Some(old)) if changes.values().iter().all(Option::is_none) => return Ok(old[index].clone()),
                 (None, Some(old)) => changes.over(&old[index])?,
                 (None, None) => {
-                    let message = format!("group {group} was not read, so missing values are unknown");
-                    return Err(Failure::usage(message).hint("nothing was written; type all values"));
+                    let message =
+                        format!("group {group} could not be read, so the values that are not typed are unknown");
+                    return Err(Failure::usage(message).hint("type all values; nothing was written"));
                 }
             };
             let values = std::iter::once(Value::Number(group)).chain(values).collect();
@@ -256,7 +257,7 @@ impl Writable for Groups {
     async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
         for (group, draft) in rows {
             let reads = reads(*group)?;
-            // A copy has no previous values.
+            // A copy does not keep old values.
             let is_copy = draft.iter().all(|changes| changes.values().iter().all(Option::is_none));
             for (index, changes) in draft.iter().enumerate() {
                 if is_copy || changes.values().iter().any(Option::is_some) {
@@ -280,7 +281,7 @@ impl Writable for Groups {
     }
 }
 
-/// Field of the protocol with the name of its column.
+/// Field of the protocol, with the name of its column in a file.
 fn named(field: &field::Field, column: &Field) -> field::Field {
     match &column.name {
         std::borrow::Cow::Borrowed(name) => field.named(name),

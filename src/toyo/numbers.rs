@@ -17,12 +17,13 @@ use armctl_frame::output::Screen;
 pub struct Numbers(Vec<i32>);
 
 impl Numbers {
-    /// Parses a number or a range within the range of the field.
+    /// Parses a number or a range; each number must be valid for the field.
     pub fn parse(field: &Field, text: &str) -> Result<Self, String> {
         Ok(Self(typed::range(text, |end| number(field, end))?.collect()))
     }
 
-    /// All given numbers without repetition, in order; all numbers of the field if none is given.
+    /// All numbers that the user typed, in order and without duplicates; all numbers of the field if the user typed
+    /// none.
     pub fn of(typed_numbers: &[Self], field: &Field) -> Vec<i32> {
         if typed_numbers.is_empty() {
             return match field.form {
@@ -34,7 +35,7 @@ impl Numbers {
     }
 }
 
-/// Parses a number within the range of the field; a decimal number in units of its last digit.
+/// Parses a number within the range of the field. A decimal number becomes an integer in units of its last digit.
 pub fn number(field: &Field, text: &str) -> Result<i32, String> {
     match field.read(text) {
         Ok(Value::Number(number)) => Ok(number),
@@ -43,7 +44,7 @@ pub fn number(field: &Field, text: &str) -> Result<i32, String> {
     }
 }
 
-/// Parses a number, an address such as `TN1`, or a name.
+/// Parses a number, an address such as `TN1`, or a name that the user assigned.
 pub fn named<T>(kind: NameKind, text: &str, parse: impl Fn(&str) -> Result<T, String>) -> Result<T, String> {
     let any = names_of::address_of(kind, 1).unwrap_or_default();
     names::parse_or_name(&[kind], &any, text, |text| {
@@ -53,12 +54,12 @@ pub fn named<T>(kind: NameKind, text: &str, parse: impl Fn(&str) -> Result<T, St
     })
 }
 
-/// A number of an answer as a byte; the maximum if it is larger.
+/// Number in an answer as a byte. A larger number becomes 255.
 pub fn small(record: &Record, name: &str) -> u8 {
     u8::try_from(record.number(name).unwrap_or(0)).unwrap_or(u8::MAX)
 }
 
-/// Reads several values in order; the first refusal or failure ends the work. A dry run records all requests.
+/// Reads several values in order. The first refusal or failure ends the work. A dry run records all requests.
 pub async fn ask_all(
     link: &mut Link,
     screen: &Screen,
@@ -80,12 +81,16 @@ pub async fn ask_all(
 /// Reads a value back after a command. A dry run records the request.
 pub async fn read_back(link: &mut Link, order: &Request, read: &Request) -> Result<Record, Failure> {
     link.ask(read).await.map_err(|failure| {
-        let message = format!("{} was accepted, but not read back: {}", order.text(), failure.message);
+        let message = format!(
+            "the controller accepted {}, but the value could not be read back: {}",
+            order.text(),
+            failure.message
+        );
         Failure::new(Kind::OutcomeUnknown, message).hint(refusal::verification_hint(order.command()))
     })
 }
 
-/// Failure because the value that was read back differs.
+/// Failure: the value that was read back differs.
 pub fn stored_otherwise(order: &Request, value: &str) -> Failure {
     Failure::new(Kind::ConditionNotMet, format!("the controller accepted {}, but {value}", order.text()))
 }

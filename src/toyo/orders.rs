@@ -1,4 +1,4 @@
-//! Commands of one block: servo, mode, reset, stop.
+//! Commands that send one block: servo, mode, reset, stop.
 
 use clap::{Args, ValueEnum};
 use schemars::JsonSchema;
@@ -20,7 +20,7 @@ use armctl_frame::robot::position::Position;
 use armctl_frame::settings_report::{Done, NewValue, Old, Switch};
 use armctl_frame::{Command, Context, Report};
 
-/// Switch servo power of all axes (TO 2-7), and wait until the status confirms it.
+/// Switch servo power of all axes (TO 2-7), and wait until the status confirms the state.
 #[derive(Debug, Args)]
 pub struct Servo {
     /// Servo power on or off
@@ -58,7 +58,7 @@ impl Command for Servo {
         if done {
             return Ok(new.replaces(old));
         }
-        Err(no_effect("servo power").hint("`toyo alarm list` and `toyo status` show the reason"))
+        Err(no_effect("servo power").hint("use `toyo alarm list` and `toyo status` to see the reason"))
     }
 }
 
@@ -99,7 +99,7 @@ impl ModeName {
         }
     }
 
-    /// The mode that is active instead, as in `status`.
+    /// The active mode, if it is another one, as `status` shows it.
     fn instead_of(self, status: Status) -> Option<&'static str> {
         match self {
             Self::Program | Self::Step | Self::Auto => status.run_mode().map(RunMode::name),
@@ -107,7 +107,7 @@ impl ModeName {
         }
     }
 
-    /// Name and value, as in `status`.
+    /// Name and value as `status` shows them.
     const fn data(self) -> (&'static str, &'static str) {
         match self {
             Self::Program => ("run_mode", "program"),
@@ -131,8 +131,8 @@ impl ModeName {
 
 /// Select the run mode or the program type (TO 2-2).
 #[derive(Debug, Args)]
-#[command(after_help = "A parameter selects easy and external point mode: \
-    `toyo param set M10 …`. `toyo status` shows the modes.")]
+#[command(after_help = "Parameter M10 selects easy mode and external point mode: `toyo param set M10 …`. `toyo \
+                        status` shows the modes.")]
 pub struct Mode {
     /// Run mode program, step or auto; program type sequential or palletizing
     mode: ModeName,
@@ -157,9 +157,12 @@ impl Command for Mode {
     }
 }
 
-/// Failure for a command that was accepted without effect.
+/// Failure: the controller accepted the command, but the command had no effect.
 pub(super) fn no_effect(what: &str) -> Failure {
-    Failure::new(Kind::ConditionNotMet, format!("the command was accepted, but {what} did not change within 1s"))
+    Failure::new(
+        Kind::ConditionNotMet,
+        format!("the controller accepted the command, but {what} did not change within 1s"),
+    )
 }
 
 /// Reset programs to the first step (TO 2-7).
@@ -179,18 +182,18 @@ impl Command for Reset {
     }
 }
 
-/// Stop the motion, and wait until the axes stand still. The command is repeated until then.
+/// Stop the motion, and wait until the axes stand still. The command is repeated until they stand still.
 ///
-/// Without --jog: a program, a return to origin, or an axis that moves without execution.
+/// Without --jog: stop a program, a return to origin, or an axis that moves without execution.
 #[derive(Debug, Args)]
 pub struct Stop {
-    /// Stop a jog, for example after an armctl that was killed during a jog
+    /// Stop a jog, for example if armctl was killed during a jog
     #[arg(long)]
     jog: bool,
 }
 
 impl Stop {
-    /// Stop of a program or of any motion.
+    /// Stops a program or any motion.
     pub const fn everything() -> Self {
         Self { jog: false }
     }
@@ -224,7 +227,7 @@ impl Command for Stop {
 pub struct StopReport {
     #[serde(flatten)]
     done: Done,
-    /// Final position of the axes.
+    /// Position of the axes at rest.
     position: Position,
 }
 
@@ -272,7 +275,7 @@ mod tests {
 
     #[test]
     fn a_stop_needs_no_host_and_no_fence() {
-        // Only if a controller refuses to stop a jog without the host.
+        // Sent only if a controller refuses to stop a jog without the host.
         let host = ["@STAS SNO=2", "@HSON", "@JGST X=SP Y=SP Z=SP R=SP", "@SYSP", "@RPAR E01", "@HSOF"];
         assert_eq!(
             all_blocks(&["stop"]).unwrap(),
@@ -306,7 +309,7 @@ mod tests {
             Bench::with_faults("", |block, _| if block == "@MPLE" { Fault::Answered("@OK") } else { Fault::None });
         let failure = bench.run(&["mode", "palletizing"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
-        assert_eq!(failure.message, "the command was accepted, but the mode did not change within 1s");
+        assert_eq!(failure.message, "the controller accepted the command, but the mode did not change within 1s");
         assert!(failure.hint.unwrap().contains("M10"));
     }
 
@@ -330,7 +333,7 @@ mod tests {
         bench.wait(std::time::Duration::from_secs(2));
         assert!(bench.data(&["stop"])["position"]["x_mm"].as_f64().unwrap() < -10.0);
         assert_eq!(bench.data(&["status"])["running"], false);
-        // The status shows execution, so a jog is stopped in the same round.
+        // The status shows execution, so a jog is also stopped in the same round.
         let received = received.borrow();
         let stop = received.iter().position(|block| block == "@STOP").unwrap();
         assert_eq!(received[stop + 1..stop + 3], ["@STAS SNO=0", "@JGST X=SP Y=SP Z=SP R=SP"]);
@@ -344,7 +347,7 @@ mod tests {
         assert_eq!(bench.data(&["status"])["running"], false);
         assert!(!received.borrow().iter().any(|block| block == "@HSON"));
 
-        // A jog of another client, on a controller whose JOG needs the host and does not stop without it.
+        // Another client jogs. On this controller, JOG needs the host, and does not stop without it.
         let (mut bench, received) = Bench::with_faults("", |block, count| {
             if block.starts_with("@JGST") && count == 1 { Fault::Answered("@NG") } else { Fault::None }
         });
@@ -365,7 +368,7 @@ mod tests {
     fn an_abandoned_jog_is_stopped_before_the_first_position_read() {
         let jog = "@JGST X=SP Y=SP Z=SP R=SP";
         for refuses in [false, true] {
-            // STOP does not stop the jog. With the host OFF, the first stop of the jog is refused.
+            // STOP does not stop the jog. The host is OFF, so the first stop of the jog is refused.
             let (mut bench, received) = Bench::with_faults("host = true\n", move |block, count| match block {
                 "@STOP" => Fault::Answered("@OK"),
                 "@STAS SNO=2" if refuses && count == 1 => Fault::Answered("@STAS SNO=2 ST1=00 ST2=00"),

@@ -1,8 +1,6 @@
 //! `toyo override`: speed override of programs.
 
 use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use super::eeprom::{Cell, Cells};
 use super::link::Toyo;
@@ -13,9 +11,8 @@ use armctl_controller::toyo::field::{Field, Value};
 use armctl_controller::toyo::request::Request;
 use armctl_controller::toyo::table;
 use armctl_frame::failure::Failure;
-use armctl_frame::output::view::View;
-use armctl_frame::settings_report::{Done, NewValue, Old};
-use armctl_frame::{Command, Context, Report, commands};
+use armctl_frame::robot::item::{Columns, Item, Items, Written, WrittenItems};
+use armctl_frame::{Command, Context, commands};
 
 commands! {
     /// Commands for the override.
@@ -31,12 +28,12 @@ commands! {
 #[derive(Debug, Args)]
 pub struct Get {}
 
-/// Write the override if it differs.
+/// Write the override, if the new value differs.
 #[derive(Debug, Args)]
-#[command(after_help = "The EEPROM stores the value and takes about a million writes: do not set it in a loop. A \
-                        running program keeps its override.")]
+#[command(after_help = "The controller stores the value in an EEPROM cell, which wears out after about a million \
+                        writes: do not set the override in a loop. A running program keeps its override.")]
 pub struct Set {
-    /// 1 to 100
+    /// Override in percent, 1 to 100
     #[arg(value_name = "PERCENT", value_parser = percent)]
     percent: i32,
 }
@@ -50,24 +47,30 @@ fn percent(text: &str) -> Result<i32, String> {
     number(field(), text.strip_suffix('%').unwrap_or(text))
 }
 
+/// The override as an item.
+fn item(percent: u8) -> Item<u8> {
+    Item::new("override", "override", Ok(Some(percent))).with_cells(|percent| vec![(*percent).into()])
+}
+
 impl Command for Get {
     type Family = Toyo;
-    type Report = Percent;
+    type Report = Items<u8>;
     const ID: &'static str = "toyo.override.get";
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Percent, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Items<u8>, Failure> {
         let answer = context.link.ask(&Request::bare(table::Command::Rovr)).await?;
-        Ok(Percent { speed_override_percent: small(&answer, field().name) })
+        let columns = Columns { name: "override", values: vec!["percent"], empty: "nothing stored" };
+        Ok(Items::new(columns, vec![item(small(&answer, field().name))]))
     }
 }
 
 impl Command for Set {
     type Family = Toyo;
-    type Report = WriteReport;
+    type Report = WrittenItems<u8>;
     const ID: &'static str = "toyo.override.set";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<WriteReport, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<WrittenItems<u8>, Failure> {
         let value = Value::Number(self.percent);
         let wanted = table::Command::Rovr.row().answers[0].record(vec![value.clone()]);
         let cell = Cell {
@@ -75,44 +78,18 @@ impl Command for Set {
             write: Request::of(table::Command::Wovr, [value]),
             wanted: wanted.map_err(|error| wrong(&error))?,
         };
+        let new = small(&cell.wanted, field().name);
         let mut cells = Cells::default();
         let stored = context.link.store(context.screen, &cell, &mut cells).await?;
-        let old = Old::read(stored.and_then(|record| record.number(field().name)));
-        let new = NewValue::of("override", self.percent, format!("override {} %: {}", self.percent, cells.in_words()));
-        Ok(WriteReport { done: new.with("speed_override_percent", self.percent).replaces(old), cells })
-    }
-}
-
-/// The override.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Percent {
-    speed_override_percent: u8,
-}
-
-/// Result of a write.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct WriteReport {
-    #[serde(flatten)]
-    done: Done,
-    #[serde(flatten)]
-    cells: Cells,
-}
-
-impl Report for Percent {
-    fn view(&self) -> View {
-        View::text(format!("{} %", self.speed_override_percent))
-    }
-}
-
-impl Report for WriteReport {
-    fn view(&self) -> View {
-        self.done.view()
+        let old = stored.map(|record| small(&record, field().name));
+        let written = Written::new(item(new), old, cells.cells_written > 0);
+        Ok(WrittenItems::describe(format!("override {new} %: {}", cells.in_words()), vec![written]))
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::{all_blocks, blocks, objection};
+    use crate::testing::{Bench, all_blocks, blocks, objection};
 
     #[test]
     fn an_equal_override_is_not_written() {
@@ -122,6 +99,16 @@ mod tests {
             all_blocks(&["override", "set", "100"]).unwrap(),
             ["@ROVR", "@STAS SNO=2", "@HSON", "@STAS SNO=0", "@WOVR OV=100", "@ROVR", "@HSOF"]
         );
+    }
+
+    #[test]
+    fn an_override_is_an_item_with_old_and_new_value() {
+        let mut bench = Bench::new("sim:");
+        let set = bench.data(&["override", "set", "50"])["items"][0].clone();
+        assert_eq!((&set["old"], &set["new"], &set["written"]), (&100.into(), &50.into(), &true.into()), "{set}");
+        assert_eq!(bench.data(&["override", "set", "50"])["items"][0]["written"], false);
+        let read = bench.data(&["override", "get"])["items"][0].clone();
+        assert_eq!((&read["kind"], &read["value"]), (&"override".into(), &50.into()), "{read}");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! State of a controller for `armctl status`.
+//! Summary of a controller for `armctl status`.
 
 use super::link::Link;
 use super::position::Coordinates;
@@ -18,9 +18,9 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
     Ok(report(status, Some(coordinates)))
 }
 
-/// Report of the answers.
+/// Creates the report from the answers.
 pub(super) fn report(status: Status, coordinates: Option<Coordinates>) -> OverviewReport {
-    // The teach pendant gives the axes the letters X, Y and Z.
+    // X, Y and Z are the axes that have these letters on the teach pendant.
     let position = coordinates.and_then(|coordinates| {
         let of = |letter| coordinates.of_letter(letter);
         Some(PositionMm { x_mm: of("X")?, y_mm: of("Y")?, z_mm: of("Z")? })
@@ -29,7 +29,7 @@ pub(super) fn report(status: Status, coordinates: Option<Coordinates>) -> Overvi
     OverviewReport { state, left_over: left_over(status), ..OverviewReport::default() }
 }
 
-/// State from the pages of the status.
+/// State according to the pages of the status.
 pub(super) fn state(status: Status) -> State {
     let mode = status.run_mode();
     State {
@@ -45,13 +45,13 @@ pub(super) fn state(status: Status) -> State {
     }
 }
 
-/// Settings that an ended client left, as far as the status shows them.
+/// Settings that a client left when it ended, if the status shows them.
 pub(super) fn left_over(status: Status) -> Vec<LeftOver> {
     let is_program = status.run_mode() == Some(RunMode::Program);
     [
-        LeftOver::new(status.host_on(), "the host is ON", "`toyo host off` releases the host"),
-        LeftOver::new(is_program, "the controller is in program mode", "use use `toyo mode auto` or `toyo mode step`"),
-        LeftOver::new(status.paused(), "a program is paused", "`toyo reset` resets programs to the first step"),
+        LeftOver::new(status.host_on(), "the host is ON", "use `toyo host off` to release the host"),
+        LeftOver::new(is_program, "the controller is in program mode", "use `toyo mode auto` or `toyo mode step`"),
+        LeftOver::new(status.paused(), "a program is paused", "use `toyo reset` to reset programs to the first step"),
     ]
     .into_iter()
     .flatten()

@@ -6,7 +6,7 @@ use armctl_frame::face::teach_panel::{Panel, SmallStep, System, words};
 
 const AXES: [(&str, &str); 4] = [("X", "mm"), ("Y", "mm"), ("Z", "mm"), ("R", "mm")];
 
-/// See [`Panel`]. The controller moves by its own inching step (parameter P12), once per command.
+/// See [`Panel`]. Each command moves the axis once by the inching step of the controller (parameter P12).
 pub const PANEL: Panel = Panel {
     systems: &[System {
         name: "axes",

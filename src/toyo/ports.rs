@@ -11,17 +11,18 @@ use armctl_frame::output::view::{Cell, Table, View};
 use armctl_frame::{OfflineCommand, Report};
 use armctl_transport::ports::{self, PortInfo, PortKind, PortUser};
 
-/// Failure because another program uses the port. An armctl that receives a termination signal first stops its motion.
+/// Failure: another program uses the port. If that program is armctl and receives a termination signal, it first stops
+/// its motion.
 pub fn in_use(label: &str, path: &str) -> Failure {
     let failure = |by: &str| Failure::new(Kind::NoAnswer, format!("{label}: {by} uses {path}"));
     match ports::user(path) {
         Some(PortUser { pid, name }) if ["armctl", "toyo"].contains(&&name[..]) => failure(&format!(
             "another armctl, process {pid},"
         ))
-        .hint(format!("use `kill {pid}`: it stops its motion and ends; or share the line with `armctl session open`")),
+        .hint(format!("use `kill {pid}` to stop its motion and end it, or share the line with `armctl session open`")),
         Some(PortUser { pid, name }) => failure(&format!("{}, process {pid},", name.escape_debug()))
-            .hint("close the other program: a line can have one host at a time"),
-        None => failure("another program").hint("close the other program: a line can have one host at a time"),
+            .hint("close the other program: a line can have only one host at a time"),
+        None => failure("another program").hint("close the other program: a line can have only one host at a time"),
     }
 }
 
@@ -55,21 +56,21 @@ pub struct List {
 /// A serial port.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Port {
-    /// `/dev/ttyUSB0`, `COM3`.
+    /// Name, such as `/dev/ttyUSB0` or `COM3`.
     name: String,
-    /// Name that does not depend on other devices (Linux).
+    /// Name that stays the same if other devices are added or removed (Linux).
     stable_name: Option<String>,
     /// URL for `-t`, with the stable name.
     target: String,
-    /// `usb`, `pci`, `bluetooth` or `other`.
+    /// Kind of port: `usb`, `pci`, `bluetooth` or `other`.
     kind: &'static str,
-    /// Manufacturer from the USB device.
+    /// Manufacturer, as the USB device reports it.
     maker: Option<String>,
-    /// Product from the USB device.
+    /// Product, as the USB device reports it.
     product: Option<String>,
-    /// Serial number from the USB device.
+    /// Serial number, as the USB device reports it.
     serial_number: Option<String>,
-    /// Vendor and product of USB, hexadecimal: `0403:6001`.
+    /// Vendor id and product id of USB in hexadecimal, for example `0403:6001`.
     usb_id: Option<String>,
 }
 
@@ -108,7 +109,7 @@ impl Port {
         &self.target
     }
 
-    /// Description: `FTDI FT232R USB UART (usb 0403:6001)`.
+    /// Describes the device, for example `FTDI FT232R USB UART (usb 0403:6001)`.
     pub fn device(&self) -> String {
         let names: Vec<&str> = [&self.maker, &self.product].into_iter().flatten().map(String::as_str).collect();
         let kind = self.usb_id.as_ref().map_or_else(|| self.kind.to_owned(), |id| format!("{} {id}", self.kind));

@@ -39,10 +39,10 @@ impl Command for Position {
     }
 }
 
-/// Group of the axes; a controller has one robot.
+/// Group name of the axes. A controller has only one robot.
 pub const UNIT: &str = "unit 1";
 
-/// Heading of the coordinates of an axis, 0 to 3.
+/// Returns the heading for the coordinates of an axis, 0 to 3.
 pub fn heading(index: usize, letter: &str) -> &'static str {
     const HEADINGS: [[&str; 5]; 4] = [
         ["X (mm)", "axis 1: Y (mm)", "axis 1: Z (mm)", "axis 1: R (mm)", "axis 1 (mm)"],
@@ -54,7 +54,7 @@ pub fn heading(index: usize, letter: &str) -> &'static str {
     HEADINGS[index.min(3)][column]
 }
 
-/// Title of an axis (0 to 3): its letter, and its number if the letter is at an unusual place.
+/// Title of an axis (0 to 3): its letter. If the letter is unusual for this axis, also its number.
 pub fn titled(index: usize, letter: &str) -> String {
     match letter {
         _ if ["X", "Y", "Z", "R"].get(index) == Some(&letter) => letter.to_owned(),
@@ -63,8 +63,8 @@ pub fn titled(index: usize, letter: &str) -> String {
     }
 }
 
-/// Coordinates of the four axes with the letters of the teach pendant. The protocol calls axes 1 to 4 X, Y, Z and R,
-/// regardless of their letters. The manual gives no unit (ambiguity R13).
+/// Coordinates of the four axes, with the letters of the teach pendant. The protocol calls axes 1 to 4 X, Y, Z and R,
+/// whatever their letters are. The manual gives no unit for coordinates (ambiguity R13).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordinates {
     /// Coordinates of axes 1 to 4.
@@ -72,8 +72,8 @@ pub struct Coordinates {
     letters: Letters,
 }
 
-/// Coordinates by the letters of the teach pendant (E01). If the machine does not report a letter, or repeats it, the
-/// keys are `ax1_mm` to `ax4_mm`.
+/// Coordinates by the letters on the teach pendant (E01). If the controller does not report a letter, or reports it
+/// twice, the keys are `ax1_mm` to `ax4_mm`.
 #[derive(JsonSchema)]
 #[schemars(rename = "Coordinates")]
 #[expect(dead_code, reason = "the shape of what is written below")]
@@ -84,7 +84,7 @@ struct Shape {
     y_mm: Option<f64>,
     /// Coordinate of axis Z.
     z_mm: Option<f64>,
-    /// Coordinate of axis R, in the same unit.
+    /// Coordinate of axis R, in the same unit as the others.
     r_mm: Option<f64>,
 }
 
@@ -109,19 +109,19 @@ impl Serialize for Coordinates {
 }
 
 impl Coordinates {
-    /// Fields `x`, `y`, `z` and `r` of a record for axes with these letters; 0 for missing fields.
+    /// Takes the fields `x`, `y`, `z` and `r` of a record, for axes with these letters. A missing field gives 0.
     pub fn of(record: &Record, letters: Letters) -> Self {
         let mm = |name| f64::from(record.number(name).unwrap_or(0)) / 100.0;
         Self { mm: ["x", "y", "z", "r"].map(mm), letters }
     }
 
-    /// Coordinates in mm of a machine with the usual letters, with the two decimals of a controller.
+    /// Coordinates in mm on a machine with the usual letters, with two decimals as a controller has them.
     pub fn at(mm: [f64; 4]) -> Self {
-        // Adding 0 turns -0 into 0.
+        // Adding 0 converts -0 to 0.
         Self { mm: mm.map(|mm| (mm * 100.0).round() / 100.0 + 0.0), letters: Letters::USUAL }
     }
 
-    /// Position for a report, with X, Y and Z by the letters of the axes.
+    /// Converts the coordinates to a position for a report. X, Y and Z are the axes with these letters.
     pub fn position(&self) -> robot::Position {
         let name = |axis: usize| match self.letters.of(axis) {
             "" => (axis + 1).to_string(),
@@ -138,12 +138,12 @@ impl Coordinates {
         self.mm
     }
 
-    /// Coordinate of the only axis with this letter.
+    /// Coordinate of the axis with this letter; `None` if several axes have it.
     pub fn of_letter(&self, letter: &str) -> Option<f64> {
         self.letters.axis(letter).map(|axis| self.mm[axis])
     }
 
-    /// Coordinates with names in one line.
+    /// Coordinates with their names, in one line.
     pub fn in_a_line(&self) -> String {
         let axes = self.mm.iter().enumerate().map(|(axis, mm)| match self.letters.name(axis) {
             numbered if numbered.starts_with("ax") => format!("{} {mm:.2}", titled(axis, self.letters.of(axis))),

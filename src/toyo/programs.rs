@@ -1,4 +1,4 @@
-//! `copy` and `select` of `toyo easy` and `toyo palletizing`, whose programs have numbers.
+//! `copy` and `select` of `toyo easy` and `toyo palletizing`. The programs of both have numbers.
 
 use std::fmt::Debug;
 use std::marker::PhantomData;
@@ -18,19 +18,19 @@ use armctl_frame::gate::Confirmation;
 use armctl_frame::settings_report::{Done, NewValue, Old};
 use armctl_frame::{Command, Context};
 
-/// A type of numbered programs.
+/// A type of program that has numbers.
 pub trait Kind: Debug + 'static {
-    /// `easy program`.
+    /// Name of the type, such as `easy program`.
     const WHAT: &'static str;
-    /// `toyo.easy.copy`, `toyo.easy.select`.
+    /// Names of the reports, such as `toyo.easy.copy` and `toyo.easy.select`.
     const IDS: [&'static str; 2];
-    /// Text after "This will …" for a copy.
+    /// Text for a copy that completes "This will …".
     const INTENT: &'static str;
-    /// Help for the source, the target, and the selected program.
+    /// Help texts for the source, the target, and the selected program.
     const HELP: [&'static str; 3];
     /// Command that starts the selected program.
     const RUN: &'static str;
-    /// Protocol commands that copy, select, and report the selected program.
+    /// Protocol commands that copy a program, select a program, and report the selected program.
     const COMMANDS: [table::Command; 3];
 
     /// Field of the program number.
@@ -39,7 +39,7 @@ pub trait Kind: Debug + 'static {
     fn reads(program: i32) -> Result<Vec<Request>, Failure>;
 }
 
-/// Copy a program to another number if they differ.
+/// Copy a program to another number, if the two programs differ.
 #[derive(Debug, Args)]
 pub struct Copy<K: Kind> {
     #[arg(value_name = "FROM", help = K::HELP[0], value_parser = |text: &str| number(K::field(), text))]
@@ -90,9 +90,9 @@ impl<K: Kind> Command for Select<K> {
         let selected = read_back(link, &order, &selection_read).await?.number("program");
         if let Some(selected) = selected.filter(|selected| *selected != self.program) {
             return Err(stored_otherwise(&order, &format!("program {selected} is selected"))
-                .hint("a running program stays selected"));
+                .hint("wait until the program has ended; a running program stays selected"));
         }
-        let words = format!("{} {} is selected; `{}` starts it", K::WHAT, self.program, K::RUN);
+        let words = format!("{} {} is selected; use `{}` to start it", K::WHAT, self.program, K::RUN);
         Ok(NewValue::of(K::WHAT.replace(' ', "_"), self.program, words).replaces(old))
     }
 }

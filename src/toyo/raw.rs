@@ -17,19 +17,21 @@ use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::output::view::View;
 use armctl_frame::{Command, Context, Report};
 
-/// Send a block unchanged, without host ON, comparison or wait.
+/// Send a block unchanged. armctl does not switch the host ON, compare values or wait for an end.
 #[derive(Debug, Args)]
-#[command(after_help = "A block that is not in the manual is also sent. It counts as a motion, because its effect \
-                        is unknown. Before a block that can change something, armctl reads a page of the status, \
-                        so that a late answer is recognized. If the controller refuses (@NG), the exit code is 3. `armctl decode toyo` \
-                        explains a block without sending it.")]
+#[command(
+    after_help = "armctl also sends a block that is not in the manual. Such a block counts as a motion, because its \
+                  effect is unknown. Before a block that can change something, armctl reads a page of the status, so \
+                  that it recognizes a late answer. If the controller refuses the block (@NG), the exit code is 3. \
+                  `armctl decode toyo` explains a block without sending it."
+)]
 pub struct Raw {
-    /// Block without its line end, such as '@STAS SNO=0'
+    /// Block without its line end, for example '@STAS SNO=0'
     #[arg(value_name = "BLOCK", value_parser = block)]
     block: Block,
 }
 
-/// A block, with its request if the manual has it.
+/// A block, with its parsed request if the manual contains it.
 #[derive(Debug, Clone)]
 enum Block {
     Known(Box<Request>),
@@ -93,7 +95,7 @@ impl Command for Raw {
     }
 }
 
-/// The user chose these settings, so they need no notice.
+/// Records settings that the user chose, so that no notice about them is printed.
 fn record_choice(link: &mut Link, request: &Request) {
     match request.command() {
         table::Command::Hson => link.choose_host(true),
@@ -112,7 +114,7 @@ pub struct Exchange {
     title: String,
     /// Fields of the answer.
     fields: Vec<FieldRow>,
-    /// Error in the answer.
+    /// Error in the answer, if any.
     problem: Option<String>,
     /// Whether the answer is `@NG`.
     refused: bool,
@@ -143,7 +145,7 @@ impl Report for Exchange {
         let refused = || {
             Failure::new(Kind::Refused, format!("the controller refused {} (@NG)", self.request))
                 .code("NG")
-                .hint("`toyo status` can show the reason; most commands need the host ON (`toyo host on`)")
+                .hint("use `toyo status` to see a possible reason; most commands need the host ON (`toyo host on`)")
         };
         self.refused.then(refused)
     }

@@ -1,4 +1,4 @@
-//! Explanation of a refusal. `@NG` has no code, so the status must show the reason.
+//! Explanation of a refusal. `@NG` has no code, so the reason must be read from the status.
 
 use super::link::Link;
 use armctl_controller::Risk;
@@ -8,7 +8,7 @@ use armctl_controller::toyo::status::{ProgramKind, RunMode, Status};
 use armctl_controller::toyo::table::commands::{Command, Row};
 use armctl_frame::failure::{Failure, Kind};
 
-/// Failure with the reason of a refusal, if the status contains one.
+/// Failure for a refusal. It contains the reason if the status shows one.
 pub async fn explained(link: &mut Link, request: &Request) -> Failure {
     let row = request.row();
     if row.risk == Risk::Read {
@@ -16,14 +16,14 @@ pub async fn explained(link: &mut Link, request: &Request) -> Failure {
     }
     let status = match link.status().await {
         Ok(status) => status,
-        // The controller also answered OK to the same command.
+        // The controller also answered `@OK` to the same command.
         Err(failure) if failure.kind == Kind::OutcomeUnknown => return failure,
-        // The refusal is certain, even if the reason cannot be read.
+        // The status could not be read, but the refusal itself is certain.
         Err(_) => {
             return refused(
                 request,
                 "the reason is unknown, because the status could not be read",
-                "`toyo status` can show the reason",
+                "use `toyo status` to see a possible reason",
             );
         }
     };
@@ -33,33 +33,33 @@ pub async fn explained(link: &mut Link, request: &Request) -> Failure {
     }
 }
 
-/// Failure for a refused read whose reason the status does not show.
+/// Failure: a read was refused, and the status does not show the reason.
 pub fn of_question(request: &Request) -> Failure {
     refused(request, "the status shows no reason", &unexplained(request.row()))
 }
 
-/// Failure because the teach pendant has control.
+/// Failure: the teach pendant has control.
 pub fn pendant() -> Failure {
     Failure::new(Kind::Refused, "the controller refused: the teach pendant is ON, and the host cannot take over")
         .hint("switch the teach pendant OFF, then repeat the command")
         .code("NG")
 }
 
-/// Failure because the controller refuses to report its status.
+/// Failure: the controller refuses to report its status.
 pub fn mute() -> Failure {
     Failure::new(Kind::Refused, "the controller refused to report its status (@NG)")
         .hint("try again, then check the teach pendant: the controller is busy or is another model")
         .code("NG")
 }
 
-/// Failure with the whole block, which contains the number of the point, counter or step.
+/// Failure with the whole block, because the block contains the number of the point, counter or step.
 fn refused(request: &Request, why: &str, hint: &str) -> Failure {
     let text = request.text();
     let block = text.trim_start_matches('@');
     Failure::new(Kind::Refused, format!("the controller refused {block} (@NG): {why}")).hint(hint).code("NG")
 }
 
-/// The most important reason in the status that prevents a command, with its remedy.
+/// The most important reason in the status why a command is not possible, and its remedy.
 fn reason(status: Status, row: &Row) -> Option<(String, String)> {
     let reason_and_hint = |why: &str, hint: &str| Some((why.to_owned(), hint.to_owned()));
     let moves = row.risk == Risk::Motion;
@@ -78,26 +78,30 @@ fn reason(status: Status, row: &Row) -> Option<(String, String)> {
         return Some((format!("error {}", error.in_a_line()), hint));
     }
     if row.needs_host && !status.host_on() {
-        return reason_and_hint("the host is OFF", "`toyo host on`");
+        return reason_and_hint("the host is OFF", "use `toyo host on`");
     }
     if status.card_reading() || status.card_writing() {
         return reason_and_hint(
             "the memory card is in use",
-            "wait for the end: `toyo status --until '.data.card | (.reading or .writing) | not'`",
+            "wait until the card is no longer in use: `toyo status --until '.data.card | (.reading or .writing) | \
+             not'`",
         );
     }
     if status.homing() {
-        return reason_and_hint("the axes are returning to the origin", "wait for the end, or use `toyo stop`");
+        return reason_and_hint("the axes are returning to the origin", "wait until the axes stop, or use `toyo stop`");
     }
     if status.executing() {
-        return reason_and_hint("the controller executes a program or command", "wait for the end, or use `toyo stop`");
+        return reason_and_hint(
+            "the controller executes a program or command",
+            "wait until the program or command has ended, or use `toyo stop`",
+        );
     }
     if moves && !status.servo_on() && !matches!(row.command, Command::Svon | Command::Svof | Command::Mrss) {
-        return reason_and_hint("servo power is off", "`toyo servo on`");
+        return reason_and_hint("servo power is off", "use `toyo servo on`");
     }
     if let Some((kind, how)) = kind_of(row.command) {
         if status.run_mode() == Some(RunMode::Program) {
-            return reason_and_hint("the controller is in program mode", "`toyo mode auto`");
+            return reason_and_hint("the controller is in program mode", "use `toyo mode auto`");
         }
         if status.program_kind() != kind {
             let mode = status.program_kind().name().replace('_', " ");
@@ -114,9 +118,10 @@ fn reason(status: Status, row: &Row) -> Option<(String, String)> {
         Command::Rmca => {
             reason_and_hint("the status shows no reason", "check that the card contains data of this controller")
         }
-        Command::Mrss => {
-            reason_and_hint("the status shows no reason", "earlier coordinates can still wait for their RSMV step")
-        }
+        Command::Mrss => reason_and_hint(
+            "the status shows no reason",
+            "check whether earlier coordinates still wait for their RSMV step",
+        ),
         _ if row.writes_eeprom && status.run_mode() != Some(RunMode::Program) => reason_and_hint(
             "the controller is not in program mode",
             "use `toyo mode program` if the controller requires it",
@@ -125,62 +130,70 @@ fn reason(status: Status, row: &Row) -> Option<(String, String)> {
     }
 }
 
-/// Remedy for an error, in the order that the controller requires: nothing moves before the error is cancelled.
+/// Remedy for an error. The steps are in the order that the controller requires: nothing moves before the error is
+/// cancelled.
 pub fn cure(remedy: &str) -> String {
     match remedy.strip_suffix(" first") {
-        Some(motion) => format!("`toyo alarm reset`, then {motion}"),
-        None => format!("{remedy}; then `toyo alarm reset`"),
+        Some(motion) => format!("use `toyo alarm reset`, then {motion}"),
+        None => format!("{remedy}; then use `toyo alarm reset`"),
     }
 }
 
-/// Program kind that a command starts, and the hint to select that kind.
+/// Program kind that a command starts, and a hint how to select this kind.
 fn kind_of(start: Command) -> Option<(ProgramKind, &'static str)> {
     Some(match start {
         Command::Spst => (
             ProgramKind::Sequential,
-            "use `toyo mode sequential`; `toyo param set M10 I` ends easy and external point mode",
+            "use `armctl toyo mode sequential`; `armctl toyo param set M10 I` ends easy and external point mode",
         ),
         Command::Ppst => (
             ProgramKind::Palletizing,
-            "use `toyo mode palletizing`; `toyo param set M10 I` ends easy and external point mode",
+            "use `armctl toyo mode palletizing`; `armctl toyo param set M10 I` ends easy and external point mode",
         ),
-        Command::Sesy => (ProgramKind::Easy, "use `toyo param set M10 E` to select easy mode"),
-        Command::Extp => (ProgramKind::ExternalPoint, "use `toyo param set M10 P` to select external point mode"),
+        Command::Sesy => (ProgramKind::Easy, "use `armctl toyo param set M10 E` to select easy mode"),
+        Command::Extp => (
+            ProgramKind::ExternalPoint,
+            "use `armctl toyo param set M10 P` to select external point mode, then repeat the command",
+        ),
         _ => return None,
     })
 }
 
 fn unexplained(row: &Row) -> String {
     if row.command == Command::Dout {
-        "check that the output exists, and that parameter M12 (direct-outputs) has its bit for F1 to F4".to_owned()
+        "check that the output exists; for F1 to F4, check that parameter M12 (direct-outputs) has a bit for the \
+         output"
+            .to_owned()
     } else if row.only_on.is_empty() {
-        "try again, and check that this controller has the item".to_owned()
+        "try again, and check that this controller has the requested item".to_owned()
     } else {
-        format!("only some controllers support it: {}", row.only_on.join(", "))
+        format!("check the model; only these controllers support the command: {}", row.only_on.join(", "))
     }
 }
 
-/// Hint for the command that shows whether an unanswered command was executed.
+/// Hint with the command that shows whether a command without an answer was executed.
 pub fn verification_hint(command: Command) -> &'static str {
     match command {
-        Command::Home | Command::Sorg => "keep clear; `toyo status` shows motion and origin",
+        Command::Home | Command::Sorg => "keep clear of the robot; use `toyo status` to see motion and origin",
         Command::Spst | Command::Ppst | Command::Sesy | Command::Extp | Command::Mrss => {
-            "keep clear; `toyo status` and `toyo position` show motion and position"
+            "keep clear of the robot; use `toyo status` and `toyo position` to see motion and position"
         }
-        Command::Jgst => "keep clear; `toyo stop --jog` stops the axis, `toyo position` shows the position",
-        Command::Svon | Command::Svof => "`toyo status` shows whether servo power is on",
-        Command::Wpar => "`toyo param get` shows the stored value",
+        Command::Jgst => {
+            "keep clear of the robot; use `toyo stop --jog` to stop the axis, and `toyo position` to see the position"
+        }
+        Command::Svon | Command::Svof => "use `toyo status` to see whether servo power is on",
+        Command::Wpar => "use `toyo param get` to see the stored value",
         Command::Wstx | Command::Istx | Command::Dstx | Command::Dstl | Command::Cpss => {
-            "`toyo program get` shows the stored steps"
+            "use `toyo program get` to see the stored steps"
         }
-        Command::Wplt | Command::Cppl => "`toyo palletizing get` shows the stored program",
-        Command::Wesy | Command::Cesy => "`toyo easy get` shows the stored program",
-        Command::Dout => "`toyo io list --out` shows the outputs",
-        Command::Wovr => "`toyo override get` shows the override",
-        Command::Mcst => "`toyo counter get` shows the counter",
-        Command::Ctsk => "`toyo task get` shows the current task",
-        Command::Wmca | Command::Rmca => "`toyo status` shows whether the card is in use",
-        _ => "`toyo status` shows the state of the controller",
+        Command::Wplt | Command::Cppl => "use `toyo palletizing get` to see the stored program",
+        Command::Wesy | Command::Cesy => "use `toyo easy get` to see the stored program",
+        Command::Dout => "use `toyo io list --out` to see the outputs",
+        Command::Wovr => "use `toyo override get` to see the override",
+        Command::Mcst => "use `toyo counter get` to see the counter",
+        Command::Ctsk => "use `toyo task get` to see the current task",
+        Command::Wmca | Command::Rmca => "use `toyo status` to see whether the card is in use",
+        _ => "use `toyo status` to see the state of the controller",
     }
 }
 

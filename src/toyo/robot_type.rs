@@ -16,16 +16,16 @@ use armctl_frame::gate::Confirmation;
 use armctl_frame::output::view::View;
 use armctl_frame::{Command, Context, Report};
 
-/// Set the robot type of an axis, which determines its parameters.
+/// Set the robot type of an axis. The type determines the parameters of the axis.
 #[derive(Debug, Args)]
 #[command(after_help = "A wrong type can cause wrong motion: use the type on the name plate. An unknown number \
-                        changes nothing (exit code 3). On a real controller, you confirm by typing the word 'type', \
-                        or with --yes. `toyo info` shows the type of the robot.")]
+                        changes nothing (exit code 3). On a real controller, type the word 'type' to confirm, or add \
+                        --yes. `toyo info` shows the type of the robot.")]
 pub struct RobotType {
-    /// 1 to 4
+    /// Axis, 1 to 4
     #[arg(value_name = "AXIS", value_parser = |text: &str| number(&fields()[0], text))]
     axis: i32,
-    /// Up to six digits
+    /// Robot type, up to six digits
     #[arg(value_name = "TYPE", value_parser = |text: &str| number(&fields()[1], text))]
     robot_type: i32,
 }
@@ -53,14 +53,15 @@ impl Command for RobotType {
         let Self { axis, robot_type } = *self;
         let order = Request::of(table::Command::Type, [Value::Number(axis), Value::Number(robot_type)]);
         let Some(answer) = context.link.ask(&order).await.known()? else {
-            // Records the later requests of a dry run, which ends here.
+            // In a dry run, records the later requests and ends here.
             context.link.status_of(&[0]).await?;
             return Err(unknown());
         };
         let type_text = |number: i32| fields()[1].written(&Value::Number(number));
         let in_force = type_text(answer.number("in_force").unwrap_or(0));
         let status = context.link.status_of(&[0]).await.map_err(|failure| {
-            let message = format!("robot type {in_force} is active now, but then: {}", failure.message);
+            let message =
+                format!("robot type {in_force} is active now, but the next status request failed: {}", failure.message);
             Failure { message, ..failure }
         })?;
         Ok(RobotTypeReport {
@@ -77,11 +78,11 @@ impl Command for RobotType {
 pub struct RobotTypeReport {
     #[serde(rename = "axis_number")]
     axis: u8,
-    /// Active type: six digits.
+    /// Active type, six digits.
     robot_type: String,
-    /// Requested type.
+    /// Type that the user requested: six digits.
     ordered_type: String,
-    /// Whether the controller executes nothing before a restart.
+    /// Whether the controller needs a restart before it executes anything.
     needs_power_cycle: bool,
 }
 

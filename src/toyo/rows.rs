@@ -1,5 +1,5 @@
-//! Tables in the EEPROM of the controller: speeds, acceleration times, torque limits, easy programs. Each table is a
-//! declaration ([`Kind`]) on a common implementation of read and write.
+//! Tables in the EEPROM of the controller: speeds, acceleration times, torque limits, easy programs. Each table has a
+//! declaration ([`Kind`]). All tables read and write rows in the same way.
 
 use std::fmt::Debug;
 use std::marker::PhantomData;
@@ -26,27 +26,27 @@ use armctl_frame::store::{
 };
 
 table_commands! {
-    /// Speeds that programs name by their row.
+    /// Commands for the speed table. Programs name a speed by its row.
     SpeedTable of Rows<Speed> {}
 }
 
 table_commands! {
-    /// Acceleration times that programs name by their row.
+    /// Commands for the acceleration table. Programs name an acceleration time by its row.
     AccelTable of Rows<Accel> {}
 }
 
 table_commands! {
-    /// Torque limits that programs name by their row.
+    /// Commands for the torque table. Programs name a torque limit by its row.
     TorqueTable of Rows<Torque> {}
 }
 
-/// Declaration of a table.
+/// Declaration of a table and its reports.
 pub trait Kind: Debug + Send + Sync + 'static {
     /// Values of one row in a report.
     type Value: Debug + Clone + Serialize + JsonSchema;
-    /// Terms for help and messages.
+    /// Names in help and messages.
     const WORDS: TableWords;
-    /// Ids of its reports.
+    /// Report names.
     const IDS: Ids;
     /// Fields of a row, in the order of the protocol.
     const FIELDS: &'static [Field];
@@ -54,7 +54,7 @@ pub trait Kind: Debug + Send + Sync + 'static {
     /// Field of the row number.
     fn key() -> &'static field::Field;
 
-    /// Fields of a row after its number.
+    /// Layout of the fields after the row number.
     fn body() -> Layout;
 
     /// Request that reads a row.
@@ -63,10 +63,10 @@ pub trait Kind: Debug + Send + Sync + 'static {
     /// EEPROM cell of a row with these values.
     fn cell(row: i32, values: Vec<Value>) -> Result<Cell, Failure>;
 
-    /// Block that writes a row; `?` stands for kept values.
+    /// Block that writes a row. `?` stands for values that are kept.
     fn sketch(row: i32, values: &[Option<Value>]) -> String;
 
-    /// The values of a row.
+    /// Converts a record to the values of a row.
     fn value(record: &Record) -> Self::Value;
 
     /// Whether a row of zeros counts as empty.
@@ -74,27 +74,28 @@ pub trait Kind: Debug + Send + Sync + 'static {
 }
 
 /// Help of commands that write to the EEPROM.
-pub const WRITING: &str = "Equal values are not written, because the EEPROM takes about a million rewrites.";
+pub const WRITING: &str = "armctl does not write equal values, because an EEPROM cell wears out after about a million \
+                           writes.";
 
 const fn words(nouns: [&'static str; 2], placeholder: &'static str, range: &'static str) -> TableWords {
     TableWords { nouns, placeholder, range, reading: None, writing: Some(WRITING) }
 }
 
-/// A table as a store.
+/// The table of kind `K` as a store.
 #[derive(Debug)]
 pub struct Rows<K>(PhantomData<K>);
 
-/// Additional keys of a toyo item.
+/// Fields that toyo adds to an item.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Listed {
-    /// Whether the manual lists the value; null if it was not read.
+    /// Whether the manual lists the value; null if the value was not read.
     pub in_manual: Option<bool>,
-    /// Stored text that the manual does not list; it is not written back.
+    /// Stored text, if the manual does not list it. Such a text is not written back.
     pub raw: Option<String>,
 }
 
 impl Listed {
-    /// Describes what was read.
+    /// Creates the fields for a record that was read.
     pub fn of(record: Option<&Record>) -> Self {
         let is_listed = record.map(Record::is_listed);
         Self { in_manual: is_listed, raw: record.filter(|record| !record.is_listed()).map(Record::written) }
@@ -185,20 +186,20 @@ impl<K: Kind> EepromRow for Rows<K> {
 
 /// A table whose rows are records in the EEPROM.
 pub trait EepromRow: Store<Family = Toyo, Wire = Record> {
-    /// Whether rows have different fields. A file then has one column for all fields: `ax1=100 ax2=0`.
+    /// Whether the rows have different fields. In that case, a file has one column for all fields: `ax1=100 ax2=0`.
     const IS_MIXED: bool = false;
 
-    /// Letters of the axes, if rows have coordinates.
+    /// Returns the letters of the axes, for rows with coordinates.
     fn letters(&self) -> Letters {
         Letters::USUAL
     }
 
-    /// Expands words of a command line, such as the name of a file with values.
+    /// Expands words of a command line. For example, the name of a file is replaced by the values in the file.
     fn words(&self, words: &[String]) -> Result<Vec<String>, Failure> {
         Ok(words.to_vec())
     }
 
-    /// Fields of a row after its key.
+    /// Layout of the fields after the key.
     fn body(&self, key: Self::Key) -> Layout;
 
     /// Request that reads a row.
@@ -207,40 +208,17 @@ pub trait EepromRow: Store<Family = Toyo, Wire = Record> {
     /// EEPROM cell of a row with these values.
     fn cell(&self, key: Self::Key, values: Vec<Value>) -> Result<Cell, Failure>;
 
-    /// Block that writes a row; `?` stands for kept values.
+    /// Block that writes a row. `?` stands for values that are kept.
     fn sketch(&self, key: Self::Key, values: &[Option<Value>]) -> String;
 
-    /// Checks that the values fit together.
+    /// Checks that the values of a row are consistent.
     fn check(&self, _key: Self::Key, _values: &[Value]) -> Result<(), Failure> {
         Ok(())
     }
 
-    /// See [`Writable::NOT_RESTORED`].
-    const NOT_RESTORED: &'static str = "";
-
-    /// See [`Writable::is_restored`].
-    fn is_restored(_key: Self::Key) -> bool {
-        true
-    }
-
-    /// See [`Writable::is_absent`].
-    fn is_absent(_key: Self::Key) -> bool {
-        false
-    }
-
-    /// Position of a row in the order of the writes.
+    /// Returns the rank of a row in the order of the writes.
     fn rank(_key: Self::Key) -> usize {
         0
-    }
-
-    /// See [`Writable::consequences`].
-    fn consequences(&self, _rows: &[Differing<'_, Self>]) -> Vec<String> {
-        Vec::new()
-    }
-
-    /// See [`Writable::follow_up_note`].
-    fn follow_up_note(&self, _written: &[Self::Key]) -> Option<String> {
-        None
     }
 }
 
@@ -252,7 +230,6 @@ macro_rules! writable {
     type Draft = Changes;
 
     const RISK: Risk = Risk::Destroy;
-    const NOT_RESTORED: &'static str = <Self as EepromRow>::NOT_RESTORED;
 
     fn draft(&self, key: Self::Key, texts: &[Option<&str>]) -> Result<Changes, String> {
         if Self::IS_MIXED {
@@ -267,7 +244,7 @@ macro_rules! writable {
 
     fn typed(&self, key: Self::Key, words: &[String]) -> Result<Changes, Failure> {
         let what = as_requested(Self::WORDS.nouns[0], &Self::name(key));
-        let changes = Changes::read_by(&what, &self.body(key), &self.letters(), &self.words(words)?)?;
+        let changes = Changes::read(&what, &self.body(key), &self.letters(), &self.words(words)?)?;
         if let Some(values) = changes.whole() {
             self.check(key, &values)?;
         }
@@ -280,30 +257,14 @@ macro_rules! writable {
             (None, Some(old)) => changes.over(old)?,
             (None, None) => {
                 let message = format!(
-                    "{} was not read, so missing values are unknown",
+                    "{} could not be read, so the values that are not typed are unknown",
                     as_requested(Self::WORDS.nouns[0], &Self::name(key))
                 );
-                return Err(Failure::usage(message).hint("nothing was written; type all values"));
+                return Err(Failure::usage(message).hint("type all values; nothing was written"));
             }
         };
         self.check(key, &values)?;
         Ok(self.cell(key, values)?.wanted)
-    }
-
-    fn consequences(&self, rows: &[Differing<'_, Self>]) -> Vec<String> {
-        EepromRow::consequences(self, rows)
-    }
-
-    fn follow_up_note(&self, written: &[Self::Key]) -> Option<String> {
-        EepromRow::follow_up_note(self, written)
-    }
-
-    fn is_restored(key: Self::Key) -> bool {
-        <Self as EepromRow>::is_restored(key)
-    }
-
-    fn is_absent(key: Self::Key) -> bool {
-        <Self as EepromRow>::is_absent(key)
     }
 
     fn blocks(&self, rows: &[Differing<'_, Self>]) -> Vec<Vec<usize>> {
@@ -341,7 +302,7 @@ writable! {
     Rows<K>, K: Kind;
 }
 
-/// Values of a record as typed; unchanged protocol text if the manual does not list it.
+/// Values of a record as typed. If the manual does not list a value, its text in the protocol is unchanged.
 pub fn texts(record: &Record, fields: usize) -> Vec<String> {
     if record.layout() == UNLISTED {
         return vec![format!("{} ({NOT_IN_MANUAL})", record.written())];
@@ -350,18 +311,18 @@ pub fn texts(record: &Record, fields: usize) -> Vec<String> {
     record.pairs().skip(keys).map(|(field, value)| plain(field, value)).collect()
 }
 
-/// Reason why a record is not saved: the manual does not list it, so it cannot be written back.
+/// Reason why a record is not saved. If the manual does not list the record, it cannot be written back.
 pub fn unlisted(record: Option<&Record>) -> Option<String> {
     record.filter(|record| !record.is_listed()).map(|record| format!("'{}' is {NOT_IN_MANUAL}", record.written()))
 }
 
-/// Whether all values after the keys of a record are zero.
+/// Whether all values of a record, without its keys, are zero.
 pub fn is_zero(record: &Record, fields: usize) -> bool {
     let keys = record.values().len().saturating_sub(fields);
     record.is_listed() && record.pairs().skip(keys).all(|(_, value)| *value == Value::Number(0))
 }
 
-/// A value as typed.
+/// Formats a value as a user types it.
 fn plain(field: &field::Field, value: &Value) -> String {
     match (field.form, value) {
         (Form::Number(number), Value::Number(units)) => number.plain(*units),
@@ -373,7 +334,7 @@ fn plain(field: &field::Field, value: &Value) -> String {
 pub trait TableOf: Debug + Send + Sync + 'static {
     /// See [`Kind::Value`].
     type Value: Debug + Clone + Serialize + JsonSchema;
-    /// Parameter id.
+    /// Id of the parameter.
     const TABLE: &'static str;
     /// See [`Kind::WORDS`].
     const WORDS: TableWords;
@@ -422,15 +383,15 @@ impl<T: TableOf> Kind for T {
     }
 }
 
-/// Table T2.
+/// Table T2, the speed table.
 #[derive(Debug)]
 pub struct Speed;
 
-/// Table T3.
+/// Table T3, the acceleration table.
 #[derive(Debug)]
 pub struct Accel;
 
-/// Table T5.
+/// Table T5, the torque limit table.
 #[derive(Debug)]
 pub struct Torque;
 
@@ -481,7 +442,7 @@ impl TableOf for Torque {
     }
 }
 
-/// A number in its unit; 0 if the record has no such field.
+/// Number in the unit of its field; 0 if the record has no such field.
 fn decimal(record: &Record, name: &str) -> f64 {
     let mut pairs = record.pairs();
     let found = pairs.find_map(|(field, value)| match (field.form, value) {

@@ -49,11 +49,11 @@ commands! {
 
 /// Start the sequential program (TO 2-7).
 #[derive(Debug, Args)]
-#[command(after_help = "Without STEP the program continues at the current step: the step of the last stop, \
-    or the first step after `toyo reset`. `toyo status` shows mode, servo and origin, which the command does \
-    not change.")]
+#[command(after_help = "Without STEP the program continues at the current step: the step of the last stop, or the \
+                        first step after `toyo reset`. The command does not change mode, servo power or origin; `toyo \
+                        status` shows them.")]
 pub struct Sequential {
-    /// First step; default: the current step
+    /// Step to start with; default: the current step
     #[arg(value_name = "STEP", value_parser = clap::value_parser!(i32).range(1..=5000))]
     step: Option<i32>,
     #[command(flatten)]
@@ -79,7 +79,7 @@ impl Command for Sequential {
     async fn run(&self, mut context: Context<'_, Toyo>) -> Result<RunReport, Failure> {
         if self.repeat.repeat.is_some() && self.step.is_none() {
             return Err(Failure::usage("--repeat needs the first step of each run")
-                .hint("type the step, as in `toyo run sequential 1 --repeat 20`; nothing was started"));
+                .hint("type the step, for example `toyo run sequential 1 --repeat 20`; nothing was started"));
         }
         confirm_start(&mut context, Change::new(self.intent()), Program::Sequential(self.step)).await?;
         let start = Request::of(table::Command::Spst, [Value::Number(self.step.unwrap_or(0))]);
@@ -87,13 +87,13 @@ impl Command for Sequential {
     }
 }
 
-/// Start palletizing, or continue it after a stop (TO 2-7).
+/// Start palletizing, or continue palletizing after a stop (TO 2-7).
 #[derive(Debug, Args)]
 pub struct Palletizing {
     /// Program to select first; default: the current program
     #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(i32).range(1..=16))]
     number: Option<i32>,
-    /// Program number as a flag
+    /// Program number as an option
     #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(i32).range(1..=16))]
     program: Option<i32>,
     #[command(flatten)]
@@ -125,12 +125,12 @@ impl Command for Palletizing {
 
 /// Start the easy program, or continue it after a stop (TO 2-7).
 #[derive(Debug, Args)]
-#[command(after_help = "Parameter M10 selects easy mode: `toyo param set M10 E`.")]
+#[command(after_help = "Parameter M10 selects easy mode: `armctl toyo param set M10 E`.")]
 pub struct Easy {
     /// Program to select first; default: the current program
     #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(i32).range(1..=8))]
     number: Option<i32>,
-    /// Program number as a flag
+    /// Program number as an option
     #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(i32).range(1..=8))]
     program: Option<i32>,
     #[command(flatten)]
@@ -162,9 +162,12 @@ impl Command for Easy {
 
 /// Move to a row of the coordinate table, and wait for the end of the move (TO 2-7).
 #[derive(Debug, Args)]
-#[command(after_help = "Parameter M10 selects external point mode: `toyo param set M10 P`.")]
+#[command(
+    after_help = "Parameter M10 selects external point mode: `armctl toyo param set M10 P`. The protocol has no \
+    speed of a single move: the override, which is stored, scales all speeds: `armctl toyo override set 10`."
+)]
 pub struct Point {
-    /// Row of the coordinate table, 1 to 999, or a name
+    /// Row of the coordinate table, 1 to 999, or the name of a point
     #[arg(value_name = "N", value_parser = parse_point, add = complete::POINT)]
     point: i32,
     #[command(flatten)]
@@ -218,7 +221,7 @@ impl Command for Point {
     }
 }
 
-/// Result of a move to a point. From and to are null if no confirmation was necessary.
+/// Result of a move to a point. `from` and `to` are null if no confirmation was needed.
 #[derive(Debug, Serialize, JsonSchema)]
 #[serde(transparent)]
 pub struct PointMoveReport(Motion);
@@ -239,14 +242,14 @@ impl Report for PointMoveReport {
 }
 
 impl Point {
-    /// Position of the point; `None` if the controller refuses to report it.
+    /// Reads the position of the point; `None` if the controller refuses to report it.
     async fn read_point(&self, link: &mut Link) -> Result<Option<Coordinates>, Failure> {
         let request = Request::read_parameter(point_table(), Some(self.point)).map_err(|error| link::wrong(&error))?;
         let letters = link.letters().await?;
         Ok(link.try_ask(&request).await?.ok().map(|record| Coordinates::of(&record, letters)))
     }
 
-    /// Change to confirm: present position and target of each axis.
+    /// Change to confirm: the current position and the target of each axis.
     async fn change(
         &self,
         link: &mut Link,
@@ -272,7 +275,7 @@ impl Point {
     }
 }
 
-/// Program to start: a step, a number, or the current one.
+/// Program to start: at a step, with a number, or the current program.
 enum Program {
     Sequential(Option<i32>),
     Palletizing(Option<i32>),
@@ -280,7 +283,7 @@ enum Program {
 }
 
 impl Program {
-    /// Sentence about the program and its step.
+    /// Describes the program and its step, for the confirmation.
     async fn note(&self, link: &mut Link) -> Result<String, Failure> {
         match self {
             Self::Sequential(step) => {
@@ -290,7 +293,7 @@ impl Program {
                     Ok(record) => {
                         let (step, text) =
                             (record.number("step").unwrap_or(0), record.text("text").unwrap_or_default());
-                        format!("It is the program of task {task}; it begins at step {step}: {text}.")
+                        format!("The program of task {task} begins at step {step}: {text}.")
                     }
                     Err(_) => format!("It is the program of task {task}; the controller did not report the step."),
                 })
@@ -301,7 +304,7 @@ impl Program {
     }
 }
 
-/// Program and step that will start: `selected`, or those of the controller.
+/// Program and step that will start: `selected`, or the program and step that the controller reports.
 async fn progress(
     link: &mut Link,
     question: table::Command,
@@ -320,7 +323,7 @@ async fn progress(
     })
 }
 
-/// Asks for confirmation with number and step of the program, position and speed.
+/// Asks for confirmation. The question has the number and step of the program, the position and the speed.
 async fn confirm_start(context: &mut Context<'_, Toyo>, change: Change, program: Program) -> Result<(), Failure> {
     let Context { link, authority, .. } = context;
     let mut change = change;
@@ -349,7 +352,8 @@ async fn select_program(link: &mut Link, command: table::Command, program: Optio
     }
 }
 
-/// Starts, and waits for the end up to a time limit if requested. A repetition begins only after a confirmed end.
+/// Starts the program. If requested, waits for its end up to a time limit. A repetition begins only after the end was
+/// confirmed.
 #[expect(clippy::option_option, reason = "absent, without a limit, with one")]
 async fn start_and_wait(
     context: Context<'_, Toyo>,
@@ -359,7 +363,7 @@ async fn start_and_wait(
 ) -> Result<RunReport, Failure> {
     let Context { link, screen, .. } = context;
     let mut runs = Runs::new(repeat);
-    // The wait begins with the start.
+    // A repetition needs the wait for the end too.
     let limit = limit.or(repeat.repeat.map(|_| None));
     let letters = if limit.is_none() { Letters::UNKNOWN } else { link.letters().await? };
     loop {
@@ -377,7 +381,7 @@ async fn start_and_wait(
         }
         if report.program.state == Some(ProgramState::Held) {
             let failure = Failure::new(Kind::ConditionNotMet, "the program is paused at a stop or after a step")
-                .hint("to continue, start it without a step or program");
+                .hint("start the program without a step or program number to continue");
             return Err(runs.add_to_failure(failure));
         }
         runs.add(report.program.elapsed_ms.unwrap_or(0));
@@ -387,7 +391,7 @@ async fn start_and_wait(
     }
 }
 
-/// Waits for the end up to a time limit. The program continues afterwards.
+/// Waits for the end, up to a time limit. After the time limit, the program continues.
 async fn within(
     limit: Option<Duration>,
     end: impl Future<Output = Result<RunReport, Failure>>,
@@ -395,7 +399,8 @@ async fn within(
     let Some(limit) = limit else { return end.await };
     tokio::time::timeout(limit, end).await.unwrap_or_else(|_| {
         let message = format!("{DONE}, and the program still runs after {}", duration::display(limit));
-        Err(Failure::new(Kind::ConditionNotMet, message).hint("the program continues; `toyo status` shows the state"))
+        Err(Failure::new(Kind::ConditionNotMet, message)
+            .hint("use `toyo status` to see the state; the program continues"))
     })
 }
 
@@ -419,13 +424,13 @@ async fn wait(link: &mut Link, screen: &Screen, order: table::Command, letters: 
     Ok(RunReport::new(robot::Program { step, state, elapsed_ms, more, ..robot::Program::default() }))
 }
 
-/// Records in a dry run the requests at the end.
+/// In a dry run, records the requests at the end of the program.
 fn plan_end(link: &mut Link, order: table::Command) -> Failure {
     let step = |step| Request::of(table::Command::Rstx, [Value::Number(step)]);
     if order != table::Command::Extp {
         link.plan(&step(0), "the last step");
     }
-    let stop_check = Reason::about("whether the program contains a stop").depending_on("whether it is paused");
+    let stop_check = Reason::about("whether the program contains a stop").depending_on("whether the program is paused");
     link.plan_depending("@STAS SNO=2", stop_check);
     link.plan_depending("@RSTX ?", stop_check);
     unknown()
@@ -433,7 +438,7 @@ fn plan_end(link: &mut Link, order: table::Command) -> Failure {
 
 const DONE: &str = "the start was accepted";
 
-/// Whether a paused program was meant to stop: after a STOP step, or in step mode.
+/// Whether a program is paused as intended: after a STOP step, or in step mode.
 async fn is_at_a_stop(link: &mut Link, last: Option<&(i32, String)>) -> Result<bool, Failure> {
     if link.status_of(&[2]).await?.run_mode() == Some(RunMode::Step) {
         return Ok(true);
@@ -448,26 +453,27 @@ fn stopped(last: Option<&(i32, String)>, coordinates: Option<Coordinates>) -> Fa
     let step = last.map(|(step, text)| format!(" at step {step} ({text})")).unwrap_or_default();
     let coordinates =
         coordinates.map(|coordinates| format!("; the axes are at {}", coordinates.in_a_line())).unwrap_or_default();
-    Failure::new(Kind::ConditionNotMet, format!("{DONE}, but the program was stopped{step}{coordinates}"))
-        .hint("find the reason; then start it without a step or program to continue, or use `toyo reset`")
+    Failure::new(Kind::ConditionNotMet, format!("{DONE}, but the program was stopped{step}{coordinates}")).hint(
+        "find the reason; then start the program without a step or program number to continue, or use `toyo reset`",
+    )
 }
 
-/// Failure after a run whose result is unknown.
+/// Failure after a run. The outcome of the run is unknown.
 fn after(failure: &Failure) -> Failure {
     let message = format!("the run has ended, but its result is unknown: {}", failure.message);
-    Failure { message, ..failure.clone() }.hint("`toyo status` and `toyo position` show the state")
+    Failure { message, ..failure.clone() }.hint("use `toyo status` and `toyo position` to see the state")
 }
 
-/// Result of a start. A program at a STOP, or after a step in step mode, is held.
+/// Result of a start. A program that is at a STOP, or has run one step in step mode, is held.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct RunReport {
-    /// Whether the controller accepted the command.
+    /// Whether the controller accepted the start.
     accepted: bool,
     #[serde(flatten)]
     program: robot::Program<StepReport>,
 }
 
-/// Step of the program; null without a wait.
+/// Step of the program; null if the command did not wait.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 struct StepReport {
     /// Instruction of the step.
@@ -481,7 +487,7 @@ impl RunReport {
         Self { accepted: true, program }
     }
 
-    /// Adds the name of the program: `easy 3`.
+    /// Adds the name of the program, for example `easy 3`.
     fn of(mut self, kind: &str, number: Option<i32>) -> Self {
         let name = number.map_or_else(|| kind.to_owned(), |number| format!("{kind} {number}"));
         self.program.program = Some(name);

@@ -1,4 +1,5 @@
-//! `armctl sim toyo`: simulated controller on a TCP port, like a device server, or on a pseudo-terminal.
+//! Command `armctl sim toyo`: serves a simulated controller on a TCP port, as a device server does, or on a
+//! pseudo-terminal.
 
 use std::io;
 use std::net::SocketAddr;
@@ -15,11 +16,12 @@ use armctl_transport::fault::LineFaultSpec;
 use armctl_transport::line::Pace;
 use armctl_transport::stream_server::StreamServer;
 
-/// Simulate a Toyo controller on a TCP port, like a serial device server, or on a pseudo-terminal
+/// Simulate a Toyo controller on a TCP port, as a serial device server does, or on a pseudo-terminal
 #[derive(Debug, Args)]
-#[command(after_help = "A line has one host: while a client is connected, other TCP clients are disconnected at once.")]
+#[command(after_help = "A line has one host: while a client is connected, the simulator disconnects every other TCP \
+                        client at once.")]
 pub struct Serve {
-    /// Address to listen on, with the TCP port; port 0 lets the system choose
+    /// Address to listen on, with the TCP port; with port 0, the system chooses a port
     #[arg(
         long,
         alias = "listen",
@@ -31,19 +33,19 @@ pub struct Serve {
     /// Use a pseudo-terminal and print its path (not on Windows)
     #[arg(long, conflicts_with = "bind")]
     pty: bool,
-    /// Create a symbolic link to the pseudo-terminal and remove it at the end
+    /// Create a symbolic link to the pseudo-terminal, and remove the link at the end
     #[arg(long, value_name = "PATH", requires = "pty")]
     link: Option<PathBuf>,
     /// Number of axes
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     axes: Option<u8>,
-    /// Simulate the transmission time of a line with this baud rate, such as 9600 [default: no delay]
+    /// Simulate the transmission time of a line with this baud rate, for example 9600 [default: no delay]
     #[arg(long, value_name = "BAUD", value_parser = clap::value_parser!(u32).range(50..=4_000_000))]
     baud: Option<u32>,
     /// Start state (TOML): modes, memory, inputs, errors, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
-    /// Faults, such as noise=1%,drop=1%,delay=0..50ms,seed=7; also parity, dup, busy, echo
+    /// Faults, for example noise=1%,drop=1%,delay=0..50ms,seed=7; also parity, dup, busy, echo
     #[arg(long, value_name = "FAULTS")]
     fault: Option<LineFaultSpec>,
     /// Read console lines on stdin; `help` lists them
@@ -54,7 +56,7 @@ pub struct Serve {
 /// Usual port of device servers.
 const PORT: u16 = 4001;
 
-/// Bits of a character with 8 data bits, parity and one stop bit (TO 1-2).
+/// Number of bits of a character with 8 data bits, parity and one stop bit (TO 1-2).
 const BITS: u32 = 11;
 
 impl serve::Serve for Serve {
@@ -67,7 +69,7 @@ impl serve::Serve for Serve {
         let start = simulated::start(self.state.as_deref(), self.axes, self.fault.as_ref())?;
         let speed = self.baud.map(|baud| Pace::new(baud, BITS));
         let settings = self.baud.map(|baud| format!("?baud={baud}")).unwrap_or_default();
-        // From here on, Ctrl-C must remove the symbolic link.
+        // From now on, Ctrl-C must remove the symbolic link.
         catch_interrupts();
         let (server, endpoint, address, link) = if self.pty {
             let made = StreamServer::pseudo_terminal(speed, self.fault);
@@ -91,12 +93,12 @@ impl serve::Serve for Serve {
     }
 }
 
-/// A simulated controller with its server.
+/// A simulated controller and its server.
 #[derive(Debug)]
 pub struct Toyo {
     server: StreamServer,
     simulated: Simulated,
-    /// Removed with the server.
+    /// The link is removed together with the server.
     _link: Option<TerminalLink>,
 }
 

@@ -1,4 +1,4 @@
-//! Start of a simulated controller.
+//! Start state of a simulated controller.
 
 use std::path::Path;
 
@@ -10,14 +10,15 @@ use armctl_files as files;
 use armctl_frame::failure::Failure;
 use armctl_transport::fault::LineFaultSpec;
 
-/// Start state: from a file, or the built-in one with this number of axes, and the busy rate of the faults.
+/// Start state with the busy rate of the faults. It comes from a file, or is the built-in state with this number of
+/// axes.
 pub fn start(file: Option<&Path>, axes: Option<u8>, faults: Option<&LineFaultSpec>) -> Result<Start, Failure> {
     let start = match (file, axes) {
         (None, None) => Start::default(),
         (None, Some(axes)) => Start::parse(&format!("axes = {axes}")).map_err(Failure::usage)?,
         (Some(file), None) => load(file)?,
         (Some(_), Some(_)) => {
-            return Err(Failure::usage("--axes and --state exclude each other")
+            return Err(Failure::usage("--axes cannot be used with --state")
                 .hint("write the number of axes into the state file"));
         }
     };
@@ -31,6 +32,6 @@ fn load(path: &Path) -> Result<Start, Failure> {
     let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
     Start::parse(&text).map_err(|error| {
         Failure::usage(format!("{}: {error}", path.display()))
-            .hint("`armctl help simulator` shows the form of the file")
+            .hint("see `armctl help simulator` for the form of the file")
     })
 }

@@ -32,7 +32,7 @@ impl Command for Status {
 pub struct StatusReport {
     #[serde(flatten)]
     state: State,
-    /// `sequential`, `palletizing`, `external_point` or `easy`.
+    /// Program type: `sequential`, `palletizing`, `external_point` or `easy`.
     program_kind: &'static str,
     host_on: bool,
     pendant_on: bool,
@@ -40,7 +40,7 @@ pub struct StatusReport {
     in_position: bool,
     single_movement: bool,
     waits_for_input: bool,
-    /// Whether parameter 2 changed, so that the controller executes nothing before a restart.
+    /// Whether the controller needs a restart before it executes anything, because parameter 2 changed.
     needs_power_cycle: bool,
     slave_not_ready: bool,
     escape_input: bool,
@@ -48,11 +48,11 @@ pub struct StatusReport {
     pause_input: bool,
     ready_output: bool,
     card: Card,
-    /// Pages as received, hexadecimal, page 0 first.
+    /// Pages as received, in hexadecimal, page 0 first.
     pages: [String; 5],
 }
 
-/// The memory card.
+/// State of the memory card.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Card {
     inserted: bool,

@@ -1,4 +1,4 @@
-//! `toyo task`: current task, to which programs, tables and positions belong.
+//! `toyo task`: the current task. Programs, tables and positions belong to a task.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -34,12 +34,12 @@ pub struct Get {}
 /// Select the current task for all clients, until a client selects a different task.
 #[derive(Debug, Args)]
 pub struct Set {
-    /// 1 to 4
+    /// Task, 1 to 4
     #[arg(value_name = "TASK", value_parser = |text: &str| number(field(), text))]
     task: i32,
 }
 
-/// Field of CTSK TASK=01. The manual also prints 00, which is never sent (ambiguity C2).
+/// Returns the field of CTSK TASK=01. The manual also prints task 00, which armctl never sends (ambiguity C2).
 fn field() -> &'static Field {
     &table::Command::Ctsk.row().requests[0].fields[0]
 }
@@ -92,7 +92,7 @@ fn current_in_words(task: u8) -> String {
 /// The current task.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Current {
-    /// 1 to 4.
+    /// Number of the task, 1 to 4.
     task: u8,
 }
 

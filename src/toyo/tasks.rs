@@ -1,4 +1,4 @@
-//! Temporary selection of a task for a command.
+//! Temporary selection of another task during a command.
 
 use super::link::Link;
 use armctl_controller::toyo::field::Value;
@@ -6,13 +6,14 @@ use armctl_controller::toyo::request::Request;
 use armctl_controller::toyo::table::Command;
 use armctl_frame::failure::{Failure, Kind};
 
-/// Reads the current task, selects `task` temporarily if it differs, and returns the task that is then current.
+/// Reads the current task, and selects `task` temporarily if it is another one. Returns the task that is current after
+/// this.
 pub async fn choose(link: &mut Link, task: Option<u8>) -> Result<u8, Failure> {
     if link.is_dry() {
         link.plan(&Request::bare(Command::Mtsk), "the current task");
         if let Some(task) = task {
             let back = format!("@{} TASK=?", Command::Ctsk.row().word);
-            link.plan_to_borrow(&select_request(task), &back, "whether it differs from the current task").await?;
+            link.plan_to_borrow(&select_request(task), &back, "whether the task differs from the current task").await?;
         }
         return Ok(task.unwrap_or(1));
     }
@@ -28,7 +29,7 @@ pub async fn choose(link: &mut Link, task: Option<u8>) -> Result<u8, Failure> {
     }
 }
 
-/// Restores temporary changes after success or failure. After Ctrl-C, the end of the link restores them.
+/// Restores temporary changes, after success or failure. After Ctrl-C, they are restored when the link is closed.
 pub async fn done<T>(link: &mut Link, outcome: Result<T, Failure>) -> Result<T, Failure> {
     if outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Interrupted) {
         return outcome;

@@ -32,7 +32,7 @@ pub(super) fn objection(words: &[&str]) -> String {
     testing::parse(FACE, "sim:", words).err().expect("the parser objects").to_string()
 }
 
-/// Input of the gate for a command line.
+/// Input of the gate for a command line: robot, intent, and command name.
 pub(super) fn gate_input(words: &[&str]) -> (Robot, Intent, &'static str) {
     let (robot, command) = resolved("tcp://127.0.0.1:1", words).expect("a command line");
     let intent = command.intent(Some(&robot));
@@ -81,7 +81,7 @@ pub(super) struct Bench {
     link: Link,
 }
 
-/// Fault of a block or its answer on the line.
+/// What happens on the line to a block or its answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Fault {
     /// No fault.
@@ -90,13 +90,13 @@ pub(super) enum Fault {
     Lost,
     /// The answer is lost.
     Unanswered,
-    /// The answer is late.
+    /// The answer arrives late, by this time.
     Late(Duration),
-    /// The controller sends this answer and executes nothing.
+    /// The test sends this answer, and the controller does not receive the block.
     Answered(&'static str),
 }
 
-/// Blocks that were sent, in order, including lost ones.
+/// Blocks that were sent, in their order. Lost blocks are included.
 #[derive(Debug, Clone, Default)]
 pub(super) struct ReceivedBlocks(Arc<RwLock<Vec<String>>>);
 
@@ -117,7 +117,7 @@ struct FaultyLine<F> {
     answers: VecDeque<(Duration, Vec<u8>)>,
     received: ReceivedBlocks,
     counts: HashMap<String, usize>,
-    /// Fault of a block, by its text and its count from 1.
+    /// Decides what happens to a block, from its text and the number of times it was sent, from 1.
     fault: F,
 }
 
@@ -166,7 +166,7 @@ impl<F: FnMut(&str, usize) -> Fault + Send> Peer for FaultyLine<F> {
 }
 
 impl Bench {
-    /// A simulator in a start state (TOML) behind a line with faults, and the blocks that it receives.
+    /// A simulator in a start state (TOML) behind a line with faults, and the blocks that are sent to it.
     pub(super) fn with_faults(
         state: &str,
         fault: impl FnMut(&str, usize) -> Fault + Send + 'static,
@@ -196,13 +196,13 @@ impl Bench {
         (Self { runtime, robot, link }, received)
     }
 
-    /// Runs `armctl toyo WORDS…` until Ctrl-C after a time. Returns the message of the stop.
+    /// Runs `armctl toyo WORDS…`, and interrupts it with Ctrl-C after a time. Returns the message of the stop.
     pub(super) fn run_and_interrupt(&mut self, words: &[&str], after: Duration) -> Result<String, Failure> {
         self.run_and_abandon(words, after);
         self.runtime.block_on(Toyo::halt(&mut self.link))
     }
 
-    /// Runs `armctl toyo WORDS…` for a time and abandons it. Returns whether a stop is mandatory.
+    /// Runs `armctl toyo WORDS…` for a time, and then abandons it. Returns whether a stop is required.
     pub(super) fn run_and_abandon(&mut self, words: &[&str], after: Duration) -> bool {
         let (_, command) = resolved("sim:", words).expect("a command");
         let Self { runtime, robot, link } = self;
@@ -220,7 +220,7 @@ impl Bench {
         self.runtime.block_on(async { tokio::time::sleep(time).await });
     }
 
-    /// Restores the changes of the link, as at its end. The link stays usable.
+    /// Restores the changes of the link, as when the link is closed. The link can still be used.
     pub(super) fn end(&mut self) {
         let Self { runtime, link, .. } = self;
         runtime.block_on(async {
@@ -234,7 +234,7 @@ impl Bench {
         self.runtime.block_on(Toyo::close(self.link, &quiet()))
     }
 
-    /// A simulator with this URL.
+    /// Creates a bench with a simulator for this URL.
     pub(super) fn new(target: &str) -> Self {
         let runtime = runtime();
         let (robot, _) = resolved(target, &["status"]).expect("a robot");
@@ -242,7 +242,7 @@ impl Bench {
         Self { runtime, robot, link }
     }
 
-    /// Runs `armctl toyo WORDS…`. Returns the data of the report, and its failure.
+    /// Runs `armctl toyo WORDS…`. Returns the data of the report, and the failure that the report states.
     pub(super) fn run(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
         let (_, command) = resolved("sim:", words)?;
         let Self { runtime, robot, link } = self;
@@ -250,7 +250,7 @@ impl Bench {
         Ok((report.data()?, report.failure()))
     }
 
-    /// Runs `armctl toyo WORDS…` on a robot that counts as real, without a possibility to confirm.
+    /// Runs `armctl toyo WORDS…` on a robot that counts as real. Nobody can answer a question.
     pub(super) fn run_without_confirmation(&mut self, words: &[&str]) -> Result<Value, Failure> {
         let (robot, command) = resolved("tcp://127.0.0.1:1", words)?;
         let intent = command.intent(Some(&robot));
@@ -264,7 +264,7 @@ impl Bench {
         outcome
     }
 
-    /// Data of a command line that must succeed.
+    /// Runs a command line that must succeed, and returns its data.
     #[track_caller]
     pub(super) fn data(&mut self, words: &[&str]) -> Value {
         match self.run(words) {
@@ -281,7 +281,7 @@ fn runtime() -> tokio::runtime::Runtime {
 /// The family.
 const FACE: &dyn Face = &Registered::<Toyo>::FACE;
 
-/// Robot and command of a line.
+/// Robot and command of a command line.
 fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
     testing::resolve(FACE, target, words)
 }

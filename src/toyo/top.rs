@@ -1,5 +1,5 @@
-//! Live view of a controller: status and position in one line, or axes with soft limits, alarm and first ports on a
-//! screen. The protocol has no torque.
+//! Live view of a controller: status and position in one line, or axes with soft limits, the alarm and the first ports
+//! in the detail view. The protocol has no torque.
 
 use super::explain::alarm_from_code;
 use super::io::{INPUTS, OUTPUTS, PortBank, ports_of};
@@ -23,11 +23,11 @@ use armctl_frame::{Access, Family as _};
 #[derive(Debug)]
 pub struct Poller {
     link: Link,
-    /// Soft limits after the first read.
+    /// Soft limits; `None` before the first read.
     limits: Option<Limits>,
 }
 
-/// Soft limits of axes 1 to 4; `None` if the controller does not report them.
+/// Soft limits of axes 1 to 4, smallest and largest; `None` if the controller does not report them.
 type Limits = [Option<(f64, f64)>; 4];
 
 impl registration::Poller for Poller {
@@ -87,7 +87,7 @@ impl Poller {
         Ok(Whole { indicators: indicators(status), axes, torque_unit: None, banks, not_asked: None })
     }
 
-    /// First screen of ports of the controller.
+    /// Reads the first screen of ports of the controller.
     async fn bank(&mut self, name: &'static str, ports: PortBank) -> Result<Bank, Failure> {
         let groups = match self.link.try_ask(&ports.request(0, 1)).await? {
             Ok(record) => {
@@ -114,7 +114,7 @@ async fn parameter(link: &mut Link, id: &str) -> Result<Option<Record>, Failure>
     Ok(link.try_ask(&request).await?.ok())
 }
 
-/// The present alarms as a list.
+/// Returns the present alarm as a list.
 pub(super) fn alarms(status: Status) -> Vec<Alarm> {
     status.has_error().then(|| alarm_from_code(status.error)).into_iter().collect()
 }

@@ -1,4 +1,4 @@
-//! Trace of the traffic in blocks.
+//! Trace of the traffic, block by block.
 
 use std::net::SocketAddr;
 
@@ -14,19 +14,19 @@ use armctl_transport::tap::Direction;
 #[derive(Debug)]
 pub struct Trace {
     record: trace::Trace,
-    /// Own address and address of the device server, if there is one.
+    /// Own address, and address of the device server; `None` without a device server.
     ends: Option<(SocketAddr, SocketAddr)>,
-    /// Characters of the controller since its last line end.
+    /// Characters that the controller sent since its last line end.
     pending: Vec<u8>,
-    /// Last request, because `@OK` and `@NG` do not name their request.
+    /// Last request. It is stored because `@OK` and `@NG` do not name their request.
     last_request: Option<Request>,
 }
 
-/// Limit of characters in a line of text.
+/// Maximum number of characters in a line of text.
 const MOST: usize = 512;
 
 impl Trace {
-    /// Opens the trace that the flags request; `ends` are the addresses of a TCP connection.
+    /// Opens the trace that the options request. `ends` are the addresses of a TCP connection.
     pub fn open(access: &Access, screen: &Screen, ends: Option<(SocketAddr, SocketAddr)>) -> Result<Self, Failure> {
         let record = match ends {
             Some(_) => trace::Trace::of_network(access, screen)?,
@@ -59,20 +59,20 @@ impl Trace {
         self.record.resume();
     }
 
-    /// Checks that the trace is complete.
+    /// Closes the trace. Returns a failure if it is incomplete.
     pub fn finish(&mut self) -> Result<(), Failure> {
         self.flush();
         self.record.finish()
     }
 
-    /// A request is written at once.
+    /// Writes a request at once, because the client sends whole blocks.
     fn sent(&mut self, bytes: &[u8]) {
         self.flush();
         self.line(Direction::Sent, bytes);
         self.last_request = Request::parse(&text(bytes)).ok();
     }
 
-    /// Characters arrive in pieces of any size; a line of text shows a whole block.
+    /// Characters arrive in pieces of any size, but a line of text must contain a whole block.
     fn received(&mut self, bytes: &[u8]) {
         for byte in bytes {
             self.pending.push(*byte);
@@ -82,7 +82,7 @@ impl Trace {
         }
     }
 
-    /// Prints characters without a line end before other text follows.
+    /// Prints characters that have no line end yet, before other text follows.
     fn flush(&mut self) {
         let pending = std::mem::take(&mut self.pending);
         if !pending.is_empty() {

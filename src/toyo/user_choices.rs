@@ -1,7 +1,7 @@
 //! Settings that the user chose to keep: the host ON, the current task.
 //!
-//! A controller does not report which client switched its host ON. A setting that was not chosen on this computer comes
-//! from another client.
+//! A controller does not report which client switched its host ON. A setting that the user did not choose on this
+//! computer comes from another client.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -15,13 +15,13 @@ use armctl_frame::local_names::state_folder;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Choice {
-    /// Set by `toyo host on`, until the host is OFF.
+    /// Whether the user switched the host ON with `toyo host on`. False again after the host is OFF.
     pub host: bool,
-    /// Set by `toyo task set`, until the controller has another current task.
+    /// Task that the user selected with `toyo task set`. `None` again after the controller has another current task.
     pub task: Option<u8>,
 }
 
-/// Choices of this user. One file has the choices for all robots.
+/// Choices of this user. One file contains the choices for all robots.
 #[derive(Debug, Default)]
 pub struct UserChoices {
     /// Path of the file; `None` for a simulator in this process.
@@ -29,11 +29,11 @@ pub struct UserChoices {
     robot: String,
 }
 
-/// Size limit of the file.
+/// Maximum size of the file.
 const MAX_SIZE: u64 = 1 << 20;
 
 impl UserChoices {
-    /// Choices for a robot.
+    /// Opens the choices for a robot.
     pub fn of(robot: &str) -> Self {
         Self { path: state_folder().map(|folder| folder.join("toyo-chosen.json")), robot: robot.to_owned() }
     }
@@ -48,7 +48,8 @@ impl UserChoices {
         self.path.is_some().then(|| self.all().get(&self.robot).copied().unwrap_or_default())
     }
 
-    /// Changes the choices. If the file cannot be written, the only effect is a needless notice later.
+    /// Changes the choices. If the file cannot be written, an unnecessary notice may be printed later; there is no
+    /// other effect.
     pub fn change(&self, change: impl FnOnce(&mut Choice)) {
         let Some(path) = &self.path else { return };
         let mut all = self.all();

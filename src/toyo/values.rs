@@ -1,6 +1,7 @@
 //! Values as a user types and reads them: `ax1=100.00`, `english`, `0/01/3`.
 //!
-//! A controller stores a row of fields. A user sees slots: one field, or the three fields of a port's bit together.
+//! A controller stores a row of fields. A user sees slots. A slot is one field, or the three fields for a bit of a
+//! port.
 
 use std::ops::Range;
 
@@ -8,62 +9,60 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value as Json;
 
-use super::link::Link;
 use armctl_client::toyo::Letters;
 use armctl_controller::nearest::nearest;
 use armctl_controller::toyo::field::{Field, Form, Number, Value};
 use armctl_controller::toyo::layout::{Layout, Record, UNLISTED};
-use armctl_controller::toyo::request::Request;
-use armctl_frame::dry_run::{Known as _, unknown};
 use armctl_frame::failure::Failure;
 
 /// A slot for one value that the user types.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ValueSlot {
-    /// `ax1`, `low`, `port`.
+    /// Name of the slot, such as `ax1`, `low`, `port`.
     pub name: String,
-    /// Range of its fields in the layout.
+    /// Range of the slot's fields in the layout.
     fields: Range<usize>,
 }
 
 /// A value with its description.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct NamedValue {
-    /// As typed before `=`: `ax1`.
+    /// Name that is typed before `=`, such as `ax1`.
     pub name: String,
     /// A number in its unit, a word of the protocol, or a bit of a port as `station/port/bit`.
     pub value: Json,
     /// Unit of the number: `mm`, `mm/s`, `s`; null without a unit.
     pub unit: Option<&'static str>,
-    /// Meaning of the word; null if the word is clear.
+    /// Meaning of the word; null if the word is clear by itself.
     pub meaning: Option<&'static str>,
-    /// Text in the protocol.
+    /// Text of the value in the protocol.
     pub raw: String,
-    /// Whether the manual lists the value. Other values are shown unchanged and cannot be written.
+    /// Whether the manual lists the value. Other values are displayed unchanged, and cannot be written.
     pub in_manual: bool,
-    /// Text as typed.
+    /// Text of the value as a user types it.
     #[serde(skip)]
     pub text: String,
 }
 
-/// New values of the fields of a record; `None` keeps the present value.
+/// New values for the fields of a record. `None` keeps the old value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Changes(Vec<Option<Value>>);
 
-/// Text in place of a meaning.
+/// Text that replaces the meaning of a value.
 pub use armctl_controller::toyo::program::NOT_IN_MANUAL;
 
-/// Axis (0 to 3) of a coordinate field. X, Y, Z and R in the protocol are axes 1 to 4, regardless of their letters.
+/// Returns the axis, 0 to 3, of a coordinate field. In the protocol, X, Y, Z and R are axes 1 to 4, whatever their
+/// letters are.
 fn axis(field: &Field) -> Option<usize> {
     ["x", "y", "z", "r"].iter().position(|name| *name == field.name)
 }
 
-/// Whether the layout has coordinates, which are named by the letters of the axes.
+/// Whether the layout has coordinates. Users name coordinates by the letters of the axes.
 pub fn has_coordinates(layout: &Layout) -> bool {
     layout.fields.iter().any(|field| axis(field).is_some())
 }
 
-/// Slots of a layout. Coordinates have these letters.
+/// Slots of a layout. The coordinates have these letters.
 pub fn slots(layout: &Layout, letters: &Letters) -> Vec<ValueSlot> {
     let mut slots = Vec::new();
     let mut words = layout.text.split("{}");
@@ -72,7 +71,7 @@ pub fn slots(layout: &Layout, letters: &Letters) -> Vec<ValueSlot> {
         let before = words.next().unwrap_or_default();
         let is_bit = before != "/" && field.name.starts_with("station") && layout.text.contains("{}/{}/{}");
         if is_bit {
-            // `PN1={}/{}/{}` has its own name.
+            // In `PN1={}/{}/{}`, the name of the slot is `pn1`.
             let label = before.rsplit(' ').next().and_then(|label| label.strip_suffix('='));
             let label = label.map_or("port".to_owned(), str::to_lowercase);
             slots.push(ValueSlot { name: label, fields: index..index + 3 });
@@ -88,12 +87,12 @@ pub fn slots(layout: &Layout, letters: &Letters) -> Vec<ValueSlot> {
     slots
 }
 
-/// Values of a record without coordinates, slot by slot.
+/// Returns the values of a record without coordinates, one per slot.
 pub fn named_values(record: &Record) -> Vec<NamedValue> {
     named_values_with(record, &Letters::USUAL)
 }
 
-/// Values of a record, slot by slot. Coordinates have these letters.
+/// Returns the values of a record, one per slot. Coordinates have the names that `letters` gives the axes.
 pub fn named_values_with(record: &Record, letters: &Letters) -> Vec<NamedValue> {
     let layout = record.layout();
     if layout == UNLISTED {
@@ -105,12 +104,12 @@ pub fn named_values_with(record: &Record, letters: &Letters) -> Vec<NamedValue> 
     slots(&layout, letters).into_iter().map(|slot| slot.named_value(&layout, record.values())).collect()
 }
 
-/// Values in one line, followed by their units: `low=10.0 high=100.0 mm/s`.
+/// Values in one line. The units follow the values: `low=10.0 high=100.0 mm/s`.
 pub fn in_a_line(values: &[NamedValue]) -> String {
     line(values, values.len() > 1)
 }
 
-/// Values in one line, with or without names.
+/// Values in one line, with or without their names.
 pub fn line(values: &[NamedValue], is_named: bool) -> String {
     let common =
         values.first().and_then(|first| first.unit).filter(|unit| values.iter().all(|value| value.unit == Some(unit)));
@@ -125,7 +124,7 @@ pub fn line(values: &[NamedValue], is_named: bool) -> String {
     texts.join(" ")
 }
 
-/// Values in the form of the command line: `ax1=100.00 ax2=0.00`; a single value has no name.
+/// Values as typed on the command line: `ax1=100.00 ax2=0.00`. A single value has no name.
 pub fn as_typed(values: &[NamedValue]) -> String {
     let typed = |value: &NamedValue| {
         if values.len() > 1 { format!("{}={}", value.name, value.text) } else { value.text.clone() }
@@ -133,7 +132,7 @@ pub fn as_typed(values: &[NamedValue]) -> String {
     values.iter().map(typed).collect::<Vec<_>>().join(" ")
 }
 
-/// Values in which two records differ, one line for each record. Coordinates have these letters.
+/// Values in which two records differ, one line for each record. The coordinates have these letters.
 pub fn difference(old: &Record, new: &Record, letters: &Letters) -> [String; 2] {
     let (old, new) = (named_values_with(old, letters), named_values_with(new, letters));
     let is_named = new.len() > 1;
@@ -165,7 +164,7 @@ impl ValueSlot {
         NamedValue { name: self.name.clone(), value, unit, meaning, raw, in_manual, text }
     }
 
-    /// Parses the text for this slot.
+    /// Parses the text for the slot.
     fn read(&self, layout: &Layout, text: &str) -> Result<Vec<Value>, String> {
         let fields = &layout.fields[self.fields.clone()];
         if let [field] = fields {
@@ -184,7 +183,7 @@ impl ValueSlot {
         }
     }
 
-    /// Valid input for this slot.
+    /// Valid input for the slot.
     fn expected(&self, layout: &Layout) -> String {
         match &layout.fields[self.fields.clone()] {
             [field] => expected(field),
@@ -194,15 +193,10 @@ impl ValueSlot {
 }
 
 impl Changes {
-    /// Parses the values for a layout without coordinates: all values in order, or some as `name=value`. `what` names
-    /// the record in errors.
-    pub fn read(what: &str, layout: &Layout, typed: &[String]) -> Result<Self, Failure> {
-        Self::read_by(what, layout, &Letters::USUAL, typed)
-    }
-
-    /// Parses the values for a layout. Coordinates have these letters. With other letters than the usual ones,
-    /// coordinates need names, because their order could mean letters or axes.
-    pub fn read_by(what: &str, layout: &Layout, letters: &Letters, typed: &[String]) -> Result<Self, Failure> {
+    /// Parses the values for a layout: all values in order, or some as `name=value`. `what` names the record in errors.
+    /// Coordinates have these letters. With other letters than the usual ones, coordinates need names, because their
+    /// order could mean letters or axes.
+    pub fn read(what: &str, layout: &Layout, letters: &Letters, typed: &[String]) -> Result<Self, Failure> {
         let slots = slots(layout, letters);
         let wrong = |error: String| Failure::usage(format!("{what}: {error}"));
         let wrong_slot = |error: String| wrong(error).hint(usage(&slots, layout));
@@ -215,7 +209,7 @@ impl Changes {
             }
             if typed.len() != slots.len() {
                 let values = if slots.len() == 1 { "value" } else { "values" };
-                let message = format!("{} {values} needed, {} given", slots.len(), typed.len());
+                let message = format!("{} {values} needed, but {} typed", slots.len(), typed.len());
                 return Err(wrong_slot(message));
             }
             for (slot, text) in slots.iter().zip(typed) {
@@ -225,7 +219,7 @@ impl Changes {
         }
         for (assignment, text) in named.into_iter().zip(typed) {
             let (name, value) =
-                assignment.ok_or_else(|| wrong_slot(format!("'{text}' has no name, but other values have")))?;
+                assignment.ok_or_else(|| wrong_slot(format!("'{text}' has no name, but other values have names")))?;
             let slot = slot_by_name(&slots, layout, name).ok_or_else(|| {
                 if has_coordinates(layout) && ["x", "y", "z", "r"].iter().any(|axis| axis.eq_ignore_ascii_case(name)) {
                     let message = format!("the axis of {} is unknown: {}", name.to_uppercase(), machine(letters));
@@ -243,47 +237,27 @@ impl Changes {
         Ok(Self(changes))
     }
 
-    /// New values of the fields.
+    /// Creates changes from new values; `None` keeps the present value.
     pub fn of(values: Vec<Option<Value>>) -> Self {
         Self(values)
     }
 
-    /// New values of the fields.
+    /// The new values.
     pub fn values(&self) -> &[Option<Value>] {
         &self.0
     }
 
-    /// All values, if every field has a new one.
+    /// All values, if every field has a new value.
     pub fn whole(&self) -> Option<Vec<Value>> {
         self.0.iter().cloned().collect()
     }
 
-    /// All values; unchanged fields keep the values that the controller answers to `read`. Also returns that answer, so
-    /// that it is read only once. A dry run has no answer. If it needs one, it records the block of `sketch` and ends
-    /// here.
-    pub async fn completed(
-        &self,
-        link: &mut Link,
-        read: &Request,
-        sketch: impl FnOnce(&[Option<Value>]) -> String,
-    ) -> Result<(Vec<Value>, Option<Record>), Failure> {
-        let stored = link.ask(read).await.known()?;
-        match (self.whole(), &stored) {
-            (Some(values), _) => Ok((values, stored)),
-            (None, Some(record)) => Ok((self.over(record)?, stored)),
-            (None, None) => {
-                link.plan_overwriting(read, &sketch(&self.0)).await?;
-                Err(unknown())
-            }
-        }
-    }
-
-    /// All values; unchanged fields keep the values of `found`.
+    /// All values. Unchanged fields keep the values of `stored`.
     ///
     /// # Errors
     /// If an unchanged value cannot be written again.
     pub fn over(&self, stored: &Record) -> Result<Vec<Value>, Failure> {
-        // Numbers of rows and programs precede the values.
+        // The numbers of rows and programs come before the values.
         let keys = stored.values().len().saturating_sub(self.0.len());
         let unchanged_values = stored.pairs().skip(keys).zip(&self.0).filter(|(_, change)| change.is_none());
         let foreign =
@@ -297,13 +271,13 @@ impl Changes {
         Ok(self.applied(&stored.values()[keys..]))
     }
 
-    /// All values; unchanged fields keep the values of `found`.
+    /// All values. Unchanged fields keep the values of `stored`.
     pub fn applied(&self, stored: &[Value]) -> Vec<Value> {
         self.0.iter().zip(stored).map(|(change, stored)| change.as_ref().unwrap_or(stored).clone()).collect()
     }
 }
 
-/// Slot by name. A coordinate is also named by the number of its axis: `ax2`.
+/// The slot with this name. A coordinate can also be named by the number of its axis: `ax2`.
 fn slot_by_name<'p>(slots: &'p [ValueSlot], layout: &Layout, name: &str) -> Option<&'p ValueSlot> {
     let numbered = |slot: &&ValueSlot| {
         let field = layout.fields.get(slot.fields.start)?;
@@ -313,7 +287,7 @@ fn slot_by_name<'p>(slots: &'p [ValueSlot], layout: &Layout, name: &str) -> Opti
     named.or_else(|| slots.iter().find(|slot| numbered(slot).is_some()))
 }
 
-/// Sentence about the letters of the axes of this machine.
+/// Describes which letters the axes of this machine have.
 pub fn machine(letters: &Letters) -> String {
     if *letters == Letters::UNKNOWN {
         return "the controller does not report the letters of its axes".to_owned();
@@ -322,24 +296,24 @@ pub fn machine(letters: &Letters) -> String {
     format!("axes 1 to 4 have the letters {}", letters.join(", "))
 }
 
-/// Hint for coordinates by name.
+/// Hint that coordinates need names.
 fn by_name(slots: &[ValueSlot]) -> String {
     let names: Vec<String> = slots.iter().map(|slot| format!("{}=…", slot.name)).collect();
-    format!("type them by name: {}; ax1 to ax4 also work on every machine", names.join(" "))
+    format!("type the coordinates by name: {}; ax1 to ax4 also work on every machine", names.join(" "))
 }
 
-/// Failure for an unchanged value that cannot be written again.
+/// Failure: an unchanged value cannot be written again.
 fn unwritable_value(stored: &str) -> Failure {
     Failure::usage(format!("the stored value '{stored}' is not in the manual and cannot be written again"))
-        .hint("nothing was written; type all values")
+        .hint("type all values; nothing was written")
 }
 
-/// A number in its unit; a float only if it has decimals.
+/// Number in its unit. It is a float only if the field has decimals.
 fn number(form: Number, units: i32) -> Json {
     if form.scale() > 1 { Json::from(f64::from(units) / f64::from(form.scale())) } else { Json::from(units) }
 }
 
-/// Value in the unit of its field; null if it is not a number.
+/// Value in the unit of its field; null if the value is not a number.
 pub fn json(field: &Field, value: &Value) -> Json {
     match (&field.form, value) {
         (Form::Number(form), Value::Number(units)) => number(*form, *units),
@@ -347,13 +321,13 @@ pub fn json(field: &Field, value: &Value) -> Json {
     }
 }
 
-/// Splits `ax1=5` into name and value. A text that begins with something else, such as `<=`, is a value.
+/// Splits `ax1=5` into name and value. A text that does not begin with a name, such as `<=`, is a value.
 pub fn assignment(text: &str) -> Option<(&str, &str)> {
     let (name, value) = text.split_once('=')?;
     name.starts_with(|c: char| c.is_ascii_alphabetic()).then_some((name, value))
 }
 
-/// Parses the value of a field. A word is also accepted by its meaning, in any case.
+/// Parses the value of a field. The meaning of a word is also accepted, in any case.
 pub fn word(field: &Field, text: &str) -> Result<Value, String> {
     let Form::Word(words) = field.form else { return field.read(text).map_err(|error| error.to_string()) };
     let same = |other: &str| slug(other) == slug(text);
@@ -365,7 +339,7 @@ pub fn word(field: &Field, text: &str) -> Result<Value, String> {
     }
 }
 
-/// Valid input for a field: `J (japanese) or E (english)`.
+/// Describes the valid input for a field, for example `J (japanese) or E (english)`.
 fn expected(field: &Field) -> String {
     let Form::Word(words) = field.form else { return field.expected() };
     let texts: Vec<String> = words
@@ -381,7 +355,7 @@ fn expected(field: &Field) -> String {
     }
 }
 
-/// Meaning as one word: `external-point`.
+/// Meaning of a word as one word: `external-point`.
 fn slug(text: &str) -> String {
     text.trim().to_lowercase().split([' ', '-', '_']).filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
 }
@@ -392,9 +366,13 @@ fn usage(slots: &[ValueSlot], layout: &Layout) -> String {
         [slot] => format!("type the value: {}", slot.expected(layout)),
         [first, ..] => {
             let names: Vec<&str> = slots.iter().map(|slot| &slot.name[..]).collect();
-            format!("type all values in the order {}, or only some by name, such as {}=…", names.join(" "), first.name)
+            format!(
+                "type all values in the order {}, or only some values by name, such as {}=…",
+                names.join(" "),
+                first.name
+            )
         }
-        [] => "it takes no values".to_owned(),
+        [] => "remove the values: this item has no values".to_owned(),
     }
 }
 
@@ -413,7 +391,7 @@ mod tests {
 
     fn read(name: &str, typed: &[&str]) -> Result<String, String> {
         let typed: Vec<String> = typed.iter().map(|text| (*text).to_owned()).collect();
-        let changes = Changes::read(name, &body(name), &typed).map_err(|failure| failure.message)?;
+        let changes = Changes::read(name, &body(name), &Letters::USUAL, &typed).map_err(|failure| failure.message)?;
         Ok(body(name).emit(&changes.whole().unwrap()).unwrap())
     }
 
@@ -450,7 +428,7 @@ mod tests {
     #[test]
     fn omitted_values_stay_unchanged() {
         let layout = body("P08");
-        let changes = Changes::read("P08", &layout, &["high=9".to_owned()]).unwrap();
+        let changes = Changes::read("P08", &layout, &Letters::USUAL, &["high=9".to_owned()]).unwrap();
         assert_eq!(changes.whole(), None);
         assert_eq!(changes.applied(&[Value::Number(1), Value::Number(2)]), [Value::Number(1), Value::Number(90)]);
     }
@@ -458,14 +436,14 @@ mod tests {
     #[test]
     fn error_messages_name_range_unit_and_choices() {
         let error = |name, typed: &[&str]| read(name, typed).unwrap_err();
-        assert_eq!(error("P01", &["1", "2"]), "P01: 4 values needed, 2 given");
+        assert_eq!(error("P01", &["1", "2"]), "P01: 4 values needed, but 2 typed");
         assert_eq!(
             error("P01", &["9000", "0", "0", "0"]),
             "P01: ax1: 9000.00 is out of range (a number, -8000.00 to 8000.00 mm)"
         );
         assert_eq!(error("P08", &["lwo=1"]), "P08: unknown value 'lwo'; did you mean low?");
         assert_eq!(error("P08", &["low=1", "low=2"]), "P08: low appears twice");
-        assert_eq!(error("P08", &["low=1", "2"]), "P08: '2' has no name, but other values have");
+        assert_eq!(error("P08", &["low=1", "2"]), "P08: '2' has no name, but other values have names");
         assert_eq!(error("M09", &["french"]), "M09: language: 'french' is not J (japanese) or E (english)");
         assert_eq!(error("M01", &["3"]), "M01: port: '3' is not STATION/PORT/BIT, such as 0/01/3");
         assert!(error("M01", &["9/01/3"]).starts_with("M01: station: 9 is out of range"));

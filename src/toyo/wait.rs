@@ -1,4 +1,4 @@
-//! Wait for the end of accepted work: a return to origin, a program, a transfer of the memory card.
+//! Wait for the end of work that the controller accepted: a return to origin, a program, a transfer of the memory card.
 
 use std::time::Duration;
 
@@ -22,14 +22,14 @@ use armctl_frame::output::progress::Progress;
 
 /// Interval between two reads of the status.
 pub(super) const POLL_INTERVAL: Duration = Duration::from_millis(100);
-/// Time limit for the controller to show that accepted work began. Work that was not visible by then ended before the
-/// first read.
+/// Time limit for the controller to show that accepted work began. If the status does not show the work within this
+/// time, the work ended before the first read.
 const START_TIMEOUT: Duration = Duration::from_secs(1);
-/// Number of status reads between two reads of the current step and of its wait condition.
+/// Number of status reads per read of the current step and of the inputs that it waits for.
 const READS_PER_STEP_READ: u32 = 5;
-/// Limit of refused reads in a row: two seconds of a busy controller.
+/// Maximum number of consecutive refused reads: two seconds with a busy controller.
 const MAX_REFUSALS: u32 = 20;
-/// Number of reads for the axes to come to rest: two seconds.
+/// Maximum number of reads until the axes have come to rest: two seconds.
 const MAX_READS_TO_REST: u32 = 20;
 
 /// Type of work.
@@ -39,38 +39,38 @@ pub(super) enum Work {
     Home,
     /// Search for the origin of synchronized axes.
     Search,
-    /// Execution of steps.
+    /// The execution of a program or of a move.
     Program,
     /// A transfer from or to the memory card.
     Card,
 }
 
-/// Accepted work of the controller.
+/// Work that the controller accepted.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AcceptedWork {
     /// Type of work.
     pub work: Work,
-    /// Command that started it.
+    /// Command that started the work.
     pub order: Command,
-    /// Sentence about the acceptance: `the return to origin was accepted`.
+    /// Sentence about the acceptance, such as `the return to origin was accepted`.
     pub done: &'static str,
-    /// Sentence during the work: `the axes return to the origin`.
+    /// Sentence during the work, such as `the axes return to the origin`.
     pub doing: &'static str,
 }
 
-/// End of the work.
+/// Result at the end of the work.
 #[derive(Debug)]
 pub(super) struct End {
-    /// Final position; `None` if nothing moves.
+    /// Final position; `None` if the work moves nothing.
     pub coordinates: Option<Coordinates>,
-    /// Time from acceptance to end; `None` if the work ended before the first read.
+    /// Time in ms from acceptance to end; `None` if the work ended before the first read.
     pub elapsed_ms: Option<u64>,
     /// Whether the program is paused and can continue.
     pub is_paused: bool,
 }
 
 impl AcceptedWork {
-    /// Waits for the end. Progress shows the letters of the axes. A dry run records the requests.
+    /// Waits for the end. The progress display uses the letters of the axes. A dry run records the requests.
     ///
     /// # Errors
     /// [`Kind::ConditionNotMet`] if the work did not complete, [`Kind::OutcomeUnknown`] if the connection was lost.
@@ -91,7 +91,7 @@ impl AcceptedWork {
                     refusals = 0;
                     let coordinates = record.as_ref().map(|record| Coordinates::of(record, letters));
                     match work_state.evaluate(began.elapsed(), status, record) {
-                        // Until then, the status can be that of the time before the start.
+                        // Before that, the status can still be the status from before the start.
                         WorkEvent::Running if !work_state.has_started => {}
                         WorkEvent::Running => reporter.report(status, coordinates),
                         WorkEvent::Ended => {
@@ -114,7 +114,7 @@ impl AcceptedWork {
         }
     }
 
-    /// Reads status and position, and at intervals the step and its wait condition.
+    /// Reads status and position. At intervals, also reads the step and its wait condition.
     async fn read_state(
         self,
         link: &mut Link,
@@ -130,72 +130,77 @@ impl AcceptedWork {
         Ok((Status { inputs: reporter.inputs, ..status }, coordinates))
     }
 
-    /// The page of errors is read last, so that an error that ends the work is not missed.
+    /// Pages of the status to read. The page with the error bit is last, so that an error that ends the work is not
+    /// missed.
     const fn pages(self) -> &'static [u8] {
         if matches!(self.work, Work::Card) { &[3, 0] } else { &[0] }
     }
 
     fn plan(self, link: &mut Link) {
         for page in self.pages() {
-            link.plan(&status_page(*page), "every 100 ms until it has ended");
+            link.plan(&status_page(*page), "every 100 ms until the command has ended");
         }
         if self.work != Work::Card {
-            link.plan(&position_request(), "every 100 ms until it has ended: position of the axes");
+            link.plan(&position_request(), "every 100 ms until the command has ended: position of the axes");
         }
         if self.work == Work::Program {
-            let about =
-                Reason::about("every 500 ms until it has ended: current step, and whether it waits for an input");
+            let about = Reason::about(
+                "every 500 ms until the command has ended: current step, and whether the step waits for an input",
+            );
             for request in [status_page(4), steps::read_request(0)] {
-                link.plan_depending(&request.text(), about.depending_on("duration of the work"));
+                link.plan_depending(&request.text(), about.depending_on("duration of the command"));
             }
         }
         link.plan_if(&status_page(1), "whether an error occurs");
     }
 
-    /// Failure for work that did not complete.
+    /// Failure: the work did not complete.
     async fn failed(self, link: &mut Link, reason: WaitFailure, coordinates: Option<Coordinates>) -> Failure {
         let coordinates =
             coordinates.map(|coordinates| format!("; the axes are at {}", coordinates.in_a_line())).unwrap_or_default();
         let fail = |what: &str| Failure::new(Kind::ConditionNotMet, format!("{}, but {what}{coordinates}", self.done));
         match reason {
             WaitFailure::Error => explain_present_error(link, &fail).await,
-            WaitFailure::NoOrigin => fail("it ended without the origin")
-                .hint("check the machine: it was stopped without an error. Then repeat `toyo home`"),
-            WaitFailure::NeverStarted => {
-                Failure { kind: Kind::OutcomeUnknown, ..fail("the status never showed execution") }
-                    .hint("check `toyo status` and the robot: it ended at once, or it did not begin")
+            WaitFailure::NoOrigin => fail("the status shows no origin after the end")
+                .hint("check why the machine stopped without an error; then repeat `toyo home`"),
+            WaitFailure::NeverStarted => Failure {
+                kind: Kind::OutcomeUnknown,
+                ..fail("the status never showed that the controller executed it")
             }
-            WaitFailure::NoStart => fail("the status did not show the start")
-                .hint("keep clear, because it can still begin; check `toyo status` and the teach pendant"),
+            .hint("check `toyo status` and the robot: the execution ended at once, or it did not begin"),
+            WaitFailure::NoStart => fail("the status did not show the start").hint(
+                "keep clear of the robot, because the motion can still begin; check `toyo status` and the teach \
+                 pendant",
+            ),
         }
     }
 
-    /// Failure after a lost connection; the accepted work continues.
+    /// Failure: the connection was lost. The accepted work continues.
     fn lost(self, failure: Failure) -> Failure {
         let message = format!("{}, but its result is unknown: {}", self.done, failure.message);
         Failure { kind: Kind::OutcomeUnknown, message, ..failure }
-            .hint(format!("do not send the command again: {}", refusal::verification_hint(self.order)))
+            .hint(format!("do not send the command again; {}", refusal::verification_hint(self.order)))
     }
 }
 
-/// Failure for the present error, in the words of `tell`.
+/// Failure for the present error. `fail` creates the failure from the text of the error.
 pub(super) async fn explain_present_error(link: &mut Link, fail: &impl Fn(&str) -> Failure) -> Failure {
     match link.status_of(&[1]).await {
         Ok(Status { error: errors::NONE, .. }) => {
-            fail("an error occurred and was cancelled").hint("`toyo alarm history` can show the error")
+            fail("an error occurred and was cancelled").hint("use `toyo alarm history` to look for the error")
         }
         Ok(Status { error: code, .. }) => {
             let error = errors::explain(code);
             fail(&format!("an error occurred ({})", error.in_a_line()))
-                .hint(refusal::cure(error.remedy))
+                .hint(format!("{}; see `armctl explain toyo {code:02X}`", refusal::cure(error.remedy)))
                 .code(format!("{code:02X}"))
         }
         Err(failure) => fail(&format!("an error occurred, but its code could not be read: {}", failure.message))
-            .hint("`toyo alarm list` shows the error"),
+            .hint("use `toyo alarm list` to see the error"),
     }
 }
 
-/// Position of rest of axes that are being stopped; the last position if it cannot be read.
+/// Position at rest of axes that are being stopped. If it cannot be read, the last known position.
 async fn wait_for_rest(link: &mut Link, last_position: Option<Coordinates>, letters: Letters) -> Option<Coordinates> {
     let mut last = last_position?;
     for _ in 0..MAX_READS_TO_REST {
@@ -211,14 +216,15 @@ async fn wait_for_rest(link: &mut Link, last_position: Option<Coordinates>, lett
     Some(last)
 }
 
-/// Current step with its number; `None` if the controller does not report it.
+/// Reads the current step and its number; `None` if the controller does not report the step.
 pub(super) async fn step(link: &mut Link) -> Result<Option<(i32, String)>, Failure> {
     let Ok(record) = steps::numbered(link, 0).await? else { return Ok(None) };
     let text = record.text("text").unwrap_or_default().to_owned();
     Ok(record.number("step").map(|number| (number, text)))
 }
 
-/// Whether the status reaches the commanded state within a second. A dry run records the request.
+/// Waits up to a second until the status meets the condition, and returns whether it does. A dry run records the
+/// request.
 pub(super) async fn wait_for_status(
     link: &mut Link,
     (page, about): (u8, &str),
@@ -237,7 +243,7 @@ pub(super) async fn wait_for_status(
             Err(failure) if is_late || failure.kind != Kind::Refused => {
                 let message = format!("the command was accepted, but its result is unknown: {}", failure.message);
                 return Err(Failure { kind: Kind::OutcomeUnknown, message, ..failure }
-                    .hint("`toyo status` shows the state of the controller"));
+                    .hint("use `toyo status` to see the state of the controller"));
             }
             _ => tokio::time::sleep(POLL_INTERVAL).await,
         }
@@ -248,12 +254,12 @@ pub(super) fn position_request() -> Request {
     Request::bare(Command::Mpst)
 }
 
-/// Progress output: continuous on a terminal, otherwise only when the work halts.
+/// Progress output. On a terminal it is continuous; otherwise it is printed only when the work halts.
 struct ProgressReporter {
     doing: &'static str,
     progress: Progress,
     screen: Screen,
-    /// Inputs at the last read.
+    /// Inputs page of the status, as it was read last.
     inputs: u8,
     step: String,
     halted: Option<&'static str>,
@@ -282,11 +288,11 @@ impl ProgressReporter {
     }
 }
 
-/// State of the watched work from its acceptance to its end.
+/// State of the work that is watched, from its acceptance to its end.
 #[derive(Debug)]
 struct WorkState {
     work: Work,
-    /// Whether the status has shown the work.
+    /// Whether a read of the status has shown the work.
     has_started: bool,
     last: Option<Record>,
 }
@@ -302,16 +308,16 @@ enum WorkEvent {
     Failed(WaitFailure),
 }
 
-/// Reason that work does not complete.
+/// Why work does not complete.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum WaitFailure {
-    /// An error is present.
+    /// An error occurred.
     Error,
-    /// The return to origin has ended, and the origin is unknown.
+    /// The return to origin has ended, but the origin is unknown.
     NoOrigin,
-    /// The status did not show a start.
+    /// The status did not show that the return to the origin began.
     NoStart,
-    /// The status did not show the work; it can have ended before the first read.
+    /// The status did not show the work. The work may have ended before the first read.
     NeverStarted,
 }
 
@@ -320,8 +326,8 @@ impl WorkState {
         Self { work, has_started: false, last: None }
     }
 
-    /// Evaluates one read. The position was read after the status, so it is final once the status shows no execution.
-    /// The start can appear late, and short work may not appear at all.
+    /// Evaluates one read. The position was read after the status, so it is final when the status shows no execution.
+    /// The status can show the start late, and may not show short work at all.
     fn evaluate(&mut self, elapsed: Duration, status: Status, coordinates: Option<Record>) -> WorkEvent {
         let moves = self.last.is_some() && self.last != coordinates;
         self.last = coordinates;
@@ -332,7 +338,7 @@ impl WorkState {
             Work::Card => status.card_reading() || status.card_writing(),
             _ => moves || status.executing() || status.homing(),
         };
-        // A pause by an input ends by itself; a stop does not.
+        // A pause by an input ends without a command. A stop does not.
         if busy || (status.paused() && status.pause_input()) {
             self.has_started = true;
             return WorkEvent::Running;
@@ -342,7 +348,7 @@ impl WorkState {
             _ if !is_over => WorkEvent::Running,
             (Work::Home, true) if !status.homed() => WorkEvent::Failed(WaitFailure::NoOrigin),
             (Work::Home, false) if !status.homed() => WorkEvent::Failed(WaitFailure::NoStart),
-            // A program that is paused at a stop has run.
+            // If a program is paused at a STOP, it has run.
             (Work::Program, false) if !status.paused() => WorkEvent::Failed(WaitFailure::NeverStarted),
             _ => WorkEvent::Ended,
         }

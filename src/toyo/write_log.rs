@@ -1,7 +1,8 @@
 //! Log of EEPROM writes, to detect a loop of writes to one cell within a connection or in a script.
 //!
-//! A cell takes about a million writes (TO 2-1, note 2), which a loop of ten per second reaches in a day. The log in
-//! the state folder of the user covers ten minutes. If it cannot be saved, only the warning is lost.
+//! A cell lasts for about a million writes (TO 2-1, note 2). A loop with ten writes per second reaches this number in a
+//! day. The log is in the state folder of the user and covers ten minutes. If it cannot be saved, there is no warning,
+//! but no other effect.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -13,24 +14,24 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use armctl_files as files;
 use armctl_frame::local_names::state_folder;
 
-/// Number of writes to one cell over one link that causes a warning.
+/// Number of writes to one cell over one link at which a warning is printed.
 const LOOP: u32 = 3;
-/// The same over several links, for which a person can be the reason.
+/// The same number for several links. A person can be the reason for such writes, so it is larger.
 const LOOP_OF_COMMANDS: u32 = 10;
-/// Period of the log.
+/// Period that the log covers.
 const WINDOW: Duration = Duration::from_secs(600);
-/// A longer log is written again without old lines.
+/// If the log is longer than this, it is written again without old lines.
 const SIZE: u64 = 64 * 1024;
-/// Size limit of the log.
+/// Maximum size of the log.
 const MOST: u64 = 16 << 20;
 
-/// Number of writes to each cell.
+/// Counter of the writes to each cell.
 #[derive(Debug, Default)]
 pub struct WriteLog {
     log: Option<LogFile>,
     /// Writes of this link.
     own: HashMap<String, u32>,
-    /// Writes of other links in the period; read at the first write.
+    /// Writes of other links in the period. They are read at the first write.
     counts_of_others: Option<HashMap<String, u32>>,
 }
 
@@ -42,18 +43,18 @@ struct LogFile {
 }
 
 impl WriteLog {
-    /// Counts for a robot, with a log in the state folder of the user if there is one.
+    /// Counts for a robot. The log is in the state folder of the user, if there is such a folder.
     pub fn of(robot: &str) -> Self {
         let log = |folder: PathBuf| LogFile { path: folder.join("eeprom-writes"), robot: robot.to_owned() };
         Self { log: state_folder().map(log), ..Self::default() }
     }
 
-    /// Counts without a log, for a simulator in this process.
+    /// Creates a counter without a log, for a simulator in this process.
     pub fn without_file() -> Self {
         Self::default()
     }
 
-    /// Counts a write to a cell. Returns a warning for too many writes.
+    /// Counts a write to a cell. Returns a warning if there are too many writes.
     pub fn written(&mut self, cell: &str) -> Option<String> {
         let log = self.log.as_ref();
         let counts_of_others =
@@ -75,7 +76,7 @@ impl WriteLog {
     /// Adds the writes of this link to the log.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// If the file cannot be written.
     pub fn keep(&mut self) -> std::io::Result<()> {
         let own = std::mem::take(&mut self.own);
         match &self.log {
@@ -97,7 +98,7 @@ fn entry(line: &str) -> Option<(u64, u32, &str, &str)> {
 }
 
 impl LogFile {
-    /// Recent writes to each cell of the robot.
+    /// Returns the number of recent writes to each cell of the robot.
     fn read(&self, now: u64) -> HashMap<String, u32> {
         let mut counts = HashMap::new();
         for (_, count, robot, cell) in recent_lines(&content(&self.path), now).filter_map(entry) {
@@ -121,11 +122,11 @@ impl LogFile {
             // Writing to a string cannot fail.
             let _ = writeln!(lines, "{now}\t{count}\t{}\t{cell}", self.robot.replace(['\t', '\n'], " "));
         }
-        // One append keeps the lines of concurrent commands whole.
+        // All lines are appended in one write, so that the lines of concurrent commands do not mix.
         fs::OpenOptions::new().create(true).append(true).open(&self.path)?.write_all(lines.as_bytes())
     }
 
-    /// Removes old lines.
+    /// Removes the lines that are older than the period.
     fn shorten(&self, now: u64) -> std::io::Result<()> {
         let text = content(&self.path);
         let mut draft = files::draft_in(&files::folder_of(&self.path))?;
@@ -137,12 +138,12 @@ impl LogFile {
     }
 }
 
-/// Text of the log; empty if it cannot be read.
+/// Reads the text of the log; empty if it cannot be read.
 fn content(path: &Path) -> String {
     files::text(path, MOST).unwrap_or_default()
 }
 
-/// Lines of the period.
+/// Lines that are within the period.
 fn recent_lines(text: &str, now: u64) -> impl Iterator<Item = &str> {
     let since = now.saturating_sub(WINDOW.as_secs());
     text.lines().filter(move |line| entry(line).is_some_and(|(time, ..)| (since..=now).contains(&time)))

@@ -2,15 +2,15 @@
 
 use thiserror::Error;
 
-/// Malformed message: the first field that is wrong.
+/// Error of a malformed message. It describes the first wrong field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("{field} at offset {offset}: {problem}")]
 pub struct WireError {
-    /// The field.
+    /// Name of the field.
     pub field: &'static str,
     /// Offset of the field from the start of the message, or of the part that was read.
     pub offset: usize,
-    /// What is wrong with it.
+    /// What is wrong with the field.
     pub problem: Problem,
 }
 
@@ -37,7 +37,7 @@ pub enum Problem {
         /// The value.
         found: u32,
     },
-    /// A value that contradicts the rest of the message.
+    /// A value that contradicts another part of the message.
     #[error("is {found:#04x}, not {expected:#04x}")]
     Differs {
         /// The value.
@@ -135,7 +135,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Error of the field of `len` bytes that was just read.
+    /// Returns an error for the field of `len` bytes that was just read.
     pub fn wrong(&self, field: &'static str, len: usize, found: impl Into<u32>) -> WireError {
         WireError::value(field, self.at.saturating_sub(len), found)
     }

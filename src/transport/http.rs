@@ -1,7 +1,8 @@
-//! Minimal HTTP/1.1 server for a few texts: one request per connection, no request bodies.
+//! Minimal HTTP/1.1 server for short texts: one request per connection, no request bodies.
 //!
-//! All resources are limited: `WITHIN` per connection, `HEAD` bytes per request, `MOST` open connections. A new
-//! connection is always served: if necessary, the oldest one without an answer in progress is closed.
+//! All resources are limited: the time per connection (`WITHIN`), the bytes per request (`HEAD`) and the number of open
+//! connections (`MOST`). The server always accepts a new connection. If necessary, it closes the oldest connection
+//! without an answer in progress.
 
 use std::cell::Cell;
 use std::collections::VecDeque;
@@ -17,17 +18,17 @@ use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::time::{sleep, timeout};
 
-/// Longest request head in bytes.
+/// Maximum length of a request head in bytes.
 const HEAD: usize = 8 << 10;
-/// Most lines of a request head.
+/// Maximum number of lines of a request head.
 const LINES: usize = 64;
 /// Time limit of a connection.
 const WITHIN: Duration = Duration::from_secs(10);
-/// Limit of open connections.
+/// Maximum number of open connections.
 const MOST: usize = 32;
-/// Pause when the process has too many open files.
+/// Pause before the next accept if the process has too many open files.
 const FULL: Duration = Duration::from_millis(100);
-/// Limit of bytes read after the answer. Reading them lets the answer reach a client that still sends.
+/// Maximum number of bytes read after the answer. The answer can then reach a client that is still sending.
 const REST: u64 = 64 << 10;
 
 /// A request.
@@ -81,7 +82,7 @@ impl Status {
 }
 
 impl Answer {
-    /// A one-line text.
+    /// Creates a response with a one-line text.
     pub fn text(status: Status, text: &str) -> Self {
         Self { status, kind: "text/plain; charset=utf-8", body: format!("{text}\n") }
     }
@@ -104,17 +105,18 @@ impl Server {
         self.listener.local_addr()
     }
 
-    /// Serves requests; does not end by itself.
+    /// Serves requests. The function returns only after an error.
     ///
     /// # Errors
-    /// No more connections can be accepted.
+    /// The server can accept no more connections.
     pub async fn run(&self, answer: impl Fn(&Request<'_>) -> Answer) -> io::Result<()> {
         let mut peers = FuturesUnordered::new();
         let mut seats = Seats::default();
         loop {
             tokio::select! {
                 biased;
-                // `biased`: requests that have arrived are read before a new connection can close them.
+                // With `biased`, the server reads requests that have arrived before a new connection can evict their
+                // connections.
                 Some(ended) = peers.next() => {
                     if let Ok(number) = ended {
                         seats.free(number);
@@ -125,7 +127,7 @@ impl Server {
                         let (number, is_answered) = (seats.next, Rc::new(Cell::new(false)));
                         let served = serve(stream, &answer, Rc::clone(&is_answered));
                         let (served, close) = abortable(async move {
-                            // An error only concerns the client.
+                            // An error concerns only this client.
                             let _served = timeout(WITHIN, served).await;
                             number
                         });
@@ -172,7 +174,7 @@ impl Seats {
         self.taken.retain(|seat| seat.number != number);
     }
 
-    /// Closes the oldest connection without an answer in progress, otherwise the oldest.
+    /// Closes the oldest connection without an answer in progress. If there is none, closes the oldest connection.
     fn evict(&mut self) {
         let idle = self.taken.iter().position(|seat| !seat.is_answered.get());
         if let Some(seat) = self.taken.remove(idle.unwrap_or(0)) {
@@ -181,7 +183,7 @@ impl Seats {
     }
 }
 
-/// Whether the error concerns only the next client or its network. `accept(2)` also reports these.
+/// Whether an error of `accept(2)` concerns only the next client or its network.
 fn is_passing(error: &io::Error) -> bool {
     use io::ErrorKind::{
         ConnectionAborted, ConnectionReset, HostUnreachable, Interrupted, NetworkDown, NetworkUnreachable, TimedOut,
@@ -233,11 +235,11 @@ async fn serve(
     }
     stream.shutdown().await?;
     is_answered.set(false);
-    // Bytes that arrive after the close would make the system discard the answer, so read them first.
+    // Read the remaining bytes first: if bytes arrived after the close, the system would discard the answer.
     tokio::io::copy(&mut stream.take(REST), &mut tokio::io::sink()).await.map(|_| ())
 }
 
-/// Reads a request and makes the response.
+/// Reads a request and creates the response.
 async fn asked(stream: &mut TcpStream, answer: &impl Fn(&Request<'_>) -> Answer) -> io::Result<Asked> {
     let mut head = Vec::with_capacity(1 << 10);
     loop {
@@ -341,7 +343,7 @@ mod tests {
         let server = Server::bind((Ipv4Addr::LOCALHOST, 0).into()).await.unwrap();
         let address = server.local().unwrap();
         let asked = async {
-            // More connections than the limit; some with half a request.
+            // More connections than the limit; some of them have sent half a request.
             let mut silent = Vec::new();
             for number in 0..MOST + 4 {
                 let mut stream = TcpStream::connect(address).await.unwrap();
@@ -355,7 +357,7 @@ mod tests {
             let mut said = String::new();
             stream.read_to_string(&mut said).await.unwrap();
             assert!(said.ends_with("anything\n"), "{said}");
-            // The oldest five were closed. The others still have time.
+            // The server has closed the oldest five connections. The others are still within their time limit.
             let mut byte = [0; 1];
             for stream in &mut silent[..5] {
                 assert!(stream.read(&mut byte).await.map_or(true, |read| read == 0));

@@ -19,7 +19,8 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// A rate of `baud` bits per second with `bits` bits per character: 11 for 8 data bits, parity and one stop bit.
+    /// Creates a rate of `baud` bits per second with `bits` bits per character. 8 data bits with parity and one stop
+    /// bit are 11 bits per character.
     pub fn new(baud: u32, bits: u32) -> Self {
         Self { baud: baud.max(1), bits: bits.max(1) }
     }
@@ -53,22 +54,22 @@ impl<P: Peer> InProcessLine<P> {
         Self { peer, wire: Wire::new(pace, faults), start: Instant::now() }
     }
 
-    /// The peer, in its state of the last send or receive.
+    /// The peer, in its state after the last send or receive.
     pub fn peer(&self) -> &P {
         &self.peer
     }
 
-    /// Sends bytes to the peer. Returns at once; the bytes are then in transit.
+    /// Sends bytes to the peer. Returns at once, while the bytes are in transit.
     pub fn send(&mut self, bytes: &[u8]) {
         let now = self.start.elapsed();
-        // Earlier events come first.
+        // Events before `now` must be handled first.
         self.wire.run(now, &mut self.peer);
         self.wire.send(now, bytes);
     }
 
-    /// Waits for bytes of the peer, at most until `until`; `None` after a timeout.
+    /// Waits until `until` for bytes of the peer. Returns `None` after a timeout.
     pub async fn receive(&mut self, buffer: &mut [u8], until: Instant) -> Option<usize> {
-        // Without this, a peer that answers at once would leave no pause to handle Ctrl-C.
+        // If a peer answers at once, this call gives the runtime a pause to handle Ctrl-C.
         consume_budget().await;
         loop {
             let now = self.start.elapsed();
@@ -94,7 +95,7 @@ impl<P: Peer> InProcessLine<P> {
     }
 }
 
-/// Both directions of a line between host and peer. It has no clock: the caller passes the time.
+/// Both directions of a line between host and peer. The line has no clock: the caller passes the time.
 #[derive(Debug)]
 pub struct Wire {
     there: Way,
@@ -112,7 +113,7 @@ impl Wire {
         Self { there: Way::new(pace, there), back: Way::new(pace, back), has_echo, time: Duration::ZERO }
     }
 
-    /// Changes the faults. Bytes in transit keep theirs.
+    /// Changes the faults. Bytes that are already in transit keep the old faults.
     pub fn set_faults(&mut self, faults: Option<LineFaultSpec>) {
         self.has_echo = faults.as_ref().is_some_and(|spec| spec.echo);
         (self.there.faults, self.back.faults) = faults.map(LineFaults::pair).unzip();
@@ -147,7 +148,8 @@ impl Wire {
         }
     }
 
-    /// Reads bytes that the host has received by `now`. A character with a parity error reads as NUL, as from a driver.
+    /// Reads bytes that the host has received by `now`. A character with a parity error reads as NUL, like from the
+    /// driver of a serial port.
     pub fn take(&mut self, now: Duration, buffer: &mut [u8]) -> usize {
         let mut taken = 0;
         while let Some(piece) = self.back.next(now, buffer.len() - taken) {
@@ -228,7 +230,7 @@ impl Way {
         Some(run.start.saturating_add(self.pace.map_or(Duration::ZERO, |pace| pace.time(run.taken + 1))))
     }
 
-    /// Returns characters that are complete at `now`, at most `most`.
+    /// Returns at most `most` characters that are complete at `now`.
     fn next(&mut self, now: Duration, most: usize) -> Option<Piece<'_>> {
         while self.runs.front().is_some_and(|run| run.taken == run.passed.bytes.len()) {
             self.runs.pop_front();
@@ -268,7 +270,7 @@ mod tests {
         InProcessLine::new(Mirror::default(), Some(USUAL), Some(faults))
     }
 
-    /// Everything received until a silence of one minute, and the time of the last byte.
+    /// Returns everything received until a silence of one minute, and the time of the last byte.
     async fn all(line: &mut InProcessLine<Mirror>) -> (Vec<u8>, Duration) {
         let (start, mut end, mut bytes) = (Instant::now(), Duration::ZERO, Vec::new());
         let mut buffer = [0; 4096];
@@ -300,7 +302,7 @@ mod tests {
         let mut line = vec![b'x'; 127];
         line.push(b'\n');
         wire.send(Duration::ZERO, &line);
-        // The call comes one second later, but each event has its own time.
+        // The line is run one second later, but each event must have its own time.
         wire.run(Duration::from_secs(1), &mut peer);
         assert_eq!(peer.heard, [(USUAL.time(128), line)]);
         let mut buffer = [0; 256];

@@ -1,4 +1,4 @@
-//! Errors of local resources, before anything reaches a network.
+//! Errors of local resources. They occur before anything reaches a network.
 
 use std::io;
 

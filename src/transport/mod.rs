@@ -1,4 +1,4 @@
-//! Transports: they move bytes or images and do not know their meaning.
+//! Transports: they carry bytes or images without interpreting them.
 //!
 //! Transports and controllers do not depend on each other.
 
@@ -40,7 +40,7 @@ use std::io;
 
 pub use armctl_files::{plain, this_program};
 
-/// Error of a byte stream whose other end is gone.
+/// Returns the error of a byte stream whose other end was closed or unplugged.
 fn vanished(why: impl Display) -> io::Error {
     io::Error::new(io::ErrorKind::NotConnected, why.to_string())
 }

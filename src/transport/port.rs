@@ -1,7 +1,7 @@
-//! Serial port with reads and writes on a blocking thread of tokio, one at a time.
+//! Serial port whose reads and writes run on a blocking thread of tokio, one at a time.
 //!
-//! Only on Unix could tokio's reactor wait for a serial port, and not without unsafe code. A read ends after [`SLICE`],
-//! so a write waits at most that long. All futures are cancel safe: received bytes stay for the next
+//! tokio's reactor could wait for a serial port only on Unix, and only with unsafe code. A read ends after [`SLICE`],
+//! so a write waits at most that long for the port. All futures are cancel safe: received bytes are kept for the next
 //! [`Threaded::receive`], and a started write is completed.
 
 use std::collections::VecDeque;
@@ -14,9 +14,9 @@ use tokio::time::{Instant, timeout_at};
 
 use super::vanished;
 
-/// Longest wait of a read: the timeout that a port must have.
+/// Maximum duration of a read. A port must have this timeout.
 pub(super) const SLICE: Duration = Duration::from_millis(10);
-/// Bytes per read.
+/// Maximum number of bytes per read.
 const PIECE: usize = 1024;
 
 pub(super) type Port = Box<dyn SerialPort>;
@@ -25,17 +25,17 @@ pub(super) type Port = Box<dyn SerialPort>;
 #[derive(Debug)]
 pub(super) struct Threaded {
     state: State,
-    /// Bytes that were read but not received yet.
+    /// Bytes that were read from the port, but not yet returned to the caller.
     arrived: VecDeque<u8>,
 }
 
 #[derive(Debug)]
 enum State {
     Idle(Port),
-    /// A thread has the port. It returns the port with the bytes read.
+    /// A thread uses the port. At its end, the thread returns the port and the bytes that it read.
     Busy {
         job: JoinHandle<(Port, io::Result<Vec<u8>>)>,
-        /// Whether the bytes of this read are dropped.
+        /// Whether to drop the bytes of this read.
         is_stale: bool,
     },
     /// A thread ended without returning the port.
@@ -51,8 +51,8 @@ impl Threaded {
     /// Writes bytes to the port.
     ///
     /// # Errors
-    /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone, [`TimedOut`](io::ErrorKind::TimedOut) if it
-    /// does not accept them within `longest`.
+    /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone, [`TimedOut`](io::ErrorKind::TimedOut) if the
+    /// port does not accept the bytes within `longest`.
     pub(super) async fn send(&mut self, bytes: &[u8], longest: Duration) -> io::Result<()> {
         self.settle().await?;
         let bytes = bytes.to_vec();
@@ -60,7 +60,7 @@ impl Threaded {
         self.settle().await
     }
 
-    /// Waits for bytes, at most until `until`; `None` after a timeout.
+    /// Waits until `until` for bytes. Returns `None` after a timeout.
     ///
     /// # Errors
     /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone.
@@ -101,11 +101,11 @@ impl Threaded {
         };
     }
 
-    /// Waits until the port is returned.
+    /// Waits until the thread returns the port.
     async fn settle(&mut self) -> io::Result<()> {
         match &mut self.state {
             State::Idle(_) => Ok(()),
-            State::Lost => Err(vanished("its thread has ended")),
+            State::Lost => Err(vanished("the thread of the port has ended")),
             State::Busy { job, is_stale } => {
                 let done = job.await;
                 let is_stale = *is_stale;
@@ -127,11 +127,11 @@ impl Threaded {
     }
 }
 
-/// One read; empty after a silence of [`SLICE`].
+/// Reads once from the port. The result is empty after a silence of [`SLICE`].
 fn read(port: &mut Port) -> io::Result<Vec<u8>> {
     let mut bytes = vec![0; PIECE];
     match port.read(&mut bytes) {
-        Ok(0) => Err(vanished("it has ended")),
+        Ok(0) => Err(vanished("the port was closed")),
         Ok(len) => {
             bytes.truncate(len);
             Ok(bytes)
@@ -141,7 +141,7 @@ fn read(port: &mut Port) -> io::Result<Vec<u8>> {
     }
 }
 
-/// Writes all bytes; fails after `longest`.
+/// Writes all bytes. Fails if this takes longer than `longest`.
 fn write(port: &mut Port, mut bytes: &[u8], longest: Duration) -> io::Result<()> {
     let start = std::time::Instant::now();
     while !bytes.is_empty() {
@@ -162,7 +162,7 @@ fn is_pause(error: &io::Error) -> bool {
 }
 
 fn clear(port: &dyn SerialPort) {
-    // This only fails if the port is gone; the next read or write reports that.
+    // The call fails only if the port is gone; the next read or write reports that.
     let _ = port.clear(ClearBuffer::Input);
 }
 
@@ -199,7 +199,7 @@ mod tests {
     #[tokio::test]
     async fn what_came_too_late_is_there_the_next_time() {
         let (mut master, mut port) = pair();
-        // The thread continues to wait after this timeout.
+        // After this timeout, the thread continues its read.
         assert_eq!(port.receive(&mut [0; 8], Instant::now()).await.unwrap(), None);
         assert!(matches!(port.state, State::Busy { .. }));
         master.write_all(b"@OK\r\n").unwrap();
@@ -209,7 +209,7 @@ mod tests {
     #[tokio::test]
     async fn what_has_arrived_can_be_discarded_wherever_it_is() {
         let (mut master, mut port) = pair();
-        // Half of the bytes are in the driver, the other half was read but not received.
+        // Half of the bytes are in the driver. The other half was read from the driver, but not received by the test.
         master.write_all(&[b'x'; 64]).unwrap();
         assert_eq!(port.receive(&mut [0; 8], soon()).await.unwrap(), Some(8));
         master.write_all(&[b'x'; 64]).unwrap();
@@ -234,7 +234,7 @@ mod tests {
     #[tokio::test]
     async fn a_send_that_is_dropped_goes_out_whole() {
         let (mut master, mut port) = pair();
-        // Polled once and then dropped, as with Ctrl-C.
+        // The future is polled once and then dropped, as after Ctrl-C.
         assert!(port.send(b"@STOP\r\n", STUCK).now_or_never().is_none());
         let mut got = [0; 7];
         master.read_exact(&mut got).unwrap();

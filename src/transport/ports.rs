@@ -1,4 +1,4 @@
-//! List of the serial ports of this computer. No port is opened for it.
+//! List of the serial ports of this computer. The ports are not opened.
 
 use std::collections::HashMap;
 use std::io;
@@ -11,9 +11,9 @@ use armctl_files as files;
 /// A serial port.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PortInfo {
-    /// Name to open the port: `/dev/ttyUSB0`, `COM3`.
+    /// Name that opens the port, for example `/dev/ttyUSB0` or `COM3`.
     pub name: String,
-    /// Name that does not depend on other devices (Linux).
+    /// Name that stays the same when other devices are connected (Linux only).
     pub stable_name: Option<String>,
     /// Type of the port.
     pub kind: PortKind,
@@ -39,11 +39,11 @@ pub enum PortKind {
     Pci,
     /// A Bluetooth link.
     Bluetooth,
-    /// On the mainboard, or unknown.
+    /// A port on the mainboard, or of unknown type.
     Unknown,
 }
 
-/// Folders of Linux with the terminals and with their stable names.
+/// Linux folders: the terminals, and the links with their stable names.
 const TERMINALS: &str = "/sys/class/tty";
 const STABLE_NAMES: &str = "/dev/serial/by-id";
 
@@ -56,25 +56,25 @@ pub struct PortUser {
     pub name: String,
 }
 
-/// Folder of Linux with the processes and their open files.
+/// Linux folder with the processes and their open files.
 const PROCESSES: &str = "/proc";
-/// Size limit of a `fdinfo` file, which has a few lines.
+/// Size limit of a `fdinfo` file. Such a file has a few lines.
 const LONGEST_FDINFO: u64 = 64 << 10;
 /// Folder of the pseudo-terminals.
 const PSEUDO_TERMINALS: &str = "/dev/pts";
 
-/// How a process uses a port, in rising order of exclusiveness.
+/// How a process uses a port, in ascending order of exclusiveness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Usage {
-    /// It has the other end of the pseudo-terminal open, as a simulator does.
+    /// The process has the other end of the pseudo-terminal open, as a simulator does.
     OtherEnd,
-    /// It has the port open.
+    /// The process has the port open.
     Opened,
-    /// It has the port locked.
+    /// The process has the port locked.
     Locked,
 }
 
-/// The process that blocks a port. Only on Linux, and only for processes of the same user.
+/// Returns the process that blocks a port. Works only on Linux, and only for processes of the same user.
 pub fn user(path: &str) -> Option<PortUser> {
     let port = std::fs::canonicalize(path).ok()?;
     let processes = std::fs::read_dir(PROCESSES).ok()?.flatten();
@@ -86,7 +86,7 @@ pub fn user(path: &str) -> Option<PortUser> {
     Some(PortUser { pid, name: name.trim().to_owned() })
 }
 
-/// How a process uses a port; `None` if it does not.
+/// Returns how a process uses a port; `None` if the process does not use it.
 fn usage(process: &Path, port: &Path) -> Option<Usage> {
     let mut usage = None;
     let mut has_other_end = false;
@@ -139,14 +139,15 @@ fn kind(kind: SerialPortType) -> PortKind {
 /// Size limit of a sysfs file: one page.
 const LONGEST_TYPE: u64 = 4096;
 
-/// Linux has names for ports that do not exist; their type is 0.
+/// Whether the port exists. Linux also has names for ports that do not exist; their type is 0.
 fn has_hardware(name: &str) -> bool {
     let Some(name) = Path::new(name).file_name() else { return true };
     let kind = files::text(&Path::new(TERMINALS).join(name).join("type"), LONGEST_TYPE);
     kind.map_or(true, |kind| kind.trim() != "0")
 }
 
-/// Target of each link in a folder, with the name of the link. If several links have one target, the first by name.
+/// Returns the target of each link in a folder, with the name of the link. If several links have the same target, the
+/// first name in alphabetical order is used.
 fn stable_names(folder: &Path) -> io::Result<HashMap<PathBuf, String>> {
     let entries = match std::fs::read_dir(folder) {
         Ok(entries) => entries,
@@ -200,7 +201,7 @@ mod tests {
                 let names: std::collections::HashSet<&str> = ports.iter().map(|port| port.name.as_str()).collect();
                 assert_eq!(names.len(), ports.len(), "{ports:?}");
             }
-            // A computer without this folder.
+            // This computer does not have the folder.
             Err(error) => assert!(error.to_string().contains(TERMINALS), "{error}"),
         }
     }

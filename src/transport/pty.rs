@@ -1,4 +1,4 @@
-//! Controlling end of a pseudo-terminal; a program that opens the port is connected to it. Unix only.
+//! Controlling end of a pseudo-terminal. A program that opens the port is connected to this end. Unix only.
 
 #[cfg(unix)]
 pub(super) use unix::Pty;
@@ -18,23 +18,24 @@ mod unix {
 
     /// Bytes per write.
     const PIECE: usize = 128;
-    /// Limit of unread bytes. It is below the buffer size of the system, so that a write never blocks (4096 on Linux,
-    /// 1024 elsewhere).
+    /// Maximum number of unread bytes. It is smaller than the buffer of the system (4096 bytes on Linux, 1024
+    /// elsewhere), so that a write never blocks.
     const MOST_UNREAD: u32 = if cfg!(target_os = "linux") { 3072 } else { 768 };
-    /// Timeout of a read, after which it is repeated. The value does not matter.
+    /// Timeout of a read. The read is repeated after it, so the value is not important.
     const LONG: Duration = Duration::from_secs(3600);
 
     #[derive(Debug)]
     pub(crate) struct Pty {
         reader: Threaded,
-        /// Writes while a thread has the reader.
+        /// Second handle for writes while a thread uses the reader.
         writer: TTYPort,
-        /// The port, kept open. Otherwise the other end would report end of file while no program has it open.
+        /// The port, which stays open here. Otherwise a read at this end would return end of file while no program has
+        /// the port open.
         port: TTYPort,
     }
 
     impl Pty {
-        /// Creates a pseudo-terminal. Also returns the path of its port.
+        /// Creates a pseudo-terminal. Returns it with the path of its port.
         pub(crate) fn open() -> io::Result<(Self, String)> {
             let (mut writer, port) = TTYPort::pair()?;
             let mut reader = writer.try_clone_native()?;
@@ -52,7 +53,7 @@ mod unix {
             }
         }
 
-        /// Writes bytes without waiting. If too many bytes are unread, they are lost, as on a real line.
+        /// Writes bytes without waiting. If too many bytes are unread, the new bytes are lost, as on a real line.
         pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
             for piece in bytes.chunks(PIECE) {
                 if self.port.bytes_to_read()? > MOST_UNREAD {

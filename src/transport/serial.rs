@@ -1,8 +1,8 @@
 //! Serial port of this computer.
 //!
 //! The port is opened exclusively, without flow control. On Unix, a character with a parity or framing error reads as
-//! NUL (`INPCK` on, `PARMRK` and `IGNPAR` off). Windows delivers it unchanged. Only the protocol can detect such a
-//! character.
+//! NUL (`INPCK` on, `PARMRK` and `IGNPAR` off). Windows delivers the damaged character unchanged. Only the protocol can
+//! detect such a character.
 
 use std::io;
 use std::time::Duration;
@@ -16,15 +16,15 @@ use super::line::Pace;
 use super::port::{SLICE, Threaded};
 use super::ports::ports;
 
-/// Time limit for a stuck write, in addition to the transmission time.
+/// Time limit for a blocked write, in addition to the transmission time.
 const STUCK: Duration = Duration::from_secs(2);
-/// Largest deviation of the baud rate in 1/1000. A receiver fails at about 40.
+/// Maximum deviation of the baud rate in thousandths. A receiver fails at about 40.
 pub(super) const MOST_OFF: u32 = 30;
 
 /// A port and its settings.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Line {
-    /// `/dev/ttyUSB0`, `COM3`.
+    /// Name of the port, for example `/dev/ttyUSB0` or `COM3`.
     pub path: String,
     /// Bits per second.
     pub baud: u32,
@@ -51,10 +51,10 @@ pub enum OpenError {
     /// The device or its hardware does not exist.
     #[error("no such port")]
     Absent,
-    /// Another program has it open.
+    /// Another program has the port open.
     #[error("another program uses the port")]
     Busy,
-    /// No permission.
+    /// The user has no permission.
     #[error("no permission to open the port")]
     Forbidden,
     /// Not a serial port, for example a file.
@@ -68,7 +68,7 @@ pub enum OpenError {
     Io(#[from] io::Error),
 }
 
-/// An open port. Its futures are cancel safe: received bytes are not lost, a started send is completed.
+/// An open port. Its futures are cancel safe: received bytes are not lost, and a started send is completed.
 #[derive(Debug)]
 pub struct Serial {
     port: Threaded,
@@ -76,21 +76,21 @@ pub struct Serial {
 }
 
 impl Serial {
-    /// Opens a port, and drops old received bytes.
+    /// Opens a port, and discards bytes that were received before.
     pub fn open(line: &Line) -> Result<Self, OpenError> {
         Ok(Self { port: Threaded::new(open(line, MOST_OFF)?), pace: line.pace() })
     }
 
-    /// Sends bytes. The driver can still be sending when this returns.
+    /// Sends bytes. The driver may still be sending when this function returns.
     ///
     /// # Errors
-    /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone, [`TimedOut`](io::ErrorKind::TimedOut) if it
-    /// accepts no bytes for two seconds.
+    /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone, [`TimedOut`](io::ErrorKind::TimedOut) if the
+    /// port accepts no bytes for two seconds.
     pub async fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.port.send(bytes, self.pace.time(bytes.len()) + STUCK).await
     }
 
-    /// Waits for bytes, at most until `until`; `None` after a timeout.
+    /// Waits until `until` for bytes. Returns `None` after a timeout.
     ///
     /// # Errors
     /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone.
@@ -104,14 +104,15 @@ impl Serial {
     }
 }
 
-/// Opens a port and drops old received bytes. `most_off` limits the deviation of the baud rate in 1/1000.
+/// Opens a port, and discards bytes that were received before. `most_off` is the maximum deviation of the baud rate in
+/// thousandths.
 pub(super) fn open(line: &Line, most_off: u32) -> Result<Box<dyn SerialPort>, OpenError> {
     let port = serialport::new(&line.path, nominal_baud(line))
         .data_bits(line.data_bits)
         .parity(line.parity)
         .stop_bits(line.stop_bits)
         .flow_control(FlowControl::None)
-        // Converters without a power supply take power from DTR. Unix raises DTR anyway.
+        // Converters without their own power supply take power from DTR. Unix always raises DTR.
         .dtr_on_open(true)
         .timeout(SLICE)
         .open()
@@ -121,7 +122,7 @@ pub(super) fn open(line: &Line, most_off: u32) -> Result<Box<dyn SerialPort>, Op
     Ok(port)
 }
 
-/// macOS fails to set the baud rate of a pseudo-terminal.
+/// The baud rate with which to open the port. macOS fails to set the baud rate of a pseudo-terminal.
 fn nominal_baud(line: &Line) -> u32 {
     if cfg!(target_os = "macos") && is_pseudo_terminal(&line.path) { 0 } else { line.baud }
 }
@@ -132,7 +133,8 @@ fn is_pseudo_terminal(path: &str) -> bool {
     path.starts_with("/dev/pts") || (cfg!(target_os = "macos") && path.to_string_lossy().starts_with("/dev/ttys"))
 }
 
-/// Some drivers accept unsupported settings without an error, so read the settings back.
+/// Compares the settings of the port with the requested ones. Some drivers accept unsupported settings without an
+/// error.
 fn check(port: &dyn SerialPort, line: &Line, most_off: u32) -> Result<(), OpenError> {
     if is_pseudo_terminal(&line.path) {
         return Ok(());
@@ -140,7 +142,7 @@ fn check(port: &dyn SerialPort, line: &Line, most_off: u32) -> Result<(), OpenEr
     let unsupported = |what: String| Err(OpenError::Unsupported(what));
     let baud = port.baud_rate().map_err(io::Error::from)?;
     if u64::from(baud.abs_diff(line.baud)) * 1000 > u64::from(line.baud) * u64::from(most_off) {
-        return unsupported(format!("{} baud (it has set {baud})", line.baud));
+        return unsupported(format!("{} baud (the driver set {baud})", line.baud));
     }
     if port.data_bits().map_err(io::Error::from)? != line.data_bits {
         return unsupported(format!("{} data bits", u8::from(line.data_bits)));
@@ -156,12 +158,12 @@ fn check(port: &dyn SerialPort, line: &Line, most_off: u32) -> Result<(), OpenEr
 
 fn open_error(error: &serialport::Error, path: &str) -> OpenError {
     match error.kind {
-        // On Unix, another program has the lock. Windows reports an absent port in the same way.
+        // On Unix, this kind means that another program has locked the port. Windows also uses it for an absent port.
         ErrorKind::NoDevice if cfg!(unix) || is_listed(path) => OpenError::Busy,
         ErrorKind::NoDevice | ErrorKind::Io(io::ErrorKind::NotFound) => OpenError::Absent,
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => OpenError::Forbidden,
-        // The crate has no kinds for these errors, but its texts are fixed and not translated. "I/O error" means a port
-        // of the mainboard that does not exist.
+        // The crate has no error kinds for these errors. Its texts are fixed and not translated. "I/O error" means a
+        // port of the mainboard that does not exist.
         _ => match error.description.as_str() {
             "No such device" | "No such device or address" | "I/O error" => OpenError::Absent,
             "Operation not permitted" => OpenError::Forbidden,
@@ -297,14 +299,14 @@ mod tests {
         let settings = |line: Line| check(&slave, &line, MOST_OFF).err().map(|error| error.to_string());
         assert_eq!(settings(Line { baud: 38_400, ..usual.clone() }), None);
         for (line, what) in [
-            (Line { baud: 40_000, ..usual.clone() }, "40000 baud (it has set 38400)"),
+            (Line { baud: 40_000, ..usual.clone() }, "40000 baud (the driver set 38400)"),
             (Line { parity: Parity::Even, baud: 38_400, ..usual.clone() }, "parity even"),
             (Line { data_bits: DataBits::Seven, baud: 38_400, ..usual.clone() }, "7 data bits"),
             (Line { stop_bits: StopBits::Two, baud: 38_400, ..usual }, "2 stop bits"),
         ] {
             assert_eq!(settings(line), Some(format!("the port does not support these settings: {what}")));
         }
-        // Close enough for one bus, but not for the other.
+        // The deviation is small enough for one of the buses, but not for the other.
         let near = Line { parity: Parity::None, baud: 38_600, ..line("/dev/ttyUSB0") };
         assert!(check(&slave, &near, 6).is_ok() && check(&slave, &near, 3).is_err());
     }

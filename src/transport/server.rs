@@ -1,4 +1,4 @@
-//! UDP server for a [`Service`]; counterpart of [`udp`](super::udp).
+//! UDP server for a [`Service`]. The client side is [`udp`](super::udp).
 
 use std::collections::HashMap;
 use std::io;
@@ -10,7 +10,7 @@ use tokio::time::Instant;
 
 use super::fault::Faults;
 
-/// A service for many clients, such as a simulated controller.
+/// A service for many clients, for example a simulated controller.
 pub trait Service {
     /// Handles a datagram from a client.
     fn receive(&mut self, now: Duration, channel: usize, client: u64, bytes: &[u8]);
@@ -20,9 +20,10 @@ pub trait Service {
     fn wake(&self) -> Option<Duration>;
 }
 
-/// Limit of known clients. Above it, all are dropped, with their datagrams in transit, as UDP allows.
+/// Maximum number of known clients. Above it, the server forgets all clients and drops the datagrams in transit, which
+/// UDP allows.
 const MAX_CLIENTS: usize = 4096;
-/// Larger than any frame, so that oversized datagrams are detected.
+/// Size of the receive buffer: larger than any frame, so that oversized datagrams are detected.
 const BUFFER: usize = 2048;
 
 /// A UDP server with one socket per channel.
@@ -33,12 +34,12 @@ pub struct Server {
     addresses: Vec<SocketAddr>,
     start: Instant,
     faults: Option<(Faults, Faults)>,
-    /// Datagrams delayed by faults: due time, to the service, channel, client, bytes.
+    /// Datagrams delayed by faults: due time, whether the datagram goes to the service, channel, client, bytes.
     delayed: Vec<(Duration, bool, usize, u64, Vec<u8>)>,
 }
 
 impl Server {
-    /// Binds both channels; port 0 lets the system choose.
+    /// Binds the sockets of both channels. With port 0, the system selects a port.
     pub async fn bind(addresses: [SocketAddr; 2], faults: Option<(Faults, Faults)>) -> io::Result<Self> {
         let sockets = [UdpSocket::bind(addresses[0]).await?, UdpSocket::bind(addresses[1]).await?];
         Ok(Self {
@@ -56,17 +57,17 @@ impl Server {
         self.sockets[channel].local_addr()
     }
 
-    /// Time since the start, the clock of the service.
+    /// Time since the start. The service uses this clock.
     pub fn now(&self) -> Duration {
         self.start.elapsed()
     }
 
-    /// Changes the faults: to the service, from the service. Datagrams in transit keep theirs.
+    /// Changes the faults for datagrams to the service and from the service. Datagrams in transit keep the old faults.
     pub fn set_faults(&mut self, faults: Option<(Faults, Faults)>) {
         self.faults = faults;
     }
 
-    /// Waits for one event and handles it. Call it in a loop.
+    /// Waits for one event and handles it. The caller calls this function in a loop.
     pub async fn turn(&mut self, service: &mut impl Service) -> io::Result<()> {
         let mut buffers = [[0; BUFFER]; 2];
         let due = self.delayed.iter().map(|flight| flight.0).chain(service.wake()).min();
@@ -83,7 +84,7 @@ impl Server {
                 let client = self.client(from);
                 self.launch(now, true, channel, client, &buffers[channel][..len]);
             }
-            // A client that is gone (ICMP port unreachable) must not stop the server.
+            // One client that is gone (ICMP port unreachable) must not stop the server.
             Some((_, Err(error))) if is_about_one_client(&error) => {}
             Some((_, Err(error))) => return Err(error),
             None => {}

@@ -1,4 +1,4 @@
-//! Links to an in-process peer, such as a simulated controller.
+//! Links to an in-process peer, for example a simulated controller.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -11,11 +11,11 @@ use tokio::time::Instant;
 
 use super::fault::Faults;
 
-/// A peer that exchanges datagrams or bytes of a stream. A byte stream only has channel 0.
+/// A peer that exchanges datagrams or bytes of a stream. A byte stream has only channel 0.
 pub trait Peer: fmt::Debug {
     /// Handles a datagram or bytes that arrived at `now`.
     fn receive(&mut self, now: Duration, channel: usize, bytes: &[u8]);
-    /// Handles a character with a parity error on a serial line. [`Peer::receive`] does not get it.
+    /// Handles a character with a parity error on a serial line. Such a character is not passed to [`Peer::receive`].
     fn damaged(&mut self, _now: Duration, _channel: usize) {}
     /// Returns the next datagram or bytes due at `now`.
     fn transmit(&mut self, now: Duration) -> Option<(usize, Vec<u8>)>;
@@ -87,7 +87,7 @@ struct InFlight {
 }
 
 impl<P: Peer> InProcess<P> {
-    /// Creates a link to a peer; `faults` are for both directions.
+    /// Creates a link to a peer. `faults` contains the faults of both directions.
     pub fn new(peer: P, faults: Option<(Faults, Faults)>) -> Self {
         let (there, back) = faults.unzip();
         Self { peer, start: Instant::now(), there, back, wire: BinaryHeap::new(), sent: 0 }
@@ -99,9 +99,10 @@ impl<P: Peer> InProcess<P> {
         self.launch(now, true, channel, bytes);
     }
 
-    /// Waits for one datagram of the peer on `channel`. Datagrams on other channels are dropped, as by a closed socket.
+    /// Waits for one datagram of the peer on `channel`. Datagrams on other channels are dropped, as if their sockets
+    /// were closed.
     pub async fn receive(&mut self, channel: usize, buffer: &mut [u8]) -> usize {
-        // Without this, a peer that answers at once would leave no pause to handle Ctrl-C.
+        // If a peer answers at once, this call gives the runtime a pause to handle Ctrl-C.
         consume_budget().await;
         loop {
             let now = self.start.elapsed();

@@ -10,7 +10,7 @@ use super::session::client::{Attached, SessionBusy};
 use super::sim::Peer;
 use super::tcp::Tcp;
 
-/// A byte stream. Its futures are cancel safe: received bytes are not lost, a started send is completed.
+/// A byte stream. Its futures are cancel safe: received bytes are not lost, and a started send is completed.
 #[derive(Debug)]
 pub enum Stream<P> {
     /// A serial port.
@@ -19,12 +19,12 @@ pub enum Stream<P> {
     Tcp(Tcp),
     /// An in-process peer.
     InProcess(Box<InProcessLine<P>>),
-    /// A stream in a session, which several processes share.
+    /// A stream in a session. Several processes share it.
     Session(Box<Attached>),
 }
 
 impl<P: Peer> Stream<P> {
-    /// Waits until this process has exclusive use of the stream, at most until `until`. Cancel safe.
+    /// Waits until `until` for exclusive use of the stream by this process. Cancel safe.
     ///
     /// # Errors
     /// [`SessionBusy`], in a session.
@@ -35,14 +35,14 @@ impl<P: Peer> Stream<P> {
         }
     }
 
-    /// Gives up exclusive use.
+    /// Ends the exclusive use.
     pub fn give(&mut self) {
         if let Self::Session(attached) = self {
             attached.release();
         }
     }
 
-    /// Claims the right to move the robot for this process alone.
+    /// Claims motion for this process: no other process of the session may then move the robot.
     ///
     /// # Errors
     /// [`SessionBusy`], in a session.
@@ -53,14 +53,14 @@ impl<P: Peer> Stream<P> {
         }
     }
 
-    /// Detaches from the stream. A session continues.
+    /// Detaches from the stream. A session keeps its line open.
     pub async fn leave(self) {
         if let Self::Session(attached) = self {
             attached.leave().await;
         }
     }
 
-    /// Sends bytes. They can still be in transit when this returns.
+    /// Sends bytes. The bytes may still be in transit when this function returns.
     ///
     /// # Errors
     /// [`NotConnected`](io::ErrorKind::NotConnected) if the other end is unplugged or closed.
@@ -76,7 +76,7 @@ impl<P: Peer> Stream<P> {
         }
     }
 
-    /// Waits for bytes, at most until `until`; `None` after a timeout.
+    /// Waits until `until` for bytes. Returns `None` after a timeout.
     ///
     /// # Errors
     /// [`NotConnected`](io::ErrorKind::NotConnected) if the other end is unplugged or closed.
@@ -89,13 +89,13 @@ impl<P: Peer> Stream<P> {
         }
     }
 
-    /// Drops received bytes. Bytes in transit still arrive.
+    /// Discards received bytes. Bytes in transit still arrive.
     pub fn discard(&mut self) {
         match self {
             Self::Serial(serial) => serial.discard(),
             Self::Tcp(tcp) => tcp.discard(),
             Self::InProcess(line) => line.discard(),
-            // The host drops old bytes when a client takes the line.
+            // The session host discards old bytes when a client gets exclusive use of the line.
             Self::Session(_) => {}
         }
     }

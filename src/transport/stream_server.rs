@@ -1,4 +1,5 @@
-//! Server that connects a [`Peer`] to a byte stream; counterpart of [`serial`](super::serial) and [`tcp`](super::tcp).
+//! Server that connects a [`Peer`] to a byte stream. The client side is [`serial`](super::serial) and
+//! [`tcp`](super::tcp).
 
 use std::io;
 use std::net::SocketAddr;
@@ -16,7 +17,7 @@ use super::sim::Peer;
 
 /// Bytes per read or write.
 const PIECE: usize = 4096;
-/// Limit of unsent bytes for a TCP client. A client that reads nothing is disconnected.
+/// Maximum number of unsent bytes for a TCP client. A client that reads nothing is disconnected.
 const MOST_UNSENT: usize = 1 << 20;
 
 /// A line with a peer, for one client at a time.
@@ -40,8 +41,8 @@ enum Event {
 }
 
 impl StreamServer {
-    /// Listens on TCP like a device server; port 0 lets the system choose. One client at a time has the line. Further
-    /// clients are disconnected at once, so that they notice.
+    /// Listens on TCP like a device server. With port 0, the system selects a port. One client at a time uses the line.
+    /// Other clients are disconnected at once, so that they get an error.
     pub async fn tcp(
         address: SocketAddr,
         pace: Option<Pace>,
@@ -52,7 +53,7 @@ impl StreamServer {
         Ok((Self::new(End::Tcp(Tcp { listener, client: None, unsent: Vec::new() }), pace, faults), local))
     }
 
-    /// Creates a pseudo-terminal. Also returns the path of its port.
+    /// Creates a pseudo-terminal. Returns it with the path of its port.
     ///
     /// # Errors
     /// [`Unsupported`](io::ErrorKind::Unsupported) on systems without pseudo-terminals.
@@ -65,7 +66,7 @@ impl StreamServer {
         Self { end, wire: Wire::new(pace, faults), start: Instant::now() }
     }
 
-    /// Time since the start, the clock of the peer.
+    /// Time since the start. The peer uses this clock.
     pub fn now(&self) -> Duration {
         self.start.elapsed()
     }
@@ -75,7 +76,8 @@ impl StreamServer {
         self.wire.set_faults(faults);
     }
 
-    /// Serves until the sender of `faults` is dropped, or until the line fails. What it sends are new faults.
+    /// Serves until the sender of `faults` is dropped, or until the line fails. Each value of `faults` replaces the
+    /// faults of the line.
     pub async fn run(&mut self, peer: &mut impl Peer, mut faults: UnboundedReceiver<Option<LineFaultSpec>>) {
         loop {
             tokio::select! {
@@ -88,7 +90,7 @@ impl StreamServer {
         }
     }
 
-    /// Waits for one event and handles it. Call it in a loop.
+    /// Waits for one event and handles it. The caller calls this function in a loop.
     pub async fn turn(&mut self, peer: &mut impl Peer) -> io::Result<()> {
         let mut buffer = [0; PIECE];
         let due = self.wire.due(peer).map(|due| self.start + due);
@@ -100,7 +102,7 @@ impl StreamServer {
         self.wire.run(now, peer);
         match event {
             Some(Event::Sent(len)) => self.wire.send(now, &buffer[..len]),
-            // The former client can no longer receive it.
+            // Bytes in transit are lost: the client to which they were sent is no longer connected.
             Some(Event::Changed) => self.wire.lose(now),
             None => {}
         }
@@ -145,7 +147,7 @@ impl End {
 struct Tcp {
     listener: TcpListener,
     client: Option<TcpStream>,
-    /// Bytes not accepted by the client yet.
+    /// Bytes that the client has not accepted yet.
     unsent: Vec<u8>,
 }
 
@@ -154,17 +156,17 @@ impl Tcp {
         loop {
             let Some(client) = &mut self.client else {
                 let client = accept(&self.listener).await?;
-                // The client can be disconnected already.
+                // The client may already be disconnected.
                 self.client = client.set_nodelay(true).is_ok().then_some(client);
                 return Ok(Event::Changed);
             };
             let (mut reading, mut writing) = client.split();
             tokio::select! {
-                // `biased`: the end of a client is handled before the next one connects.
+                // With `biased`, the end of a client is handled before the next client connects.
                 biased;
                 read = reading.read(buffer) => match read {
                     Ok(len) if len > 0 => return Ok(Event::Sent(len)),
-                    // The reason does not matter.
+                    // The client is gone, for whatever reason.
                     _ => {
                         self.leave();
                         return Ok(Event::Changed);
@@ -179,10 +181,10 @@ impl Tcp {
         }
     }
 
-    /// Writes what the client accepts now, and keeps the rest.
+    /// Writes as many bytes as the client accepts now, and keeps the rest.
     fn write(&mut self, bytes: &[u8]) {
         let Some(client) = &self.client else { return };
-        // The next read reports a failure.
+        // An error is ignored here: the next read reports it.
         let written = if self.unsent.is_empty() { client.try_write(bytes).unwrap_or(0) } else { 0 };
         self.unsent.extend(bytes.get(written..).unwrap_or_default());
         if self.unsent.len() > MOST_UNSENT {
@@ -196,7 +198,7 @@ impl Tcp {
     }
 }
 
-/// The next client that is still connected.
+/// Waits for the next client that is still connected.
 async fn accept(listener: &TcpListener) -> io::Result<TcpStream> {
     loop {
         match listener.accept().await {
@@ -217,7 +219,7 @@ mod tests {
     use super::super::testing::{Mirror, soon};
     use super::*;
 
-    /// Serves while the clients run.
+    /// Runs the server until `clients` ends.
     async fn with<T>(server: &mut StreamServer, peer: &mut Mirror, clients: impl Future<Output = T>) -> T {
         let mut clients = std::pin::pin!(clients);
         loop {
@@ -278,7 +280,7 @@ mod tests {
     #[tokio::test]
     async fn an_answer_on_its_way_to_one_that_left_is_lost() {
         let (mut server, port) = on_loopback().await;
-        // Eleven seconds per character, so the answer is not complete before the test ends.
+        // One character takes eleven seconds, so the answer is not complete before the test ends.
         server.wire = Wire::new(Some(Pace::new(1, 11)), None);
         let mut peer = Mirror::default();
         let client = connect(port).await;
@@ -312,7 +314,7 @@ mod tests {
             let path = path.to_owned();
             let (data_bits, parity, stop_bits) = (DataBits::Eight, Parity::Even, StopBits::One);
             let line = Line { path, baud: 9600, data_bits, parity, stop_bits };
-            // The thread that had the port before may still be closing it.
+            // The thread that used the port before may still be closing it.
             loop {
                 match Serial::open(&line) {
                     Err(OpenError::Busy) => std::thread::yield_now(),
@@ -358,7 +360,7 @@ mod tests {
             for _ in 0..200 {
                 peer.answers.push_back(vec![b'x'; 1000]);
                 server.wire.run(server.now(), &mut peer);
-                // As if an event were due.
+                // Write as if an event were due.
                 let now = server.now();
                 let mut buffer = [0; PIECE];
                 let len = server.wire.take(now, &mut buffer);

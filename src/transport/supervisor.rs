@@ -1,5 +1,5 @@
-//! Notifications to the service manager, `sd_notify(3)`: datagrams to the socket in `NOTIFY_SOCKET`. Without this
-//! variable, nothing is sent.
+//! Notifications to the service manager, `sd_notify(3)`: datagrams to the socket in the variable `NOTIFY_SOCKET`.
+//! Without this variable, nothing is sent.
 
 use std::io;
 use std::time::Duration;
@@ -20,19 +20,19 @@ impl Supervisor {
             return Ok(Self::default());
         };
         let number = |name: &str| std::env::var(name).ok().and_then(|value| value.parse::<u64>().ok());
-        // A child process can inherit the variables of its parent.
+        // A child process can inherit the variables of its parent, so the process id must match.
         let is_own = number("WATCHDOG_PID").is_none_or(|process| process == u64::from(std::process::id()));
         let watchdog = number("WATCHDOG_USEC").filter(|micros| is_own && *micros > 0).map(Duration::from_micros);
         Ok(Self { socket: Some(unix::Socket::named(&name)?), watchdog })
     }
 
-    /// Not supported on this system.
+    /// Returns a supervisor without a service manager, which this system does not support.
     #[cfg(not(unix))]
     pub fn find() -> io::Result<Self> {
         Ok(Self::default())
     }
 
-    /// Interval of the alive messages: half of the watchdog time of the service manager.
+    /// Interval of the keepalive messages: half of the watchdog time of the service manager.
     pub fn pulse(&self) -> Option<Duration> {
         self.watchdog.map(|within| within / 2)
     }
@@ -42,12 +42,12 @@ impl Supervisor {
         self.tell(&format!("READY=1\nSTATUS={status}"))
     }
 
-    /// Reports that the service is alive, with a status text.
+    /// Sends a keepalive with a status text.
     pub fn alive(&self, status: &str) -> io::Result<()> {
         self.tell(&format!("WATCHDOG=1\nSTATUS={status}"))
     }
 
-    /// Reports that the service stops.
+    /// Reports that the service is stopping.
     pub fn stopping(&self) -> io::Result<()> {
         self.tell("STOPPING=1")
     }
@@ -79,7 +79,7 @@ mod unix {
     impl Socket {
         pub fn named(name: &OsStr) -> io::Result<Self> {
             let own = UnixDatagram::unbound()?;
-            // A service manager that does not read must not block this process.
+            // A service manager that reads no messages must not block this process.
             own.set_nonblocking(true)?;
             let to = match name.as_bytes() {
                 [b'@', name @ ..] => in_abstract(name)?,

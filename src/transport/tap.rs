@@ -1,12 +1,12 @@
-//! Writer for pcapng recordings, which Wireshark can open.
+//! Writer for pcapng recordings. Wireshark can open them.
 //!
-//! Datagrams and TCP bytes get synthetic IP and UDP or TCP headers (link type RAW). The addresses are real where known,
-//! so that Wireshark finds the dissector of the port. TCP sequence numbers start with the first recorded byte. The
-//! opening and close of a connection are not recorded.
+//! Datagrams and TCP bytes get synthetic IP and UDP or TCP headers (link type RAW). The addresses are the real ones if
+//! known, so that Wireshark finds the dissector of the port. TCP sequence numbers start with the first recorded byte.
+//! The opening and the close of a connection are not recorded.
 //!
-//! A serial line has no headers. Bytes sent or received together are a packet of link type USER0: a direction byte (0
-//! to the controller, 1 from it), then the bytes. Wireshark shows raw bytes, or uses the dissector set for USER0 under
-//! Preferences, Protocols, DLT_USER, with a header size of 1.
+//! A serial line has no headers. Bytes that were sent or received together form one packet of link type USER0: a
+//! direction byte (0 to the controller, 1 from the controller), then the bytes. Wireshark shows raw bytes, or uses the
+//! dissector set for USER0 under Preferences, Protocols, DLT_USER, with a header size of 1.
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
@@ -40,20 +40,20 @@ impl Direction {
 pub const LINKTYPE_RAW: u16 = 101;
 /// `LINKTYPE_PROFIBUS_DL`: PROFIBUS telegrams, from start to end delimiter.
 pub const LINKTYPE_PROFIBUS_DL: u16 = 257;
-/// `LINKTYPE_USER0`: for private use.
+/// `LINKTYPE_USER0`: reserved for private use.
 const LINKTYPE_USER0: u16 = 147;
-/// Interface numbers, in the order of their blocks.
+/// Interface numbers, in the order of the interface blocks.
 const NETWORK: u32 = 0;
 const LINE: u32 = 1;
-/// Most bytes per TCP segment.
+/// Maximum number of bytes per TCP segment.
 const MOST_IN_SEGMENT: usize = 32 * 1024;
 const SECTION_HEADER: u32 = 0x0A0D_0D0A;
 const INTERFACE: u32 = 1;
 const ENHANCED_PACKET: u32 = 6;
 const BYTE_ORDER_MAGIC: u32 = 0x1A2B_3C4D;
 
-/// An open recording. Each block is written with one call. So several connections can share a file, and a crash loses
-/// no recorded packet.
+/// An open recording. Each block is written with one system call, so that several connections can share a file and a
+/// crash loses no recorded packet.
 #[derive(Debug)]
 pub struct CaptureWriter<W: Write = File> {
     out: W,
@@ -62,18 +62,19 @@ pub struct CaptureWriter<W: Write = File> {
 }
 
 impl CaptureWriter {
-    /// Starts a section at the end of a file, and creates the file if necessary. A file can have many sections.
+    /// Starts a section at the end of a file, and creates the file if necessary. A file can have several sections.
     pub fn append(path: &Path) -> io::Result<Self> {
         Self::new(open(path)?)
     }
 
-    /// Starts a section with this link type: [`LINKTYPE_RAW`], as in [`append`](Self::append), or whole frames.
+    /// Starts a section with this link type: either [`LINKTYPE_RAW`], like [`append`](Self::append), or the link type
+    /// of whole frames.
     pub fn append_packets(path: &Path, link_type: u16) -> io::Result<Self> {
         Self::start(open(path)?, &[link_type])
     }
 
-    /// Starts a section for byte streams: TCP and serial lines. It has two link types, so Wireshark can read the file
-    /// but tcpdump cannot.
+    /// Starts a section for byte streams: TCP and serial lines. The section has two link types, so Wireshark can read
+    /// the file but tcpdump cannot.
     pub fn append_streams(path: &Path) -> io::Result<Self> {
         Self::streams(open(path)?)
     }
@@ -134,12 +135,12 @@ impl<W: Write> CaptureWriter<W> {
         Ok(())
     }
 
-    /// Records a whole frame of the section's link type. `time` is since 1970.
+    /// Records a whole frame. The frame has the link type of the section. `time` is since 1970.
     pub fn frame(&mut self, time: Duration, frame: &[u8]) -> io::Result<()> {
         self.packet(NETWORK, time, frame)
     }
 
-    /// Records bytes of a serial line; only after [`streams`](Self::streams). `time` is since 1970.
+    /// Records bytes of a serial line. The recording must be one of [`streams`](Self::streams). `time` is since 1970.
     pub fn line(&mut self, time: Duration, direction: Direction, bytes: &[u8]) -> io::Result<()> {
         let direction = match direction {
             Direction::Sent => 0,
@@ -166,7 +167,7 @@ impl<W: Write> CaptureWriter<W> {
 /// Sequence number of the first byte of a stream.
 const FIRST: u32 = 1;
 
-/// A pcapng block: type, length, body padded to four bytes, length again.
+/// Returns a pcapng block: type, length, body padded to a multiple of four bytes, length again.
 fn block(kind: u32, mut body: Vec<u8>) -> Vec<u8> {
     body.resize(body.len().next_multiple_of(4), 0);
     let len = length(body.len() + 12).to_le_bytes();
@@ -177,7 +178,7 @@ fn block(kind: u32, mut body: Vec<u8>) -> Vec<u8> {
     block
 }
 
-/// IP header of a packet; IPv6 if the addresses have different versions.
+/// Starts a packet with an IP header. The header is IPv6 if the addresses have different versions.
 fn ip(from: SocketAddr, to: SocketAddr) -> PacketBuilderStep<IpHeaders> {
     const HOPS: u8 = 64;
 
@@ -199,7 +200,7 @@ fn length(len: usize) -> u32 {
 mod tests {
     use super::*;
 
-    /// Type and body of every block.
+    /// Returns type and body of every block.
     fn blocks(bytes: &[u8]) -> Vec<(u32, &[u8])> {
         let (mut blocks, mut rest) = (Vec::new(), bytes);
         while !rest.is_empty() {
@@ -212,7 +213,7 @@ mod tests {
         blocks
     }
 
-    /// Interface and content of a packet block.
+    /// Returns interface and content of a packet block.
     fn content((kind, body): (u32, &[u8])) -> (u32, &[u8]) {
         assert_eq!(kind, ENHANCED_PACKET);
         let word = |at: usize| u32::from_le_bytes(body[at..at + 4].try_into().unwrap());
@@ -246,7 +247,7 @@ mod tests {
         assert_eq!(kinds, [SECTION_HEADER, INTERFACE, ENHANCED_PACKET]);
     }
 
-    /// The Internet checksum (RFC 1071) over data that includes its checksum is 0.
+    /// Whether the Internet checksum (RFC 1071) is correct: over data that includes its checksum, the result is 0.
     fn checks_out(bytes: &[u8]) -> bool {
         let words = bytes.chunks(2).map(|pair| u32::from(pair[0]) << 8 | pair.get(1).map_or(0, |low| u32::from(*low)));
         let sum: u32 = words.sum();

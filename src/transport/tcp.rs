@@ -1,4 +1,4 @@
-//! TCP stream to a serial device server that passes raw bytes (no Telnet, no RFC 2217).
+//! TCP stream to a serial device server that passes on raw bytes (no Telnet, no RFC 2217).
 
 use std::io;
 use std::net::SocketAddr;
@@ -22,7 +22,7 @@ pub enum ConnectError {
     /// The host or its network is unreachable.
     #[error("no route to the host")]
     Unreachable,
-    /// Timeout.
+    /// The host did not answer before the deadline.
     #[error("no answer")]
     TimedOut,
     /// Another error.
@@ -34,7 +34,8 @@ pub enum ConnectError {
 #[derive(Debug)]
 pub struct Tcp {
     stream: TcpStream,
-    /// Rest of a [`Tcp::send`] that was dropped. The next one sends it first, so that no message is incomplete.
+    /// Unsent bytes of a [`Tcp::send`] that was dropped. The next send sends them first, so that no message stays
+    /// incomplete.
     unsent: Vec<u8>,
 }
 
@@ -42,7 +43,7 @@ impl Tcp {
     /// Connects to the first address of the host that answers before `until`.
     ///
     /// # Errors
-    /// [`ConnectError`] of the last address.
+    /// The [`ConnectError`] of the last address.
     pub async fn open(host: &str, port: u16, until: Instant) -> Result<Self, ConnectError> {
         let stream = timeout_at(until, connect(host, port)).await.unwrap_or(Err(ConnectError::TimedOut))?;
         stream.set_nodelay(true)?;
@@ -71,7 +72,7 @@ impl Tcp {
         Ok(())
     }
 
-    /// Waits for bytes, at most until `until`; `None` after a timeout.
+    /// Waits until `until` for bytes. Returns `None` after a timeout.
     ///
     /// # Errors
     /// [`NotConnected`](io::ErrorKind::NotConnected) if the server has closed the connection or is gone.
@@ -86,7 +87,7 @@ impl Tcp {
 
     /// Drops all received bytes.
     pub fn discard(&mut self) {
-        // The next read reports a failure.
+        // An error is ignored here: the next read reports it.
         while self.stream.try_read(&mut [0; 1024]).is_ok_and(|len| len > 0) {}
     }
 }
@@ -148,7 +149,7 @@ mod tests {
         server.write_all(&[b'x'; 5000]).await.unwrap();
         let mut buffer = [0; 64];
         assert_eq!(tcp.receive(&mut buffer, soon()).await.unwrap(), Some(64));
-        // Bytes can still be in transit on the loopback interface.
+        // Some bytes may still be in transit on the loopback interface.
         let mut left = 5000 - 64;
         while left > 0 {
             tcp.stream.readable().await.unwrap();
@@ -164,14 +165,14 @@ mod tests {
         drop(server);
         let error = tcp.receive(&mut [0; 8], soon()).await.unwrap_err();
         assert_eq!(error.kind(), io::ErrorKind::NotConnected);
-        // `discard` neither fails nor hides the error.
+        // `discard` neither fails nor hides the error from the next read.
         tcp.discard();
         assert_eq!(tcp.receive(&mut [0; 8], soon()).await.unwrap_err().kind(), io::ErrorKind::NotConnected);
     }
 
     #[tokio::test]
     async fn a_port_nobody_listens_on_refuses() {
-        // Bound but not listening, so that no other program gets the port.
+        // The socket is bound but not listening: no other program gets the port, and a connection is refused.
         let socket = TcpSocket::new_v4().unwrap();
         socket.bind("127.0.0.1:0".parse().unwrap()).unwrap();
         let port = socket.local_addr().unwrap().port();

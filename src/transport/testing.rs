@@ -7,7 +7,7 @@ use tokio::time::Instant;
 
 use super::sim::Peer;
 
-/// A deadline that no successful operation reaches.
+/// Returns a deadline that no successful operation reaches.
 pub fn soon() -> Instant {
     Instant::now() + Duration::from_secs(60)
 }
@@ -19,7 +19,7 @@ pub fn hex(text: &str) -> Vec<u8> {
     digits.chunks(2).map(byte).collect()
 }
 
-/// Answers each line with its reverse, without delay, and records what it received.
+/// A peer that answers each line with its reverse, without delay, and records the bytes that it receives.
 #[derive(Debug, Default)]
 pub struct Mirror {
     pub line: Vec<u8>,
@@ -50,7 +50,7 @@ impl Peer for Mirror {
     }
 
     fn wake(&self) -> Option<Duration> {
-        // Everything is due at once.
+        // All answers are due at once.
         (!self.answers.is_empty()).then_some(Duration::ZERO)
     }
 }

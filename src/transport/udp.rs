@@ -7,13 +7,13 @@ use tokio::net::UdpSocket;
 use tokio::task::coop::consume_budget;
 use tokio::time::{Instant, timeout_at};
 
-/// Connected sockets: the kernel drops datagrams of other hosts, and reports a closed port.
+/// Connected UDP sockets. With a connected socket, the kernel drops datagrams of other hosts and reports a closed port.
 #[derive(Debug)]
 pub struct Udp {
     channels: Vec<Channel>,
 }
 
-/// A port of the host, with its socket after the first use.
+/// A port of the host. It has a socket after its first use.
 #[derive(Debug)]
 struct Channel {
     peer: SocketAddr,
@@ -23,7 +23,7 @@ struct Channel {
 #[derive(Debug)]
 struct Open {
     socket: UdpSocket,
-    /// Cached, because it is needed for every frame and a system call takes a tenth of a round trip.
+    /// Local address, cached because every frame needs it and a system call takes a tenth of a round trip.
     local: SocketAddr,
 }
 
@@ -40,7 +40,7 @@ impl Udp {
         Ok(Self { channels: channels.collect() })
     }
 
-    /// The same ports with new sockets.
+    /// Creates channels to the same ports with new sockets.
     #[must_use]
     pub fn another(&self) -> Self {
         Self { channels: self.channels.iter().map(|channel| Channel { peer: channel.peer, open: None }).collect() }
@@ -56,7 +56,7 @@ impl Udp {
         self.channels[channel].open.as_ref().map(|open| open.local)
     }
 
-    /// Replaces the socket of a channel, so that no late datagram is received.
+    /// Replaces the socket of a channel, so that no late datagram for the old socket is received.
     pub fn renew(&mut self, channel: usize) {
         self.channels[channel].open = None;
     }
@@ -71,13 +71,13 @@ impl Udp {
         if sent == bytes.len() { Ok(()) } else { Err(io::Error::other("the datagram was cut short")) }
     }
 
-    /// Waits for one datagram, at most until `until`. Bytes beyond `buffer` are dropped.
+    /// Waits until `until` for one datagram. Bytes that do not fit into `buffer` are dropped.
     pub async fn receive(&mut self, channel: usize, buffer: &mut [u8], until: Instant) -> io::Result<Option<usize>> {
         let socket = self.channels[channel].socket().await?;
-        // Lets Ctrl-C and other robots run even if datagrams arrive without a pause.
+        // Other tasks (Ctrl-C, other robots) get time to run even if datagrams arrive without a pause.
         consume_budget().await;
-        // Let a peer on this computer (simulator, proxy) run first. If it answers now, this saves a failed read, a
-        // timer and a reactor wait: a tenth of the round trip. For a remote peer the cost is negligible.
+        // Let a peer on this computer (a simulator or proxy) run first. If the peer answers now, a failed read, a timer
+        // and a wait in the reactor are saved: a tenth of the round trip. For a remote peer, the cost is negligible.
         std::thread::yield_now();
         match socket.try_recv(buffer) {
             Err(error) if error.kind() == io::ErrorKind::WouldBlock => {

@@ -65,7 +65,7 @@ impl Command for List {
         let mut alarms = Vec::new();
         let mut batch = Batch::default();
         for slot in 1..=SLOTS {
-            // The manual does not describe gaps between slots, so all four slots are read.
+            // The manual does not say whether there can be gaps between slots, so all four slots are read.
             let outcome = match read(link, &mut batch, &mut texts, |texts| question(slot, texts)).await? {
                 Ok(alarm) if alarm.is_none() => continue,
                 Ok(alarm) => explain(entry(&alarm, link.encoding, link.model_for_display()), context.robot, link).await,
@@ -80,12 +80,14 @@ impl Command for List {
 }
 
 impl Watchable for List {
+    type Value = bool;
+
     const WATCH: &'static str = "yerc.alarm.watch";
     const WATCHED: Watched =
         Watched { list: "alarms", name: "code", prefix: "alarm ", label: "text", value: None, empty: "no alarm" };
 }
 
-/// Classes of past alarms.
+/// Class of past alarms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Class {
     /// Major failures
@@ -169,8 +171,8 @@ impl Command for History {
     }
 }
 
-/// Alarms in the first `slots` slots, for a live view. `texts` is cleared if the controller has no texts. An alarm
-/// that cannot be read does not hide the others.
+/// Alarms in the first `slots` slots, for a live view. If the controller has no texts, `texts` is set to false. An
+/// alarm that cannot be read does not prevent the report of the others.
 pub(super) async fn present(link: &mut Link, texts: &mut bool, slots: u8) -> Result<Vec<alarm::Alarm>, Failure> {
     let mut alarms = Vec::new();
     let mut batch = Batch::default();
@@ -196,18 +198,19 @@ pub(super) async fn present(link: &mut Link, texts: &mut bool, slots: u8) -> Res
     Ok(alarms)
 }
 
-/// Notes in a dry run the request for the latest alarm.
+/// In a dry run, records the request for the latest alarm.
 pub(super) fn plan_latest(link: &mut Link) -> Result<(), Failure> {
     let request = ReadAlarm::new(1, true).map_err(usage)?.request();
     link.plan_if(&request, Reason::about("the latest alarm").depending_on("whether an alarm is present"));
     Ok(())
 }
 
-/// Notes in a dry run all requests, and the first fallback request for an older controller.
+/// In a dry run, records all requests, and the first fallback request for an older controller.
 fn plan<Q: Query>(link: &mut Link, all: &[Q], texts: bool, older: &Q) -> Result<(), Failure> {
     let item_name = link.plan_all(all);
     if texts && link.is_dry() {
-        let about = "without texts, if the controller has none; all later requests are then without texts";
+        let about = "without alarm texts, if the controller has no texts; armctl then sends all later requests \
+                     without texts";
         link.plan_if(
             &older.request(),
             Reason::about(about).depending_on("whether the controller refuses the previous request"),
@@ -216,8 +219,8 @@ fn plan<Q: Query>(link: &mut Link, all: &[Q], texts: bool, older: &Q) -> Result<
     item_name
 }
 
-/// Reads an alarm with its texts, or without texts after the controller has indicated that it does not support the
-/// command.
+/// Reads an alarm with its texts. After the controller has shown that it does not support the command, reads alarms
+/// without texts.
 async fn read<Q: Query<Answer = payload::Alarm>>(
     link: &mut Link,
     batch: &mut Batch,
@@ -233,9 +236,9 @@ async fn read<Q: Query<Answer = payload::Alarm>>(
     link.ask_in_batch(batch, &question(false)?).await
 }
 
-/// Whether a status can mean that a controller before FS1.14 does not have 0x30A. The manuals do not define the
-/// status, so each of these selects the older command: "command error", "undefined command", undefined instance or
-/// attribute.
+/// Whether a status can mean that the controller is older than FS1.14 and does not have 0x30A. The manuals do not
+/// define this status, so each of these selects the older command: "command error", "undefined command", undefined
+/// instance or attribute.
 fn is_possibly_unsupported(status: Status) -> bool {
     matches!(status.code, 0x01 | 0x08 | 0x09 | 0x28)
         || (status.added_size > 0 && matches!(status.added & 0xFFFF, 0x1010 | 0xA000..=0xA002))
@@ -267,7 +270,7 @@ macro_rules! order {
 order! {
     /// Resets the alarm (FS and DX 3.3.19).
     Reset, "yerc.alarm.reset", query::ResetAlarm, "alarm" = "reset",
-    "alarm reset accepted; `yerc alarm list` shows the remaining alarms"
+    "alarm reset accepted; use `yerc alarm list` to see the remaining alarms"
 }
 order! {
     /// Cancels the error (FS and DX 3.3.19).
@@ -292,7 +295,7 @@ mod tests {
 
     #[test]
     fn reads_the_history_of_each_class_from_a_number() {
-        // 0x71 user alarm (user) 100 is instance 3100 (golden frame R05 reads one field of it).
+        // User alarm (user) 100 of 0x71 is instance 3100 (golden frame R05 reads one field of it).
         assert_eq!(
             frames("alarm history --class user --from 99 --limit 5 --no-texts").unwrap(),
             ["71001b0c00010000", "71001c0c00010000"]

@@ -59,7 +59,7 @@ pub(super) fn groups_of(model: Model) -> impl Iterator<Item = Group> {
     (1..=robots).map(Group::Robot).chain((1..=bases).map(Group::Base)).chain((1..=stations).map(Group::Station))
 }
 
-/// The names of the axes (FS and DX 3.3.5).
+/// Reads the names of the axes (FS and DX 3.3.5).
 #[derive(Debug, Args)]
 pub struct AxesOf {
     /// Control group: R1 …, B1 …, S1 …, or all
@@ -87,7 +87,7 @@ impl Command for AxesOf {
         for group in groups {
             let pulse = ReadAxes::new(model, group, Coordinates::Pulse).map_err(usage)?;
             questions.push(((group, Coordinates::Pulse), pulse));
-            // Stations have pulses only.
+            // Stations have only pulses, and no cartesian coordinates.
             if let Ok(base) = ReadAxes::new(model, group, Coordinates::Base) {
                 questions.push(((group, Coordinates::Base), base));
             }
@@ -118,13 +118,13 @@ impl Command for AxesOf {
     }
 }
 
-/// Names of the axes; the names of unused axes are empty.
+/// Names of the axes. The names of unused axes are empty.
 fn names_of(names: &AxisNames, encoding: Encoding) -> Vec<String> {
     let used_axes = names.names.iter().filter(|name| !name.is_empty());
     used_axes.map(|name| encoding.decode(name.as_bytes())).collect()
 }
 
-/// The axes of control groups.
+/// Names of the axes of control groups.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Configuration {
     groups: Vec<GroupAxes>,
@@ -134,11 +134,11 @@ pub struct Configuration {
 struct GroupAxes {
     /// Control group, such as `R1`.
     group: String,
-    /// Names in pulses; null if the controller refused.
+    /// Axis names in pulse coordinates; null if the controller refused.
     pulse: Option<Vec<String>>,
-    /// Names in cartesian coordinates; null for stations, or if the controller refused.
+    /// Axis names in cartesian coordinates; null for stations, or if the controller refused.
     base: Option<Vec<String>>,
-    /// Refusals for other reasons than a missing group.
+    /// Refusals for another reason than a missing group.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     errors: Vec<ItemError>,
 }
@@ -221,7 +221,7 @@ by_axis! {
     PositionError, "yerc.position-error", ReadPositionError,
     /// Position deviation (following error) of the axes.
     PositionErrors {
-        /// By axis: `s`, `l`, `u`, `r`, `b`, `t`, `e` of a robot, `axis_1` and so on of other groups.
+        /// Deviation for each axis: `s`, `l`, `u`, `r`, `b`, `t`, `e` of a robot, `axis_1` and so on of other groups.
         error_pulses
     }, "error (pulses)"
 }
@@ -230,7 +230,7 @@ by_axis! {
     Torque, "yerc.torque", ReadTorque,
     /// Torque of the axes.
     Torques {
-        /// Raw value by axis, as in `yerc.position`; the manuals define no unit.
+        /// Raw value for each axis, as in `yerc.position`. The manuals define no unit.
         torque_raw
     }, "torque (raw)"
 }

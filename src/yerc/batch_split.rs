@@ -1,4 +1,5 @@
-//! Reads of many items in few requests. A refused run is read again in parts to find the refused items.
+//! Reads many items with few requests. If a run of items is refused, it is read again in parts, to find the items that
+//! were refused.
 
 use std::collections::{HashMap, VecDeque};
 
@@ -9,18 +10,18 @@ use armctl_controller::yerc::variables::PlannedRead;
 use armctl_frame::dry_run::{Reason, unknown};
 use armctl_frame::failure::{Failure, Kind};
 
-/// Division of a refused run.
+/// How a refused run is divided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BatchSplit {
-    /// Halves, because the valid numbers end somewhere.
+    /// Into halves, because the valid numbers end somewhere in the run.
     Halves,
-    /// Single items, because each can be refused, or because the controller has no request for several items.
+    /// Into single items, because each item can be refused, or because the controller has no request for several items.
     Single,
 }
 
 /// Sends the requests of a plan. A refused run is planned and read again in parts, down to the refused items. `parts`
-/// defines how a run is divided. `progress` receives the current items and the number of items known so far. A dry
-/// run notes the plan.
+/// defines how a run is divided. `progress` receives the current items and the number of items known so far. A dry run
+/// records the plan.
 pub async fn read_in_batches<S: PlannedRead>(
     link: &mut Link,
     mut plan: impl FnMut(&[S::Item]) -> Result<Vec<S>, Failure>,
@@ -64,7 +65,7 @@ pub async fn read_in_batches<S: PlannedRead>(
     Ok(known)
 }
 
-/// Whether a request is for one item; it may include others that are not requested.
+/// Whether a request is for only one item. The request may include other items that are not needed.
 fn is_alone<S: PlannedRead>(
     step: &S,
     plan: &mut impl FnMut(&[S::Item]) -> Result<Vec<S>, Failure>,
@@ -73,9 +74,9 @@ fn is_alone<S: PlannedRead>(
     Ok(asked.len() == 1 && plan(asked)?.iter().all(|alone| alone.request() == step.request()))
 }
 
-/// Notes in a dry run the requests of [`read_in_batches`], each run with the requests after a refusal. For a long run
-/// these are its halves, which are divided again, and one request for a single item as an example. `about` is the
-/// purpose of a run.
+/// In a dry run, records the requests of [`read_in_batches`]. Each run is followed by the requests that a refusal would
+/// cause. For a long run, these are its halves, which are divided again, and one request for a single item as an
+/// example. `about` is the purpose of a run.
 pub fn plan_in_batches<S: PlannedRead>(
     link: &mut Link,
     mut plan: impl FnMut(&[S::Item]) -> Result<Vec<S>, Failure>,
@@ -97,17 +98,20 @@ pub fn plan_in_batches<S: PlannedRead>(
             (BatchSplit::Halves, [first, _, .., last]) => {
                 let (one, other) = asked.split_at(asked.len().div_ceil(2));
                 for (half, which) in [(one, "first"), (other, "second")] {
-                    let about = format!("its {which} half, if it is refused; divided again down to single items");
+                    let about = format!("the {which} half of a refused run, divided again down to single items");
                     for step in plan(half)? {
                         link.plan_if(&step.request(), Reason::about(&about).depending_on(REFUSED));
                     }
                 }
-                let about = "each item alone, if the controller has no request for several";
+                let about = "each item alone, if the controller has no request for several items";
                 link.plan_depending(first, last, Reason::about(about).depending_on(REFUSED));
             }
             _ => {
                 for single in &singles {
-                    link.plan_if(single, Reason::about("each item alone, if the run is refused").depending_on(REFUSED));
+                    link.plan_if(
+                        single,
+                        Reason::about("each item alone, if the controller refuses the run").depending_on(REFUSED),
+                    );
                 }
             }
         }
@@ -115,12 +119,12 @@ pub fn plan_in_batches<S: PlannedRead>(
     Ok(())
 }
 
-/// Condition of the requests after a run.
+/// Condition for the requests after a run.
 const REFUSED: &str = "whether the controller refuses the run";
 
-/// Division of a run after this refusal; `None` if a new read would not help.
+/// How a run is divided after this refusal; `None` if another read would not help.
 fn describe_reason(denied: &ReadError, usual: BatchSplit) -> Option<BatchSplit> {
-    /// Added status: "command error", "undefined command".
+    /// Added status codes: "command error", "undefined command".
     const UNKNOWN: [u32; 2] = [0x1010, 0xA000];
     match denied {
         ReadError::Refused(refusal) if refusal.status.code == 0x08 || UNKNOWN.contains(&refusal.status.added) => {

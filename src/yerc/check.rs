@@ -1,4 +1,4 @@
-//! Controller layers of `armctl robots check`.
+//! Checks of `armctl robots check` that are specific to the controller.
 
 use super::link::Link;
 use super::link::Yerc;
@@ -17,7 +17,7 @@ use armctl_frame::{Access, Family as _};
 
 const LAYERS: &[&str] = &["name", "answer", "software", "model", "mode", "command remote", "hold", "alarm", "servo"];
 
-/// Checks the layers; read-only.
+/// Checks the layers. It only reads.
 pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
     let mut layers = Layers::new(robot.label(), LAYERS);
     match Yerc::connect(robot, access, screen).await {
@@ -36,7 +36,7 @@ async fn look(robot: &Robot, link: &mut Link, layers: &mut Layers) {
         Ok(status) => status,
         Err(failure) => return layers.fail("answer", &failure),
     };
-    layers.ok("answer", "answers a status request");
+    layers.ok("answer", "the controller answers a status request");
     match software(link).await {
         Ok(version) => layers.ok("software", version),
         Err(failure) => layers.warn("software", failure.message, failure.hint.unwrap_or_default()),
@@ -48,19 +48,19 @@ async fn look(robot: &Robot, link: &mut Link, layers: &mut Layers) {
         "mode",
         !is_teach,
         ("play", "teach"),
-        "motion and job start need play mode: turn the mode key of the pendant",
+        "turn the mode key of the pendant to PLAY: motion and job start need play mode",
     );
     layers.judge(
         "command remote",
         status.has(StatusBit::CommandRemote),
         ("on", "off"),
-        "the controller refuses changes: turn the mode key to REMOTE and switch CMD REMOTE (#82015) on",
+        "turn the mode key to REMOTE, and switch CMD REMOTE (#82015) on: the controller refuses changes",
     );
     layers.judge(
         "hold",
         !status.held(),
         ("none", "the robot is held"),
-        "`yerc status` shows the source; `yerc hold off` releases a hold by command",
+        "use `yerc status` to see the source; use `yerc hold off` to release a hold by command",
     );
     if status.alarm() || status.error() {
         let what = if status.alarm() { "an alarm is present" } else { "an error is present" };
@@ -69,14 +69,17 @@ async fn look(robot: &Robot, link: &mut Link, layers: &mut Layers) {
         layers.ok("alarm", "none");
     }
     layers.leftover_drafts(&left_over(status));
-    // Unused servo power may be from an earlier client. It is not a fault.
+    // Servo power without motion may come from an earlier client. It is not a fault.
     let is_idle = !status.running() && !status.held() && !is_held(robot);
-    let on =
-        if is_idle { "on; no job is running and no session is open: `yerc servo off` switches it off" } else { "on" };
-    layers.judge("servo", status.servo_on(), (on, "off"), "motion needs servo power: `yerc servo on`");
+    let on = if is_idle {
+        "on, but no job is running and no session is open; use `yerc servo off` to switch servo power off"
+    } else {
+        "on"
+    };
+    layers.judge("servo", status.servo_on(), (on, "off"), "use `yerc servo on`: a motion needs servo power");
 }
 
-/// Checks the model, and its source.
+/// Checks the model, and how the model is known.
 fn model(robot: &Robot, link: &Link, layers: &mut Layers) {
     const NAME: &str = "set the model: ?model=fs100, dx100, dx200 or yrc1000 in the URL, or `armctl robots set NAME \
                         model=…`";
@@ -89,11 +92,11 @@ fn model(robot: &Robot, link: &Link, layers: &mut Layers) {
     match (robot.model.value.named(), by_software) {
         (Some(named), Some(told)) if named != told => layers.warn(
             "model",
-            format!("set to {named}, but the software is that of a {told}"),
-            "remove the model so that armctl reads it from the controller, or set the right model",
+            format!("set to {named}, but the software is for a {told}"),
+            "remove the model, so that armctl reads it from the controller, or set the right model",
         ),
         (Some(named), _) => layers.ok("model", in_words(named, "as named")),
-        (None, Some(told)) => layers.ok("model", in_words(told, "by its software")),
+        (None, Some(told)) => layers.ok("model", in_words(told, "read from the software")),
         (None, None) => match link.known_model() {
             Some(known) => layers.ok("model", in_words(known, "from an earlier connection")),
             None => layers.warn("model", "the controller reports no known model", NAME),
@@ -101,7 +104,7 @@ fn model(robot: &Robot, link: &Link, layers: &mut Layers) {
     }
 }
 
-/// Checks whether stored names belong to this controller.
+/// Checks whether the stored names belong to this controller.
 fn names(robot: &Robot, link: &Link, layers: &mut Layers) {
     let Some(Ok(Some(kept))) = robot.names.cache_file().map(CacheFile::read) else { return };
     match link.told_software().map_or(Ok(()), |software| kept.check(&software)) {
@@ -110,7 +113,7 @@ fn names(robot: &Robot, link: &Link, layers: &mut Layers) {
     }
 }
 
-/// Reads the version of the system software, and the name of the system.
+/// Reads the version of the system software and the name of the system.
 pub(super) async fn software(link: &mut Link) -> Result<String, Failure> {
     let question = link.by_model(|model| ReadSystemInfo::new(model, SystemPart::Group(Group::R1))).await?;
     let encoding = link.encoding;

@@ -7,11 +7,11 @@ use armctl_frame::kind::{Ask, Named, rows, text};
 use armctl_frame::settings::target::Family;
 use armctl_frame::{Candidate, ValueKind};
 
-/// Job on the controller.
+/// A job on the controller.
 pub const JOB: ValueKind = ValueKind::Asked(Family::Yerc, |robot| jobs(robot).boxed_local());
-/// File on the controller.
+/// A file on the controller.
 pub const FILE: ValueKind = ValueKind::Asked(Family::Yerc, |robot| files(robot).boxed_local());
-/// Variable by its name, or the prefix of a variable reference: `B`.
+/// The name of a variable, or the prefix of a variable reference: `B`.
 pub const VARIABLE: ValueKind = ValueKind::Named(
     Family::Yerc,
     Named {
@@ -20,7 +20,7 @@ pub const VARIABLE: ValueKind = ValueKind::Named(
         listed: || VARIABLES.map(|(letters, about)| Candidate::new(letters, about).incomplete()).into(),
     },
 );
-/// Variable with the start of an assignment.
+/// A variable, and the start of an assignment.
 pub const VARIABLE_VALUE: ValueKind = ValueKind::Named(
     Family::Yerc,
     Named {
@@ -29,13 +29,13 @@ pub const VARIABLE_VALUE: ValueKind = ValueKind::Named(
         listed: || VARIABLES.map(|(letters, about)| Candidate::new(letters, about).incomplete()).into(),
     },
 );
-/// Signal by its name.
+/// The name of a signal.
 pub const SIGNAL: ValueKind = named(&[Kind::Signal], &[""]);
-/// Signal with the state to set.
+/// The name of a signal, and the state to set.
 pub const SIGNAL_STATE: ValueKind = named(&[Kind::Signal], &["=on", "=off"]);
-/// Register by its name.
+/// The name of a register.
 pub const REGISTER: ValueKind = named(&[Kind::Register], &[""]);
-/// Register with the start of an assignment.
+/// The name of a register, and the start of an assignment.
 pub const REGISTER_VALUE: ValueKind = named(&[Kind::Register], &["="]);
 
 const fn named(kinds: &'static [Kind], endings: &'static [&'static str]) -> ValueKind {
@@ -68,7 +68,7 @@ async fn files(robot: &dyn Ask) {
     }
 }
 
-/// Names and types of files.
+/// Names and types of the files on the controller.
 async fn files_of(robot: &dyn Ask, kind: &str) -> Vec<(String, String)> {
     let data = robot.data(&["yerc", "file", "list", "--type", kind]).await;
     rows(data.as_ref(), "files").map(|file| (text(file, "name"), text(file, "type"))).collect()

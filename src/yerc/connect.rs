@@ -1,4 +1,4 @@
-//! Connections to the controller of a target: UDP, the simulator, or a session.
+//! Connections to the controller of a target: by UDP, to the simulator, or through a session.
 
 use super::failure::failure;
 use super::link::Yerc;
@@ -45,7 +45,7 @@ pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Cli
         retries: robot.retries.value,
     };
     if access.dry_run {
-        // A dry run knows the model of a simulator from its start state, but does not ask a controller.
+        // In a dry run, the model of a simulator is known from its start state. No controller is asked.
         let simulated = if robot.target.value.is_simulated() { endpoint(robot)?.model() } else { None };
         return Ok(Client::dry_run(Options { model: simulated.or(options.model), ..options }));
     }
@@ -59,8 +59,8 @@ pub async fn open(robot: &Robot, access: &Access, screen: &Screen) -> Result<Cli
     }
 }
 
-/// Opens a connection for a session. A first request checks that a controller answers, because UDP sends without a
-/// receiver as well.
+/// Opens a connection for a session. UDP sends even if there is no receiver, so a first request checks that a
+/// controller answers.
 pub async fn hold_robot(robot: &Robot, access: &Access, screen: &Screen) -> Result<Datagrams, Failure> {
     let robot = &Robot { sessions: Sessions::None, ..robot.clone() };
     let mut link = Yerc::connect(robot, access.clone(), screen).await?;

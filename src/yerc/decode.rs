@@ -21,10 +21,10 @@ use armctl_frame::output::view::{Cell, Section, View};
 /// Decode frames of the high-speed Ethernet server
 #[derive(Debug, Args)]
 #[command(
-    after_help = "An answer does not contain its command: give the request before it, or --command. A damaged frame is \
-                  explained up to the damage, and the exit code is 5.\n\nA capture file lists the frames in the same \
-                  text as --trace. NUMBER and TIME are those of Wireshark. A file without any frames is not an error. \
-                  A damaged file is decoded up to the damage, and the exit code is 1."
+    after_help = "An answer does not contain its command: type the request before the answer, or use --command. A \
+                  damaged frame is explained up to the damage, and the exit code is 5.\n\nFor a capture file, the \
+                  command lists the frames as --trace does. NUMBER and TIME are the same as in Wireshark. A file \
+                  without frames is not an error. A damaged file is decoded up to the damage, and the exit code is 1."
 )]
 pub struct Decode {
     /// Frames in hexadecimal (spaces, colons and 0x are allowed between the bytes), - for stdin with one frame per
@@ -68,9 +68,9 @@ impl decode::Decode for Decode {
 }
 
 impl Decode {
-    /// Bytes of each given frame.
+    /// Bytes of each frame that the user typed.
     fn frames(&self) -> Result<Vec<Vec<u8>>, Failure> {
-        let wrong = |error| Failure::usage(error).hint("give bytes as 59455243… or 59 45 52 43 …");
+        let wrong = |error| Failure::usage(error).hint("type bytes as 59455243… or 59 45 52 43 …");
         let mut pieces = Vec::new();
         if self.hex == ["-"] {
             for line in stdin()?.lines().map(str::trim).filter(|line| !line.is_empty()) {
@@ -84,7 +84,7 @@ impl Decode {
         if frames.is_empty() { Err(wrong("no bytes to decode".to_owned())) } else { Ok(frames) }
     }
 
-    /// Decodes each frame. An answer is decoded with the earlier request of the same id, or with the options.
+    /// Decodes each frame. An answer is decoded with the earlier request that has the same id, or with the options.
     fn explain_frames(&self, frames: &[Vec<u8>]) -> DecodedFrames {
         let mut asked: Vec<(u8, Request)> = Vec::new();
         let mut explained = Vec::new();
@@ -110,7 +110,7 @@ impl Decode {
         DecodedFrames { frames: explained }
     }
 
-    /// Request from the options; its service is in the answer.
+    /// Request that the options describe. Its service is taken from the answer.
     fn request(&self, answer: &[u8]) -> Option<Request> {
         let service = answer.get(SERVICE_AT)?.wrapping_sub(ANSWER_BIT);
         let attribute = match (self.attribute, service) {
@@ -127,11 +127,11 @@ impl Decode {
 pub const ID_AT: usize = 11;
 /// Offset of the service in an answer.
 const SERVICE_AT: usize = 24;
-/// First bytes of every frame.
+/// Bytes at the beginning of every frame.
 pub const IDENTIFIER: &[u8] = b"YERC";
 
-/// Joins arguments that the shell separated at spaces. An argument that starts like a frame, or is as long as a
-/// frame, starts a new frame.
+/// Joins arguments that the shell separated at spaces. A new frame starts with an argument that begins like a frame, or
+/// that is as long as a frame.
 fn join_pieces(arguments: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
     let mut pieces: Vec<Vec<u8>> = Vec::new();
     for bytes in arguments {
@@ -144,7 +144,7 @@ fn join_pieces(arguments: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
     pieces
 }
 
-/// Splits concatenated frames: each has the length in its header, if another frame starts there.
+/// Splits concatenated frames. A frame has the length in its header, if another frame starts at its end.
 fn split(mut bytes: &[u8]) -> Vec<Vec<u8>> {
     let mut frames = Vec::new();
     while let Some(size) = bytes.get(6..8) {
@@ -168,15 +168,15 @@ pub struct DecodedFrames {
 /// Decoded frame.
 #[derive(Debug, Serialize, JsonSchema)]
 struct DecodedFrame {
-    /// One-line description.
+    /// One-line description of the frame.
     title: String,
-    /// Manual and section, if the command is known.
+    /// Manual and section; null if the command is unknown.
     section: Option<String>,
     /// `client` or `controller`.
     sender: &'static str,
     bytes: usize,
     fields: Vec<FieldRow>,
-    /// Problem found in it.
+    /// Problem found in the frame.
     problem: Option<String>,
 }
 
@@ -198,7 +198,7 @@ impl decode::Field for FieldRow {
     const COLUMNS: &'static [&'static str] = &["offset", "size", "field", "raw", "meaning"];
     const NONE: &'static str = "no data";
 
-    /// Long values are cut; JSON has them in full.
+    /// Long values are cut here. JSON has them in full.
     fn cells(&self) -> Vec<Cell> {
         const LONGEST: usize = 32;
 

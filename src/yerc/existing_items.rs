@@ -1,4 +1,4 @@
-//! Several requests of one command, each with its own outcome. A refusal does not hide the other answers.
+//! Several requests of one command, each with its own outcome. If one is refused, the other answers are still reported.
 
 use super::failure::refusal_failure;
 use super::link::Link;
@@ -22,8 +22,8 @@ pub fn read_failure(error: ReadError) -> Failure {
     }
 }
 
-/// Reads items that may not exist and omits those that do not; other refusals are kept. If all requests are refused
-/// with the same code, the cause is not a missing item: the first refusal is the failure.
+/// Reads items that may not exist, and omits the items that do not exist. Other refusals are kept. If all requests are
+/// refused with the same code, the cause is not a missing item. In that case, the first refusal is the failure.
 pub async fn ask_existing<K, Q: Query + Copy>(
     link: &mut Link,
     questions: Vec<(K, Q)>,

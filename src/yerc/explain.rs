@@ -15,7 +15,7 @@ use armctl_frame::settings::target::Family;
 /// Status code (1 byte) or added status code (2 bytes) of an FS100, DX100, DX200 or YRC1000
 #[derive(Debug, Args)]
 pub struct Explain {
-    /// Code in hexadecimal, as in 0x2060, 2060 or 1F
+    /// Code in hexadecimal, for example 0x2060, 2060 or 1F
     #[arg(add = ValueKind::Code(Family::Yerc))]
     code: String,
 }
@@ -26,12 +26,12 @@ impl face::Explain for Explain {
 
     fn explain(&self, alarms: &Alarms, origin: Origin<'_>) -> Result<Codes<Listed>, Failure> {
         let mut found = status::lookup(&self.code).map_err(|error| {
-            Failure::usage(error.to_string()).hint("error messages and `alarm list` show the code to look up")
+            Failure::usage(error.to_string()).hint("look up a code that an error message or `alarm list` shows")
         })?;
         let number = alarm_number(&self.code);
         if number.is_some() {
-            // A number that is not a status code in the manuals is treated as an alarm number, as shown on the
-            // pendant.
+            // A number that is not a status code in the manuals is treated as an alarm number, in the form that the
+            // pendant shows.
             found.retain(|explanation| explanation.known);
         }
         let mut codes: Vec<_> = found.iter().map(status_code).collect();
@@ -49,7 +49,7 @@ impl face::Explain for Explain {
 /// Models whose manual lists a code.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Listed {
-    /// Models; empty for an alarm number.
+    /// Models whose manual lists the code; empty for an alarm number.
     models: Vec<String>,
 }
 
@@ -59,25 +59,25 @@ impl ExtraColumns for Listed {
     }
 }
 
-/// An alarm number, 1 to 9999 in decimal.
+/// Parses an alarm number, 1 to 9999 in decimal.
 fn alarm_number(text: &str) -> Option<u32> {
     let is_number = (3..=4).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_digit());
     text.parse().ok().filter(|number| is_number && *number > 0)
 }
 
-/// Meaning of an alarm number from `alarms.toml`, or where to find it.
+/// Meaning of an alarm number from `alarms.toml`, or where the user can find it.
 fn alarm(number: u32, alarms: &Alarms, origin: Origin<'_>) -> Result<Known<Listed>, Failure> {
     let code = number.to_string();
     let site = alarms.find(origin, &code)?;
-    let lookup_hint = "look up the number in the controller's maintenance manual, or read its text with `armctl yerc alarm \
-                list`";
+    let lookup_hint = "look up the number in the controller's maintenance manual, or read the alarm text with `armctl \
+                       yerc alarm list`";
     let text = site.is_none().then(|| "an alarm number".to_owned());
     let remedies: &[&str] = if site.as_ref().is_some_and(|site| site.remedy.is_some()) { &[] } else { &[lookup_hint] };
     let alarm = Alarm { code: Some(code), text, kind: Some(Kind::Alarm), source: Source::Armctl, ..Alarm::default() };
     Ok(Known::new(false, alarm, [&[], remedies], site, Listed { models: Vec::new() }))
 }
 
-/// Meaning of a status code of the manuals.
+/// Meaning of a status code in the manuals.
 fn status_code(found: &status::Explanation) -> Known<Listed> {
     let alarm = Alarm {
         code: Some(found.code_text.clone()),

@@ -1,4 +1,4 @@
-//! Conversion of client errors to command failures: what failed on which robot, and what to do.
+//! Conversion of client errors to command failures, which say what failed, on which robot, and what to do.
 
 use std::io;
 
@@ -10,34 +10,36 @@ use armctl_frame::attach::session_busy;
 use armctl_frame::dry_run::unknown;
 use armctl_frame::failure::{Failure, Kind, plain};
 
-/// Failure for an error of the client; `label` is the robot.
+/// Failure for an error of the client. `label` is the name of the robot.
 pub fn failure(label: &str, error: Error) -> Failure {
     let about = |kind, what: String| Failure::new(kind, format!("{label}: {what}"));
     let error_text = error.to_string();
     match error {
         Error::Refused(refusal) => refusal_failure(refusal),
         Error::NoAnswer { .. } => about(Kind::NoAnswer, error.to_string()).hint(
-            "check address, cable and firewall; on the controller: the Ethernet server function, RS022, RS029 and \
-             #82015 CMD REMOTE SEL; `armctl help yerc` lists the settings",
+            "check address, cable and firewall; on the controller, check the Ethernet server function, RS022, RS029 \
+             and #82015 CMD REMOTE SEL; see `armctl help yerc` for the settings",
         ),
         Error::Garbage { .. } => about(Kind::Malformed, error.to_string())
-            .hint("check that the address is that of a high-speed Ethernet server; -vvv shows the bytes"),
+            .hint("check that the address belongs to a high-speed Ethernet server; use -vvv to see the bytes"),
         Error::Unexpected(_) => about(Kind::Malformed, error.to_string())
-            .hint("check the model (?model=fs100, dx100, dx200 or yrc1000); -vvv shows the bytes"),
+            .hint("check the model (?model=fs100, dx100, dx200 or yrc1000); use -vvv to see the bytes"),
         Error::OutcomeUnknown { request, waited, counters } => {
             let is_seen = if counters.heard_something() { format!(" ({counters})") } else { String::new() };
-            let what = format!("sent once, no answer within {waited:?}{is_seen}: the result is unknown");
+            let what =
+                format!("the request was sent once, with no answer within {waited:?}{is_seen}: the result is unknown");
             about(Kind::OutcomeUnknown, what)
-                .hint(format!("check before you repeat it: {}", verification_hint(&request)))
+                .hint(format!("check before you repeat the command: {}", verification_hint(&request)))
         }
         Error::Unconfirmed { .. } => about(Kind::OutcomeUnknown, error_text).hint(
-            "use the pendant or the emergency stop if the robot must not move; `yerc status` shows whether it is held",
+            "use the pendant or the emergency stop if the robot must not move; use `yerc status` to see whether the \
+             robot is held",
         ),
         Error::CutShort { request, cause } => {
             let cause = failure(label, *cause).message;
             let message = format!("{cause}; the request was sent, and the result is unknown");
             Failure::new(Kind::OutcomeUnknown, message)
-                .hint(format!("check before you repeat it: {}", verification_hint(&request)))
+                .hint(format!("check before you repeat the command: {}", verification_hint(&request)))
         }
         Error::NotAuthorized(error) => error.into(),
         Error::Session(busy) => session_busy(label, &busy),
@@ -47,17 +49,18 @@ pub fn failure(label: &str, error: Error) -> Failure {
         Error::Io { port, error } => broken_link(label, port, &error),
         Error::ModelRefused(refusal) => {
             let failure = refusal_failure(refusal);
-            let message = format!("{error_text}; the request depends on it and was not sent");
+            let message = format!("{error_text}; the request depends on the model and was not sent");
             Failure { message: format!("{label}: {message}"), ..failure }.hint(NAME_MODEL)
         }
         Error::UnknownSoftware { .. } => {
-            about(Kind::Malformed, format!("{error_text}; the request depends on it and was not sent")).hint(NAME_MODEL)
+            about(Kind::Malformed, format!("{error_text}; the request depends on the model and was not sent"))
+                .hint(NAME_MODEL)
         }
         Error::AnotherModel { .. } => {
             about(Kind::Refused, error_text).hint("repeat the command: armctl now uses the right model")
         }
         Error::DryRun => unknown(),
-        _ => about(Kind::Malformed, error.to_string()).hint("-vvv shows the bytes"),
+        _ => about(Kind::Malformed, error.to_string()).hint("use -vvv to see the bytes"),
     }
 }
 
@@ -73,7 +76,8 @@ fn broken_link(label: &str, port: Option<u16>, error: &io::Error) -> Failure {
     let about = |what: String| Failure::new(Kind::NoAnswer, format!("{label}: {what}"));
     match error.kind() {
         ConnectionRefused => about(format!("nothing listens on UDP port {port}")).hint(
-            "the host answers, but not the server: check the port and the Ethernet server function of the controller",
+            "check the port and the Ethernet server function of the controller: the host answers, but the server does \
+             not",
         ),
         HostUnreachable | NetworkUnreachable => about(format!("the host cannot be reached: {}", plain(error)))
             .hint("check the address and the network settings of this computer"),
@@ -81,32 +85,33 @@ fn broken_link(label: &str, port: Option<u16>, error: &io::Error) -> Failure {
     }
 }
 
-/// Command that shows whether a request took effect.
+/// Command with which the user can check whether a request took effect.
 fn verification_hint(request: &Request) -> &'static str {
     match request.command {
-        0 => "`yerc file list` shows the files",
-        0x78 | 0x300 => "`yerc io get` shows the signals",
-        0x79 | 0x301 => "`yerc register get` shows the registers",
-        0x7A..=0x81 | 0x8C | 0x302..=0x309 | 0x30C => "`yerc var get` shows the variables",
-        0x82 => "`yerc alarm list` and `yerc status` show the alarm state",
-        0x83 | 0x84 => "`yerc status` shows the state",
-        0x85 => "look at the pendant; it is safe to send the message again",
-        0x86 => "`yerc status` and `yerc job show` show whether it runs",
-        0x87 => "`yerc job show` shows the job",
-        0x8A | 0x8B => "keep clear; `yerc status` and `yerc position` show whether the robot moves, and its position",
-        _ => "`yerc status` shows the state of the controller",
+        0 => "use `yerc file list` to see the files",
+        0x78 | 0x300 => "use `yerc io get` to see the signals",
+        0x79 | 0x301 => "use `yerc register get` to see the registers",
+        0x7A..=0x81 | 0x8C | 0x302..=0x309 | 0x30C => "use `yerc var get` to see the variables",
+        0x82 => "use `yerc alarm list` and `yerc status` to see the alarm state",
+        0x83 | 0x84 => "use `yerc status` to see the state",
+        0x85 => "read the display of the pendant; it is safe to send the message again",
+        0x86 => "use `yerc status` and `yerc job show` to see whether the job runs",
+        0x87 => "use `yerc job show` to see the job",
+        0x8A | 0x8B => "keep clear of the robot; use `yerc status` and `yerc position` to see motion and position",
+        _ => "use `yerc status` to see the state of the controller",
     }
 }
 
-/// Failure for a refusal of a request with this risk. A refused motion may still be in progress: the network can
-/// duplicate a request, and the controller then refuses the second copy during the motion of the first.
+/// Failure for a refusal of a request with this risk. A motion may be in progress although the request was refused: the
+/// network can duplicate a request, and the controller then refuses the second copy during the motion of the first
+/// copy.
 pub fn refused(refusal: Refusal, risk: Risk) -> Failure {
     let failure = refusal_failure(refusal);
     match &failure.hint {
         Some(hint) if risk == Risk::Motion && refusal.status.added == MOVING => {
             let hint = format!(
-                "{hint}\nIf the robot stood still before, this request may have started the motion: the network may \
-                 have duplicated it, and the controller refused only the second copy"
+                "{hint}\nIf the robot did not move before, this request may have started the motion: the network may \
+                 have duplicated the request, and the controller refused only the second copy"
             );
             failure.hint(hint)
         }
@@ -114,7 +119,7 @@ pub fn refused(refusal: Refusal, risk: Risk) -> Failure {
     }
 }
 
-/// Added status: manipulator moving (DX 5).
+/// Added status for "manipulator moving" (DX 5).
 const MOVING: u32 = 0x2010;
 
 /// Failure for a refusal, with its cause and the remedy from the manual.
@@ -135,7 +140,7 @@ mod tests {
     fn refusal_during_motion_hints_at_the_running_motion() {
         let to = RefusedRequest::Robot { command: 0x8B, instance: 1 };
         let hint = |added, risk| refused(Refusal { status: Status::refused(added), to }, risk).hint.unwrap();
-        assert!(hint(0x2010, Risk::Motion).contains("duplicated it"));
+        assert!(hint(0x2010, Risk::Motion).contains("duplicated the request"));
         assert!(!hint(0x2060, Risk::Motion).contains("duplicated"));
         assert!(!hint(0x2010, Risk::Write).contains("duplicated"));
     }

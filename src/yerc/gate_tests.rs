@@ -1,4 +1,4 @@
-//! Tests of every command line of the family at the gate: risk, read-only robot, and a dry run with the same risk.
+//! Tests of every command line of the family at the gate: its risk, read-only robots, and the risk in a dry run.
 
 use std::collections::BTreeSet;
 
@@ -16,10 +16,10 @@ use armctl_frame::gate::Gate;
 use armctl_frame::testing;
 use armctl_frame::testing::QUIET;
 
-/// Commands that send nothing.
+/// Commands that send no frames.
 const LOCAL_COMMANDS: [&str; 1] = ["names forget"];
 
-/// A line for each command, with files in `DIR`; its risk, and the maximum risk of its frames.
+/// A line for each command, with files in `DIR`. Each has its risk and the maximum risk of its frames.
 const LINES: &[(&str, Risk, Risk)] = &[
     ("status", Read, Read),
     ("alarm list", Read, Read),
@@ -60,7 +60,7 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("var dump DIR/new.csv", Read, Read),
     ("var copy B0 B1", Destroy, Write),
     ("var copy P1 P2", Destroy, Destroy),
-    // The rows of the file decide what is asked.
+    // The rows of the file determine the requests.
     ("var restore DIR/dump.csv", Destroy, Write),
     ("io get 10010", Read, Read),
     ("io watch 10010", Read, Read),
@@ -69,6 +69,10 @@ const LINES: &[(&str, Risk, Risk)] = &[
     ("register get 1", Read, Read),
     ("register set 1=1", Write, Write),
     ("register watch 1", Read, Read),
+    ("register list", Read, Read),
+    ("register copy 1 2", Write, Write),
+    ("register dump DIR/registers.csv", Read, Read),
+    ("register restore DIR/words.csv", Write, Write),
     ("names get", Read, Read),
     ("names forget", Read, Read),
     ("servo on", Motion, Motion),
@@ -100,10 +104,11 @@ fn prepare(folder: &std::path::Path) {
     let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
     std::fs::write(path("A.JBI"), "/JOB\r\n//NAME A\r\nNOP\r\nEND\r\n").unwrap();
     std::fs::write(path("dump.csv"), "name,value\nB0,7\n").unwrap();
+    std::fs::write(path("words.csv"), "name,value\nM1,7\n").unwrap();
     Bench::new("sim:").data(&["backup", &path("backup")]);
 }
 
-/// Risk of a frame; bytes that depend on an answer count as 0.
+/// Risk of a frame. Bytes that depend on an answer count as 0.
 fn risk_of(frame: &Value) -> Risk {
     let bytes = unhex(&frame["hex"].as_str().expect("hexadecimal").replace("??", "00")).expect("hexadecimal");
     let frame = RequestFrame::parse(&bytes).expect("a request");
@@ -136,7 +141,7 @@ fn every_command_passes_the_gate_according_to_its_risk() {
 
         let frames = dry_run(DX200, &words).unwrap_or_else(|failure| panic!("{line}: {failure:?}"));
         let shown = frames.iter().map(risk_of).max();
-        // Data on this computer does not concern other clients.
+        // A command that changes only data on this computer does not affect other clients.
         let expected = Some(*most).filter(|_| !LOCAL_COMMANDS.contains(&line.as_str()));
         assert_eq!(shown, expected, "{line}: {frames:?}");
     }

@@ -21,7 +21,7 @@ use armctl_frame::items::{ItemError, ItemOutcome};
 use armctl_frame::output::view::{Cell, Table, View};
 use armctl_frame::{Command, Context, Report};
 
-/// Running-time counters (FS and DX 3.3.25).
+/// Reads the running-time counters (FS and DX 3.3.25).
 #[derive(Debug, Args)]
 pub struct Hours {
     /// Servo, playback and motion time of a robot or station; all: every existing counter
@@ -32,7 +32,7 @@ pub struct Hours {
     application: Option<u8>,
 }
 
-/// Counters of the whole controller.
+/// Counters for the whole controller.
 const TOTALS: [TimeCounter; 4] =
     [TimeCounter::ControlPower, TimeCounter::Servo(None), TimeCounter::Playback(None), TimeCounter::Motion(None)];
 /// Number of applications that can have a counter.
@@ -72,7 +72,7 @@ impl Command for Hours {
         let questions: Vec<_> = counters.map(question).collect::<Result<_, QueryError>>().map_err(usage)?;
         let outcomes = if self.group == Some(Groups::All) {
             let mut found = ask_existing(link, questions).await?;
-            // A controller may answer with empty values for a counter that does not exist.
+            // For a counter that does not exist, a controller may answer with empty values.
             let is_empty = |time: &ManagementTime| time.start.is_empty() && time.elapsed.is_empty();
             found.retain(|(_, outcome)| !outcome.as_ref().is_ok_and(is_empty));
             found
@@ -97,11 +97,11 @@ pub struct Times {
 
 #[derive(Debug, Serialize, JsonSchema)]
 struct Time {
-    /// `control_power`, `servo`, `playback`, `motion` or `application`.
+    /// Counter: `control_power`, `servo`, `playback`, `motion` or `application`.
     counter: &'static str,
-    /// Control group; null for other counters.
+    /// Control group; null for counters without a group.
     group: Option<String>,
-    /// Number of the application; null for other counters.
+    /// Number of the application that the counter belongs to; null for other counters.
     application: Option<u8>,
     #[serde(flatten)]
     outcome: ItemOutcome<Elapsed>,
@@ -109,11 +109,11 @@ struct Time {
 
 #[derive(Debug, Serialize, JsonSchema)]
 struct Elapsed {
-    /// Start of counting, as the controller reports it: `YYYY/MM/DD HH:MM`.
+    /// When counting started, as the controller reports it: `YYYY/MM/DD HH:MM`.
     since: String,
-    /// Raw value, such as `000123:45'06`.
+    /// Elapsed time as received, such as `000123:45'06`.
     elapsed: String,
-    /// Elapsed seconds; null if the text has no known form.
+    /// Elapsed seconds; null if the text has an unknown format.
     elapsed_s: Option<u64>,
 }
 
@@ -137,7 +137,7 @@ impl Time {
     }
 }
 
-/// Owner of a counter.
+/// Name of the counter, with its group or application.
 fn of(counter: &str, group: Option<&str>, application: Option<u8>) -> String {
     match (group, application) {
         (Some(group), _) => group.to_owned(),

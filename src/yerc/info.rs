@@ -21,7 +21,7 @@ use armctl_frame::items::{ItemError, ItemOutcome};
 use armctl_frame::output::view::{Cell, Table, View};
 use armctl_frame::{Command, Context, Report};
 
-/// Versions and names (FS and DX 3.3.26).
+/// Reads versions and names (FS and DX 3.3.26).
 #[derive(Debug, Args)]
 pub struct Info {
     /// Robot, station, or all, including applications [default: all]
@@ -45,7 +45,7 @@ impl Info {
     }
 }
 
-/// Number of applications.
+/// Number of applications that a model has.
 const fn applications(model: Model) -> u8 {
     match model {
         Model::Fs100 => 1,
@@ -67,10 +67,10 @@ impl Command for Info {
         let question = |part| Ok((part, ReadSystemInfo::new(model, part)?));
         let parts = self.parts(model).into_iter();
         let questions: Vec<_> = parts.map(question).collect::<Result<_, QueryError>>().map_err(usage)?;
-        // A single part is a list with one entry: its refusal is the failure.
+        // If only one part is requested, its refusal is the failure of the command.
         let is_single = questions.len() == 1;
         let answers = ask_existing(link, questions).await?;
-        // Controllers answer with only the version for groups that do not exist.
+        // For groups that do not exist, controllers answer with only the version.
         let exists = |info: &SystemInfo| is_single || !(info.name.is_empty() && info.parameters.is_empty());
         let first = answers.iter().find_map(|(_, outcome)| outcome.as_ref().ok());
         let software_version = first.map(|info| encoding.decode(info.version.as_bytes()));
@@ -83,7 +83,7 @@ impl Command for Info {
 /// Versions and names of the controller and its parts.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Versions {
-    /// System software; the same for every part.
+    /// System software version. It is the same for every part.
     software_version: Option<String>,
     parts: Vec<Part>,
 }
@@ -102,7 +102,7 @@ struct Part {
 struct Named {
     /// Robot model or name of the application; null for stations.
     name: Option<String>,
-    /// Only for robots.
+    /// Parameter version; only robots have one.
     parameter_version: Option<String>,
 }
 

@@ -52,7 +52,7 @@ commands! {
     }
 }
 
-/// Job that a task executes (FS and DX 3.3.4).
+/// Shows the job that a task executes (FS and DX 3.3.4).
 #[derive(Debug, Args)]
 pub struct Show {
     /// Task number (0 is the master task), or all
@@ -63,7 +63,7 @@ pub struct Show {
     source: bool,
 }
 
-/// One task, or all tasks.
+/// Number of one task, or all tasks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Tasks {
     One(u8),
@@ -106,7 +106,7 @@ impl Command for Show {
                 let questions: Vec<ReadJob> = (0..=u8::MAX).map_while(|task| ReadJob::new(model, task).ok()).collect();
                 let outcomes = link.ask_each(&questions).await?;
                 if let Some(Err(denied)) = outcomes.first().filter(|_| outcomes.iter().all(Result::is_err)) {
-                    // Every controller has a master task, so the refusal does not mean a missing task.
+                    // Every controller has a master task, so this refusal does not mean that the task is missing.
                     return Err(read_failure(denied.clone()));
                 }
                 (0..).zip(outcomes).collect()
@@ -122,7 +122,7 @@ impl Command for Show {
 }
 
 impl Show {
-    /// Text of the current line of a task, if requested and available.
+    /// Text of the current line of a task, if the user requested it and it is available.
     async fn source(&self, link: &mut Link, outcome: &Outcome<JobInfo>) -> Option<ItemOutcome<Source>> {
         let job = outcome.as_ref().ok().filter(|job| self.source && !job.name.is_empty())?;
         let what = format!("{}.JBI", link.encoding.decode(job.name.as_bytes()));
@@ -130,7 +130,7 @@ impl Show {
     }
 }
 
-/// Jobs of tasks.
+/// Jobs that the tasks execute.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Jobs {
     tasks: Vec<Task>,
@@ -138,31 +138,32 @@ pub struct Jobs {
 
 #[derive(Debug, Serialize, JsonSchema)]
 struct Task {
-    /// Task number; 0 is the master.
+    /// Task number; 0 is the master task.
     #[serde(rename = "task")]
     number: u8,
-    /// Whether the task exists; if not, all following fields except `refusal` are null. Null if unknown.
+    /// Whether the task exists; null if unknown. If the task does not exist, all following fields except `refusal` are
+    /// null.
     exists: Option<bool>,
-    /// Job name without `.JBI`; null if there is none.
+    /// Job name without `.JBI`; null if the task has no job.
     program: Option<String>,
-    /// Bytes of the name, if the text does not convert back to them.
+    /// Bytes of the name, if the text cannot be converted back to these bytes.
     #[serde(skip_serializing_if = "Option::is_none")]
     program_hex: Option<String>,
     line: Option<u32>,
-    /// Step number; 0 while no step is executed.
+    /// Step number; 0 if no step is being executed.
     step: Option<u32>,
     speed_override_percent: Option<f64>,
-    /// Text of the line; absent unless requested.
+    /// Text of the line; absent unless the user requests it.
     #[serde(skip_serializing_if = "Option::is_none")]
     source: Option<ItemOutcome<Source>>,
-    /// Error code of the controller if the task does not exist.
+    /// Error code that the controller reported, if the task does not exist.
     #[serde(skip_serializing_if = "Option::is_none")]
     refusal: Option<String>,
     /// Reason why the task could not be read.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "ItemError")]
     error: Option<ItemError>,
-    /// Speed override with all digits.
+    /// Speed override in the full resolution of the protocol.
     #[serde(skip)]
     shown_override: Option<String>,
 }
@@ -203,7 +204,7 @@ fn task_name(number: u8) -> String {
 impl Report for Jobs {
     fn view(&self) -> View {
         let mut table = Table::new(&["task", "job", "line", "step", "override (%)"], "no task");
-        // Of all tasks, only the existing ones are shown; a single task shows why there is no job.
+        // If all tasks are requested, only the existing tasks are shown. A single task also shows why there is no job.
         let is_one = self.tasks.len() == 1;
         for task in self.tasks.iter().filter(|task| is_one || task.refusal.is_none()) {
             let name = task_name(task.number);
@@ -243,7 +244,7 @@ impl Report for Jobs {
 /// Selects a job (FS and DX 3.3.24).
 #[derive(Debug, Args)]
 pub struct Select {
-    /// Job name, without .JBI
+    /// Job name without .JBI
     #[arg(add = complete::JOB)]
     name: String,
     /// Start line
@@ -262,11 +263,12 @@ impl Select {
         let encoding = link.encoding;
         refuse_controls("the job name", name)?;
         let bytes = encoding.encode_name(name).map_err(|error| {
-            Failure::usage(format!("the job name: {error}")).hint("--encoding or the robot's entry sets the encoding")
+            Failure::usage(format!("the job name: {error}"))
+                .hint("set the encoding with --encoding or in the robot's entry in robots.toml")
         })?;
         if bytes.len() > MAX_NAME {
             let message = format!("the job name has {} bytes in {encoding}; the maximum is {MAX_NAME}", bytes.len());
-            return Err(Failure::usage(message).hint("`yerc file list` shows the names on the controller"));
+            return Err(Failure::usage(message).hint("use `yerc file list` to see the names on the controller"));
         }
         let execute = Selection::Execute { line: self.line };
         let selection = self.task.map_or(execute, |task| Selection::Master { task });
@@ -280,7 +282,7 @@ fn stem(file: &[u8]) -> &[u8] {
     if file[at..].eq_ignore_ascii_case(b".JBI") { &file[..at] } else { file }
 }
 
-/// Job name as the controller uses it, without the suffix of files.
+/// Job name without the file suffix, as the controller uses it.
 fn without_suffix(name: &str) -> &str {
     let at = name.len().saturating_sub(".JBI".len());
     match name.split_at_checked(at) {
@@ -301,7 +303,7 @@ impl Command for Select {
         if name != self.name {
             context.screen.note(&format!("job name without .JBI: '{name}'"));
         }
-        // The protocol cannot read the master job of a task.
+        // The protocol has no read for the master job of a task, so its old value is unknown.
         let old_selection = match self.task {
             None => {
                 let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
@@ -327,7 +329,7 @@ impl Command for Select {
     }
 }
 
-/// Failure with the job name.
+/// Failure whose message begins with the job name.
 fn about(name: &str, failure: Failure) -> Failure {
     Failure { message: format!("job {name}: {}", failure.message), ..failure }
 }
@@ -337,9 +339,9 @@ fn about(name: &str, failure: Failure) -> Failure {
 pub struct Selected {
     #[serde(flatten)]
     done: Done,
-    /// Start line; null for a master job.
+    /// Start line; null if a master job was selected.
     line: Option<u32>,
-    /// Task of the master job; null for the job to start.
+    /// Task whose master job was set; null if the job to start was selected.
     task: Option<u8>,
 }
 
@@ -367,7 +369,7 @@ mod tests {
 
     #[test]
     fn selects_tasks_by_model() {
-        // Golden frame R09 reads a field of instance 6, sub task 5.
+        // Golden frame R09 reads a field of instance 6, which is sub task 5.
         assert_eq!(frames("job show").unwrap(), ["7300010000010000"]);
         assert_eq!(frames("job show --task 5").unwrap(), ["7300060000010000"]);
         assert_eq!(frames("job show --task all").unwrap().len(), 16);

@@ -1,4 +1,4 @@
-//! Controller connection of a command: the client with error conversion and trace.
+//! Controller connection of a command: the client, with conversion of its errors and a trace.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -32,12 +32,12 @@ use armctl_frame::trace::lock_writer;
 use armctl_frame::{Access, Family};
 use armctl_transport::tap::Direction;
 
-/// The yerc family.
+/// The `yerc` family.
 #[derive(Debug)]
 pub struct Yerc;
 
-/// Connection to one controller. Operations that cannot fail, or whose errors need no robot label, are those of the
-/// client.
+/// Connection to one controller. Operations that cannot fail, or whose errors need no robot label, are available
+/// through the client.
 #[derive(Debug, Deref, DerefMut)]
 pub struct Link {
     #[deref]
@@ -46,13 +46,13 @@ pub struct Link {
     trace: Arc<Mutex<Trace>>,
     screen: Screen,
     label: String,
-    /// Encoding of the controller's texts.
+    /// Encoding of the texts on the controller.
     pub encoding: Encoding,
-    /// Pulses per degree of each axis of R1, as far as the inventory has them.
+    /// Pulses per degree of the axes of R1, for as many axes as the inventory has values.
     pulses_per_degree: Vec<f64>,
-    /// Number of words of a cartesian move, 25 or 26.
+    /// Number of words in a cartesian move: 25 or 26.
     pub move_words: u8,
-    /// Stored model of the controller.
+    /// Model of the controller that is stored on this computer.
     cached_model: CachedModel,
 }
 
@@ -74,13 +74,13 @@ impl Family for Yerc {
     }
 
     async fn halt(link: &mut Link) -> Result<String, Failure> {
-        // Motion that this command did not start is not stopped.
+        // If this command did not start the motion, the motion is not stopped.
         if !link.has_moved() {
             return Ok("no motion command was sent".to_owned());
         }
         link.screen.note("stopping the robot: HOLD on");
         link.stop().await?;
-        Ok("the robot was stopped: HOLD is on; `yerc hold off` releases it".to_owned())
+        Ok("the robot was stopped: HOLD is on; use `yerc hold off` to release HOLD".to_owned())
     }
 
     fn planned(link: &mut Link) -> Plan {
@@ -99,25 +99,26 @@ impl Family for Yerc {
 }
 
 impl Link {
-    /// Traffic counted on the network so far.
+    /// Number of datagrams on the network so far.
     pub(super) fn traffic(&self) -> Traffic {
         let Totals { sent, received, disturbances, .. } = self.client.totals();
         Traffic { sent, received, disturbances }
     }
 
-    /// Pulses per degree of each axis of a group, as far as they are known.
+    /// Pulses per degree of the axes of a group, for as many axes as they are known.
     pub fn pulses_per_degree(&self, group: Group) -> &[f64] {
         if group == Group::R1 { &self.pulses_per_degree } else { &[] }
     }
 
-    /// Model of the controller; read from it if unknown.
+    /// Model of the controller. If the model is unknown, it is read from the controller.
     pub async fn model(&mut self) -> Result<Model, Failure> {
         let model = self.client.model().await;
         self.cache_model();
         model.map_err(|error| self.failure(error))
     }
 
-    /// Model for building a request; the controller is asked only if the result depends on it: [`Client::model_for`].
+    /// Model with which a request can be built. The controller is asked only if the request depends on the model:
+    /// [`Client::model_for`].
     pub async fn model_for<T: PartialEq, E>(&mut self, make: impl Fn(Model) -> Result<T, E>) -> Result<Model, Failure> {
         let model = self.client.model_for(make).await;
         self.cache_model();
@@ -133,12 +134,12 @@ impl Link {
         make(model).map_err(usage)
     }
 
-    /// System software version, if it was read on this connection.
+    /// Version of the system software, if it was read on this connection.
     pub fn told_software(&self) -> Option<String> {
         self.client.identity().map(|identity| self.encoding.decode(identity.software.as_bytes()))
     }
 
-    /// Stores the model that the controller reported, if it is new.
+    /// Stores the model that the controller reported, if it is not stored yet.
     fn cache_model(&mut self) {
         if let (Some(identity), Some(software)) = (self.client.identity(), self.told_software()) {
             let reported_model = identity.model.map(|model| ReportedModel::now(model, software));
@@ -146,35 +147,35 @@ impl Link {
         }
     }
 
-    /// Sends one request; a refusal is a failure.
+    /// Sends one request. A refusal is a failure.
     pub async fn ask<Q: Query>(&mut self, query: &Q) -> Result<Q::Answer, Failure> {
         self.ask_optional(query).await?.map_err(|refusal| refused(refusal, query.risk()))
     }
 
-    /// Holds the robot, with several attempts in parallel until one is answered.
+    /// Applies HOLD. Sends several attempts in parallel until the controller answers one.
     pub async fn stop(&mut self) -> Result<(), Failure> {
         self.client.stop().await.map_err(|error| self.failure(error))
     }
 
-    /// Sends one request; a refusal is a result.
+    /// Sends one request. A refusal is a result, and not a failure.
     pub async fn ask_optional<Q: Query>(&mut self, query: &Q) -> Result<Result<Q::Answer, Refusal>, Failure> {
         self.client.try_ask(query).await.map_err(|error| self.failure(error))
     }
 
-    /// Reads the value that a write replaces; none if the controller refuses, and in a dry run, which notes the
-    /// request. A lost connection is a failure: nothing was written.
+    /// Reads the value that a write replaces. Returns `None` if the controller refuses, and in a dry run, which records
+    /// the request. If the connection is lost, the failure states that nothing was written.
     pub async fn before<Q: Query>(&mut self, question: &Q) -> Result<Option<Q::Answer>, Failure> {
         let answer = self.for_purpose(OLD_VALUE).ask_optional(question).await.known().map_err(nothing_written)?;
         Ok(answer.and_then(Result::ok))
     }
 
-    /// Sends several requests; each has its own outcome. A dry run notes them all.
+    /// Sends several requests. Each request has its own outcome. A dry run records them all.
     pub async fn ask_each<Q: Query>(&mut self, queries: &[Q]) -> Result<Vec<Outcome<Q::Answer>>, Failure> {
         let outcomes = self.client.ask_each(queries).await.map_err(|error| self.failure(error))?;
         Ok(outcomes.into_iter().map(|outcome| outcome.map_err(|denied| denied.map(|e| self.failure(e)))).collect())
     }
 
-    /// Sends one of several requests.
+    /// Sends one request of a batch.
     pub async fn ask_in_batch<Q: Query>(
         &mut self,
         batch: &mut Batch,
@@ -184,7 +185,7 @@ impl Link {
         Ok(outcome.map_err(|denied| denied.map(|error| self.failure(error))))
     }
 
-    /// Sends a raw request and returns the whole reply, including an error reply.
+    /// Sends a raw request, and returns the whole reply. The reply can also be a refusal.
     pub async fn raw(&mut self, request: &Request) -> Result<Reply, Failure> {
         self.client.raw(request).await.map_err(|error| self.failure(error))
     }
@@ -204,16 +205,17 @@ impl Link {
                 Kind::Malformed,
                 format!("{}: no valid answer after {bytes} bytes, but {counters}", self.label),
             )
-            .hint("no data was saved; repeat the command, and record it with --trace if the problem persists"),
+            .hint("repeat the command, and record it with --trace if the problem persists; no data was saved"),
             Cause::Client(Error::NoAnswer { .. }) if bytes > 0 => {
                 Failure::new(Kind::NoAnswer, format!("{}: the transfer stopped after {bytes} bytes", self.label))
-                    .hint("no data was saved; repeat the command, with a longer --timeout for a bad connection")
+                    .hint("repeat the command, with a longer --timeout for a bad connection; no data was saved")
             }
             Cause::Client(error) => self.failure(error),
         })
     }
 
-    /// Uploads a file: [`Client::upload`]. After the first block, the controller may have part of it or all of it.
+    /// Uploads a file: [`Client::upload`]. After the first block, the controller may have a part of the file or all of
+    /// it.
     pub async fn upload(
         &mut self,
         request: &Request,
@@ -228,33 +230,37 @@ impl Link {
             if bytes == 0 {
                 return failure;
             }
-            let message = format!("{}; {bytes} bytes were sent: all or part of the file may exist", failure.message);
+            let message = format!(
+                "{}; {bytes} bytes were sent: the controller may have a part of the file or the whole file",
+                failure.message
+            );
             let kind = if failure.kind == Kind::NoAnswer { Kind::OutcomeUnknown } else { failure.kind };
             Failure { kind, message, ..failure }
-                .hint("before you use the file, compare it with `yerc file diff` or send it again")
+                .hint("compare the file with `yerc file diff` before you use it, or send the file again")
         })
     }
 
-    /// Notes all requests in a dry run, in which the answers are unknown.
+    /// Records all requests in a dry run, in which the answers are unknown.
     pub fn plan_all<Q: Query>(&mut self, queries: &[Q]) -> Result<(), Failure> {
         self.client.plan_all(queries).map_err(|error| self.failure(error))
     }
 
-    /// Sets the purpose of the next request, for a dry run.
+    /// Sets the purpose of the next request, which a dry run shows.
     pub fn for_purpose(&mut self, purpose: &'static str) -> &mut Self {
         self.client.for_purpose(purpose);
         self
     }
 
-    /// Takes the purpose of several next requests, for a dry run.
+    /// Takes the purpose that was set, for several next requests. A dry run shows it.
     pub fn take_purpose(&mut self) -> Option<&'static str> {
         self.client.take_purpose()
     }
 
-    /// Text in the encoding of the controller.
+    /// Encodes a text in the encoding of the controller.
     pub fn encode(&self, what: &str, text: &str) -> Result<Vec<u8>, Failure> {
         self.encoding.encode(text).map_err(|error| {
-            Failure::usage(format!("{what}: {error}")).hint("--encoding or the robot's entry sets the encoding")
+            Failure::usage(format!("{what}: {error}"))
+                .hint("set the encoding with --encoding or in the robot's entry in robots.toml")
         })
     }
 
@@ -263,7 +269,7 @@ impl Link {
     }
 }
 
-/// Observer that records the traffic and prints other traffic at `-v`.
+/// Observer that records the traffic. With `-v`, it also prints unexpected traffic.
 #[derive(Debug)]
 struct TraceObserver {
     trace: Arc<Mutex<Trace>>,
@@ -280,8 +286,8 @@ impl Watcher<Event> for TraceObserver {
         match event {
             Event::UnexpectedTraffic(counters) => self.screen.detail(1, &format!("{}: {counters}", self.label)),
             Event::TransferLeftOpen => self.screen.note(&format!(
-                "{}: the controller did not confirm the end of the transfer; it may refuse file commands as busy for some \
-                 seconds",
+                "{}: the controller did not confirm the end of the transfer; the controller may refuse file commands \
+                 as busy for some seconds",
                 self.label
             )),
             _ => {}

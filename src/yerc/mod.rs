@@ -41,4 +41,3 @@ mod testing;
 pub mod top;
 mod trace;
 mod var;
-mod write_all;

@@ -1,4 +1,4 @@
-//! Stored model of a controller: used for a day, and dropped if the controller reports a different model.
+//! Stored model of a controller. It is used for a day, and removed if the controller reports a different model.
 
 use armctl_client::yerc::Client;
 use armctl_frame::output::Screen;
@@ -6,7 +6,7 @@ use armctl_frame::settings::Robot;
 use armctl_frame::settings::model::{ModelCache, ReportedModel};
 use armctl_frame::settings::target::Address;
 
-/// Location and content of the stored model.
+/// The stored model, and where it is stored.
 #[derive(Debug)]
 pub(super) struct CachedModel {
     store: Option<ModelCache>,
@@ -15,8 +15,8 @@ pub(super) struct CachedModel {
 }
 
 impl CachedModel {
-    /// Passes the stored model to a client, if the user selects no model and the stored one is recent. A dry run,
-    /// which asks no controller, also uses an older one.
+    /// Gives the stored model to a client, if the user selects no model and the stored model is recent. A dry run does
+    /// not ask the controller, so it also uses an older model.
     pub(super) fn recall(robot: &Robot, client: &mut Client) -> Self {
         let target = &robot.target.value;
         let address = target.address();
@@ -29,8 +29,8 @@ impl CachedModel {
         Self { store, address, stored }
     }
 
-    /// Stores the model that the controller reported, unless it is already stored and recent. `news` is `None` if its
-    /// software belongs to no known model: then the stored model is wrong.
+    /// Stores the model that the controller reported, unless it is already stored and recent. `news` is `None` if the
+    /// software of the controller belongs to no known model. In that case the stored model is wrong.
     pub(super) fn store_model(&mut self, news: Option<ReportedModel>, screen: &Screen, label: &str) {
         let Some(store) = &self.store else { return };
         let Some(news) = news else {
@@ -49,7 +49,10 @@ impl CachedModel {
         let unverified = model.unproven().map(|what| format!("; unproven: {what}")).unwrap_or_default();
         screen.detail(1, &format!("{label}: {model}, from software {software}; stored for one day{unverified}"));
         if let Err(error) = store.store(&self.address, news.clone()) {
-            screen.detail(1, &format!("{label}: the model could not be stored and is read each time: {error}"));
+            screen.detail(
+                1,
+                &format!("{label}: the model could not be stored, so armctl reads it for each command: {error}"),
+            );
         }
         self.stored = Some(news);
     }

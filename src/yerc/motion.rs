@@ -9,20 +9,22 @@ use armctl_controller::yerc::payload::{ControllerStatus, StatusBit};
 use armctl_controller::yerc::query::{Query as _, ReadAlarm};
 use armctl_frame::dry_run::Reason;
 use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::robot::alarm::hint_after;
+use armctl_frame::settings::target::Family;
 
 /// Interval of status reads. A controller answers in 5 to 20 ms, and a shorter interval has no benefit.
 pub(super) const POLL_INTERVAL: Duration = Duration::from_millis(50);
-/// Maximum time for a controller to start an accepted motion or job.
+/// Maximum time until a controller starts an accepted motion or job.
 pub(super) const START_TIMEOUT: Duration = Duration::from_secs(3);
 
-/// A state of the controller in which nothing moves.
+/// Cause for which the controller moves nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum StandstillCause {
     /// An alarm is present.
     Alarm,
     /// An error is present.
     Error,
-    /// Held, with the source.
+    /// A HOLD is active. Contains its source.
     Hold(&'static str),
     /// Servo power is off.
     ServoOff,
@@ -30,15 +32,16 @@ pub(super) enum StandstillCause {
     Teach,
 }
 
-/// Sources of a hold, and how to release each.
+/// Sources of a hold, each with how to release it.
 const HOLDS: [(StatusBit, &str, &str); 3] = [
     (StatusBit::HoldPendant, "pendant", "release HOLD on the pendant"),
     (StatusBit::HoldExternal, "external signal", "clear the external hold (PLC, door, interlock)"),
-    (StatusBit::HoldCommand, "command", "`yerc hold off` releases it"),
+    (StatusBit::HoldCommand, "command", "use `yerc hold off` to release the hold"),
 ];
 
 impl StandstillCause {
-    /// Most important standstill cause of a status. The status had none when the controller accepted the request.
+    /// Most important cause of standstill in a status. There was no such cause when the controller accepted the
+    /// request.
     pub(super) fn of(status: ControllerStatus) -> Option<Self> {
         let hold = HOLDS.iter().find(|row| status.has(row.0));
         if status.alarm() {
@@ -56,7 +59,7 @@ impl StandstillCause {
         }
     }
 
-    /// Failure with the result so far (`done`) and the current position.
+    /// Failure that contains the result so far (`done`) and the current position.
     pub(super) async fn failure(self, link: &mut Link, done: &str, place: Option<&str>) -> Failure {
         let (what, code) = match self {
             Self::Alarm => present_alarm(link).await,
@@ -67,23 +70,21 @@ impl StandstillCause {
         };
         let place = place.map(|place| format!("; position: {place}")).unwrap_or_default();
         let hint = match self {
-            Self::Alarm => {
-                "`yerc alarm list` shows the alarm; remove the cause, then use `yerc alarm reset`".to_owned()
-            }
-            Self::Error => "read the pendant; `yerc alarm cancel` clears the error".to_owned(),
+            Self::Alarm => hint_after(Family::Yerc, code.as_deref()),
+            Self::Error => "read the display of the pendant; use `yerc alarm cancel` to clear the error".to_owned(),
             Self::Hold(by) => {
                 let how = HOLDS.iter().find(|row| row.1 == by).map_or("release it", |row| row.2);
                 format!("{how}; the interrupted motion may then continue")
             }
             Self::ServoOff => "check for a stop or an open door before `yerc servo on`".to_owned(),
-            Self::Teach => "another person may be at the pendant; ask before you continue".to_owned(),
+            Self::Teach => "check whether another person is at the pendant, and ask before you continue".to_owned(),
         };
         let failure = Failure::new(Kind::ConditionNotMet, format!("{done}, but {what}{place}")).hint(hint);
         Failure { code, ..failure }
     }
 }
 
-/// Text and code of the latest alarm. The alarm is reported even if it cannot be read.
+/// Text and code of the latest alarm. If the alarm cannot be read, the text states only that there is an alarm.
 async fn present_alarm(link: &mut Link) -> (String, Option<String>) {
     let question = match ReadAlarm::new(1, false).map_err(usage) {
         Ok(question) => question,
@@ -99,7 +100,7 @@ async fn present_alarm(link: &mut Link) -> (String, Option<String>) {
     }
 }
 
-/// Notes in a dry run the request after an alarm.
+/// In a dry run, records the request that follows an alarm.
 pub(super) fn plan_alarm(link: &mut Link) -> Result<(), Failure> {
     let question = ReadAlarm::new(1, false).map_err(usage)?;
     let reason = Reason::about("alarm number, after an alarm").depending_on("whether the status shows an alarm");
@@ -107,11 +108,11 @@ pub(super) fn plan_alarm(link: &mut Link) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Failure for a lost connection during a wait. The action continues without supervision, so its outcome is unknown.
+/// Failure: the connection was lost during a wait. The action continues without supervision, so its outcome is unknown.
 pub(super) fn lost_contact(done: &str, failure: Failure) -> Failure {
-    let message = format!("{done}, but its end was not reported: {failure}");
+    let message = format!("{done}, but armctl could not read its end: {failure}");
     Failure { kind: Kind::OutcomeUnknown, message, ..failure }
-        .hint("do not send it again; `yerc status` and `yerc position` show the result")
+        .hint("do not send the command again; use `yerc status` and `yerc position` to see the result")
 }
 
 #[cfg(test)]
@@ -135,6 +136,6 @@ mod tests {
     fn lost_contact_leaves_the_outcome_unknown() {
         let failure = lost_contact("the job was started", Failure::new(Kind::NoAnswer, "silence").code("0x1"));
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
-        assert_eq!(failure.message, "the job was started, but its end was not reported: silence");
+        assert_eq!(failure.message, "the job was started, but armctl could not read its end: silence");
     }
 }

@@ -44,7 +44,7 @@ commands! {
 }
 
 commands! {
-    /// Motions to pulses.
+    /// Motions to pulse positions.
     pub enum Pulse {
         /// Joint-interpolated move (MOVJ)
         Joint(PulseJoint),
@@ -53,7 +53,7 @@ commands! {
     }
 }
 
-/// Kind of motion, for the confirmation.
+/// Kind of motion, as text for the confirmation.
 fn way(kind: MoveKind) -> &'static str {
     match kind {
         MoveKind::Link => "with joint interpolation",
@@ -61,7 +61,7 @@ fn way(kind: MoveKind) -> &'static str {
     }
 }
 
-/// Cartesian target with its options.
+/// Cartesian target, with its options.
 #[derive(Debug, Args)]
 struct Target {
     #[command(flatten)]
@@ -105,7 +105,7 @@ impl Target {
         }
     }
 
-    /// Rejects options whose value the variable or the pulses already contain.
+    /// Rejects options whose value is already in the variable or in the pulses.
     fn refuse_extra_flags(&self, flag: &str, has_frame: bool) -> Result<(), Failure> {
         let extra_flags = [
             ("--coordinate", self.frame.coordinate.is_some()),
@@ -150,7 +150,7 @@ impl Target {
     }
 }
 
-/// Cartesian move without a target.
+/// Cartesian move in which the target is not set yet.
 fn cartesian_move(link: &Link, mover: &Mover, speed: Speed, frame: &Frame) -> CartesianMove {
     let (robot, station) = mover.words();
     CartesianMove {
@@ -171,7 +171,7 @@ fn cartesian_move(link: &Link, mover: &Mover, speed: Speed, frame: &Frame) -> Ca
     }
 }
 
-/// The base of a robot has the robot's number, and its axes move with the robot.
+/// The base of a robot has the same number as the robot. The axes of the base move together with the robot.
 fn unnamed_base_axes(group: Group, base: Option<&Values>) -> Vec<(Group, usize, &'static str)> {
     match group {
         Group::Robot(number) => vec![(Group::Base(number), base.map_or(0, |base| base.0.len()), "--base-axes")],
@@ -281,7 +281,7 @@ struct Distance {
 }
 
 impl Distance {
-    /// Distances of a robot; none if only a station moves.
+    /// Distances of a robot; `None` if only a station moves.
     fn robot(&self) -> Option<[i32; 6]> {
         let by = self.by.distances();
         (self.station_axes.is_none() || by != [0; 6]).then_some(by)
@@ -321,7 +321,7 @@ impl Distance {
         };
         if order.target == [0; 6] && order.base == [0; 3] && order.station_axes == [0; 6] {
             return Err(Failure::usage("all distances are 0, so no axis would move")
-                .hint("give at least one of --x --y --z --rx --ry --rz, or --by"));
+                .hint("type at least one of --x --y --z --rx --ry --rz, or --by"));
         }
         let order = link.by_model(|model| MoveCartesian::new(model, MoveKind::Incremental, order)).await?;
         Ok(Execution { order, group: mover.group, goal, unnamed: Vec::new(), no_wait: mover.end.no_wait() })
@@ -407,7 +407,7 @@ mod tests {
     use crate::testing::{DX200, error_text, frames, frames_on, golden, intent, reports};
     use armctl_frame::failure::Kind;
 
-    /// Head of a frame, and the words of its data.
+    /// Head of a frame, and the words in its data.
     fn words(frame: &str) -> (&str, Vec<i32>) {
         let bytes: Vec<u8> =
             (16..frame.len()).step_by(2).map(|at| u8::from_str_radix(&frame[at..at + 2], 16).unwrap()).collect();
@@ -415,7 +415,7 @@ mod tests {
         (&frame[..16], words.collect())
     }
 
-    /// The only move request in the frames of a dry run.
+    /// The move request in the frames of a dry run. There must be exactly one.
     fn order_on(target: &str, line: &str) -> String {
         let sent = frames_on(target, line).unwrap();
         let orders: Vec<&String> =
@@ -431,7 +431,8 @@ mod tests {
     #[test]
     fn dry_run_shows_reads_before_and_after() {
         let heads = |line: &str| frames(line).unwrap().iter().map(|frame| frame[..8].to_owned()).collect::<Vec<_>>();
-        // Position and axes of the base, position and axes of the robot, the move request, the status reads.
+        // Expected reads: position and axes of the base, position and axes of the robot. Then the move request and the
+        // status reads.
         let before = ["75000b00", "74000b00", "75006500", "74006500"];
         let after = ["72000100", "75006500", "70000100"];
         assert_eq!(heads(FAR), [&before[..], &["8a000200"], &after].concat());
@@ -462,7 +463,7 @@ mod tests {
         let axes = [1500, -2000, 0, 0, 0, 0, 0, 0, 0];
         let sent = order(line);
         assert_eq!(words(&sent), ("8a00010001020000", [&expected[..], &axes[..]].concat()));
-        // FS 3.3.39 prints one reserved word fewer.
+        // FS 3.3.39 prints one reserved word less.
         let sent = order_on("udp://h?model=fs100&move_words=25", line);
         assert_eq!(words(&sent).1, [&expected[..11], &expected[12..], &axes[..]].concat());
     }

@@ -1,4 +1,4 @@
-//! `yerc names`: user names of signals, variables and registers.
+//! `yerc names`: user-defined names of signals, variables and registers.
 
 use clap::Args;
 use jiff::Timestamp;
@@ -25,18 +25,19 @@ commands! {
     }
 }
 
-/// Reads the names in the files of the controller, and stores them on this computer for its address.
+/// Reads the names in the files of the controller, and stores them on this computer under the address of the
+/// controller.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The files are IONAME.DAT, EXIONAME.DAT, VARNAME.DAT and IOMNAME.DAT; a missing file has no names. \
-                  You can then type a name instead of its number: `io get`, `io set`, `var get`, `var set`, `register \
-                  get`, `teach`, `move --to`. Names of the robot in robots.toml have priority (`armctl help \
-                  inventory`). `armctl names list` shows all names. After a change on the controller, run this command \
-                  again."
+    after_help = "armctl reads the files IONAME.DAT, EXIONAME.DAT, VARNAME.DAT and IOMNAME.DAT; a missing file has no \
+                  names. After that, you can type a name instead of a number: `io get`, `io set`, `var get`, `var \
+                  set`, `register get`, `teach`, `move --to`. The robot's names in robots.toml have priority (`armctl \
+                  help inventory`). `armctl names list` shows all names. After a change on the controller, run this \
+                  command again."
 )]
 pub struct Get {}
 
-/// Removes the stored names of the controller; those in robots.toml stay.
+/// Removes the stored names of the controller. Names in robots.toml are not removed.
 #[derive(Debug, Args)]
 pub struct Forget {}
 
@@ -77,7 +78,7 @@ impl Command for Get {
         }
         items::all_failed(files.len(), files.iter().filter_map(|file| file.error.as_ref()))?;
         let mut report = Fetched { files, names: names.len(), kept: false, read_at: None };
-        // An incomplete set must not replace a complete one.
+        // An incomplete set of names must not replace a complete set.
         if report.failure().is_none()
             && let Some(place) = robot.names.cache_file()
         {
@@ -86,48 +87,51 @@ impl Command for Get {
             (report.kept, report.read_at) = (true, Some(stored.read_at));
         }
         if !report.kept && robot.target.value.is_simulated() {
-            screen.note("Names of a simulator in this process are not stored: they always come from its start files.");
+            screen.note(
+                "Names of a simulator in this process are not stored: the simulator always reads them from its start \
+                 files.",
+            );
         }
         Ok(report)
     }
 }
 
-/// Software of the controller; none if it refuses to report it.
+/// Software version of the controller; `None` if the controller refuses to report it.
 async fn told_software(link: &mut Link) -> Option<String> {
     if link.told_software().is_none() {
-        // The names are valid without it.
+        // The names are valid without the software version.
         let _refused = software(link).await;
     }
     link.told_software()
 }
 
-/// Maximum size of a name file, which has some ten thousand lines.
+/// Maximum size of a file with names. Such a file has some ten thousand lines.
 const MOST: u64 = 8 << 20;
 const ANOTHER_FORM: &str =
-    "armctl reads only the format of FS100, DX200 and YRC1000; define names in robots.toml instead";
+    "define names in robots.toml instead; armctl reads only the format of FS100, DX200 and YRC1000";
 
-/// Names that were read.
+/// Names that were read from the controller.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 pub struct Fetched {
     files: Vec<OfFile>,
     /// Number of names in all files.
     names: usize,
-    /// Whether they are stored for later commands.
+    /// Whether the names are stored for later commands.
     kept: bool,
-    /// Time of reading, if they are stored.
+    /// Time at which the names were read, if they are stored.
     #[schemars(with = "Option<String>", extend("format" = "date-time"))]
     read_at: Option<Timestamp>,
 }
 
-/// A file and its names.
+/// A file, and how many names it contains.
 #[derive(Debug, Serialize, JsonSchema)]
 struct OfFile {
     file: &'static str,
     state: State,
     names: usize,
-    /// Number of lines in another format.
+    /// Number of lines that were skipped because they have another format.
     passed_over: usize,
-    /// Reason why it was not read.
+    /// Reason why the file was not read.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "ItemError")]
     error: Option<ItemError>,
@@ -137,7 +141,7 @@ struct OfFile {
 #[serde(rename_all = "snake_case")]
 enum State {
     Read,
-    /// The file does not exist or is empty.
+    /// The file does not exist, or is empty.
     Missing,
     Failed,
 }
@@ -174,10 +178,10 @@ impl Command for Forget {
     }
 }
 
-/// Result of removing stored names.
+/// Result of removing the stored names.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Forgotten {
-    /// Whether names were stored.
+    /// Whether there were stored names.
     forgotten: bool,
 }
 

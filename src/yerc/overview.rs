@@ -19,7 +19,7 @@ pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
         None => plan_latest(link).map(|()| Fault::default())?,
     };
     let query = link.by_model(|model| ReadPosition::new(model, Group::R1, Coordinates::Base)).await?;
-    // A controller without a first robot has no position, which is not a failure.
+    // A controller without a first robot has no position. This is not a failure.
     let position = link.ask_optional(&query).await.known()?.and_then(Result::ok);
     Ok(report(status.ok_or_else(unknown)?, fault, position.as_ref()))
 }
@@ -39,7 +39,7 @@ pub(super) fn state(status: ControllerStatus, fault: Fault, base: Option<&Positi
     let is_play = match (status.has(StatusBit::Teach), status.has(StatusBit::Play)) {
         (true, false) => Some(false),
         (false, true) => Some(true),
-        // The controller reports neither or both.
+        // The controller reports neither of the two modes, or both.
         _ => None,
     };
     State {
@@ -55,7 +55,7 @@ pub(super) fn state(status: ControllerStatus, fault: Fault, base: Option<&Positi
     }
 }
 
-/// State that a previous client left, derived from the status.
+/// State that an earlier client left on the controller, derived from the status.
 pub(super) fn left_over(status: ControllerStatus) -> Vec<LeftOver> {
     let is_held = status.has(StatusBit::HoldCommand);
     let with_power = is_held && status.servo_on();
@@ -63,9 +63,9 @@ pub(super) fn left_over(status: ControllerStatus) -> Vec<LeftOver> {
         LeftOver::new(
             is_held,
             "HOLD by a command is on",
-            "`yerc hold off` releases it, and the held motion may continue",
+            "use `yerc hold off` to release HOLD; the held motion may continue",
         ),
-        LeftOver::new(with_power, "servo power is on", "`yerc servo off` switches it off"),
+        LeftOver::new(with_power, "servo power is on", "use `yerc servo off` to switch servo power off"),
     ]
     .into_iter()
     .flatten()

@@ -24,7 +24,7 @@ use armctl_frame::plot::SeriesHistory;
 use armctl_frame::robot::position::{self as robot, Joint, Positions, Row};
 use armctl_frame::{Command, Context};
 
-/// Current position of a group (FS and DX 3.3.6).
+/// Reads the current position of a group (FS and DX 3.3.6).
 #[derive(Debug, Args)]
 pub struct Position {
     /// Control group: R1 …, B1 …, S1 …
@@ -44,7 +44,7 @@ pub struct Position {
 enum Which {
     /// Pulses of each axis
     Pulse,
-    /// X Y Z Rx Ry Rz in base coordinates
+    /// X, Y, Z, Rx, Ry and Rz in base coordinates
     Base,
     /// Both
     Both,
@@ -115,7 +115,7 @@ pub(super) async fn ask(
     Ok((position, report.of_group(group.to_string())))
 }
 
-/// Frame of the report: `joint` for pulses.
+/// Name of the frame in the report. Pulses have the frame `joint`.
 const fn frame(coordinates: Coordinates) -> &'static str {
     match coordinates {
         Coordinates::Pulse => "joint",
@@ -123,7 +123,7 @@ const fn frame(coordinates: Coordinates) -> &'static str {
     }
 }
 
-/// Row of a group in these coordinates.
+/// Row of the report for a group in these coordinates.
 fn row(
     group: Group,
     coordinates: Coordinates,
@@ -134,7 +134,7 @@ fn row(
     Row::new(&group.to_string(), frame(coordinates), position)
 }
 
-/// Position in the report, if it has the requested coordinates.
+/// Position in the report; `None` if it does not have the requested coordinates.
 fn reported(
     group: Group,
     coordinates: Coordinates,
@@ -147,12 +147,12 @@ fn reported(
         }
         (_, kind) => {
             let message = format!("unexpected answer: position type {} was not requested", kind.word());
-            Err(Failure::new(Kind::Malformed, message).hint("-vvv shows the bytes"))
+            Err(Failure::new(Kind::Malformed, message).hint("use -vvv to see the bytes"))
         }
     }
 }
 
-/// Position in a variable of a group; unused axes are left out.
+/// Position in a variable of a group. Unused axes are omitted.
 pub(super) fn has_taught_axes(group: Group, value: &variables::Value, per_degree: &[f64]) -> robot::Position {
     let position = as_position(value);
     let used = &position.axes.as_slice()[..position.shown_axes().min(position.axes.as_slice().len())];
@@ -160,7 +160,7 @@ pub(super) fn has_taught_axes(group: Group, value: &variables::Value, per_degree
     as_reported(group, payload::Position { axes, ..position }, AxisSet::ALL, per_degree)
 }
 
-/// Position of a group in any coordinate system.
+/// Position of a group in the coordinate system in which it was reported.
 pub(super) fn as_reported(
     group: Group,
     position: payload::Position,
@@ -174,14 +174,14 @@ pub(super) fn as_reported(
     }
 }
 
-/// Position by axis, also in degrees if the pulses per degree are known.
+/// Position by axis. If the pulses per degree are known, the position is also in degrees.
 fn pulses(group: Group, position: payload::Position, fitted: AxisSet, per_degree: &[f64]) -> robot::Position {
     let axes = ByAxis::new(position.axes, matches!(group, Group::Robot(_)), fitted);
     let per_degree = per_degree.iter().copied().map(Some).chain(std::iter::repeat(None));
     let joint = |((name, pulses), per): ((&'static str, i32), Option<f64>)| Joint {
         axis: name.to_owned(),
         pulses: Some(pulses),
-        // Rounded to 0.0001 degree, the resolution of controllers.
+        // Rounded to 0.0001 degree, which is the resolution of the controllers.
         degrees: per.map(|per| (f64::from(pulses) / per * 1e4).round() / 1e4),
         ..Joint::default()
     };
@@ -194,7 +194,7 @@ fn pulses(group: Group, position: payload::Position, fitted: AxisSet, per_degree
     }
 }
 
-/// Position in coordinates.
+/// Position in cartesian coordinates.
 fn cartesian(group: Group, position: payload::Position, fitted: AxisSet) -> robot::Position {
     let axes = position.axes.as_slice();
     let value = |axis: usize| {
@@ -222,18 +222,19 @@ fn cartesian(group: Group, position: payload::Position, fitted: AxisSet) -> robo
     }
 }
 
-/// Position of a group in the notation of `var set`.
+/// Text of the position of a group, in the notation of `var set`.
 fn text(group: Group, position: payload::Position) -> String {
     PositionData::of(&stored_position(group, position)).map(|data| data.text().to_owned()).unwrap_or_default()
 }
 
-/// Value of a protocol integer. It is the binary number nearest to the decimal number, so it prints with the same
-/// digits.
+/// Converts a protocol integer to a number in its unit. The result is the binary number nearest to the decimal number,
+/// so it is printed with the same digits.
 pub(super) fn decimal(value: i32, unit: Unit) -> f64 {
     f64::from(value) / 10_f64.powi(unit.decimals.into())
 }
 
-/// Axis names of a robot; other groups have numbers (FS and DX 3.3.5). The manuals do not name an eighth axis.
+/// Axis names of a robot. The axes of other groups have numbers (FS and DX 3.3.5). The manuals do not name an eighth
+/// axis.
 pub(super) const ROBOT_AXES: [&str; MAX_AXES] = ["S", "L", "U", "R", "B", "T", "E", "8"];
 pub(super) const CARTESIAN_AXES: [&str; MAX_AXES] = ["X", "Y", "Z", "Rx", "Ry", "Rz", "Re", "8"];
 const NUMBERED_AXES: [&str; MAX_AXES] = ["1", "2", "3", "4", "5", "6", "7", "8"];
@@ -247,12 +248,12 @@ pub(super) struct ByAxis {
 }
 
 impl ByAxis {
-    /// `is_robot` selects the names.
+    /// Creates the values. `is_robot` selects the names of the axes.
     pub(super) fn new(axes: Axes, is_robot: bool, fitted: AxisSet) -> Self {
         Self { axes, is_robot, fitted }
     }
 
-    /// Names and the existing values.
+    /// Names and values of the axes that exist.
     pub(super) fn rows(&self) -> impl Iterator<Item = (&'static str, i32)> {
         let names = if self.is_robot { ROBOT_AXES } else { NUMBERED_AXES };
         let rows = names.into_iter().zip(self.axes.as_slice().iter().copied()).enumerate();
@@ -289,18 +290,18 @@ fn key(name: &str) -> String {
     if is_number { format!("axis_{name}") } else { name.to_lowercase() }
 }
 
-/// The first `always` words of a form in any case, the others only if they are set.
+/// The first `always` words of a form in any case, and the other words only if their bits are set.
 fn short(words: &[&str], bits: u32, always: usize) -> String {
     let described = words.iter().enumerate().filter(|(bit, _)| *bit < always || bits >> bit & 1 == 1);
     described.map(|(_, word)| *word).collect::<Vec<_>>().join("+")
 }
 
-/// Short words of a form, as `--form` accepts them.
+/// Words of a form in short, as `--form` accepts them.
 pub(super) fn form_words(form: Form) -> String {
     short(&form.words().collect::<Vec<_>>(), form.0, 3)
 }
 
-/// Words of an extended form that are set.
+/// Words of an extended form whose bits are set.
 pub(super) fn extended_words(form: ExtendedForm) -> String {
     short(&form.words().collect::<Vec<_>>(), form.0, 0)
 }
@@ -318,7 +319,7 @@ fn names(kind: PositionKind, is_robot: bool) -> [&'static str; MAX_AXES] {
     }
 }
 
-/// Axes in one line: `x=100.000 y=0.000 z=0.000 mm, rx=180.0000 ry=0.0000 rz=0.0000 deg`, or `s=0 l=0`.
+/// Axes in one line, for example `x=100.000 y=0.000 z=0.000 mm, rx=180.0000 ry=0.0000 rz=0.0000 deg`, or `s=0 l=0`.
 pub(super) fn in_a_line(kind: PositionKind, axes: &[i32], is_robot: bool) -> String {
     let names = names(kind, is_robot);
     let mut line = String::new();

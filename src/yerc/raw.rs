@@ -30,19 +30,20 @@ use armctl_frame::gate::Confirmation;
 use armctl_frame::output::view::{Cell, View};
 use armctl_frame::{Command, Context, Report};
 
-/// Sends a raw request.
+/// Sends one raw request and shows the answer.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Numbers are decimal, or hexadecimal after 0x. A request that the manuals do not list is sent with a \
-                  warning, or rejected with --strict. armctl treats an unknown request as a motion and asks for \
-                  confirmation. List (0x32) and save (0x16) show all blocks of the transfer as one. To send a file, \
-                  use `yerc file put`. If the controller refuses, its answer is printed and the exit code is 3."
+    after_help = "Numbers are decimal, or hexadecimal after 0x. armctl sends a request that the manuals do not list \
+                  with a warning, or rejects it with --strict. armctl treats an unknown request as a motion and asks \
+                  for confirmation. List (0x32) and save (0x16) show all blocks of the transfer as one block. To send \
+                  a file, use `yerc file put`. If the controller refuses the request, the command prints the answer, \
+                  and the exit code is 3."
 )]
 pub struct Raw {
     /// Command number, such as 0x72
     #[arg(long, value_name = "N", value_parser = word, required_unless_present = "file")]
     command: Option<u16>,
-    /// Instance: number of the item that the command addresses
+    /// Instance: number of the item
     #[arg(long, value_name = "N", value_parser = word, required_unless_present = "file")]
     instance: Option<u16>,
     /// Attribute: number of the field; 0 for all
@@ -57,7 +58,7 @@ pub struct Raw {
     /// Send to the file server instead of the robot server
     #[arg(long, conflicts_with_all = ["command", "instance"])]
     file: bool,
-    /// Reject requests that the manuals do not list for this model
+    /// Reject a request that the manuals do not list for this model
     #[arg(long)]
     strict: bool,
 }
@@ -119,7 +120,7 @@ impl Command for Raw {
         )
     }
 
-    /// A write of positions first reads their content.
+    /// Before positions are written, their current content is read.
     fn confirmation(&self) -> Confirmation {
         let is_known = !self.file && self.risk() == Risk::Destroy;
         if is_known { Confirmation::WhenKnown } else { Confirmation::Question }
@@ -135,7 +136,7 @@ impl Command for Raw {
             return Err(Failure::usage(format!("file service {:#04x} sends blocks", request.service))
                 .hint("use `yerc file put`"));
         }
-        // A request that some model supports is not an error as long as the model is unknown.
+        // While the model is unknown, a request that some model supports is not an error.
         let uncertainty = match link.known_model() {
             Some(model) => request.check(model).err(),
             None if Model::ALL.iter().any(|model| request.check(*model).is_ok()) => None,
@@ -144,7 +145,7 @@ impl Command for Raw {
         let doubt = uncertainty.map(|error| error.to_string());
         if let Some(doubt) = &doubt {
             if self.strict {
-                return Err(Failure::usage(doubt.clone()).hint("remove --strict to send it anyway"));
+                return Err(Failure::usage(doubt.clone()).hint("remove --strict to send the request anyway"));
             }
             screen.note(&format!("warning: {doubt}"));
         }
@@ -160,16 +161,16 @@ impl Command for Raw {
     }
 }
 
-/// Maximum number of bytes of a transfer that are shown.
+/// Maximum number of bytes of a transfer that are displayed.
 const MAX_TRANSFER: u64 = 4 << 20;
-/// Maximum time for the first answer, if the controller writes its batch backup first.
+/// Maximum time until the first answer, if the controller first writes its batch backup.
 const BACKUP: Duration = Duration::from_secs(15 * 60);
 
-/// All blocks of a transfer as the data of one answer.
+/// Executes a transfer, and returns all its blocks as the data of one answer.
 async fn transfer(link: &mut Link, request: &Request) -> Result<Reply, Failure> {
     let began = Instant::now();
     let mut data = Vec::new();
-    // The backup must not be requested twice.
+    // The backup must not be requested twice, so the request is not repeated.
     let first_wait = (request.data == BATCH_BACKUP_PATH).then_some(BACKUP);
     let end = link
         .download(request, MAX_TRANSFER, first_wait, |piece| {
@@ -188,13 +189,13 @@ async fn transfer(link: &mut Link, request: &Request) -> Result<Reply, Failure> 
     Ok(Reply { status, data, elapsed: began.elapsed(), attempts: 1 })
 }
 
-/// Request and answer.
+/// A raw request and its answer.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Answer {
     request: Asked,
-    /// `0x00` is success.
+    /// Status; `0x00` is success.
     status: String,
-    /// Null if the answer has none.
+    /// Added status; null if the answer has none.
     added_status: Option<String>,
     /// Meaning of the status.
     meaning: String,
@@ -206,7 +207,7 @@ pub struct Answer {
     /// Decoded fields of the data part.
     fields: Vec<FieldRow>,
     round_trip_ms: f64,
-    /// Number of copies of the request that were sent.
+    /// Number of times that the request was sent.
     attempts: u32,
     #[serde(skip)]
     refusal: Option<Failure>,
@@ -220,11 +221,11 @@ struct Asked {
     attribute: u8,
     service: String,
     data_hex: String,
-    /// Name of the command, if known.
+    /// Name of the command; null if the command is unknown.
     name: Option<&'static str>,
-    /// Manual and section, if known.
+    /// Manual and section; null if the command is unknown.
     section: Option<String>,
-    /// Conflict with the manuals.
+    /// Text about a difference between the request and the manuals.
     warning: Option<String>,
 }
 

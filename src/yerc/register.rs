@@ -1,4 +1,4 @@
-//! `yerc register`: 16-bit words that ladder program and PC share.
+//! `yerc register`: 16-bit words that the ladder program and a PC can both use.
 
 use std::collections::HashSet;
 use std::str::FromStr;
@@ -9,67 +9,54 @@ use serde::Serialize;
 
 use super::batch_split::{BatchSplit, read_in_batches};
 use super::complete;
-use super::link::Yerc;
+use super::link::{Link, Yerc};
 use super::switch_commands::usage;
-use super::write_all::{WriteOrder, old_value, write_all};
 use crate::existing_items::read_failure;
 use armctl_controller::Risk;
-use armctl_controller::names::{Kind, Names};
+use armctl_controller::names::Kind;
 use armctl_controller::typed;
+use armctl_controller::yerc::Model;
 use armctl_controller::yerc::names::{register, register_address};
-use armctl_controller::yerc::variables::{WriteRegisterStep, parse_numbers, plan_register_reads, plan_register_writes};
-use armctl_frame::failure::Failure;
-use armctl_frame::items;
+use armctl_controller::yerc::query::Query as _;
+use armctl_controller::yerc::variables::{parse_numbers, plan_register_reads, plan_register_writes};
+use armctl_frame::dry_run::Reason;
+use armctl_frame::failure::{Failure, Kind as FailureKind};
 use armctl_frame::names;
-use armctl_frame::robot::item::{Columns, Item, Items, Written, WrittenItems};
-use armctl_frame::watch::{Watch, Watchable, Watched};
-use armctl_frame::{Command, Context, commands};
+use armctl_frame::output::Screen;
+use armctl_frame::output::view::Cell;
+use armctl_frame::settings_report::{IF_DIFFERENT, OLD_VALUE};
+use armctl_frame::store::{
+    Answers, Copy, Differing, Dump, Field, Get, Ids, List, Restore, Row, Single, Store, TableWords, TableWrite,
+    Writable, WrittenOf, ids, write,
+};
+use armctl_frame::watch::Watch;
+use armctl_frame::{Command, Context, ValueKind, commands};
 
 commands! {
     /// Commands for registers.
     pub enum Register {
         /// Read registers: 0 to 999
-        Get(Get),
+        Get(Get<Registers>),
         /// Write registers: 0 to 559
         Set(Set),
+        /// List the registers that are not 0
+        List(List<Registers>),
         /// Print each change of registers
-        Watch(Watch<Get>),
+        Watch(Watch<Get<Registers>>),
+        /// Copy a register to others: 5 6..8
+        Copy(Copy<Registers>),
+        /// Save registers to a CSV file
+        Dump(Dump<Registers>),
+        /// Write registers from a CSV file
+        Restore(Restore<Registers>),
     }
-}
-
-/// Reads registers.
-#[derive(Debug, Args)]
-pub struct Get {
-    /// Registers, such as 5, M5 or 0..20, or a name
-    #[arg(required = true, value_name = "N", value_delimiter = ',', value_parser = Numbers::parse, add = complete::REGISTER)]
-    registers: Vec<Numbers>,
-}
-
-#[derive(Debug, Clone)]
-struct Numbers(Vec<u16>);
-
-impl Numbers {
-    fn parse(text: &str) -> Result<Self, String> {
-        numbers(text).map(Self)
-    }
-}
-
-/// Parses register numbers: `5`, `M5`, `0..20`, or a name.
-fn numbers(text: &str) -> Result<Vec<u16>, String> {
-    names::parse_or_name(&[Kind::Register], "0", text, |text| match register(text) {
-        Some(number) => Ok(vec![number]),
-        None => parse_numbers(text).map_err(|error| error.to_string()),
-    })
 }
 
 /// Writes registers.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "The ladder program can overwrite a register immediately after the write. Read the register back if \
-                  that matters."
-)]
+#[command(after_help = WRITING)]
 pub struct Set {
-    /// 5=1000 or 5=0x03E8, or NAME=1000
+    /// 5=1000, 5=0x03E8 or NAME=1000
     #[arg(required = true, value_name = "N=VALUE", add = complete::REGISTER_VALUE)]
     assignments: Vec<Assignment>,
 }
@@ -85,99 +72,202 @@ impl FromStr for Assignment {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let (number, value) = typed::setting(text, "a number", "a value", "5=1000")?;
-        let numbers = numbers(number)?;
-        let [number] = numbers[..] else { return Err(format!("'{number}' is a range; give each register its value")) };
-        let value = typed::unsigned(value)
-            .ok_or_else(|| format!("'{value}' is not a number from 0 to 65535 (0x0000 to 0xFFFF)"))?;
-        Ok(Self { number, value })
+        let numbers = names::parse_or_name(&[Kind::Register], &Registers::any(), number, Registers::keys)?;
+        let [number] = numbers[..] else {
+            return Err(format!("'{number}' is a range; type a value for each register"));
+        };
+        Ok(Self { number, value: parse_word(value)? })
     }
 }
 
-impl Command for Get {
-    type Family = Yerc;
-    type Report = Items<u16, Word>;
-    const ID: &'static str = "yerc.register.get";
-
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Items<u16, Word>, Failure> {
-        let numbers = typed::once(self.registers.iter().flat_map(|numbers| numbers.0.iter().copied()));
-        let Context { link, robot, screen, .. } = context;
-        let names = names::of_robot(robot, screen);
-        let model = link.model_for(|model| plan_register_reads(model, &numbers)).await?;
-        let plan = |numbers: &[u16]| plan_register_reads(model, numbers).map_err(usage);
-        let mut outcomes = read_in_batches(link, plan, &numbers, |_| BatchSplit::Halves, |_, _| {}).await?;
-        let words = numbers.into_iter().filter_map(|number| {
-            let outcome = outcomes.remove(&number)?;
-            Some(item(number, names, outcome.map_err(read_failure)))
-        });
-        let report = Items::new(columns(), words.collect());
-        items::all_failed(report.items.len(), report.errors())?;
-        Ok(report)
-    }
-}
-
-impl Watchable for Get {
-    const WATCH: &'static str = "yerc.register.watch";
-    const WATCHED: Watched = Watched::ITEMS;
+fn parse_word(text: &str) -> Result<u16, String> {
+    typed::unsigned(text).ok_or_else(|| format!("'{text}' is not a number from 0 to 65535 (0x0000 to 0xFFFF)"))
 }
 
 impl Command for Set {
     type Family = Yerc;
-    type Report = WrittenItems<u16, Word>;
-    const ID: &'static str = "yerc.register.set";
-    const RISK: Risk = Risk::Write;
+    type Report = WrittenOf<Registers>;
+    const ID: &'static str = Registers::IDS.set;
+    const RISK: Risk = Registers::RISK;
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenItems<u16, Word>, Failure> {
-        let Context { link, robot, screen, .. } = context;
-        let names = names::of_robot(robot, screen);
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenOf<Registers>, Failure> {
+        let Context { link, screen, robot, authority, .. } = context;
         let mut seen_numbers = HashSet::new();
         if let Some(twice) = self.assignments.iter().find(|assignment| !seen_numbers.insert(assignment.number)) {
-            return Err(Failure::usage(format!("register {} appears twice", twice.number)).hint("give it one value"));
+            return Err(Failure::usage(format!("register {} appears twice", twice.number))
+                .hint("type one value for the register"));
         }
+        let numbers: Vec<u16> = self.assignments.iter().map(|it| it.number).collect();
+        let mut table = Registers::open(link, &Single {}).await?;
+        table.prepare(link, &numbers).await?;
         let values: Vec<(u16, u16)> = self.assignments.iter().map(|it| (it.number, it.value)).collect();
-        let steps = link.by_model(|model| plan_register_writes(model, &values)).await?;
-        let numbers: Vec<u16> = values.iter().map(|(number, _)| *number).collect();
-        let reads = link.by_model(|model| plan_register_reads(model, &numbers)).await?;
-        let old = old_value(link, &reads).await?;
-        write_all(link, screen, &steps).await?;
-        let written = values
-            .into_iter()
-            .map(|(number, value)| Written::new(item(number, names, Ok(value)), old.get(&number).copied(), true));
-        Ok(WrittenItems::new(columns(), written.collect()))
+        link.by_model(|model| plan_register_writes(model, &values)).await?;
+        let rows = values.into_iter().map(|(number, value)| (number, Some(value))).collect();
+        write(TableWrite { table, robot, link, screen, authority }, rows).await?.or_only_failure()
     }
 }
 
-impl WriteOrder for WriteRegisterStep {
-    type Item = u16;
-
-    fn items(&self) -> Vec<u16> {
-        self.written().to_vec()
-    }
-
-    fn listed(items: Vec<u16>) -> String {
-        format!("register {}", typed::runs(&items, ".."))
-    }
+/// The registers of a controller.
+#[derive(Debug)]
+pub struct Registers {
+    /// Model, once it is known; needed only if the models have different registers.
+    model: Model,
 }
 
 /// Family-specific fields of a register.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Word {
     number: u16,
-    /// `0x03e8`; null if it was not read.
+    /// Value in hexadecimal, such as `0x03e8`; null if the register was not read.
     value_hex: Option<String>,
 }
 
-fn item(number: u16, names: &Names, value: Result<u16, Failure>) -> Item<u16, Word> {
-    let hex = |value: u16| format!("{value:#06x}");
-    let name = register_address(number);
-    let (label, more) =
-        (names::label(names, Kind::Register, &name), Word { number, value_hex: value.as_ref().ok().copied().map(hex) });
-    Item::with("register", name, more, value.map(Some))
-        .labelled(label)
-        .with_cells(|value| vec![(*value).into(), hex(*value).into()])
+const WRITING: &str = "A register that holds the value already is not written. The ladder program can overwrite a \
+                       register immediately after the write. Read the register back if that matters.";
+/// Last register (DX200 manual, 3.3.10).
+const LAST: u16 = 999;
+
+fn hex(value: u16) -> String {
+    format!("{value:#06x}")
 }
 
-fn columns() -> Columns {
-    Columns { name: "register", values: vec!["value", "hex"], empty: "no registers" }
+impl Store for Registers {
+    type Family = Yerc;
+    type Key = u16;
+    type Wire = u16;
+    type Value = u16;
+    type More = Word;
+    type Options = Single;
+
+    const WORDS: TableWords = TableWords {
+        nouns: ["register", "registers"],
+        placeholder: "N",
+        range: "Registers, such as 5, M5 or 0..20, or a name",
+        reading: None,
+        writing: Some(WRITING),
+    };
+    const IDS: Ids = ids!("yerc.register");
+    const LABELS: Option<Kind> = Some(Kind::Register);
+    const COMPLETE: ValueKind = complete::REGISTER;
+
+    fn keys(text: &str) -> Result<Vec<u16>, String> {
+        match register(text) {
+            Some(number) => Ok(vec![number]),
+            None => parse_numbers(text).map_err(|error| error.to_string()),
+        }
+    }
+
+    fn all() -> Vec<u16> {
+        (0..=LAST).collect()
+    }
+
+    /// Those that `restore` can write.
+    fn saved() -> Vec<u16> {
+        Self::all().into_iter().filter(|number| plan_register_writes(Model::Dx200, &[(*number, 0)]).is_ok()).collect()
+    }
+
+    fn name(number: u16) -> String {
+        register_address(number)
+    }
+
+    async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+        Ok(Self { model: Model::Dx200 })
+    }
+
+    async fn prepare(&mut self, link: &mut Link, numbers: &[u16]) -> Result<(), Failure> {
+        self.model = link.model_for(|model| plan_register_reads(model, numbers)).await?;
+        Ok(())
+    }
+
+    fn fields(&self) -> Vec<Field> {
+        vec![Field::number("value", "value")]
+    }
+
+    fn texts(&self, value: &u16) -> Vec<String> {
+        vec![value.to_string()]
+    }
+
+    fn headings(&self) -> Vec<&'static str> {
+        vec!["value", "hex"]
+    }
+
+    fn cells(&self, _number: u16, value: &u16) -> Vec<Cell> {
+        vec![(*value).into(), hex(*value).into()]
+    }
+
+    fn value(&self, value: &u16) -> Option<u16> {
+        Some(*value)
+    }
+
+    fn more(&self, number: u16, value: Option<&u16>) -> Word {
+        Word { number, value_hex: value.copied().map(hex) }
+    }
+
+    fn is_blank(&self, value: &u16) -> bool {
+        *value == 0
+    }
+
+    async fn read(&self, link: &mut Link, _screen: &Screen, numbers: &[u16]) -> Result<Answers<u16>, Failure> {
+        let plan = |numbers: &[u16]| plan_register_reads(self.model, numbers).map_err(usage);
+        let answers = read_in_batches(link, plan, numbers, |_| BatchSplit::Halves, |_, _| {}).await?;
+        let row = |number: &u16| match answers.get(number) {
+            Some(Ok(value)) => Ok(*value),
+            Some(Err(denied)) => Err(read_failure(denied.clone())),
+            None => Err(Failure::new(FailureKind::Malformed, "the answer does not have this register")),
+        };
+        Ok(Answers::of(numbers.iter().map(row).collect()))
+    }
+}
+
+impl Writable for Registers {
+    /// None in the dry run of a copy, which does not know the value.
+    type Draft = Option<u16>;
+
+    const RISK: Risk = Risk::Write;
+
+    fn draft(&self, number: u16, texts: &[Option<&str>]) -> Result<Option<u16>, String> {
+        plan_register_writes(self.model, &[(number, 0)]).map_err(|error| error.to_string())?;
+        texts.first().copied().flatten().map(parse_word).transpose()
+    }
+
+    fn complete_draft(&self, number: u16, draft: &Option<u16>, _old: Option<&u16>) -> Result<u16, Failure> {
+        let missing = || Failure::usage(format!("{}: the value is missing", Self::name(number)));
+        draft.ok_or_else(|| missing().hint("give a number from 0 to 65535 in column value"))
+    }
+
+    async fn read_old(&self, link: &mut Link, screen: &Screen, rows: &[Row<Self>]) -> Result<Answers<u16>, Failure> {
+        let numbers: Vec<u16> = rows.iter().map(|(number, _)| *number).collect();
+        self.read(link.for_purpose(OLD_VALUE), screen, &numbers).await
+    }
+
+    /// Consecutive registers are one request.
+    fn blocks(&self, rows: &[Differing<'_, Self>]) -> Vec<Vec<usize>> {
+        let values: Vec<(u16, u16)> = rows.iter().map(|(number, _, new)| (*number, **new)).collect();
+        let index_of = |number: &u16| rows.iter().position(|(key, ..)| key == number);
+        match plan_register_writes(self.model, &values) {
+            Ok(steps) => steps.iter().map(|step| step.written().iter().filter_map(index_of).collect()).collect(),
+            Err(_) => (0..rows.len()).map(|index| vec![index]).collect(),
+        }
+    }
+
+    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
+        let values = |unknown: u16| rows.iter().map(move |(number, value)| (*number, value.unwrap_or(unknown)));
+        let steps = |unknown| plan_register_writes(self.model, &values(unknown).collect::<Vec<_>>()).map_err(usage);
+        for (step, other) in steps(0)?.iter().zip(steps(u16::MAX)?) {
+            let about = format!("writes register {}", typed::runs(step.written(), ".."));
+            let reason = Reason::about(&about).depending_on(IF_DIFFERENT);
+            link.plan_depending(&step.request(), &other.request(), reason);
+        }
+        Ok(())
+    }
+
+    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
+        let values: Vec<(u16, u16)> = rows.iter().map(|(number, _, new)| (*number, **new)).collect();
+        for step in plan_register_writes(self.model, &values).map_err(usage)? {
+            link.ask(&step).await?;
+        }
+        Ok(())
+    }
 }
 
 #[cfg(test)]
@@ -203,5 +293,26 @@ mod tests {
         let data = bench.data(&["register", "get", "6", "5..6"]);
         let numbers: Vec<&Value> = data["items"].as_array().unwrap().iter().map(|word| &word["value"]).collect();
         assert_eq!(numbers, [&Value::from(1), &Value::from(0xFFFF)]);
+        let listed = bench.data(&["register", "list"]);
+        let names: Vec<&Value> = listed["items"].as_array().unwrap().iter().map(|word| &word["name"]).collect();
+        assert_eq!(names, ["M5", "M6"]);
+    }
+
+    #[test]
+    fn dump_restores_the_registers_that_can_be_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("registers.csv").to_str().unwrap().to_owned();
+        let mut bench = Bench::new("sim:");
+        bench.data(&["register", "set", "5=0xFFFF", "559=1"]);
+        bench.data(&["register", "copy", "5", "7..8"]);
+        assert_eq!(bench.data(&["register", "dump", &file])["saved"], 4);
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), "name,value\nM5,65535\nM7,65535\nM8,65535\nM559,1\n");
+        let mut other = Bench::new("sim:");
+        other.data(&["register", "set", "7=0xFFFF"]);
+        let items = other.data(&["register", "restore", &file])["items"].clone();
+        let written: Vec<&Value> = items.as_array().unwrap().iter().map(|item| &item["written"]).collect();
+        assert_eq!(written, [true, false, true, true]);
+        let failure = other.run(&["register", "copy", "5", "560"]).unwrap_err();
+        assert!(failure.message.contains("0-559"), "{failure}");
     }
 }

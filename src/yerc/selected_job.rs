@@ -1,4 +1,5 @@
-//! Job that a start runs: text of the confirmation, and a check that it is unchanged after the answer.
+//! Job that a start runs: the text of the confirmation, and a check after the confirmation that the job is still the
+//! same.
 
 use super::link::Link;
 use crate::failure::refusal_failure;
@@ -9,14 +10,14 @@ use armctl_controller::yerc::query::ReadJob;
 use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::gate::{Change, data_changed};
 
-/// Job that a start runs, as the controller reports it.
+/// Job that a start command starts, as the controller reports it.
 #[derive(Debug, PartialEq, Eq)]
 pub enum SelectedJob {
-    /// This job, at a line, with a speed override.
+    /// This job. Contains the line and the speed override.
     Job(JobInfo),
-    /// No job.
+    /// No job is selected.
     None,
-    /// Unknown; the reason for the failed read.
+    /// The job is unknown. Contains the reason why it could not be read.
     Unread(String),
 }
 
@@ -43,7 +44,7 @@ impl SelectedJob {
         }
     }
 
-    /// Whether it is the job with this name, in the bytes of the controller.
+    /// Whether the job has this name, in the bytes of the controller.
     pub fn is(&self, name: &[u8]) -> bool {
         matches!(self, Self::Job(info) if info.name.as_bytes() == name)
     }
@@ -56,20 +57,20 @@ impl SelectedJob {
         }
     }
 
-    /// Note for a command that selects another job first.
+    /// Adds a note to the question of a command that first selects another job.
     pub fn item_name(&self, change: Change, encoding: Encoding) -> Change {
         match self {
             Self::Job(info) => {
                 let percent = units::PERCENT.show_unsigned(info.speed_override);
                 let name = encoding.decode(info.name.as_bytes());
-                change.note(format!("Currently selected: {name}. The speed override is {percent} %."))
+                change.note(format!("The selected job is {name}. The speed override is {percent} %."))
             }
-            Self::None => change.note("Currently no job is selected."),
+            Self::None => change.note("No job is selected."),
             Self::Unread(why) => change.note(format!("The selected job could not be read: {why}.")),
         }
     }
 
-    /// Text of the confirmation; `times` is the number of repetitions, such as ` 20 times`.
+    /// Text of the confirmation. `times` is the text for the repetitions, such as ` 20 times`.
     pub fn change(&self, encoding: Encoding, times: &str) -> Change {
         let unknown_name = Change::new(format!("start the selected job{times}"));
         match self {
@@ -85,7 +86,7 @@ impl SelectedJob {
         }
     }
 
-    /// Rejects the start if the selection has changed since the question.
+    /// Rejects the start if the selected job has changed since the question.
     pub async fn check_unchanged(&self, link: &mut Link) -> Result<(), Failure> {
         let now = Self::ask(link).await?;
         if now == *self {
@@ -94,8 +95,10 @@ impl SelectedJob {
         let encoding = link.encoding;
         let shown = |chosen: &Self| chosen.name(encoding).unwrap_or_else(|| "an unknown job".to_owned());
         let message = match (shown(self), shown(&now)) {
-            (old, new) if old == new => format!("line or speed override of {old} changed since the question"),
-            (old, new) => format!("{new} is selected now, the question was about {old}"),
+            (old, new) if old == new => {
+                format!("the line or the speed override of {old} changed after the confirmation")
+            }
+            (old, new) => format!("{new} is selected now, but the confirmation was for {old}"),
         };
         Err(data_changed(format!("{message}; no job was started")))
     }

@@ -22,7 +22,7 @@ use armctl_transport::server::Server;
 /// Simulate an FS100, DX100, DX200 or YRC1000 on two UDP ports
 #[derive(Debug, Args)]
 pub struct Serve {
-    /// Address to listen on, with the port of the robot server; port 0 lets the system choose
+    /// Address to listen on, with the port of the robot server; port 0 lets the system choose a port
     #[arg(
         long,
         alias = "listen",
@@ -34,7 +34,7 @@ pub struct Serve {
     /// Port of the file server; default: port of the robot server + 1
     #[arg(long, value_name = "PORT")]
     file_port: Option<u16>,
-    /// Controller model: fs100, dx100, dx200, yrc1000 [default: dx200]
+    /// Controller model: fs100, dx100, dx200 or yrc1000 [default: dx200]
     #[arg(long, value_name = "MODEL")]
     model: Option<Model>,
     /// Start state (TOML): modes, variables, jobs, files, alarms, timed events
@@ -68,7 +68,7 @@ impl serve::Serve for Serve {
         let model = self.model.unwrap_or(Model::Dx200);
         let start = simulator_start::start(self.state.as_deref(), model, self.fault.as_ref())?;
         if let Some(model) = self.model.filter(|model| *model != start.model()) {
-            let message = format!("the start state is for model {}, not {model}", start.model());
+            let message = format!("the start state is for model {}, but the selected model is {model}", start.model());
             return Err(Failure::usage(message).hint("remove --model, or change the file"));
         }
         let model = start.model();
@@ -90,7 +90,7 @@ impl serve::Serve for Serve {
     }
 }
 
-/// A simulated controller on its sockets.
+/// A simulated controller with its sockets.
 #[derive(Debug)]
 pub struct Yerc {
     server: Server,

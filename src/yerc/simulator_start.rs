@@ -1,4 +1,4 @@
-//! Start of a simulated controller.
+//! Start state of a simulated controller.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use armctl_files as files;
 use armctl_frame::failure::Failure;
 use armctl_transport::fault::FaultSpec;
 
-/// Start state: from a file, or the built-in state of the model, with the busy rate of the faults.
+/// Start state with the busy rate of the faults. It comes from a file, or is the built-in state of the model.
 pub fn start(file: Option<&Path>, model: Model, faults: Option<&FaultSpec>) -> Result<Start, Failure> {
     let start = file.map_or_else(|| Ok(Start::for_model(model)), load)?;
     Ok(match faults {
@@ -20,12 +20,12 @@ pub fn start(file: Option<&Path>, model: Model, faults: Option<&FaultSpec>) -> R
     })
 }
 
-/// Maximum size of a file: more than a controller can store.
+/// Maximum size of a file. It is larger than the storage of a controller.
 const MAX_FILE_SIZE: u64 = 256 << 20;
 
 fn load(path: &Path) -> Result<Start, Failure> {
     let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
-    // Files that the state refers to are relative to its folder.
+    // The paths of files that the state names are relative to the folder of the state.
     let folder = path.parent().unwrap_or(Path::new(""));
     let read = |name: &str| {
         let path = folder.join(name);
@@ -33,6 +33,6 @@ fn load(path: &Path) -> Result<Start, Failure> {
     };
     Start::parse(&text, read).map_err(|error| {
         Failure::usage(format!("{}: {error}", path.display()))
-            .hint("`armctl help simulator` shows the form of the file")
+            .hint("see `armctl help simulator` for the form of the file")
     })
 }

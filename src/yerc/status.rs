@@ -34,7 +34,7 @@ impl Command for Status {
     }
 }
 
-/// Present fault: the latest alarm, read if there is one. An error has no number here.
+/// Present fault: the latest alarm, which is read if there is an alarm. An error has no number in this report.
 pub(super) async fn fault(link: &mut Link, status: ControllerStatus) -> Result<Fault, Failure> {
     let alarms = if status.alarm() { present(link, &mut true, 1).await? } else { Vec::new() };
     Ok(Fault::new(status.faulted(), alarms.first()))
@@ -48,14 +48,14 @@ pub struct StatusReport {
     state: State,
     /// Whether the controller accepts external commands (CMD REMOTE).
     command_remote: bool,
-    /// `step`, `one_cycle` or `continuous`; null if the controller reports none or several.
+    /// Cycle mode: `step`, `one_cycle` or `continuous`; null if the controller reports none or several.
     cycle: Option<&'static str>,
     /// Sources of the hold: `pendant`, `external`, `command`.
     hold_sources: Vec<&'static str>,
     alarm: bool,
     #[serde(rename = "has_error")]
     error: bool,
-    /// In-guard safe operation.
+    /// Whether in-guard safe operation is active.
     safe_operation: bool,
     /// The two status words.
     raw: RawStatus,
@@ -68,7 +68,7 @@ struct RawStatus {
     data_2: String,
 }
 
-/// Sources of a hold.
+/// Sources of a hold, and their names in the report.
 const HOLDS: [(StatusBit, &str); 3] =
     [(StatusBit::HoldPendant, "pendant"), (StatusBit::HoldExternal, "external"), (StatusBit::HoldCommand, "command")];
 
@@ -88,7 +88,7 @@ impl StatusReport {
     }
 }
 
-/// Cycle mode in JSON.
+/// Name of a cycle mode in JSON.
 pub(super) const fn cycle_name(cycle: CycleMode) -> &'static str {
     match cycle {
         CycleMode::Step => "step",

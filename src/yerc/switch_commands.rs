@@ -1,4 +1,4 @@
-//! Commands with one frame: servo, hold, hlock, cycle, say.
+//! Commands that send one request: servo, hold, hlock, cycle, say.
 
 use clap::{Args, ValueEnum};
 
@@ -12,7 +12,8 @@ use armctl_frame::gate::Confirmation;
 use armctl_frame::settings_report::{Done, NewValue, Old, Switch};
 use armctl_frame::{Command, Context};
 
-/// Declares a command with a single request: type, arguments, id, the request, its intent, and its result.
+/// Declares a command that sends one request. The parts are the type, its argument, the id, the request, the intent,
+/// and the result.
 macro_rules! order {
     (
         $(#[$doc:meta])*
@@ -39,7 +40,7 @@ macro_rules! order {
 
             fn intent(&self) -> String {
                 let $this = self;
-                // Most requests do not depend on the arguments.
+                // Most requests do not use the arguments.
                 let _ = $this;
                 $intent.to_owned()
             }
@@ -57,7 +58,7 @@ macro_rules! order {
                 let ($this, Context { link, authority, .. }) = (self, context);
                 let new = NewValue::of($set, $new, $done);
                 let old = Old::UNREAD;
-                // A stop must not be delayed by a read.
+                // A stop must not be delayed by a read, so its old value is not read.
                 $(let old = if self.is_stop() {
                     old
                 } else {
@@ -93,7 +94,7 @@ order! {
     was |status| status.map(ControllerStatus::servo_on)
 }
 impl Hold {
-    /// The switch state that stops the robot.
+    /// The command that stops the robot.
     pub const fn on() -> Self {
         Self { switch: Switch::On }
     }
@@ -184,7 +185,8 @@ impl Command for Say {
     }
 }
 
-/// Display texts and job names must not contain control characters, because their effect is unknown.
+/// Rejects control characters in display texts and job names, because the effect of such characters on a controller is
+/// unknown.
 pub(super) fn refuse_controls(what: &str, text: &str) -> Result<(), Failure> {
     match text.chars().find(|c| c.is_control()) {
         None => Ok(()),
@@ -195,7 +197,7 @@ pub(super) fn refuse_controls(what: &str, text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Failure for a request that cannot be built from the arguments.
+/// Failure: a request cannot be built from these arguments.
 pub(super) fn usage(error: impl std::fmt::Display) -> Failure {
-    Failure::usage(error.to_string()).hint("see --help of the command, or `armctl help yerc` for all commands")
+    Failure::usage(error.to_string()).hint("see `--help` of the command, or `armctl help yerc` for all commands")
 }

@@ -1,5 +1,5 @@
-//! `yerc teach`: stores the current position of a group in a position variable. `position teach P5` and `var set
-//! P5=here` are aliases.
+//! `yerc teach`: stores the current position of a group in a position variable. The aliases are `position teach P5` and
+//! `var set P5=here`.
 
 use clap::{Args, ValueEnum};
 
@@ -28,9 +28,9 @@ use armctl_frame::{Command, Context};
 /// 3.3.18).
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The stored position is that of `yerc position`, with servo power on or off. Use P for a robot, BP \
-                  for its base, and EX for a station. Without --coordinates, the variable keeps its type; an undefined \
-                  variable gets pulses. `yerc position teach P5` and `yerc var set P5=here` do the same."
+    after_help = "The command stores the position of `yerc position`, with servo power on or off. Use P for a robot, \
+                  BP for its base, and EX for a station. Without --coordinates, the variable keeps its type; an \
+                  undefined variable gets pulses. `yerc position teach P5` and `yerc var set P5=here` do the same."
 )]
 pub struct Teach {
     /// Position variable: P5, BP1, EX1, or a name
@@ -44,12 +44,12 @@ pub struct Teach {
     coordinates: Option<StoredAs>,
 }
 
-/// Types of stored positions.
+/// Type of a position that `teach` can store.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum StoredAs {
     /// Pulses of each axis
     Pulse,
-    /// X Y Z Rx Ry Rz in base coordinates
+    /// X, Y, Z, Rx, Ry and Rz in base coordinates
     Base,
 }
 
@@ -122,7 +122,7 @@ impl Command for Teach {
 }
 
 impl Teach {
-    /// Control group of the position; it must match the type of the variable.
+    /// Control group of the position. It must match the kind of the variable.
     fn group(&self) -> Result<Group, Failure> {
         let (first, what) = match self.variable.kind {
             VariableKind::Bp => (Group::Base(1), "bases, such as B1"),
@@ -142,7 +142,7 @@ impl Teach {
         self.variable.kind.letters()
     }
 
-    /// Content of the variable; none if it is undefined.
+    /// Content of the variable; `None` if the variable is undefined.
     async fn read(&self, link: &mut Link) -> Result<Option<Value>, Failure> {
         match link.ask_optional(&ReadVariable::new(self.variable.kind, self.variable.number)).await? {
             Ok(value) => Ok(Some(value)),
@@ -151,7 +151,7 @@ impl Teach {
         }
     }
 
-    /// Type to store: as requested, as the variable has, or pulses.
+    /// Coordinates to store: the requested ones, or else the type that the variable has, or else pulses.
     fn coordinates(&self, old: Option<&Value>) -> Result<Coordinates, Failure> {
         match (self.coordinates, old.map(as_position).map(|old| old.kind)) {
             (Some(stored), _) => Ok(stored.into()),
@@ -161,7 +161,8 @@ impl Teach {
                 let text = old.and_then(PositionData::of).map(|data| data.text().to_owned()).unwrap_or_default();
                 let message =
                     format!("{} contains {text}, but armctl stores only pulses or base coordinates", self.variable);
-                Err(Failure::usage(message).hint("add --coordinates pulse or --coordinates base to change its type"))
+                Err(Failure::usage(message)
+                    .hint("add --coordinates pulse or --coordinates base to change the type of the variable"))
             }
         }
     }
@@ -187,13 +188,13 @@ impl Teach {
             .fold(change, |change, (what, old, new)| change.replaces(what, &old.to_string(), &new.to_string()))
     }
 
-    /// Notes in a dry run what follows the first read.
+    /// In a dry run, records what follows the first read.
     async fn plan(&self, link: &mut Link, group: Group) -> Result<Failure, Failure> {
         let model = link.model_for(|model| ReadPosition::new(model, group, Coordinates::Pulse)).await?;
         let asked = |coordinates| ReadPosition::new(model, group, coordinates).map_err(usage);
         let coordinates = self.coordinates.map_or(Coordinates::Pulse, Coordinates::from);
         let single_group = asked(coordinates)?;
-        // Only robot positions can be stored in other types than pulses.
+        // Only robot positions can be stored in a type other than pulses.
         let is_robot = matches!(group, Group::Robot(_));
         let is_open = self.coordinates.is_none() && is_robot;
         let other = if is_open { asked(Coordinates::Base)? } else { single_group };
@@ -209,7 +210,10 @@ impl Teach {
             .depending_on("the current position, and whether the variable already contains it");
         link.plan_depending(&write(one)?.request(), &write(other)?.request(), reason);
         let query = ReadVariable::new(self.variable.kind, self.variable.number);
-        link.plan_if(&query.request(), Reason::about("reads it back").depending_on("whether it was written"));
+        link.plan_if(
+            &query.request(),
+            Reason::about("content of the variable after the write").depending_on("whether the position was written"),
+        );
         Ok(unknown())
     }
 }

@@ -11,7 +11,7 @@ const AXES: [(&str, &str); 6] =
 const FLAGS: [&str; 6] = ["--x", "--y", "--z", "--rx", "--ry", "--rz"];
 const JOINT: &str = "joint";
 
-/// See [`Panel`].
+/// Keys for this family. See [`Panel`].
 pub const PANEL: Panel = Panel {
     systems: &[
         coordinates("base", |step| relative(step, "base")),
@@ -58,7 +58,7 @@ fn relative(step: &Step<'_>, system: &str) -> Option<Vec<String>> {
     Some(words(&format!("move relative {flag} {} --coordinate {system} --speed {}{unit}", step.by, step.speed)))
 }
 
-/// The protocol has no relative joint motion, so the target is computed from the current position.
+/// The protocol has no relative joint motion. For this reason the target is computed from the current position.
 fn joint(step: &Step<'_>) -> Option<Vec<String>> {
     let pulse = &step.from["pulse"];
     let axes = pulse["pulses"].as_object()?;

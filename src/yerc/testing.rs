@@ -1,4 +1,4 @@
-//! Test support: sent frames of a command line, and command execution on a simulator in virtual time.
+//! Test support: the frames that a command line sends, and commands that run on a simulator in virtual time.
 
 use serde_json::Value;
 
@@ -24,13 +24,13 @@ pub(super) fn error_text(words: &str) -> String {
     testing::parse(FACE, DX200, &words).err().expect("the parser objects").to_string()
 }
 
-/// Question before the command, without "This will".
+/// Text of the question before the command runs, without "This will".
 pub(super) fn intent(words: &str) -> String {
     resolve_robot(DX200, &words.split_ascii_whitespace().collect::<Vec<_>>()).unwrap().1.intent(None).text
 }
 
-/// Frames that `armctl yerc -t TARGET WORDS…` would send: `data.frames` of a dry run. A parser error is returned as a
-/// failure.
+/// Frames that `armctl yerc -t TARGET WORDS…` would send (`data.frames` of a dry run). An error of the parser is
+/// returned as a failure.
 pub(super) fn dry_run(target: &str, words: &[&str]) -> Result<Vec<Value>, Failure> {
     let (robot, command) = resolve_robot(target, words)?;
     Ok(testing::frames(&planned::<Yerc>(&robot, &*command, |_| ())?))
@@ -42,18 +42,18 @@ pub(super) fn frames_on(target: &str, words: &str) -> Result<Vec<String>, Failur
     Ok(frames.iter().map(without_header).collect())
 }
 
-/// [`frames_on`] a DX200.
+/// Frames as in [`frames_on`], for a DX200.
 pub(super) fn frames(words: &str) -> Result<Vec<String>, Failure> {
     frames_on(DX200, words)
 }
 
-/// Golden frame of the manuals, in the form of [`frames`].
+/// Golden frame of the manuals, in the same form as [`frames`].
 pub(super) fn golden(id: &str) -> String {
     without_header(&golden_frame(id))
 }
 
-/// Asserts that a command line sends exactly one frame, unless the old value is the same, and that it equals the golden
-/// frame, except for the request id.
+/// Asserts that a command line sends exactly one frame, apart from the read of an old value. The frame must be equal to
+/// the golden frame, except for the request id.
 #[track_caller]
 pub(super) fn same(id: &str, target: &str, words: &[&str]) {
     let frames = dry_run(target, words).unwrap_or_else(|failure| panic!("{words:?}: {failure:?}"));
@@ -65,7 +65,7 @@ pub(super) fn same(id: &str, target: &str, words: &[&str]) {
     assert_eq!(sent.collect::<Vec<_>>(), [golden], "{id}: {words:?}");
 }
 
-/// Data of the reports of several command lines on one simulator that starts in `state` (TOML).
+/// Runs several command lines on one simulator, which starts in `state` (TOML). Returns the data of their reports.
 pub(super) async fn reports(state: &str, lines: &[&str]) -> Vec<Result<Value, Failure>> {
     let mut file = tempfile::NamedTempFile::new().unwrap();
     std::io::Write::write_all(&mut file, state.as_bytes()).unwrap();
@@ -87,7 +87,7 @@ pub(super) async fn reports(state: &str, lines: &[&str]) -> Vec<Result<Value, Fa
     reports
 }
 
-/// Simulated controller with a link for several command lines, in virtual time.
+/// Simulated controller with a link, for several command lines in virtual time.
 pub(super) struct Bench {
     runtime: tokio::runtime::Runtime,
     robot: Robot,
@@ -95,7 +95,7 @@ pub(super) struct Bench {
 }
 
 impl Bench {
-    /// Bench for the simulator of a URL.
+    /// Creates a bench for the simulator of a URL.
     pub(super) fn new(target: &str) -> Self {
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
@@ -104,7 +104,8 @@ impl Bench {
         Self { runtime, robot, link }
     }
 
-    /// Runs `armctl yerc WORDS…`. Returns the data of the report, and the failure of an unsuccessful report.
+    /// Runs `armctl yerc WORDS…`. Returns the data of the report. If the report contains a failure, it is returned as
+    /// well.
     pub(super) fn run(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
         let (_, command) = resolve_robot("sim:", words)?;
         let Self { runtime, robot, link } = self;
@@ -112,7 +113,7 @@ impl Bench {
         Ok((report.data()?, report.failure()))
     }
 
-    /// Data of a command line that must succeed.
+    /// Runs a command line that must succeed, and returns its data.
     #[track_caller]
     pub(super) fn data(&mut self, words: &[&str]) -> Value {
         match self.run(words) {
@@ -125,7 +126,7 @@ impl Bench {
 /// The family.
 const FACE: &dyn Face = &Registered::<Yerc>::FACE;
 
-/// Robot and command of a line.
+/// Robot and command of a command line.
 pub(super) fn resolve_robot(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn AnyCommand>), Failure> {
     testing::resolve(FACE, target, words)
 }
@@ -144,7 +145,7 @@ fn digits(frame: &Value) -> String {
     frame["hex"].as_str().expect("frames are hexadecimal").to_owned()
 }
 
-/// Hexadecimal digits of a frame after its header.
+/// Digits of a frame after its header.
 pub(super) fn without_header(frame: &Value) -> String {
     let frame = digits(frame);
     assert_eq!(&frame[..12], hex(b"YERC\x20\0"));

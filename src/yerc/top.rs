@@ -1,4 +1,4 @@
-//! Live view of a robot: status and position in a line; axes, torque, alarms and signals in detail.
+//! Live view of a robot: status and position in one line, and axes, torque, alarms and signals in the detail view.
 
 use super::alarm::{SLOTS, present};
 use super::link::{Link, Yerc};
@@ -23,11 +23,11 @@ use armctl_frame::{Access, Family as _};
 #[derive(Debug)]
 pub struct Poller {
     link: Link,
-    /// Whether the controller supports alarm texts, as far as known.
+    /// Whether the controller supports alarm texts. This is assumed until the controller refuses them.
     texts: bool,
 }
 
-/// Signals on display, by kind: first general-purpose signal, and number of groups of eight.
+/// Signals in the view: name, first group of the general-purpose signals of this kind, and number of groups.
 const BANKS: [(&str, u16); 2] = [("inputs", 1), ("outputs", 1001)];
 const GROUPS: u16 = 4;
 
@@ -41,7 +41,7 @@ impl registration::Poller for Poller {
     async fn look(&mut self, detail: Detail) -> Result<Sample, Failure> {
         let (status, answered_in) = clocked(self.link.ask(&ReadStatus)).await;
         let status = status?;
-        // A controller without a first robot has no position, which is not a failure.
+        // A controller without a first robot has no position. This is not a failure.
         let base = self.position(Coordinates::Base).await?;
         let slots = if detail == Detail::Full { SLOTS } else { 1 };
         let alarms = if status.alarm() { present(&mut self.link, &mut self.texts, slots).await? } else { Vec::new() };
@@ -94,7 +94,7 @@ impl Poller {
         Ok(Some(Position { axes, ..position }))
     }
 
-    /// Reads an optional value: a refusal is `None`.
+    /// Reads an optional value. A refusal gives `None`.
     async fn ask<Q: Query>(&mut self, query: Result<Q, QueryError>) -> Result<Option<Q::Answer>, Failure> {
         let query = query.map_err(|error| Failure::local(error.to_string()))?;
         Ok(self.link.ask_optional(&query).await?.ok())

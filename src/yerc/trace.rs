@@ -1,4 +1,4 @@
-//! Trace of datagrams.
+//! Trace of the datagrams of a link.
 
 use std::net::SocketAddr;
 
@@ -15,7 +15,7 @@ use armctl_transport::tap::Direction;
 #[derive(Debug)]
 pub struct Trace {
     record: trace::Trace,
-    /// Last request, because an answer does not identify its command.
+    /// Last request. It is stored because an answer does not name its command.
     asked: Option<Request>,
 }
 
@@ -25,7 +25,7 @@ impl Trace {
         Ok(Self { record: trace::Trace::of_network(access, screen)?, asked: None })
     }
 
-    /// Records a datagram; `ends` has the own address first.
+    /// Records a datagram. The first address in `ends` is the own address.
     pub fn record(&mut self, direction: Direction, ends: (SocketAddr, SocketAddr), bytes: &[u8]) {
         if self.record.level() > 0 {
             let sender = match direction {
@@ -40,7 +40,7 @@ impl Trace {
         self.record.datagram(direction, ends, bytes);
     }
 
-    /// Closes the trace and reports whether it is complete.
+    /// Closes the trace. Returns a failure if the trace is incomplete.
     pub fn finish(&mut self) -> Result<(), Failure> {
         self.record.finish()
     }

@@ -1,4 +1,4 @@
-//! `yrcx alarm list|history|reset` (4.7.7, 4.8.3).
+//! Commands `yrcx alarm list|history|watch|reset` (4.7.7, 4.8.3).
 
 use clap::Args;
 
@@ -8,15 +8,17 @@ use serde::Serialize;
 use super::info::{Part, entry};
 use super::link::{Link, Yrcx};
 use super::numbers::Numbers;
-use super::several::read_numbers;
+use super::several::ask_each;
 use crate::refusal::BuildOrder as _;
 use armctl_controller::Risk;
+use armctl_controller::yrcx::order::Order;
 use armctl_controller::yrcx::signal::output;
 use armctl_controller::yrcx::table;
-use armctl_controller::yrcx::value::{Key, Values};
+use armctl_controller::yrcx::value::Key;
 use armctl_frame::dry_run::{Known as _, Reason, unknown};
 use armctl_frame::face::shared_commands::CommonReport;
 use armctl_frame::failure::{self, Failure};
+use armctl_frame::items::ItemOutcome;
 use armctl_frame::output::view::View;
 use armctl_frame::robot::alarm::{AlarmEntry, AlarmState, Alarms, Kind, Nothing, Row};
 use armctl_frame::settings::{Robot, alarms};
@@ -25,7 +27,7 @@ use armctl_frame::watch::{Watch, Watchable, Watched};
 use armctl_frame::{Command, Context, Report, commands};
 
 commands! {
-    /// Alarms.
+    /// Commands for alarms.
     pub enum Alarm {
         /// Show the present alarm and what to do
         List(List),
@@ -41,7 +43,8 @@ commands! {
 /// Present alarm: the latest entry of the history while SO(03) or SO(15) is on.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "`yrcx info alarm` shows the latest alarm that a remote command caused. It may have been reset since."
+    after_help = "`yrcx info alarm` shows the latest alarm that a remote command caused. That alarm may have been \
+                  reset since."
 )]
 pub struct List {}
 
@@ -57,7 +60,7 @@ impl Command for List {
             link.plan_depending(
                 &latest,
                 &latest,
-                Reason::about("which").depending_on("the signals: it is read if SO(03) or SO(15) is on"),
+                Reason::about("which").depending_on("the signals: read only if SO(03) or SO(15) is on"),
             );
         }
         let image = link.look().await?;
@@ -73,12 +76,12 @@ impl Command for List {
     }
 }
 
-/// Latest entry of the history; `None` if it is empty or was not read. It has no time, so the same alarm a second time
-/// is the same entry.
+/// Reads the latest entry of the history; `None` if the history is empty or was not read. An entry has no time, so if
+/// an alarm occurs a second time, its entry is equal to the first entry.
 pub(super) async fn latest(link: &mut Link) -> Result<Option<AlarmEntry<Part>>, Failure> {
     let latest = link.draft(table::Command::AlarmHistory)?.with(Key::History, 1).order()?;
     if link.is_dry() {
-        link.plan(&latest, "latest alarm, to recognize a new one");
+        link.plan(&latest, "latest alarm, to recognize a new alarm");
         return Ok(None);
     }
     match link.ask(&latest).await {
@@ -95,6 +98,8 @@ fn explained(entry: AlarmEntry<Part>, robot: &Robot) -> Result<AlarmEntry<Part>,
 }
 
 impl Watchable for List {
+    type Value = bool;
+
     const WATCH: &'static str = "yrcx.alarm.watch";
     const WATCHED: Watched =
         Watched { list: "alarms", name: "code", prefix: "alarm ", label: "text", value: None, empty: "no alarm" };
@@ -135,17 +140,23 @@ impl Command for History {
     const ID: &'static str = "yrcx.alarm.history";
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Alarms<Part>, Failure> {
-        let robot = context.robot;
-        let field = (table::Command::AlarmHistory, Key::History);
-        let of = |values: &Values| entry(values, Kind::Alarm);
-        let read = read_numbers(context, ["alarm", "alarms"], field, &self.numbers, of).await?;
+        let Context { link, screen, robot, .. } = context;
+        let numbers = Numbers::of(&self.numbers);
+        let order = |number: &i32| Ok(link.draft(table::Command::AlarmHistory)?.with(Key::History, *number).order()?);
+        let orders = numbers.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
+        let answers = ask_each(link, screen, "reading alarms", &orders).await?;
         let mut alarms = Vec::new();
-        for (number, outcome) in read {
+        for (number, answer) in numbers.iter().zip(answers.outcomes) {
+            let answer = answer.map(|values| entry(&values, Kind::Alarm));
+            let outcome = ItemOutcome::new(format!("alarm {number}"), answer);
+            if let (1, Some(error)) = (numbers.len(), outcome.error()) {
+                return Err(error.failure());
+            }
             let Some(mut outcome) = outcome.with_defaults() else { continue };
             if let Some(entry) = outcome.data_mut() {
                 *entry = explained(entry.clone(), robot)?;
             }
-            alarms.push(Row { list: None, index: u16::try_from(number).unwrap_or(u16::MAX), outcome });
+            alarms.push(Row { list: None, index: u16::try_from(*number).unwrap_or(u16::MAX), outcome });
         }
         Ok(Alarms { asked: alarms.len(), alarms, standing: Nothing {} })
     }
@@ -153,10 +164,8 @@ impl Command for History {
 
 /// Resets the alarm.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "`yrcx io pulse alarm-reset` does the same with a dedicated input. It also works when remote commands \
-                  are not accepted."
-)]
+#[command(after_help = "`yrcx io pulse alarm-reset` does the same with a dedicated input. It also works while the \
+                        controller does not accept remote commands.")]
 pub struct Reset {}
 
 impl Command for Reset {
@@ -183,8 +192,8 @@ impl Command for Reset {
             } else {
                 let alarm = link.link_alarm();
                 screen.note(&format!(
-                    "hint: motor power is off, and closing this connection raises alarm {alarm} again. Keep it open \
-                     with `armctl session open`, then `yrcx alarm reset` and `yrcx recover`"
+                    "hint: keep a connection open with `armctl session open`, then use `yrcx alarm reset` and `yrcx \
+                     recover`. Motor power is off, and the close of this connection raises alarm {alarm} again"
                 ));
             }
         }
@@ -192,8 +201,9 @@ impl Command for Reset {
     }
 }
 
-/// Next step when an alarm has switched the motors off.
-const POWER_OFF: &str = "hint: motor power is off. `yrcx recover` clears the emergency stop and switches the servos on";
+/// Hint for the case that an alarm has switched the motors off.
+const POWER_OFF: &str = "hint: use `yrcx recover` to clear the emergency stop and switch the servos on. Motor power \
+                         is off";
 
 /// Result of an alarm reset.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -1,5 +1,5 @@
-//! Arguments that motion commands share. Numbers stay text: the codec reads them in the unit of their field and
-//! checks their range.
+//! Arguments that several motion commands use. Numbers stay text: the codec parses each number in the unit of its field
+//! and checks the range.
 
 use clap::{Args, ValueEnum};
 
@@ -11,7 +11,7 @@ use armctl_controller::yrcx::value::Key;
 use armctl_frame::failure::Failure;
 use armctl_frame::wait_arguments::MotionEnd;
 
-/// Robot of the controller (`--unit`), for the question before a motion.
+/// Robot that `--unit` selects, for the confirmation question before a motion.
 #[derive(Debug, Clone, Copy, Args)]
 pub struct Which {
     #[arg(from_global)]
@@ -19,12 +19,12 @@ pub struct Which {
 }
 
 impl Which {
-    /// `robot 2`; robot 1 without `--unit`.
+    /// Name of the robot, for example `robot 2`; without `--unit`, `robot 1`.
     pub fn name(self) -> String {
         format!("robot {}", self.unit.max(1))
     }
 
-    /// `robot 2`; all robots without `--unit`.
+    /// Name of the robot, for example `robot 2`; without `--unit`, `all robots`.
     pub fn name_or_all(self) -> String {
         if self.unit == 0 { "all robots".to_owned() } else { self.name() }
     }
@@ -33,24 +33,25 @@ impl Which {
 /// Speed options.
 #[derive(Debug, Args)]
 pub struct Pace {
-    /// Percent, as in 50 or 50%, instead of the program speed
+    /// Speed in percent, for example 50 or 50%; replaces the program speed
     #[arg(long, value_name = "SPEED", value_parser = speed)]
     pub speed: Option<Speed>,
-    /// Percent of the robot's maximum, in steps of 0.01
+    /// Speed in percent of the robot's maximum, in steps of 0.01
     #[arg(long, value_name = "PERCENT", conflicts_with = "speed")]
     pub speed_of_max: Option<String>,
 }
 
-/// A speed as typed.
+/// A speed as the user typed it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Speed {
-    /// Percent, instead of the program speed.
+    /// Speed in percent, instead of the program speed.
     Percent(String),
-    /// Speed of the tool.
+    /// Speed of the tool in mm/s.
     MmS(String),
 }
 
-const WHOLE: &str = "a speed is whole percent as in 50 or 50%, or 200mm/s; --speed-of-max takes steps of 0.01 %";
+const WHOLE: &str = "a speed is a whole percentage such as 50 or 50%, or a speed such as 200mm/s; --speed-of-max \
+                     accepts steps of 0.01 %";
 
 fn speed(text: &str) -> Result<Speed, String> {
     let number = |text: &str| {
@@ -65,16 +66,16 @@ fn speed(text: &str) -> Result<Speed, String> {
 }
 
 impl Pace {
-    /// Sets the speed of axes.
+    /// Sets the speed for a motion of axes; a speed in mm/s is an error.
     pub fn put(&self, draft: Draft) -> Result<Draft, Failure> {
         match &self.speed {
             Some(Speed::MmS(_)) => Err(Failure::usage("a speed in mm/s needs a linear or circular move")
-                .hint("use percent, as in --speed 50, or add --linear")),
+                .hint("use percent, such as --speed 50, or add --linear")),
             _ => Ok(self.put_linear(draft)),
         }
     }
 
-    /// Sets the speed of the tool along a line or an arc.
+    /// Sets the speed for a linear or circular motion.
     pub fn put_linear(&self, draft: Draft) -> Draft {
         let draft = draft.with_some(Key::SpeedOfMax, self.speed_of_max.clone());
         match self.speed.clone() {
@@ -84,7 +85,7 @@ impl Pace {
         }
     }
 
-    /// `at 50 %`.
+    /// Describes the speed, for example `at 50 %`.
     pub fn describe(&self) -> String {
         match (&self.speed, &self.speed_of_max) {
             (Some(Speed::Percent(percent)), _) => format!("at {percent} %"),
@@ -107,13 +108,13 @@ pub struct Ramps {
 }
 
 impl Ramps {
-    /// Sets both, if the command has the fields.
+    /// Sets acceleration and deceleration, if the command has the fields.
     pub fn put(&self, draft: Draft, command: Command) -> Result<Draft, Failure> {
         let row = command.row();
         if (self.accel.is_some() || self.decel.is_some()) && row.request().all(|field| field.key != Key::Accel) {
             return Err(Failure::usage(format!("{} has neither --accel nor --decel", row.id)).hint(
-                "remove them: only moves to a point without an arch accept them. Other moves use the robot's \
-                 parameters",
+                "remove --accel and --decel: only moves to a point without an arch accept them. Other moves use the \
+                 robot's parameters",
             ));
         }
         Ok(draft.with_some(Key::Accel, self.accel.clone()).with_some(Key::Decel, self.decel.clone()))
@@ -123,18 +124,18 @@ impl Ramps {
 /// Selection of the axes that move.
 #[derive(Debug, Args)]
 pub struct Axes {
-    /// Axes that move, as in 1,3; default: all
+    /// Axes that move, for example 1,3; default: all
     #[arg(long, value_name = "AXES")]
     axes: Option<String>,
 }
 
 impl Axes {
-    /// Sets the selection.
+    /// Sets the axes that move.
     pub fn put(&self, draft: Draft) -> Draft {
         draft.with_some(Key::Axes, self.axes.clone())
     }
 
-    /// Sets the selection, with a number for each axis; see [`Axes::pairs`].
+    /// Sets the axes that move, and a number for each axis; see [`Axes::pairs`].
     pub fn put_numbers(&self, draft: Draft, given: &[String]) -> Result<Draft, Failure> {
         let pairs = self.pairs(given)?;
         let draft = if self.names_some(given) {
@@ -146,29 +147,29 @@ impl Axes {
         Ok(pairs.into_iter().fold(draft, |draft, (axis, text)| draft.with(Key::AXES[axis - 1], text)))
     }
 
-    /// Pairs of axis (1 to 4) and number, in the order typed: `--axes 3,2 --to 10,20` and `--to 3=10,2=20` mean the
-    /// same.
+    /// Returns a pair of axis (1 to 4) and number for each number, in the order typed. `--axes 3,2 --to 10,20` and
+    /// `--to 3=10,2=20` give equal pairs.
     pub fn pairs<'a>(&self, given: &'a [String]) -> Result<Vec<(usize, &'a str)>, Failure> {
         let named: Vec<Option<(&str, &str)>> = given.iter().map(|text| text.split_once('=')).collect();
         let pairs: Vec<(usize, &str)> = match named.into_iter().collect::<Option<Vec<_>>>() {
             Some(_) if self.axes.is_some() => {
-                return Err(Failure::usage("the axes are named twice: by --axes and with the numbers")
-                    .hint("name each axis once, as in --to 1=300,3=10"));
+                return Err(Failure::usage("the axes are typed twice: with --axes and with the numbers")
+                    .hint("type each axis once, such as --to 1=300,3=10"));
             }
             Some(named) => {
                 let pairs = named.into_iter().map(|(name, text)| axis(name).map(|axis| (axis, text.trim())));
                 pairs.collect::<Result<_, Failure>>()?
             }
             None if given.iter().any(|text| text.contains('=')) => {
-                return Err(Failure::usage("some numbers name their axis and some do not")
-                    .hint("name the axis of each, as in --to 1=300,3=10"));
+                return Err(Failure::usage("some numbers have an axis, and other numbers have no axis")
+                    .hint("type the axis of each number, such as --to 1=300,3=10"));
             }
             None => {
                 let axes = self.numbers()?;
                 if axes.len() != given.len() {
                     let message = format!("{} numbers for {} axes", given.len(), axes.len());
                     return Err(Failure::usage(message)
-                        .hint("give one number for each axis, or name the axes that move, as in --to 1=300,3=10"));
+                        .hint("type one number for each axis, or type the axes that move, such as --to 1=300,3=10"));
                 }
                 axes.into_iter().zip(given.iter().map(|text| text.trim())).collect()
             }
@@ -176,52 +177,53 @@ impl Axes {
         let mut seen = [false; 4];
         for (axis, _) in &pairs {
             if std::mem::replace(&mut seen[axis - 1], true) {
-                return Err(Failure::usage(format!("axis {axis} is named twice")).hint("name each axis once"));
+                return Err(Failure::usage(format!("axis {axis} appears twice")).hint("type each axis once"));
             }
         }
         Ok(pairs)
     }
 
-    /// Whether the axes are named, so that all other axes do not move.
+    /// Whether the user named the axes; axes without a name then do not move.
     fn names_some(&self, given: &[String]) -> bool {
         self.axes.is_some() || given.iter().any(|text| text.contains('='))
     }
 
     fn numbers(&self) -> Result<Vec<usize>, Failure> {
         let Some(axes) = &self.axes else { return Ok((1..=4).collect()) };
-        let wrong = || format!("'{axes}' is not a valid list of axes of 1 to 4, as in 1,3");
+        let wrong = || format!("'{axes}' is not a valid list of axes from 1 to 4, such as 1,3");
         let number = |text: &str| axis(text).map_err(|_| wrong());
         let ranges = axes.split(',').map(|text| typed::range(text, number)).collect::<Result<Vec<_>, String>>();
-        let ranges = ranges.map_err(|why| Failure::usage(why).hint("give axis numbers with commas, as in 1,3"))?;
+        let ranges = ranges.map_err(|why| Failure::usage(why).hint("type axis numbers with commas, such as 1,3"))?;
         Ok(ranges.into_iter().flatten().collect())
     }
 
-    /// Axes 1 and 2, if these numbers do not name them (4.2.1); empty if all axes move.
+    /// Returns those of axes 1 and 2 that the numbers do not name (4.2.1); empty if all axes move.
     pub fn unnamed(&self, given: &[String]) -> Vec<usize> {
         let named = self.pairs(given).unwrap_or_default();
         let is_named = |axis: &usize| named.iter().any(|(named, _)| named == axis);
         if named.is_empty() { Vec::new() } else { (1..=2).filter(|axis| !is_named(axis)).collect() }
     }
 
-    /// Whether a motion to these points leaves out axis 1 or 2.
+    /// Whether axis 1 or 2 does not move in a motion to these points.
     pub fn leaves_out(&self, points: &[String]) -> bool {
         let named = self.numbers().unwrap_or_default();
         !points.is_empty() && self.axes.is_some() && !(named.contains(&1) && named.contains(&2))
     }
 
-    /// `axis 3: 10 mm, axis 2: 20 mm`.
+    /// Describes the axes and their numbers, for example `axis 3: 10 mm, axis 2: 20 mm`.
     pub fn told_numbers(&self, given: &[String], unit: Unit) -> String {
         match self.pairs(given) {
             Ok(pairs) => {
                 let told = pairs.iter().map(|(axis, text)| format!("axis {axis}: {text} {}", unit.symbol()));
                 told.collect::<Vec<_>>().join(", ")
             }
-            // An invalid number is rejected before anything moves.
+            // The codec rejects an invalid number before anything moves.
             Err(_) => format!("{} {}", given.join(", "), unit.symbol()),
         }
     }
 
-    /// `all axes`, `axes 3, 1 alone`; `given` may name the axes.
+    /// Describes the axes that move, for example `all axes` or `axes 3, 1 alone`. The numbers in `given` may name the
+    /// axes.
     pub fn describe(&self, given: &[String]) -> String {
         let axes = match (&self.axes, self.pairs(given)) {
             (_, Ok(pairs)) if !given.is_empty() && self.names_some(given) => {
@@ -239,14 +241,16 @@ impl Axes {
 fn axis(text: &str) -> Result<usize, Failure> {
     match text.trim().parse() {
         Ok(axis @ 1..=4) => Ok(axis),
-        _ => Err(Failure::usage(format!("'{text}' is not a valid axis of 1 to 4")).hint("use an axis number")),
+        _ => {
+            Err(Failure::usage(format!("'{text}' is not a valid axis; the axes are 1 to 4")).hint("use an axis number"))
+        }
     }
 }
 
 /// Options of an arch motion.
 #[derive(Debug, Args)]
 pub struct Arch {
-    /// Arch motion: axis and position that it passes over, as in 3:10.0
+    /// Arch motion: arch axis and its arch position, for example 3:10.0
     #[arg(long = "arch", group = "way", value_name = "AXIS:POS", value_parser = peak)]
     peak: Option<Peak>,
     /// Start of the arch; default: 0
@@ -260,7 +264,7 @@ pub struct Arch {
     arch_unit: Unit,
 }
 
-/// An axis and a position as typed.
+/// An axis and a position as the user typed them.
 #[derive(Debug, Clone)]
 struct Peak {
     axis: String,
@@ -268,17 +272,17 @@ struct Peak {
 }
 
 fn peak(text: &str) -> Result<Peak, String> {
-    let (axis, position) = text.split_once(':').ok_or("an arch is an axis and a position, as in 3:10.0")?;
+    let (axis, position) = text.split_once(':').ok_or("an arch is an axis and a position, such as 3:10.0")?;
     Ok(Peak { axis: axis.to_owned(), position: position.to_owned() })
 }
 
 impl Arch {
-    /// Whether an arch is requested.
+    /// Whether the user requested an arch.
     pub fn is_wanted(&self) -> bool {
         self.peak.is_some()
     }
 
-    /// Sets the arch, if requested.
+    /// Sets the arch, if the user requested one.
     pub fn put(&self, draft: Draft) -> Draft {
         let Some(Peak { axis, position }) = &self.peak else { return draft };
         draft
@@ -289,7 +293,7 @@ impl Arch {
             .with_some(Key::ArchEnd, self.arch_end.clone())
     }
 
-    /// ` in an arch over axis 3 at 10.0 mm`; empty without an arch.
+    /// Describes the arch, for example ` in an arch over axis 3 at 10.0 mm`; empty without an arch.
     pub fn describe(&self) -> String {
         let Some(Peak { axis, position }) = &self.peak else { return String::new() };
         format!(" in an arch over axis {axis} at {position} {}", self.arch_unit.symbol())
@@ -306,7 +310,7 @@ pub enum Hand {
 }
 
 impl Hand {
-    /// Value in a target in mm. The arm selection command uses other values.
+    /// Returns the field value for a target in mm. The command that selects the arm uses other values.
     pub fn of_target(self) -> i32 {
         match self {
             Self::Right => 1,
@@ -315,7 +319,7 @@ impl Hand {
     }
 }
 
-/// Coordinate system of a jog or an inch.
+/// Coordinate system of a jog or an inching motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum System {
     /// A single axis of the robot
@@ -327,12 +331,12 @@ pub enum System {
 }
 
 impl System {
-    /// Unit of reported positions.
+    /// Returns the unit in which the controller reports positions.
     pub fn unit(self) -> Unit {
         if self == Self::Pulse { Unit::Pulse } else { Unit::Mm }
     }
 
-    /// ` in Cartesian coordinates`; empty for a single axis.
+    /// Describes the coordinate system, for example ` in Cartesian coordinates`; empty for a single axis.
     pub fn describe(self) -> &'static str {
         match self {
             Self::Pulse => "",
@@ -354,12 +358,12 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// Field value.
+    /// Returns the value of the direction field.
     pub fn value(self) -> i32 {
         (self == Self::Minus).into()
     }
 
-    /// `in plus direction`.
+    /// Describes the direction, for example `in plus direction`.
     pub fn describe(self) -> &'static str {
         match self {
             Self::Plus => "in plus direction",
@@ -368,7 +372,7 @@ impl Direction {
     }
 }
 
-/// Report after a motion.
+/// Options for the position report and the end of a motion.
 #[derive(Debug, Args)]
 pub struct Ending {
     /// Report the position after the motion, in this unit
@@ -379,7 +383,7 @@ pub struct Ending {
 }
 
 impl Ending {
-    /// Requests the position after the motion in this unit.
+    /// Requests the position after the motion in `unit`, if there is one.
     pub fn put(draft: Draft, unit: Option<Unit>) -> Draft {
         draft.with_some(Key::Report, unit.map(Unit::report))
     }

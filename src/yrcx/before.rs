@@ -1,9 +1,11 @@
-//! Old values before a remote command that sets a value: the command that reads them, and the field of its answer.
+//! Reads old values before a remote command sets new values: which command reads them, and which field of its answer
+//! has them.
 
 use serde_json::Value as Json;
 
 use super::link::Link;
 use super::overwrite::there;
+use super::robot_settings::{SETTINGS, Setting};
 use super::single::shown;
 use super::var::held;
 use crate::refusal::BuildOrder as _;
@@ -14,14 +16,16 @@ use armctl_frame::failure::Failure;
 use armctl_frame::gate::Change;
 use armctl_frame::settings_report::{OLD_VALUE, Old, nothing_written};
 
-/// Reads the values that a command replaces. Without an answer they stay unknown. A dry run notes the request.
+/// Reads the values that a command replaces. If the controller refuses the read, the old values stay unknown. A dry run
+/// only notes the request.
 pub async fn before(link: &mut Link, order: &Order) -> Result<Old, Failure> {
     let Some(read) = reader(order) else { return Ok(Old::UNREAD) };
     let values = there(link, &read.order()?, OLD_VALUE).await.map_err(nothing_written)?;
     Ok(Old::read(values.and_then(|values| told(order, &values))))
 }
 
-/// Question before a command that sets a value: the intent, and old and new values if the old value was read.
+/// Builds the confirmation question for a command that sets a value. The question shows old and new value only for
+/// servos, and only if the old value was read.
 pub fn question(order: &Order, intent: String, old: &Old) -> Change {
     let change = Change::new(if intent.is_empty() { order.row().name.to_owned() } else { intent });
     let new = match order.command() {
@@ -36,8 +40,8 @@ pub fn question(order: &Order, intent: String, old: &Old) -> Change {
     }
 }
 
-/// Read command for the values that a command sets. There is none for a torque limit, a selected shift or hand, and
-/// motor power.
+/// Returns the command that reads the values that `order` sets. The protocol has no such command for a torque limit, a
+/// selected shift or hand, and motor power.
 fn reader(order: &Order) -> Option<Draft> {
     let values = order.values();
     let (read, keys): (_, &[Key]) = match order.command() {
@@ -52,17 +56,19 @@ fn reader(order: &Order) -> Option<Draft> {
         | Command::VarDiv
         | Command::VarDivVar => (Command::VarGet, &[Key::Variable]),
         Command::PortSet | Command::PortSetBit => (Command::PortGet, &[Key::PortType, Key::Port]),
-        Command::SpeedManual | Command::SpeedAuto | Command::SpeedProgram => (Command::SpeedStatus, &[Key::Robot]),
-        Command::InchAmountSet => (Command::InchAmountGet, &[Key::Robot]),
-        Command::ArmSelect => (Command::ArmDesignation, &[Key::Robot]),
         Command::ServoOn | Command::ServoOff | Command::ServoFree => (Command::ServoStatus, &[Key::Robot]),
-        _ => return None,
+        _ => (setting(order)?.read.0, &[Key::Robot]),
     };
     let given = keys.iter().filter_map(|key| Some((*key, values.int(*key)?)));
     Some(given.fold(read.order(), |draft, (key, number)| draft.with(key, number)))
 }
 
-/// Old values from an answer, under the names of the command's report.
+/// The setting that a command writes.
+fn setting(order: &Order) -> Option<&'static Setting> {
+    SETTINGS.iter().find(|setting| setting.write.0 == order.command())
+}
+
+/// Takes the old values from an answer, in the form of the command's report.
 fn told(order: &Order, answer: &Values) -> Option<Json> {
     let number = |key| answer.int(key).map(Json::from);
     match order.command() {
@@ -71,18 +77,17 @@ fn told(order: &Order, answer: &Values) -> Option<Json> {
             let bit = order.values().int(Key::PortBit)?;
             answer.int(Key::Value).map(|port| Json::from(port >> bit & 1))
         }
-        Command::SpeedManual => number(Key::ManualSpeed),
-        Command::SpeedAuto => number(Key::AutoSpeed),
-        Command::SpeedProgram => number(Key::ProgramSpeed),
-        Command::InchAmountSet => number(Key::InchingAmount),
-        Command::ArmSelect => shown(Command::ArmDesignation, answer, Key::Arm).map(Json::from),
         Command::ServoOn | Command::ServoOff | Command::ServoFree => servo(order.values(), answer),
-        _ => Some(held(answer.value(Key::Value))),
+        _ => match setting(order).map(|setting| setting.read) {
+            None => Some(held(answer.value(Key::Value))),
+            Some((command, Key::Arm)) => shown(command, answer, Key::Arm).map(Json::from),
+            Some((_, key)) => number(key),
+        },
     }
 }
 
-/// `on`, `off` or `free` if all selected axes agree; otherwise one value per axis, null for an axis that does not
-/// exist.
+/// Returns `on`, `off` or `free` if all selected axes have the same state. Otherwise returns one value per axis, with
+/// null for an axis that does not exist.
 fn servo(order: &Values, answer: &Values) -> Option<Json> {
     let mask = order.int(Key::Axes).unwrap_or_default();
     let state = |key| match shown(Command::ServoStatus, answer, key).as_deref() {

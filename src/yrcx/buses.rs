@@ -1,5 +1,5 @@
-//! Fieldbuses of a controller. To add one, add a folder whose `bus.rs` supplies what `fieldbus.rs` requires, and a
-//! line here; register its URLs in `settings/target/bus.rs`.
+//! List of the fieldbuses of a controller. To add a fieldbus, add a folder whose `bus.rs` supplies what `fieldbus.rs`
+//! requires. Then add a line to the list in this file, and register the URLs in `settings/target/bus.rs`.
 
 use clap::{Arg, Args, Command};
 use schemars::{JsonSchema as _, Schema, SchemaGenerator};
@@ -26,7 +26,7 @@ macro_rules! fieldbuses {
         }
 
         impl Searches {
-            /// Each search with its fieldbus.
+            /// Returns the search of each fieldbus.
             pub fn each(&self) -> Vec<(&'static Fieldbus, &dyn Search)> {
                 vec![$($(#[$cfg])* (&$bus::BUS, &self.$bus),)*]
             }
@@ -40,19 +40,19 @@ macro_rules! fieldbuses {
         }
 
         impl Servers {
-            /// Each server with its fieldbus.
+            /// Returns the server of each fieldbus.
             pub fn each(&self) -> Vec<(&'static Fieldbus, &dyn Serve)> {
                 vec![$($(#[$cfg])* (&$bus::BUS, &self.$bus),)*]
             }
 
-            /// Each fieldbus with the arguments that only it has.
+            /// Returns each fieldbus with the arguments that only this fieldbus has.
             pub fn arguments() -> Vec<(&'static Fieldbus, Vec<Arg>)> {
                 let of = |command: Command| command.get_arguments().cloned().collect();
                 vec![$($(#[$cfg])* (&$bus::BUS, of($bus::ServeArgs::augment_args(Command::new("sim")))),)*]
             }
         }
 
-        /// Schemas of device identities, per fieldbus.
+        /// Returns the schemas of the device identities, one per fieldbus.
         pub fn identities(generator: &mut SchemaGenerator) -> Vec<Schema> {
             vec![$($(#[$cfg])* $bus::Identity::json_schema(generator),)*]
         }

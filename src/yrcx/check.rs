@@ -1,4 +1,4 @@
-//! Controller layers of `armctl robots check`. The check opens no connection for images.
+//! Checks of the controller for `armctl robots check`. They open no connection for images.
 
 use super::connect::endpoint;
 use super::link::Yrcx;
@@ -13,10 +13,11 @@ use armctl_frame::output::Screen;
 use armctl_frame::settings::{Robot, Sessions};
 use armctl_frame::{Access, ConnectMode, Family as _};
 
-/// Layers after those of the fieldbus.
+/// Layers that follow the layers of the fieldbus.
 const SIGNALS: [&str; 8] = ["CPU", "emergency stop", "alarm", "remote command", "program", "mode", "servo", "origin"];
 
-/// Checks the layers; read-only. If a session is open, the check uses its image and opens no other connection.
+/// Checks the layers; read-only. If a session is open, the check reads the image through the session and opens no
+/// second connection for images.
 pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
     let fieldbus = endpoint(robot)?.fieldbus();
     let [first, .., last] = fieldbus.layers else {
@@ -51,7 +52,7 @@ pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec
     Ok(layers.finish())
 }
 
-/// Image of the controller in the session that holds its link.
+/// Reads the image of the controller through the session that keeps the connection open.
 async fn through_session(robot: &Robot, access: Access, screen: &Screen) -> Result<Image, Failure> {
     let robot = Robot { sessions: Sessions::Only, ..robot.clone() };
     let access = Access { mode: ConnectMode::Monitor, trace: None, ..access };
@@ -71,7 +72,7 @@ fn signals(image: &Image, held: bool, layers: &mut Layers) {
         "emergency stop",
         !is_stopped,
         ("released", "pressed, or no master sets SI(00)"),
-        "release it, then `yrcx recover`",
+        "release the emergency stop, then use `yrcx recover`",
     );
     must(
         "alarm",
@@ -83,8 +84,8 @@ fn signals(image: &Image, held: bool, layers: &mut Layers) {
     layers.judge(
         "remote command",
         status == Status::Ready,
-        ("ready", &format!("its status is: {status}")),
-        "another command is running, or an earlier one did not finish",
+        ("ready", &format!("the status is: {status}")),
+        "wait until the command ends: another command is running, or an earlier command did not finish",
     );
     layers.leftover_drafts(&left_over(image));
     let runs = output::PROGRAM_RUNNING.is_on(image);
@@ -92,31 +93,36 @@ fn signals(image: &Image, held: bool, layers: &mut Layers) {
     // The signals do not identify the program. A running program is not a fault.
     layers.ok(
         "program",
-        if runs { "running; `yrcx info tasks` shows the program, `yrcx stop` stops it" } else { "not running" },
+        if runs {
+            "running; use `yrcx info tasks` to see the program, and `yrcx stop` to stop it"
+        } else {
+            "not running"
+        },
     );
     layers.judge(
         "mode",
         output::AUTO_MODE.is_on(image),
         ("auto", "manual"),
-        "programs need AUTO mode: select it at the SAFETY connector and the programming box",
+        "select AUTO mode at the SAFETY connector and the programming box: programs need AUTO mode",
     );
     layers.judge(
         "servo",
         output::SERVO_ON.is_on(image),
         (
             if is_idle {
-                "motor power on; no program is running and no session is open: `yrcx motor off`"
+                "motor power on, but no program is running and no session is open; use `yrcx motor off` to switch \
+                 motor power off"
             } else {
                 "motor power on"
             },
             "motor power off",
         ),
-        "motion needs motor power: `yrcx power-on`, or `yrcx motor on`",
+        "use `yrcx power-on` or `yrcx motor on`: a motion needs motor power",
     );
     layers.judge(
         "origin",
         output::ORIGIN_COMPLETE.is_on(image),
         ("complete", "incomplete"),
-        "moves to positions need it: `yrcx origin`",
+        "use `yrcx origin`: moves to positions need a complete origin",
     );
 }

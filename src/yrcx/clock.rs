@@ -18,7 +18,8 @@ use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::items;
 use armctl_frame::items::ItemError;
 use armctl_frame::output::view::{Cell, View};
-use armctl_frame::settings_report::{OLD_VALUE, Old, Written};
+use armctl_frame::robot::item::{Item, Written, WrittenItems};
+use armctl_frame::settings_report::OLD_VALUE;
 use armctl_frame::{Command, Context, Report, commands};
 
 commands! {
@@ -33,7 +34,7 @@ commands! {
 
 const DATE: [Key; 3] = [Key::Year, Key::Month, Key::Day];
 const TIME: [Key; 3] = [Key::Hour, Key::Minute, Key::Second];
-/// The controller stores two digits of the year.
+/// Century of the controller's years: the controller stores only two digits of the year.
 const CENTURY: i16 = 2000;
 
 /// Reads date and time of the controller.
@@ -53,7 +54,7 @@ impl Command for Get {
         let mut of_next = || outcomes.next().unwrap_or_else(|| Err(Failure::local("the clock was not read")));
         let mut date = of_next().and_then(|values| date_of(&values));
         let time = of_next().and_then(|values| time_of(&values));
-        // Midnight may have passed between the two requests.
+        // Midnight may have passed between the two requests: read the date again.
         if let (Ok(_), Ok(moment)) = (&date, &time)
             && moment.hour() == 0
             && moment.minute() == 0
@@ -80,20 +81,20 @@ fn time_of(values: &Values) -> Result<Time, Failure> {
 }
 
 fn malformed(message: String) -> Failure {
-    Failure::new(Kind::Malformed, message).hint("`yrcx clock set now` sets its clock")
+    Failure::new(Kind::Malformed, message).hint("use `yrcx clock set now` to set the clock of the controller")
 }
 
 /// Clock reading.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Reading {
-    /// Local time of the controller, as in `2026-03-01T08:45:00`; null if the date or the time could not be read.
+    /// Local time of the controller, for example `2026-03-01T08:45:00`; null if the date or the time could not be read.
     time: Option<String>,
-    /// `2026-03-01`; null if it could not be read.
+    /// Date, for example `2026-03-01`; null if the date could not be read.
     date: Option<String>,
-    /// `08:45:00`; null if it could not be read.
+    /// Time of day, for example `08:45:00`; null if the time could not be read.
     time_of_day: Option<String>,
-    /// Difference to the clock of this computer in seconds; negative if the controller is behind; null if the date or
-    /// the time could not be read.
+    /// Difference to the clock of this computer in seconds; negative if the controller's clock is behind; null if the
+    /// date or the time could not be read.
     ahead_s: Option<i64>,
     /// Values that could not be read, and the reason.
     errors: Vec<ItemError>,
@@ -139,10 +140,10 @@ impl Report for Reading {
     }
 }
 
-/// Date and time.
+/// Number of values in a reading: date and time.
 const PARTS: usize = 2;
 
-/// `3 s`, `1:02:03`, `252 days 1:02:03`.
+/// Formats a duration, for example `3 s`, `1:02:03`, `252 days 1:02:03`.
 fn in_words(seconds: u64) -> String {
     let (days, hours, minutes) = (seconds / 86_400, seconds / 3600 % 24, seconds / 60 % 60);
     match (days, hours, minutes) {
@@ -152,9 +153,9 @@ fn in_words(seconds: u64) -> String {
     }
 }
 
-/// Sets date and time of the controller, or one of them.
+/// Sets the date of the controller, the time, or both.
 #[derive(Debug, Args)]
-#[command(after_help = "The controller clock has local time and the years 2000 to 2099.")]
+#[command(after_help = "The controller clock uses local time. It supports the years 2000 to 2099.")]
 pub struct Set {
     /// now, or a date, a time or both: 2026-03-01T08:45:00, 2026-03-01, 08:45
     #[arg(value_name = "TIME", value_parser = moment)]
@@ -204,7 +205,7 @@ fn parse_time(text: &str) -> Result<Time, String> {
     time.ok_or_else(|| format!("'{text}' is not a valid time, such as 08:45 or 08:45:00"))
 }
 
-/// A number with exactly `count` digits.
+/// Parses a number that has exactly `count` digits.
 fn digits<N: std::str::FromStr>(text: &str, count: usize) -> Option<N> {
     let fits = text.len() == count && text.bytes().all(|byte| byte.is_ascii_digit());
     text.parse().ok().filter(|_| fits)
@@ -212,43 +213,46 @@ fn digits<N: std::str::FromStr>(text: &str, count: usize) -> Option<N> {
 
 impl Command for Set {
     type Family = Yrcx;
-    type Report = WasSet;
+    type Report = WrittenItems<String>;
     const ID: &'static str = "yrcx.clock.set";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<WasSet, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<WrittenItems<String>, Failure> {
         let link = context.link;
         let (date, time) = match self.moment {
             Moment::Given { date, time } => (date, time),
             Moment::Now => (None, Some(Zoned::now().time())),
         };
-        let found = read_before(link, time.is_some(), date.is_some() || self.moment == Moment::Now).await?;
+        let [old_date, old_time] =
+            read_before(link, time.is_some(), date.is_some() || self.moment == Moment::Now).await?;
         // The time is set first: otherwise midnight could pass on the old time and advance the new date.
+        let mut items = Vec::new();
         if let Some(time) = time {
             let order = time_order(link, time)?;
             link.ask(&order).await?;
+            items.push(written("time", Ok(describe(&time)), old_time));
         }
         let date = if self.moment == Moment::Now { Some(Zoned::now().date()) } else { date };
-        let mut errors = Vec::new();
         if let Some(date) = date {
             let order = date_order(link, date)?;
-            match link.ask(&order).await {
-                Ok(_) => {}
-                Err(failure) if time.is_some() => errors.push(ItemError::new("date", failure)),
-                Err(failure) => return Err(failure),
+            let outcome = link.ask(&order).await.map(|_| date.to_string());
+            if time.is_none() {
+                outcome.as_ref().map_err(Clone::clone)?;
             }
+            items.insert(0, written("date", outcome, old_date));
         }
-        let date = date.filter(|_| errors.is_empty()).map(|date| date.to_string());
-        let time = time.as_ref().map(describe);
-        let items = [("date", &date), ("time", &time)]
-            .into_iter()
-            .zip(found)
-            .filter_map(|((name, new), old)| Some(Written::new(Part { name }, Old::read(old), new.clone()?)));
-        Ok(WasSet { items: items.collect(), date, time, errors })
+        let values: Vec<&str> = items.iter().filter_map(|written| written.new.as_deref()).collect();
+        Ok(WrittenItems::describe(format!("the controller's clock is set to {}", values.join(" ")), items))
     }
 }
 
-/// Reads the current date and time, as far as they will be set. Unreadable values stay unknown.
+/// The date or the time that was set, or why it was not.
+fn written(name: &str, outcome: Result<String, Failure>, old: Option<String>) -> Written<String> {
+    let is_written = outcome.is_ok();
+    Written::new(Item::new("clock", name, outcome.map(Some)), old, is_written)
+}
+
+/// Reads the current date, time, or both: the values that armctl will set. Values that cannot be read stay unknown.
 async fn read_before(link: &mut Link, time: bool, date: bool) -> Result<[Option<String>; 2], Failure> {
     let mut found = [None, None];
     if date {
@@ -262,36 +266,6 @@ async fn read_before(link: &mut Link, time: bool, date: bool) -> Result<[Option<
         found[1] = values.and_then(|values| time_of(&values).ok()).as_ref().map(describe);
     }
     Ok(found)
-}
-
-/// `date` or `time`.
-#[derive(Debug, Serialize, JsonSchema)]
-struct Part {
-    name: &'static str,
-}
-
-/// Result of setting the clock.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct WasSet {
-    /// `2026-03-01`; null if it was not set.
-    date: Option<String>,
-    /// `08:45:00`; null if it was not set.
-    time: Option<String>,
-    /// Values that were set, with the old values.
-    items: Vec<Written<Part>>,
-    /// Values that could not be set, and the reason.
-    errors: Vec<ItemError>,
-}
-
-impl Report for WasSet {
-    fn view(&self) -> View {
-        let told: Vec<&str> = self.date.iter().chain(&self.time).map(String::as_str).collect();
-        View::text(format!("the controller's clock is set to {}", told.join(" ")))
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        items::verdict(PARTS, &self.errors)
-    }
 }
 
 fn date_order(link: &Link, date: Date) -> Result<Order, Failure> {
@@ -324,15 +298,14 @@ mod tests {
         assert_eq!(words(&date).unwrap(), [example("4.8.1-set")]);
         assert_eq!(words(&time).unwrap(), [example("4.8.2-set")]);
         let set = read_example("4.8.1-set", &date);
-        assert_eq!((&set["date"], &set["time"]), (&json!("2014-02-02"), &json!(null)));
+        assert_eq!(set["items"].as_array().unwrap().len(), 1);
+        assert_eq!((&set["items"][0]["name"], &set["items"][0]["new"]), (&json!("date"), &json!("2014-02-02")));
         let both = ["clock", "set", "2014-02-02T08:45:00"];
         assert_eq!(words(&both).unwrap(), [example("4.8.2-set"), example("4.8.1-set")]);
         let done = read_in_turn(&["4.8.2-set", "4.8.1-set"], &both);
-        let items = json!([
-            {"name": "date", "old": null, "new": "2014-02-02", "written": true},
-            {"name": "time", "old": null, "new": "08:45:00", "written": true},
-        ]);
-        assert_eq!(done, json!({"date": "2014-02-02", "time": "08:45:00", "items": items, "errors": []}));
+        let items = done["items"].as_array().unwrap().iter();
+        let items: Vec<_> = items.map(|it| json!([it["name"], it["old"], it["new"], it["written"]])).collect();
+        assert_eq!(items, [json!(["date", null, "2014-02-02", true]), json!(["time", null, "08:45:00", true])]);
     }
 
     fn answer(numbers: [u16; 3]) -> Reply {
@@ -381,8 +354,9 @@ mod tests {
     fn a_time_that_is_set_is_told_where_the_date_is_refused() {
         let line = ["clock", "set", "2014-02-02T08:45:00"];
         let (set, failure, _) = report_on(Scripted::new([no(), no(), answer([0; 3]), no()]), &line);
-        assert_eq!((&set["date"], &set["time"]), (&json!(null), &json!("08:45:00")));
-        assert_eq!((&set["errors"][0]["asked"], &set["errors"][0]["code"]), (&json!("date"), &json!("5.1")));
+        let [date, time] = [&set["items"][0], &set["items"][1]];
+        assert_eq!((&date["new"], &time["new"]), (&json!(null), &json!("08:45:00")));
+        assert_eq!((&date["error"]["asked"], &date["error"]["code"]), (&json!("date"), &json!("5.1")));
         assert_eq!(failure.unwrap().kind.exit(), 9);
         let (refused, peer) = run_on(Scripted::new([no(), no(), no()]), &line);
         assert_eq!((refused.unwrap_err().kind.exit(), peer.taken.len()), (3, 3), "the date does not go alone");

@@ -18,14 +18,14 @@ pub const INPUT_STATE: ValueKind =
     named(&[Kind::Signal], &["=on", "=off"], || [signals(Side::Input, "=on"), signals(Side::Input, "=off")].concat());
 /// Name of an output signal.
 pub const OUTPUT: ValueKind = named(&[Kind::Signal], &[""], || signals(Side::Output, ""));
-/// A port.
+/// An input or output port.
 pub const PORT: ValueKind = named(&[Kind::Port, Kind::Signal], &[""], || inputs().chain(outputs(0)).collect());
 /// Output port.
 pub const OUTPUT_PORT: ValueKind = named(&[Kind::Port, Kind::Signal], &[""], || outputs(2).collect());
 /// A parameter.
 pub const PARAMETER: ValueKind =
     ValueKind::Listed(|| PARAMETERS.iter().map(|row| Candidate::new(row.name, row.meaning)).collect());
-/// A static variable: `SGI0` to `SGR31`, or its name.
+/// A static variable: `SGI0` to `SGR31`, or the name of a variable.
 pub const VARIABLE: ValueKind = named(&[Kind::Variable], &[""], || {
     let whole = numbered("SGI", 0..=31, "whole number");
     whole.chain(numbered("SGR", 0..=31, "real number")).collect()
@@ -39,11 +39,11 @@ pub const TASK: ValueKind = ValueKind::Asked(Family::Yrcx, |robot| {
     }
     .boxed_local()
 });
-/// Number of the program of a task.
+/// Number of a program that is in a task.
 pub const PROGRAM: ValueKind = ValueKind::Asked(Family::Yrcx, |robot| {
     programs(robot, |number, name, about| Candidate::new(number, format!("{name}: {about}"))).boxed_local()
 });
-/// Name of the program of a task.
+/// Name of a program that is in a task.
 pub const PROGRAM_NAME: ValueKind = ValueKind::Asked(Family::Yrcx, |robot| {
     programs(robot, |number, name, about| Candidate::new(name, format!("program {number}: {about}"))).boxed_local()
 });
@@ -84,7 +84,7 @@ fn numbered(
     numbers.map(move |number| Candidate::new(format!("{letters}{number}"), about))
 }
 
-/// Applies `candidate` to number, name and location of each program.
+/// Adds a candidate for each program. `candidate` makes it from the number, the name, and the task with its state.
 async fn programs(robot: &dyn Ask, candidate: fn(&str, &str, &str) -> Candidate) {
     for (task, state) in tasks(robot).await {
         if let Some(shown) = robot.data(&["yrcx", "program", "show", "--task", &task]).await {
@@ -94,7 +94,7 @@ async fn programs(robot: &dyn Ask, candidate: fn(&str, &str, &str) -> Candidate)
     }
 }
 
-/// Numbers and states of the tasks with a program.
+/// Returns number and state of each task that has a program.
 async fn tasks(robot: &dyn Ask) -> Vec<(String, String)> {
     let data = robot.data(&["yrcx", "info", "tasks", "1..8"]).await;
     let tasks = rows(data.as_ref(), "items").map(|task| (text(task, "name"), text(task, "value")));

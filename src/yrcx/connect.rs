@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::buses::{self, BUSES};
-use super::fieldbus::{At, Board, Fieldbus, Purpose, Simulation};
+use super::fieldbus::{self, At, Board, Fieldbus, Purpose, Simulation};
 use super::link_error::not_open;
 use super::simulated;
 use super::trace::{Opening, Recorder};
@@ -42,8 +42,10 @@ pub fn endpoint(robot: &Robot) -> Result<Endpoint<'_>, Failure> {
     }
 }
 
-/// Explicit messaging client, with a simulator that must live as long.
-pub type OpenBoard = (Box<dyn Board>, Option<Box<dyn fmt::Debug>>);
+/// What was opened, with a simulator that must live as long.
+type WithSimulator<T> = (T, Option<Box<dyn fmt::Debug>>);
+/// Explicit messaging client.
+pub type OpenBoard = WithSimulator<Box<dyn Board>>;
 
 impl Endpoint<'_> {
     /// Opens a link, with a packet recorder if requested.
@@ -53,33 +55,17 @@ impl Endpoint<'_> {
         access: &Access,
         screen: &Screen,
     ) -> Result<(ImageLink, Option<Recorder>), Failure> {
-        let purpose = if access.mode == ConnectMode::Monitor { Purpose::Look } else { Purpose::Command };
-        match *self {
-            Self::Bus(bus, fieldbus) => {
-                let (recorder, tap) = Recorder::start(access, screen, fieldbus.link_type)?.unzip();
-                let (opening, watched) = Opening::watch(screen).filter(|_| tap.is_none()).unzip();
-                let at = At { robot, bus, tap: tap.or(watched).unwrap_or_default() };
-                match (fieldbus.open)(at, purpose).await {
-                    Ok(link) => Ok((link, recorder)),
-                    Err(error) => {
-                        if let Some(opening) = opening {
-                            opening.show(screen);
-                        }
-                        // The failure to open matters more than the failure to finish the recording.
-                        let _ = recorder.map_or(Ok(()), Recorder::finish);
-                        Err(not_open(&robot.label(), bus.scheme, &error))
-                    }
-                }
+        let purpose = match self {
+            // Faults of the network can only be simulated on a simulated network.
+            Self::Sim(sim) if sim.bus.is_none() && !simulated::has_faults(sim) => {
+                return Ok((ImageLink::in_process(Box::new(simulated::in_process(sim)?)), None));
             }
-            // Network faults need a network.
-            Self::Sim(sim) if sim.bus.is_some() || simulated::has_faults(sim) => {
-                let (fieldbus, Simulation { bus, controller }) = simulate(sim)?;
-                let opened = (fieldbus.open)(At { robot, bus: &bus, tap: Tap::default() }, Purpose::Command).await;
-                let link = opened.map_err(|error| not_open(&robot.label(), bus.scheme, &error))?;
-                Ok((link.with_owned(controller), None))
-            }
-            Self::Sim(sim) => Ok((ImageLink::in_process(Box::new(simulated::in_process(sim)?)), None)),
-        }
+            Self::Bus(..) if access.mode == ConnectMode::Monitor => Purpose::Look,
+            Self::Bus(..) | Self::Sim(_) => Purpose::Command,
+        };
+        let opened = self.on_fieldbus(robot, access, screen, |fieldbus, at| (fieldbus.open)(at, purpose)).await?;
+        let ((link, controller), recorder) = opened;
+        Ok((controller.into_iter().fold(link, ImageLink::with_owned), recorder))
     }
 
     /// Opens the explicit messaging client.
@@ -89,23 +75,38 @@ impl Endpoint<'_> {
         access: &Access,
         screen: &Screen,
     ) -> Result<(OpenBoard, Option<Recorder>), Failure> {
+        self.on_fieldbus(robot, access, screen, |fieldbus, at| (fieldbus.board)(at)).await
+    }
+
+    /// Opens something on the fieldbus, with a simulator that must live as long, and a packet recorder if requested.
+    async fn on_fieldbus<T>(
+        &self,
+        robot: &Robot,
+        access: &Access,
+        screen: &Screen,
+        open: impl for<'a> FnOnce(&'static Fieldbus, At<'a>) -> fieldbus::Opening<'a, T>,
+    ) -> Result<(WithSimulator<T>, Option<Recorder>), Failure> {
         match *self {
             Self::Bus(bus, fieldbus) => {
                 let (recorder, tap) = Recorder::start(access, screen, fieldbus.link_type)?.unzip();
-                let (opening, watched) = Opening::watch(screen).filter(|_| tap.is_none()).unzip();
-                let at = At { robot, bus, tap: tap.or(watched).unwrap_or_default() };
-                let opened = (fieldbus.board)(at).await;
-                if let (Err(_), Some(opening)) = (&opened, &opening) {
-                    opening.show(screen);
+                let (watch, watched) = Opening::watch(screen).filter(|_| tap.is_none()).unzip();
+                match open(fieldbus, At { robot, bus, tap: tap.or(watched).unwrap_or_default() }).await {
+                    Ok(opened) => Ok(((opened, None), recorder)),
+                    Err(error) => {
+                        if let Some(watch) = watch {
+                            watch.show(screen);
+                        }
+                        // The error of the connection is reported, so an error of the recording is ignored.
+                        let _ = recorder.map_or(Ok(()), Recorder::finish);
+                        Err(not_open(&robot.label(), bus.scheme, &error))
+                    }
                 }
-                let board = opened.map_err(|error| not_open(&robot.label(), bus.scheme, &error))?;
-                Ok(((board, None), recorder))
             }
             Self::Sim(sim) => {
                 let (fieldbus, Simulation { bus, controller }) = simulate(sim)?;
-                let opened = (fieldbus.board)(At { robot, bus: &bus, tap: Tap::default() }).await;
-                let board = opened.map_err(|error| not_open(&robot.label(), bus.scheme, &error))?;
-                Ok(((board, Some(controller)), None))
+                let opened = open(fieldbus, At { robot, bus: &bus, tap: Tap::default() }).await;
+                let opened = opened.map_err(|error| not_open(&robot.label(), bus.scheme, &error))?;
+                Ok(((opened, Some(controller)), None))
             }
         }
     }
@@ -118,7 +119,7 @@ impl Endpoint<'_> {
         }
     }
 
-    /// Whether a link in control mode commands the controller.
+    /// Whether a connection in control mode sends commands to the controller.
     pub fn is_owner(&self) -> bool {
         match self {
             Self::Bus(bus, _) => bus.is_owner,
@@ -127,7 +128,7 @@ impl Endpoint<'_> {
     }
 }
 
-/// Fieldbus of a simulator.
+/// Returns the fieldbus that a simulator simulates.
 fn simulated_on(sim: &target::Sim) -> &'static Fieldbus {
     let named = sim.bus.and_then(|wanted| simulators().find(|(name, _)| *name == wanted));
     named.and_then(|(_, bus)| buses::by_name(bus)).unwrap_or(BUSES[0])

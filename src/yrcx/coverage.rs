@@ -1,4 +1,4 @@
-//! Remote commands that the command lines cover.
+//! Test: each remote command has a command line that sends it.
 
 use std::collections::BTreeSet;
 

@@ -23,23 +23,23 @@ use armctl_frame::output::view::{Section, View};
 /// Decode words of YRCX remote commands and answers
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Missing words are 0. An answer is explained with its command if you give both. Invalid words are \
-                  explained as far as possible, and the exit code is 5.\n\nGive PROFIBUS telegrams as bytes, one \
-                  telegram after the other, or as a file in hexadecimal or binary. Each telegram then counts as a \
-                  packet without a time.\n\nA capture file lists the new content of images, in the same text as \
-                  --trace, with the fieldbus messages around it. NUMBER and TIME are those of Wireshark. A file \
-                  without any messages is not an error. A damaged file is decoded up to the damage, and the exit code \
-                  is 1."
+    after_help = "Missing words are 0. An answer is explained with its command if you type both. Invalid words are \
+                  explained as far as possible, and the exit code is 5.\n\nType PROFIBUS telegrams as bytes, one \
+                  telegram after the other, or use a file in hexadecimal or binary. Each telegram then counts as a \
+                  packet without a time.\n\nFor a capture file, the command lists the new content of images as \
+                  --trace does, with the fieldbus messages before and after it. NUMBER and TIME are the same as in \
+                  Wireshark. A file without messages is not an error. A damaged file is decoded up to the damage, and \
+                  the exit code is 1."
 )]
 pub struct Decode {
-    /// WI0 to WI15, as in 0x0001,0x0004,0,0x0032,0x0013
+    /// WI0 to WI15, for example 0x0001,0x0004,0,0x0032,0x0013
     #[arg(long, value_name = "WORDS", required_unless_present_any = ["wo", "capture"], value_parser = words)]
     wi: Option<Words>,
-    /// WO0 to WO15, as in 0x4000,0x0002,0x014E
+    /// WO0 to WO15, for example 0x4000,0x0002,0x014E
     #[arg(long, value_name = "WORDS", value_parser = words)]
     wo: Option<Words>,
-    /// A file: a capture (pcap or pcapng), a candump log, or PROFIBUS telegrams; - for stdin. Or telegrams in
-    /// hexadecimal (spaces, colons and 0x are allowed between the bytes)
+    /// A capture file (pcap or pcapng), a candump log, or a file of PROFIBUS telegrams; - for stdin. Or the telegrams
+    /// themselves in hexadecimal (spaces, colons and 0x are allowed between the bytes)
     #[arg(value_name = "FILE|HEX", conflicts_with_all = ["wi", "wo"])]
     capture: Vec<String>,
     #[command(flatten)]
@@ -59,7 +59,7 @@ impl decode::Decode for Decode {
         let input = match self.capture.as_slice() {
             [] => return Ok(None),
             [stdin] if stdin == "-" => Input::Bytes("stdin", stdin_bytes()?),
-            // Hexadecimal digits are telegrams, because no capture file has such a name.
+            // An argument that has only hexadecimal digits is a telegram, because no capture file has such a name.
             [file] if parse_hex(file).is_err() => Input::File(Path::new(file)),
             bytes => Input::Bytes("telegrams", telegrams(&bytes.join(" "))?),
         };
@@ -81,16 +81,18 @@ impl decode::Decode for Decode {
     }
 }
 
-/// Telegrams in hexadecimal.
+/// Parses telegrams in hexadecimal.
 fn telegrams(text: &str) -> Result<Vec<u8>, Failure> {
-    let hint = "give telegrams as 68 05 05 68 …, or the name of a file";
+    let hint = "type telegrams as 68 05 05 68 …, or the name of a file";
     let bytes = parse_hex(text).map_err(|error| Failure::usage(error).hint(hint))?;
     if holds_telegram(&bytes) {
         return Ok(text.as_bytes().to_vec());
     }
     let failure = Failure::new(Kind::Malformed, "no PROFIBUS telegram starts in these bytes");
-    Err(failure
-        .hint("a telegram starts with 10, 68, A2, DC or E5. If the file name has only hexadecimal digits, use ./NAME"))
+    Err(failure.hint(
+        "type telegrams that start with 10, 68, A2, DC or E5. If the file name has only hexadecimal digits, use \
+         ./NAME",
+    ))
 }
 
 /// Explanation of remote command words.
@@ -99,7 +101,7 @@ pub struct DecodedWords {
     parts: Vec<Part>,
 }
 
-/// A command or an answer.
+/// The explanation of a command or of an answer.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Part {
     /// `command` or `answer`.
@@ -109,7 +111,7 @@ struct Part {
     /// Section of chapter 2 of the manual, if the command is known.
     section: Option<&'static str>,
     fields: Vec<FieldRow>,
-    /// Problems found in it.
+    /// Problems in the command or the answer.
     problems: Vec<String>,
 }
 
@@ -135,7 +137,7 @@ impl Report for DecodedWords {
     fn failure(&self) -> Option<Failure> {
         let problem = self.parts.iter().flat_map(|part| &part.problems).next()?;
         let failure = Failure::new(Kind::Malformed, format!("the words do not match the manual: {problem}"));
-        Some(failure.hint("compare them with the section of the manual that is shown"))
+        Some(failure.hint("compare the words with the section of the manual that the command shows"))
     }
 }
 

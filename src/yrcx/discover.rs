@@ -13,7 +13,7 @@ use armctl_frame::Access;
 use armctl_frame::failure::Failure;
 use armctl_frame::output::Screen;
 
-/// A device that answered. Its identity is untrusted.
+/// A device that answered. Do not trust its identity.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct FoundDevice {
     /// Address of the device.
@@ -22,11 +22,11 @@ pub struct FoundDevice {
     pub target: String,
     /// Robot family that the vendor id belongs to; null for other vendors.
     pub family: Option<&'static str>,
-    /// Identity, as its fieldbus defines it.
+    /// Identity of the device, in the form that its fieldbus defines.
     #[serde(flatten)]
     #[schemars(schema_with = "identities")]
     identity: Map<String, Value>,
-    /// Identity in one line.
+    /// Identity of the device in one line.
     #[serde(skip)]
     pub device: String,
 }
@@ -70,7 +70,7 @@ pub async fn discover(
         recorder.map_or(Ok(()), Recorder::finish)?;
         match found {
             Ok(found) => all.extend(found.into_iter().map(FoundDevice::from)),
-            // A computer without a network still has serial ports.
+            // A computer without a network may still have serial ports, so the search continues.
             Err(failure) if scope == Scope::Usual => screen.note(&format!("warning: {failure}")),
             Err(failure) => return Err(failure),
         }
@@ -78,7 +78,7 @@ pub async fn discover(
     Ok(all)
 }
 
-/// Narrowest scope of the search options.
+/// Returns the narrowest scope of all searches.
 pub fn scope(searches: &Searches) -> Scope {
     searches.each().into_iter().map(|(_, search)| search.scope()).max().unwrap_or(Scope::Nothing)
 }

@@ -13,11 +13,11 @@ use armctl_frame::settings_report::Old;
 pub struct Done {
     /// Values of the answer.
     pub values: Values,
-    /// Time from the first transmission of the command to its end.
+    /// Time from the first transmission of the command to the end of the command.
     pub elapsed: Duration,
     /// Overwritten data, if any.
     pub replaced: Option<Replaced>,
-    /// Old value, for a command that sets one.
+    /// Old value, if the command sets a value.
     pub old: Old,
 }
 
@@ -27,13 +27,13 @@ impl From<yrcx::Done> for Done {
     }
 }
 
-/// Overwritten row and its replacement.
+/// A row that a command overwrites, with its old and new value.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Replaced {
     pub kind: &'static str,
     pub name: String,
-    /// Old and new value; none if not defined, or not known in advance.
+    /// Old value and new value; `None` if the row was not defined, or if the new value is not known in advance.
     pub values: [Option<Json>; 2],
-    /// Whether old and new are equal, so that no write is necessary.
+    /// Whether the old and the new value are equal, so that no write is necessary.
     pub is_there: bool,
 }

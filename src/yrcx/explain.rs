@@ -18,7 +18,8 @@ use armctl_frame::settings::target::Family;
 /// Alarm number of a YRCX, or error of a PROFINET device
 #[derive(Debug, Args)]
 pub struct Explain {
-    /// Group and category, as in 12.600; or four bytes of PROFINET, as in 0xDB810209 or 'CF 81 FD 05'
+    /// Group and category of the alarm, for example 12.600; or four bytes of PROFINET, for example 0xDB810209 or 'CF 81
+    /// FD 05'
     #[arg(value_parser = code, add = ValueKind::Code(Family::Yrcx))]
     code: Code,
 }
@@ -70,13 +71,13 @@ impl face::Explain for Explain {
     }
 }
 
-/// Remedy for an alarm that only the controller's manual describes.
-const LOOK: &[&str] = &["look up the alarm in the controller's manual; `yrcx info alarm` shows the source"];
+/// Remedy for an alarm whose remedy is only in the controller's manual.
+const LOOK: &[&str] = &["look up the alarm in the controller's manual; use `yrcx info alarm` to see the source"];
 
-/// Classification of a code.
+/// Group of a code.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Group {
-    /// Group of the alarm, or the refused operation; null for an unknown group.
+    /// Group of the alarm, or the operation that the device refused; null if the group is unknown.
     group: Option<&'static str>,
 }
 

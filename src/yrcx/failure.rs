@@ -24,16 +24,18 @@ pub fn failure(label: &str, error: Error) -> Failure {
         Error::Refused(refusal) => refusal_failure(*refusal),
         Error::NotSent { why, .. } => about(Kind::NoAnswer, &error).hint(match why {
             NotSentReason::NoImage => {
-                "check the connection: `-v` counts received packets. The sizes in the URL may be wrong (`armctl robots \
-                 check`)"
+                "check the connection: use `-v` to count received packets. The sizes in the URL may be wrong (`armctl \
+                 robots check`)"
             }
             NotSentReason::LinkLost => "check the controller; armctl reopens the connection automatically",
-            NotSentReason::NotReady(_) => "another command may still be running; `yrcx io set stop=off` stops a motion",
-            NotSentReason::Interrupted => "nothing was done",
+            NotSentReason::NotReady(_) => {
+                "wait, because another command may still be running; use `yrcx io set stop=off` to stop a motion"
+            }
+            NotSentReason::Interrupted => "repeat the command; nothing was done",
         }),
         Error::NoAnswer { why, .. } => {
             let kind = if let Silence::Undocumented(_) = why { Kind::Malformed } else { Kind::NoAnswer };
-            about(kind, &error).hint("`yrcx status` shows the state of the controller")
+            about(kind, &error).hint("use `yrcx status` to see the state of the controller")
         }
         Error::OutcomeUnknown { command, why, stop, is_stop_held, ended } => {
             let held = match (why, stop) {
@@ -73,17 +75,19 @@ pub fn failure(label: &str, error: Error) -> Failure {
             let message = format!("{why}the axis may still move: the connection to the controller is down");
             Failure::new(Kind::OutcomeUnknown, message).hint("press the emergency stop")
         }
-        Error::CommandRunning { .. } => about(Kind::NoAnswer, &error)
-            .hint("the controller executes one remote command at a time; `yrcx io set stop=off` stops a motion"),
+        Error::CommandRunning { .. } => about(Kind::NoAnswer, &error).hint(
+            "wait until the running command ends, because the controller executes one remote command at a time; use \
+             `yrcx io set stop=off` to stop a motion",
+        ),
         Error::OtherClientRunning { words } => {
             about(Kind::NoAnswer, &format!("another client's command is still running: {}", command_summary(&words)))
                 .hint(
-                    "wait until it ends; `yrcx stop` stops a motion, and `yrcx io get` shows the state of the \
-                     controller",
+                    "wait until that command ends; use `yrcx stop` to stop a motion, and `yrcx io get` to see the \
+                     state of the controller",
                 )
         }
-        Error::ProcedureRunning => about(Kind::NoAnswer, &error).hint("wait until it ends"),
-        Error::WordsNotSent => about(Kind::NoAnswer, &error).hint("`yrcx io get SIW2` shows the current words"),
+        Error::ProcedureRunning => about(Kind::NoAnswer, &error).hint("wait until the procedure ends"),
+        Error::WordsNotSent => about(Kind::NoAnswer, &error).hint("use `yrcx io get SIW2` to see the current words"),
         Error::SignalsOnly { command } => {
             let id = command.row().id;
             let what = "the fieldbus unit supports only signals (I/O size \"Compact\")";
@@ -96,7 +100,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
             .hint("remove role from the URL; input_only and listen_only can only read signals: `yrcx io get`"),
         Error::NotHeld => Failure::usage(format!("without waiting, {error}"))
             .hint("remove --no-wait, or keep a connection open with `armctl session open` first"),
-        Error::Silent => about(Kind::NoAnswer, &error).hint("check the connection: `-v` counts received packets"),
+        Error::Silent => about(Kind::NoAnswer, &error).hint("check the connection: use `-v` to count received packets"),
         Error::NoImage { .. } => {
             about(Kind::Malformed, &error).hint("check the sizes in the URL: `armctl robots check`")
         }
@@ -108,10 +112,10 @@ pub fn failure(label: &str, error: Error) -> Failure {
     }
 }
 
-/// Result of a stop.
+/// Text for a motion that was stopped.
 const STOPPED: &str = "the robot was stopped by the stop input SI(06), which is on again";
 
-/// Text for the result of a stop.
+/// Describes the result of a stop.
 pub fn stopped(stopped: StopResult) -> String {
     match stopped {
         StopResult::Nothing => "no motion command was sent".to_owned(),
@@ -125,7 +129,7 @@ pub fn stopped(stopped: StopResult) -> String {
     }
 }
 
-/// Known position after a command that the stop input ended, and the next step.
+/// Describes the position, if known, after the stop input ended a command, and what to do next.
 fn place(order: &Order, values: &Values) -> String {
     let position = match (values.axes(), order.values().int(Key::Report)) {
         (Some(axes), Some(report)) if report == Unit::Mm.report() => {
@@ -147,36 +151,39 @@ fn unfinished(label: &str, name: &str, outcome: sequence::Outcome) -> Failure {
     match outcome {
         Outcome::NotPossible { hint, .. } => here(Kind::Refused).hint(hint),
         Outcome::TimedOut { .. } => here(Kind::OutcomeUnknown)
-            .hint("`yrcx status` shows the state of the controller; --timeout sets how long to wait"),
-        Outcome::Broken { .. } => here(Kind::Refused).hint("`yrcx info alarm` shows the alarm"),
-        Outcome::NoImage => there(Kind::NoAnswer).hint("check the connection: `-v` counts received packets"),
+            .hint("use `yrcx status` to see the state of the controller; set a longer wait with --timeout"),
+        Outcome::Broken { .. } => here(Kind::Refused).hint("use `yrcx info alarm` to see the alarm"),
+        Outcome::NoImage => there(Kind::NoAnswer).hint("check the connection: use `-v` to count received packets"),
         Outcome::LinkLost { begun: false } => there(Kind::NoAnswer),
         Outcome::LinkLost { begun: true } => {
-            there(Kind::OutcomeUnknown).hint("`yrcx status` shows the state of the controller")
+            there(Kind::OutcomeUnknown).hint("use `yrcx status` to see the state of the controller")
         }
-        // The client does not report this as a failure.
+        // The client never reports this outcome as an error.
         Outcome::Done => there(Kind::Local),
     }
 }
 
-/// Hint how to find out whether a command took effect when its answer was lost.
+/// Returns the hint for a lost answer: how to find out whether the command took effect.
 fn verification_hint(command: Command) -> String {
     let row = command.row();
     match (row.category(), row.pace) {
         (1, Pace::Motion | Pace::Jog) => {
             let kept = kept(row, "");
-            format!("keep clear; do not send it again; `yrcx position` shows where the robot is{kept}")
+            format!(
+                "keep clear of the robot; do not send the command again; use `yrcx position` to see the position of \
+                 the robot{kept}"
+            )
         }
-        (1, Pace::Power) => "`yrcx status` shows whether servos and motor power are on".to_owned(),
-        (5, _) => "keep clear; `yrcx info tasks` shows the running tasks".to_owned(),
+        (1, Pace::Power) => "use `yrcx status` to see whether servos and motor power are on".to_owned(),
+        (5, _) => "keep clear of the robot; use `yrcx info tasks` to see the running tasks".to_owned(),
         _ => match TELLTALES.iter().find(|(commands, _)| commands.contains(&command)) {
             Some((_, words)) => format!("check with `yrcx {words}`"),
-            None => "`yrcx status` shows the state of the controller".to_owned(),
+            None => "use `yrcx status` to see the state of the controller".to_owned(),
         },
     }
 }
 
-/// Read command for the values that other commands write.
+/// For commands that write values, the command that reads the values back.
 const TELLTALES: [(&[Command], &str); 12] = [
     (&[Command::InchAmountSet], "info inch"),
     (

@@ -6,6 +6,7 @@ use std::net::SocketAddr;
 use std::path::Path;
 use std::time::Duration;
 
+use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -14,39 +15,40 @@ use super::decode::images::BusDecoder;
 use armctl_controller::yrcx::alarm::Alarm;
 use armctl_controller::yrcx::image::Image;
 use armctl_controller::yrcx::simulator::Start;
+use armctl_files as files;
 use armctl_frame::face::layers::Layers;
-use armctl_frame::failure::Failure;
+use armctl_frame::failure::{Failure, plain};
 use armctl_frame::settings::Robot;
 use armctl_frame::settings::target::{Address, Bus, Place, Sim, Target};
 use armctl_transport::image::tap::Tap;
-use armctl_transport::image::{ImageLink, LinkError};
+use armctl_transport::image::{Cause, ImageLink, LinkError};
 
-/// A fieldbus: connection, diagnosis and simulation.
+/// A fieldbus: how to connect to it, diagnose it and simulate it.
 #[derive(Debug)]
 pub struct Fieldbus {
-    /// Name, as in its commands and URL schemes.
+    /// Name, the same in commands and URL schemes.
     pub name: &'static str,
-    /// Alarm of the controller after loss of the link. The next number is the alarm for a permanent loss.
+    /// Alarm that the controller raises when it loses the link. The next number is the alarm for a permanent loss.
     pub link_alarm: Alarm,
     /// Link type of recorded packets in a capture file; [`LINKTYPE_RAW`] means IP packets.
     ///
     /// [`LINKTYPE_RAW`]: armctl_transport::tap::LINKTYPE_RAW
     pub link_type: u16,
-    /// Layers of `robots check` between the name and the signals, in order. The first layer always exists.
+    /// Layers of `robots check` between the name layer and the signal layers, in order. There is at least one.
     pub layers: &'static [&'static str],
-    /// Whether other requests are possible while a session of this computer is open: true for a network, false for an
-    /// exclusive adapter.
+    /// Whether armctl can send other requests while a session on this computer is open. True for a network; false for
+    /// an adapter that only one process can use.
     pub has_room: bool,
-    /// Resolves all addresses of a controller; `None` if each controller has only one.
+    /// Resolves all addresses of a controller; `None` if each controller has only one address.
     pub addresses: Option<Addresses>,
-    /// Opens a link: a commanding link, which sends the resting image first, or a read-only link, which does not
-    /// affect the master.
+    /// Opens a link that sends commands, or a read-only link. A link that sends commands sends the resting image first.
+    /// A read-only link does not affect the master.
     pub open: for<'a> fn(At<'a>, Purpose) -> Opening<'a, ImageLink>,
     /// Opens the explicit messaging client of the device.
     pub board: for<'a> fn(At<'a>) -> Opening<'a, Box<dyn Board>>,
-    /// Meaning of an error code of its devices; `None` for any other code.
+    /// Explains an error code of the fieldbus's devices; returns `None` for any other code.
     pub explain: fn(code: &str) -> Option<Explained>,
-    /// Decoder for its images in captures.
+    /// Returns the decoder for images in captures.
     pub decoder: fn() -> Box<dyn BusDecoder>,
     /// Starts a simulated controller on this fieldbus, with the faults of the simulator's URL.
     pub simulate: fn(&Sim) -> Result<Simulation, Failure>,
@@ -55,7 +57,7 @@ pub struct Fieldbus {
 /// Resolves all addresses of a controller.
 pub type Addresses = fn(&Bus) -> Result<Vec<Address>, LinkError>;
 
-/// Future of an open operation.
+/// Future of an operation that opens a connection.
 pub type Opening<'a, T> = LocalBoxFuture<'a, Result<T, LinkError>>;
 
 /// Meaning of an error code.
@@ -63,44 +65,121 @@ pub type Opening<'a, T> = LocalBoxFuture<'a, Result<T, LinkError>>;
 pub struct Explained {
     /// Code in normal form.
     pub code: String,
-    /// Meaning; `None` if unknown.
+    /// Meaning of the code; `None` if unknown.
     pub meaning: Option<String>,
-    /// Refused operation.
+    /// Operation that the device refused.
     pub refused: &'static str,
     /// Remedies.
     pub remedies: &'static [&'static str],
 }
 
-/// Address of a controller on a fieldbus.
+/// Parameters for a connection to a controller on a fieldbus.
 #[derive(Debug, Clone)]
 pub struct At<'a> {
     /// Robot, for its timeout and its name.
     pub robot: &'a Robot,
     /// Parsed URL of the robot or of a simulator.
     pub bus: &'a Bus,
-    /// Recorder of the packets.
+    /// Tap that records the packets.
     pub tap: Tap,
+}
+
+impl<'a> At<'a> {
+    /// Options of the URL.
+    pub fn options<O: 'static>(&self) -> Result<&'a O, LinkError> {
+        options(self.bus)
+    }
+}
+
+/// Options of the URL of a fieldbus.
+pub fn options<O: 'static>(bus: &Bus) -> Result<&O, LinkError> {
+    bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{bus:?} is a URL of another fieldbus"))))
+}
+
+/// Reads the file with which a manufacturer describes a device.
+pub fn device_file<T, E: fmt::Display>(
+    path: &Path,
+    most: u64,
+    advice: &'static str,
+    parse: impl FnOnce(&[u8]) -> Result<T, E>,
+) -> Result<T, LinkError> {
+    let wrong = |why: String| Cause::new(format!("{}: {why}", path.display()));
+    let bytes = files::read(path, most).map_err(|error| LinkError::Local(wrong(plain(&error)).advice(advice)))?;
+    parse(&bytes).map_err(|error| LinkError::Settings(wrong(error.to_string())))
 }
 
 /// Purpose of a link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
-    /// Use as the URL requests: usually to command.
+    /// Use the link as the URL requests, which usually means to send commands.
     Command,
-    /// Read-only use.
+    /// Only read.
     Look,
 }
 
 /// Explicit messaging client of a device, for the commands of its fieldbus and for `robots check`.
 pub trait Board: fmt::Debug + Any {
-    /// Checks the layers up to the signals, and reads the image of the controller; `None` after a failure.
+    /// Checks the layers before the signals, and reads the image of the controller; returns `None` if no image was
+    /// read.
     fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>>;
 
     /// Closes the connection.
     fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()>;
 }
 
-/// Converts a client to a trait object.
+/// The explicit messaging client of one fieldbus.
+#[expect(async_fn_in_trait, reason = "everything runs on one thread")]
+pub trait BusBoard: fmt::Debug + Any + Sized {
+    /// Name of the fieldbus.
+    const BUS: &'static str;
+    /// The device, in the reason why `--unit` is rejected.
+    const DEVICE: &'static str;
+
+    /// Checks the layers: [`Board::check`].
+    async fn look(&mut self, layers: &mut Layers) -> Checked<Option<Image>>;
+
+    /// Closes the connection, if there is one.
+    async fn end(self) {}
+}
+
+impl<B: BusBoard> Board for B {
+    fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
+        async move {
+            match self.look(layers).await {
+                Ok(image) => image,
+                Err((layer, failure)) => {
+                    layers.fail(layer, &failure);
+                    None
+                }
+            }
+        }
+        .boxed_local()
+    }
+
+    fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()> {
+        self.end().boxed_local()
+    }
+}
+
+/// Result of a check, or the layer that failed.
+pub type Checked<T> = Result<T, (&'static str, Failure)>;
+
+/// Failures of a layer.
+pub trait InLayer<T> {
+    /// Names the layer.
+    fn in_layer(self, layer: &'static str) -> Checked<T>;
+}
+
+impl<T> InLayer<T> for Result<T, Failure> {
+    fn in_layer(self, layer: &'static str) -> Checked<T> {
+        self.map_err(|failure| (layer, failure))
+    }
+}
+
+/// Vendor id of the manufacturer of YRCX at the ODVA: EtherNet/IP and DeviceNet.
+pub const MAKER: u16 = 636;
+
+/// Converts the client of a fieldbus to a trait object.
 pub fn boxed(board: Result<impl Board, LinkError>) -> Result<Box<dyn Board>, LinkError> {
     Ok(Box::new(board?))
 }
@@ -108,14 +187,14 @@ pub fn boxed(board: Result<impl Board, LinkError>) -> Result<Box<dyn Board>, Lin
 /// Simulated controller on a fieldbus in this process.
 #[derive(Debug)]
 pub struct Simulation {
-    /// Address.
+    /// Address of the simulated controller.
     pub bus: Bus,
-    /// Controller.
+    /// The simulated controller; it stops when this value is dropped.
     pub controller: Box<dyn fmt::Debug>,
 }
 
 impl Simulation {
-    /// Simulation at a URL.
+    /// Creates a simulation that a client reaches at `url`.
     pub fn at(url: &str, controller: impl fmt::Debug + 'static) -> Result<Self, Failure> {
         Ok(Self { bus: bus_of(url)?, controller: Box::new(controller) })
     }
@@ -126,16 +205,16 @@ pub trait Search {
     /// Scope of the search.
     fn scope(&self) -> Scope;
 
-    /// Collects answers for the time `wait`.
+    /// Searches for devices, and collects answers for the time `wait`.
     fn search(&self, wait: Duration, tap: Tap) -> LocalBoxFuture<'_, Result<Vec<Device>, Failure>>;
 }
 
 /// Scope of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Scope {
-    /// Nothing, because the fieldbus needs an address.
+    /// No search, because this fieldbus needs an address from the user.
     Nothing,
-    /// Default scope. If it cannot be searched, only a warning is printed.
+    /// The default scope. If this search fails, armctl prints a warning and continues.
     Usual,
     /// A network or an adapter that the user named.
     Network,
@@ -143,22 +222,22 @@ pub enum Scope {
     Devices,
 }
 
-/// A device that answered. Its identity is untrusted.
+/// A device that answered. Do not trust its identity.
 #[derive(Debug)]
 pub struct Device {
     /// Address of the device.
     pub address: String,
     /// URL for `-t`.
     pub target: String,
-    /// Whether the vendor id is that of a yrcx.
+    /// Whether the vendor id is one of the yrcx family.
     pub is_yrcx: bool,
-    /// Identity in one line.
+    /// Identity of the device in one line.
     pub device: String,
-    /// Identity as data, as its fieldbus defines it.
+    /// Identity of the device as data, in the form that its fieldbus defines.
     pub identity: Map<String, Value>,
 }
 
-/// Identity of a device as data.
+/// Converts the identity of a device to JSON fields.
 pub fn fields(identity: &impl Serialize) -> Result<Map<String, Value>, Failure> {
     match serde_json::to_value(identity) {
         Ok(Value::Object(fields)) => Ok(fields),
@@ -169,38 +248,44 @@ pub fn fields(identity: &impl Serialize) -> Result<Map<String, Value>, Failure> 
 
 /// Simulator server of one fieldbus, with its command-line arguments.
 pub trait Serve {
-    /// Whether the server has a pseudo-terminal, which can have a name.
+    /// Whether the server opens a pseudo-terminal. The user can give a pseudo-terminal a name.
     fn has_terminal(&self) -> bool {
         false
     }
 
-    /// Starts the server in its own threads or tasks. `simulator` selects one of several simulators of the fieldbus.
-    /// `link` is the name of the pseudo-terminal, `faults` the text of `--fault`.
-    fn serve(
-        &self,
-        simulator: Option<&str>,
-        start: Start,
-        link: Option<&Path>,
-        faults: Option<&str>,
-    ) -> Result<Served, Failure>;
+    /// Starts the server in its own threads or tasks.
+    fn serve(&self, work: ToServe<'_>) -> Result<Served, Failure>;
 }
 
-/// Operations of the console of a simulator on its fieldbus.
+/// A controller to serve.
+#[derive(Debug)]
+pub struct ToServe<'a> {
+    /// One of several simulators of the fieldbus.
+    pub simulator: Option<&'a str>,
+    /// Its start state.
+    pub start: Start,
+    /// Name of the pseudo-terminal.
+    pub link: Option<&'a Path>,
+    /// Text of `--fault`.
+    pub faults: Option<&'a str>,
+}
+
+/// Console operations of a simulator on its fieldbus.
 pub trait Operator {
     /// Executes a console line and returns the result or the reason for a failure.
     fn console(&self, line: &str) -> Result<String, String>;
 
-    /// Sets the faults of link and device; `None` removes all faults.
+    /// Sets the simulated faults of the link and the device; `None` removes all faults.
     fn set_faults(&self, faults: Option<&str>) -> Result<(), String>;
 }
 
-/// A served controller; it stops when this value is dropped.
+/// A controller that a simulator serves; it stops when this value is dropped.
 pub struct Served {
     /// URL of the controller.
     pub target: String,
-    /// Address that a network server listens on.
+    /// Address that the server listens on, if the server uses a network.
     pub address: Option<SocketAddr>,
-    /// Server with its console.
+    /// Console of the server.
     pub operator: Box<dyn Operator>,
 }
 

@@ -1,5 +1,5 @@
-//! Tests of every leaf command at the confirmation gate: risk, read-only robot, no terminal to ask on, dry run
-//! compared with sent frames.
+//! Tests that run every subcommand through the confirmation gate: its risk, a read-only robot, no terminal for a
+//! question. Also compares each dry run with the frames that were sent.
 
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
@@ -125,11 +125,11 @@ const WRITES: &[&str] = &[
     "profinet set-ip 192.168.0.10/24 --temporary",
 ];
 
-/// Settings of the device on the fieldbus, which are not remote commands.
+/// Command lines that change settings of the device on the fieldbus. They send no remote commands.
 const BOARDS: [&str; 4] =
     ["eip set 0xF5 1 3 00", "profinet set-name robot-7", "profinet set-ip 192.168.0.10/24", "profinet reset"];
 
-/// Pairs of lines: the first stores data that the second overwrites.
+/// Pairs of command lines: the first stores data, the second overwrites the data.
 const DESTROYS: &[(&str, &str)] = &[
     ("point set 7 --mm 9,9,9,9", "teach 7 --in mm"),
     ("point set 7 --mm 9,9,9,9", "point set 7 --mm 1,2,3,4"),
@@ -188,13 +188,14 @@ const MOTIONS: &[&str] = &[
     "eip probe --try",
 ];
 
-/// Commands without visible frames: `io watch` only reads, and the zeros of `status-reset` are the resting image.
+/// Commands without visible frames. `io watch` only reads. `status-reset` sends zeros, which are equal to the resting
+/// image.
 const SHOWN: [&str; 2] = ["io watch", "status-reset"];
 
-/// Command that requires a typed word, because its effect cannot be undone.
+/// Command line that the user must confirm with a word, because its effect cannot be undone.
 const WORD: &str = "abs-reset --axis 2";
 
-/// Files from a backup that the lines refer to.
+/// Folder with the backup files that the command lines name.
 struct Desk(tempfile::TempDir);
 
 impl Desk {
@@ -221,7 +222,7 @@ impl Desk {
     }
 }
 
-/// All lines with their expected risk.
+/// All command lines, with the expected risk of each.
 fn lines() -> impl Iterator<Item = (&'static str, Risk)> {
     let with = |lines: &'static [&'static str], risk| lines.iter().map(move |line| (*line, risk));
     let destroys = DESTROYS.iter().map(|(_, line)| *line).chain([WORD]).chain(BOARDS);
@@ -229,21 +230,21 @@ fn lines() -> impl Iterator<Item = (&'static str, Risk)> {
     with(READS, Risk::Read).chain(with(WRITES, Risk::Write)).chain(destroys).chain(with(MOTIONS, Risk::Motion))
 }
 
-/// Commands that do not need a robot connection of the command line.
+/// Commands that need no connection to a robot.
 const AT_DESK: [&str; 2] = ["yrcx.io.map", "yrcx.profinet.gsdml"];
 
-/// A robot that counts as a real controller, and the command of a line.
+/// Returns the command of a line, and a robot that the gate treats as a real controller.
 fn real(line: &str) -> (Robot, Box<dyn AnyCommand>) {
     let words: Vec<&str> = line.split(' ').collect();
     resolved(url_for(line), &words).unwrap_or_else(|failure| panic!("{line:?}: {failure}"))
 }
 
-/// Whether a line uses the explicit messaging client.
+/// Whether a command line uses the explicit messaging client.
 fn is_for_board(line: &str) -> bool {
     ["eip ", "profibus ", "profinet "].iter().any(|bus| line.starts_with(bus))
 }
 
-/// Target URL of a line: commands of a fieldbus need one of that fieldbus.
+/// Returns a target URL for a command line. A command of a fieldbus needs a URL of that fieldbus.
 fn url_for(line: &str) -> &'static str {
     match line.split(' ').next() {
         Some("profibus") => "profibus:///dev/null?station=5",
@@ -293,7 +294,7 @@ fn what_overwrites_is_not_done_where_nobody_says_yes() {
         assert!(risks.clone().all(|risk| risk == Risk::Read) && risks.count() > 0, "{line}");
         bench.run(&desk.line(line), true).unwrap();
         assert_eq!(bench.sent().iter().map(Frame::risk).max(), Some(Risk::Destroy), "{line}");
-        // The second run overwrites nothing, except if the command adds, or if its result cannot be predicted.
+        // The second run overwrites nothing, unless the command adds to a value or its result cannot be predicted.
         if !["add", "sub", "--place"].iter().any(|word| line.contains(word)) {
             bench.run(&desk.line(line), false).unwrap();
         }
@@ -368,7 +369,7 @@ fn a_dry_run_shows_what_is_sent() {
     }
 }
 
-/// A sent frame: a remote command, or the words of signals.
+/// A frame: the words of a remote command, or the words of the signals.
 #[derive(Debug, Clone, PartialEq)]
 enum Frame {
     Words(Vec<String>),
@@ -376,7 +377,8 @@ enum Frame {
 }
 
 impl Frame {
-    /// Whether this planned frame matches a sent frame. A planned word that is read first is `?`.
+    /// Whether this planned frame matches a sent frame. In a plan, `?` stands for a word that depends on a value read
+    /// before.
     fn fits(&self, sent: &Self) -> bool {
         let ((Self::Words(planned), Self::Words(sent)) | (Self::Bits(planned), Self::Bits(sent))) = (self, sent) else {
             return false;
@@ -384,7 +386,8 @@ impl Frame {
         planned.len() == sent.len() && planned.iter().zip(sent).all(|(planned, sent)| planned == sent || planned == "?")
     }
 
-    /// Highest risk of the frame; for signals, the risk of the bits that differ from the resting image.
+    /// Returns the highest risk of the frame. For signals, this is the risk of the bits that differ from the resting
+    /// image.
     fn risk(&self) -> Risk {
         match self {
             Self::Words(words) => Row::from_word(number(&words[0])).unwrap().risk,
@@ -397,7 +400,7 @@ fn number(word: &str) -> u16 {
     u16::from_str_radix(word.trim_start_matches("0x"), 16).unwrap()
 }
 
-/// Risk of signals by the bits that differ from the resting image.
+/// Returns the highest risk of the signals that differ from the resting image.
 fn risk_of(bits: &[String]) -> Risk {
     let mut image = Image::default();
     for (word, text) in image.0[COMMAND_WORDS..].iter_mut().zip(bits) {
@@ -407,7 +410,7 @@ fn risk_of(bits: &[String]) -> Risk {
     differ.map(|signal| signal.risk(signal.is_on(&image))).max().unwrap_or(Risk::Write)
 }
 
-/// Frames of a plan, and whether each is certain.
+/// Returns the frames of a plan. The flag says whether the frame is sent in any case.
 fn frames(plan: &Value) -> Vec<(Frame, bool)> {
     let texts =
         |value: &Value| value.as_array().map(|all| all.iter().map(|text| text.as_str().unwrap().to_owned()).collect());
@@ -420,7 +423,7 @@ fn frames(plan: &Value) -> Vec<(Frame, bool)> {
     plan["frames"].as_array().unwrap().iter().filter_map(frame).collect()
 }
 
-/// Simulated controller that records the images it receives.
+/// Link to a simulated controller that records the frames that it receives.
 struct Bench {
     runtime: tokio::runtime::Runtime,
     robot: Robot,
@@ -469,12 +472,12 @@ impl Bench {
         let peer = Noting(in_process(&Sim::default()).unwrap(), Image::default(), Arc::clone(&shown));
         let access = Access::reading(ConnectMode::Control);
         let link = runtime.block_on(Link::to_peer(&simulated, &access, &QUIET, Box::new(peer))).unwrap();
-        // The gate must treat the simulator as a real controller.
+        // The tests use the settings of a real controller, because the gate must treat the simulator as one.
         let (robot, _) = real("status");
         Self { runtime, robot, link, shown }
     }
 
-    /// Runs a line like the command frame, with `--yes` or without a terminal to ask on.
+    /// Runs a command line as the command frame does: with `--yes`, or without a terminal for the question.
     fn run(&mut self, line: &str, yes: bool) -> Result<Value, Failure> {
         let (_, command) = real(line);
         let intent = command.intent(Some(&self.robot));
@@ -488,7 +491,7 @@ impl Bench {
         report.failure().map_or_else(|| report.data(), Err)
     }
 
-    /// Images received since the last call.
+    /// Returns the frames that the controller received since the last call.
     fn sent(&mut self) -> Vec<Frame> {
         std::mem::take(&mut *self.shown.lock().unwrap())
     }

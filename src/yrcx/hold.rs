@@ -12,7 +12,7 @@ use armctl_frame::output::Screen;
 use armctl_frame::settings::Robot;
 use armctl_transport::session::host::shared_link::Images;
 
-/// Opens the link.
+/// Opens the connection that the session keeps open.
 pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<(Images, Option<Recorder>), Failure> {
     let endpoint = endpoint(robot)?;
     let (link, recorder) = endpoint.open(robot, access, screen).await?;

@@ -43,23 +43,25 @@ use armctl_transport::image::{self, ImageLink};
 #[derive(Debug)]
 pub struct Yrcx;
 
-/// Connection to one controller. Operations that cannot fail, or whose errors need no robot label, are those of the
-/// client.
+/// Connection to one controller. It dereferences to the client, for operations that cannot fail or whose errors do not
+/// need the robot's label.
 #[derive(Debug, Deref, DerefMut)]
 pub struct Link {
     #[deref]
     #[deref_mut]
     client: Client,
-    /// Explicit messaging client, if the link is only for that, and a simulator that must live as long.
+    /// Explicit messaging client, if this connection is only for explicit messages. If the device is simulated, also
+    /// the simulator, which must live as long as the client.
     board: Option<OpenBoard>,
     trace: Arc<Mutex<Trace>>,
     /// Packet recorder, for `--trace` on a network.
     recorder: Option<Recorder>,
     label: String,
-    /// Alarm of the controller after loss of the link.
+    /// Alarm that the controller raises when it loses the link.
     link_alarm: Alarm,
     is_simulated: bool,
-    /// Robot for commands, 1 to 4; 0 for the first, or for all if the command supports it.
+    /// Robot that commands apply to, 1 to 4. With 0, commands apply to the first robot, or to all robots if the command
+    /// supports this.
     unit: u8,
     /// Last image that a watch reported.
     pub told: Option<Image>,
@@ -116,8 +118,8 @@ impl Family for Yrcx {
             Entry::ThroughSession
         } else {
             Entry::Stops(format!(
-                "open the command connection and close it at the end. That stops the robot: motor power goes off with \
-                 alarm {} (`armctl session open` keeps a connection open)",
+                "open the command connection and close it at the end. The close stops the robot: motor power goes off \
+                 with alarm {} (`armctl session open` keeps a connection open)",
                 fieldbus.link_alarm
             ))
         }
@@ -141,7 +143,7 @@ impl Family for Yrcx {
         let ends_link = client.commands() && !is_simulated && !client.is_shared();
         if let Some((board, kept)) = board {
             board.close().await;
-            // The simulator must outlive the closing of the connection.
+            // The simulator must live until the connection is closed.
             drop(kept);
         } else {
             tell_statistics(&client, screen);
@@ -152,9 +154,9 @@ impl Family for Yrcx {
         if ends_link {
             let lasting = Alarm::new(link_alarm.group, link_alarm.category + 1);
             screen.note(&format!(
-                "{label}: the connection is closed. The controller treats this as a link fault: it stops and raises \
-                 alarm {link_alarm} or {lasting} (`armctl help safety`). `armctl session open -r NAME` keeps a \
-                 connection open"
+                "{label}: the connection is closed. The controller treats the close as a link fault: the controller \
+                 stops and raises alarm {link_alarm} or {lasting} (`armctl help safety`). Use `armctl session open -r \
+                 NAME` to keep a connection open"
             ));
         }
         let recorded = lock_writer(&trace).finish().and(recorder.map_or(Ok(()), Recorder::finish));
@@ -190,7 +192,8 @@ fn tell_statistics(client: &Client, screen: &Screen) {
 }
 
 impl Link {
-    /// Traffic counted on its own connection. A session counts the traffic of its connection itself.
+    /// Returns the traffic of this client's own connection; zeros for a client of a session, because the session counts
+    /// the traffic.
     pub(super) fn traffic(&self) -> Traffic {
         let image::Traffic { sent, received, irregular, .. } = self.client.traffic().unwrap_or_default();
         let irregular: u64 = irregular.iter().map(|(count, _)| count).sum();
@@ -243,14 +246,14 @@ impl Link {
             Ok(()) => Ok(self),
             Err(error) => {
                 let failure = self.failure(error);
-                // The missing image matters more than an error at the end.
+                // The missing image is reported, so an error from closing is ignored.
                 let _ = Yrcx::close(self, &screen.silenced()).await;
                 Err(failure)
             }
         }
     }
 
-    /// Starts a remote command for the robot of `--unit`.
+    /// Creates a draft of a remote command for the robot that `--unit` selects.
     pub fn draft(&self, command: Command) -> Result<Draft, Failure> {
         let row = command.row();
         match self.unit {
@@ -260,12 +263,12 @@ impl Link {
         }
     }
 
-    /// Robot of `--unit`; 0 if none is selected.
+    /// Returns the robot that `--unit` selects; 0 without `--unit`.
     pub fn unit(&self) -> u8 {
         self.unit
     }
 
-    /// Rejects `--unit` if the command does not use it.
+    /// Returns a usage error if the user gave `--unit`; `why` says why the command does not use it.
     pub fn no_unit(&self, why: &str) -> Result<(), Failure> {
         if self.unit == 0 {
             return Ok(());
@@ -273,7 +276,7 @@ impl Link {
         Err(Failure::usage(format!("--unit is not possible here: {why}")).hint("remove --unit"))
     }
 
-    /// Reserves the robot before a read that a command depends on: [`Client::reserve`].
+    /// Reserves the robot before a read, if the next command depends on the value read: [`Client::reserve`].
     pub async fn reserve(&mut self, order: &Order) -> Result<(), Failure> {
         self.client.reserve(order).await.map_err(|error| self.failure(error))
     }
@@ -309,7 +312,7 @@ impl Link {
         self.client.next_output(order).await.map(Done::from).map_err(|error| self.failure(error))
     }
 
-    /// Executes a procedure of signals and returns its duration.
+    /// Executes a procedure on the dedicated signals, and returns its duration.
     pub async fn carry_out(&mut self, procedure: Procedure) -> Result<Duration, Failure> {
         self.no_unit("signals belong to the whole controller")?;
         self.client.run_procedure(procedure).await.map_err(|error| self.failure(error))
@@ -331,12 +334,7 @@ impl Link {
         self.client.wait_for_input(matters).await.map_err(|error| self.failure(error))
     }
 
-    /// Notes all requests in a dry run, in which the answers are unknown.
-    pub fn plan_all(&mut self, orders: &[Order]) -> Result<(), Failure> {
-        self.client.plan_all(orders).map_err(|error| self.failure(error))
-    }
-
-    /// Final check before a frame is sent.
+    /// Checks the permission for this risk, as the last check before a frame is sent.
     pub fn authorize(&self, name: &str, risk: Risk) -> Result<(), Failure> {
         self.client.authorize(name, risk).map_err(|error| self.failure(error))
     }
@@ -346,7 +344,7 @@ impl Link {
         self.link_alarm
     }
 
-    /// Sets the robot for commands.
+    /// Sets the robot that commands apply to.
     #[cfg(test)]
     pub(super) fn set_unit(&mut self, unit: u8) {
         self.unit = unit;

@@ -4,7 +4,7 @@ use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::settings::target::bus::Scheme;
 use armctl_transport::image::LinkError;
 
-/// Failure for a link or a board that did not open; the scheme is that of the URL.
+/// Converts an error of a link or an explicit messaging client that did not open. The scheme comes from the URL.
 pub fn not_open(label: &str, Scheme { name, bus, .. }: &Scheme, error: &LinkError) -> Failure {
     let cause = error.cause();
     let options = listed(cause.options);
@@ -14,8 +14,10 @@ pub fn not_open(label: &str, Scheme { name, bus, .. }: &Scheme, error: &LinkErro
             let failure = Failure { code: cause.code.clone(), ..Failure::new(Kind::Refused, message) };
             return failure.hint(cause.advice.as_deref().unwrap_or(OWNED));
         }
-        LinkError::Size(_) => (Kind::Malformed, format!("check {options} of the URL: `yrcx {bus} probe` finds both")),
-        LinkError::Refused(_) => (Kind::Refused, format!("check {options} of the URL: `armctl help targets`")),
+        LinkError::Size(_) => {
+            (Kind::Malformed, format!("check {options} of the URL; use `yrcx {bus} probe` to find the values"))
+        }
+        LinkError::Refused(_) => (Kind::Refused, format!("check {options} of the URL; see `armctl help targets`")),
         LinkError::Silent(_) | LinkError::Lost { .. } => {
             (Kind::NoAnswer, "check the link to the controller".to_owned())
         }
@@ -27,12 +29,11 @@ pub fn not_open(label: &str, Scheme { name, bus, .. }: &Scheme, error: &LinkErro
     Failure { code: cause.code.clone(), ..failure }
 }
 
-/// Hint if another master owns the device, unless the fieldbus has a better one.
-const OWNED: &str = "`yrcx io get` and `yrcx status` can read its signals at the same time. To command the controller, \
-                     stop the owner's connection first: remove the controller from the PLC's scan list, or close the \
-                     session";
+/// Hint if another master owns the device. A fieldbus can replace this hint with its own.
+const OWNED: &str = "stop the owner's connection first: remove the controller from the PLC's scan list, or close the \
+                     session. `yrcx io get` and `yrcx status` can read the signals at the same time";
 
-/// `in, out and config`.
+/// Lists the options, for example `in, out and config`.
 fn listed(options: &[&str]) -> String {
     match options {
         [] => "the options".to_owned(),

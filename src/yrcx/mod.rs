@@ -1,18 +1,20 @@
-//! `yrcx`: OMRON / Yamaha YRCX over a fieldbus, see `buses.rs`.
+//! `yrcx`: commands for OMRON / Yamaha YRCX controllers over a fieldbus. `buses.rs` lists the fieldbuses.
 //!
-//! A command with one remote command is a row of `single::one_row!`: row of the command table, fields, text or
-//! report. `orders.rs` has the commands that change something, `info/robot.rs` those that read. A command with
-//! several remote commands implements `Command` itself, like `status.rs`. The link has one driver for remote commands
-//! and signals; see `link.rs`.
+//! A command that sends one remote command is a row of `single::one_row!`. The row has the row of the command table,
+//! the fields, and the text or the report. `orders.rs` has the commands that change something. `info/robot.rs` has the
+//! commands that read. A command that sends several remote commands implements `Command` itself, for example
+//! `status.rs`. The link has one driver for remote commands and signals; see `link.rs`.
 //!
 //! To add a command:
 //!
-//! 1. Its file: arguments (passed to the codec as typed text: `draft.with(Key::SpeedPercent, text)` reads them in the
-//!    unit of the field and checks their range), the report, and a row of `one_row!`, or a table of `stores` for
-//!    numbered data. Shared arguments are in `arguments.rs`, positions in `position.rs`.
-//! 2. A line in the list below, or in the list of its group.
-//! 3. Tests: `testing::words` returns the words of a command line, `testing::example` those of an example in the
-//!    manual. `coverage.rs` has a line for each row of the table.
+//! 1. Add its file. The file has the arguments, the report, and a row of `one_row!`; for numbered data, a table of
+//!    `stores`. Arguments go to the codec as typed text: `draft.with(Key::SpeedPercent, text)` reads the text in the unit
+//!    of the field and checks its range. Arguments that several commands use are in `arguments.rs`, positions in
+//!    `position.rs`.
+//! 2. Add a line to the list below, or to the list of its group.
+//! 3. Add tests: `testing::words` returns the words of a command line, `testing::example` returns the words of an
+//!    example
+//!    in the manual. `coverage.rs` has a line for each row of the table.
 
 mod alarm;
 mod arguments;
@@ -39,12 +41,12 @@ mod field_row;
 pub mod fieldbus;
 #[cfg(test)]
 mod gate;
-mod given;
 mod hold;
 mod info;
 mod io;
 pub mod link;
 mod link_error;
+mod messages;
 mod motion;
 mod numbers;
 mod orders;
@@ -62,6 +64,7 @@ pub mod profinet;
 mod program;
 mod raw;
 mod refusal;
+mod robot_settings;
 mod serve;
 mod several;
 pub mod simulated;
@@ -73,5 +76,6 @@ mod teach;
 mod testing;
 pub mod top;
 pub mod trace;
+mod typed_arguments;
 mod unit;
 mod var;

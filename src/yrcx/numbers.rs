@@ -4,7 +4,7 @@ use armctl_controller::typed;
 use armctl_controller::yrcx::table::{Command, Field};
 use armctl_controller::yrcx::value::{Key, Value};
 
-/// A number, or a range of them: `5`, `0..29`, `SGI0..SGI5`.
+/// One number or a range of numbers: `5`, `0..29`, `SGI0..SGI5`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Numbers(Vec<i32>);
 
@@ -23,7 +23,7 @@ impl Numbers {
     }
 }
 
-/// A name that ends in a number, or a range of them: `DO2`, `SO20..SO27`, `SI20-27`.
+/// One name that ends in a number, or a range of such names: `DO2`, `SO20..SO27`, `SI20-27`.
 #[derive(Debug, Clone)]
 pub struct Series<T>(Vec<T>);
 
@@ -41,17 +41,17 @@ impl<T: Clone + Send + Sync + 'static> Series<T> {
     }
 }
 
-/// A single number for a field of a command.
+/// Parses a single number for a field of a command.
 pub fn single(command: Command, key: Key, text: &str) -> Result<i32, String> {
     number(field(command, key)?, text)
 }
 
-/// Number in the notation of the field, such as `SGI5`.
+/// Formats a number in the notation of the field, for example `SGI5`.
 pub fn named(command: Command, key: Key, number: i32) -> String {
     field(command, key).map_or_else(|_| number.to_string(), |field| field.show(&Value::Int(number)))
 }
 
-/// Numbers in the order given, with consecutive numbers as `5..9`.
+/// Formats numbers in the order given, and consecutive numbers as a range, for example `5..9`.
 pub fn runs(numbers: &[i32]) -> String {
     typed::runs(numbers, "..")
 }
@@ -62,7 +62,7 @@ fn field(command: Command, key: Key) -> Result<&'static Field, String> {
 
 fn number(field: &Field, text: &str) -> Result<i32, String> {
     let text = text.trim();
-    // Names of variables are in capitals.
+    // The field reads names of variables only in capitals, so try capitals too.
     let parsed = field.parse(text).or_else(|error| field.parse(&text.to_ascii_uppercase()).map_err(|_| error));
     match parsed? {
         Value::Int(number) => field.accept(&Value::Int(number)).map(|()| number),

@@ -1,14 +1,16 @@
-//! Commands with one row of the table: speeds (4.2.14 to 4.2.16), torque limit (4.2.22), inching distance (4.2.8),
-//! shift, hand and arm (4.2.17 to 4.2.19), servos (4.2.13), motor power (4.2.20), the status of remote commands
-//! (4.1).
+//! Commands that send one remote command and change something: speeds (4.2.14 to 4.2.16), torque limit (4.2.22),
+//! inching distance (4.2.8), shift, hand and arm (4.2.17 to 4.2.19), servos (4.2.13), motor power (4.2.20), the status
+//! of remote commands (4.1).
 
 use clap::ValueEnum;
+use serde_json::Value as Json;
 
 use super::arguments::{Hand as HandSystem, Which};
 use super::single::one_row;
 use armctl_controller::yrcx::table::Command;
 use armctl_controller::yrcx::value::Key;
 use armctl_frame::commands;
+use armctl_frame::robot::item::WrittenItems;
 use armctl_frame::settings_report::{Done, NewValue, number};
 
 commands! {
@@ -38,35 +40,23 @@ commands! {
 one_row! {
     /// Sets a speed.
     #[command(after_help = "`yrcx info speed` reads the speeds.")]
-    Speed(self) "yrcx.speed" -> Done {
+    Speed(self) "yrcx.speed" -> WrittenItems<Json> {
         /// Speed to set
         setting: SpeedSetting,
         /// Percent, 1 to 100
         percent: String,
     }
-    gives match self.setting {
-        SpeedSetting::Manual => Command::SpeedManual,
-        SpeedSetting::Auto => Command::SpeedAuto,
-        SpeedSetting::Program => Command::SpeedProgram,
-    },
+    gives self.setting.row().0,
     with draft => draft.with(Key::SpeedPercent, self.percent.trim_end_matches('%')),
-    done {
-        let setting = match self.setting {
-            SpeedSetting::Manual => "manual",
-            SpeedSetting::Auto => "automatic",
-            SpeedSetting::Program => "program",
-        };
+    done as answer => {
+        let (_, name, setting) = self.setting.row();
         let percent = self.percent.trim_end_matches('%');
-        let name = match self.setting {
-            SpeedSetting::Manual => "manual_percent",
-            SpeedSetting::Auto => "auto_percent",
-            SpeedSetting::Program => "program_percent",
-        };
-        NewValue::of(name, number(percent), format!("set the {setting} speed to {percent} %"))
+        let words = format!("set the {setting} speed to {percent} %");
+        NewValue::of(name, number(percent), words).into_item("override", &answer.old)
     };
 
     /// Limits the torque of an axis, starting with the next motion; the parameter does not change.
-    TorqueLimit(self) "yrcx.torque-limit" -> Done {
+    TorqueLimit(self) "yrcx.torque-limit" -> WrittenItems<Json> {
         /// Axis, 1 to 4
         #[arg(long, value_name = "AXIS")]
         axis: String,
@@ -75,25 +65,25 @@ one_row! {
     }
     gives Command::TorqueLimit,
     with draft => draft.with(Key::Axes, self.axis.as_str()).with(Key::Torque, self.percent.trim_end_matches('%')),
-    done {
+    done as answer => {
         let percent = self.percent.trim_end_matches('%');
-        let words = format!("limited the torque of axis {} to {percent} % , starting with the next motion", self.axis);
-        NewValue::of("torque_limit_percent", number(percent), words).with("axis", number(&self.axis))
+        let words = format!("limited the torque of axis {} to {percent} %, starting with the next motion", self.axis);
+        NewValue::of(self.axis.as_str(), number(percent), words).into_item("torque limit", &answer.old)
     };
 
     /// Sets the inching distance.
-    InchDistance(self) "yrcx.inch-distance" -> Done {
+    InchDistance(self) "yrcx.inch-distance" -> WrittenItems<Json> {
         /// Pulses, or steps of 0.001 mm for Cartesian and tool axes; 1 to 10000
         distance: String,
     }
     gives Command::InchAmountSet,
     with draft => draft.with(Key::InchingAmount, self.distance.as_str()),
-    done {
+    done as answer => {
         let words = format!(
             "set the inching distance to {} (pulses, or steps of 0.001 mm for Cartesian and tool axes)",
             self.distance
         );
-        NewValue::of("inch_distance", number(&self.distance), words)
+        NewValue::of("inch-distance", number(&self.distance), words).into_item("inching distance", &answer.old)
     };
 
     /// Selects a shift.
@@ -131,7 +121,7 @@ one_row! {
     Servo(self) "yrcx.servo" -> Done {
         /// New servo state
         state: ServoState,
-        /// Only this axis, 1 to 4
+        /// Apply only to this axis, 1 to 4
         #[arg(long, value_name = "AXIS")]
         axis: Option<String>,
         #[command(flatten)]
@@ -161,7 +151,7 @@ one_row! {
         done.with("axis", self.axis.as_deref().map_or(serde_json::Value::Null, number))
     };
 
-    /// Switches motor power, of all robots.
+    /// Switches the motor power of all robots.
     Motor(self) "yrcx.motor" -> Done {
         /// New motor power state
         state: MotorState,
@@ -186,9 +176,9 @@ one_row! {
 
     /// Resets the status of remote commands to ready.
     #[command(
-        after_help = "armctl resets the status before and after each command, so you rarely need this. Use it if \
-                      another client's command left an end status. It does not stop a motion or a running command, and \
-                      does not reset an alarm (`yrcx alarm reset`)."
+        after_help = "armctl resets the status before and after each command, so this command is rarely necessary. \
+                      Use it if another client's command left an end status. The command does not stop a motion or a \
+                      running command. It does not reset an alarm (`yrcx alarm reset`)."
     )]
     StatusReset(self) "yrcx.status-reset" -> Done {}
     gives Command::StatusReset,
@@ -198,22 +188,33 @@ one_row! {
 /// Speed settings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum SpeedSetting {
-    /// Of jogs and inching
+    /// Speed of jogs and inching
     Manual,
-    /// Of automatic operation; reduces all others
+    /// Speed of automatic operation; reduces all other speeds
     Auto,
-    /// Of programs, and of motions without a speed argument
+    /// Speed of programs, and of motions without a speed argument
     Program,
+}
+
+impl SpeedSetting {
+    /// Command, name in reports, and name in texts.
+    const fn row(self) -> (Command, &'static str, &'static str) {
+        match self {
+            Self::Manual => (Command::SpeedManual, "manual_percent", "manual"),
+            Self::Auto => (Command::SpeedAuto, "auto_percent", "automatic"),
+            Self::Program => (Command::SpeedProgram, "program_percent", "program"),
+        }
+    }
 }
 
 /// Servo states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum ServoState {
-    /// Controlled; motor power must be on
+    /// Servo on; motor power must be on
     On,
-    /// Off, brake on
+    /// Servo off, brake applied
     Off,
-    /// Off, brake off: an axis may drop
+    /// Servo off, brake released: an axis may drop
     Free,
 }
 

@@ -15,18 +15,18 @@ use armctl_frame::failure::Failure;
 use armctl_frame::robot::alarm::{Alarm, Kind, Source};
 use armctl_frame::robot::state::{Fault, Mode, PositionMm, State};
 
-/// Reason for a missing position.
+/// Reason why a read-only client did not read the position.
 const NOT_ASKED: &str = "servos and position need remote commands, which take control of the controller: use `yrcx \
                          status --full` or a session";
 
-/// Reason if the fieldbus unit has no remote commands.
+/// Reason if the fieldbus unit does not support remote commands.
 const NO_COMMANDS: &str =
     "servos and position need remote commands, which the fieldbus unit does not support (I/O size \"Compact\")";
 
-/// Reason while another client's command runs.
+/// Reason if a remote command of another client is running.
 const BUSY: &str = "servos and position were not read: another client's remote command is running";
 
-/// Reads the signals, and the position if that is possible without taking control of the controller.
+/// Reads the signals. Also reads the position, if that does not take control of the controller.
 pub async fn overview(link: &mut Link) -> Result<OverviewReport, Failure> {
     let image = link.look().await?;
     let not_asked = not_asked(link, &image);
@@ -48,14 +48,17 @@ pub(super) async fn alarms(link: &mut Link) -> Result<Vec<Alarm>, Failure> {
     };
     let known = if not_asked(link, &image).is_none() { latest_alarm(link).await? } else { None };
     let untold = || Alarm {
-        text: Some("number not read; `yrcx alarm list` reads it, which takes control of the controller".to_owned()),
+        text: Some(
+            "the alarm number was not read; use `yrcx alarm list` to read it, which takes control of the controller"
+                .to_owned(),
+        ),
         source: Source::Armctl,
         ..Alarm::default()
     };
     Ok(vec![Alarm { kind: Some(kind), ..known.unwrap_or_else(untold) }])
 }
 
-/// Reads the alarm that the signal does not identify.
+/// Reads which alarm is present, because the signal does not identify the alarm.
 async fn latest_alarm(link: &mut Link) -> Result<Option<Alarm>, Failure> {
     let order = latest(link)?;
     Ok(link.try_ask(&order).await?.ok().and_then(|done| alarm(&done.values)))
@@ -66,15 +69,15 @@ pub(super) fn latest(link: &Link) -> Result<Order, Failure> {
     Ok(link.draft(Command::AlarmHistory)?.with(Key::History, 1).order()?)
 }
 
-/// Alarm in the answer.
+/// Takes the alarm from an answer.
 pub(super) fn alarm(values: &Values) -> Option<Alarm> {
     let alarm = entry(values, Kind::Alarm)?.alarm;
     let text = format!("{} (entry 1 of the history)", alarm.text.unwrap_or_default());
     Some(Alarm { text: Some(text), ..alarm })
 }
 
-/// Reason why a read-only client sends no remote command. It does not wait for another client's command, which may be
-/// a motion.
+/// Returns the reason why armctl sends no remote command for a summary; `None` if it can send one. armctl does not wait
+/// for a remote command of another client, because that command may be a motion.
 pub(super) fn not_asked(link: &Link, image: &Image) -> Option<&'static str> {
     if link.is_shared() && Status::from_word(image.0[0]) == Status::Running {
         return Some(BUSY);
@@ -97,7 +100,7 @@ pub(super) fn report(
     OverviewReport { state, not_asked, left_over: left_over(image), ..OverviewReport::default() }
 }
 
-/// State from the signals (chapter 1, section 2).
+/// Derives the state from the signals (chapter 1, section 2).
 pub(super) fn state(link: &Link, image: &Image, alarm: Option<&Alarm>) -> State {
     let is_auto = output::AUTO_MODE.is_on(image);
     State {
@@ -114,11 +117,11 @@ pub(super) fn state(link: &Link, image: &Image, alarm: Option<&Alarm>) -> State 
     }
 }
 
-/// State that a previous client left, derived from the signals.
+/// Finds in the signals what a previous client left behind.
 pub(super) fn left_over(image: &Image) -> Vec<LeftOver> {
     let status = Status::from_word(image.0[0]);
-    // A running program is a normal state, regardless of the client that started it.
+    // A running program is normal: the client that started the program does not have to be connected.
     let is_command = !matches!(status, Status::Ready | Status::Running);
     let what = format!("a remote command left its status: {status}");
-    LeftOver::new(is_command, &what, "`yrcx status-reset` clears it").into_iter().collect()
+    LeftOver::new(is_command, &what, "use `yrcx status-reset` to reset the status").into_iter().collect()
 }

@@ -1,4 +1,5 @@
-//! Commands that overwrite stored or taught data: read the old data, confirm old and new, then write.
+//! Commands that overwrite stored or taught data. They read the old data, ask the user to confirm old and new data,
+//! then write.
 
 use serde_json::Value as Json;
 
@@ -33,11 +34,11 @@ pub fn confirmation(command: Command) -> Confirmation {
     }
 }
 
-/// Executes a command after reading the data that it replaces; `intent` describes it in one line. Overwriting needs a
-/// confirmation. Equal data is not written.
+/// Executes a command after reading the data that it replaces. `intent` describes the command in one line. The user
+/// must confirm before data is overwritten. If old and new data are equal, nothing is written.
 pub async fn give(link: &mut Link, authority: &Authority<'_>, order: &Order, intent: String) -> Result<Done, Failure> {
     if !overwrites(order) {
-        // While a person is asked, the robot is not reserved.
+        // The robot is not reserved while the user thinks about a question.
         if !authority.asks() {
             link.reserve(order).await?;
         }
@@ -48,8 +49,8 @@ pub async fn give(link: &mut Link, authority: &Authority<'_>, order: &Order, int
     give_either(link, authority, order, order).await
 }
 
-/// Executes an overwriting command; `other` is the same command for another answer, to show the known part of it in a
-/// dry run.
+/// Executes a command that overwrites data. `other` is the command that would be sent after another answer; a dry run
+/// shows only the words that `order` and `other` have in common.
 pub async fn give_either(
     link: &mut Link,
     authority: &Authority<'_>,
@@ -75,9 +76,9 @@ pub async fn give_either(
 
 const DIFFERS: &str = "the current data: sent if different";
 
-/// Whether the new data can equal the old data.
+/// Whether armctl can compare the new data with the old data before it writes.
 fn may_be_there(command: Command) -> bool {
-    // The position may change before it is stored.
+    // For these commands, the position may change before the controller stores it.
     !matches!(command, Command::Teach | Command::PointPallet)
 }
 
@@ -86,7 +87,7 @@ fn overwrites(order: &Order) -> bool {
     order.row().risk == Risk::Destroy && order.command() != Command::AbsoluteReset
 }
 
-/// Reads the row that a command overwrites, and asks for confirmation. A dry run notes the reads.
+/// Reads the row that a command overwrites, and asks the user for confirmation. A dry run notes the reads.
 pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order) -> Result<Replaced, Failure> {
     match order.command() {
         _ if !overwrites(order) => {
@@ -102,7 +103,7 @@ pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order) 
     }
 }
 
-/// A table with rows that remote commands overwrite.
+/// A table whose rows remote commands overwrite.
 trait Overwritten: Writable<Family = Yrcx> {
     /// The table and the row that a command overwrites.
     fn target(order: &Order) -> Result<(Self, Self::Key), Failure>;
@@ -113,7 +114,7 @@ trait Overwritten: Writable<Family = Yrcx> {
     /// Content of a row from an answer.
     fn row(&self, key: Self::Key, values: Values) -> Self::Wire;
 
-    /// New content of a row; a text if it is not known in advance.
+    /// Returns the new content of a row; a description in words if the content is not known in advance.
     async fn replacement(
         &self,
         link: &mut Link,
@@ -124,7 +125,7 @@ trait Overwritten: Writable<Family = Yrcx> {
     /// Reads the row that a command overwrites, and asks for confirmation.
     async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order) -> Result<Replaced, Failure> {
         let (table, key) = Self::target(order)?;
-        let about = format!("{}, which is overwritten", Self::asked(key));
+        let about = format!("old content of {}", Self::asked(key));
         let values = there(link, &table.read_order(key)?, &about).await?;
         let new = table.replacement(link, order, values.as_ref()).await?.map(|values| table.row(key, values));
         let old = values.map(|values| table.row(key, values)).filter(|old| !table.is_blank(old));
@@ -150,15 +151,15 @@ trait Overwritten: Writable<Family = Yrcx> {
 
 impl<K: Kind> Overwritten for Numbered<K> {
     fn target(order: &Order) -> Result<(Self, i32), Failure> {
-        Ok((Self::default(), order.values().int(K::RECORDS.columns[0].1).unwrap_or_default()))
+        Ok((Self::default(), order.values().int(K::READ.1).unwrap_or_default()))
     }
 
     fn read_order(&self, number: i32) -> Result<Order, Failure> {
-        K::RECORDS.read(number)
+        Self::read_order(number)
     }
 
-    fn row(&self, number: i32, values: Values) -> Row {
-        Row::new::<K>(number, values)
+    fn row(&self, _number: i32, values: Values) -> Row {
+        Row::new::<K>(values)
     }
 
     async fn replacement(
@@ -174,7 +175,7 @@ impl<K: Kind> Overwritten for Numbered<K> {
                 let is_mm = number(Key::Unit) == 1;
                 let read = if is_mm { Command::PositionMm } else { Command::PositionPulse };
                 let read = read.order().with(Key::Robot, number(Key::Robot)).order()?;
-                let position = there(link, &read, "current position, which is stored").await?;
+                let position = there(link, &read, "current position, which the command stores").await?;
                 position.map_or(Err("the current position".to_owned()), |mut position| {
                     position.set(Key::Unit, i32::from(is_mm));
                     Ok(position)
@@ -192,7 +193,7 @@ impl<K: Kind> Overwritten for Numbered<K> {
             Command::PointElementPulse | Command::PointElementMm | Command::ShiftElement => {
                 element(command, values, old)
             }
-            _ => Ok(K::RECORDS.stored(values)),
+            _ => Ok(Self::stored(values)),
         })
     }
 }
@@ -224,8 +225,9 @@ impl Overwritten for Parameters {
     }
 }
 
-/// Reads current data; none if the controller refuses, for example because it is not defined.
-pub(super) async fn there(link: &mut Link, order: &Order, about: &str) -> Result<Option<Values>, Failure> {
+/// Reads the current data; `None` in a dry run, or if the controller refuses, for example because the data is not
+/// defined.
+pub async fn there(link: &mut Link, order: &Order, about: &str) -> Result<Option<Values>, Failure> {
     if link.is_dry() {
         link.plan(order, about);
         return Ok(None);
@@ -237,7 +239,7 @@ pub(super) async fn there(link: &mut Link, order: &Order, about: &str) -> Result
     }
 }
 
-/// Point that the controller computes from two points; a text if it is unknown.
+/// Computes the point that the controller will compute from two points; a description in words if it is unknown.
 fn computed(
     command: Command,
     (number, old): (i32, Option<&Values>),
@@ -261,7 +263,7 @@ fn computed(
     Ok(new)
 }
 
-/// Point or shift with one changed element; a text if the element cannot be read.
+/// Returns a point or shift with one changed element; a description in words if the rest of it is unknown.
 fn element(command: Command, values: &Values, old: Option<&Values>) -> Result<Values, String> {
     let number = values.int(Key::Element).unwrap_or_default().trailing_zeros();
     let value = values.int(Key::Value).unwrap_or_default();
@@ -285,14 +287,14 @@ pub fn mm(steps: i32) -> String {
     format!("{:.3}", f64::from(steps) / 1000.0)
 }
 
-/// Report of a row that was stored.
+/// Report of a stored row.
 pub type Stored = WrittenItems<Json>;
 
-/// Report of a row that was stored, with the old one.
+/// Builds the report of a stored row, with the old content.
 pub fn stored(words: impl Into<String>, given: &Done) -> Stored {
     let Replaced { kind, name, values: [old, new], is_there } = given.replaced.clone().unwrap_or_default();
     let words = if is_there {
-        format!("{} holds that already; nothing was written", as_requested(kind, &name))
+        format!("{} already has this content; nothing was written", as_requested(kind, &name))
     } else {
         words.into()
     };

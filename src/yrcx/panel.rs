@@ -2,7 +2,7 @@
 
 use armctl_frame::face::teach_panel::{Panel, System, words};
 
-/// See [`Panel`].
+/// Keys of the teach panel; see [`Panel`].
 pub const PANEL: Panel = Panel {
     systems: &[
         System {

@@ -1,5 +1,5 @@
-//! `yrcx param` (4.4.2): parameters of the robot of `--unit` and of its axes as a table, with rows such as `WEIGHT` and
-//! `TOLE.3`.
+//! Commands `yrcx param` (4.4.2): a table of the parameters of the robot that `--unit` selects, and of its axes. Rows
+//! have names such as `WEIGHT` and `TOLE.3`.
 
 use std::sync::LazyLock;
 
@@ -35,14 +35,14 @@ table_commands! {
 /// The parameters of a robot.
 #[derive(Debug)]
 pub struct Parameters {
-    /// 1 to 4; 0 for the first.
+    /// Robot number, 1 to 4; 0 for the first robot.
     pub robot: u8,
 }
 
-/// A parameter, and the axis that it belongs to.
+/// A parameter, and the axis for a parameter that each axis has.
 pub type Setting = (&'static Parameter, Option<u8>);
 
-/// Content of a parameter.
+/// Content of a parameter: value and unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Amount {
     value: i32,
@@ -59,9 +59,9 @@ impl Amount {
 /// Attributes of a parameter.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct More {
-    /// Number in the robot language.
+    /// Number of the parameter in the robot language.
     number: u16,
-    /// 1 to 4; null for a parameter of the robot.
+    /// Axis, 1 to 4; null for a parameter of the robot.
     axis_number: Option<u8>,
     /// Unit; null if the manual does not define it.
     unit: Option<&'static str>,
@@ -69,7 +69,7 @@ pub struct More {
 }
 
 impl Parameters {
-    /// The request of a command for a parameter.
+    /// Starts a request for a parameter.
     fn draft_for(&self, command: table::Command, (parameter, axis): Setting) -> Draft {
         let draft = command.order().with(Key::Robot, i32::from(self.robot)).with(Key::Parameter, parameter.number);
         draft.with_some(Key::Axes, axis.map(|axis| axis.to_string()))
@@ -97,7 +97,7 @@ impl Store for Parameters {
     const WORDS: TableWords = TableWords {
         nouns: ["parameter", "parameters"],
         placeholder: "PARAMETER",
-        range: "Name or number: WEIGHT; of an axis, TOLE.3, TOLE.1-4 or 259.3; TOLE is that of all axes",
+        range: "Name or number: WEIGHT; for an axis: TOLE.3, TOLE.1-4 or 259.3; TOLE selects all axes",
         reading: None,
         writing: None,
     };
@@ -123,7 +123,8 @@ impl Store for Parameters {
         }
     }
 
-    /// All but the payload in kilograms, which is the payload in grams, rounded: a restore would lose the grams.
+    /// Returns all parameters except the payload in kilograms. That parameter is the payload in grams, rounded, so a
+    /// restore of it would lose the grams.
     fn all() -> Vec<Setting> {
         let all = PARAMETERS.iter().filter(|parameter| parameter.name != "WEIGHT");
         all.flat_map(|parameter| Self::keys(parameter.name).unwrap_or_default()).collect()
@@ -186,7 +187,7 @@ impl Store for Parameters {
 }
 
 impl Writable for Parameters {
-    /// None in a dry run that does not know the value.
+    /// New value; `None` if no value is given, for example in a dry run that does not know the value.
     type Draft = Option<i32>;
 
     const RISK: Risk = Risk::Destroy;
@@ -209,11 +210,9 @@ impl Writable for Parameters {
             let least = key.0.span.0;
             let [one, other] = draft.map_or([least, least + 1], |value| [value; 2]);
             let [one, other] = [one, other].map(|value| self.write_order(*key, &value.to_string()));
-            link.plan_depending(
-                &one?,
-                &other?,
-                Reason::default().depending_on("the current value: written if different"),
-            );
+            let about = Self::asked(*key);
+            let reason = Reason::about(&about).depending_on("the current value: written if different");
+            link.plan_depending(&one?, &other?, reason);
         }
         Ok(())
     }
@@ -226,7 +225,7 @@ impl Writable for Parameters {
     }
 }
 
-/// Unit of a parameter; none if the manual does not define it.
+/// Returns the unit of a parameter; `None` if the manual does not define it.
 fn unit(parameter: &Parameter) -> Option<&'static str> {
     Some(parameter.unit).filter(|unit| !unit.is_empty())
 }
@@ -246,7 +245,7 @@ fn axis(text: &str) -> Result<u8, String> {
     axis.ok_or_else(|| format!("axis '{text}' does not exist; the axes are 1 to 4"))
 }
 
-/// List of the parameters.
+/// Lists the parameters, for the help.
 fn listing() -> String {
     let line = |parameter: &Parameter| {
         let Parameter { number, name, meaning, span: (least, most), .. } = *parameter;
@@ -256,14 +255,14 @@ fn listing() -> String {
     };
     let of = |per_axis| PARAMETERS.iter().filter(move |parameter| parameter.per_axis == per_axis).map(line);
     let lines = |per_axis| of(per_axis).collect::<Vec<_>>().join("\n");
-    format!("Of the robot:\n{}\n\nOf an axis:\n{}", lines(false), lines(true))
+    format!("Parameters of the robot:\n{}\n\nParameters of an axis:\n{}", lines(false), lines(true))
 }
 
 #[cfg(test)]
 mod tests {
     use serde_json::json;
 
-    use crate::testing::{example, objection, read_example, words, written};
+    use crate::testing::{example, objects, read_example, rejects, words, written};
 
     #[test]
     fn the_examples_of_the_manual() {
@@ -296,25 +295,19 @@ mod tests {
 
     #[test]
     fn axis_and_range_are_checked() {
-        for (line, part) in [
+        rejects([
             ("param set TOLE.3 16385", "16385 is out of range for TOLE; allowed: 1 to 16384 pulses"),
             ("param set PSHFRC.3 -1001", "allowed: -1000 to 1000"),
             ("param set TOLE.1 1.5", "value"),
-        ] {
-            let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
-            assert!(failure.message.contains(part), "{line}: {failure}");
-        }
-        for (line, part) in [
+        ]);
+        objects([
             ("param set TOLE 1", "'TOLE' names several parameters"),
             ("param set WEIGHT.1 1", "WEIGHT belongs to the robot, not to an axis"),
-            ("param set TOLE.1-2 1", "names several"),
+            ("param set TOLE.1-2 1", "selects several"),
             ("param get TOLL.1", "259 = TOLE"),
             ("param get 261", "261"),
             ("param get TOLE.5", "the axes are 1 to 4"),
-        ] {
-            let objection = objection(&line.split(' ').collect::<Vec<_>>());
-            assert!(objection.contains(part), "{line}: {objection}");
-        }
+        ]);
         assert_eq!(words(&["param", "get", "TOLE"]).unwrap().len(), 4);
         assert_eq!(words(&["param", "list"]).unwrap().len(), 1 + 12 * 4);
     }

@@ -16,7 +16,7 @@ commands! {
         Copy(Copy),
         /// Add a point to another point: 100 --to 1
         Add(Add),
-        /// Subtract a point from another point: 100 --from 1
+        /// Subtract point 100 from point 1, which changes: 100 --from 1
         Sub(Sub),
         /// Copy a pallet position to a point: 2 --place 133 --to 100
         Pallet(Pallet),
@@ -96,7 +96,7 @@ one_row! {
         /// Point, 0 to 29999
         #[arg(value_name = "POINT", value_parser = point)]
         point: i32,
-        /// Element, 1 to 6: the axis
+        /// Element: the number of the axis, 1 to 6
         #[arg(long, value_name = "N", value_parser = |text: &str| single(Command::PointElementMm, Key::Element, text))]
         element: i32,
         /// New value in mm, for a point in mm
@@ -125,7 +125,7 @@ one_row! {
         /// Shift, 0 to 39
         #[arg(value_name = "SHIFT", value_parser = |text: &str| single(Command::ShiftElement, Key::Shift, text))]
         shift: i32,
-        /// Element, 1 to 4: the axis
+        /// Element: the number of the axis, 1 to 4
         #[arg(long, value_name = "N", value_parser = |text: &str| single(Command::ShiftElement, Key::Element, text))]
         element: i32,
         /// New value in mm
@@ -140,7 +140,7 @@ one_row! {
     done format!("element {} of shift {} = {} mm", place(self.element), self.shift, self.mm);
 }
 
-/// Number of the single set bit, starting with 1.
+/// Returns the number of the only bit that is set, counted from 1.
 fn place(bits: i32) -> u32 {
     bits.trailing_zeros() + 1
 }

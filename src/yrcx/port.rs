@@ -16,8 +16,7 @@ use armctl_controller::yrcx::table;
 use armctl_controller::yrcx::value::Key;
 use armctl_frame::failure::Failure;
 use armctl_frame::names;
-use armctl_frame::robot::item::{Columns, Item, Items};
-use armctl_frame::settings_report::{Done, NewValue};
+use armctl_frame::robot::item::{Columns, Item, Items, Written, WrittenItems};
 use armctl_frame::watch::{Watch, Watchable, Watched};
 use armctl_frame::{Command, Context, commands};
 
@@ -34,11 +33,11 @@ commands! {
 }
 
 /// Port names, for the help of get and set.
-const NAMES: &str = "DO12 is a port, DO2.1 and 'DO(21)' are its bit 1. DI, DO, MO, SI and SO have ports 0-7, 10-17 and \
-                     20-27, LO has 0 and 1, TO has 0. DO, MO, LO, TO and SO are writable; DO, MO and SO start with \
-                     port 2. `yrcx io` reads and switches SI and SO without remote commands.";
+const NAMES: &str = "DO12 is a port; DO2.1 and 'DO(21)' are bit 1 of port DO2. DI, DO, MO, SI and SO have ports 0-7, \
+                     10-17 and 20-27, LO has 0 and 1, TO has 0. DO, MO, LO, TO and SO are writable; DO, MO and SO are \
+                     writable from port 2. `yrcx io` reads and switches SI and SO without remote commands.";
 
-/// A port, or a signal of it.
+/// A port, or one signal of a port.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct PortSignal {
     /// Number of the port type.
@@ -47,7 +46,7 @@ struct PortSignal {
     bit: Option<i32>,
 }
 
-/// `DO12`, `DO12()`, `DO2.1`, `DO(21)`.
+/// Parses a port or a signal, for example `DO12`, `DO12()`, `DO2.1`, `DO(21)`.
 fn place(text: &str) -> Result<PortSignal, String> {
     let wrong = || format!("'{text}' is not a valid port, such as DO12, or signal, such as DO2.1");
     let (kind, rest) = text.split_at_checked(2).ok_or_else(wrong)?;
@@ -70,12 +69,12 @@ fn place(text: &str) -> Result<PortSignal, String> {
     place.order(table::Command::PortGet.order()).map(|_| place)
 }
 
-/// Parses ports, a range of them, or a name.
+/// Parses a port, a range of ports, or a name that the user assigned.
 fn places(text: &str) -> Result<Series<PortSignal>, String> {
     names::parse_or_name(KINDS, "DO2", text, Series::reader(place))
 }
 
-/// SI and SO names refer to signals; a port has eight of them.
+/// Kinds of names that are allowed. User names of SI and SO can name one signal of a port.
 const KINDS: &[Kind] = &[Kind::Port, Kind::Signal];
 
 fn signal_or_port(text: &str) -> Result<PortSignal, String> {
@@ -89,7 +88,7 @@ fn settable(text: &str) -> Result<PortSignal, String> {
 }
 
 impl PortSignal {
-    /// Command for the port.
+    /// Builds the command from `draft` for this port.
     fn order(self, draft: Draft) -> Result<Order, String> {
         if let Some(bit) = self.bit.filter(|bit| *bit > 7) {
             return Err(format!("a port has bits 0 to 7, not {bit}"));
@@ -127,6 +126,8 @@ pub struct Get {
 }
 
 impl Watchable for Get {
+    type Value = Level;
+
     const WATCH: &'static str = "yrcx.port.watch";
     const WATCHED: Watched = Watched::ITEMS;
 }
@@ -165,7 +166,7 @@ pub enum Level {
 /// Attributes of a port.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Bits {
-    /// Bit 7 first: `00000111`; null for a signal.
+    /// Bits of the port, bit 7 first, for example `00000111`; null for a signal.
     bits: Option<String>,
 }
 
@@ -197,13 +198,13 @@ fn label(names: &Names, port: &str) -> Option<String> {
 }
 
 one_row! {
-    /// Switches all signals of a port, or one of them.
+    /// Switches all signals of a port, or one signal.
     #[command(after_help = NAMES)]
-    Set(self) "yrcx.port.set" -> Done {
+    Set(self) "yrcx.port.set" -> WrittenItems<Level, Bits> {
         /// Port or signal
         #[arg(value_name = "PORT", value_parser = signal_or_port, add = complete::OUTPUT_PORT)]
         place: PortSignal,
-        /// Port: 0 to 255, also as 0x07 or 0b00000111; signal: on or off
+        /// New value. For a port: 0 to 255, also written as 0x07 or 0b00000111; for a signal: on or off
         #[arg(value_name = "VALUE", value_parser = value)]
         value: u8,
     }
@@ -213,14 +214,19 @@ one_row! {
         let draft = draft.with(Key::PortType, kind).with(Key::Port, port).with_some(Key::PortBit, bit);
         draft.with(Key::Value, i32::from(self.value))
     },
-    done {
+    done as answer => {
         let place = self.place.describe();
         let words = if self.place.bit.is_some() {
             format!("switched {place} {}", if self.value == 1 { "on" } else { "off" })
         } else {
             format!("{place} = {} ({:08b})", self.value, self.value)
         };
-        NewValue::of(place, self.value, words)
+        let new = self.place.item(&Names::default(), Ok(Some(i32::from(self.value) << self.place.bit.unwrap_or(0))));
+        let old = answer.old.value().and_then(|old| old.as_i64()).map(|old| match self.place.bit {
+            Some(_) => Level::Signal(old == 1),
+            None => Level::Port(i32::try_from(old).unwrap_or_default()),
+        });
+        WrittenItems::describe(words, vec![Written::new(new, old, true)])
     };
 }
 
@@ -253,11 +259,12 @@ mod tests {
     #[test]
     fn the_examples_of_the_manual() {
         for (id, line, done) in [
-            ("4.5.1-assign-port", ["port", "set", "DO12", "7"], json!({"set": "DO12", "old": null, "new": 7})),
-            ("4.5.1-assign-bit", ["port", "set", "DO(21)", "1"], json!({"set": "DO2.1", "old": null, "new": 1})),
+            ("4.5.1-assign-port", ["port", "set", "DO12", "7"], json!(["DO12", "port", null, 7])),
+            ("4.5.1-assign-bit", ["port", "set", "DO(21)", "1"], json!(["DO2.1", "signal", null, true])),
         ] {
             assert_eq!(words(&line).unwrap(), [example(id)], "{id}");
-            assert_eq!(read_example(id, &line), done);
+            let item = &read_example(id, &line)["items"][0];
+            assert_eq!(json!([item["name"], item["kind"], item["old"], item["new"]]), done);
         }
         let read = read_example("4.5.1-reference-do12", &["port", "get", "DO12()"]);
         assert_eq!(item(&read), json!(["DO12", "port", 7, "00000111"]));

@@ -1,4 +1,4 @@
-//! Positions, in millimetres or pulses.
+//! Positions in millimeters or pulses.
 
 use clap::ValueEnum;
 
@@ -8,14 +8,14 @@ use armctl_frame::robot::position::{Joint, Position};
 /// Unit of a position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Unit {
-    /// Millimetres, or degrees for rotary axes
+    /// Millimeters, or degrees for rotary axes
     Mm,
     /// Encoder pulses
     Pulse,
 }
 
 impl Unit {
-    /// Value of the position output field (bits 15 and 14 of WI1).
+    /// Returns the value of the field that selects the position output (bits 15 and 14 of WI1).
     pub fn report(self) -> i32 {
         match self {
             Self::Pulse => 1,
@@ -23,7 +23,7 @@ impl Unit {
         }
     }
 
-    /// Unit symbol after a number.
+    /// Returns the symbol of the unit that follows a number.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Pulse => "pulses",
@@ -32,7 +32,8 @@ impl Unit {
     }
 }
 
-/// Position in an answer in this unit, with the hand system if present; none if the answer has no position.
+/// Takes the position from an answer in this unit, with the hand system if the answer has one; `None` if the answer has
+/// no position.
 pub fn position(values: &Values, unit: Unit) -> Option<Position> {
     let axes = values.axes()?;
     let names = ["1", "2", "3", "4"].map(ToOwned::to_owned);
@@ -65,12 +66,12 @@ pub(super) fn unit_of(point: &Values) -> Unit {
     if point.int(Key::Unit) == Some(1) { Unit::Mm } else { Unit::Pulse }
 }
 
-/// Axes 1 to 4 in millimetres, or degrees for rotary axes.
+/// Returns axes 1 to 4 in millimeters, or degrees for rotary axes.
 pub fn mm(values: &Values) -> Option<[f64; 4]> {
     values.axes().map(|axes| axes.map(|steps| f64::from(steps) / 1000.0))
 }
 
-/// Name of the robot in a position, as `--unit` accepts it.
+/// Name of the robot that a position belongs to, as `--unit` accepts it.
 pub fn group(robot: Option<i32>) -> String {
     format!("unit {}", robot.filter(|robot| *robot > 0).unwrap_or(1))
 }

@@ -55,7 +55,7 @@ macro_rules! procedures {
     };
 }
 
-/// State of the signal before the procedure; a stop has no signal and does not wait.
+/// Reads the state of the signal before the procedure. A stop has no such signal, so it does not wait for a read.
 async fn was(link: &mut Link, signal: Option<Signal>) -> Result<Old, Failure> {
     let Some(signal) = signal else { return Ok(Old::UNREAD) };
     let shown = link.look().await.known()?;
@@ -63,20 +63,21 @@ async fn was(link: &mut Link, signal: Option<Signal>) -> Result<Old, Failure> {
 }
 
 procedures! {
-    /// Switches the servos on after power on: SI(00) on, SI(01) on, until SO(02) confirms it.
+    /// Switches the servos on after power on. Sets SI(00) on, then SI(01) on, and waits until SO(02) confirms.
     PowerOn "yrcx.power-on" power_on "servo_on" = true, "servos are on" was SERVO_ON;
-    /// Puts the controller into emergency stop: SI(00) off, until SO(00), SO(03) and SO(02) confirm it. Use a
-    /// session: when the connection ends, the controller reports a link fault instead.
+    /// Puts the controller into emergency stop. Sets SI(00) off, and waits until SO(00), SO(03) and SO(02) confirm. Use
+    /// a session: without one, the connection ends, and the controller reports a link fault instead.
     EmergencyStop "yrcx.emergency-stop" emergency_stop "emergency_stop" = true, "the controller is in emergency stop" true;
-    /// Ends the emergency stop and switches the servos on: SI(00), SI(16), SI(01), each confirmed.
+    /// Ends the emergency stop and switches the servos on. Sets SI(00), SI(16) and SI(01), and waits for the
+    /// confirmation of each.
     Recover "yrcx.recover" recover "servo_on" = true, "servos are on again" was SERVO_ON;
-    /// Waits until AUTO mode is selected at the controller (SO(10)).
+    /// Waits until the operator selects AUTO mode at the controller (SO(10)).
     AutoMode "yrcx.auto-mode" auto_mode "auto_mode" = true, "AUTO mode is selected" was AUTO_MODE;
-    /// Resets the robot program to its first line: SI(15) on, until SO(14) confirms it.
+    /// Resets the robot program to its first line. Sets SI(15) on, and waits until SO(14) confirms.
     Reset "yrcx.reset" program_reset "program_state" = "reset", "the robot program is reset";
-    /// Starts or continues the robot program: SI(06) on, SI(12) on, until SO(13) confirms it.
+    /// Starts or continues the robot program. Sets SI(06) on, then SI(12) on, and waits until SO(13) confirms.
     Run "yrcx.run" run "program_running" = true, "the robot program is running" was PROGRAM_RUNNING;
-    /// Stops the robot program: SI(06) off, until SO(13) confirms it. SI(06) stays off until the next run.
+    /// Stops the robot program. Sets SI(06) off, and waits until SO(13) confirms. SI(06) stays off until the next run.
     Stop "yrcx.stop" stop "program_running" = false, "the robot program is stopped" true;
 }
 

@@ -23,7 +23,7 @@ commands! {
     pub enum Program {
         /// Register a program in a task
         Select(Select),
-        /// Run a program, or all of them
+        /// Run a program, or all programs
         #[command(alias = "start")]
         Run(run::Run),
         /// Step into: run one line and enter subroutines
@@ -32,14 +32,14 @@ commands! {
         Skip(Skip),
         /// Step over: run one line, with a subroutine as one step
         Next(Next),
-        /// Reset a program, or all of them, to the first line
+        /// Reset a program, or all programs, to the first line
         Reset(Reset),
         /// Show program states
         Show(Show),
     }
 }
 
-/// Selection of a program.
+/// Arguments that select a program.
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 struct Which {
@@ -54,7 +54,7 @@ struct Which {
     task: Option<String>,
 }
 
-/// Selection of a program, or of all programs.
+/// Arguments that select a program or all programs.
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 struct WhichOrAll {
@@ -75,7 +75,7 @@ struct WhichOrAll {
     all_programs: bool,
 }
 
-/// Sets the program selection.
+/// Sets the fields that select the program.
 fn put(draft: Draft, program: Option<&String>, name: Option<&String>, task: Option<&String>) -> Draft {
     draft
         .with_some(Key::Program, program.cloned())
@@ -92,7 +92,7 @@ fn describe(program: Option<&String>, name: Option<&String>, task: Option<&Strin
     }
 }
 
-/// Report with the program selection.
+/// Adds the selected program to a report.
 fn named(new: NewValue, program: Option<&String>, name: Option<&String>, task: Option<&String>) -> NewValue {
     let numeric = |text: Option<&String>| text.map_or(serde_json::Value::Null, |text| number(text));
     new.with("program", numeric(program)).with("name", name.cloned()).with("task", numeric(task))
@@ -140,7 +140,7 @@ fn is_number(text: &str) -> bool {
     text.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// Selection of a program that has no task yet.
+/// Arguments that select a program without a task.
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 struct Registered {
@@ -179,7 +179,7 @@ one_row! {
     };
 }
 
-/// Declares the commands that start programs.
+/// Declares the commands that step, skip or reset a program.
 macro_rules! starts {
     ($($(#[$meta:meta])* $name:ident $id:literal $row:ident $which:ident $intent:literal $new:literal $done:literal;)*) => {
         $(
@@ -263,9 +263,9 @@ struct Registration {
     /// Number of the program.
     number: i32,
     task: i32,
-    /// 1 to 64.
+    /// Priority of the task, 1 to 64.
     priority: i32,
-    /// Whether it is at a line of the COMMON program.
+    /// Whether the current line is in the COMMON program.
     in_common: bool,
 }
 
@@ -274,12 +274,12 @@ struct Registration {
 pub struct ProgramLine {
     /// Line number, starting with 1.
     pub line: i32,
-    /// Whether it is a line of the COMMON program.
+    /// Whether the line is in the COMMON program.
     pub in_common: bool,
 }
 
 impl ProgramLine {
-    /// Line in the notation of the controller: lines of COMMON start at 10000 (4.6.4).
+    /// Converts a line number of the controller: line numbers of COMMON start at 10000 (4.6.4).
     pub fn of(number: i32) -> Self {
         if number > COMMON_LINES {
             Self { line: number - COMMON_LINES, in_common: true }
@@ -288,7 +288,7 @@ impl ProgramLine {
         }
     }
 
-    /// `19`, `5 of COMMON`.
+    /// Describes the line, for example `19` or `5 of COMMON`.
     pub fn describe(self) -> String {
         format!("{}{}", self.line, if self.in_common { " of COMMON" } else { "" })
     }
@@ -314,7 +314,7 @@ mod tests {
     use serde_json::json;
 
     use super::ProgramLine;
-    use crate::testing::{example, intent, objection, read_example, read_in_turn, risk, words};
+    use crate::testing::{example, intent, objects, read_example, read_in_turn, rejects, risk, words};
     use armctl_controller::Risk;
 
     #[test]
@@ -328,7 +328,8 @@ mod tests {
         let run = ["program", "run", "--program", "1"];
         assert_eq!(words(&run).unwrap(), [example("4.6.2-execute")]);
         assert_eq!(read_example("4.6.2-execute", &run)["state"], "running");
-        // The manual prints WI1 as 0x0100, and the name without the spaces that its text requires.
+        // In this example, the manual prints WI1 as 0x0100, and prints the name without the spaces that its own text
+        // requires.
         let reset = ["program", "reset", "--name", "ABC_DE"];
         assert_eq!(words(&reset).unwrap(), [example("4.6.3-reset")]);
         assert_eq!(read_in_turn(&["4.6.3-reset"], &reset)["name"], "ABC_DE");
@@ -351,26 +352,20 @@ mod tests {
         assert_eq!(head("program next --program 100"), "0x0405 0x0001 0x0064 0x0000");
         assert_eq!(head("program reset --all-programs"), "0x0406 0x0000 0x0000 0x0000");
         assert_eq!(head("program select --name A --priority 1"), "0x0401 0x0004 0x0000 0x0000");
-        for (line, part) in [
+        objects([
             ("program run", "--all-programs"),
             ("program step --all-programs", "--all-programs"),
             ("program run --program 1 --task 1", "cannot be used with"),
             ("program select --program 1", "--priority"),
             ("program select --task 1 --priority 1", "--program"),
             ("program select --program 1 --task 17 --priority 1", "1..=16"),
-        ] {
-            let objection = objection(&line.split(' ').collect::<Vec<_>>());
-            assert!(objection.contains(part), "{line}: {objection}");
-        }
-        for (line, part) in [
+        ]);
+        rejects([
             ("program run --program 101", "allowed: 1 to 100"),
             ("program run --task 0", "allowed: 1 to 16"),
             ("program run --name abc", "A-Z, 0-9 and _"),
             ("program select --program 1 --priority 65", "allowed: 1 to 64"),
-        ] {
-            let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
-            assert!(failure.message.contains(part), "{line}: {failure}");
-        }
+        ]);
     }
 
     #[test]

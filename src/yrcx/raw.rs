@@ -21,12 +21,12 @@ use armctl_frame::gate::Confirmation;
 use armctl_frame::output::view::View;
 use armctl_frame::{Command, Context, Report};
 
-/// Sends words, if the manual allows them.
+/// Sends the words of a remote command, if the manual allows them.
 #[derive(Debug, Args)]
-#[command(after_help = "Missing words are 0. If the controller refuses, the exit code is 3. `armctl decode yrcx` \
-                        explains words without sending them.")]
+#[command(after_help = "Missing words are 0. If the controller refuses the command, the exit code is 3. `armctl \
+                        decode yrcx` explains words without sending them.")]
 pub struct Raw {
-    /// WI0 to WI15, as in 0x0001,0x0004,0,0x0032,0x0013
+    /// WI0 to WI15, for example 0x0001,0x0004,0,0x0032,0x0013
     #[arg(long, value_name = "WORDS", value_parser = order)]
     wi: Box<Order>,
 }
@@ -38,7 +38,7 @@ fn order(text: &str) -> Result<Box<Order>, String> {
     })
 }
 
-/// Parses up to 16 words, decimal or hexadecimal with 0x, separated by commas or spaces; missing words are 0.
+/// Parses up to 16 words, decimal or hexadecimal with 0x, with commas or spaces between them; missing words are 0.
 pub fn words(text: &str) -> Result<Words, String> {
     let mut words = [0; COMMAND_WORDS];
     let pieces: Vec<&str> = text.split([',', ' ']).filter(|piece| !piece.is_empty()).collect();

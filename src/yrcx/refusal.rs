@@ -1,4 +1,4 @@
-//! Conversion of rejected and refused commands to failures: rejected by armctl, or refused by the controller.
+//! Conversion of commands that armctl rejected or the controller refused to failures.
 
 use armctl_client::yrcx::Refusal;
 use armctl_controller::Risk;
@@ -11,7 +11,7 @@ use armctl_frame::failure::{Failure, Kind};
 
 /// Builds the order of a command line.
 pub trait BuildOrder {
-    /// The order. A field that the manual does not allow is an error of the command line.
+    /// Returns the order. A field that the manual does not allow is an error of the command line.
     fn order(self) -> Result<Order, Failure>;
 }
 
@@ -23,14 +23,17 @@ impl BuildOrder for Draft {
 
 /// Failure for words that the manual does not allow: an error of the command line.
 pub fn invalid_words(error: WordError) -> Failure {
-    // The field is what the user typed; the word index matters only for raw words.
+    // The user typed the field, so the message names the field. Only raw words need the word index.
     let message = match error.place.key {
         Some(key) => format!("{key}: {}", error.problem),
         None => error.to_string(),
     };
     let failure = Failure::usage(message);
     match error.alarm {
-        Some(alarm) => failure.hint(format!("the controller would refuse it with alarm {alarm}, {}", alarm.text())),
+        Some(alarm) => failure.hint(format!(
+            "correct the value; the controller would refuse this value with alarm {alarm}, {}",
+            alarm.text()
+        )),
         None => failure.hint("see `--help` for the valid values"),
     }
 }
@@ -42,20 +45,24 @@ pub fn refusal_failure(Refusal { order, alarm, .. }: Refusal) -> Failure {
 
 fn refused_order(order: &Order, alarm: Alarm) -> Failure {
     let failure = refused(order.row(), alarm);
-    let id = order.row().id;
-    let about = order.row().request().filter(|field| INSTANCES.contains(&field.key));
-    let about = about.filter_map(|field| {
+    let (id, object) = (order.row().id, object(order));
+    if object.is_empty() {
+        return failure;
+    }
+    let named = format!("{id} ({object}): alarm");
+    Failure { message: failure.message.replacen(&format!("{id}: alarm"), &named, 1), ..failure }
+}
+
+/// Object of a command: `pallet 3`; empty if it has none.
+pub fn object(order: &Order) -> String {
+    let instances = order.row().request().filter(|field| INSTANCES.contains(&field.key));
+    let named = instances.filter_map(|field| {
         let value = order.values().value(field.key)?;
-        // Robot 0 means the first robot and is then not named.
+        // Robot 0 means the first robot, so the message does not name it.
         let is_named = field.key != Key::Robot || *value != Value::Int(0);
         is_named.then(|| format!("{} {}", field.key.name().replace('_', " "), field.show(value)))
     });
-    let about: Vec<String> = about.collect();
-    if about.is_empty() {
-        return failure;
-    }
-    let named = format!("{id} ({}): alarm", about.join(", "));
-    Failure { message: failure.message.replacen(&format!("{id}: alarm"), &named, 1), ..failure }
+    named.collect::<Vec<_>>().join(", ")
 }
 
 /// Fields that select the object of a command.
@@ -82,7 +89,7 @@ pub fn refused(row: &Row, alarm: Alarm) -> Failure {
     };
     let remedy = match alarm.known().and_then(|known| known.remedies.first()) {
         Some(remedy) => (*remedy).to_owned(),
-        None => format!("look up {alarm} in the controller's manual; `yrcx info alarm` shows the source"),
+        None => format!("look up {alarm} in the controller's manual; use `yrcx info alarm` to see the source"),
     };
     let way_out = WAYS_OUT.iter().find(|(_, alarms)| alarms.contains(&alarm)).map(|(way, _)| *way).unwrap_or_default();
     let kept = kept(row, "if the robot had started to move, ");
@@ -91,11 +98,11 @@ pub fn refused(row: &Row, alarm: Alarm) -> Failure {
         .hint(format!("{remedy}{way_out}{kept}"))
 }
 
-/// Commands that remove the cause of an alarm.
+/// Hints with the commands that remove the cause of an alarm.
 const WAYS_OUT: [(&str, &[Alarm]); 2] =
-    [(": `yrcx io set stop=on`", &[STOP_INPUT]), ("; `yrcx recover` clears the alarm", &RECOVERABLE)];
+    [(": use `yrcx io set stop=on`", &[STOP_INPUT]), ("; use `yrcx recover` to clear the alarm", &RECOVERABLE)];
 
-/// Alarms of a lost link, on each fieldbus, and of an emergency stop.
+/// Alarms that `yrcx recover` clears: a lost link, with its numbers on each fieldbus, and an emergency stop.
 const RECOVERABLE: [Alarm; 9] = [
     Alarm::new(12, 541),
     Alarm::new(12, 542),
@@ -108,7 +115,7 @@ const RECOVERABLE: [Alarm; 9] = [
     Alarm::new(12, 600),
 ];
 
-/// Behavior of a repeated relative motion after a stop (4.2.2, 4.2.4); empty for other commands.
+/// Warns how a relative motion behaves if it is repeated after a stop (4.2.2, 4.2.4); empty for other commands.
 pub fn kept(row: &Row, condition: &str) -> String {
     if !row.keeps_target() {
         return String::new();
@@ -145,6 +152,9 @@ mod tests {
         let failure = invalid_words(WordError { alarm: Some(INPUT_FORMAT), ..error });
         assert_eq!(failure.kind, Kind::Usage);
         assert_eq!(failure.message, "point: 30000 is out of range; allowed: 0 to 29999");
-        assert_eq!(failure.hint.unwrap(), "the controller would refuse it with alarm 4.202, input format error");
+        assert_eq!(
+            failure.hint.unwrap(),
+            "correct the value; the controller would refuse this value with alarm 4.202, input format error"
+        );
     }
 }

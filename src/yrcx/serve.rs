@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::buses::Servers;
-use super::fieldbus::{Fieldbus, Served};
-use super::given::Given;
+use super::fieldbus::{Fieldbus, Served, ToServe};
 use super::simulated::start;
+use super::typed_arguments::TypedArguments;
 use armctl_controller::simulator::console::help_line;
 use armctl_frame::failure::Failure;
 use armctl_frame::serve::{self, Serving, Started};
@@ -25,11 +25,11 @@ pub struct ServeArgs {
     #[arg(long, value_name = "BUS", value_parser = simulators().map(|(name, _)| name).collect::<Vec<_>>())]
     bus: Option<String>,
     #[command(flatten)]
-    servers: Given<Servers>,
-    /// Faults, such as drop=5%,delay=0..50ms,seed=7 or stall; `armctl help simulator` lists them
+    servers: TypedArguments<Servers>,
+    /// Faults, for example drop=5%,delay=0..50ms,seed=7 or stall; `armctl help simulator` lists them
     #[arg(long, value_name = "FAULTS")]
     fault: Option<String>,
-    /// DeviceNet, PROFIBUS: create a symbolic link to the pseudo-terminal and remove it at the end
+    /// For DeviceNet and PROFIBUS: create a symbolic link to the pseudo-terminal, and remove the link at the end
     #[arg(long, value_name = "PATH", alias = "slcan-link")]
     link: Option<PathBuf>,
     /// Start state (TOML): robots, memory, programs, alarms, timed events
@@ -56,10 +56,10 @@ impl ServeArgs {
 
 fn misplaced(flag: &str, chosen: &str, right: &str) -> Failure {
     Failure::usage(format!("--{flag} has no effect with --bus {chosen}; use it with {right}"))
-        .hint("`armctl sim yrcx -h` lists the options of each fieldbus")
+        .hint("use `armctl sim yrcx -h` to list the options of each fieldbus")
 }
 
-/// Console line of a slave or device.
+/// Console command that restarts a simulated slave or device.
 const RESTART: (&str, &str) = ("restart", "switch the slave or device off and on (PROFIBUS, PROFINET)");
 
 impl serve::Serve for ServeArgs {
@@ -79,7 +79,8 @@ impl serve::Serve for ServeArgs {
         if self.link.is_some() && !serve.has_terminal() {
             return Err(misplaced("link", fieldbus.name, "a simulator with a pseudo-terminal"));
         }
-        let server = serve.serve(wanted, start(self.state.as_deref())?, self.link.as_deref(), self.fault.as_deref())?;
+        let (start, link, faults) = (start(self.state.as_deref())?, self.link.as_deref(), self.fault.as_deref());
+        let server = serve.serve(ToServe { simulator: wanted, start, link, faults })?;
         Ok(Started {
             reach: serve::connect_hint("yrcx", &server.target),
             report: Serving { family: "yrcx", target: server.target.clone() },

@@ -1,33 +1,30 @@
-//! Several read requests, one after the other, because a controller executes one remote command at a time. Each has
-//! its own result.
+//! Several read requests, sent one after the other, because a controller executes one remote command at a time. Each
+//! request has its own result.
 
 use super::link::Link;
-use super::link::Yrcx;
-use super::numbers::Numbers;
-use super::refusal::refused;
-use crate::refusal::BuildOrder as _;
+use super::refusal::{object, refused};
 use armctl_controller::yrcx::alarm::{Alarm, STOP_INPUT};
 use armctl_controller::yrcx::order::Order;
-use armctl_controller::yrcx::table::Command;
 use armctl_controller::yrcx::value::{Key, Value, Values};
-use armctl_frame::Context;
+use armctl_frame::dry_run::unknown;
 use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::items::ItemOutcome;
 use armctl_frame::output::Screen;
 
-/// Results of several requests, in their order.
+/// Results of several requests, in the order of the requests.
 #[derive(Debug)]
 pub struct Answers {
     /// Values or failure of each request.
     pub outcomes: Vec<Result<Values, Failure>>,
-    /// Number of requests sent. The others were not sent, because they would fail alike.
+    /// Number of requests that were sent. The other requests were not sent, because they would fail for the same
+    /// reason.
     pub asked: usize,
 }
 
-/// Sends all requests. A refusal is the result of its request. A link failure, or a refusal that would repeat, ends
-/// the loop and is the only failure of the whole. A dry run notes all requests and ends.
+/// Sends all requests. A refusal is the result of its own request only. A link failure, or a refusal that the next
+/// request would get too, ends the loop. If this happens at the first request, the function returns the failure. In a
+/// dry run, notes all requests and ends.
 pub async fn ask_each(link: &mut Link, screen: &Screen, what: &str, orders: &[Order]) -> Result<Answers, Failure> {
-    link.plan_all(orders)?;
+    plan_each(link, orders)?;
     let mut progress = (orders.len() > 1).then(|| screen.items_progress(what, orders.len() as u64));
     let mut outcomes = Vec::with_capacity(orders.len());
     for (done, order) in orders.iter().enumerate() {
@@ -49,7 +46,19 @@ pub async fn ask_each(link: &mut Link, screen: &Screen, what: &str, orders: &[Or
     Ok(Answers { outcomes, asked: orders.len() })
 }
 
-/// Sends one of several requests, and returns whether the next one can succeed.
+/// Notes read requests in a dry run, each with its object. It ends there.
+pub fn plan_each(link: &mut Link, orders: &[Order]) -> Result<(), Failure> {
+    if !link.is_dry() || orders.is_empty() {
+        return Ok(());
+    }
+    for order in orders {
+        let object = object(order);
+        link.plan(order, if object.is_empty() { order.row().name } else { &object });
+    }
+    Err(unknown())
+}
+
+/// Sends one of several requests. The flag says whether the next request can succeed.
 async fn ask(link: &mut Link, order: &Order) -> (Result<Values, Failure>, bool) {
     match link.try_ask(order).await {
         Ok(Err(refusal)) => (Err(refused(order.row(), refusal.alarm)), !is_about_commands(refusal.alarm)),
@@ -58,36 +67,7 @@ async fn ask(link: &mut Link, order: &Order) -> (Result<Values, Failure>, bool) 
     }
 }
 
-/// Reads items by number; `key` is the field of the number, `nouns` the singular and plural name of the items.
-///
-/// # Errors
-/// What ends the whole, or the failure of the only item.
-pub async fn read_numbers<V>(
-    context: Context<'_, Yrcx>,
-    [noun, nouns]: [&str; 2],
-    (command, key): (Command, Key),
-    numbers: &[Numbers],
-    of: impl Fn(&Values) -> V,
-) -> Result<Vec<(i32, ItemOutcome<V>)>, Failure> {
-    let Context { link, screen, .. } = context;
-    let numbers = Numbers::of(numbers);
-    let orders = numbers.iter().map(|number| Ok(link.draft(command)?.with(key, *number).order()?));
-    let orders = orders.collect::<Result<Vec<Order>, Failure>>()?;
-    let answers = ask_each(link, screen, &format!("reading {nouns}"), &orders).await?;
-    let outcomes = numbers.into_iter().zip(answers.outcomes);
-    let outcomes = outcomes.map(|(number, outcome)| {
-        (number, ItemOutcome::new(format!("{noun} {number}"), outcome.map(|values| of(&values))))
-    });
-    let outcomes: Vec<_> = outcomes.collect();
-    if let [(_, only)] = &outcomes[..]
-        && let Some(error) = only.error()
-    {
-        return Err(error.failure());
-    }
-    Ok(outcomes)
-}
-
-/// Whether a refusal concerns remote commands in general, so that the next command would be refused as well.
+/// Whether the controller refuses remote commands in general, so that it would refuse the next command too.
 pub fn is_about_commands(alarm: Alarm) -> bool {
     alarm.group == STOP_INPUT.group
 }
@@ -98,13 +78,13 @@ pub fn is_undefined(failure: &Failure) -> bool {
     failure.kind == Kind::Refused && alarm.is_some_and(|alarm| !is_about_commands(alarm))
 }
 
-/// Checks the fields that an answer repeats from its request.
+/// Checks that the fields that an answer repeats are equal to the fields of the request.
 pub fn check_echo(order: &Order, values: &Values) -> Result<(), Failure> {
     let differs = |(key, asked): &(Key, &Value)| values.value(*key).is_some_and(|told| told != *asked);
     match order.values().iter().find(differs) {
         Some((key, _)) => {
             let message = format!("{}: the answer is for another {key}", order.row().id);
-            Err(Failure::new(Kind::Malformed, message).hint("`-vvv` shows the words"))
+            Err(Failure::new(Kind::Malformed, message).hint("use `-vvv` to see the words"))
         }
         None => Ok(()),
     }

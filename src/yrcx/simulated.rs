@@ -1,4 +1,4 @@
-//! Simulated controller of a URL.
+//! Simulated controller for a simulator URL.
 
 use std::path::Path;
 
@@ -11,23 +11,23 @@ use armctl_frame::failure::Failure;
 use armctl_frame::settings::target::Sim;
 use armctl_transport::fault::{FaultNames, FaultText, SimulatorFaults};
 
-/// Simulator in this process, in the start state of the URL.
+/// Creates a simulator in this process, with the start state that the URL names.
 pub fn in_process(sim: &Sim) -> Result<Simulated, Failure> {
     Ok(Simulated::new(start(sim.state.as_deref())?))
 }
 
-/// Whether the URL has faults, which need a network.
+/// Whether the URL has faults. Faults need a simulated network.
 pub fn has_faults(sim: &Sim) -> bool {
     sim.fault.is_some()
 }
 
-/// Start state: from a file, or the built-in one.
+/// Reads the start state from a file, or returns the built-in state.
 pub fn start(file: Option<&Path>) -> Result<Start, Failure> {
     let Some(path) = file else { return Ok(Start::default()) };
     let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
     Start::parse(&text).map_err(|error| {
         Failure::usage(format!("{}: {error}", path.display()))
-            .hint("`armctl help simulator` shows the form of the file")
+            .hint("see `armctl help simulator` for the form of the file")
     })
 }
 
@@ -37,7 +37,8 @@ pub fn faults_of_url<S: FaultText, D: Copy>(
     names: &FaultNames<D>,
 ) -> Result<SimulatorFaults<S, D>, Failure> {
     faults(sim.fault.as_deref(), names).map_err(|why| {
-        Failure::usage(format!("fault: {why}")).hint("write % as %25 in a URL; `armctl help simulator` lists faults")
+        Failure::usage(format!("fault: {why}"))
+            .hint("write % as %25 in a URL; see `armctl help simulator` for a list of faults")
     })
 }
 
@@ -46,11 +47,12 @@ pub fn faults_of_option<S: FaultText, D: Copy>(
     text: Option<&str>,
     names: &FaultNames<D>,
 ) -> Result<SimulatorFaults<S, D>, Failure> {
-    faults(text, names)
-        .map_err(|why| Failure::usage(format!("--fault: {why}")).hint("`armctl help simulator` lists faults"))
+    faults(text, names).map_err(|why| {
+        Failure::usage(format!("--fault: {why}")).hint("see `armctl help simulator` for a list of faults")
+    })
 }
 
-/// Parses faults; no text means no faults.
+/// Parses faults; `None` means no faults.
 pub fn faults<S: FaultText, D: Copy>(
     text: Option<&str>,
     names: &FaultNames<D>,

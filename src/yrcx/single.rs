@@ -1,4 +1,4 @@
-//! Commands with one remote command each, as most commands have.
+//! Commands that send one remote command each. Most commands are of this kind.
 
 use super::link::Done;
 use super::link::Yrcx;
@@ -11,22 +11,22 @@ use armctl_frame::failure::Failure;
 use armctl_frame::settings_report;
 use armctl_frame::{Context, Report};
 
-/// A command line for one row of the command table.
+/// A command line that sends one row of the command table.
 pub trait Single {
     /// Report type.
     type Report: Report + 'static;
-    /// `yrcx.servo`: name in envelopes and schemas.
+    /// Name in envelopes and schemas, for example `yrcx.servo`.
     const ID: &'static str;
 
     /// Row of the command table.
     fn command(&self) -> table::Command;
 
-    /// Sets the typed arguments.
+    /// Sets the fields from the arguments that the user typed.
     fn fill(&self, draft: Draft) -> Draft {
         draft
     }
 
-    /// Completes "This will …" in the question before a motion.
+    /// Returns the text that completes "This will …" in the confirmation question.
     fn intent(&self) -> String {
         String::new()
     }
@@ -78,7 +78,7 @@ pub async fn run<S: Single>(this: &S, context: Context<'_, Yrcx>) -> Result<S::R
 
 /// Result of a row: a report, or a text of what was done.
 pub trait Said<R> {
-    /// The report.
+    /// Converts the result to the report.
     fn report(self, done: &Done) -> R;
 }
 
@@ -100,8 +100,8 @@ impl Said<Stored> for String {
     }
 }
 
-/// Declares commands with one remote command each: arguments, row of the table, fields, question, and the text of the
-/// result or the report of the answer.
+/// Declares commands that send one remote command each. A declaration has the arguments, the row of the table, the
+/// fields, and the confirmation question. It ends with the text of the result, or the report of the answer.
 macro_rules! one_row {
     ($(
         $(#[$meta:meta])*
@@ -154,7 +154,7 @@ macro_rules! one_row {
 }
 pub(super) use one_row;
 
-/// Text of a field of an answer; none if the answer does not have the field.
+/// Formats a field of an answer; `None` if the answer does not have the field.
 pub fn shown(command: table::Command, values: &Values, key: Key) -> Option<String> {
     let value = values.value(key)?;
     command.row().answer().find(|field| field.key == key).map(|field| field.show(value))

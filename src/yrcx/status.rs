@@ -9,7 +9,7 @@ use super::link::Link;
 use super::link::Yrcx;
 use super::overview::{alarm, latest, not_asked, state};
 use super::position::{Unit, mm, position};
-use super::several::ask_each;
+use super::several::{ask_each, plan_each};
 use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::answer::Status as CommandStatus;
 use armctl_controller::yrcx::image::Image;
@@ -24,12 +24,13 @@ use armctl_frame::robot::position::{Joint, joint_table};
 use armctl_frame::robot::state::{Fault, Mode, PositionMm, State};
 use armctl_frame::{Command, ConnectMode, Context, Report};
 
-/// Signals; also servos and position in a session, on a simulator in this process, or with --full.
+/// Shows the signals. Also shows servos and position in a session, on a simulator in this process, or with --full.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Reading signals does not affect the controller. Servos and position need remote commands. A session \
                   reads them unless another client's command is running. Without a session, --full takes control of \
-                  the controller to read them, which raises an alarm when the command ends (`armctl help safety`)."
+                  the controller to read them. The controller then raises an alarm when the command ends (`armctl \
+                  help safety`)."
 )]
 pub struct Status {
     /// Take control of the controller and also read servos and position
@@ -53,19 +54,19 @@ impl Command for Status {
         let mut orders = vec![servo, place];
         let latest = latest(link)?;
         if link.is_dry() && (self.full || link.commands()) {
-            let noted = link.plan_all(&orders);
-            let reason = Reason::about("which alarm").depending_on("the signals: it is read if there is an alarm");
+            let noted = plan_each(link, &orders);
+            let reason = Reason::about("which alarm").depending_on("the signals: read only if there is an alarm");
             link.plan_depending(&latest, &latest, reason);
             noted?;
         }
         if link.is_dry() && link.is_held() {
-            let reason = Reason::default().depending_on("the session: they are read if no other command is running");
+            let reason = Reason::default().depending_on("the session: read only if no other command is running");
             for order in &orders {
                 link.plan_depending(order, order, reason);
             }
         }
         let image = link.look().await?;
-        // Signals do not wait for the end of another client's motion.
+        // Show the signals at once: a motion of another client may take a long time.
         let not_asked = if self.full { None } else { not_asked(link, &image) };
         if not_asked.is_some() {
             return Ok(StatusReport { not_asked, ..StatusReport::of(link, &image) });
@@ -95,7 +96,7 @@ impl Command for Status {
     }
 }
 
-/// Parts: signals, servos, position, and the alarm if there is one.
+/// Number of parts: signals, servos and position. The alarm is one more part, if there is an alarm.
 const PARTS: usize = 3;
 
 /// Controller state (chapter 1, section 2).
@@ -106,7 +107,7 @@ pub struct StatusReport {
     /// need remote commands.
     #[serde(flatten)]
     state: State,
-    /// Status of remote commands: `ready`, `running`, …
+    /// Status of remote commands, for example `ready` or `running`.
     command_status: String,
     /// SO(01): controller CPU ready.
     cpu_ok: bool,
@@ -114,24 +115,24 @@ pub struct StatusReport {
     alarm: bool,
     /// SO(04): servos can be switched on.
     mp_ready: bool,
-    /// SO(12): sequence program running.
+    /// SO(12): the sequence program is running.
     sequence_running: bool,
-    /// SO(14): robot program at its start.
+    /// SO(14): the robot program is at its first line.
     program_reset: bool,
-    /// SO(15): a warning.
+    /// SO(15): a warning is present.
     warning: bool,
-    /// Servo of each axis; null if not read.
+    /// Servo state of each axis; null if not read.
     servos: Option<Vec<AxisServo>>,
     /// Reason why servos and position were not read; null if they were read.
     not_asked: Option<&'static str>,
     /// Position of each axis; null if not read.
     joints: Option<Vec<Joint>>,
-    /// Failed requests, and the reason.
+    /// Requests that failed, with the reason.
     errors: Vec<ItemError>,
 }
 
 impl StatusReport {
-    /// State from the signals.
+    /// Builds the report from the signals.
     fn of(link: &Link, image: &Image) -> Self {
         Self {
             state: state(link, image, None),
@@ -142,10 +143,7 @@ impl StatusReport {
             sequence_running: output::SEQUENCE_RUNNING.is_on(image),
             program_reset: output::PROGRAM_RESET.is_on(image),
             warning: output::WARNING.is_on(image),
-            servos: None,
-            not_asked: None,
-            joints: None,
-            errors: Vec::new(),
+            ..Self::default()
         }
     }
 }
@@ -199,7 +197,7 @@ impl Report for StatusReport {
     }
 }
 
-/// Current position. A robot with unknown origin refuses to report it.
+/// Reads the current position. A robot whose origin is unknown refuses to report its position; then returns `None`.
 pub(super) async fn position_mm(link: &mut Link) -> Result<Option<[f64; 4]>, Failure> {
     let order = link.draft(table::Command::PositionMm)?.order()?;
     let done = link.try_ask(&order).await?.ok();

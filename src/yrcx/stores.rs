@@ -1,5 +1,5 @@
-//! Numbered data of the controller (4.3, 4.4.1) as tables: one declaration ([`Kind`]) each. The row access is common
-//! to all.
+//! Numbered data of the controller (4.3, 4.4.1) as tables. Each table has a declaration ([`Kind`]). All tables read and
+//! write rows in the same way.
 
 use std::fmt::Debug;
 use std::marker::PhantomData;
@@ -7,7 +7,6 @@ use std::marker::PhantomData;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::backup::Records;
 use super::link::{Link, Yrcx};
 use super::numbers::{Numbers, named, runs};
 use super::several::{ask_each, is_undefined};
@@ -15,6 +14,7 @@ use crate::refusal::BuildOrder as _;
 use armctl_controller::Risk;
 use armctl_controller::names::Kind as Label;
 use armctl_controller::yrcx::order::Order;
+use armctl_controller::yrcx::table::{self, Command};
 use armctl_controller::yrcx::value::{Key, Value, Values};
 use armctl_frame::ValueKind;
 use armctl_frame::dry_run::Reason;
@@ -31,25 +31,29 @@ pub trait Kind: Debug + Send + Sync + 'static {
     const WORDS: TableWords;
     /// Names of the reports.
     const IDS: Ids;
-    /// Commands and fields of a row, shared with backups.
-    const RECORDS: &'static Records;
-    /// Headings of the fields.
-    const HEADINGS: &'static [&'static str];
-    /// Risk of an overwrite: whether the old data is the work of a person.
+    /// Command that reads a row, and the field of its number.
+    const READ: (Command, Key);
+    /// Command that stores a row.
+    const WRITE: Command;
+    /// Ranges of valid numbers.
+    const NUMBERS: &'static [&'static str];
+    /// Fields of a row: column of a file, field of the commands, and heading.
+    const FIELDS: &'static [(&'static str, Key, &'static str)];
+    /// Risk of overwriting a row; [`Risk::Destroy`] if the old data is the work of a person.
     const RISK: Risk = Risk::Destroy;
     /// Whether the table is small enough to read completely by default.
     const IS_SMALL: bool = true;
     /// Whether a row is a text.
     const IS_TEXT: bool = false;
-    /// Type of the names that users assign to rows.
+    /// Kind of the names that users assign to rows; `None` if rows have no names.
     const LABELS: Option<Label> = None;
     /// Completion of row numbers.
     const COMPLETE: ValueKind = ValueKind::Listed(Vec::new);
 
-    /// Value of a row.
+    /// Converts the fields of a row to its value in reports.
     fn value(values: &Values) -> Option<Self::Value>;
 
-    /// A row in questions, if its fields are not enough.
+    /// Describes a row for confirmation questions, if the fields alone are not clear enough.
     fn line(_values: &Values) -> Option<String> {
         None
     }
@@ -60,7 +64,7 @@ pub trait Kind: Debug + Send + Sync + 'static {
     }
 }
 
-/// A table of `kind` as a store.
+/// The table of kind `K` as a store.
 #[derive(Debug)]
 pub struct Numbered<K>(PhantomData<K>);
 
@@ -76,7 +80,7 @@ pub struct Row {
     values: Values,
     /// Texts of the columns after the number.
     texts: Vec<String>,
-    /// Request that stores it; none if it was read.
+    /// Request that stores the row; `None` if the row was read from the controller.
     order: Option<Order>,
 }
 
@@ -94,15 +98,47 @@ impl Row {
     }
 
     /// Row with these values.
-    pub fn new<K: Kind>(number: i32, values: Values) -> Self {
-        let mut texts = K::RECORDS.row(number, &values);
-        texts.remove(0);
+    pub fn new<K: Kind>(values: Values) -> Self {
+        // A layout can have several fields of a key.
+        let counts = |field: &&'static table::Field| {
+            field.when.is_none_or(|when| (when.least..=when.most).contains(&int(&values, when.key)))
+        };
+        let text = |key: Key| {
+            let mut fields = K::READ.0.row().answer().filter(|field| field.key == key);
+            Some(fields.find(counts)?.show(values.value(key)?))
+        };
+        let texts = K::FIELDS.iter().map(|(_, key, _)| text(*key).unwrap_or_default()).collect();
         Self { values, texts, order: None }
     }
 }
 
-fn key<K: Kind>() -> Key {
-    K::RECORDS.columns[0].1
+impl<K: Kind> Numbered<K> {
+    /// Request that reads a row.
+    pub fn read_order(number: i32) -> Result<Order, Failure> {
+        Ok(K::READ.0.order().with(K::READ.1, number).order()?)
+    }
+
+    /// Request that stores a row with these texts.
+    fn write_order(number: i32, texts: &[String]) -> Result<Order, Failure> {
+        let fields = K::FIELDS.iter().zip(texts);
+        // A hand is written to a robot, and its answer names that robot. No hand system is an empty text.
+        let draft = fields.fold(K::WRITE.order().with(K::READ.1, number), |draft, ((_, key, _), text)| match key {
+            Key::Owner => draft.with(Key::Robot, text.as_str()),
+            Key::HandSystem if text.is_empty() => draft,
+            key => draft.with(*key, text.as_str()),
+        });
+        Ok(draft.order()?)
+    }
+
+    /// Values that are read after a request with `values` stored them.
+    pub fn stored(values: &Values) -> Values {
+        let stored = |(_, key, _): &(_, Key, _)| match *key {
+            // Robot 0 is the first.
+            Key::Owner => (Key::Owner, Value::Int(values.int(Key::Robot).unwrap_or_default().max(1))),
+            key => (key, values.value(key).cloned().unwrap_or(Value::Int(0))),
+        };
+        K::FIELDS.iter().map(stored).collect()
+    }
 }
 
 impl<K: Kind> Store for Numbered<K> {
@@ -121,19 +157,20 @@ impl<K: Kind> Store for Numbered<K> {
     const UNDEFINED_IS_NULL: bool = true;
 
     fn keys(text: &str) -> Result<Vec<i32>, String> {
-        Ok(Numbers::of(&[K::RECORDS.parse(text)?]))
+        Ok(Numbers::of(&[Numbers::parse(K::READ.0, K::READ.1, text)?]))
     }
 
     fn all() -> Vec<i32> {
-        if K::IS_SMALL { K::RECORDS.all().expect("the numbers of every table are numbers") } else { Vec::new() }
+        let numbers = K::NUMBERS.iter().filter(|_| K::IS_SMALL);
+        numbers.flat_map(|range| Self::keys(range).expect("the numbers of every table are numbers")).collect()
     }
 
     fn any() -> String {
-        named(K::RECORDS.read, key::<K>(), 0)
+        Self::name(0)
     }
 
     fn name(number: i32) -> String {
-        named(K::RECORDS.read, key::<K>(), number)
+        named(K::READ.0, K::READ.1, number)
     }
 
     fn names(numbers: &[i32]) -> String {
@@ -145,11 +182,10 @@ impl<K: Kind> Store for Numbered<K> {
     }
 
     fn fields(&self) -> Vec<Field> {
-        let fields = K::RECORDS.columns[1..].iter().zip(K::HEADINGS);
-        let field = |((name, key), heading): (&(&'static str, Key), &&'static str)| {
+        let field = |(name, key, heading): &(&'static str, Key, &'static str)| {
             if is_number(*key) { Field::number(name, heading) } else { Field::text(name, heading) }
         };
-        fields.map(field).collect()
+        K::FIELDS.iter().map(field).collect()
     }
 
     fn texts(&self, row: &Row) -> Vec<String> {
@@ -180,11 +216,10 @@ impl<K: Kind> Store for Numbered<K> {
     }
 
     async fn read(&self, link: &mut Link, screen: &Screen, numbers: &[i32]) -> Result<Answers<Row>, Failure> {
-        let order = |number: &i32| Ok(link.draft(K::RECORDS.read)?.with(key::<K>(), *number).order()?);
+        let order = |number: &i32| Ok(link.draft(K::READ.0)?.with(K::READ.1, *number).order()?);
         let orders = numbers.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
         let answers = ask_each(link, screen, &format!("reading {}", K::WORDS.nouns[1]), &orders).await?;
-        let rows = numbers.iter().zip(answers.outcomes);
-        let rows = rows.map(|(number, outcome)| outcome.map(|values| Some(Row::new::<K>(*number, values))));
+        let rows = answers.outcomes.into_iter().map(|outcome| outcome.map(|values| Some(Row::new::<K>(values))));
         Ok(Answers { rows: rows.collect(), asked: answers.asked })
     }
 }
@@ -194,7 +229,7 @@ pub fn is_number(key: Key) -> bool {
     !matches!(key, Key::Unit | Key::HandSystem | Key::Comment)
 }
 
-/// New content of a row: the text of each field, if given.
+/// New content of a row: a text for each field that the user gave.
 pub type Draft = Vec<Option<String>>;
 
 impl<K: Kind> Writable for Numbered<K> {
@@ -205,48 +240,52 @@ impl<K: Kind> Writable for Numbered<K> {
     fn draft(&self, number: i32, texts: &[Option<&str>]) -> Result<Draft, String> {
         let draft: Draft = texts.iter().map(|text| text.map(ToOwned::to_owned)).collect();
         if let Some(texts) = draft.iter().cloned().collect::<Option<Vec<String>>>() {
-            stored::<K>(number, texts).map_err(|failure| failure.message)?;
+            Self::write_order(number, &texts).map_err(|failure| failure.message)?;
         }
         Ok(draft)
     }
 
     fn complete_draft(&self, number: i32, draft: &Draft, old: Option<&Row>) -> Result<Row, Failure> {
-        // Axes in another unit are not kept.
-        let unit = K::RECORDS.columns[1..].iter().position(|(_, key)| *key == Key::Unit);
+        // If the unit changes, the old values of the axes are not kept.
+        let unit = K::FIELDS.iter().position(|(_, key, _)| *key == Key::Unit);
         let has_unit = |old: &&Row| unit.is_none_or(|at| draft[at].as_ref().is_none_or(|unit| *unit == old.texts[at]));
         let old = old.filter(has_unit);
         let kept = |(at, text): (usize, &Option<String>)| match (text, old) {
             (Some(text), _) => Ok(text.clone()),
             (None, Some(old)) => Ok(old.texts[at].clone()),
-            (None, None) if K::RECORDS.columns[at + 1].1 == Key::HandSystem => Ok(String::new()),
+            (None, None) if K::FIELDS[at].1 == Key::HandSystem => Ok(String::new()),
             (None, None) => {
-                let (one, field) = (Self::WORDS.nouns[0], K::RECORDS.columns[at + 1].0);
+                let (one, field) = (Self::WORDS.nouns[0], K::FIELDS[at].0);
                 let unit =
                     unit.and_then(|at| draft[at].as_ref()).map_or_else(String::new, |unit| format!(" in {unit}"));
                 let message = format!("{one} {number} is not defined{unit}, so it has no {field} to keep");
-                Err(Failure::usage(message).hint("nothing was written; give all values"))
+                Err(Failure::usage(message).hint("type all values; nothing was written"))
             }
         };
         let texts = draft.iter().enumerate().map(kept).collect::<Result<Vec<String>, Failure>>()?;
-        let (order, values) = stored::<K>(number, texts)?;
-        Ok(Row { order: Some(order), ..Row::new::<K>(number, values) })
+        let order = Self::write_order(number, &texts)?;
+        Ok(Row { order: Some(order.clone()), ..Row::new::<K>(Self::stored(order.values())) })
     }
 
     async fn plan(&self, link: &mut Link, rows: &[store::Row<Self>]) -> Result<(), Failure> {
         for (number, draft) in rows {
-            let reason = Reason::default().depending_on("the current data: written if different");
+            let about = Self::asked(*number);
+            let reason = Reason::about(&about).depending_on("the current data: written if different");
             let is_pulse = draft.iter().flatten().any(|text| text == "pulse");
             let sample = |key: Key, which: usize| match key {
                 Key::HandSystem if is_pulse => "",
                 key => samples(key, *number)[which],
             };
-            // Two rows that agree only in the given fields.
+            // Make two rows that are equal only in the given fields.
             let filled = |which: usize| {
-                let columns = draft.iter().zip(&K::RECORDS.columns[1..]);
-                columns.map(|(text, (_, key))| text.clone().unwrap_or_else(|| sample(*key, which).into())).collect()
+                let fields = draft.iter().zip(K::FIELDS);
+                let text = |(text, (_, key, _)): (&Option<String>, &(_, Key, _))| {
+                    text.clone().unwrap_or_else(|| sample(*key, which).into())
+                };
+                Self::write_order(*number, &fields.map(text).collect::<Vec<_>>())
             };
-            match (stored::<K>(*number, filled(0)), stored::<K>(*number, filled(1))) {
-                (Ok((one, _)), Ok((other, _))) => link.plan_depending(&one, &other, reason),
+            match (filled(0), filled(1)) {
+                (Ok(one), Ok(other)) => link.plan_depending(&one, &other, reason),
                 _ => link.then(&format!("{} {number} is written", Self::WORDS.nouns[0])),
             }
         }
@@ -261,41 +300,34 @@ impl<K: Kind> Writable for Numbered<K> {
     }
 }
 
-/// Two different texts of a field, for a dry run.
+/// Returns two different texts of a field, so that a dry run can mark the field as unknown.
 fn samples(key: Key, number: i32) -> [&'static str; 2] {
     match key {
         Key::Unit => ["mm", "pulse"],
-        // Only a point in millimetres has a hand system.
+        // Only points in millimeters have a hand system.
         Key::HandSystem => ["left", ""],
         Key::Comment => ["", "AAAAAAAAAAAAAAAA"],
-        // The robot number is part of the command word in a plan; the first robot is shown.
+        // In a plan, the robot number is part of the command word. The plan shows the first robot.
         Key::Owner => ["1", "1"],
         Key::CountX | Key::CountY | Key::CountZ | Key::FirstPoint => ["1", "2"],
         Key::Data4 => ["0", "1"],
-        // Real variables begin at 256.
+        // The numbers of real variables start at 256.
         Key::Value if number >= 256 => ["0", "-1.1"],
         _ => ["0", "-1"],
     }
 }
 
-/// Command that stores a row, and the answer expected when it is read.
-fn stored<K: Kind>(number: i32, texts: Vec<String>) -> Result<(Order, Values), Failure> {
-    let name = named(K::RECORDS.read, key::<K>(), number);
-    let store = K::RECORDS.store(&std::iter::once(name).chain(texts).collect())?;
-    Ok((store.write, store.wanted))
-}
-
-/// Whole number in an answer.
+/// Takes a whole number from an answer.
 pub fn int(values: &Values, key: Key) -> i32 {
     values.int(key).unwrap_or_default()
 }
 
-/// Millimetres, from thousandths in an answer.
+/// Takes millimeters from an answer, which has thousandths of a millimeter.
 pub fn mm(values: &Values, key: Key) -> f64 {
     f64::from(int(values, key)) / 1000.0
 }
 
-/// Whether all of these fields are zero.
+/// Whether all of these fields are zero or missing.
 pub fn all_zero(values: &Values, keys: &[Key]) -> bool {
     keys.iter().all(|key| values.value(*key).is_none_or(|value| *value == Value::Int(0)))
 }

@@ -26,7 +26,7 @@ pub struct Teach {
     /// Point to write, 0 to 29999
     #[arg(value_name = "POINT", required_unless_present = "flag")]
     point: Option<String>,
-    /// The same as a flag
+    /// Point as an option
     #[arg(id = "flag", long = "point", value_name = "POINT", conflicts_with = "point", hide = true)]
     flag: Option<String>,
     /// Unit of the point [default: unchanged]
@@ -60,13 +60,13 @@ impl Command for Teach {
         let old = there(link, &read, "current point").await?;
         let unit = self.unit_of_point.or_else(|| old.as_ref().map(unit_of)).unwrap_or(Unit::Mm);
         let order = self.order(link, unit)?;
-        // The unit of the point is unknown in a dry run.
+        // In a dry run, the unit of the point is unknown.
         let other = if self.unit_of_point.is_none() { self.order(link, Unit::Pulse)? } else { self.order(link, unit)? };
         overwrite::give_either(link, &authority, &order, &other).await?;
         let row = if unit == Unit::Mm { table::Command::PositionMm } else { table::Command::PositionPulse };
         let here = link.draft(row)?.order()?;
         if link.is_dry() {
-            link.plan(&read, "reads it back");
+            link.plan(&read, "the point after the write");
             link.plan(&here, "current position, for the comparison");
             return Err(unknown());
         }

@@ -1,4 +1,5 @@
-//! Test support: sent words of a command line, and command execution on a scripted controller in virtual time.
+//! Test support: returns the words that a command line sends, and runs commands on a scripted controller in virtual
+//! time.
 
 use std::collections::VecDeque;
 use std::fmt::Debug;
@@ -14,7 +15,7 @@ use armctl_controller::yrcx::signal::output;
 use armctl_controller::yrcx::table::Row;
 use armctl_frame::face::Face;
 use armctl_frame::face::registration::Registered;
-use armctl_frame::failure::Failure;
+use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::gate::Grant;
 use armctl_frame::output::{ColorChoice, Format, Screen};
 use armctl_frame::settings::Robot;
@@ -35,7 +36,7 @@ fn entry(id: &str) -> Value {
     entries().into_iter().find(|example| example["id"] == id).unwrap_or_else(|| panic!("no example {id}"))
 }
 
-/// WI0 to WI15 of an example of the manual, as dry runs show them.
+/// Returns WI0 to WI15 of an example of the manual, in the form that dry runs show.
 #[track_caller]
 pub(super) fn example(id: &str) -> Vec<String> {
     texts(corrected(&entry(id), "wi"))
@@ -47,7 +48,7 @@ pub(super) fn answer(id: &str) -> Words {
     numbers(corrected(&entry(id), "wo"))
 }
 
-/// Entry of an example, with its misprints corrected.
+/// Returns the words of an example, with the manual's misprints corrected.
 fn corrected<'a>(entry: &'a Value, words: &str) -> &'a Value {
     entry.get(format!("{words}_corrected")).unwrap_or(&entry[words])
 }
@@ -64,7 +65,7 @@ fn numbers(texts: &Value) -> Words {
     words
 }
 
-/// Report of a command line, with the answer of an example.
+/// Runs a command line with the answer of an example, and returns its report.
 #[track_caller]
 pub(super) fn read_example(id: &str, line: &[&str]) -> Value {
     let before = undefined(line);
@@ -75,7 +76,7 @@ pub(super) fn read_example(id: &str, line: &[&str]) -> Value {
     outcome.unwrap()
 }
 
-/// Replies to the reads before an overwrite: nothing is defined.
+/// Returns the replies to the reads before an overwrite. They say that nothing is defined yet.
 pub(super) fn undefined(line: &[&str]) -> Vec<Reply> {
     let mut refused = [0; COMMAND_WORDS];
     refused[..3].copy_from_slice(&[0x4000, 2, 904]);
@@ -84,7 +85,7 @@ pub(super) fn undefined(line: &[&str]) -> Vec<Reply> {
     vec![Reply::Ends(0, refused); count]
 }
 
-/// Report of a command line that sends several commands, each with the answer of its example.
+/// Runs a command line that sends several commands, each with the answer of its example, and returns its report.
 #[track_caller]
 pub(super) fn read_in_turn(ids: &[&str], line: &[&str]) -> Value {
     let examples: Vec<Value> = ids.iter().map(|id| entry(id)).collect();
@@ -95,6 +96,25 @@ pub(super) fn read_in_turn(ids: &[&str], line: &[&str]) -> Value {
     let sent = examples.iter().map(|example| numbers(corrected(example, "wi")));
     assert_eq!(peer.taken[count..], sent.collect::<Vec<_>>());
     outcome.unwrap()
+}
+
+/// Each line is a usage error with this part in its message.
+#[track_caller]
+pub(super) fn rejects<'l>(cases: impl IntoIterator<Item = (&'l str, &'l str)>) {
+    for (line, part) in cases {
+        let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
+        assert_eq!(failure.kind, Kind::Usage, "{line}");
+        assert!(failure.message.contains(part), "{line}: {failure}");
+    }
+}
+
+/// Each line is refused by the parser, with this part in its message.
+#[track_caller]
+pub(super) fn objects<'l>(cases: impl IntoIterator<Item = (&'l str, &'l str)>) {
+    for (line, part) in cases {
+        let objection = objection(&line.split(' ').collect::<Vec<_>>());
+        assert!(objection.contains(part), "{line}: {objection}");
+    }
 }
 
 /// Error of the command-line parser.
@@ -118,12 +138,12 @@ pub(super) fn desk(words: &[&str]) -> Value {
     command.without_robot(&quiet()).expect("no robot is wanted").unwrap().data().unwrap()
 }
 
-/// Words WI0 to WI15 of all commands that `armctl yrcx WORDS…` would send.
+/// Returns WI0 to WI15 of each command that `armctl yrcx WORDS…` would send.
 pub(super) fn words(words: &[&str]) -> Result<Vec<Vec<String>>, Failure> {
     Ok(frames(words)?.iter().map(|frame| &frame["wi"]).filter(|words| words.is_array()).map(texts).collect())
 }
 
-/// Sent words of the commands that do not only read.
+/// Returns WI0 to WI15 of each command that would change something.
 pub(super) fn written(line: &[&str]) -> Result<Vec<Vec<String>>, Failure> {
     let code = |words: &Vec<String>| u16::from_str_radix(words[0].trim_start_matches("0x"), 16).unwrap();
     let is_written = |words: &Vec<String>| Row::from_word(code(words)).unwrap().risk > Risk::Read;
@@ -141,14 +161,14 @@ fn plan(words: &[&str]) -> Result<Value, Failure> {
     planned::<Yrcx>(&robot, &*command, |link| link.set_unit(unit(words)))
 }
 
-/// The report of a dry run of a line.
+/// Returns the report of a dry run of a command line for this target.
 pub(super) fn planned_line(target: &str, line: &str) -> Result<Value, Failure> {
     let words: Vec<&str> = line.split(' ').collect();
     let (robot, command) = resolved(target, &words)?;
     planned::<Yrcx>(&robot, &*command, |link| link.set_unit(unit(&words)))
 }
 
-/// Target of a real controller for dry runs.
+/// Target for dry runs: a real controller.
 const DRY: &str = "eip://127.0.0.1";
 
 /// Runs a command line on a scripted controller. Returns its data and the controller.
@@ -173,7 +193,7 @@ pub(super) struct Bench {
     peer: Shared,
 }
 
-/// Controller that the test can also access directly.
+/// Controller that the link and the test share.
 type Shared = std::sync::Arc<std::sync::Mutex<Scripted>>;
 
 #[derive(Debug)]
@@ -220,12 +240,12 @@ impl Bench {
         Self::grant(scripted, Risk::Motion)
     }
 
-    /// Bench with a fieldbus that supports only signals.
+    /// Creates a bench whose fieldbus supports only signals.
     pub(super) fn signals_alone(scripted: Scripted) -> Self {
         Self::over(scripted, Risk::Motion, |handle| Box::new(SignalsOnly(handle)))
     }
 
-    /// Bench with a limited granted risk.
+    /// Creates a bench that grants commands up to this risk.
     pub(super) fn grant(scripted: Scripted, grant: Risk) -> Self {
         Self::over(scripted, grant, |handle| Box::new(handle))
     }
@@ -242,13 +262,13 @@ impl Bench {
         Self { runtime, robot, link, peer }
     }
 
-    /// Runs `armctl yrcx WORDS…` and returns the data of its report. An unsuccessful report is a failure.
+    /// Runs `armctl yrcx WORDS…` and returns the data of its report. A report with a failure gives the failure.
     pub(super) fn run(&mut self, words: &[&str]) -> Result<Value, Failure> {
         let (data, failure) = self.report(words)?;
         failure.map_or(Ok(data), Err)
     }
 
-    /// Runs a command line, also with the data of an unsuccessful report.
+    /// Runs a command line, and returns the data of its report and the failure in it.
     pub(super) fn report(&mut self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
         let (_, command) = resolved("sim:", words)?;
         let Self { runtime, robot, link, .. } = self;
@@ -257,12 +277,12 @@ impl Bench {
         Ok((report.data()?, report.failure()))
     }
 
-    /// Runs a command line for this time, then drops it, like Ctrl-C.
+    /// Runs a command line for the time `after`, then drops it, as Ctrl-C does. The command line must still be running.
     pub(super) fn interrupt(&mut self, words: &[&str], after: Duration) {
         assert!(self.cut(words, after), "it still runs");
     }
 
-    /// Runs a command line for this time, then drops it. Returns whether it was still running.
+    /// Runs a command line for the time `after`, then drops it. Returns whether it was still running.
     pub(super) fn cut(&mut self, words: &[&str], after: Duration) -> bool {
         let (_, command) = resolved("sim:", words).unwrap();
         let Self { runtime, robot, link, .. } = self;
@@ -273,12 +293,12 @@ impl Bench {
         })
     }
 
-    /// Stops a motion, like Ctrl-C.
+    /// Stops a motion, as Ctrl-C does.
     pub(super) fn halt(&mut self) -> Result<String, Failure> {
         self.runtime.block_on(Yrcx::halt(&mut self.link))
     }
 
-    /// Accesses the controller directly.
+    /// Gives the test direct access to the controller.
     pub(super) fn peer<T>(&mut self, look: impl FnOnce(&mut Scripted) -> T) -> T {
         look(&mut self.peer.lock().unwrap())
     }
@@ -293,30 +313,31 @@ impl Bench {
 /// Reaction of a scripted controller to a command.
 #[derive(Debug, Clone)]
 pub(super) enum Reply {
-    /// Ends with these words after this number of scans with the run status.
+    /// Reports the status "running" for this number of scans, then ends with these words.
     Ends(u32, Words),
-    /// Sends these words, one per scan, then repeats the last until the command is cleared: continuous output.
+    /// Sends these words, one set per scan, then repeats the last set until the master clears the command (continuous
+    /// output).
     Shows(Vec<Words>),
-    /// Runs until the stop input goes off, then ends with these words.
+    /// Runs until the master switches the stop input off, then ends with these words.
     UntilStop(Words),
-    /// Loses the link for this time, this number of scans after the command.
+    /// Runs for this number of scans, then loses the link for this time.
     Loses(u32, Duration),
-    /// Does nothing.
+    /// Does not react to the command.
     Ignores,
 }
 
-/// Controller with scans of 5 ms. It reacts to each command with the next entry of its script, and confirms the
+/// Controller with a scan time of 5 ms. It reacts to each command with the next entry of its script, and confirms the
 /// signals of procedures.
 #[derive(Debug, Default)]
 pub(super) struct Scripted {
     script: VecDeque<Reply>,
-    /// Commands received.
+    /// Commands that the controller received.
     pub(super) taken: Vec<Words>,
-    /// Dedicated word of each received image, without repetition.
+    /// Words of dedicated signals in the received images, without consecutive duplicates.
     pub(super) bits: Vec<u16>,
-    /// Image of the master; `None` after it has disconnected.
+    /// Last image from the master; `None` after the master has disconnected.
     shown: Option<Image>,
-    /// Image for the master.
+    /// Image that the controller sends to the master.
     pub(super) image: Image,
     current: Option<(Reply, u32)>,
     gone_until: Option<Duration>,
@@ -431,7 +452,7 @@ pub(super) fn resolved(target: &str, words: &[&str]) -> Result<(Robot, Box<dyn A
     testing::resolve(FACE, target, words)
 }
 
-/// Robot number of `--unit`.
+/// Returns the robot number that `--unit` selects.
 fn unit(words: &[&str]) -> u8 {
     own(words).get().map_or(0, Unit::number)
 }

@@ -1,8 +1,9 @@
-//! Live view of a robot: the signals. If this connection already commands the controller, as in a session or on a
-//! simulator in this process, also position, torque and alarm from remote commands.
+//! Live view of a robot. It shows the signals. If its connection already commands the controller, it also shows
+//! position, torque and alarm from remote commands. A connection in a session or to a simulator in this process
+//! commands the controller.
 //!
-//! All clients of a session share its remote commands, one at a time. So a view sends one of them at intervals and
-//! remembers the results.
+//! All clients of a session share the remote commands of the controller, and only one command can run at a time. So in
+//! a session, a view sends one remote command per interval and keeps the results.
 
 use std::time::Duration;
 
@@ -35,7 +36,7 @@ use armctl_frame::{Access, Family as _};
 pub struct Poller {
     link: Link,
     told: Told,
-    /// Index of the next remote command in a session, and time of the last one.
+    /// Index of the next remote command in a session, and the time of the last remote command.
     next: usize,
     asked: Option<Instant>,
 }
@@ -50,19 +51,19 @@ struct Told {
     alarm: Option<Alarm>,
 }
 
-/// Minimum interval of reads with messages: boards answer them with low priority.
+/// Minimum interval of reads by explicit messages: network boards answer such messages with low priority.
 const LOOKS: Duration = Duration::from_millis(100);
 /// Minimum interval of remote commands in a session.
 const TURNS: Duration = Duration::from_millis(500);
 
-/// First general-purpose signals, SI(20) and SO(20), and number of groups of eight.
+/// Number of the first general-purpose signals, SI(20) and SO(20), and the number of groups of eight signals.
 const FIRST: u16 = 20;
 const GROUPS: u16 = 4;
 
 impl registration::Poller for Poller {
     type Family = Yrcx;
 
-    /// Opens the poller. It only sends reads, and opens no connection whose end affects the controller.
+    /// Opens the poller. The poller only reads. Its connection does not affect the controller when it closes.
     async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
         let mut robot = robot.clone();
         if let Place::Bus(bus) = &mut robot.target.value.place {
@@ -130,11 +131,11 @@ impl Poller {
     async fn put(&mut self, command: Command) -> Result<(), Failure> {
         let order: Order = match command {
             Command::AlarmHistory => latest(&self.link)?,
-            // No axis selects all axes.
+            // 0 selects all axes.
             Command::TorqueOfMax => self.link.draft(command)?.with(Key::Axes, 0).order()?,
             _ => self.link.draft(command)?.order()?,
         };
-        // A refusal is not an error here: a robot with unknown origin refuses to report its position.
+        // A refusal is not an error here: a robot whose origin is unknown refuses to report its position.
         let done = self.link.try_ask(&order).await?.ok();
         let values = done.as_ref().map(|done| &done.values);
         match command {
@@ -200,7 +201,7 @@ fn indicators(image: &Image) -> Vec<Indicator> {
 }
 
 fn bank(name: &'static str, side: Side, image: &Image) -> Bank {
-    // The numbers are octal: 20, 30, 40 and 50, and 0 to 7 from each.
+    // Signal numbers are octal. The groups start at 20, 30, 40 and 50, and have 8 signals each.
     let starts = (0..GROUPS).map(|group| FIRST + 10 * group);
     let groups = starts.map(|start| SignalByte {
         label: format!("{}{start}", side.name()),

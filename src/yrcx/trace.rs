@@ -1,4 +1,4 @@
-//! Trace of images: as text when they change, as packets whenever they are transferred.
+//! Trace of images: as text when an image changes, or as a capture file with every packet.
 
 use std::collections::VecDeque;
 use std::path::Path;
@@ -21,7 +21,7 @@ use armctl_frame::trace;
 use armctl_transport::image::tap::{Passage, Tap};
 use armctl_transport::tap::Direction;
 
-/// Text trace of the images of one link. Without a network, the images themselves are recorded as well.
+/// Text trace of the images of one link. If the link uses no network, the trace also records the bytes of the images.
 #[derive(Debug)]
 pub struct Trace {
     text: trace::Trace,
@@ -34,7 +34,7 @@ impl Trace {
     pub fn open(access: &Access, screen: &Screen, is_network: bool) -> Result<Self, Failure> {
         let to_file = access.trace.as_deref().is_some_and(|path| path != Path::new("-"));
         let text = if is_network && to_file {
-            // The packet recorder writes the file: see `Recorder`.
+            // On a network, the packet recorder writes the file: see `Recorder`.
             trace::Trace::of_lines(&Access { trace: None, ..access.clone() }, screen)?
         } else {
             trace::Trace::of_lines(access, screen)?
@@ -76,19 +76,19 @@ impl Trace {
     }
 }
 
-/// Packets before a link is open, for `-vvv`: if it does not open, they show the reason.
+/// Packets from before the link is open, for `-vvv`. If the link does not open, armctl prints them to show the reason.
 #[derive(Debug)]
 pub struct Opening {
     passed: Arc<Mutex<VecDeque<String>>>,
 }
 
-/// Maximum number of packets shown after a failure.
+/// Maximum number of packets that are printed after a failure.
 const MOST_SHOWN: usize = 64;
 
 impl Opening {
-    /// Records the packets of the tap, if `-vvv` is set.
+    /// Returns a tap that records packets, if `-vvv` is set.
     pub fn watch(screen: &Screen) -> Option<(Self, Tap)> {
-        /// `-vvv`.
+        /// Verbosity of `-vvv`.
         const BYTES: u8 = 3;
 
         if screen.verbosity < BYTES {
@@ -114,7 +114,7 @@ impl Opening {
         Some((Self { passed }, tap))
     }
 
-    /// Prints the packets after a failed open.
+    /// Prints the packets after the link failed to open.
     pub fn show(&self, screen: &Screen) {
         let passed = self.passed.lock().unwrap_or_else(PoisonError::into_inner);
         if passed.is_empty() {
@@ -124,21 +124,22 @@ impl Opening {
     }
 }
 
-/// Maximum number of packets that wait for the disk: some minutes of one connection.
+/// Maximum number of packets that wait for the disk: a few minutes of one connection.
 const MOST_WAITING: usize = 65_536;
 
-/// Writer for the packets of `--trace`, in its own thread: the threads that transfer images must not wait for a disk.
+/// Writes the packets of `--trace` in its own thread, because the threads that transfer images must not wait for the
+/// disk.
 #[derive(Debug)]
 pub struct Recorder {
     writer: JoinHandle<Result<(), Failure>>,
-    /// `None` is the end of the stream.
+    /// Packets with their time; `None` marks the end.
     packets: SyncSender<Option<(Duration, Passage)>>,
     /// Number of packets dropped because the queue was full.
     lost: Arc<AtomicU64>,
 }
 
 impl Recorder {
-    /// Starts the recording, if requested; `link_type` is the link type of a capture file.
+    /// Starts the recording, if the user requested a file. `link_type` is the link type of a capture file.
     pub fn start(access: &Access, screen: &Screen, link_type: u16) -> Result<Option<(Self, Tap)>, Failure> {
         if access.trace.as_deref().is_none_or(|path| path == Path::new("-")) {
             return Ok(None);
@@ -161,7 +162,7 @@ impl Recorder {
         let (counted, sender) = (Arc::clone(&lost), packets.clone());
         let tap = Tap::new(move |passed| {
             let time = trace::now();
-            // A slow disk loses packets and does not delay the robot.
+            // If the disk is slow, packets are dropped, so that the robot is not delayed.
             if sender.try_send(Some((time, passed))).is_err() {
                 counted.fetch_add(1, Ordering::Relaxed);
             }
@@ -171,7 +172,7 @@ impl Recorder {
 
     /// Waits until all packets are written, and reports whether the trace is complete.
     pub fn finish(self) -> Result<(), Failure> {
-        // If the writer has ended, its error appears when it is joined.
+        // If the writer has already ended, `join` returns its error.
         let _ = self.packets.send(None);
         self.writer.join().unwrap_or_else(|_| Err(trace::incomplete("the writer failed")))?;
         match self.lost.load(Ordering::Relaxed) {

@@ -1,11 +1,11 @@
-//! `--unit`: robot of the controller for a command.
+//! Argument `--unit`: the robot of the controller that a command applies to.
 
 use clap::Args;
 
 use armctl_frame::AnyFamilyArguments;
 use armctl_frame::gate::Intent;
 
-/// Robot selection.
+/// Argument that selects a robot.
 #[derive(Debug, Args)]
 pub struct Unit {
     /// Robot of the controller, 1 to 4; 0 is the first robot, or all robots if the command supports it
@@ -16,7 +16,7 @@ pub struct Unit {
 }
 
 impl Unit {
-    /// Robot number; 0 if none is selected.
+    /// Returns the robot number; 0 if the user selected none.
     pub fn number(&self) -> u8 {
         self.unit
     }

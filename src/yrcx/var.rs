@@ -5,7 +5,6 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Number, Value as Json};
 
-use super::backup::{Records, VARIABLES};
 use super::link;
 use super::numbers::{named, single};
 use super::single::{Single, single_command};
@@ -35,7 +34,7 @@ commands! {
         Set(Set),
         /// Print each change of variables
         Watch(Watch<Get<Numbered<Variables>>>),
-        /// Copy a variable to others: SGI1 SGI2..SGI5
+        /// Copy a variable to other variables: SGI1 SGI2..SGI5
         Copy(Copy<Numbered<Variables>>),
         /// Save variables to a CSV file
         Dump(Dump<Numbered<Variables>>),
@@ -66,8 +65,10 @@ impl Kind for Variables {
         writing: None,
     };
     const IDS: Ids = ids!("yrcx.var");
-    const RECORDS: &'static Records = &VARIABLES;
-    const HEADINGS: &'static [&'static str] = &["value"];
+    const READ: (table::Command, Key) = (table::Command::VarGet, Key::Variable);
+    const WRITE: table::Command = table::Command::VarSet;
+    const NUMBERS: &'static [&'static str] = &["SGI0..SGI31", "SGR0..SGR31"];
+    const FIELDS: &'static [(&'static str, Key, &'static str)] = &[("value", Key::Value, "value")];
     const RISK: Risk = Risk::Write;
     const LABELS: Option<names::Kind> = Some(names::Kind::Variable);
     const COMPLETE: ValueKind = complete::VARIABLE;
@@ -81,22 +82,22 @@ impl Kind for Variables {
     }
 }
 
-/// Value of a variable; none if it is not a number.
+/// Returns the value of a variable; `None` if the value is not a number.
 fn number(value: Option<&Value>) -> Option<Number> {
     match value {
         Some(Value::Int(number)) => Some(Number::from(*number)),
-        // Converted by its decimal digits: a conversion to double would add digits.
+        // The conversion uses the decimal digits of the number: a cast to double precision would add digits.
         Some(Value::Real(number)) => real(*number),
         Some(Value::Text(_)) | None => None,
     }
 }
 
-/// Value of a variable as JSON; null if it is not a number.
+/// Returns the value of a variable as JSON; null if the value is not a number.
 pub fn held(value: Option<&Value>) -> Json {
     number(value).map_or(Json::Null, Json::Number)
 }
 
-/// Single-precision number with its own digits.
+/// Converts a single-precision number with exactly the digits that it prints.
 fn real(number: f32) -> Option<Number> {
     match serde_json::from_str(&number.to_string()) {
         Ok(Json::Number(number)) => Some(number),
@@ -107,7 +108,7 @@ fn real(number: f32) -> Option<Number> {
 /// Operand of a change.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Operand {
-    /// Number as typed.
+    /// A number as the user typed it.
     Number(String),
     /// Number of a variable.
     Variable(i32),
@@ -153,7 +154,7 @@ impl Operand {
             Self::Number(text) => settings_report::number(text),
             Self::Variable(number) => name(*number).into(),
         };
-        // The result of a calculation is not read back.
+        // armctl does not read the variable back, so it knows the new value only for an assignment of a number.
         let new = Some(operand.clone()).filter(|_| operation == "set" && matches!(self, Self::Number(_)));
         let item = Item::with("variable", variable, Operation { operation, operand }, Ok(new));
         WrittenItems::describe(words, vec![Written::new(item, done.old.value(), true)])
@@ -173,13 +174,13 @@ type Changed = WrittenItems<Json, Operation>;
 /// Operation that changed a variable.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Operation {
-    /// `set`, `add`, `sub`, `mul`, `div`.
+    /// Operation: `set`, `add`, `sub`, `mul` or `div`.
     operation: &'static str,
     /// A number, or the name of a variable.
     operand: Json,
 }
 
-/// Declares the commands that change a variable with a number or another variable.
+/// Declares the commands that change a variable. Their operand is a number or another variable.
 macro_rules! changes {
     ($($(#[$meta:meta])* $name:ident $id:literal $by_number:ident $by_variable:ident $operand:ident $does:literal $told:literal;)*) => {
         $(
@@ -189,7 +190,7 @@ macro_rules! changes {
                 /// Variable to change: SGI0 to SGI31 are whole numbers, SGR0 to SGR31 real numbers
                 #[arg(value_name = "VARIABLE", value_parser = variable, add = complete::VARIABLE)]
                 variable: i32,
-                /// Number, or a variable such as SGI2
+                /// Number, or a variable, for example SGI2
                 #[arg(value_name = "VALUE", allow_negative_numbers = true, value_parser = $operand, add = complete::VARIABLE)]
                 operand: Operand,
             }
@@ -222,7 +223,7 @@ macro_rules! changes {
 }
 
 changes! {
-    /// Sets a variable to a number or to a variable.
+    /// Sets a variable to a number or to the value of another variable.
     Set "yrcx.var.set" VarSet VarSetVar operand "set" "{variable} = {operand}";
     /// Adds a number or a variable to a variable.
     Add "yrcx.var.add" VarAdd VarAddVar operand "add" "{variable} = {variable} + {operand}";
@@ -263,7 +264,7 @@ mod tests {
 
     #[test]
     fn real_variables_have_single_precision() {
-        // 1.1 is 0x3F8CCCCD.
+        // As a single-precision number, 1.1 is 0x3F8CCCCD.
         let sent = words(&["var", "set", "sgr1", "1.1"]).unwrap();
         assert_eq!(sent[0][2..6], ["0x0101", "0x0000", "0xCCCD", "0x3F8C"]);
         let answered = |low, high| {

@@ -1,4 +1,5 @@
-//! Cycles of modules: their modules can only be understood together, so none may be larger than a simulator.
+//! Checks cycles of modules. The modules of a cycle can only be understood together, so no cycle may have more modules
+//! than the largest simulator.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,7 +8,7 @@ use super::source::{Source, sources};
 /// Maximum number of modules in a cycle: the size of the largest simulator.
 const LARGEST: usize = 15;
 
-/// Modules that each module uses, by path.
+/// For each module, the modules that it uses, by path.
 type Uses = BTreeMap<String, BTreeSet<String>>;
 
 #[test]
@@ -30,7 +31,8 @@ fn finds_module_cycles() {
     assert_eq!(circles(&uses(&sources)), [["crate::a", "crate::a::b", "crate::a::c"]]);
 }
 
-/// Tests may use every module; a declaration (`mod x;`) is not a use.
+/// The modules that each module uses. Tests are left out, because they may use every module. A declaration (`mod x;`)
+/// is not a use.
 fn uses(sources: &[Source]) -> Uses {
     let sources = sources.iter().filter(|source| !source.name.contains("test"));
     let without_tests = sources.map(|source| {
@@ -51,7 +53,7 @@ fn uses(sources: &[Source]) -> Uses {
     sources.iter().map(used).collect()
 }
 
-/// Module of an item: the longest prefix of its path that is a module.
+/// Returns the module of an item, which is the longest prefix of its path that is a module.
 fn module_of(path: &str, modules: &BTreeSet<String>) -> Option<String> {
     let mut path = path.strip_suffix("::self").unwrap_or(path);
     while !modules.contains(path) {
@@ -60,7 +62,7 @@ fn module_of(path: &str, modules: &BTreeSet<String>) -> Option<String> {
     Some(path.to_owned())
 }
 
-/// Strongly connected groups of modules (Tarjan), the largest first.
+/// Returns the strongly connected groups of modules (Tarjan), the largest group first.
 fn circles(uses: &Uses) -> Vec<Vec<String>> {
     let mut search = Search::new(uses);
     for module in uses.keys() {
@@ -76,7 +78,7 @@ struct Search<'a> {
     uses: &'a Uses,
     /// Visit number of each module.
     order: BTreeMap<&'a str, usize>,
-    /// Visited modules whose group is not complete.
+    /// Visited modules whose group is not complete yet.
     open: Vec<&'a str>,
     found: Vec<Vec<String>>,
 }
@@ -86,7 +88,7 @@ impl<'a> Search<'a> {
         Self { uses, order: BTreeMap::new(), open: Vec::new(), found: Vec::new() }
     }
 
-    /// The earliest open module that `module` reaches.
+    /// Visits a module. Returns the number of the earliest open module that it reaches.
     fn visit(&mut self, module: &'a str) -> usize {
         let met = self.order.len();
         self.order.insert(module, met);

@@ -1,10 +1,10 @@
-//! One name, one type and one unit for the same thing in the reports of every family.
+//! Checks that all families use the same name, type and unit for the same thing in their reports.
 
 use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-/// Keys with the same meaning in all reports, and their possible types; null is always possible.
+/// Keys with the same meaning in all reports, and the types that they may have. Null is always allowed.
 #[rustfmt::skip]
 const KEYS: &[(&str, &[&str])] = &[
     // Status.
@@ -46,13 +46,13 @@ const OTHER_WORDS: &[(&str, &str)] = &[
     ("x", "x_mm"), ("y", "y_mm"), ("z", "z_mm"), ("rx", "rx_deg"), ("ry", "ry_deg"), ("rz", "rz_deg"),
 ];
 
-/// Exceptions: report, key, and its meaning there.
+/// Exceptions: report, key, and the meaning of the key in this report.
 #[rustfmt::skip]
 const EXCEPTIONS: &[(&str, &str, &str)] = &[
     ("dry-run", "values", "how many values a part of a backup has"),
 ];
 
-/// Reports about frames, local programs and boards, with the terms of their protocols.
+/// Reports about frames, local programs and boards. They use the terms of their protocols.
 const SEPARATE_CONCEPTS: [&str; 5] = ["decode.", "sim", "toyo.sim.", "failure", "envelope"];
 
 #[test]
@@ -92,12 +92,12 @@ fn every_exception_is_needed() {
     }
 }
 
-/// Whether a report has this name, or belongs to this noun: `yrcx.profibus.*`.
+/// Whether a report has this name, or begins with the text before `*`, as in `yrcx.profibus.*`.
 fn is_of(report: &str, pattern: &str) -> bool {
     pattern.strip_suffix('*').map_or(report == pattern, |front| report.starts_with(front))
 }
 
-/// Every key below a schema, with its types except null.
+/// Reports every key below a schema, with its types except null.
 fn collect_types(schema: &Value, root: &Value, say: &mut impl FnMut(&str, &BTreeSet<String>)) {
     match schema {
         Value::Object(fields) => {
@@ -115,7 +115,7 @@ fn collect_types(schema: &Value, root: &Value, say: &mut impl FnMut(&str, &BTree
     }
 }
 
-/// Types of a property.
+/// Collects the types of a property.
 fn collect(schema: &Value, root: &Value, types: &mut BTreeSet<String>, depth: usize) {
     assert!(depth < 10, "a schema that refers to itself");
     if let Some(path) = schema["$ref"].as_str() {

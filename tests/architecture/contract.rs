@@ -1,8 +1,8 @@
-//! The commands of the contract exist.
+//! All commands that the contract promises must exist.
 
 use clap::CommandFactory as _;
 
-/// Every command of the contract, by family. An entry is only removed with a new major version.
+/// Every command of the contract, by family. An entry may only be removed with a new major version.
 pub const CONTRACT: [(&str, &[&str]); 3] = [("yerc", YERC), ("toyo", &TOYO), ("yrcx", YRCX)];
 
 const YERC: &[&str] = &[
@@ -40,6 +40,11 @@ const YERC: &[&str] = &[
     "io set",
     "register get",
     "register set",
+    "register list",
+    "register watch",
+    "register copy",
+    "register dump",
+    "register restore",
     "names get",
     "names forget",
     "servo",
@@ -70,7 +75,7 @@ const TOYO: [&str; 81] = [
     "alarm history",
     "alarm reset",
     "alarm point",
-    // Synonyms of these.
+    // Other names of the commands above.
     "error show",
     "error history",
     "error cancel",

@@ -1,4 +1,4 @@
-//! Generated files are current and complete: man pages, schemas, completions.
+//! Checks that the generated files are current and complete: man pages, schemas and completions.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -45,7 +45,7 @@ fn schemas_are_valid() {
     }
 }
 
-/// Reports contain set names and values, not sentences, because they are for programs.
+/// Reports contain names and values from fixed sets, not sentences, because programs read them.
 #[test]
 fn reports_contain_no_sentences() {
     const SENTENCES: [&str; 7] = ["done", "message", "text", "result", "summary", "told", "words"];
@@ -56,7 +56,7 @@ fn reports_contain_no_sentences() {
         let Some(fields) = schema["properties"].as_object() else { continue };
         let is_sentence =
             |(name, schema): (&String, &serde_json::Value)| SENTENCES.contains(&name.as_str()) && is_text(schema);
-        // `failure` is an error with a message; `done` of the inventory is `added` or `removed`.
+        // The report `failure` is an error with a message. In reports of the inventory, `done` is `added` or `removed`.
         if !matches!(entry.id, "failure" | "robots.add" | "robots.remove" | "setup") && fields.iter().any(is_sentence) {
             found.push(entry.id);
         }
@@ -77,7 +77,7 @@ fn every_robot_command_has_a_schema_and_help() {
     for (family, _) in CONTRACT {
         leaves(root.find_subcommand(family).expect("the family is there"), family, &mut words);
     }
-    // At a prompt, each line has its own report.
+    // The command `repl` has no report, because each line at its prompt has its own report.
     let is_known = |word: &str| known.contains(word) || word.rsplit('.').next() == Some("repl");
     let without: Vec<&String> = words.iter().filter(|word| !is_known(word)).collect();
     assert!(without.is_empty(), "commands without a schema of their name: {without:?}");
@@ -85,13 +85,14 @@ fn every_robot_command_has_a_schema_and_help() {
 
 #[test]
 fn command_flags_do_not_shadow_global_flags() {
-    // `--all` of a command would also select all robots. `--for` is a duration in all commands.
+    // A global flag would also have its global meaning: `--all` would select all robots. `--for` is a duration in all
+    // commands.
     fn check_flags(command: &clap::Command, known: &BTreeSet<String>, path: &str, found: &mut Vec<String>) {
         let own_flags =
             || command.get_arguments().flat_map(|argument| flags(argument).map(move |flag| (flag, argument)));
         let shadowed = own_flags().filter(|(flag, _)| known.contains(flag) && flag != "--for");
         found.extend(shadowed.map(|(flag, _)| format!("{path} {flag}")));
-        // Each term has one flag.
+        // The same thing has the same flag in all commands.
         let into_folder = own_flags().filter(|(flag, argument)| is_folder(argument) && flag != "--dir");
         found.extend(into_folder.map(|(flag, _)| format!("{path} {flag}: a folder is --dir")));
         let global = own_flags().filter(|(_, argument)| argument.is_global_set()).map(|(flag, _)| flag);
@@ -100,7 +101,7 @@ fn command_flags_do_not_shadow_global_flags() {
             check_flags(verb, &known, &format!("{path} {}", verb.get_name()), found);
         }
     }
-    /// All accepted forms, including hidden ones.
+    /// All forms of a flag that clap accepts, including hidden ones.
     fn flags(argument: &clap::Arg) -> impl Iterator<Item = String> {
         let longs = argument.get_long().into_iter().chain(argument.get_all_aliases().unwrap_or_default());
         let shorts = argument.get_short().into_iter().chain(argument.get_all_short_aliases().unwrap_or_default());
@@ -127,7 +128,7 @@ fn schemas_describe_reports() {
     }
 }
 
-/// Ids of all commands below one: its words, joined by dots.
+/// Collects the ids of all commands below a command. An id has the words of the command, joined by dots.
 fn leaves(command: &clap::Command, id: &str, all: &mut BTreeSet<String>) {
     if !command.has_subcommands() {
         assert!(command.get_about().is_some(), "{id} has no line of help");
@@ -138,7 +139,7 @@ fn leaves(command: &clap::Command, id: &str, all: &mut BTreeSet<String>) {
     }
 }
 
-/// Compares a folder with its expected content, or rewrites it with `ARMCTL_BLESS`.
+/// Compares a folder with its expected content. With `ARMCTL_BLESS`, rewrites the folder instead.
 fn is_current(folder: &str, made: &BTreeMap<String, Vec<u8>>) {
     let path = root().join(folder);
     if std::env::var_os("ARMCTL_BLESS").is_some() {
@@ -146,7 +147,7 @@ fn is_current(folder: &str, made: &BTreeMap<String, Vec<u8>>) {
         for (name, content) in made {
             std::fs::write(path.join(name), content).expect("the file can be written");
         }
-        // Also removes pages of removed commands.
+        // Removes the files of commands that no longer exist.
         for name in names(&path).difference(&made.keys().cloned().collect()) {
             std::fs::remove_file(path.join(name)).expect("the old file can go");
         }

@@ -1,5 +1,5 @@
-//! No transcript sends a byte to another machine: a line with such an address is a dry run, uses the built-in
-//! simulator, works only on files, or is refused before anything is sent.
+//! No transcript sends a byte to another machine. A line with the address of another machine is a dry run, uses the
+//! built-in simulator, works only on files, or is refused before sending.
 
 use std::fs;
 use std::net::Ipv4Addr;
@@ -8,7 +8,7 @@ use super::source::root;
 
 /// Commands that use no controller.
 const FILES_ALONE: [&str; 4] = ["robots add ", "robots list", "robots show ", "decode "];
-/// Exit codes of lines that are refused before sending: usage, and rejected by armctl.
+/// Exit codes of lines that are refused before anything is sent: usage error, and refused by armctl.
 const NOT_SENT: [&str; 2] = ["? 2", "? 7"];
 
 #[test]

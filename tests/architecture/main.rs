@@ -178,7 +178,7 @@ fn finds_forbidden_dependencies() {
 #[test]
 fn only_output_prints() {
     let mut wrong = Vec::new();
-    // A skipped test must print a message.
+    // Tests may print, because a skipped test must print a message.
     for source in
         sources().iter().filter(|source| !source.name.starts_with("frame/output/") && !source.name.contains("/tests/"))
     {
@@ -214,7 +214,7 @@ fn local_files_are_read_by_one_module() {
     let mut wrong = Vec::new();
     let is_test = |name: &str| name.contains("test") || READERS.contains(&name);
     for source in sources().iter().filter(|source| !is_test(&source.name)) {
-        // Some modules have a condition before their tests.
+        // Some modules have an additional condition on their tests.
         let code = source.code.split("#[cfg(test)]").next().unwrap_or_default();
         let code = code.split("#[cfg(all(test").next().unwrap_or_default();
         for (line, text) in code.lines().enumerate() {
@@ -238,7 +238,7 @@ fn limits_the_length_of_files() {
 
 #[test]
 fn no_file_names_a_development_machine() {
-    // Assembled here, so that this file does not match.
+    // The paths are assembled here, so that this file does not contain them.
     let machine_names = ["home", "root", "work", "Users"].map(|folder| format!("/{folder}/"));
     let mut wrong = Vec::new();
     for file in committed(&root()) {
@@ -261,7 +261,7 @@ fn both_licences_exist() {
 }
 
 /// Places where the text after a failure replaces a hint: the usage, the caller, each use of a helper.
-const HINT_ELSEWHERE: [&str; 3] = ["app/repl.rs", "yrcx/backup/content.rs", "frame/settings/inventory.rs"];
+const HINT_ELSEWHERE: [&str; 2] = ["app/repl.rs", "frame/settings/inventory.rs"];
 
 #[test]
 fn every_usage_failure_has_a_hint() {
@@ -297,7 +297,7 @@ fn forbidden_paths(source: &Source) -> Vec<String> {
                 wrong.push(format!("{place}: {module} must not use {path}"));
             }
         }
-        // The folder of a fieldbus has its name.
+        // The folder of a fieldbus has the name of this fieldbus.
         let in_bus = |scheme: &Scheme| source.name.starts_with(&format!("yrcx/{}/", scheme.bus));
         let is_link = LINKS.contains(&source.name.as_str()) || BUSES.iter().any(in_bus);
         let has_border = BORDERS

@@ -1,14 +1,14 @@
-//! Reads the sources: paths that a file uses, without comments and texts.
+//! Reads the source files: the paths that a file uses, without comments and texts.
 
 use std::path::{Path, PathBuf};
 
 /// A source file.
 pub struct Source {
-    /// Path below `src/`, with slashes.
+    /// Path of the file below `src/`, with slashes.
     pub name: String,
     /// Complete text.
     pub text: String,
-    /// Text without comments and string contents, with the same lines.
+    /// Text without comments and string contents. The line numbers stay the same.
     pub code: String,
 }
 
@@ -33,8 +33,8 @@ impl Source {
         Self { name: name.to_owned(), text: text.to_owned(), code: strip_code(text) }
     }
 
-    /// Every path of two or more words in the code, with its line. `use` trees are expanded; `super` and `self` are
-    /// resolved.
+    /// Returns every path of two or more words in the code, with its line number. `use` trees are expanded, and `super`
+    /// and `self` are resolved.
     pub fn paths(&self) -> Vec<(usize, String)> {
         let module = self.module();
         let mut paths = Vec::new();
@@ -72,7 +72,7 @@ impl Source {
         paths
     }
 
-    /// `crate::output::jq` for `output/jq.rs`, `crate::output` for `output/mod.rs`.
+    /// Path of the module: `crate::output::jq` for `output/jq.rs`, `crate::output` for `output/mod.rs`.
     pub fn module(&self) -> Vec<String> {
         let stem = self.name.trim_end_matches(".rs");
         let stem = stem.strip_suffix("/mod").unwrap_or(stem);
@@ -84,7 +84,7 @@ fn is_word(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
-/// Splits `a::{b, c::{d}}` into `a::b` and `a::c::d`.
+/// Splits a `use` tree: `a::{b, c::{d}}` becomes `a::b` and `a::c::d`.
 fn expand_tree(tree: &str, prefix: &str, take: &mut impl FnMut(&str)) {
     let tree = tree.trim();
     let Some(open) = tree.find('{') else {
@@ -110,7 +110,7 @@ fn expand_tree(tree: &str, prefix: &str, take: &mut impl FnMut(&str)) {
     }
 }
 
-/// Path from the root of the crate.
+/// Resolves a path, starting at the root of the crate.
 fn resolve(module: &[String], path: &str) -> String {
     let mut module = module.to_vec();
     let mut words = path.split("::").peekable();
@@ -128,7 +128,7 @@ fn resolve(module: &[String], path: &str) -> String {
     module.join("::")
 }
 
-/// Path as if all members of the workspace were modules of one crate, as in `lib.rs`.
+/// Path as if all members of the workspace were modules of one crate.
 fn is_in_crate(module: &[String], path: &str) -> String {
     const MEMBERS: [&str; 8] = ["client", "controller", "files", "frame", "toyo", "transport", "yerc", "yrcx"];
     let (first, rest) = path.split_once("::").unwrap_or((path, ""));
@@ -143,7 +143,8 @@ fn is_in_crate(module: &[String], path: &str) -> String {
     }
 }
 
-/// Code without comments and the contents of string and character literals, with the same lines.
+/// Returns the code without comments and without the contents of string and character literals. The line numbers stay
+/// the same.
 fn strip_code(text: &str) -> String {
     let mut stripped = String::with_capacity(text.len());
     let mut rest = text;
@@ -169,7 +170,7 @@ fn strip_code(text: &str) -> String {
     stripped
 }
 
-/// `r##` of a raw string that begins here.
+/// The prefix of a raw string that begins here, such as `r##`.
 fn raw_fence<'a>(rest: &'a str, before: &str) -> Option<&'a str> {
     let hashes = rest.strip_prefix('r')?;
     let count = hashes.len() - hashes.trim_start_matches('#').len();
@@ -177,7 +178,7 @@ fn raw_fence<'a>(rest: &'a str, before: &str) -> Option<&'a str> {
     is_start.then(|| &rest[..=count])
 }
 
-/// Length of a literal that begins here, including its quotes.
+/// Returns the length of the literal that begins here, including its quotes.
 fn closing(rest: &str, quote: char) -> usize {
     let mut is_escaped = false;
     for (at, c) in rest.char_indices().skip(1) {
@@ -191,7 +192,7 @@ fn closing(rest: &str, quote: char) -> usize {
     rest.len()
 }
 
-/// Whether a character literal begins here, not a lifetime.
+/// Whether a character literal begins here. Otherwise the quote begins a lifetime.
 fn is_character(rest: &str) -> bool {
     let mut next = rest.chars().skip(1);
     match next.next() {
@@ -210,7 +211,7 @@ fn finds_paths_in_sources() {
     assert_eq!(paths, expected.map(|(line, path)| (line, path.to_owned())));
 }
 
-/// Whether the text contains the word, not as the end of a longer one.
+/// Whether the text contains the word. The end of a longer word does not count.
 pub fn has_word(text: &str, word: &str) -> bool {
     let ends = |at: usize| text[..at].ends_with(|before: char| before.is_alphanumeric() || before == '_');
     text.match_indices(word).any(|(at, _)| !ends(at))
@@ -220,7 +221,7 @@ pub fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Every file of the project, without those of cargo and git.
+/// Every file of the project, except for the files of cargo and git.
 pub fn committed(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).expect("the folder is readable").filter_map(Result::ok) {

@@ -1,4 +1,4 @@
-//! The columns of CSV come from the schema of the report, for every command that reads.
+//! The columns of CSV output come from the schema of the report. This is tested for every command that reads.
 
 use std::path::Path;
 use std::process::Command;
@@ -8,11 +8,11 @@ use armctl_controller::Risk;
 use armctl_frame::output::csv::{RowsOf, Sheet};
 use serde_json::Value;
 
-/// Commands that write files, wait, or need another target than a simulator.
+/// Words of commands that write files, wait, or need another target than a simulator.
 const LEFT_OUT: [&str; 10] =
     ["watch", "--for", "--continuous", "auto-mode", "backup", "diff", "dump", "file", " -t ", "program get"];
 
-/// stdout of a line on the simulator, if it succeeded.
+/// stdout of a command line on the simulator; `None` if the command failed.
 fn print_report(line: &str, format: &str, folder: &Path) -> Option<String> {
     let words = line.split(' ').map(|word| word.trim_matches('\''));
     let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));

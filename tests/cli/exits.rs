@@ -1,4 +1,4 @@
-//! Exit codes that need a faulty peer or a signal: garbage answers, a lost answer of a change, a full disk, Ctrl-C.
+//! Exit codes that need a faulty peer or a signal: malformed answers, a lost answer of a change, a full disk, Ctrl-C.
 
 #![expect(clippy::needless_raw_string_hashes, reason = "as snapbox writes them")]
 
@@ -13,7 +13,7 @@ use serde_json::Value;
 use super::json;
 use super::transcript::{Desk, Simulator};
 
-/// A controller that answers each request with the result of `answer`; it ends with the process.
+/// A controller that answers each request with the result of `answer`. It ends with the process.
 fn peer(answer: impl Fn(&[u8]) -> Option<Vec<u8>> + Send + 'static) -> String {
     let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
     let target = format!("udp://{}", socket.local_addr().expect("an address"));
@@ -28,7 +28,7 @@ fn peer(answer: impl Fn(&[u8]) -> Option<Vec<u8>> + Send + 'static) -> String {
     target
 }
 
-/// A successful answer without data.
+/// A successful answer without data, as for a write.
 fn set_value(request: &[u8]) -> Vec<u8> {
     let mut answer = request[..24].to_vec();
     answer[6..8].copy_from_slice(&[0, 0]);
@@ -38,7 +38,7 @@ fn set_value(request: &[u8]) -> Vec<u8> {
     answer
 }
 
-/// The error body on stderr, its only line; stdout must be empty.
+/// The error on stderr, which must be its only line. stdout must be empty.
 fn failure(output: &Output) -> Value {
     assert_eq!(String::from_utf8_lossy(&output.stdout), "");
     let stderr = String::from_utf8_lossy(&output.stderr);
@@ -54,7 +54,7 @@ fn failure(output: &Output) -> Value {
 #[test]
 fn exits_5_for_a_malformed_answer() {
     let desk = Desk::new();
-    // A status has eight bytes of data; this one has none.
+    // The answer to a status read has eight bytes of data, but this answer has none.
     let target = peer(|request| Some(set_value(request)));
     let output = desk.armctl(&["-t", &target, "yerc", "status", "--json"]).output().expect("it runs");
     assert_eq!(output.status.code(), Some(5), "{output:?}");
@@ -80,7 +80,7 @@ fn exits_5_for_garbage() {
     );
 }
 
-/// A controller that refuses reads, and does not answer other requests.
+/// A controller that refuses reads and does not answer other requests.
 fn refuses_to_report(request: &[u8]) -> Option<Vec<u8>> {
     let mut refused = set_value(request);
     refused[25] = 0x08;
@@ -122,9 +122,9 @@ fn describes_exit_6() {
     snapbox::assert_data_eq!(
         stderr,
         snapbox::str![[r#"
-error: udp://127.0.0.1:10040: sent once, no answer within 100ms: the result is unknown
+error: udp://127.0.0.1:10040: the request was sent once, with no answer within 100ms: the result is unknown
 
-hint: check before you repeat it: `yerc status` shows the state
+hint: check before you repeat the command: use `yerc status` to see the state
 
 "#]]
     );
@@ -182,7 +182,7 @@ fn interrupted_during_a_move() {
     };
     let line = ["-t", &simulator.target, "--yes", "yerc", "move", "relative", "--z", "-600", "--speed", "1mm/s"];
     let mut child = spawn(desk.armctl(&line));
-    // Ten minutes of motion: in progress as soon as the controller reports it.
+    // The motion takes ten minutes, so it is in progress when the controller reports that it runs.
     wait(&desk, &simulator, ".data.running");
     interrupt(&child, "INT");
     assert_eq!(child.wait().expect("it ends").code(), Some(130));
@@ -190,12 +190,12 @@ fn interrupted_during_a_move() {
         read_output(&mut child),
         snapbox::str![[r#"
 stopping the robot: HOLD on
-interrupted: the robot was stopped: HOLD is on; `yerc hold off` releases it
+interrupted: the robot was stopped: HOLD is on; use `yerc hold off` to release HOLD
 
 "#]]
     );
     assert_eq!(status(".data.hold_sources"), "[\"command\"]\n");
-    // It slows down and stops, and is released only by a command.
+    // The robot slows down and stops. Only a command releases HOLD.
     wait(&desk, &simulator, ".data.running | not");
     let released = desk.armctl(&["-t", &simulator.target, "--yes", "yerc", "hold", "off"]).output().expect("it runs");
     assert!(released.status.success());
@@ -237,7 +237,7 @@ fn interrupted_while_points_are_stored() {
     let desk = Desk::new();
     let rows: String = (1..=999).map(|point| format!("{point},{point},0,0,0\n")).collect();
     std::fs::write(desk.path().join("many.csv"), format!("name,x_mm,y_mm,z_mm,r_mm\n{rows}")).expect("a file");
-    // At this rate it takes half a minute.
+    // At this baud rate, the command takes half a minute.
     let line = ["-t", "sim:?baud=115200", "-vv", "toyo", "point", "restore", "many.csv", "--task", "2"];
     let line = [&line[..], &["--jq", "[.data.items[] | select(.written)] | length"]].concat();
     let mut child = spawn(desk.armctl(&line));
@@ -247,7 +247,7 @@ fn interrupted_while_points_are_stored() {
     let rest: Vec<String> = stderr.collect();
     assert_eq!(child.wait().expect("it ends").code(), Some(130));
     let orders = rest.iter().filter_map(|line| line.strip_prefix("-> ")?.split("  #").next()).rev();
-    // Reads before writes check that the line is idle.
+    // Reads of the status are left out: before a write, they check that the line is idle.
     let orders: Vec<&str> = orders.filter(|order| !order.starts_with("@STAS")).take(2).collect();
     assert_eq!(orders, ["@HSOF", "@CTSK TASK=01"], "what was changed for a while is put back");
     let mut written = String::new();
@@ -272,7 +272,7 @@ fn server_prints_its_address_and_ends_on_a_signal() {
     }
 }
 
-/// Waits until a filter over the status of a controller is true.
+/// Waits until this filter is true for the status of a controller.
 fn wait(desk: &Desk, simulator: &Simulator, until: &str) {
     let target = simulator.target.as_str();
     let line = ["-t", target, "yerc", "status", "--watch", "5ms", "--until", until, "--for", "1m"];
@@ -284,14 +284,14 @@ fn spawn(mut command: Command) -> Child {
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts")
 }
 
-/// The first line on stdout; nothing is read after it.
+/// The first line on stdout. The test reads nothing after it.
 fn first_line(child: &mut Child) -> String {
     let mut line = String::new();
     BufReader::new(child.stdout.take().expect("stdout is a pipe")).read_line(&mut line).expect("a line");
     line
 }
 
-/// stderr until the end.
+/// Reads stderr to its end.
 fn read_output(child: &mut Child) -> String {
     let mut text = String::new();
     let Some(mut stderr) = child.stderr.take() else { return text };
@@ -304,7 +304,8 @@ fn interrupt(child: &Child, signal: &str) {
     assert!(sent.success());
 }
 
-/// A command that writes a file leaves no partial file when it is ended at any time, and removes those of earlier runs.
+/// A command that writes a file leaves no partial file, whenever it is ended. It also removes the partial files of
+/// earlier runs.
 #[test]
 fn leaves_no_partial_files() {
     let home = tempfile::tempdir().expect("there is room for a folder");
@@ -322,7 +323,7 @@ fn leaves_no_partial_files() {
     };
     for number in 0..40 {
         let mut child = spawn(armctl(&format!("robots add r{number} udp://127.0.0.1")));
-        // Try different times.
+        // Each run ends the command at a different time.
         thread::sleep(std::time::Duration::from_millis(number / 2));
         let _gone = Command::new("kill").args(["-TERM", &child.id().to_string()]).stderr(Stdio::null()).status();
         child.wait().expect("it ends");

@@ -1,4 +1,5 @@
-//! JSON of the transcripts: indented, without values that change between runs, and checked against envelope and schema.
+//! JSON in the transcripts: it is indented, has no values that change between runs, and is checked against the envelope
+//! and its schema.
 
 use serde_json::Value;
 
@@ -7,7 +8,7 @@ use crate::support::schemas::check;
 /// Maximum width of indented JSON.
 const WIDTH: usize = 100;
 
-/// Text without our times; times of a controller are always the same.
+/// Text without values that change between runs. Times of a simulated controller are always the same, so they remain.
 fn redact(text: &str) -> String {
     let text = replace_dates(text, "\"time\":\"", |value| value.find('"').filter(|end| value[..*end].ends_with('Z')));
     let text = replace_dates(&text, "\"elapsed_ms\":", |value| value.find([',', '}']));
@@ -25,10 +26,10 @@ fn redact(text: &str) -> String {
     replace_dates(&replace_dates(&text, "taken at   ", end), "elapsed (ms)  ", end)
 }
 
-/// A time within a sentence.
+/// A time within a sentence, as an example of the format.
 const DATE: &str = "2026-11-21 09:31:05";
 
-/// Text with `[..]` for the value after a name; `end` finds the end of the value.
+/// Replaces the value after each `name` by `[..]`. `end` finds the end of the value.
 fn replace_dates(text: &str, name: &str, end: impl Fn(&str) -> Option<usize>) -> String {
     let mut parts = text.split(name);
     let first = parts.next().unwrap_or_default().to_owned();
@@ -38,7 +39,7 @@ fn replace_dates(text: &str, name: &str, end: impl Fn(&str) -> Option<usize>) ->
     })
 }
 
-/// A line as in a transcript: JSON is indented, and an envelope is checked.
+/// A line as a transcript shows it. JSON is indented, and an envelope is also checked.
 pub fn format_value(line: &str) -> String {
     let Some(value) = document(line) else { return redact(line) };
     let one = std::slice::from_ref(&value);
@@ -54,7 +55,7 @@ fn document(line: &str) -> Option<Value> {
     serde_json::from_str(line).ok().filter(|value: &Value| value.is_object() || value.is_array())
 }
 
-/// Objects and lists on one line if they fit.
+/// Formats JSON. An object or list is on one line if it fits.
 fn pretty(value: &Value, indent: usize) -> String {
     let flat = value.to_string();
     let inner = " ".repeat(indent + 2);
@@ -74,7 +75,7 @@ fn pretty(value: &Value, indent: usize) -> String {
     format!("{open}\n{inner}{}\n{}{close}", items.join(&format!(",\n{inner}")), " ".repeat(indent))
 }
 
-/// Corrupts a document.
+/// Function that corrupts a document, so that the check must fail.
 type Corruption<'a> = &'a dyn Fn(&mut Value);
 
 #[test]
@@ -127,6 +128,6 @@ fn finds_violations_of_the_json_contract() {
 }
 
 fn take(value: &mut Value, key: &str) {
-    // The order of the rest is unchanged.
+    // This keeps the order of the other keys.
     value.as_object_mut().expect("an object").shift_remove(key).expect("it is there");
 }

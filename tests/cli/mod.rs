@@ -1,7 +1,8 @@
-//! Every command through the built binary: its output and exit code.
+//! Runs every command with the built binary, and checks its output and exit code.
 //!
-//! `NAME.console` files are transcripts; `transcript.rs` has their syntax. `SNAPSHOTS=overwrite cargo test --test
-//! terminal cli::` writes the output into them: add the commands, run this, and review the result.
+//! `NAME.console` files are transcripts; `transcript.rs` describes their syntax. `SNAPSHOTS=overwrite cargo test --test
+//! terminal cli::` writes the output into them. To extend a transcript, add the commands, run this, and review the
+//! result.
 #![cfg(unix)]
 
 mod csv;
@@ -96,7 +97,7 @@ fn runs_every_transcript() {
     assert_eq!(transcript::names(), TRANSCRIPTS, "transcripts are listed above in the order of the alphabet");
 }
 
-/// Commands that print scripts, pages, texts or schemas instead of reports.
+/// Commands that print scripts, pages, texts or schemas, and not reports.
 const PLAIN: [&str; 4] = ["completions", "man", "help", "schema"];
 
 #[test]
@@ -125,7 +126,7 @@ fn every_command_has_transcripts() {
     assert_eq!(without_examples, [""; 0], "commands without a transcript in JSON");
 }
 
-/// The subcommand with these words, such as `yerc file get`.
+/// The command at the beginning of these words, for example `yerc file get`.
 fn path(root: &clap::Command, words: &[&str]) -> String {
     let mut command = root;
     let mut path = Vec::new();

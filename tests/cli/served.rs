@@ -1,5 +1,5 @@
-//! The examples of the help have the same result on a served simulator, which is used over a socket like a controller,
-//! as on the built-in one.
+//! The examples of the help have the same result on a served simulator as on the built-in simulator. A served simulator
+//! is used over a socket, like a controller.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -10,7 +10,7 @@ use armctl::command::example_lines::robot_lines;
 
 use crate::support::simulator::Simulator;
 
-/// Lines without an end, with a robot name, or that take seconds, such as motions and complete backups.
+/// Lines that do not end, that have a robot name, or that take seconds, such as motions and complete backups.
 const LEFT_OUT: &[&str] = &[
     "watch",
     "--for",
@@ -60,22 +60,22 @@ const LEFT_OUT: &[&str] = &[
     "yrcx shift-data get 0..39",
     "yrcx var get SGI0..SGI31 SGR5",
 ];
-/// Number of parallel lines.
+/// Number of lines that run in parallel.
 const WORKERS: usize = 6;
 
-/// Exit code and output of a line in its own folder.
+/// Runs a line in its own folder. Returns the exit code and the output.
 fn run(line: &str, robot: &str) -> (Option<i32>, String) {
     let folder = tempfile::tempdir().expect("there is room for a folder");
     let path: &Path = folder.path();
     let mut shell = Command::new("sh");
-    // The lines are quoted as for a shell.
+    // The lines contain shell quotes, so a shell runs them.
     shell.arg("-c").arg(format!("exec \"$0\" {robot} --yes {line}")).arg(env!("CARGO_BIN_EXE_armctl"));
     shell.current_dir(path).env("HOME", path).env("XDG_RUNTIME_DIR", path).env_remove("ARMCTL_CONFIG");
     let output = shell.stdin(Stdio::null()).output().expect("armctl starts");
     (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
 }
 
-/// Differences on a served simulator.
+/// Runs a line on both simulators. Returns the difference of the exit codes, if any.
 fn difference(line: &str) -> Option<String> {
     let family = line.split(' ').next().expect("a family");
     let simulator = Simulator::start(family);
@@ -104,7 +104,8 @@ fn help_examples_work_on_a_served_simulator() {
     assert!(different.is_empty(), "{}", different.join("\n"));
 }
 
-/// A station and a base are stored in pulses, also if the dry run before the question shows another form.
+/// The controller stores a station and a base in pulses. This also works if the dry run before the question shows
+/// another form.
 #[test]
 fn teaches_stations_and_bases() {
     let simulator = Simulator::start("yerc");

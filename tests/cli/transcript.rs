@@ -1,17 +1,17 @@
 //! Runs a transcript: typed commands, and the expected stdout, stderr and exit code.
 //!
-//! | line | is |
+//! | line | meaning |
 //! |---|---|
-//! | `$ COMMAND` | typed into `sh`, in a folder that the commands of a transcript share |
-//! | `2> TEXT` | a line on stderr; what comes without a mark is stdout |
-//! | `? N` | the exit code, where it is not 0 |
+//! | `$ COMMAND` | typed into `sh`, in a folder that all commands of the transcript use |
+//! | `2> TEXT` | a line on stderr; a line without a mark is stdout |
+//! | `? N` | the exit code, if it is not 0 |
 //! | `## TEXT` | a comment |
 //!
-//! JSON is indented. The test checks that it was a single line and that envelope and schema are correct. Values that
-//! change between runs are `[…]`. Progress lines are omitted, because they depend on the duration.
-//! `udp://127.0.0.1:10040` is a yerc simulator of this transcript, `eip://127.0.0.1:44818` a yrcx one and
-//! `tcp://127.0.0.1:4001` a toyo one, on other ports in reality. Their start state is `NAME.toml` next to
-//! `NAME.console`, if it exists. The files of `files/` are in the folder.
+//! JSON is indented. The test checks that the program printed it on a single line, and that envelope and schema are
+//! correct. Values that change between runs are `[…]`. Progress lines are omitted, because they depend on the duration.
+//! `udp://127.0.0.1:10040` is a yerc simulator of this transcript, `eip://127.0.0.1:44818` a yrcx simulator, and
+//! `tcp://127.0.0.1:4001` a toyo simulator. They run on other ports than the transcript shows. Their start state is
+//! `NAME.toml` next to `NAME.console`, if this file exists. The folder also contains the files of `files/`.
 
 use std::io::{BufRead as _, BufReader};
 use std::path::{Path, PathBuf};
@@ -21,11 +21,11 @@ use tempfile::TempDir;
 
 use super::json;
 
-/// Families, and the addresses of their simulators in transcripts.
+/// Families, and the addresses that transcripts show for their simulators.
 const DOCUMENTED: [(&str, &str); 3] =
     [("yerc", "udp://127.0.0.1:10040"), ("yrcx", "eip://127.0.0.1:44818"), ("toyo", "tcp://127.0.0.1:4001")];
 
-/// Runs the transcript of this name and compares it; `SNAPSHOTS=overwrite` writes the output instead.
+/// Runs the transcript of this name, and compares the output. With `SNAPSHOTS=overwrite`, writes the output instead.
 pub fn check(name: &str) {
     let path = folder().join(format!("{name}.console"));
     let text = std::fs::read_to_string(&path).expect("the transcript is there");
@@ -55,14 +55,14 @@ pub fn check(name: &str) {
     snapbox::Assert::new().action_env("SNAPSHOTS").normalize_paths(false).eq(printed, expected);
 }
 
-/// Every command line of every transcript.
+/// Returns every command line of every transcript.
 pub fn commands() -> Vec<String> {
     let texts = names().into_iter().map(|name| std::fs::read_to_string(folder().join(format!("{name}.console"))));
     let texts: Vec<String> = texts.collect::<Result<_, _>>().expect("transcripts are readable");
     texts.iter().flat_map(|text| text.lines()).filter_map(|line| Some(line.strip_prefix("$ ")?.to_owned())).collect()
 }
 
-/// Names of all transcripts.
+/// Returns the names of all transcripts.
 pub fn names() -> Vec<String> {
     let files = std::fs::read_dir(folder()).expect("the folder of the transcripts");
     let names = files
@@ -76,13 +76,13 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cli")
 }
 
-/// Test environment: its own folder and home, no variables of armctl, no terminal.
+/// Test environment with its own folder and home, without variables of armctl, and without a terminal.
 pub struct Desk {
     folder: TempDir,
 }
 
 impl Desk {
-    /// An environment with the files of `files/`.
+    /// Creates an environment with the files of `files/`.
     pub fn new() -> Self {
         let desk = Self { folder: tempfile::tempdir().expect("a folder") };
         std::fs::create_dir(desk.path().join(".run")).expect("a folder for sockets");
@@ -93,12 +93,12 @@ impl Desk {
         desk
     }
 
-    /// Its folder.
+    /// Folder of the environment.
     pub fn path(&self) -> &Path {
         self.folder.path()
     }
 
-    /// A command of the binary.
+    /// A command that runs the binary in this environment.
     pub fn armctl(&self, arguments: &[&str]) -> Command {
         let mut command = self.command(env!("CARGO_BIN_EXE_armctl"));
         command.args(arguments);
@@ -119,7 +119,7 @@ impl Desk {
         command
     }
 
-    /// Content of the transcript after a command.
+    /// Runs a command. Returns the lines that the transcript has for it.
     fn command_line(&self, line: &str, simulators: &[Simulator]) -> String {
         let served_line = simulators.iter().fold(line.to_owned(), |line, simulator| simulator.reachable_url(&line));
         let output = self.command("sh").args(["-c", &served_line]).output().expect("sh runs");
@@ -145,8 +145,8 @@ impl Desk {
     }
 }
 
-/// Whether it is a progress line, `reading points: 40 %, 466 of 999, 12 s left`; they are printed only during long
-/// work.
+/// Whether a line is a progress line, for example `reading points: 40 %, 466 of 999, 12 s left`. Only a long command
+/// prints such lines.
 fn is_progress(line: &str) -> bool {
     line.ends_with(" left") && line.contains(" %, ")
 }
@@ -160,12 +160,12 @@ impl Drop for Desk {
     }
 }
 
-/// `armctl sim FAMILY` on free ports; it ends with the test.
+/// `armctl sim FAMILY` on free ports. The process ends with the test.
 pub struct Simulator {
     process: Child,
     /// URL of the simulator.
     pub target: String,
-    /// URL in transcripts.
+    /// URL that the transcripts show for this simulator.
     documented: &'static str,
 }
 
@@ -201,7 +201,7 @@ impl Simulator {
 
 impl Drop for Simulator {
     fn drop(&mut self) {
-        // The process may have ended already.
+        // The process may already have ended.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }

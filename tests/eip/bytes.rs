@@ -1,4 +1,4 @@
-//! No bytes cause a panic, and messages round-trip.
+//! No bytes cause a panic, and messages can be written and read again without a change.
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::Arc;
@@ -131,7 +131,7 @@ proptest! {
         prop_assert_eq!(Cyclic::parse(&bytes), Ok(cyclic));
     }
 
-    /// Damaged messages are refused or ignored by both ends.
+    /// Both ends refuse or ignore damaged messages.
     #[test]
     fn survives_damaged_exchanges(at in 0usize..200, with in any::<u8>(), cut in 0usize..200) {
         let world = World::open(setup(), settings(), "");

@@ -1,4 +1,5 @@
-//! EtherNet/IP: both ends against each other in virtual time and on sockets, and each against other implementations.
+//! EtherNet/IP: both ends of this project with each other, in virtual time and on sockets, and each end with other
+//! implementations.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 

@@ -1,4 +1,4 @@
-//! Multicast groups and broadcasts. They need port 2222 of the whole machine, and therefore a separate test program.
+//! Multicast groups and broadcasts. These tests need port 2222 on all addresses, and therefore a separate test program.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -37,7 +37,7 @@ async fn every_subscriber_receives_a_multicast_group() {
         assert_eq!(view.generation, 1, "{view:?}");
     }
     listener.close().await.unwrap();
-    // The group is received as long as one connection needs it.
+    // The scanner continues to receive the group as long as one connection needs it.
     let received = owner.view().statistics.received;
     owner.until(|view| view.statistics.received > received + 2).await;
     owner.close().await.unwrap();

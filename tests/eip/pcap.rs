@@ -1,4 +1,4 @@
-//! A capture file of the exchanged packets, with synthetic IP, UDP and TCP headers (link type RAW).
+//! A capture file of the exchanged packets. Their IP, UDP and TCP headers are synthetic (link type RAW).
 
 use armctl_transport::eip::tap::Passed;
 use std::collections::HashMap;
@@ -8,7 +8,7 @@ use std::net::SocketAddrV4;
 pub struct Capture {
     packets: Vec<u8>,
     count: u32,
-    /// Bytes sent so far, by stream and direction.
+    /// Number of bytes sent so far, by stream and direction.
     sent: HashMap<(SocketAddrV4, SocketAddrV4), u32>,
 }
 
@@ -21,7 +21,7 @@ impl Capture {
             segment.extend(next.to_be_bytes());
             *next += u32::from(len);
             segment.extend(self.sent.get(&(passed.to, passed.from)).unwrap_or(&1).to_be_bytes());
-            // Header of 5 words; PSH and ACK; window; no checksum and urgent pointer.
+            // A header of 5 words, the flags PSH and ACK, and the window. Checksum and urgent pointer are 0.
             segment.extend([0x50, 0x18, 0xFF, 0xFF, 0, 0, 0, 0]);
         } else {
             segment.extend((len + 8).to_be_bytes());
@@ -36,7 +36,7 @@ impl Capture {
         packet.extend(segment);
         let len = u32::try_from(packet.len()).unwrap().to_le_bytes();
         self.count += 1;
-        // One second per packet: only the order matters.
+        // Each packet is one second later than the previous packet. Only their order matters.
         self.packets.extend([self.count.to_le_bytes(), [0; 4], len, len].concat());
         self.packets.extend(packet);
     }

@@ -1,8 +1,8 @@
-//! Other implementations at the remote end: adapter, scanner, explicit client, decoder.
+//! Tests with other implementations at the remote end: adapter, scanner, explicit client, decoder.
 //!
-//! `ciplink` is a crate. The others are in the folder `ARMCTL_EIP_PEERS`, made by `peers/install`; tshark must be
-//! installed. Otherwise the tests are skipped with a message. Devices and scanners need port 2222 of a separate
-//! address, which the loopback network of Linux has.
+//! `ciplink` is a crate. The other programs are in the folder `ARMCTL_EIP_PEERS`, which `peers/install` creates; tshark
+//! must be installed. If something is missing, the tests are skipped with a message. Devices and scanners need port
+//! 2222 of a separate address; the loopback network of Linux has such addresses.
 
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
 use std::path::PathBuf;
@@ -24,7 +24,7 @@ use ciplink::adapter::{Adapter, AdapterConfig, Assembly, Event};
 use super::pcap;
 use super::world::{MS, Mirror, setup, with_long_timeout};
 
-/// A loopback address whose port 2222 is free; each parallel test has one.
+/// A loopback address on which port 2222 is free. Each test that runs in parallel has its own address.
 fn address(last: u8) -> Option<Ipv4Addr> {
     let address = Ipv4Addr::new(127, 44, 18, last);
     UdpSocket::bind((address, IO_PORT)).ok().map(|_| address)
@@ -32,7 +32,7 @@ fn address(last: u8) -> Option<Ipv4Addr> {
 
 const NO_ADDRESS: &str = "skipped: the loopback has only one address here, or port 2222 of another is taken";
 
-/// Folder of the peers that are not crates.
+/// Folder of the programs that are not crates.
 fn folder() -> Option<PathBuf> {
     std::env::var_os("ARMCTL_EIP_PEERS").map(PathBuf::from)
 }
@@ -148,7 +148,7 @@ async fn ciplink_reports_its_identity() {
     client.close().await;
 }
 
-/// Our adapter on its default ports.
+/// Starts the adapter of this project on its default ports.
 fn serve(address: Ipv4Addr) -> Option<Server<Mirror>> {
     Server::start(setup(), Mirror::default(), Listen::usual(address), None).ok()
 }
@@ -192,7 +192,7 @@ fn pycomm3_asks_our_adapter() {
     assert_eq!(found["refused"]["error"], "Attribute not settable");
 }
 
-/// A complete exchange as a capture file, read by tshark.
+/// tshark reads a complete exchange from a capture file.
 #[tokio::test]
 async fn tshark_decodes_recorded_packets() {
     if Command::new("tshark").arg("--version").output().is_err() {
@@ -228,7 +228,7 @@ async fn tshark_decodes_recorded_packets() {
     };
     assert_eq!(read("_ws.malformed || _ws.expert.severity == error", &["frame.number"]), [""; 0]);
 
-    // Versions of tshark write numbers differently.
+    // Some versions of tshark write numbers in decimal, and others in hexadecimal.
     let numbers = |filter: &str, fields: &[&str]| {
         let lines = read(filter, fields);
         let parts = lines.iter().flat_map(|line| line.split(['|', ',']));
@@ -252,7 +252,7 @@ async fn tshark_decodes_recorded_packets() {
     assert_eq!(numbers("cip.cm.sc == 0x4e && cip.rr == 1", &["cip.genstat"]), [0]);
     assert_eq!(read("enip.lir.vendor == 636", &["enip.lir.name"]), ["RCX"]);
 
-    // tshark needs the opening of a connection to know the direction of an image.
+    // tshark needs the request that opens a connection to determine the direction of an image.
     let out =
         read("cipio && cip.32bitheader", &["enip.cpf.sai.seq", "cip.seq", "cip.32bitheader.run_idle", "udp.length"]);
     let mut runs = Vec::new();
@@ -262,7 +262,7 @@ async fn tshark_decodes_recorded_packets() {
         runs.push(run.ends_with('1'));
     }
     runs.dedup();
-    // Idle until run is set, and idle again before the end.
+    // The connection is idle until the scanner sets run. It may be idle again before the end.
     assert!([&[true, false][..], &[false, true, false]].contains(&&runs[..]), "{out:?}");
     let reparsed = read("cipio && !cip.32bitheader", &["udp.length"]);
     assert!(reparsed.len() >= 3 && reparsed.iter().all(|len| len == "76"), "{reparsed:?}");

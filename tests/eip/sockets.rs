@@ -1,4 +1,4 @@
-//! Both ends on loopback sockets. The tests wait for events, never for a time.
+//! Both ends on loopback sockets. The tests wait for events, never for a fixed time.
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::{Arc, Mutex};
@@ -75,7 +75,7 @@ async fn reads_images_of_an_owned_device() {
     owner.set_image(1, &[0x5A; 48]).unwrap();
     owner.set_run(1, true).unwrap();
     read_image(&mut reader, &|reading| reading.as_deref().is_ok_and(|image| image == [0xA5; 48])).await;
-    // Reports a silent device, and its return.
+    // The link reports that the device is silent, and later that it answers again.
     server.with(|adapter, _| adapter.set_fault(Some(AdapterFault::Mute)));
     read_image(&mut reader, &|reading| matches!(reading, Err(EipError::NoAnswer { .. }))).await;
     server.with(|adapter, _| adapter.set_fault(None));
@@ -156,7 +156,7 @@ async fn closes_a_dropped_connection() {
     let server = serve(setup());
     let scanner = Scanner::start(LOOPBACK).unwrap();
     drop(scanner.open(server.address(), quick(), Tap::default()).await.unwrap());
-    // The device is free for the next owner, which may have to wait for the close.
+    // The device is free for the next owner. This owner may have to wait until the first connection is closed.
     while let Err(trouble) = scanner.open(server.address(), quick(), Tap::default()).await {
         assert_eq!(trouble.code().unwrap().code, 0x0106, "{trouble}");
     }
@@ -249,7 +249,7 @@ async fn probe_finds_instances_and_sizes() {
     let setup = Setup::new(identity(), (102, 36), (101, 20), 151);
     let server = serve(setup);
     let mut client = Client::new(server.address(), Duration::from_secs(20), Tap::default());
-    // Wrong in every way, in both orders.
+    // Both guesses are wrong: the first has wrong instances, and the second has the directions exchanged.
     for thought in
         [Instances { output: 150, input: 100, configuration: Some(1) }, Instances { input: 101, output: 102, ..right }]
     {
@@ -260,7 +260,7 @@ async fn probe_finds_instances_and_sizes() {
         let found = Connectable { instances: right, output_size: Some(20), input_size: Some(36) };
         assert_eq!(findings.connectable, Some(found), "{:?}", findings.attempts);
     }
-    // No connection was opened, not even for a moment.
+    // The probe opened no connection, not even for a short time.
     assert_eq!(server.with(|adapter, _| adapter.application().events.clone()), []);
     client.close().await;
 }

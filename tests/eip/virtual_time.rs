@@ -1,4 +1,4 @@
-//! The originator against the adapter, in virtual time.
+//! The originator and the adapter with each other, in virtual time.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use armctl_transport::eip::wire::{Command, Cyclic, Frame, Identity, Key, Open, R
 
 use super::world::{MS, Mirror, ORIGINATOR_ADDRESS, World, identity, resting, settings, setup};
 
-/// A recognizable image.
+/// An image that can be recognized by its mark.
 fn image(mark: u8) -> Vec<u8> {
     (0..48).map(|at| mark.wrapping_add(at)).collect()
 }
@@ -90,7 +90,7 @@ fn survives_a_bad_network() {
                 world.view().input.is_some_and(|input| *input.image == *native_order(&image(mark)))
             });
         }
-        // Never an old image after a newer one, although the network reorders them.
+        // An old image never replaces a newer image, although the network changes the order of packets.
         let history = &world.adapter.application().history;
         let marks: Vec<u8> = history.iter().map(|(image, _)| image[0]).filter(|mark| (1..100).contains(mark)).collect();
         assert!(marks.is_sorted(), "seed {seed}: {marks:?}");
@@ -148,7 +148,7 @@ fn every_opening_has_a_unique_number() {
         world.run_until(400 * MS, |world| world.view().state == State::Lost);
         world.adapter.set_fault(None);
         world.run_until(20_000 * MS, |world| world.view().generation == generation);
-        // After a received image, the next wait is short again.
+        // When an image was received, the wait before the next try is short again.
         world.run(100 * MS);
     }
     let opens: Vec<Open> =
@@ -215,7 +215,7 @@ fn adapter_waits_ten_seconds_for_the_first_image_only() {
 
 #[test]
 fn detects_adapter_faults() {
-    // The fault, and whether the connection is lost.
+    // Each fault, and whether the connection is lost.
     let cases = [
         (AdapterFault::HalfRate, false),
         (AdapterFault::Double, false),
@@ -275,7 +275,7 @@ fn reports_an_absent_device_at_once() {
     assert_eq!(world.view().trouble, Some(EipError::NoAnswer { what: "the TCP connection", after }));
 }
 
-/// If the answer to ForwardOpen is lost, the device may have the connection, so it is closed.
+/// If the answer to ForwardOpen is lost, the device may have opened the connection. The originator therefore closes it.
 #[test]
 fn closes_an_opening_of_unknown_outcome() {
     let mut world = World::new(setup(), settings(), "");
@@ -368,7 +368,7 @@ fn joins_and_leaves_a_multicast_group() {
     assert!(world.joined.is_empty());
 }
 
-/// The second originator is simulated by hand.
+/// Opens a connection for a second originator, whose request is built here. Returns the status of the answer.
 fn second(world: &mut World, settings: &Settings, serial: u16) -> Status {
     let open = Open {
         o_t_id: 0,
@@ -395,11 +395,11 @@ fn accepts_one_owner_and_many_listeners() {
     assert_eq!(second(&mut world, &listener(Role::ListenOnly, 237), 2), Status::OK);
     assert_eq!(second(&mut world, &listener(Role::ListenOnly, 237), 2), Status::connection(0x0100, &[]));
     assert_eq!(world.adapter.peers().count(), 2);
-    // One group, sent once.
+    // The adapter sends each image to the group only once.
     let before = world.view().statistics.received;
     world.run(1000 * MS);
     assert!((50..=51).contains(&(world.view().statistics.received - before)));
-    // Listeners are closed with the last connection that has data sent.
+    // When the last connection that is not listen-only is closed, the adapter also closes the listen-only connections.
     world.originator.close();
     world.run_until(1000 * MS, |world| world.originator.is_finished());
     assert_eq!(world.adapter.peers().count(), 0);

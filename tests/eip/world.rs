@@ -1,4 +1,5 @@
-//! An originator and an adapter on a network in virtual time: TCP is reliable or down, UDP has the requested faults.
+//! An originator and an adapter on a network in virtual time. TCP is reliable or down, and UDP has the requested
+//! faults.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -21,7 +22,7 @@ const TRIP_TIME: Duration = MS;
 pub const ORIGINATOR_ADDRESS: Ipv4Addr = Ipv4Addr::new(10, 0, 0, 1);
 pub const ADAPTER_ADDRESS: Ipv4Addr = Ipv4Addr::new(10, 0, 0, 2);
 
-/// Returns the received image with every bit inverted.
+/// An application that returns the received image with every bit inverted.
 #[derive(Debug, Default)]
 pub struct Mirror {
     pub image: Vec<u8>,
@@ -50,7 +51,7 @@ impl Application for Mirror {
     }
 }
 
-/// An RCX of 2011, with the values of its data sheet.
+/// Identity of an RCX of 2011, with the values from its data sheet.
 pub fn identity() -> Identity {
     Identity {
         address: SocketAddrV4::new(ADAPTER_ADDRESS, PORT),
@@ -73,12 +74,12 @@ pub fn settings() -> Settings {
     Settings { output_size: 48, input_size: 48, resting: resting(), ..Settings::default() }
 }
 
-/// Settings with the longest timeout, for real time: a busy machine must not lose a connection.
+/// Settings with the longest timeout, for tests in real time: on a busy machine, the connection must not be lost.
 pub fn with_long_timeout() -> Settings {
     Settings { multiplier: Multiplier::of(512).unwrap(), ..settings() }
 }
 
-/// A resting image that is not all zeros.
+/// A resting image in which not all bits are zero.
 pub fn resting() -> Vec<u8> {
     let mut image = vec![0; 48];
     image[32] = 0x41;
@@ -104,7 +105,7 @@ pub struct World {
     pub adapter: Adapter<Mirror>,
     /// Whether TCP connections are possible.
     pub tcp: bool,
-    /// Whether any packet arrives.
+    /// Whether packets arrive at all.
     pub cable: bool,
     pub answers: Vec<(Token, Result<Vec<u8>, EipError>)>,
     /// Every frame sent on TCP, with its direction.
@@ -125,7 +126,7 @@ impl World {
         let numbers = Arc::new(Numbers::new(0x0506_0708, 0x0101, 0x1000));
         let faults: FaultSpec = if faults.is_empty() { FaultSpec::default() } else { faults.parse().unwrap() };
         Self {
-            // Not 0, so that no code can rely on 0.
+            // The start time is not 0, so that no code can rely on 0.
             now: Duration::from_secs(1000),
             originator: Originator::new(target, IO_PORT, settings, numbers).unwrap(),
             adapter: Adapter::new(setup, Mirror::default()),
@@ -142,7 +143,7 @@ impl World {
         }
     }
 
-    /// A world with an open connection and a returned image.
+    /// A world with an open connection, after the first image from the adapter.
     pub fn open(setup: Setup, settings: Settings, faults: &str) -> Self {
         let mut world = Self::new(setup, settings, faults);
         world.run_until(20_000 * MS, |world| world.view().input.is_some());
@@ -154,13 +155,13 @@ impl World {
         self.originator.view()
     }
 
-    /// Sends a request over the session.
+    /// Sends a request through the session.
     pub fn ask(&mut self, token: u64, data: Vec<u8>) {
         let ask = Ask { token: Token(token), what: "the test", command: Command::SEND_RR_DATA, data };
         self.originator.ask(ask);
     }
 
-    /// Runs until the condition is true, which must happen within `most`.
+    /// Runs until the condition is true. The test fails if this takes longer than `most`.
     pub fn run_until(&mut self, most: Duration, condition: impl Fn(&Self) -> bool) {
         let end = self.now + most;
         while !condition(self) {
@@ -175,7 +176,7 @@ impl World {
         while self.step(end) {}
     }
 
-    /// Executes the next event, if it is before `end`.
+    /// Executes the next event, if it comes before `end`.
     fn step(&mut self, end: Now) -> bool {
         self.settle();
         let next = self.wire.peek().map(|Reverse((at, ..))| *at);
@@ -193,7 +194,7 @@ impl World {
         true
     }
 
-    /// Lets both ends finish all current work.
+    /// Lets both ends do all work that they have at the current time.
     fn settle(&mut self) {
         loop {
             let action = self.originator.poll(self.now);

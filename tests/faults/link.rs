@@ -1,4 +1,4 @@
-//! A faulty link in virtual time between a session and a controller.
+//! A faulty link between a session and a controller, in virtual time.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -9,12 +9,12 @@ use armctl_controller::yerc::wire::Status;
 use armctl_controller::{Now, Session, Step};
 use armctl_transport::fault::{FaultSpec, Faults};
 
-/// Answer time of a controller.
+/// Time that a controller needs for an answer.
 const SERVICE_TIME: Duration = Duration::from_millis(8);
-/// Upper limit of the steps of a session; a session with more steps does not end.
+/// Maximum number of steps of a session. A session with more steps is considered endless.
 const MOST_STEPS: usize = 100_000;
 
-/// Class of commands: the effect of a repetition.
+/// Class of a command. The classes differ in the effect of a repetition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Class {
     Read,
@@ -31,44 +31,45 @@ pub(crate) enum TransferKind {
     Load,
 }
 
-/// A controller at the remote end of a link, with its state for the tests.
+/// A controller at the remote end of a link. Tests can read its state.
 pub(crate) trait Controller {
-    /// Datagrams that answer one.
+    /// Handles a datagram. Returns the answers.
     fn receive(&mut self, now: Now, datagram: &[u8]) -> Vec<Vec<u8>>;
 
-    /// Time of the next own datagram.
+    /// Time at which the controller sends its next datagram without a request.
     fn wake(&self) -> Option<Now> {
         None
     }
 
-    /// Datagrams that it sends without a request.
+    /// Datagrams that the controller sends without a request.
     fn transmit(&mut self, _now: Now) -> Vec<Vec<u8>> {
         Vec::new()
     }
 
-    /// A request of this class.
+    /// Returns a request of this class.
     fn order(&mut self, class: Class) -> Request;
 
-    /// Whether it has answered a read with this data.
+    /// Whether the controller has answered a read with this data.
     fn has_answered(&self, data: &[u8]) -> bool;
 
-    /// Whether it can refuse with this status for another reason than being busy.
+    /// Whether the controller can refuse with this status for another reason than being busy.
     fn may_refuse(&self, status: Status) -> bool;
 
-    /// Total number of executed state-changing requests. No datagram to it may be in transit.
+    /// Total number of state-changing requests that the controller has executed. When this is called, no datagram to
+    /// the controller may be in transit.
     fn executed(&self) -> u32;
 
-    /// Creates a file with this content. Returns the name for the request and the content that a transfer in this
-    /// direction yields.
+    /// Prepares a transfer of this content in this direction. Returns the file name for the request, and the content
+    /// that the transfer yields.
     fn offer(&mut self, way: TransferKind, content: &[u8]) -> (&'static [u8], Vec<u8>);
 
-    /// Removes the file of an upload, if possible.
+    /// Removes the file of an upload, if the controller can do this.
     fn forget(&mut self);
 
-    /// The file of an upload.
+    /// Content of the file that an upload has stored.
     fn stored(&self) -> Option<Vec<u8>>;
 
-    /// Whether it can omit blocks of a file when frames are lost.
+    /// Whether the controller can omit blocks of a file when frames are lost.
     fn skips(&self) -> bool;
 }
 
@@ -79,37 +80,38 @@ enum To {
     Controller,
 }
 
-/// A datagram in transit: arrival time, a number that keeps the order of equal times, destination, bytes.
+/// A datagram in transit: its arrival time, a number that keeps the order of equal times, its destination and its
+/// bytes.
 type Flight = Reverse<(Now, u64, To, Vec<u8>)>;
 
 /// Result of a session.
 pub(crate) struct Run<O> {
-    /// Its end.
+    /// How the session ended.
     pub(crate) outcome: O,
-    /// Content that it delivered.
+    /// Content that the session delivered.
     pub(crate) data: Vec<u8>,
-    /// Every frame that it sent.
+    /// Every frame that the session sent.
     pub(crate) sent: Vec<Vec<u8>>,
-    /// Number of busy refusals of the controller.
+    /// Number of refusals because the controller was busy.
     pub(crate) busy: usize,
-    /// Duration from its first to its last step.
+    /// Duration from the first to the last step of the session.
     pub(crate) duration: Duration,
-    /// Duration from its last progress (content, or a new frame apart from the id) to its end.
+    /// Duration from the last progress of the session to its end. Progress is content, or a frame that differs from the
+    /// previous one in more than the id.
     pub(crate) idle: Duration,
 }
 
 /// A client, a faulty wire and a controller.
 pub(crate) struct Link<C> {
-    /// Controller.
     pub(crate) controller: C,
     now: Now,
     to_controller: Faults,
     to_client: Faults,
     flights: BinaryHeap<Flight>,
     launched: u64,
-    /// Busy refusals so far.
+    /// Number of busy refusals so far.
     busy: usize,
-    /// Number of client frames until one is lost.
+    /// Number of client frames before the one that is lost.
     lose_in: Option<usize>,
 }
 
@@ -128,12 +130,12 @@ impl<C: Controller> Link<C> {
         }
     }
 
-    /// Loses the client frame with this number, starting with 0.
+    /// Loses the client frame with this number. The next frame has number 0.
     pub(crate) fn lose_client_frame(&mut self, number: usize) {
         self.lose_in = Some(number);
     }
 
-    /// Runs a session to its end; `feed` provides content for it.
+    /// Runs a session to its end. `feed` provides the content that the session sends.
     pub(crate) fn run<S: Session>(&mut self, session: &mut S, mut feed: impl FnMut(&mut S)) -> Run<S::Outcome> {
         let (started, busy) = (self.now, self.busy);
         let mut progress = started;
@@ -173,7 +175,8 @@ impl<C: Controller> Link<C> {
         }
     }
 
-    /// The next arrival or own datagram of the controller, or `until` if it is earlier.
+    /// Advances to the next arrival of a datagram, to the next datagram of the controller, or to `until`, whichever is
+    /// first.
     fn advance(&mut self, until: Now, handle: impl FnOnce(Now, &[u8])) {
         let arrival = self.flights.peek().map_or(until, |Reverse((at, ..))| (*at).min(until));
         if let Some(at) = self.controller.wake().filter(|at| *at < arrival) {
@@ -221,12 +224,12 @@ impl<C: Controller> Link<C> {
     }
 }
 
-/// The id is at offset 11.
+/// The id is the byte at offset 11.
 fn is_equal_except_id(one: &[u8], other: &[u8]) -> bool {
     one.len() == other.len() && one[..11] == other[..11] && one[12..] == other[12..]
 }
 
-/// Status and added status are at offsets 25 and 28; the codes are those of DX chapter 4.
+/// Status and added status are at offsets 25 and 28. The codes are from DX chapter 4.
 fn is_busy_refusal(frame: &[u8]) -> bool {
     frame[25] != 0 && [0xD8F1, 0xD8FA, 0xE444, 0xFFF6].contains(&u16::from_le_bytes([frame[28], frame[29]]))
 }

@@ -1,8 +1,8 @@
 //! Sessions with a controller on a bad link, in virtual time.
 //!
 //! Every combination of fault, controller, command class, transfer and file size runs with many seeds. The guarantees
-//! are absolute: no wrong data is reported as success, a change is sent once unless it was refused as busy, no session
-//! outlives its deadline, and every end is a typed one.
+//! are absolute. No wrong data is reported as success, and a change is sent once unless it was refused as busy. No
+//! session lasts longer than its deadline, and every outcome is a typed value.
 
 mod link;
 mod model;
@@ -20,7 +20,7 @@ use armctl_transport::fault::{FaultSpec, Share};
 use link::{Class, Controller, Link, Run, TransferKind};
 use model::{ControllerKind, Model};
 
-/// Each fault alone, all moderately, all at the maximum.
+/// Each fault alone, all faults at a moderate level, and all faults at the maximum.
 const FAULTS: [&str; 8] = [
     "drop=10%",
     "dup=20%",
@@ -33,7 +33,7 @@ const FAULTS: [&str; 8] = [
 ];
 const MODERATE: &str = "drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,busy=4%";
 
-/// Around the block size of 479, and a file of many blocks.
+/// Sizes near one and two blocks of 479 bytes, and a file of many blocks.
 const SIZES: [usize; 7] = [0, 1, 478, 479, 480, 958, 10_000];
 const MANNERS: [ControllerKind; 2] = [ControllerKind::Resends, ControllerKind::NoResend];
 
@@ -49,7 +49,7 @@ fn file_request(service: u8, data: &[u8]) -> RequestFrame<'_> {
     RequestFrame { division, ack: false, id: 0, block: 0, command: 0, instance: 0, attribute: 0, service, data }
 }
 
-/// Bytes that differ in each block.
+/// Content that is different in each block.
 fn content(size: usize, seed: u64) -> Vec<u8> {
     let mut bytes = vec![0; size];
     fastrand::Rng::with_seed(seed ^ 0xC0_FFEE).fill(&mut bytes);
@@ -80,7 +80,7 @@ fn exchange(link: &mut Link<impl Controller>, class: Class, ids: &Ids) -> Exchan
     let run = link.run(&mut session, |_| unreachable!("an exchange asks for no content"));
     let what = format!("{class:?}: {:?} after {:?}, {:?}", run.outcome, run.duration, session.counters());
 
-    // After a late busy refusal, a change still has its one try.
+    // If a change is refused as busy shortly before the deadline, it still gets one more try.
     let last_try = if class == Class::Read { Duration::ZERO } else { policy.timeout };
     assert!(run.duration <= policy.patience() + last_try, "{what}");
     assert!(run.data.is_empty(), "{what}");
@@ -94,13 +94,13 @@ fn exchange(link: &mut Link<impl Controller>, class: Class, ids: &Ids) -> Exchan
         (Ended::NoAnswer(_) | Ended::OutcomeUnknown(_), _) => panic!("{what}"),
     }
     if class != Class::Read {
-        // Counted at the controller: a duplicate of a refusal must not count as a second refusal.
+        // Refusals are counted at the controller, because a duplicate of a refusal must not count as a second refusal.
         assert!((1..=1 + run.busy).contains(&run.sent.len()), "{} left, {} busy; {what}", run.sent.len(), run.busy);
     }
     Exchanged { class, outcome: run.outcome, sends: run.sent.len() }
 }
 
-/// Several exchanges of every class on one link, so that late datagrams meet later exchanges.
+/// Runs several exchanges of every class on one link, so that late datagrams arrive during later exchanges.
 fn exchanges(mut link: Link<impl Controller>) -> (Vec<Exchanged>, u32) {
     let ids = Ids::default();
     let done = CLASSES.iter().cycle().take(12).map(|&class| exchange(&mut link, class, &ids)).collect();
@@ -112,13 +112,13 @@ fn has_valid_answer(exchanged: &Exchanged) -> bool {
     matches!(&exchanged.outcome, Ended::Answered(reply) if reply.status.is_ok())
 }
 
-/// Checks the guarantees of exchanges under these faults.
+/// Checks the guarantees of exchanges with these faults.
 fn check_exchanges(faults: &FaultSpec, link: Link<impl Controller>) {
     let (all, executed) = exchanges(link);
     let changes = || all.iter().filter(|exchanged| exchanged.class != Class::Read);
     let done = changes().filter(|exchanged| has_valid_answer(exchanged)).count();
     let executed = usize::try_from(executed).expect("few executions");
-    // Without duplication, the client alone decides whether a change is executed, and only once.
+    // If the link duplicates nothing, only the client could cause a second execution of a change. It must not do this.
     assert!(executed >= done, "{faults}: {done} reported as done, {executed} executed");
     let max_executions =
         if faults.dup == Share::NONE { changes().count() } else { 2 * changes().map(|it| it.sends).sum::<usize>() };
@@ -160,7 +160,7 @@ fn reads_survive_moderate_loss() {
 
 const WAYS: [TransferKind; 3] = [TransferKind::Save, TransferKind::List, TransferKind::Load];
 
-/// Kinds of ends of transfers.
+/// How a transfer can end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum End {
     Success,
@@ -168,11 +168,11 @@ enum End {
     Violated,
     NoAnswer,
     Unknown,
-    /// The request for an upload was not answered. It is sent once.
+    /// The request for an upload was not answered. This request is sent only once.
     Unopened,
 }
 
-/// Runs a transfer, checks all guarantees, and returns its end.
+/// Runs a transfer and checks all guarantees. Returns how the transfer ended.
 fn transfer(link: &mut Link<impl Controller>, way: TransferKind, content: &[u8], ids: &Ids) -> End {
     match way {
         TransferKind::Save | TransferKind::List => download(link, way, content, ids),
@@ -228,7 +228,7 @@ fn upload(link: &mut Link<impl Controller>, content: &[u8], ids: &Ids) -> End {
     let mut session = Upload::new(&request, policy, ids);
     let mut pieces = content.chunks(1000);
     let Run { outcome, idle, sent, .. } = link.run(&mut session, |session| match pieces.next() {
-        // The end is reported with the last piece or after it.
+        // Depending on the size, the end is reported with the last piece or after it.
         Some(piece) => session.feed(piece, pieces.len() == 0 && content.len().is_multiple_of(2)),
         None => session.feed(&[], true),
     });
@@ -267,7 +267,7 @@ fn upload(link: &mut Link<impl Controller>, content: &[u8], ids: &Ids) -> End {
     }
 }
 
-/// Transfers of every kind and size under one kind of fault.
+/// Runs transfers of every kind and size with these faults.
 fn transfers(text: &str, manners: ControllerKind, seeds: u64) -> Vec<End> {
     let mut ends = Vec::new();
     for way in WAYS {
@@ -285,7 +285,7 @@ fn successes(ends: &[End]) -> usize {
     ends.iter().filter(|end| **end == End::Success).count()
 }
 
-/// Moderate loss leaves the request of some uploads unanswered, and stops very few other transfers.
+/// With moderate loss, some requests for an upload get no answer. Very few other transfers fail.
 fn check_moderate_loss(ends: &[End]) {
     let unopened = ends.iter().filter(|end| **end == End::Unopened).count();
     assert!(
@@ -306,7 +306,7 @@ fn transfers_keep_their_guarantees_under_every_fault() {
             seen.extend(transfers(text, manners, TRANSFER_SEEDS));
         }
     }
-    // Otherwise the checks above have not been exercised.
+    // Every kind of end must occur. If one is missing, the checks above did not test it.
     assert!(seen.into_iter().eq([
         End::Success,
         End::Refused,
@@ -340,7 +340,7 @@ fn transfers_survive_moderate_loss_if_the_controller_resends() {
     check_moderate_loss(&transfers(MODERATE, ControllerKind::Resends, TRANSFER_SEEDS));
 }
 
-/// Consecutive transfers on one link: late datagrams of one meet the next.
+/// Late datagrams of one transfer can arrive during the next transfer on the same link.
 #[test]
 fn consecutive_transfers_do_not_mix() {
     for text in FAULTS {
@@ -357,7 +357,8 @@ fn consecutive_transfers_do_not_mix() {
     }
 }
 
-/// If the last ACK is lost, the controller sends its last block again, and the ended session acknowledges it.
+/// If the last ACK is lost, the controller sends its last block again. The session acknowledges this block even after
+/// its end.
 #[test]
 fn lingering_repairs_a_lost_last_ack() {
     let mut link = link_to(ControllerKind::Resends, FaultSpec::default());

@@ -1,4 +1,4 @@
-//! A minimal controller with its own byte handling, independent of the code under test.
+//! A minimal controller. It reads and writes bytes itself, so it is independent of the code under test.
 
 use armctl_controller::Now;
 use armctl_controller::yerc::request::Request;
@@ -6,7 +6,7 @@ use armctl_controller::yerc::wire::Status;
 
 use super::link::{Class, Controller, TransferKind};
 
-/// Answer to every read.
+/// Data of the answer to every read.
 const STATE: [u8; 8] = [0x42, 0, 0, 0, 0x40, 0, 0, 0];
 /// Refusal of an unexpected block (DX chapter 4).
 const WRONG_BLOCK: u32 = 0xE4A1;
@@ -16,42 +16,42 @@ const NO_SUCH_ACK: u32 = 0xE4A2;
 const LAST: u32 = 0x8000_0000;
 const BLOCK: usize = 479;
 
-/// Handling of duplicate frames; the manuals do not specify it.
+/// How the controller handles duplicate frames. The manuals do not specify this.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ControllerKind {
-    /// Recognizes a frame by its id and number, and sends its last frame again.
+    /// Recognizes a duplicate by its id and block number, and sends the last answer again.
     Resends,
-    /// Handles every ACK as a request for the next block and every request as a new one, and never sends a frame again.
+    /// Handles every ACK as a request for the next block, and every request as a new one. Never sends a frame again.
     NoResend,
 }
 
 /// Transfer state of the controller.
 enum Transfer {
     None,
-    /// Block `block` of a file was sent with `service`.
+    /// The controller has sent block `block` of a file, for the service `service`.
     Out {
         id: u8,
         service: u8,
         block: u32,
     },
-    /// Every block was acknowledged.
+    /// The client has acknowledged every block.
     OutDone {
         id: u8,
     },
-    /// Blocks up to `taken` were received.
+    /// The controller has received the blocks up to `taken`.
     In {
         id: u8,
         taken: u32,
         bytes: Vec<u8>,
     },
-    /// The last block was `last`.
+    /// The controller has received all blocks, up to block `last`.
     InDone {
         id: u8,
         last: u32,
     },
 }
 
-/// Controller.
+/// State of the controller.
 pub(crate) struct Model {
     manners: ControllerKind,
     busy_per_10_000: u16,
@@ -120,12 +120,12 @@ impl Model {
         }
     }
 
-    /// Whether a transfer waits for the client.
+    /// Whether a transfer is open, so that the controller waits for the client.
     pub(crate) fn with_transfer(&self) -> bool {
         matches!(self.transfer, Transfer::Out { .. } | Transfer::In { .. })
     }
 
-    /// The block that waits for its ACK, again.
+    /// Builds the block that waits for its ACK once more.
     pub(crate) fn resend(&self) -> Option<Vec<u8>> {
         match self.transfer {
             Transfer::Out { id, service, block } => Some(self.block(id, service, block)),
@@ -138,7 +138,7 @@ impl Model {
         frame(2, id, self.mark_last(number), service, [0, 0], 0, data)
     }
 
-    /// Block number as sent.
+    /// Block number for a frame. The number of the last block has a mark.
     fn mark_last(&self, number: u32) -> u32 {
         let last = number as usize == self.file.len().div_ceil(BLOCK);
         if last { number | LAST } else { number }

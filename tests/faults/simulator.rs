@@ -1,4 +1,4 @@
-//! The simulator of this project on the same bad links.
+//! The simulator of this project, tested on the same bad links as the minimal controller.
 
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
@@ -29,25 +29,25 @@ const MODELS: [Model; 2] = [Dx200, Fs100];
 const EXCHANGE_SEEDS: u64 = 150;
 const TRANSFER_SEEDS: u64 = 25;
 
-/// The client under test, and an observer.
+/// Numbers of the client under test and of an observer.
 const CLIENT: u64 = 1;
 const OBSERVER: u64 = 2;
-/// Longer than all work of a controller, including its wait for a lost client.
+/// Longer than any work of a controller, including its wait for a lost client.
 const REST: Duration = Duration::from_secs(30);
-/// Longer than the simulator takes for a backup.
+/// Longer than the simulator needs for a backup.
 const LONG: Duration = Duration::from_secs(600);
-/// First of the written D variables; each is written once.
+/// First of the D variables that the test writes. Each variable is written once.
 const FIRST_WRITTEN: u16 = 10;
-/// Distance of each move along X, in micrometres.
+/// Distance of each move along X, in micrometers.
 const STEP: i32 = 1000;
-/// Content of a file of this size, which the client saves.
+/// Seed for the content of the files that the client downloads.
 const SEED: u64 = 0;
 /// Refusals of damaged, unexpected or conflicting requests (DX chapter 4).
 const REFUSALS: [u32; 9] = [0x2010, 0xE28B, 0xE49E, 0xE4A1, 0xE4A2, 0xE4A3, 0xE4A5, 0xE4A6, 0xE4A7];
-/// Missing file; an FS100 also reports this for an empty one.
+/// The file does not exist. An FS100 also reports this for an empty file.
 const NO_SUCH_FILE: u32 = 0xE2B3;
 
-/// The simulator with its requests and answers.
+/// The simulator, with the requests that it received and the answers that it sent.
 #[derive(Clone)]
 struct Simulated {
     simulator: Simulator,
@@ -67,7 +67,7 @@ fn start(model: Model) -> Start {
     Start::parse(&text, |size| Ok(content(size.parse().expect("a size"), SEED))).expect("a good start state")
 }
 
-/// The file of this size in the start state.
+/// Name of the file with this size in the start state.
 fn name(size: usize) -> &'static [u8] {
     match size {
         0 => b"EMPTY.DAT",
@@ -88,7 +88,7 @@ impl Simulated {
         Self { simulator: Simulator::new(start), model, now: Now::ZERO, written: 0, read: BTreeSet::new() }
     }
 
-    /// The same controller at rest and never busy, for reading its state.
+    /// A copy of the controller, at a later time at which all work is done. The test reads the state from this copy.
     fn resting_state(&self) -> Self {
         let mut copy = self.clone();
         copy.now += REST;
@@ -96,7 +96,7 @@ impl Simulated {
         copy
     }
 
-    /// Answer to the observer, with retries while the controller is busy.
+    /// Answer to a query of the observer. The query is repeated while the controller is busy.
     fn read_back<Q: Query>(&mut self, query: &Q) -> Q::Answer {
         loop {
             self.simulator.receive(self.now, Division::Robot, OBSERVER, &query.request().frame(1));
@@ -115,7 +115,7 @@ impl Simulated {
         }
     }
 
-    /// File as fetched by the observer, with waiting.
+    /// Content of a file that the observer fetches. The observer waits while the controller is busy.
     fn file(&mut self, name: &[u8]) -> Option<Vec<u8>> {
         let session = Download::new(&file_request(0x16, name), 1 << 20, Policy::default(), &Ids::default());
         let mut session = session.with_first_wait(LONG);
@@ -131,7 +131,7 @@ impl Simulated {
 
     fn exchange(&mut self, peer: u64, now: Now, datagram: &[u8]) -> Vec<Vec<u8>> {
         self.now = self.now.max(now);
-        // Sockets have one port, so damaged datagrams arrive at the right one.
+        // A client socket sends to one port, so a damaged datagram still arrives at the right port.
         let division = if datagram.get(9) == Some(&2) { Division::File } else { Division::Robot };
         self.simulator.receive(self.now, division, peer, datagram);
         self.transmit(now)
@@ -233,7 +233,7 @@ impl Controller for Simulated {
     }
 }
 
-/// The other client, on a link without faults.
+/// The simulator for the observer, whose link has no faults.
 struct Observer<'a>(&'a mut Simulated);
 
 impl Controller for Observer<'_> {
@@ -284,7 +284,7 @@ thread_local! {
     static STARTS: [OnceCell<Start>; 2] = const { [OnceCell::new(), OnceCell::new()] };
 }
 
-/// Start state of a model, cached because parsing it takes longer than copying.
+/// Start state of a model. It is cached, because parsing it takes longer than copying it.
 fn start_of(model: Model) -> Start {
     STARTS.with(|starts| starts[usize::from(model == Fs100)].get_or_init(|| start(model)).clone())
 }
@@ -316,7 +316,7 @@ fn executes_everything_once_without_faults() {
     }
 }
 
-/// Transfers of every kind and size under one kind of fault.
+/// Runs transfers of every kind and size with these faults.
 fn transfers(model: Model, text: &str, seeds: u64) -> Vec<End> {
     let mut ends = Vec::new();
     for way in WAYS {
@@ -338,7 +338,7 @@ fn transfers_keep_their_guarantees_under_every_fault() {
             seen.extend(transfers(model, text, TRANSFER_SEEDS));
         }
     }
-    // Otherwise the checks have not been exercised.
+    // Every kind of end must occur. If one is missing, the checks above did not test it.
     assert!(seen.into_iter().eq([End::Success, End::Refused, End::NoAnswer, End::Unknown, End::Unopened]));
 }
 
@@ -355,7 +355,7 @@ fn transfers_survive_moderate_loss() {
     check_moderate_loss(&transfers(Dx200, "drop=5%,dup=2%,delay=0..50ms,reorder=3%", TRANSFER_SEEDS));
 }
 
-/// Consecutive transfers on one link: late datagrams of one meet the next.
+/// Late datagrams of one transfer can arrive during the next transfer on the same link.
 #[test]
 fn consecutive_transfers_do_not_mix() {
     for text in FAULTS {
@@ -372,7 +372,7 @@ fn consecutive_transfers_do_not_mix() {
     }
 }
 
-/// The first request makes the backup and is answered much later; the second fetches it.
+/// The first request creates the backup, so its answer comes much later. The second request fetches the backup.
 #[test]
 fn batch_backup_is_complete_or_fails() {
     let mut seen = BTreeSet::new();
@@ -390,7 +390,7 @@ fn batch_backup_is_complete_or_fails() {
     assert!(seen.iter().all(|(_, second)| *second != End::Unknown));
 }
 
-/// One of the two requests of a batch backup; `first_wait` distinguishes them.
+/// Sends one of the two requests of a batch backup. Only the first request has a `first_wait`.
 fn backup(link: &mut Link<Simulated>, ids: &Ids, first_wait: Option<Duration>) -> End {
     let order = batch_backup();
     let request = file_request(order.service, &order.data);

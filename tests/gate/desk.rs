@@ -1,11 +1,11 @@
-//! Test environment with an inventory.
+//! Environment of a test, with an inventory.
 
 use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Home folder of a test, with inventory, sessions and files.
+/// Home folder of a test. It contains the inventory, the sessions and the files.
 pub struct Workspace {
     pub folder: TempDir,
 }
@@ -19,7 +19,7 @@ pub struct CommandResult {
 }
 
 impl Workspace {
-    /// With this text in `robots.toml`.
+    /// Creates an environment with this text in `robots.toml`.
     pub fn new(inventory: &str) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         std::fs::write(folder.path().join("robots.toml"), inventory).expect("it is written");
@@ -27,7 +27,7 @@ impl Workspace {
         Self { folder }
     }
 
-    /// A command line, with words separated by blanks.
+    /// A command line. Its words are separated by blanks.
     pub fn command(&self, line: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
         command.env_clear().env("HOME", self.folder.path()).env("XDG_RUNTIME_DIR", self.folder.path().join("run"));
@@ -36,12 +36,12 @@ impl Workspace {
         command
     }
 
-    /// Runs a command line without a terminal for questions.
+    /// Runs a command line. Without a terminal, it cannot ask questions.
     pub fn run(&self, line: &str) -> CommandResult {
         result_of(&self.command(line).output().expect("it runs"))
     }
 
-    /// `data` of a command line that must succeed.
+    /// Returns the `data` of a command line that must succeed.
     #[track_caller]
     pub fn data(&self, line: &str) -> Value {
         let came = self.run(&format!("{line} --json"));
@@ -49,7 +49,7 @@ impl Workspace {
         serde_json::from_str::<Value>(&came.stdout).expect("JSON")["data"].clone()
     }
 
-    /// Asserts an exit code and a part of stderr.
+    /// Asserts that a command line fails with this exit code, and that stderr contains this part.
     #[track_caller]
     pub fn fails(&self, line: &str, exit: i32, part: &str) {
         let came = self.run(line);

@@ -1,5 +1,5 @@
-//! Peers that send endlessly, slowly, or wrong data: a command ends in time with an error, and its memory use stays
-//! constant.
+//! Peers that send endlessly, slowly, or wrong data. A command must end in time with an error, and its memory use must
+//! stay constant.
 
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::net::{TcpListener, UdpSocket};
@@ -16,14 +16,14 @@ use super::desk::{CommandResult, Workspace, result_of};
 #[derive(Debug, Clone, Copy)]
 enum FloodKind {
     Floods,
-    /// Single bytes or datagrams, each long before the timeout of a try.
+    /// Sends single bytes or datagrams. The pause between them is much shorter than the timeout of a try.
     Trickles,
 }
 
 const MANNERS: [FloodKind; 2] = [FloodKind::Floods, FloodKind::Trickles];
 
 impl FloodKind {
-    /// Sends this repeatedly until the peer closes.
+    /// Sends the text repeatedly until the peer closes the connection.
     fn send(self, text: &[u8], mut send: impl FnMut(&[u8]) -> bool) {
         match self {
             Self::Floods => while send(text) {},
@@ -37,7 +37,7 @@ impl FloodKind {
     }
 }
 
-/// A TCP server that sends this to each client.
+/// Starts a TCP server that sends this text to each client. Returns its port.
 fn tcp(text: &'static [u8], manner: FloodKind) -> u16 {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let port = listener.local_addr().expect("an address").port();
@@ -49,7 +49,7 @@ fn tcp(text: &'static [u8], manner: FloodKind) -> u16 {
     port
 }
 
-/// A UDP server that answers every request with this.
+/// Starts a UDP server that answers every request with invalid data. Returns its port.
 fn udp(manner: FloodKind) -> u16 {
     let socket = UdpSocket::bind("127.0.0.1:0").expect("a port");
     let port = socket.local_addr().expect("an address").port();
@@ -65,7 +65,7 @@ fn udp(manner: FloodKind) -> u16 {
     port
 }
 
-/// A serial line with this input, until the returned handle is dropped.
+/// A serial line that sends this text until the returned handle is dropped.
 fn pty(text: &'static [u8], manner: FloodKind) -> (TTYPort, String) {
     let (mut master, port) = TTYPort::pair().expect("a pseudo-terminal");
     let path = port.name().expect("it has a name");
@@ -74,7 +74,7 @@ fn pty(text: &'static [u8], manner: FloodKind) -> (TTYPort, String) {
     (port, path)
 }
 
-/// Result of a line, with limited memory and a limit of one minute.
+/// Runs a line with limited memory and a time limit of one minute.
 fn run(desk: &Workspace, target: &str, line: &str) -> CommandResult {
     let armctl = env!("CARGO_BIN_EXE_armctl");
     let line = format!("ulimit -v 900000; exec timeout 60 {armctl} -t '{target}' --timeout 500ms --yes {line}");
@@ -90,7 +90,10 @@ fn gives_up_a_flooding_slcan_adapter() {
         let target = format!("slcan://127.0.0.1:{}?mac=5", tcp(text, FloodKind::Floods));
         for line in ["yrcx devicenet identity", "yrcx status", "yrcx stop"] {
             let result = run(&desk, &target, line);
-            assert!(result.exit == Some(5) && result.stderr.contains("sends without end"), "{line}: {result:?}");
+            assert!(
+                result.exit == Some(5) && result.stderr.contains("sends data without a pause"),
+                "{line}: {result:?}"
+            );
         }
     }
 }
@@ -115,7 +118,7 @@ fn flooding_and_trickling_peers_do_not_block_commands() {
         }
         check(
             &format!("slcan://127.0.0.1:{}?mac=5", tcp(b"t4058AABBCCDDEEFF0011\r", FloodKind::Trickles)),
-            // Either the bytes or the time of the first answer reach their limit first.
+            // The client stops at a limit of bytes or at a time limit for the first answer, whichever comes first.
             &[("yrcx status", 5, "slcan://")],
         );
         let (_port, path) = pty(b"\x68\x05\x05", manner);
@@ -128,7 +131,7 @@ fn flooding_and_trickling_peers_do_not_block_commands() {
     }
 }
 
-/// Another program behind a device server: the first request has its tries, and no other request is sent.
+/// If another program is behind the device server, the first request is tried several times. No other request is sent.
 #[test]
 fn sends_one_request_to_an_unknown_peer() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();

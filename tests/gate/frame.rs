@@ -1,4 +1,4 @@
-//! Rules for every family.
+//! Rules that every family follows.
 
 use super::desk::Workspace;
 use crate::support::simulator::Simulator;
@@ -35,7 +35,7 @@ fn session_of_a_read_only_robot_passes_reads_and_stops_only() {
     let controller = Simulator::start("yerc");
     let desk = Workspace::new(&entry("line3", &controller.url, "read_only = true"));
     assert_eq!(desk.run("-r line3 session open --background").exit, Some(0));
-    // A client without this entry: the same address in another inventory.
+    // A client whose inventory does not have this entry uses the same address.
     std::fs::write(desk.folder.path().join("other.toml"), "").unwrap();
     let without_session = |words: &str| desk.run(&format!("--config other.toml -t {} yerc {words}", controller.url));
     let refused = without_session("var set B0=1");
@@ -46,8 +46,8 @@ fn session_of_a_read_only_robot_passes_reads_and_stops_only() {
     assert_eq!(desk.run("session close line3").exit, Some(0));
 }
 
-/// A session that was opened before the robot became read-only passes no change from then on, and reports the reason to
-/// a client with another inventory.
+/// A session is opened, and then its robot becomes read-only. From this time, the session passes no change. It reports
+/// the reason to a client with another inventory.
 #[test]
 fn read_only_applies_to_an_open_session() {
     for (family, changes, stop, read) in [
@@ -63,7 +63,7 @@ fn read_only_applies_to_an_open_session() {
         let controller = Simulator::start(family);
         let desk = Workspace::new(&entry("cell", &controller.url, ""));
         assert_eq!(desk.run("-r cell session open --background").exit, Some(0), "{family}");
-        // Another inventory does not have this setting.
+        // The other inventory does not have this robot, so the client does not know that the robot becomes read-only.
         std::fs::write(desk.folder.path().join("other.toml"), "").unwrap();
         let around = |words: &str| desk.run(&format!("--config other.toml -t {} {family} {words}", controller.url));
         assert_eq!(around(changes[0]).exit, Some(0), "{family}");
@@ -74,7 +74,7 @@ fn read_only_applies_to_an_open_session() {
             assert!(refused.stderr.contains("is read-only: the session sent nothing"), "{change}: {refused:?}");
         }
         assert_eq!(around(read).exit, Some(0), "{family}: {:?}", around(read));
-        // The session stays read-only.
+        // The session stays read-only, even if the setting is removed.
         assert_eq!(desk.run("robots set cell read_only=off").exit, Some(0));
         assert_eq!(around(changes[0]).exit, Some(7), "{family}");
         assert_eq!(around(stop).exit, Some(0), "{family}");

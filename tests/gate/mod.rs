@@ -1,4 +1,4 @@
-//! The safety gate through the built binary: risks, questions, read-only robots, several robots, dry runs.
+//! The safety gate, tested with the built binary: risks, questions, read-only robots, several robots, dry runs.
 
 #![cfg(unix)]
 

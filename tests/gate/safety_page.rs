@@ -1,4 +1,4 @@
-//! Every sentence of `docs/safety.md` has a test. This file has the tests that no other file has.
+//! Every sentence of `docs/safety.md` has a test. This file contains the tests that are in no other file.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -7,7 +7,7 @@ use super::desk::Workspace;
 use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 
-/// Names of the tests in a Rust file.
+/// Returns the names of the tests in a Rust file.
 fn tests_of(code: &str) -> impl Iterator<Item = &str> {
     code.split("#[test]").skip(1).filter_map(|rest| {
         let (_, named) = rest.split_once("fn ")?;
@@ -15,7 +15,7 @@ fn tests_of(code: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// All tests below a folder.
+/// Collects all tests below a folder.
 fn collect(folder: &Path, found: &mut BTreeSet<String>) {
     for entry in std::fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
@@ -28,7 +28,7 @@ fn collect(folder: &Path, found: &mut BTreeSet<String>) {
     }
 }
 
-/// The numbered sentences of the page, each with its number.
+/// Returns the numbered sentences of the page, each with its number.
 fn sentences(page: &str) -> Vec<(usize, String)> {
     let mut found: Vec<(usize, String)> = Vec::new();
     let mut goes_on = false;
@@ -69,7 +69,7 @@ fn every_sentence_of_the_page_has_a_test() {
         let missing = names.split(", ").filter(|name| !tests.contains(*name));
         wrong.extend(missing.map(|name| format!("{number}: there is no test '{name}'")));
     }
-    // A list without numbers would be a rule without a number.
+    // Each rule must have a number, so a list without numbers is an error.
     wrong.extend(page.lines().filter(|line| line.trim_start().starts_with(['-', '*'])).map(str::to_owned));
     assert_eq!(page.matches("<!-- test: ").count(), sentences.len(), "a marker behind no sentence");
     assert!(sentences.len() > 30 && wrong.is_empty(), "{}", wrong.join("\n"));
@@ -100,7 +100,7 @@ fn each_risk_needs_the_documented_confirmation() {
     assert!(!jobs().contains("HOME.JBI"), "with a yes it is done");
 }
 
-/// A command line at a terminal.
+/// Runs a command line on a terminal.
 fn at_terminal(desk: &Workspace, line: &str) -> Terminal {
     let mut command = desk.command(line);
     command.env("TERM", "xterm-256color").env("LANG", "C.UTF-8");
@@ -138,7 +138,7 @@ fn clearing_memory_needs_a_typed_word() {
     ] {
         let mut asked = at_terminal(&desk, &line);
         asked.wait_for_text("REAL CONTROLLER");
-        // Also if the connection itself is a risk.
+        // This is also required if the risk is in the connection itself.
         asked.wait_for_text("Type '");
         asked.press("y\r");
         assert_eq!(asked.end().code(), Some(7), "{line}");
@@ -174,7 +174,7 @@ fn stop_is_always_allowed() {
 fn dry_run_shows_the_frame_of_the_command() {
     let desk = Workspace::new("[[robot]]\nname = \"r\"\ntarget = \"udp://127.0.0.1:1\"\nread_only = true\n");
     let plan = desk.data("-r r yerc servo on --dry-run");
-    // Command 0x83, instance 2, attribute 1, service 0x10, the value 1: the end of the frame.
+    // The frame ends with command 0x83, instance 2, attribute 1, service 0x10 and the value 1.
     let frames = plan["frames"].as_array().unwrap();
     let is_order = |frame: &serde_json::Value| frame["hex"].as_str().unwrap().ends_with("830002000110000001000000");
     assert!(frames.iter().any(is_order), "{plan}");

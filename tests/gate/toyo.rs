@@ -1,4 +1,5 @@
-//! Toyo: an overwrite needs a confirmation, dry runs go to their end, a stop is always allowed.
+//! Rules for Toyo controllers: an overwrite needs a confirmation, dry runs reach their end, and a stop is always
+//! allowed.
 
 use super::desk::Workspace;
 use crate::support::simulator::Simulator;
@@ -8,7 +9,7 @@ fn desk(controller: &Simulator, more: &str) -> Workspace {
     Workspace::new(&format!("[[robot]]\nname = \"cell\"\ntarget = \"{}\"\n{more}\n", controller.url))
 }
 
-/// Blocks of a dry run.
+/// Returns the blocks of a dry run.
 fn blocks(desk: &Workspace, line: &str) -> Vec<String> {
     let data = desk.data(&format!("-r cell toyo {line} --dry-run"));
     let frames = data["frames"].as_array().expect("frames").iter();
@@ -39,7 +40,7 @@ fn overwriting_user_data_needs_confirmation() {
     assert_eq!(desk.data("-r cell toyo point get 7")["items"][0]["value"]["z_mm"], 3.0);
     assert_eq!(desk.data("-r cell toyo easy get 1")["items"][0]["value"]["loops"], 6);
     assert!(desk.run("-r cell toyo program get --to 1").stdout.contains("TAG TAG=005"));
-    // Equal values need no confirmation.
+    // Writing equal values needs no confirmation.
     assert_eq!(desk.run("-r cell toyo point set 7 1 2 3 4").exit, Some(0));
     assert_eq!(desk.run("-r cell toyo point set 7 z=5 --yes").exit, Some(0));
     assert_eq!(desk.run("-r cell toyo program delete 1 --yes").exit, Some(0));
@@ -60,7 +61,7 @@ fn the_confirmation_of_a_move_shows_positions_and_speed() {
         }
         terminal.wait_for_text("Continue?");
         terminal.press(key);
-        // Without the origin, the controller refuses.
+        // The origin is not set, so the controller refuses a confirmed motion.
         assert_eq!(terminal.end().code(), Some(exit), "{}", String::from_utf8_lossy(&terminal.written));
     }
 }
@@ -74,7 +75,7 @@ fn an_offline_run_ends_at_its_time_limit() {
     std::fs::write(&program, "TAG TAG=001\nTIM TM=001.0\nJMP TAG=001\nEND\n").unwrap();
     let output = desk.run(&format!("toyo sim run {} --for 5s", program.display()));
     assert_eq!(output.exit, Some(8), "{output:?}");
-    assert!(output.stderr.contains("after 5.000 s, it still runs"), "{output:?}");
+    assert!(output.stderr.contains("after 5.000 s, the program still runs"), "{output:?}");
 }
 
 #[test]
@@ -85,8 +86,8 @@ fn the_confirmation_of_a_start_shows_program_step_position_and_speed() {
         assert_eq!(desk.run(&format!("-r cell --yes toyo {line}")).exit, Some(0), "{line}");
     }
     for (line, which) in [
-        ("run sequential 1", "It is the program of task 1; it begins at step 1: TAG TAG=005."),
-        ("run sequential", "It is the program of task 1; it begins at step 1: TAG TAG=005."),
+        ("run sequential 1", "The program of task 1 begins at step 1: TAG TAG=005."),
+        ("run sequential", "The program of task 1 begins at step 1: TAG TAG=005."),
         ("run palletizing", "It is palletizing program 3, at step"),
         ("run palletizing 4", "It is palletizing program 4; now the controller is at program 3, step"),
         ("run easy", "It is easy program 2, at step"),

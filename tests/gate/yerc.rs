@@ -15,7 +15,7 @@ fn desk(controller: &Simulator) -> Workspace {
     desk
 }
 
-/// Names of the jobs on the controller.
+/// Returns the names of the jobs on the controller.
 fn jobs(desk: &Workspace) -> Vec<String> {
     let data = desk.data("-r cell yerc file list");
     data["files"]
@@ -26,7 +26,7 @@ fn jobs(desk: &Workspace) -> Vec<String> {
         .collect()
 }
 
-/// Frames of a dry run: command, instance and service of each, and whether it depends on an answer.
+/// Frames of a dry run: command, instance and service of each frame, and whether the frame depends on an answer.
 fn frames(desk: &Workspace, line: &str) -> Vec<(String, bool)> {
     let data = desk.data(&format!("-r cell yerc {line} --dry-run"));
     assert_eq!(data["complete"], true, "{line}");
@@ -50,7 +50,7 @@ fn overwrites_and_deletes_files_only_after_confirmation() {
     );
     assert_eq!(jobs(&desk), before, "nothing was done");
 
-    // Missing files are reported; new files overwrite nothing.
+    // A missing file is reported. A new file overwrites nothing, so it needs no confirmation.
     desk.fails("-r cell yerc file delete NONE.JBI", 3, "the file does not exist on the controller");
     assert_eq!(desk.run("-r cell yerc file put NEW.JBI").exit, Some(0));
     assert_eq!(desk.run("-r cell yerc file put HOME.JBI --replace --yes").exit, Some(0));
@@ -75,7 +75,7 @@ fn restore_asks_only_about_differences() {
     assert_eq!(desk.run("-r cell restore saved").exit, Some(0), "it is as it was");
 }
 
-/// Parameters of one controller are not sent to another, by any command.
+/// No command sends the parameters of one controller to another controller.
 #[test]
 fn both_commands_refuse_parameters_of_another_controller() {
     let [one, other] = [Simulator::start("yerc"), Simulator::start("yerc")];
@@ -133,14 +133,14 @@ fn every_verb_asks_before_overwriting_a_taught_position() {
             format!("raw --command 0x309 --instance 3 --service 0x34 --data 0100000000000000{}", variable.repeat(8)),
             "(EX3: ",
         ),
-        // A request that cannot be decoded is confirmed as a whole.
+        // If a request cannot be decoded, the question is about the request as a whole.
         ("raw --command 0x309 --instance 3 --service 0x34 --data 01".to_owned(), "send a raw request"),
     ] {
         desk.fails(&format!("-r cell yerc {line}"), 7, old_and_new);
     }
     assert_eq!(stored(), before);
     assert_eq!(desk.data("-r cell yerc var get B1")["items"][0]["value"], 0, "nothing of the line was written");
-    // Equal and new data needs no confirmation.
+    // Data that is equal or new needs no confirmation.
     for line in ["P9=pulse:s=1,l=2,u=3,r=4,b=5,t=6", "P9.tool=0 BP6.axis1=1", "EX4=pulse:1=9"] {
         assert_eq!(desk.run(&format!("{sets} {line}")).exit, Some(0), "{line}");
     }
@@ -168,7 +168,7 @@ fn starts_a_job_by_its_name() {
     assert_eq!(frames(&desk, "job start"), [("7300 0100 01".to_owned(), false), ("8600 0100 10".to_owned(), false)]);
 }
 
-/// The job of the question is the job that starts.
+/// The job that starts must be the job in the question.
 #[test]
 fn does_not_start_a_job_that_changed_during_the_question() {
     let controller = Simulator::start("yerc");
@@ -185,7 +185,7 @@ fn does_not_start_a_job_that_changed_during_the_question() {
     }
 }
 
-/// Each axis with start and target; a motion during the question makes the answer invalid.
+/// The question shows the start and target of each axis. If the robot moves during the question, the answer is invalid.
 #[test]
 fn question_of_a_motion_has_numbers() {
     let controller = Simulator::start("yerc");
@@ -214,7 +214,7 @@ fn question_of_a_motion_has_numbers() {
         let written = String::from_utf8_lossy(&terminal.written).into_owned();
         assert_eq!(exit_code, Some(exit), "{written}");
         assert!(written.contains("\u{1b}[1;31mREAL CONTROLLER:\u{1b}[0m"), "{written}");
-        assert_eq!(written.contains("has moved since the question"), exit == 7 && meanwhile.is_some(), "{written}");
+        assert_eq!(written.contains(" moved after the confirmation"), exit == 7 && meanwhile.is_some(), "{written}");
     }
     assert_eq!(desk.data("-r cell yerc position --coordinates base")["positions"][0]["y_mm"], 40.0);
 }
@@ -238,7 +238,7 @@ fn dry_run_plans_to_the_end() {
         ),
         ("io set 27010=on", "7800 8d0a 0e, 7800 8d0a 10?"),
         ("var set P1.tool=2", "7f00 0100 01, 7f00 0100 02?"),
-        ("register set 1=1", "7900 0100 0e, 7900 0100 10"),
+        ("register set 1=1", "7900 0100 0e, 7900 0100 10?"),
         ("file put NEW.JBI", "0000 0000 32, 0000 0000 32?, 0000 0000 15, 0000 0000 15, 0000 0000 32?, 0000 0000 32?"),
         ("file delete HOME.JBI", "0000 0000 32, 0000 0000 32?, 0000 0000 09?"),
     ];

@@ -8,7 +8,7 @@ fn entry(url: &str, more: &str) -> String {
     format!("[[robot]]\nname = \"cell\"\ntarget = \"{url}\"\n{more}\n")
 }
 
-/// An environment with a controller and an open session.
+/// Creates an environment with a controller and an open session.
 fn stored_point(controller: &Simulator) -> Workspace {
     let desk = Workspace::new(&entry(&controller.url, ""));
     assert_eq!(desk.run("-r cell session open --background").exit, Some(0));
@@ -37,7 +37,7 @@ fn question_of_a_motion_through_a_session_has_numbers() {
         terminal.press("n\n");
         assert_eq!(terminal.end().code(), Some(7), "{line}");
     }
-    // The point was taught again during the question.
+    // Another command writes the point during the question. If the new point differs, the answer is invalid.
     for (x, exit) in [("30", 0), ("31", 7)] {
         let mut terminal = Terminal::start(desk.command("-r cell yrcx move --point 19"), 100, 24).unwrap();
         terminal.wait_for_text("Continue?");
@@ -73,7 +73,7 @@ fn asks_before_overwriting_taught_points() {
     let old = "--mm 100.000,100.000,0.000,0.000".into();
     let stored = &stored["items"][0];
     assert_eq!((&stored["written"], &stored["old"]["text"]), (&true.into(), &old));
-    // What is there already, and what is new, wants no yes.
+    // Equal data and new points need no confirmation.
     let again = desk.data("-r cell yrcx point set 1 --mm 1,2,3,4");
     assert_eq!(again["items"][0]["written"], false, "{again}");
     assert_eq!(desk.data("-r cell yrcx point set 7 --mm 1,2,3,4")["old"], serde_json::Value::Null);
@@ -103,7 +103,7 @@ fn restore_asks_once_with_old_and_new() {
     for restore in ["yrcx restore saved", "restore saved"] {
         desk.fails(&format!("-r cell {restore}"), 7, "this would overwrite ");
     }
-    desk.fails("-r cell yrcx restore saved", 7, "overwrite 2 values with those of saved (shifts 4: 1.000 ");
+    desk.fails("-r cell yrcx restore saved", 7, "overwrite 2 values with those of saved (shifts, shift 4: ");
     let restored = desk.data("-r cell yrcx restore saved --yes");
     let written: Vec<u64> =
         restored["files"].as_array().unwrap().iter().map(|item| item["written"].as_u64().unwrap()).collect();
@@ -115,7 +115,7 @@ fn restore_asks_once_with_old_and_new() {
 fn reset_does_not_repeat() {
     let controller = Simulator::start("yrcx");
     let desk = Workspace::new(&entry(&controller.url, ""));
-    // Refused before the connection is opened.
+    // The command is refused before the connection is opened.
     desk.fails("-r cell yrcx alarm reset", 7, "alarm 12.551 (`armctl session open` keeps a connection open)");
     assert_eq!(desk.run("-r cell yrcx alarm reset --yes").exit, Some(0));
     let again = desk.run("-r cell yrcx alarm reset --yes");
@@ -147,7 +147,7 @@ fn read_only_controller_accepts_stops_and_reads() {
 #[test]
 fn refuses_effects_that_end_with_the_connection_before_the_question() {
     let desk = Workspace::new(&entry("eip://127.0.0.1:1", ""));
-    desk.fails("-r cell yrcx move --point 1 --no-wait", 2, "the connection would end now");
+    desk.fails("-r cell yrcx move --point 1 --no-wait", 2, "the connection ends with this command");
 }
 
 #[test]

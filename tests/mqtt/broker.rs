@@ -1,4 +1,4 @@
-//! A real broker process (mosquitto), a subscriber (`mosquitto_sub`), and peers that are not brokers.
+//! A real broker (mosquitto) as a process, a subscriber (`mosquitto_sub`), and peers that are not brokers.
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
@@ -8,15 +8,15 @@ use std::thread;
 
 use tempfile::TempDir;
 
-/// Message of a test without a broker.
+/// Message of a test that is skipped because there is no broker.
 pub const NOT_INSTALLED: &str = "skipped: mosquitto and mosquitto-clients are not installed";
 
-/// Debian installs daemons outside of the user's PATH.
+/// Debian installs daemons in folders that are not in the user's PATH.
 fn path() -> String {
     format!("{}:/usr/sbin:/sbin", std::env::var("PATH").unwrap_or_default())
 }
 
-/// Whether the program is installed.
+/// Whether broker and subscriber are installed.
 pub fn is_installed() -> bool {
     let is_there = |name: &str| {
         let ran =
@@ -26,7 +26,7 @@ pub fn is_installed() -> bool {
     is_there("mosquitto") && is_there("mosquitto_sub")
 }
 
-/// A broker, until it is dropped.
+/// A broker that runs until it is dropped.
 pub struct Mosquitto {
     process: Child,
     pub port: u16,
@@ -34,12 +34,13 @@ pub struct Mosquitto {
 }
 
 impl Mosquitto {
-    /// A broker without authentication.
+    /// Starts a broker without authentication.
     pub fn start() -> Self {
         Self::with("allow_anonymous true\n", |_| {})
     }
 
-    /// With these settings; `prepare` creates files in its folder, which the settings call `FOLDER`.
+    /// Starts a broker with these settings. `prepare` creates files in the folder of the broker. The settings refer to
+    /// this folder as `FOLDER`.
     pub fn with(settings: &str, prepare: impl FnOnce(&Path)) -> Self {
         let folder = tempfile::tempdir().unwrap();
         prepare(folder.path());
@@ -59,7 +60,7 @@ impl Mosquitto {
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
     }
 
-    /// Waits until it listens.
+    /// Waits until the broker listens.
     fn wait(&mut self) {
         while TcpStream::connect((Ipv4Addr::LOCALHOST, self.port)).is_err() {
             assert!(self.process.try_wait().unwrap().is_none(), "the broker ended");
@@ -80,18 +81,18 @@ impl Mosquitto {
         self.process.wait().unwrap();
     }
 
-    /// At the same address as before.
+    /// Starts the broker again, at the same address as before.
     pub fn start_again(&mut self) {
         self.process = Self::spawn(self.folder.path());
         self.wait();
     }
 
-    /// Subscribes to these topics, including retained messages.
+    /// Subscribes to these topics. Retained messages are also received.
     pub fn listen(&self, topics: &str) -> Listener {
         Listener::new(self.port, topics, "%r %t %p", &[])
     }
 
-    /// Subscribes with payloads as hex digits.
+    /// Like [`Self::listen`], but payloads are shown as hex digits.
     pub fn listen_hex(&self, topics: &str) -> Listener {
         Listener::new(self.port, topics, "%r %t %x", &[])
     }
@@ -142,7 +143,8 @@ pub struct ReceivedMessage {
 
 impl Listener {
     pub fn new(port: u16, topics: &str, format: &str, more: &[&str]) -> Self {
-        // With a pipe, the program would buffer lines.
+        // `stdbuf` makes the program write each line at once. With a pipe as its output, the program would buffer
+        // lines.
         let mut command = Command::new("stdbuf");
         command.env("PATH", path()).args([
             "-oL",
@@ -160,7 +162,7 @@ impl Listener {
         command.args(["-p", &port.to_string()]).args(more);
         let mut process = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
         let mut lines = BufReader::new(process.stdout.take().unwrap());
-        // With -d it reports the subscription.
+        // With `-d`, the program reports its subscription.
         let mut line = String::new();
         while !line.contains("Subscribed") {
             line.clear();
@@ -169,12 +171,12 @@ impl Listener {
         Self { process, lines }
     }
 
-    /// The next message.
+    /// Returns the next message.
     pub fn next(&mut self) -> ReceivedMessage {
         loop {
             let mut line = String::new();
             assert!(self.lines.read_line(&mut line).unwrap() > 0, "the broker is gone");
-            // Its own log lines begin differently.
+            // Log lines of the program begin differently and are skipped.
             let mut fields = line.trim_end().splitn(3, ' ');
             if let (Some(kept @ ("0" | "1")), Some(topic)) = (fields.next(), fields.next()) {
                 let payload = fields.next().unwrap_or_default().to_owned();
@@ -183,7 +185,7 @@ impl Listener {
         }
     }
 
-    /// Messages up to the first matching one of this topic.
+    /// Reads messages until one of this topic satisfies `fits`. Returns this message.
     pub fn wait_for(&mut self, topic: &str, fits: impl Fn(&str) -> bool) -> ReceivedMessage {
         loop {
             let heard = self.next();
@@ -205,12 +207,12 @@ fn free_port() -> u16 {
     TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap().local_addr().unwrap().port()
 }
 
-/// A peer that is not a broker: it reads the first packet, sends this answer, and then continues to read, or closes the
-/// connection.
+/// A peer that is not a broker. It reads the first packet and sends this answer. If `closes` is set, it then closes the
+/// connection; otherwise it continues to read.
 pub fn hostile(answer: &'static [u8], closes: bool) -> String {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
     let port = listener.local_addr().unwrap().port();
-    // It ends with the test.
+    // The thread ends with the test.
     thread::spawn(move || {
         for stream in listener.incoming() {
             let Ok(mut stream) = stream else { return };
@@ -225,11 +227,11 @@ pub fn hostile(answer: &'static [u8], closes: bool) -> String {
     format!("mqtt://127.0.0.1:{port}")
 }
 
-/// A broker that accepts each client, and then repeats a packet until the connection closes.
+/// A broker that accepts each client, and then sends this packet repeatedly until the connection closes.
 pub fn flooding(packet: &'static [u8]) -> String {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
     let port = listener.local_addr().unwrap().port();
-    // It ends with the test.
+    // The thread ends with the test.
     thread::spawn(move || {
         let flood = packet.repeat(4096);
         for stream in listener.incoming() {

@@ -1,5 +1,5 @@
-//! `armctl publish` with a real broker, and with peers that are not brokers. The tests wait for conditions, never for
-//! times.
+//! `armctl publish` with a real broker, and with peers that are not brokers. The tests wait for conditions, never for a
+//! fixed time.
 #![allow(clippy::unwrap_used, reason = "what fails in here fails the test that wants it")]
 #![cfg(all(unix, feature = "plant"))]
 
@@ -18,7 +18,7 @@ use tempfile::TempDir;
 use self::broker::{Mosquitto, NOT_INSTALLED, flooding, hostile};
 use crate::support::schemas;
 
-/// A user with an inventory.
+/// The environment of a user: an inventory.
 pub struct Desk {
     pub folder: TempDir,
 }
@@ -53,7 +53,7 @@ pub fn fleet() -> Desk {
     Desk::new(&[("press", "yerc", "sim:"), ("loader", "toyo", "sim:"), ("picker", "yrcx", "sim:")])
 }
 
-/// A publisher, until it is dropped.
+/// A publisher that runs until it is dropped.
 pub struct Publisher {
     process: Child,
     stderr: BufReader<ChildStderr>,
@@ -66,7 +66,7 @@ impl Publisher {
         Self { process, stderr }
     }
 
-    /// Waits for this text on stderr. Returns the number of lines up to it.
+    /// Waits for this text on stderr. Returns the number of lines that were read, including the line with the text.
     pub fn wait_for_message(&mut self, part: &str) -> usize {
         let (mut line, mut lines) = (String::new(), 0);
         while !line.contains(part) {
@@ -81,7 +81,7 @@ impl Publisher {
         assert!(Command::new("kill").args([signal, &self.process.id().to_string()]).status().unwrap().success());
     }
 
-    /// Waits for its end. Returns its exit code and its report.
+    /// Waits until the publisher ends. Returns its exit code and its report.
     pub fn end(mut self) -> (Option<i32>, Value) {
         let (mut report, mut said) = (String::new(), String::new());
         self.process.stdout.take().unwrap().read_to_string(&mut report).unwrap();
@@ -176,7 +176,7 @@ fn returning_broker_gets_missed_records_in_order() {
     }
     let mut broker = Mosquitto::start();
     let (desk, url) = (fleet(), broker.url());
-    // Unchanged data is also published at every poll.
+    // With `--every 1ms`, unchanged data is also published at every poll.
     let words =
         ["publish", &url, "--node", "cell7", "--json", "--watch", "50ms", "--every", "1ms", "--kinds", "status"];
     let mut publisher = Publisher::start(desk.command(&words));
@@ -198,7 +198,8 @@ fn returning_broker_gets_missed_records_in_order() {
             times.push(time_of(&listener.next().payload));
         }
         assert!(times.is_sorted(), "{times:?}");
-        // If the publisher was faster than the subscriber, the queue is already sent.
+        // If the publisher was connected before the subscriber, the subscriber has missed the queue. The test is then
+        // repeated.
         if times.iter().filter(|time| **time < restarted).count() > 1 {
             break;
         }
@@ -222,7 +223,7 @@ fn queued_records_outlive_the_process() {
         ["publish", &url, "--node", "cell7", "--json", "--watch", "50ms", "--every", "1ms", "--kinds", "status"];
     let mut publisher = Publisher::start(desk.command(&[&words[..], &["-v"]].concat()));
     publisher.wait_for_message("next try in");
-    // A second later there were polls.
+    // The second try is a second later, so the robots were polled in the meantime.
     publisher.wait_for_message("next try in");
     publisher.signal("-TERM");
     publisher.wait_for_message("stored on disk");
@@ -259,7 +260,7 @@ fn escapes_unusual_names_in_topics() {
     }
     let broker = Mosquitto::start();
     let desk = Desk::new(&[]);
-    // The port is closed; the robot has the name of the port.
+    // The port does not exist. The robot has no other name than its port.
     let words = [
         "-t",
         "serial:///dev/no+such#port",
@@ -310,14 +311,14 @@ fn needs_the_right_password_and_never_prints_it() {
     std::fs::write(&file, "hunter2\n").unwrap();
     let words = [&publish[..], &["--password-file", file.to_str().unwrap()]].concat();
     assert!(desk.run(&words).status.success());
-    // A password in the URL would be visible to everyone.
+    // A password in the URL is refused, because other users could see it.
     let output = desk.run(&["publish", "mqtt://plant:hunter2@127.0.0.1"]);
     assert_eq!(output.status.code(), Some(2));
     let messages = stderr(&output);
     assert!(messages.contains("--password-file") && messages.matches("hunter2").count() <= 1, "{messages}");
 }
 
-/// Messages about a password in this file, sent to this URL, in an empty network.
+/// Messages of a publisher that uses a password file with these permissions and this URL. It runs in an empty network.
 fn password_messages(url: &str, rights: u32, more: &[&str]) -> String {
     let desk = fleet();
     let file = desk.folder.path().join("password");
@@ -364,8 +365,8 @@ fn reports_peers_that_are_not_brokers() {
         (b"HTTP/1.1 400 Bad Request\r\n\r\n", false, 4, "not send MQTT"),
         (b"SSH-2.0-OpenSSH_9.2\r\n", true, 4, "not send MQTT"),
         (&[0x30, 3, 0, 1, b'a'], false, 4, "not send MQTT"),
-        (&[0x20, 0xff, 0xff, 0xff, 0x7f, 0, 0], false, 4, "packet of more than"),
-        (&[0x20, 2, 0, 0, 0x30, 0xff, 0xff, 0xff, 0x7f], false, 4, "packet of more than"),
+        (&[0x20, 0xff, 0xff, 0xff, 0x7f, 0, 0], false, 4, "packet that is longer than"),
+        (&[0x20, 2, 0, 0, 0x30, 0xff, 0xff, 0xff, 0x7f], false, 4, "packet that is longer than"),
         (&[], true, 4, "closed the connection"),
     ] {
         let url = hostile(answer, closes);
@@ -378,11 +379,12 @@ fn reports_peers_that_are_not_brokers() {
 
 #[test]
 fn leaves_and_retries_flooding_brokers_without_blocking_the_exit() {
-    /// Lines of two connections: connected, lost, connected, lost; each time with queued or refused messages.
+    /// Number of lines for two connections. Each connection is made and then lost, with messages about queued or
+    /// refused data.
     const LINES: usize = 8;
 
     for (packet, why) in [
-        (&[0x20, 2, 0, 0][..], "it breaks the MQTT protocol: a second CONNACK; next try in "),
+        (&[0x20, 2, 0, 0][..], "it does not follow the MQTT protocol: a second CONNACK; next try in "),
         (&[0x30, 3, 0, 1, b'a'], "it sends too much: "),
         (&[0xd0, 0], "it sends too much: "),
     ] {
@@ -399,7 +401,7 @@ fn leaves_and_retries_flooding_brokers_without_blocking_the_exit() {
     }
 }
 
-/// In a namespace with a disk of limited size.
+/// Runs in a namespace that has a disk of limited size.
 #[test]
 fn reports_a_full_disk_and_continues() {
     let alone = Command::new("unshare").args(["-Urm", "true"]).output();

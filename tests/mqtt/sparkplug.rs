@@ -1,4 +1,4 @@
-//! Sparkplug through a real broker, decoded by another implementation.
+//! Sparkplug messages through a real broker, decoded by another implementation.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ fn peers_folder() -> Option<PathBuf> {
 
 const NO_FOLDER: &str = "skipped: ARMCTL_SPARKPLUG_PEERS does not name a folder of tests/mqtt/peers/install";
 
-/// Payloads as decoded by sparkplug-payload.
+/// Payloads of these messages, decoded by the package sparkplug-payload.
 fn decoded(folder: &Path, heard: &[ReceivedMessage]) -> Vec<Value> {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mqtt/peers/decode.js");
     let mut command = Command::new("node");
@@ -28,7 +28,7 @@ fn decoded(folder: &Path, heard: &[ReceivedMessage]) -> Vec<Value> {
     String::from_utf8(output.stdout).unwrap().lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-/// The next message of this type and device.
+/// The next message with this type and device in its topic.
 fn next(listener: &mut Listener, what: &str) -> ReceivedMessage {
     loop {
         let heard = listener.next();
@@ -73,11 +73,11 @@ fn another_decoder_reads_births_data_and_deaths() {
     let sent = by_alias.iter().find(|metric| metric["alias"] == x["alias"]).unwrap();
     assert_eq!((&sent["value"], &sent["type"]), (&x["value"], &json!("Double")));
 
-    // A host requests the births again; all its other commands are ignored.
+    // A host can request the births again. All other commands of a host are ignored.
     let rebirth = b"\x12\x1a\x0a\x14Node Control/Rebirth\x20\x0b\x70\x01";
     broker.send("spBv1.0/Plant/NCMD/Cell7", b"\x12\x08\x0a\x02xx\x20\x0b\x70\x01", false);
     publisher.wait_for_message("armctl only publishes");
-    // A request directly after a birth is ignored, because the birth would be the same.
+    // A request directly after a birth is ignored, because the birth would be equal. The request is therefore repeated.
     let second_birth = loop {
         broker.send("spBv1.0/Plant/NCMD/Cell7", rebirth, false);
         if let Some(heard) = (0..20).map(|_| listener.next()).find(|heard| heard.topic.contains("/NBIRTH/")) {
@@ -91,7 +91,7 @@ fn another_decoder_reads_births_data_and_deaths() {
     assert_eq!(metric(death, "bdSeq")["value"], 0);
     assert_eq!(publisher.end().0, Some(0));
 
-    // The next process has a new number, and its will is published when it is killed.
+    // The next process uses the next number (bdSeq). When it is killed, the broker publishes its will.
     let publisher = Publisher::start(desk.command(&words));
     let birth = next(&mut listener, "spBv1.0/Plant/NBIRTH/Cell7");
     publisher.signal("-KILL");
@@ -126,7 +126,7 @@ fn waits_for_the_primary_host() {
     assert_eq!(metric(&decoded(&folder, &[death])[0], "bdSeq")["value"], 0);
     publisher.wait_for_message("waiting for the primary host SCADA");
     broker.send("spBv1.0/STATE/SCADA", b"{\"online\":true,\"timestamp\":4}", true);
-    // Deaths that arrive with it belong to the previous connection.
+    // Death messages that arrive before this birth belong to the previous connection.
     let birth = next(&mut listener, "spBv1.0/Plant/NBIRTH/Cell7");
     let data = next(&mut listener, "spBv1.0/Plant/DDATA/Cell7/press");
     let payloads = decoded(&folder, &[birth, data]);

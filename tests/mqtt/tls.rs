@@ -1,4 +1,4 @@
-//! TLS with valid and invalid certificates, made by `openssl`.
+//! TLS with valid and invalid certificates, which `openssl` creates.
 #![cfg(feature = "plant-tls")]
 
 use std::fs::Permissions;
@@ -13,7 +13,7 @@ fn has_openssl() -> bool {
     Command::new("openssl").arg("version").stdout(Stdio::null()).status().is_ok_and(|status| status.success())
 }
 
-/// A certificate authority and its certificates: broker, client, another broker.
+/// Creates a certificate authority, and certificates for the broker, a client and another broker.
 fn certificates(folder: &Path) {
     let script = r#"
 set -e
@@ -88,7 +88,7 @@ fn trusts_a_broker_only_by_its_certificate() {
     let (code, said) = publish(&desk, &strict, &["--ca", "ca.pem"]);
     assert!(code == Some(2) && said.contains("does not accept this client's certificate"), "{code:?} {said}");
 
-    // A port without TLS, and a TLS port used without TLS.
+    // First, a publisher with TLS at a port without TLS. Then, a publisher without TLS at a port with TLS.
     let plain = Mosquitto::start();
     let (code, said) = publish(&desk, &plain, &[]);
     assert!(code == Some(2) && said.contains("does not use TLS"), "{code:?} {said}");

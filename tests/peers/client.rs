@@ -1,4 +1,5 @@
-//! `moto-hses-client` and the client of this project on the same simulator: each reads what the other wrote.
+//! `moto-hses-client` and the client of this project with the same simulator. Each client reads what the other one
+//! wrote.
 
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;
@@ -22,10 +23,10 @@ use moto_hses_client::{ClientConfig, HsesClient, TextEncoding};
 use moto_hses_proto::commands::JobSelectType;
 use moto_hses_proto::{AlarmAttribute, CycleMode, Position as TheirPosition, Status};
 
-/// Timeout that only a broken test reaches.
+/// Long timeout. It expires only if a test fails.
 const TIMEOUT: Duration = Duration::from_secs(20);
 
-/// The simulator on two ports, and three clients: `moto-hses-client` on each port, and ours.
+/// A simulator with two ports, and three clients: a `moto-hses-client` on each port, and the client of this project.
 struct Peer {
     robot: HsesClient,
     files: HsesClient,
@@ -68,7 +69,7 @@ impl Peer {
         self.ask(WriteVariable::new(number, value).unwrap()).await;
     }
 
-    /// Status of the other client, complete and in halves, which must be equal to ours.
+    /// Status that the other client reads, completely and in halves. It must equal the status that our client reads.
     async fn status(&mut self) -> ControllerStatus {
         let status = self.robot.read_status().await.unwrap();
         assert_eq!(self.robot.read_status_data1().await.unwrap(), status.data1);
@@ -113,7 +114,7 @@ fn status_bits(status: &Status) -> [(StatusBit, bool); 14] {
     ]
 }
 
-/// A string variable in the 16-byte form, the only one of the other client.
+/// A string variable in the 16-byte form. The other client supports only this form.
 fn short(text: &[u8]) -> Value {
     Value::Short(Text::new(text).unwrap())
 }
@@ -191,7 +192,7 @@ async fn positions_agree_in_pulses_and_in_base_coordinates() {
         let millimetres = [theirs.x, theirs.y, theirs.z].map(|value| f64::from(value) * 1e3);
         let degrees = [theirs.rx, theirs.ry, theirs.rz].map(|value| f64::from(value) * 1e4);
         for (theirs, ours) in millimetres.into_iter().chain(degrees).zip(axes.as_slice()) {
-            // Single precision has seven digits.
+            // The other client uses single precision, which has seven digits.
             assert!((theirs - f64::from(*ours)).abs() < 0.5, "{theirs} is not {ours}");
         }
         assert!(axes.as_slice()[0] != 0);
@@ -277,7 +278,7 @@ async fn signals_and_registers_agree() {
     let mut peer = Peer::start(Dx200, "io = { 10010 = true }\nregisters = { 10 = 4660 }").await;
     assert_eq!(peer.robot.read_io(1).await.unwrap(), 1);
     assert_eq!(peer.robot.read_io(1001).await.unwrap(), 1);
-    // The other client writes one element as four bytes; the controller uses the first one (28).
+    // The other client writes one element as four bytes. The controller uses the first of them (28).
     peer.robot.write_io(2701, 0x5A).await.unwrap();
     assert_eq!(peer.ask(ReadIo::new(Dx200, 2701).unwrap()).await, 0x5A);
     peer.ask(WriteIo::new(Dx200, 2702, 0xA5).unwrap()).await;
@@ -317,7 +318,7 @@ async fn selects_shows_and_starts_jobs() {
         }
         peer.robot.select_job(JobSelectType::MasterTask0, "MAIN", 0).await.unwrap();
         assert!(!peer.status().await.running());
-        // This job waits for an input, so it runs until the input is set.
+        // This job waits for an input, so it continues to run.
         peer.robot.start_job().await.unwrap();
         assert!(peer.status().await.running());
         peer.robot.set_hold(true).await.unwrap();
@@ -351,8 +352,8 @@ async fn lists_fetches_and_deletes_files() {
         peer.files.delete_file("HOME.JBI").await.unwrap();
         let jobs = peer.files.read_file_list("*.JBI").await.unwrap();
         assert_eq!(jobs, ["COUNT.JBI", "MAIN.JBI", "TESTJOB.JBI", "WAITIN.JBI", "テスト.JBI"]);
-        // The other client sends name, NUL and content in one frame, which no controller accepts: a NUL in the name is
-        // E49D (56).
+        // The other client sends name, NUL and content in one frame. No controller accepts this: a NUL in the name is
+        // refused with E49D (56).
         let refused = peer.files.send_file("NEW.JBI", b"/JOB\r\n").await.unwrap_err();
         assert!(refused.to_string().contains("E49D"), "{refused}");
     }

@@ -1,4 +1,4 @@
-//! `moto-hses-mock` as the controller.
+//! `moto-hses-mock` in the place of the controller.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -24,7 +24,7 @@ use tokio::net::UdpSocket;
 /// Number of attempts to find a free port for the file server of the mock, which does not report its port.
 const PORT_ATTEMPTS: usize = 20;
 
-/// A mock, and this project's client connected to it.
+/// A mock, and the client of this project, which is connected to it.
 struct Peer {
     mock: Arc<MockServer>,
     link: Link,
@@ -39,7 +39,7 @@ impl Peer {
         for _ in 0..PORT_ATTEMPTS {
             let file = UdpSocket::bind("127.0.0.1:0").await.unwrap().local_addr().unwrap();
             let builder = MockServerBuilder::new().host("127.0.0.1").robot_port(0).file_port(file.port());
-            // Another process may have taken the port in the meantime.
+            // Another process may have taken the port since the check.
             let Ok(mock) = configure(builder).build().await else { continue };
             let robot = mock.local_addr().unwrap();
             let mock = Arc::new(mock);
@@ -60,7 +60,7 @@ impl Peer {
         StatusBit::all().filter(|bit| status.has(*bit)).collect()
     }
 
-    /// Writes values singly and together, and reads them back in both ways.
+    /// Writes values one by one and together, and reads them back in both ways.
     async fn variables(&mut self, kind: VariableKind, values: Vec<Value>) {
         let count = u16::try_from(values.len()).unwrap();
         for (number, value) in (10..).zip(&values) {
@@ -80,8 +80,8 @@ impl Peer {
     }
 }
 
-// Every answer of the mock has "two words of added status" with success, which no controller sends (31). It must count
-// as success, or each test below would fail.
+// Every successful answer of the mock has the size "two words of added status", which no controller sends (31). The
+// client must count such an answer as success; otherwise all tests below would fail.
 
 #[tokio::test]
 async fn status_bits_agree() {
@@ -183,10 +183,10 @@ async fn torque_error_and_times_agree() {
     let error = peer.ask(ReadPositionError::new(Dx200, Group::R1).unwrap()).await;
     assert_eq!(error.as_slice(), [0, 10, 20, 30, 40, 50, 60]);
     let time = peer.ask(ReadManagementTime::new(Dx200, TimeCounter::ControlPower).unwrap()).await;
-    // The mock sends four bytes more than 3.3.25 has; they are ignored.
+    // The data of the mock is four bytes longer than 3.3.25 specifies. The client ignores these bytes.
     assert_eq!((time.start.as_bytes(), time.elapsed.as_bytes()), (&b"1234567890"[..], &b"987654321"[..]));
-    // Not compared: axis names of eight bytes instead of four (3.3.5), and system information in three fields of 16
-    // bytes instead of 24, 16 and 8 (3.3.26).
+    // Two answers are not compared. The mock sends axis names of eight bytes instead of four (3.3.5). It sends system
+    // information in three fields of 16 bytes instead of 24, 16 and 8 bytes (3.3.26).
 }
 
 #[tokio::test]
@@ -212,9 +212,9 @@ async fn strings_agree_in_any_encoding() {
     assert_eq!(peer.stored_value(VariableType::String, 43).await, b"SIXTEEN BYTES OK");
 }
 
-/// The mock stores one position type for all variables, and drops other fields: form, tool and user frame of a pulse
-/// position, the axes after the sixth of a cartesian one. It reads BP and EX variables with the layout of P, so they
-/// are not compared.
+/// The mock stores one position type for all variables. It drops form, tool and user frame of a pulse position, and the
+/// axes after the sixth axis of a cartesian position. It reads BP and EX variables with the layout of P variables, so
+/// they are not compared.
 #[tokio::test]
 async fn position_variables_agree() {
     let mut peer = Peer::start().await;
@@ -267,7 +267,7 @@ async fn jobs_agree() {
     let job = proto::ExecutingJobInfo::new("WELD-1".to_owned(), 1234, 56, 75);
     let mut peer = Peer::start_with(|builder| builder.with_executing_job(job.clone()), None).await;
     let shown = peer.ask(ReadJob::new(Dx200, 0).unwrap()).await;
-    // 75 % is sent as 7500 (39).
+    // The frame has 7500 for 75 % (39).
     assert_eq!((shown.name.as_bytes(), shown.line, shown.step, shown.speed_override), (&b"WELD-1"[..], 1234, 56, 7500));
     let line = peer.ask(ReadField::new(Dx200, 0x73, 1, 2).unwrap()).await;
     assert_eq!(line, 1234_u32.to_le_bytes());
@@ -311,11 +311,11 @@ async fn switches_agree() {
         assert_eq!(peer.mock.get_cycle_mode().await, expected);
     }
     peer.ask(Say::new(b"PART MISSING").unwrap()).await;
-    // Not compared: moves, because the mock reads their first words (robot, station, class) as a position.
+    // Moves are not compared: the mock reads their first words (robot, station, class) as a position.
 }
 
-/// The mock answers a list or file of any size in one frame with block number 0x80000000, a possible number of a single
-/// block (49), and answers its ACK again like a request.
+/// The mock answers a list or file of any size in one frame with the block number 0x80000000. This number is possible
+/// for a single block (49). The mock answers the ACK of this frame again, like a request.
 #[tokio::test]
 async fn lists_fetches_and_deletes_files() {
     let content = b"/JOB\r\n//NAME A\r\nNOP\r\n'\x00\xFF\x83e\r\nEND\r\n".to_vec();
@@ -354,15 +354,15 @@ async fn fetch(link: &mut Link, request: &armctl_controller::yerc::request::Requ
     (fetched, end)
 }
 
-/// The mock expects an upload in one frame with name, NUL and content. It accepts other uploads without storing them;
-/// the client must not report this as done.
+/// The mock expects an upload in one frame with name, NUL and content. It accepts another upload, but does not store
+/// it. The client must not report such an upload as done.
 #[tokio::test]
 async fn does_not_report_a_lost_upload_as_done() {
     let mut peer = Peer::start_with(|builder| builder, Some(Duration::from_millis(100))).await;
     let mut pieces = vec![Vec::new(), vec![b'x'; 600]];
     let request = FileName::new("NEW.JBI").unwrap().load();
     let end = peer.link.upload(&request, || Ok(pieces.pop().unwrap_or_default())).await;
-    // On a busy machine, the mock may answer only after the whole wait.
+    // On a busy machine, the mock may answer only after the client has stopped to wait.
     assert!(matches!(end, Ok(UploadEnd::OutcomeUnknown { sent: 479, taken: 0, .. }) | Err(_)), "{end:?}");
     assert!(peer.mock.state().read().await.get_file("NEW.JBI").is_none());
 }

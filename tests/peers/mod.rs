@@ -1,9 +1,9 @@
-//! Other implementations at the remote end of a real socket: `moto-hses-mock` as the controller, and `moto-hses-client`
-//! as a client of the simulator. Values that both sides support must agree.
+//! Other implementations at the remote end of a real socket: `moto-hses-mock` in the place of the controller, and
+//! `moto-hses-client` as a client of the simulator. Values that both sides support must agree.
 //!
-//! Neither is a reference for errors, retries or uploads. If a peer departs from the manuals, a comment has the reason;
-//! the numbers in parentheses are those of the protocol's list of ambiguities. Everything is on 127.0.0.1 and on free
-//! ports; sockets are bound before anything is sent.
+//! Neither of them is a reference for errors, retries or uploads. If a peer differs from the manuals, a comment has the
+//! reason. A number in parentheses is the number of an ambiguity in the list of the protocol. Everything runs on
+//! 127.0.0.1 with free ports. All sockets are bound before anything is sent.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
@@ -20,7 +20,7 @@ use armctl_frame::settings::{Selection, Sources};
 use armctl_frame::{Access, ConnectMode, Family as _};
 use armctl_yerc::link::{Link, Yerc};
 
-/// The client of this project, for a controller at these local ports.
+/// Connects the client of this project to a controller at these local addresses.
 async fn connect(model: Model, robot: SocketAddr, file: SocketAddr) -> Link {
     connect_with(&format!("udp://{robot}?file_port={}&model={model}", file.port()), None).await
 }

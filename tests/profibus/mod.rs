@@ -1,5 +1,5 @@
-//! PROFIBUS with independent implementations: a strict slave in Python, and the master of PyPI's `pyprofibus`. Both run
-//! on pseudo-terminals; without Python or the package, the tests are skipped with a message.
+//! PROFIBUS with independent implementations: a strict slave in Python, and the master of the PyPI package
+//! `pyprofibus`. Both run on pseudo-terminals. Without Python or the package, the tests are skipped with a message.
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use serialport::{SerialPort, TTYPort};
 
-/// A program that prints its address on its first line, until it is dropped.
+/// A program that prints its address on its first line. It runs until it is dropped.
 struct Running {
     child: Child,
     lines: BufReader<ChildStdout>,
@@ -33,7 +33,7 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // The program may have ended already.
+        // The program may already have ended.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -66,8 +66,8 @@ fn independent_strict_slave_accepts_our_master() {
     let mut slave = Running::start(Command::new("python3").arg(script("slave.py")).arg("3"));
     let port = slave.line();
     let url = format!("profibus://{port}?station=5&slot=500ms&watchdog=20s");
-    // The slave returns its outputs as inputs, unlike a controller: the command fails, and the link is opened and
-    // closed.
+    // This slave returns its outputs as inputs, which a controller does not do. The command therefore fails, but it
+    // opens and closes the link.
     let requests =
         armctl().args(["-t", &url, "--timeout", "1s", "--yes", "yrcx", "info", "servo"]).output().expect("it runs");
     let mut output = Vec::new();
@@ -98,11 +98,11 @@ fn pyprofibus_exchanges_images_with_our_simulator() {
     assert!(driver_output.status.success(), "{}", text(&driver_output));
 }
 
-/// A line with three ends: slave, master, listener. A pseudo-terminal has only two.
+/// A line with three ends: slave, master and listener. One pseudo-terminal has only two ends.
 struct RelayedLine {
     is_over: Arc<AtomicBool>,
     threads: Vec<JoinHandle<()>>,
-    /// Number of bytes from the listener.
+    /// Number of bytes that the listener has sent.
     said: Arc<AtomicUsize>,
 }
 
@@ -113,7 +113,7 @@ impl RelayedLine {
         let [(master, of_master), (other, of_other)] = [(), ()].map(|()| {
             let (near, far) = TTYPort::pair().expect("a pseudo-terminal");
             let name = far.name().expect("it has a name");
-            // The port is locked while it is open.
+            // The port is locked while this end is open.
             drop(far);
             (near, name)
         });
@@ -127,7 +127,7 @@ impl RelayedLine {
             std::thread::spawn(move || {
                 let mut buffer = [0; 512];
                 while !is_over.load(Ordering::SeqCst) {
-                    // Reads fail while the other end is closed.
+                    // A read fails while the other end is closed.
                     let len = from.read(&mut buffer).unwrap_or(0);
                     if len == 0 {
                         std::thread::yield_now();
@@ -154,7 +154,7 @@ impl Drop for RelayedLine {
     fn drop(&mut self) {
         self.is_over.store(true, Ordering::SeqCst);
         for thread in self.threads.drain(..) {
-            // A panic has already printed its message.
+            // If the thread panicked, it has already printed its message.
             let _ = thread.join();
         }
     }
@@ -184,7 +184,10 @@ fn listener_reads_images_and_sends_nothing() {
         assert!(seen.0.contains(expected) && seen.1 == Some(0), "{seen:?}");
     }
     let checked = run(&listens, &["robots", "check"]);
-    assert!(checked.0.contains("nothing is sent") && checked.0.contains("received from its answers"), "{checked:?}");
+    assert!(
+        checked.0.contains("armctl sends nothing") && checked.0.contains("received from the answers of the slave"),
+        "{checked:?}"
+    );
     let refused = run(&listens, &["--yes", "yrcx", "info", "servo"]);
     assert!(refused.0.contains("needs a connection that commands") && refused.1 == Some(2), "{refused:?}");
     let closed = run(&owner, &["session", "close"]);

@@ -1,5 +1,5 @@
-//! The binary as controller and as simulated device, each in a network namespace: discovery, naming, remote commands,
-//! sessions and recordings. Without user namespaces the test prints a message and passes.
+//! The binary as a controller and as a simulated device, each in its own network namespace: discovery, naming, remote
+//! commands, sessions and recordings. Without user namespaces, the test prints a message and passes.
 
 #![expect(clippy::print_stdout, reason = "a test that is skipped says so")]
 
@@ -7,7 +7,7 @@ mod namespaces;
 
 use std::process::Command;
 
-/// Typed commands; each is followed by its exit code.
+/// Commands as typed. After each command, its exit code follows.
 const COMMANDS: &str = r#"
 export HOME="$FOLDER" XDG_RUNTIME_DIR="$FOLDER"
 unset XDG_CONFIG_HOME ARMCTL_TARGET
@@ -99,7 +99,7 @@ fn commands_a_simulated_device_on_another_network_card() {
     check_recording(&format!("{place}/trace.pcapng"));
 }
 
-/// A controller and a DCP client of other authors, and a simulator on the other network card.
+/// Commands with a controller and a DCP client of other authors. Our simulator is on the other network card.
 const DRIVER_COMMANDS: &str = r#"
 $THERE "$ARMCTL" sim yrcx --bus profinet --interface pd0 > "$FOLDER/sim" 2>&1 & D=$!
 until grep -q 'profinet://' "$FOLDER/sim"; do kill -0 $D || exit 1; done
@@ -129,7 +129,8 @@ fn other_controllers_command_the_simulated_device() {
     assert!(text.contains("pnio-dcp has seen all"), "{text}");
 }
 
-/// Checks that tshark can read the complete recording, with cyclic data decoded as in Connect; skipped without tshark.
+/// Checks that tshark can read the complete recording and decodes the cyclic data as Connect specifies it. Skipped
+/// without tshark.
 fn check_recording(path: &str) {
     let tshark = |arguments: &[&str]| {
         let output = Command::new("tshark").args(["-r", path]).args(arguments).output().ok()?;

@@ -1,13 +1,13 @@
-//! Two network namespaces connected by virtual network cards: `pc0` in the first with 192.168.79.1 and
-//! 02:00:00:00:00:01, `pd0` in the second with 192.168.79.2 and 02:00:00:00:00:02. Needs user namespaces, but no
-//! privileges.
+//! Two network namespaces that are connected by virtual network cards. The first has the card `pc0` with 192.168.79.1
+//! and 02:00:00:00:00:01, and the second has the card `pd0` with 192.168.79.2 and 02:00:00:00:00:02. The tests need
+//! user namespaces, but no privileges.
 
 use std::process::{Command, Stdio};
 
-/// Message without user namespaces.
+/// Message of a test that is skipped because there are no user namespaces.
 pub const SKIPPED: &str = "skipped: there are no user namespaces here";
 
-/// Creates both and runs `$INSIDE` in the first; `$THERE COMMAND` runs a command in the second.
+/// Creates both namespaces, and runs `$INSIDE` in the first one. `$THERE COMMAND` runs a command in the second one.
 const SCRIPT: &str = r#"
 set -e
 mount -t sysfs none /sys
@@ -28,7 +28,8 @@ kill $P
 exit $R
 "#;
 
-/// Runs shell commands inside, with these variables, and returns their output; `None` without user namespaces.
+/// Runs shell commands in the first namespace, with these variables. Returns their output; `None` without user
+/// namespaces.
 pub fn run(inside: &str, variables: &[(&str, &str)]) -> Option<String> {
     let can = Command::new("unshare").args(["-Urnm", "true"]).stderr(Stdio::null()).status();
     if !can.is_ok_and(|status| status.success()) {

@@ -1,6 +1,6 @@
-//! Our controller with a device of other authors (the crate `pnio`), and with our simulated device: each in its own
-//! network namespace, connected by virtual network cards. Needs user namespaces, but no privileges; without them the
-//! tests print a message and pass.
+//! Our controller with a device of other authors (the crate `pnio`), and with our simulated device. Each end is in its
+//! own network namespace, and virtual network cards connect them. The tests need user namespaces, but no privileges.
+//! Without user namespaces, they print a message and pass.
 
 #![cfg(target_os = "linux")]
 #![expect(clippy::print_stdout, reason = "one end tells the other, and the log says what is skipped")]
@@ -31,7 +31,7 @@ use pnio::diag::{ChannelError, Severity};
 
 mod namespaces;
 
-/// Both programs are this test binary; the test name selects the end.
+/// Both programs are this test binary. The name of the test selects the end.
 const ENDS: &str = r#"
 export ROLE=end
 C=
@@ -55,7 +55,7 @@ fn our_controller_runs_another_device() {
     }
 }
 
-/// Message of the other device when its controller is silent.
+/// Text that the other device prints when its controller is silent.
 const WATCHDOG_MARK: &str = "the device's watchdog has expired";
 
 #[test]
@@ -75,7 +75,7 @@ fn another_dcp_client_finds_and_names_our_device() {
     run_theirs("dcp");
 }
 
-/// Needs the folder made by `tests/profinet/install`.
+/// Runs a test with programs of other authors. It needs the folder that `tests/profinet/install` creates.
 fn run_theirs(name: &str) {
     if std::env::var_os(PEERS).is_none() {
         println!("skipped: {PEERS} does not name a folder of tests/profinet/install");
@@ -86,8 +86,8 @@ fn run_theirs(name: &str) {
 
 const PEERS: &str = "ARMCTL_PROFINET_PEERS";
 
-/// Runs the two ends of this name, and asserts that the controller finishes. Returns the output, or `None` if this is
-/// not possible.
+/// Runs the two ends of this test, and asserts that the controller finishes. Returns the output; `None` without user
+/// namespaces.
 fn run(name: &str) -> Option<String> {
     let program = std::env::current_exe().expect("this program has a path");
     let program = program.to_str().expect("the path is UTF-8");
@@ -97,7 +97,7 @@ fn run(name: &str) -> Option<String> {
     let variables = [("PROGRAM", program), ("NAME", name), ("CAPTURE", capture)];
     let text = namespaces::run(ENDS, &variables)?;
     assert!(text.contains("the controller has seen all"), "{text}");
-    // Ignores frames of other programs, and ICMP, which systems send for closed ports.
+    // The filter ignores frames of the other program. It also ignores ICMP, which the system sends for closed ports.
     let ours = if ["others", "our"].contains(&name) { "02:00:00:00:00:01" } else { "02:00:00:00:00:02" };
     let wrong = format!("(_ws.malformed || _ws.expert.severity >= 0x600000) && eth.src == {ours} && !icmp");
     let read = |filter: &str| {
@@ -119,7 +119,8 @@ fn is_an_end() -> bool {
     std::env::var_os("ROLE").is_some()
 }
 
-/// Returns its outputs as inputs, raises a diagnosis while the first word requests it, and reports a silent controller.
+/// A device that returns its outputs as inputs. It raises a diagnosis while the first word requests this, and reports a
+/// silent controller.
 #[test]
 #[ignore = "one end of a test above"]
 fn others_device() {
@@ -171,7 +172,7 @@ fn others_device() {
 
 fn settings() -> Settings {
     let layout = Layout::two_modules(0x101, 0x102);
-    // A busy machine must not lose the connection.
+    // The watchdog is so long that a busy machine does not lose the connection.
     let watchdog = Duration::from_millis(1920);
     let mut settings = Settings::new(Station::Name("yrcx-sim".to_owned()), layout);
     (settings.watchdog, settings.resting[32]) = (watchdog, 0x41);
@@ -218,7 +219,7 @@ fn others_controller() {
         println!("{counted:?}");
         assert_eq!((connection.view().generation, counted.losses, counted.stale), (1, 0, 0));
 
-        // A suspended program sends nothing: both ends close and start again.
+        // A suspended program sends nothing. Both ends close the connection and then open it again.
         let pause = format!("kill -STOP {0}; sleep 4; kill -CONT {0}", std::process::id());
         let mut pause = Command::new("sh").args(["-c", &pause]).spawn().unwrap();
         let lost = connection.until(|view| view.statistics.losses == 1).await;
@@ -227,7 +228,7 @@ fn others_controller() {
         pause.wait().unwrap();
         connection.close().await.unwrap();
 
-        // A second connection at once: the release has freed the device.
+        // A second connection is possible at once, because the release has freed the device.
         let connection = network.open(settings(), Tap::default()).await.unwrap();
         connection.close().await.unwrap();
 
@@ -243,7 +244,7 @@ fn others_controller() {
     println!("the controller has seen all");
 }
 
-/// Returns its outputs as inputs.
+/// An application that returns its outputs as inputs.
 #[derive(Debug, Default)]
 struct Echo(Vec<u8>);
 
@@ -283,11 +284,11 @@ fn our_device() {
     let server = Server::start(&interface, setup, Echo::default()).unwrap();
     assert!(matches!(Network::shared("pd0"), Err(ProfinetError::PortTaken { .. })));
     loop {
-        // The first word 0x55 asks the device to stop.
+        // If the first word is 0x55, the controller requests that the device goes to stop.
         let wants_stop = server.with(|device, _| device.application().0.first() == Some(&0x55));
         if wants_stop {
             server.with(|device, _| device.set_fault(Some(Fault::Stop)));
-            // Until the controller has received it and disconnected.
+            // The fault stays until the controller has received the state and has disconnected.
             while server.with(|device, _| device.application().0.first() == Some(&0x55)) {
                 std::thread::park_timeout(Duration::from_millis(5));
             }
@@ -325,7 +326,7 @@ fn our_controller() {
     let nobody = Mac([2, 0, 0, 0, 0, 0x77]);
     let silent = commission::change(&interface, nobody, "DCP signal", &Block::signal()).unwrap_err();
     assert!(matches!(silent, ProfinetError::NoAnswer { .. }), "{silent}");
-    // The operating systems at both ends answer ARP, not our device.
+    // The operating systems at both ends answer ARP requests. Our device does not answer them.
     let holder = |last, except| commission::holder(&interface, [192, 168, 79, last].into(), except).unwrap();
     assert_eq!((holder(2, nobody), holder(2, found.mac), holder(7, nobody)), (Some(found.mac), None, None));
     assert_eq!(holder(1, nobody), Some(interface.mac));
@@ -349,7 +350,7 @@ fn our_controller() {
             _ => None,
         });
         assert!(lost.unwrap().contains("in stop"));
-        // The old inputs are not shown again.
+        // After a new connection, the link does not show the old inputs again.
         let rest = settings().resting;
         loop {
             match link.next(deadline()).await {
@@ -393,7 +394,7 @@ fn dcp_controller() {
     }
 }
 
-/// Runs another program, once our device has started.
+/// Runs a program in Python when our device has started.
 fn run_python(program: &str, arguments: &[&str], end: &str) {
     let interface = Interface::find("pc0").expect("the namespace has it");
     let station = Station::Name("yrcx-sim".to_owned());

@@ -1,5 +1,5 @@
-//! No motion continues without its operator: the process that moves a robot is killed or frozen, in every family and on
-//! every bus, with every way to start the motion, directly and through a session, which can end at the same time.
+//! No motion continues without its operator. The process that moves a robot is killed or frozen: in every family, on
+//! every bus, with every way to start the motion, directly and through a session. The session can end at the same time.
 
 use std::io::Write as _;
 use std::process::Command;
@@ -9,19 +9,19 @@ use super::{Desk, Running, serve_simulator, stderr};
 use crate::support::namespaces;
 use crate::support::terminal::Terminal;
 
-/// Signals that end the process.
+/// Signals that kill or freeze the process.
 const SIGNALS: [&str; 2] = ["KILL", "STOP"];
 
-/// A motion that takes a minute.
+/// A motion that takes about a minute.
 struct Motion {
     family: &'static str,
-    /// Arguments of its simulator, and additional parameters of its target.
+    /// Arguments of the simulator, and the parameters that are added to its target.
     serve: &'static str,
     with: &'static str,
     words: &'static str,
-    /// Text of `-vv` when it moves.
+    /// Text in the `-vv` output that appears when the robot moves.
     motion_state: &'static str,
-    /// Command that reads the state, and whether its report shows a stopped robot.
+    /// Command that reads the state, and a function that checks whether its report shows a robot that has stopped.
     state_command: &'static str,
     is_standing: fn(&serde_json::Value) -> bool,
 }
@@ -36,7 +36,7 @@ const JOG: Motion = Motion {
     is_standing: |status| status["running"] == false,
 };
 
-/// A return to origin on a slow line: a jog prints its frames only at its end, and other reads need a session.
+/// A return to origin on a slow line. A jog is not suitable here: it prints its frames only at its end.
 const HOME: Motion = Motion { words: "toyo home", motion_state: "-> @HOME", ..JOG };
 
 const SERIAL: Motion = Motion { serve: "toyo --pty", ..HOME };
@@ -51,7 +51,7 @@ const MOVE: Motion = Motion {
     is_standing: |status| status["held"] == true,
 };
 
-/// Long timeouts for a busy machine. The state is read from the simulator itself.
+/// The timeouts are long, for a busy machine. The simulator itself reports the state.
 const ETHERNET: Motion = Motion {
     family: "yrcx",
     serve: "yrcx --bind 127.0.0.1:0",
@@ -70,13 +70,13 @@ const PROFIBUS: Motion = Motion { serve: "yrcx --bus profibus", with: "", ..ETHE
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum StartKind {
     Direct,
-    /// With a second robot.
+    /// Together with a second robot.
     Several,
     Batch,
     Prompt,
 }
 
-/// All ways, and whether a session of another process holds the links.
+/// Ways to start a motion, and whether a session of another process holds the links.
 const START_KINDS: [(StartKind, bool); 7] = [
     (StartKind::Direct, false),
     (StartKind::Direct, true),
@@ -87,7 +87,7 @@ const START_KINDS: [(StartKind, bool); 7] = [
     (StartKind::Prompt, true),
 ];
 
-/// The robots `a` and `b`, each with its own simulator.
+/// Two robots `a` and `b`. Each has its own simulator.
 fn two_robots(motion: &Motion) -> (Vec<Running>, Desk) {
     let no_robots = Desk::new(&[]);
     let simulators: Vec<_> = (0..2).map(|_| serve_simulator(&no_robots, motion.serve)).collect();
@@ -96,7 +96,7 @@ fn two_robots(motion: &Motion) -> (Vec<Running>, Desk) {
     (simulators, desk)
 }
 
-/// Waits until the simulator itself reports a stopped robot without a master.
+/// Waits until the simulator itself reports that the robot has stopped. The alarm must show that the master is lost.
 fn has_no_processes(simulator: &mut Running) {
     loop {
         writeln!(simulator.process.stdin.as_ref().unwrap(), "robot").unwrap();
@@ -157,11 +157,11 @@ impl Moving {
         }
     }
 
-    /// Waits until the process has ended, and until no guardian remains that would stop the robot, except for that of a
-    /// session. Returns the output.
+    /// Waits until the process has ended, and until no guardian remains that would stop the robot. The guardian of a
+    /// session may remain. Returns the output.
     fn has_ended(self, desk: &Desk, session: Option<&Running>) -> String {
         let (code, said) = match self {
-            // Its guardian has the same stderr, so both have ended.
+            // The guardian of the process has the same stderr. When stderr ends, both have ended.
             Self::Process(process) => process.end(),
             Self::Prompt(mut prompt) => (prompt.end().code(), String::from_utf8_lossy(&prompt.written).into_owned()),
         };
@@ -171,7 +171,7 @@ impl Moving {
     }
 }
 
-/// Waits until no guardian of this user remains, except for that of a session.
+/// Waits until no guardian of this user remains. The guardian of a session may remain.
 fn no_guardian(desk: &Desk, session: Option<&Running>) {
     let home = format!("HOME={}", desk.folder.path().display());
     let parent = session.map_or_else(|| "none".to_owned(), |session| format!("PPid:\t{}\n", session.process.id()));
@@ -194,13 +194,13 @@ fn wait_for_stop(motion: &Motion, signals: &[&str], ways: &[(StartKind, bool)]) 
             let messages = moving.has_ended(&desk, session.as_ref());
             assert_eq!(*signal == "STOP", messages.contains("did not respond for 2 s"), "{way:?}: {messages}");
             if let Some(mut session) = session {
-                session.wait_for_message("it moved the robot");
+                session.wait_for_message("the client moved the robot");
                 session.wait_for_message("the robot was stopped");
                 if motion.family == "yrcx" {
                     desk.until(|session| session["under_way"] == false);
                     continue;
                 }
-                // The session and its link end together.
+                // `session` is dropped here. The session process then ends, and its link with it.
             }
             let robots: &[_] = if way == StartKind::Several { &["a", "b"] } else { &["a"] };
             for (robot, simulator) in robots.iter().zip(&mut simulators) {
@@ -238,7 +238,7 @@ fn stops_the_move_of_a_killed_or_frozen_process() {
     wait_for_stop(&MOVE, &SIGNALS[..1], &START_KINDS[2..]);
 }
 
-/// Outside a session, the adapter stops a yrcx when it misses its master, not the guardian.
+/// Outside a session, the guardian does not stop a yrcx: the adapter stops it when its master is lost.
 #[test]
 fn yrcx_stops_if_its_master_or_client_is_killed_or_frozen() {
     wait_for_stop(&ETHERNET, &SIGNALS, &START_KINDS[..2]);
@@ -266,7 +266,8 @@ fn stops_a_motion_when_its_session_process_ends() {
             let session = Running::session(&desk, "a");
             let moving = Moving::start_motion(&desk, motion, StartKind::Direct);
             let (session_id, moving_id) = (session.process.id(), moving.pid());
-            // Both at the same time: the remaining process ends by itself.
+            // One `kill` command gets both ids: if only one process were killed first, the other process would end by
+            // itself.
             let kill = |signal: &str, pids: &[u32]| {
                 let pids = pids.iter().map(u32::to_string);
                 assert!(Command::new("kill").args(["-s", signal]).args(pids).status().unwrap().success());
@@ -301,7 +302,7 @@ fn background_session_logs_the_result_of_a_stop() {
     while !std::fs::read_to_string(&log).unwrap().contains(": the robot was stopped\n") {}
 }
 
-/// An update removes the program file while it moves a robot.
+/// An update removes the program file while the program moves a robot.
 #[test]
 fn removed_program_file_does_not_prevent_the_stop() {
     for in_session in [false, true] {
@@ -323,13 +324,13 @@ fn removed_program_file_does_not_prevent_the_stop() {
     }
 }
 
-/// After a normal end there is no additional stop: HOLD stays off.
+/// After a normal end, the guardian sends no additional stop: HOLD stays off.
 #[test]
 fn does_not_stop_a_finished_motion() {
     let (_simulators, desk) = two_robots(&MOVE);
     let moved = desk.run("-r a yerc move relative --x 1 --speed 100mm/s --yes");
     assert!(moved.status.success(), "{}", stderr(&moved));
-    // The guardian keeps stderr open, so it has ended at the end of stderr.
+    // The guardian keeps stderr open. The test has read stderr to its end, so the guardian has ended.
     assert_eq!(desk.data("-r a yerc status")["held"], false);
 }
 
@@ -344,14 +345,14 @@ fn move_with_on_interrupt_leave_continues_after_a_kill() {
         moving.signal("KILL");
         assert_eq!(moving.end().0, None);
         if let Some(session) = &mut session {
-            session.wait_for_message("it moved the robot");
+            session.wait_for_message("the client moved the robot");
         }
         let status = desk.data("-r a yerc status");
         assert_eq!((&status["held"], &status["running"]), (&false.into(), &true.into()), "{status}");
     }
 }
 
-/// Keys that end or suspend the process stop the robot, like Ctrl-C.
+/// Keys that end or suspend the process stop the robot, as Ctrl-C does.
 #[test]
 fn terminal_signals_stop_the_motion() {
     for signal in ["QUIT", "TSTP"] {
@@ -377,7 +378,7 @@ fn terminal_signals_stop_the_motion() {
     }
 }
 
-/// A controller on UDP accepts a stop from any client; other commands report the process that holds the link.
+/// On UDP, a controller accepts a stop from any client. Other commands report the process that holds the link.
 #[test]
 fn stop_bypasses_an_unresponsive_session() {
     for (motion, stop) in [(&MOVE, "yerc hold on"), (&JOG, "toyo stop")] {
@@ -387,13 +388,13 @@ fn stop_bypasses_an_unresponsive_session() {
         session.signal("STOP");
         let blocked_session = desk.run(&format!("-r a {}", motion.state_command));
         assert_eq!(blocked_session.status.code(), Some(4), "{}", stderr(&blocked_session));
-        for part in [format!("its session (process {pid}) does not respond"), format!("`kill -CONT {pid}`")] {
+        for part in [format!("the session (process {pid}) does not respond"), format!("`kill -CONT {pid}`")] {
             assert!(stderr(&blocked_session).contains(&part), "{part}: {}", stderr(&blocked_session));
         }
         let stopped = desk.run(&format!("-r a {stop}"));
         if motion.family == "yerc" {
             assert!(stopped.status.success(), "{}", stderr(&stopped));
-            assert!(stderr(&stopped).contains("so the stop is sent directly"), "{}", stderr(&stopped));
+            assert!(stderr(&stopped).contains("so armctl sends the stop directly"), "{}", stderr(&stopped));
             assert_eq!(desk.data("-r a --no-session yerc status")["held"], true);
         } else {
             assert_eq!(stopped.status.code(), Some(4), "{}", stderr(&stopped));
@@ -403,7 +404,7 @@ fn stop_bypasses_an_unresponsive_session() {
     }
 }
 
-/// A motion over PROFINET in its own network: the simulator reports a stopped robot and the alarm.
+/// A motion over PROFINET in its own network. The simulator must report that the robot has stopped, and the alarm.
 #[cfg(target_os = "linux")]
 const PROFINET: &str = r#"
 export HOME="$FOLDER" XDG_RUNTIME_DIR="$FOLDER"

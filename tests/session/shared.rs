@@ -1,5 +1,5 @@
-//! A link for one client, used by `top`, services, watches and commands at the same time: a device server for a
-//! simulated controller counts simultaneous connections.
+//! `top`, services, watches and commands use a link for one client at the same time. A device server before a simulated
+//! controller counts simultaneous connections.
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
@@ -16,14 +16,14 @@ use crate::support::terminal::Terminal;
 /// A serial device server.
 struct DeviceServer {
     url: String,
-    /// Number of connections during another one.
+    /// Number of connections that were opened during another connection.
     conflicts: Arc<AtomicUsize>,
     accepted: Arc<AtomicUsize>,
 }
 
 impl DeviceServer {
-    /// Starts it for a simulator. At a second client, it closes the first connection if it `evicts`, otherwise the
-    /// second.
+    /// Starts a device server for a simulator. When a second client connects, the server closes the first connection if
+    /// `evicts` is set, and otherwise the second one.
     fn proxy(target: &str, evicts: bool) -> Self {
         let controller: SocketAddr = target.strip_prefix("tcp://").unwrap().parse().unwrap();
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
@@ -59,7 +59,7 @@ impl DeviceServer {
     }
 }
 
-/// The only connection that a simulator accepts, once the previous one is closed.
+/// Connects to a simulator. It accepts only one connection, so this waits until the previous one is closed.
 fn connected(controller: SocketAddr) -> TcpStream {
     loop {
         let line = TcpStream::connect(controller).unwrap();
@@ -84,7 +84,7 @@ fn forward(mut from: TcpStream, mut to: TcpStream) {
     });
 }
 
-/// Output lines of a watch, until it is ended.
+/// A watch that runs until it is ended, and its output lines.
 struct Watch {
     running: Running,
     lines: Arc<Mutex<Vec<String>>>,
@@ -112,7 +112,7 @@ fn monitors_share_a_link_for_one_client() {
         let mut top = Terminal::start(desk.command("top --all --watch 50ms"), 100, 30).unwrap();
         let watch = Watch::start(desk.command("-r cell toyo position --watch 50ms -o jsonl"));
         let metrics = Watch::start(desk.command("serve metrics --all --listen 127.0.0.1:0 --watch 50ms"));
-        // It polls robots with and without a broker.
+        // `publish` polls the robots with and without a broker.
         let publish = Watch::start(desk.command("publish mqtt://127.0.0.1:1 --all --watch 50ms"));
         let seen = |watch: &Watch| watch.lines.lock().unwrap().len();
         while seen(&watch) < 40 {
@@ -133,12 +133,12 @@ fn monitors_share_a_link_for_one_client() {
         }
         top.press("q");
         assert!(top.end().success());
-        // The unused session ends.
+        // A session that nobody uses ends by itself.
         while !desk.files("sock").is_empty() {}
     }
 }
 
-/// Commands without a session open the link one after the other.
+/// Without a session, commands open the link one after the other.
 #[test]
 fn commands_wait_for_a_link_for_one_client() {
     let simulator = simulator(&Desk::new(&[]), "toyo", "127.0.0.1:0");
@@ -153,7 +153,7 @@ fn commands_wait_for_a_link_for_one_client() {
     assert!(desk.files("sock").is_empty(), "a command opens no session");
 }
 
-/// A command with a direct link is not evicted, and other commands report its process.
+/// The server does not evict a command with a direct link. Other commands report the process of this command.
 #[test]
 fn names_the_process_that_holds_a_link() {
     let simulator = simulator(&Desk::new(&[]), "toyo", "127.0.0.1:0");

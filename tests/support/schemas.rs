@@ -1,4 +1,4 @@
-//! Validates JSON documents against the schemas of `armctl schema`, with a validator of other authors.
+//! Validates JSON documents against the schemas of `armctl schema`. The validator is from other authors.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
@@ -7,8 +7,8 @@ use armctl_frame::failure::Kind;
 use jsonschema::Validator;
 use serde_json::Value;
 
-/// Checks an envelope: its schema, the order of its keys, the exit code of its kind, and data that matches the schema
-/// of its command or of a dry run.
+/// Checks an envelope: its schema, the order of its keys, and the exit code of its kind. The data must match the schema
+/// of the command or of a dry run.
 pub fn check(envelope: &Value) -> Result<(), String> {
     matches_schema(envelope, "envelope")?;
     let schema = schema("envelope")?;
@@ -29,14 +29,15 @@ pub fn check(envelope: &Value) -> Result<(), String> {
     matches_schema(data, if is_rehearsal { "dry-run" } else { command })
 }
 
-/// Checks a value against the schema of this name, without additional fields.
+/// Checks a value against the schema with this id. Additional fields are not allowed.
 fn matches_schema(value: &Value, id: &str) -> Result<(), String> {
     let wrong: Vec<String> =
         validator(id)?.iter_errors(value).map(|error| format!("{}: {error}", error.instance_path())).collect();
     if wrong.is_empty() { Ok(()) } else { Err(format!("not as the schema of {id} says: {}", wrong.join("; "))) }
 }
 
-/// Cached validator of a schema, because a transcript needs only a few of many schemas.
+/// Validator of a schema. It is created when it is needed and then cached, because a transcript needs few of the
+/// schemas.
 fn validator(id: &str) -> Result<Arc<Validator>, String> {
     static VALIDATORS: Mutex<Option<HashMap<String, Arc<Validator>>>> = Mutex::new(None);
     let mut validators = VALIDATORS.lock().expect("nobody panics with it");
@@ -55,7 +56,7 @@ fn schema(id: &str) -> Result<Value, String> {
     Ok((entry.ok_or_else(|| format!("`armctl schema` does not know {id}"))?.schema)().to_value())
 }
 
-/// Schemas allow additional fields for the future; current data must not have any.
+/// Schemas allow additional fields, for future versions. The current data must not have any.
 fn forbid_extra_keys(schema: &mut Value) {
     match schema {
         Value::Object(keys) => {
@@ -64,7 +65,8 @@ fn forbid_extra_keys(schema: &mut Value) {
                 keys.insert("unevaluatedProperties".into(), false.into());
             }
             for (key, inner) in keys {
-                // Conditions and variants of a flattened enum contain some of the fields; the others are next to them.
+                // A condition, or a variant of a flattened enum, has only some of the fields. The other fields are in
+                // the outer schema.
                 let is_part = matches!(key.as_str(), "if" | "then" | "else" | "not" | "allOf");
                 let is_variant = is_object && matches!(key.as_str(), "anyOf" | "oneOf");
                 if !(is_part || is_variant) {

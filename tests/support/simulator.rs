@@ -1,10 +1,10 @@
-//! A simulated controller as a process.
+//! A simulated controller that runs as a process.
 
 use std::io::{BufRead as _, BufReader};
 use std::net::SocketAddr;
 use std::process::{Child, Command, Stdio};
 
-/// A simulated controller, until it is dropped.
+/// A simulated controller that runs until it is dropped.
 pub struct Simulator {
     process: Child,
     /// URL of the controller.
@@ -35,7 +35,7 @@ impl Simulator {
 }
 
 impl Simulator {
-    /// Its address, and the rest of the URL.
+    /// Address of the controller, and the parameters of the URL.
     #[allow(dead_code, reason = "whoever stands between wants it")]
     pub fn place(&self) -> (SocketAddr, &str) {
         let (_, place) = self.url.split_once("://").expect("a URL");

@@ -1,4 +1,4 @@
-//! A pseudo-terminal for a program, and the picture that the program draws on it.
+//! A pseudo-terminal for a program, and the picture that the program has drawn on it.
 #![allow(dead_code, reason = "some watch the picture, some what is said line after line")]
 
 use std::fs::File;
@@ -10,17 +10,17 @@ use std::time::{Duration, Instant};
 use rustix::termios::{InputModes, LocalModes, OptionalActions, Termios, Winsize, tcgetattr, tcsetattr, tcsetwinsize};
 use serialport::{SerialPort as _, TTYPort};
 
-/// Wait of one read, and the maximum number of reads.
+/// Timeout of one read, and the maximum number of reads.
 const POLL_INTERVAL: Duration = Duration::from_secs(1);
 const MAX_POLLS: usize = 60;
-/// Time limit: a program that has not ended then hangs, and the test fails.
+/// Time limit for a program. If the program has not ended within this time, the test fails.
 const END: Duration = Duration::from_secs(600);
 
 /// A program on its own terminal.
 pub struct Terminal {
-    /// Output of the program.
+    /// The end of the pseudo-terminal that receives the output of the program.
     master: TTYPort,
-    /// The terminal itself, kept open to check its modes.
+    /// The terminal of the program, which is kept open to check its modes.
     slave: File,
     /// Keeps the terminal open.
     _port: TTYPort,
@@ -30,18 +30,18 @@ pub struct Terminal {
     pub picture: Picture,
     /// All output.
     pub written: Vec<u8>,
-    /// Length of the output, without escape sequences, that [`Terminal::says`] has consumed.
+    /// Number of bytes of the plain output that earlier calls of [`Terminal::wait_for_one_of`] have consumed.
     received: usize,
 }
 
 impl Terminal {
-    /// Starts it in its own process group.
+    /// Starts the program in its own process group.
     pub fn start(mut command: Command, columns: u16, lines: u16) -> std::io::Result<Self> {
         let (mut master, port) = TTYPort::pair()?;
         master.set_timeout(POLL_INTERVAL)?;
         let name = port.name().expect("a pseudo-terminal has a name");
         let slave = File::options().read(true).write(true).open(name)?;
-        // As in a shell: lines, echo, signals from keys.
+        // The modes of a shell: line mode, echo, and signals from keys.
         let mut modes = tcgetattr(&slave)?;
         modes.local_modes |= LocalModes::ICANON | LocalModes::ECHO | LocalModes::ISIG;
         modes.input_modes |= InputModes::ICRNL;
@@ -65,7 +65,7 @@ impl Terminal {
         })
     }
 
-    /// Reads until the picture is as expected.
+    /// Reads until the picture satisfies the condition.
     pub fn wait_until(&mut self, what: &str, is_so: impl Fn(&Picture) -> bool) {
         while !is_so(&self.picture) {
             let read = self.read();
@@ -78,12 +78,12 @@ impl Terminal {
         self.wait_until(text, |picture| picture.text().contains(text));
     }
 
-    /// Reads until this text follows the earlier ones: for programs that print lines.
+    /// Reads until this text appears after the texts of earlier calls. For programs that print lines.
     pub fn wait_for_text(&mut self, text: &str) {
         self.wait_for_one_of(&[text]);
     }
 
-    /// Reads until the first of these texts follows, and returns it.
+    /// Reads until one of these texts appears after the texts of earlier calls. Returns the index of this text.
     pub fn wait_for_one_of(&mut self, texts: &[&str]) -> usize {
         loop {
             let written = plain(&self.written);
@@ -100,7 +100,7 @@ impl Terminal {
         }
     }
 
-    /// Reads output; `false` at the end.
+    /// Reads output. Returns `false` at the end of the output.
     pub fn read(&mut self) -> bool {
         for _ in 0..MAX_POLLS {
             self.fails_when_it_hangs();
@@ -118,7 +118,7 @@ impl Terminal {
         assert!(self.start.elapsed() < END, "it hangs:\n{}", self.picture.text());
     }
 
-    /// Reads available output; `false` without any.
+    /// Reads the available output. Returns `false` if there is none.
     fn read_available(&mut self) -> bool {
         let mut buffer = [0; 4096];
         match self.master.read(&mut buffer) {
@@ -131,12 +131,12 @@ impl Terminal {
         }
     }
 
-    /// Presses keys.
+    /// Sends these keys to the program.
     pub fn press(&mut self, keys: &str) {
         self.master.write_all(keys.as_bytes()).expect("the terminal takes keys");
     }
 
-    /// Waits until the program reads single keys; earlier keys would be lost.
+    /// Waits until the program reads single keys. Keys that are pressed earlier would be lost.
     pub fn reads_keys(&self) {
         let is_canonical = || {
             let modes = tcgetattr(&self.slave).expect("a terminal has modes");
@@ -165,16 +165,16 @@ impl Terminal {
         }
     }
 
-    /// Whether modes, screen and cursor of the terminal are restored.
+    /// Whether the modes, the screen and the cursor of the terminal are restored.
     pub fn is_restored(&self) -> bool {
         let now = tcgetattr(&self.slave).expect("a terminal has modes");
         let modes = |modes: &Termios| (modes.local_modes, modes.input_modes, modes.output_modes, modes.control_modes);
         modes(&now) == modes(&self.modes_before) && !self.picture.is_alternate && self.picture.has_cursor
     }
 
-    /// Waits for its end, and reads the remaining output.
+    /// Waits until the program ends, and reads the remaining output.
     pub fn end(&mut self) -> ExitStatus {
-        // Continues to read, because a full terminal would block the program.
+        // Output is still read, because a full terminal would block the program.
         self.master.set_timeout(Duration::from_millis(20)).expect("a terminal takes a timeout");
         let status = loop {
             self.fails_when_it_hangs();
@@ -183,7 +183,7 @@ impl Terminal {
                 break status;
             }
         };
-        // All output is available now.
+        // The program has ended, so all its output is available now.
         self.master.set_timeout(Duration::ZERO).expect("a terminal takes a timeout");
         while self.read_available() {}
         status
@@ -192,27 +192,27 @@ impl Terminal {
 
 impl Drop for Terminal {
     fn drop(&mut self) {
-        // It may have ended already.
+        // The program may have ended already.
         self.child.kill().unwrap_or_default();
         let _ended = self.child.wait();
     }
 }
 
-/// Content of a terminal, with the functions that full-screen programs need.
+/// Content of a terminal. Supports the functions that full-screen programs need.
 pub struct Picture {
     columns: usize,
     cells: Vec<char>,
     at: (usize, usize),
-    /// Received part of an incomplete sequence or character.
+    /// Received part of an escape sequence or character that is not complete yet.
     escape_start: Vec<u8>,
-    /// Whether this is the alternate screen.
+    /// Whether the alternate screen is shown.
     pub is_alternate: bool,
     pub has_cursor: bool,
-    /// Whether colors were used.
+    /// Whether the program has used colors.
     pub has_color: bool,
 }
 
-/// Output without cursor and color sequences, and without an incomplete end.
+/// Output without cursor and color sequences, and without an incomplete sequence at its end.
 fn plain(written: &[u8]) -> String {
     let whole = written.utf8_chunks().next().map_or("", |chunk| chunk.valid());
     let text = whole.trim_end_matches('\x1b');
@@ -237,7 +237,7 @@ impl Picture {
         }
     }
 
-    /// Visible lines.
+    /// Returns the visible lines.
     pub fn text(&self) -> String {
         let lines = self.cells.chunks(self.columns).map(|line| line.iter().collect::<String>());
         lines.map(|line| line.trim_end().to_owned() + "\n").collect()

@@ -1,5 +1,5 @@
-//! `armctl top` on a terminal, against simulated controllers: display, keys, restored terminal at every exit, and only
-//! reads. Services are also tested for only reads.
+//! `armctl top` on a terminal, with simulated controllers: display, keys, restored terminal at every exit. `top` must
+//! only read. This is also tested for services.
 #![cfg(unix)]
 
 mod proxy;
@@ -16,7 +16,7 @@ use tempfile::TempDir;
 use crate::support::terminal::Terminal;
 use recorded::Recorded;
 
-/// A user with an inventory of these targets: robot1, robot2 …
+/// The environment of a user. The robots of the inventory are robot1, robot2 … with these targets.
 struct Desk {
     folder: TempDir,
 }
@@ -45,7 +45,7 @@ impl Desk {
     }
 }
 
-/// A simulator of each family in the process itself.
+/// An inventory with the built-in simulator of each family.
 fn simulated_robot() -> Desk {
     Desk::new(&["yerc sim:", "toyo sim:", "yrcx sim:"].map(str::to_owned))
 }
@@ -90,7 +90,7 @@ fn single_robot_uses_the_full_screen() {
 #[test]
 fn every_exit_restores_the_terminal() {
     let desk = simulated_robot();
-    // A key, or a signal.
+    // Each way to end: a key (no signal) or a signal.
     let ends = [
         ("Ctrl-C", None),
         ("Ctrl-C", Some("INT")),
@@ -129,7 +129,7 @@ fn ctrl_z_suspends_and_continues() {
     assert!(top.is_restored());
 }
 
-/// As in a container: the session leader is outside, and its process id is unknown.
+/// As in a container, the session leader is outside the namespace, and its process id is unknown.
 #[cfg(target_os = "linux")]
 #[test]
 fn ctrl_z_suspends_in_a_pid_namespace() {
@@ -171,7 +171,7 @@ fn sends_only_reads_for_every_key() {
         top.wait_until(robot, |picture| {
             picture.text().contains("SIGNALS") && picture.text().starts_with(&format!(" {robot}"))
         });
-        // All characters, except for the keys that end the program or select another robot.
+        // All characters are pressed, except for the keys that end the program or select another robot.
         top.press("\x1b[A\x1b[B\x1b[5~\x1b[6~\x1b[H\x1b[F");
         top.press(&(' '..='~').filter(|key| !"qQ/np?h".contains(*key)).collect::<String>());
         top.press(" \x7f");
@@ -206,7 +206,7 @@ fn services_send_only_reads() {
 #[test]
 fn lost_terminal_ends_the_monitor_if_hangups_are_ignored() {
     let desk = simulated_robot();
-    // Closed in every child, because it would keep the terminal open.
+    // This end is closed in every child process, because it would keep the terminal open.
     let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).expect("a pseudo-terminal");
     grantpt(&master).and_then(|()| unlockpt(&master)).expect("it can be opened");
     let name = ptsname(&master, Vec::new()).expect("it has a name").into_string().expect("in UTF-8");
@@ -221,7 +221,7 @@ fn lost_terminal_ends_the_monitor_if_hangups_are_ignored() {
     let mut child = program.process_group(0).spawn().expect("it starts");
     drop(program);
     let mut written: Vec<u8> = Vec::new();
-    // After the switch to the alternate screen, it reads keys.
+    // The program reads keys after it has switched to the alternate screen.
     while !written.windows(8).any(|part| part == b"\x1b[?1049h") {
         let mut buffer = [0; 4096];
         let len = master.read(&mut buffer).expect("it draws");
@@ -233,7 +233,7 @@ fn lost_terminal_ends_the_monitor_if_hangups_are_ignored() {
         child.try_wait().expect("it is our child")
     });
     child.kill().unwrap_or_default();
-    // It ends with an error code, during a drawing or a wait for a key.
+    // The program ends with an error code, because a drawing or a read of a key fails.
     let code = ended.expect("it goes on without a terminal").code();
     assert!(matches!(code, Some(1 | 130)), "{code:?}");
 }

@@ -1,11 +1,11 @@
-//! A relay between a client and a controller that records everything from the client.
+//! A relay between a client and a controller. It records everything that the client sends.
 
 use std::io::{Read as _, Write as _};
 use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream, UdpSocket};
 use std::sync::{Arc, Mutex};
 use std::thread;
 
-/// All data from clients, in pieces as received.
+/// All data from clients, in the pieces in which it was received.
 #[derive(Clone, Default)]
 pub struct Sent(Arc<Mutex<Vec<Vec<u8>>>>);
 
@@ -19,7 +19,7 @@ impl Sent {
     }
 }
 
-/// Relays datagrams to `controller`, and its answers back. It ends with the process.
+/// Relays datagrams to `controller`, and its answers back to the client. The relay ends with the process.
 pub fn udp(controller: SocketAddr) -> (SocketAddr, Sent) {
     let (front, sent) = (UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a port"), Sent::default());
     let back = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a port");

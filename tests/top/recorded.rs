@@ -1,11 +1,11 @@
-//! Controllers of all families behind recording relays, and the check of the recorded data.
+//! Controllers of all families behind recording relays, and checks of the recorded data.
 
 use super::proxy::{self, Sent};
 use crate::support::simulator::Simulator;
 
-/// One controller of each family, on the loopback.
+/// One controller of each family, on the loopback interface.
 pub struct Recorded {
-    /// Family and target of each.
+    /// Family and target of each controller.
     pub targets: [String; 3],
     sent: [Sent; 3],
     _simulators: [Simulator; 3],
@@ -26,7 +26,7 @@ impl Recorded {
         Self { targets, sent: [to_yerc, to_toyo, to_yrcx], _simulators: simulators }
     }
 
-    /// Number of pieces of the controller with the fewest.
+    /// Number of recorded pieces of the controller that has the fewest.
     pub fn fewest_requests(&self) -> usize {
         self.sent.iter().map(|sent| sent.pieces().len()).min().unwrap_or_default()
     }
@@ -39,8 +39,8 @@ impl Recorded {
     }
 }
 
-/// Read commands: status, alarm, axes, positions, position errors, torque, I/O, by their numbers and services (FS and
-/// DX 3.3).
+/// Asserts that the requests only read: status, alarm, axes, positions, position errors, torque and I/O. Numbers and
+/// services are those of FS and DX 3.3.
 fn reads_of_yerc(sent: &Sent) {
     let frames = sent.pieces();
     assert!(frames.len() > 20);
@@ -51,7 +51,7 @@ fn reads_of_yerc(sent: &Sent) {
     }
 }
 
-/// Read commands (TO 2-2, 2-4, 2-8).
+/// Asserts that the requests only read (TO 2-2, 2-4, 2-8).
 fn reads_of_toyo(sent: &Sent) {
     let text = String::from_utf8(sent.pieces().concat()).expect("the protocol is text");
     let words: Vec<&str> = text.split("\r\n").filter_map(|block| block.strip_prefix('@')?.get(..4)).collect();
@@ -61,8 +61,8 @@ fn reads_of_toyo(sent: &Sent) {
     }
 }
 
-/// Encapsulation commands and CIP services without an effect: no connection whose loss the controller would report
-/// (volume 2, 2-3; volume 1, appendix A).
+/// Asserts that only encapsulation commands and CIP services without an effect were sent. No connection may be opened,
+/// because the controller would report its loss (volume 2, 2-3; volume 1, appendix A).
 fn reads_of_yrcx(sent: &Sent) {
     const REGISTER: u16 = 0x65;
     const UNREGISTER: u16 = 0x66;
@@ -75,7 +75,7 @@ fn reads_of_yrcx(sent: &Sent) {
         bytes = rest;
         match command {
             REGISTER | UNREGISTER => {}
-            // After the header: interface, timeout, two items; the second one is the request.
+            // After the header come the interface, the timeout and two items. The second item is the request.
             SEND => {
                 assert_eq!(frame[40], 0x0E, "only Get_Attribute_Single");
                 asked += 1;

@@ -1,7 +1,7 @@
-//! Adapter for clap's completion engine, whose interface is unstable; only this file uses it.
+//! Adapter for clap's completion engine. The interface of the engine is unstable, so only this file uses it.
 //!
-//! The engine builds the whole command tree, and takes every word before the cursor for a subcommand. Therefore clap's
-//! own parser first finds the command of the line, and the engine gets only that one.
+//! The engine builds the whole command tree, and interprets every word before the cursor as a subcommand. Therefore
+//! clap's own parser first finds the command of the line. The engine gets only this command.
 
 use std::ffi::{OsStr, OsString};
 use std::sync::Arc;
@@ -14,12 +14,11 @@ use super::values::{self, Context};
 use crate::cli::Cli;
 use armctl_frame::{Candidate, ValueKind};
 
-/// Tag of candidates that need more text.
+/// Tag of candidates after which the user must type more text.
 const INCOMPLETE_TAG: &str = "begun";
 
-/// Allows `#[arg(add = ValueKind::Robot)]`.
-/// Candidates after `before` for the typed `current`; `None` if the line cannot be parsed. `is_among`: other lines run
-/// in this process. `connects`: a connection to a robot is allowed.
+/// Returns candidates for the word `current` after the words `before`. `None` if the line cannot be parsed. `is_among`
+/// is `true` if this process also runs other lines. `connects` is `true` if a connection to a robot is allowed.
 pub(super) fn complete(
     mut before: Vec<OsString>,
     current: &OsStr,
@@ -32,11 +31,11 @@ pub(super) fn complete(
     let context = Arc::new(Context::new(&matches, (is_among, connects), patience));
     let mut reduced = narrow(&root, &path, &context)?;
     if !is_among {
-        // Freeing some thousand parts takes time, and the process is about to exit.
+        // The tree is leaked: freeing its thousands of parts takes time, and the process is about to exit.
         std::mem::forget(root);
     }
     for word in &mut before {
-        // The engine would take it for a flag.
+        // The engine would interpret a negative number as a flag.
         if word.to_str().is_some_and(is_negative) {
             *word = "0".into();
         }
@@ -47,7 +46,7 @@ pub(super) fn complete(
     let found = clap_complete::engine::complete(&mut reduced, before, index, None).ok()?;
     let mut found: Vec<Candidate> = found.iter().filter_map(candidate).collect();
     if current.is_empty() {
-        // For an empty word, the forty global flags are no help.
+        // For an empty word, a list of all forty global flags does not help the user.
         let is_flag = |candidate: &Candidate| candidate.value.starts_with('-') && candidate.value != "-";
         let has_others = found.iter().any(|candidate| !is_flag(candidate));
         found.retain(|candidate| if has_others { !is_flag(candidate) } else { own.contains(&candidate.value) });
@@ -58,12 +57,12 @@ pub(super) fn complete(
 fn candidate(found: &CompletionCandidate) -> Option<Candidate> {
     let help = found.get_help().map(|help| help.to_string().lines().next().unwrap_or_default().to_owned());
     let value = found.get_value().to_str()?.to_owned();
-    // Folders, and flags with a value after `=`.
+    // More text must follow a folder, and a flag that has its value after `=`.
     let is_begun = found.get_tag().is_some_and(|tag| tag.to_string() == INCOMPLETE_TAG) || value.ends_with(['/', '=']);
     Some(Candidate { value, help, is_incomplete: is_begun })
 }
 
-/// Subcommands in the line.
+/// Returns the subcommands in the line.
 fn path(matches: &ArgMatches) -> Vec<String> {
     let mut path = Vec::new();
     let mut next = matches.subcommand();
@@ -74,7 +73,7 @@ fn path(matches: &ArgMatches) -> Vec<String> {
     path
 }
 
-/// The command tree reduced to `path`, and to what can follow it.
+/// Reduces the command tree to the command at `path` and the words that can follow it.
 fn narrow(command: &Command, path: &[String], context: &Arc<Context>) -> Option<Command> {
     let narrowed = Command::new(command.get_name().to_owned())
         .disable_help_flag(true)
@@ -91,15 +90,15 @@ fn narrow(command: &Command, path: &[String], context: &Arc<Context>) -> Option<
     })
 }
 
-/// The argument with the candidates of its kind.
+/// Adds the candidates to an argument that has a kind of value.
 fn with_values(argument: &Arg, context: &Arc<Context>) -> Arg {
     let argument = argument.clone();
-    // The engine panics if an unknown flag precedes such an argument.
+    // The engine would panic if an unknown flag precedes such an argument.
     let argument = if argument.is_positional() { argument.allow_hyphen_values(false) } else { argument };
     let shows = matches!(argument.get_action(), ArgAction::Help | ArgAction::HelpShort | ArgAction::Version);
     let argument = if shows { argument.action(ArgAction::SetTrue) } else { argument };
     let Some(kind) = argument.get::<ValueKind>().copied() else { return argument };
-    // On a command line, any folder is valid. Only a selection list is limited to backups.
+    // On a command line, any folder is valid. Only a selection list is restricted to backups.
     if matches!(kind, ValueKind::Backup) && !context.connects() {
         return argument;
     }
@@ -114,7 +113,7 @@ fn with_values(argument: &Arg, context: &Arc<Context>) -> Arg {
     }))
 }
 
-/// Flags that belong only to the command at the end of `path`.
+/// Returns the flags that belong only to the command at the end of `path`.
 fn own_flags(root: &Command, path: &[String]) -> Vec<String> {
     let command = path.iter().fold(root, |command, name| command.find_subcommand(name).unwrap_or(command));
     let own = command.get_arguments().filter(|argument| !argument.is_global_set());

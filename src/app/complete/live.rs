@@ -1,7 +1,7 @@
 //! Completion values that only a controller has.
 //!
-//! The values come from reports of read commands, through an open session or from a simulator. A key press never opens
-//! a link to a real controller, only reads, and never waits long. Values that arrive too late are not offered.
+//! The values come from reports of read commands, through an open session or from a simulator. A key press must never
+//! open a link to a real controller, change anything, or wait long. Values that arrive too late are not offered.
 
 use std::sync::Arc;
 use std::sync::mpsc::{self, Sender};
@@ -21,10 +21,10 @@ use armctl_frame::settings::target::Family;
 use armctl_frame::settings::{Robot, Sessions, Setting, Sources};
 use armctl_frame::{Access, AnyContext, Candidate, Entry};
 
-/// Longest wait.
+/// Maximum time to wait for a robot.
 pub(super) const ASK_TIMEOUT: Duration = Duration::from_millis(300);
 
-/// Values that the robot of the line reports in time.
+/// Returns the values that the robot of the line reports in time.
 pub(super) fn values(
     family: Family,
     ask: Question,
@@ -34,11 +34,12 @@ pub(super) fn values(
     let Some(robot) = robot(family, sources, patience, connects) else { return Vec::new() };
     let until = Instant::now() + patience;
     let (found, arrived) = mpsc::channel();
-    // On its own thread, because the line editor can call this from any context, and to limit the wait.
+    // The request runs on its own thread: the line editor may call this function from any context, and the wait must be
+    // limited.
     let asking = move || {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         if let Ok(runtime) = runtime {
-            // Values found before the timeout count.
+            // A timeout is not an error: the values that were found before are used.
             let _ = runtime.block_on(async { timeout(patience, ask(&Asker::new(robot, found))).await });
             runtime.shutdown_background();
         }
@@ -50,12 +51,13 @@ pub(super) fn values(
     while let Ok(value) = arrived.recv_timeout(until.saturating_duration_since(Instant::now())) {
         values.push(value);
     }
-    // A value with control characters cannot be typed.
+    // Values with control characters are removed, because they cannot be typed.
     values.retain(|value| escape::line(&value.value) == value.value);
     values
 }
 
-/// The robot of the line, if it is exactly one. A real controller is only reached through a session.
+/// Returns the robot of the line, if it is exactly one. A real controller is reached only through a session, unless
+/// `connects`.
 fn robot(family: Family, sources: &Sources, patience: Duration, connects: bool) -> Option<Robot> {
     let [robot] = <[Robot; 1]>::try_from(sources.robots(Some(family)).ok()?).ok()?;
     let sessions = match (robot.target.value.is_simulated(), robot.sessions) {
@@ -69,7 +71,7 @@ fn robot(family: Family, sources: &Sources, patience: Duration, connects: bool) 
     Some(Robot { sessions, timeout: patience, retries, ..robot })
 }
 
-/// Asks one robot.
+/// Reader of values from one robot.
 struct Asker {
     robot: Robot,
     found: Sender<Candidate>,
@@ -82,7 +84,7 @@ impl Asker {
     }
 
     async fn report(&self, words: &[&str]) -> Option<Value> {
-        // No request that would probably be interrupted.
+        // Send no request that the time limit would probably interrupt.
         if self.start.elapsed() > self.robot.timeout.value / 2 {
             return None;
         }
@@ -92,7 +94,7 @@ impl Asker {
         };
         let typed = Some(Arc::from("completion of a command line"));
         let robot = &self.robot;
-        // If the end of a connection stops the controller, only a session is used.
+        // If the end of a connection stops the controller, only a session may be used.
         if robot.sessions != Sessions::Only && command.entry(robot) != Entry::Harmless {
             return None;
         }
@@ -113,7 +115,7 @@ impl Ask for Asker {
     }
 
     fn add_candidate(&self, candidate: Candidate) {
-        // The receiver can be gone already.
+        // An error is ignored: the receiver may already be gone.
         let _ = self.found.send(candidate);
     }
 }

@@ -5,12 +5,12 @@
 //! ```
 //!
 //! `words[0]` is the program (`armctl`, or `yerc` if it was started with that name). `words[index]` is the word at the
-//! cursor, as typed so far; it can be empty. The shell scripts (`shell.rs`) and the line editor of `armctl repl` call
-//! the same function. It prints nothing and never fails: without knowledge there are no candidates.
+//! cursor, as typed so far; it may be empty. The shell scripts (`shell.rs`) and the line editor of `armctl repl` call
+//! the same function. It prints nothing and never fails. If no candidates are known, the result is empty.
 //!
 //! Arguments declare the [`ValueKind`] of their values: `#[arg(add = ValueKind::Robot)]`. Values of common kinds are in
-//! `values.rs`, those of a family in `command/FAMILY/complete.rs`. `live.rs` asks a robot for values that only it has.
-//! `engine.rs` contains the unstable library for words and flags.
+//! `values.rs`. Values of a family are in `command/FAMILY/complete.rs`. `live.rs` reads values from a robot if only the
+//! robot has them. `engine.rs` contains the unstable library for words and flags.
 //!
 //! [`ValueKind`]: armctl_frame::ValueKind
 
@@ -27,13 +27,13 @@ pub use shell::answer;
 use super::with_family;
 use armctl_frame::Candidate;
 
-/// Candidates for `words[index]`, best first. `is_among`: other lines run in this process, as at the prompt, where
-/// simulators live on.
+/// Returns candidates for `words[index]`, the best first. `is_among` is `true` if this process also runs other lines,
+/// as at the prompt; its simulators then stay alive between lines.
 pub fn complete(words: &[OsString], index: usize, is_among: bool) -> Vec<Candidate> {
     complete_within(words, index, is_among, live::ASK_TIMEOUT, false)
 }
 
-/// The same with a time limit. With `connects`, a robot is asked even without a session.
+/// Same as [`complete`], with a time limit. With `connects`, values are read from a robot even without a session.
 pub fn complete_within(
     words: &[OsString],
     index: usize,

@@ -1,8 +1,8 @@
 //! Completion protocol of the shells.
 //!
 //! The scripts in `completions/` set `ARMCTL_COMPLETE` to the name of the shell, and pass `--` and the words up to the
-//! cursor. Bash also splits words at `=` and `:`. It therefore passes the whole line and the part at the cursor. The
-//! variable then also contains the type of display and the width.
+//! cursor. Bash also splits words at `=` and `:`. The bash script therefore passes the whole line and the part at the
+//! cursor. The variable then also contains the type of display and the width.
 
 use std::ffi::OsString;
 
@@ -12,10 +12,10 @@ use super::complete;
 use crate::command::about::completions::Shell;
 use armctl_frame::Candidate;
 
-/// Variable that requests a completion.
+/// Environment variable that requests a completion.
 const SHELL_VARIABLE: &str = "ARMCTL_COMPLETE";
 
-/// Completion answer; `None` if this process was not started for one.
+/// Returns the answer to a completion request; `None` if this process was not started for a completion.
 pub fn answer(args: &[OsString]) -> Option<String> {
     let shell_name = std::env::var(SHELL_VARIABLE).ok()?;
     let mut asked = shell_name.split_whitespace();
@@ -45,7 +45,7 @@ pub fn answer(args: &[OsString]) -> Option<String> {
     })
 }
 
-/// Values of `COMP_TYPE` with which bash shows a list; only a list can have descriptions.
+/// Values of `COMP_TYPE` for which bash shows a list. Only a list can contain descriptions.
 const LISTING: [usize; 2] = ['?' as usize, '!' as usize];
 
 fn lines(found: &[Candidate], line: impl Fn(&Candidate) -> String) -> String {
@@ -59,19 +59,19 @@ fn with_description(found: &Candidate) -> String {
     }
 }
 
-/// Whether a blank follows the candidate.
+/// Returns the character that follows a candidate: a blank, unless the user must type more text.
 fn separator(found: &Candidate) -> char {
     if found.is_incomplete { '-' } else { '+' }
 }
 
-/// Candidates at the end of `line`, in the form that bash puts in place of `piece`.
+/// Returns the candidates at the end of `line`, in the form with which bash replaces `piece`.
 fn bash(line: &str, piece: &str, width: Option<usize>) -> String {
     let Split { words, quote } = Split::of(line);
     let index = words.len() - 1;
     let current = words[index].to_string_lossy().into_owned();
     let words: Vec<OsString> = words.into_iter().collect();
     let found = complete(&words, index, false);
-    // The part of the word that bash has split off.
+    // bash has split the word, and `piece` is only its last part.
     let piece = if quote.is_some() { piece.trim_start_matches(['"', '\'']) } else { piece };
     let unchanged = Split::of(piece).words.pop().map_or(0, |piece| piece.len());
     let before = current.len().saturating_sub(unchanged);
@@ -103,11 +103,11 @@ fn escape(value: &str) -> String {
     escaped
 }
 
-/// An incomplete line, split into words as a shell does.
+/// An incomplete line, split into words like in a shell.
 struct Split {
-    /// Words; the last one is at the cursor and can be empty.
+    /// Words of the line. The last word is at the cursor and can be empty.
     words: Vec<OsString>,
-    /// Open quote at the end.
+    /// Quote that is still open at the end.
     quote: Option<char>,
 }
 

@@ -1,6 +1,6 @@
 use super::*;
 
-/// Candidates for the word after the last blank.
+/// Returns the candidates for the word after the last blank.
 fn values_of(line: &str) -> Vec<String> {
     let words: Vec<OsString> = line.split(' ').map(Into::into).collect();
     complete(&words, words.len() - 1, false).into_iter().map(|candidate| candidate.value).collect()
@@ -90,7 +90,7 @@ fn completes_robots_and_tags_of_the_inventory() {
 
 #[test]
 fn answers_every_line() {
-    // Words that the engine takes for impossible.
+    // Lines that the engine would reject as impossible.
     for line in [
         "",
         "armctl",
@@ -110,7 +110,7 @@ fn answers_every_line() {
     assert_eq!(complete(&["armctl".into()], 7, false), complete(&["armctl".into(), "".into()], 1, false));
 }
 
-/// Candidates with help; with enough time for a busy computer.
+/// Returns the candidates with their help. The time limit is long enough for a busy computer.
 fn values_of_robot(line: &str) -> Vec<(String, String)> {
     let words: Vec<OsString> = line.split(' ').map(Into::into).collect();
     let found = complete_within(&words, words.len() - 1, false, Duration::from_secs(60), false);
@@ -133,7 +133,7 @@ fn completes_values_of_simulators() {
 
 #[test]
 fn never_opens_a_link_for_a_candidate() {
-    // This socket must receive nothing.
+    // The completion must not send anything to this socket.
     let socket = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
     socket.set_nonblocking(true).unwrap();
     let target = format!("udp://{}", socket.local_addr().unwrap());

@@ -21,7 +21,7 @@ use armctl_frame::settings::inventory::{Inventory, Location};
 use armctl_frame::{Candidate, ValueKind};
 use armctl_transport::session::location::{SessionFolder, SessionPath};
 
-/// Robots and settings from the rest of the line.
+/// Data from the rest of the line that the values depend on: the selected robots and the settings.
 #[derive(Debug)]
 pub(super) struct Context {
     globals: Option<Globals>,
@@ -29,12 +29,13 @@ pub(super) struct Context {
     is_among: bool,
     /// Whether a connection to a controller is allowed without a session.
     connects: bool,
-    /// Time limit for a controller.
+    /// Time limit for reading values from a controller.
     patience: Duration,
 }
 
 impl Context {
-    /// From the parsed part of a line. A mistake in a flag of the command does not affect the global flags.
+    /// Creates the context from the parsed part of a line. A mistake in a flag of the command does not affect the
+    /// global flags.
     pub fn new(matches: &ArgMatches, (is_among, connects): (bool, bool), patience: Duration) -> Self {
         let command = Globals::augment_args(Command::new("armctl"));
         let value_of_argument = command.get_arguments().flat_map(|argument| {
@@ -79,8 +80,8 @@ pub(super) fn of(kind: ValueKind, typed: &str, context: &Context) -> Vec<Candida
     matching_candidates(typed, all(kind, context))
 }
 
-/// Candidates with the typed prefix. If there are none, upper and lower case are ignored, because many names are in
-/// capitals.
+/// Returns the candidates with the typed prefix. If there are none, upper and lower case are ignored, because many
+/// names are in capital letters.
 fn matching_candidates(typed: &str, all: Vec<Candidate>) -> Vec<Candidate> {
     let begins = |candidate: &&Candidate| candidate.value.starts_with(typed);
     let exact: Vec<Candidate> = all.iter().filter(begins).cloned().collect();
@@ -144,7 +145,7 @@ fn urls() -> Vec<Candidate> {
     std::iter::once(simulator).chain(urls).map(|(url, about)| Candidate::new(url, about).incomplete()).collect()
 }
 
-/// Folders with a backup in the current folder.
+/// Returns the subfolders of the current folder that contain a backup.
 fn backups() -> Vec<Candidate> {
     let folders = manifest::folders_in(Path::new("."));
     let name = |folder: &PathBuf| Some(folder.file_name()?.to_str()?.to_owned());

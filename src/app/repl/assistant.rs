@@ -1,4 +1,4 @@
-//! Completion, hints and colors for the line being typed.
+//! Completion, hints and colors for the line that the user types.
 
 use std::borrow::Cow;
 use std::cell::RefCell;
@@ -15,17 +15,17 @@ use crate::app::complete::complete;
 use crate::app::{line_words, screen};
 use armctl_frame::flags::Globals;
 
-/// Helper of the line editor.
+/// Assistant of the line editor.
 pub struct Assistant {
     meaning: RefCell<LineParser>,
-    /// Flags that select the robots of all lines.
+    /// Flags of the REPL that select the robots for all lines.
     flags: Vec<OsString>,
     hinter: HistoryHinter,
     colour: bool,
 }
 
 impl Assistant {
-    /// Creates a helper for lines with this meaning and these flags.
+    /// Creates a helper for lines that are parsed with this parser and these flags.
     pub fn new(meaning: &LineParser, globals: &Globals) -> Self {
         Self {
             meaning: RefCell::new(LineParser::new(meaning.prefix().to_vec())),
@@ -35,7 +35,7 @@ impl Assistant {
         }
     }
 
-    /// Start of the last word, and its candidates.
+    /// Returns the start of the last word, and its candidates.
     fn candidates(&self, line: &str) -> (usize, Vec<Pair>) {
         let start = word_start(line);
         let (before, typed) = line.split_at(start);
@@ -63,7 +63,7 @@ impl Assistant {
     }
 }
 
-/// Quotes a word if necessary; `None` if it cannot be typed.
+/// Quotes a word if necessary. Returns `None` if the word cannot be typed.
 fn quote(word: &str) -> Option<String> {
     let is_plain = |c: char| c.is_alphanumeric() || "-_=.,:/+@%".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
@@ -72,7 +72,7 @@ fn quote(word: &str) -> Option<String> {
     shlex::try_quote(word).ok().map(Cow::into_owned)
 }
 
-/// Start of the last word, including its quote.
+/// Returns the start of the last word, including its quote.
 fn word_start(line: &str) -> usize {
     let (mut start, mut quote, mut escaped) = (0, None, false);
     for (at, c) in line.char_indices() {

@@ -1,4 +1,4 @@
-//! Line editor on its own thread, so that links and signals are served while the user types.
+//! Line editor in its own thread, so that links and signals are handled while the user types.
 
 use std::path::PathBuf;
 use std::sync::mpsc as blocking;
@@ -17,17 +17,17 @@ use armctl_frame::failure::Failure;
 use armctl_frame::local_names::state_folder;
 use armctl_frame::output::{Screen, escape};
 
-/// Limit of the history.
+/// Maximum number of lines in the history.
 const HISTORY_SIZE: usize = 2000;
 
 /// Result of reading a line.
 #[derive(Debug)]
 pub enum Input {
-    /// A line; pasted text can contain several.
+    /// A line. Pasted text can contain several lines.
     Line(String),
-    /// Ctrl-C: the line is discarded.
+    /// Ctrl-C: the user discarded the line.
     Interrupted,
-    /// Ctrl-D, or the terminal is closed.
+    /// The user pressed Ctrl-D, or the terminal was closed.
     End,
     /// The terminal failed.
     Failed(Failure),
@@ -43,7 +43,8 @@ pub struct Editor {
 type LineEditor = rustyline::Editor<Assistant, FileHistory>;
 
 impl Editor {
-    /// Takes control of the terminal. Also returns a function that prints messages above the line being typed.
+    /// Takes control of the terminal. Returns the editor with a function that prints messages above the line that the
+    /// user types.
     pub fn start(
         screen: &Screen,
         assistant: Assistant,
@@ -87,7 +88,7 @@ impl Editor {
 fn read(editor: &mut LineEditor, prompt: &Prompt, history: Option<&History>) -> Input {
     match editor.readline(&(&prompt.plain, &prompt.styled)) {
         Ok(line) => {
-            // A history error is not reported, because it would come at every line.
+            // An error of the history is not reported, because it would be repeated for every line.
             let is_new = editor.add_history_entry(line.trim()).unwrap_or(false);
             if let Some(history) = history.filter(|_| is_new) {
                 let _ = editor.append_history(&history.0);
@@ -111,7 +112,7 @@ fn editor(screen: &Screen, assistant: Assistant) -> rustyline::Result<LineEditor
         .completion_type(CompletionType::List)
         .bell_style(BellStyle::None)
         .color_mode(if screen.stdout_color() { ColorMode::Enabled } else { ColorMode::Disabled })
-        // If stdout is a file, the prompt goes to the terminal.
+        // If stdout is a file, the prompt is written to the terminal.
         .behavior(if screen.is_stdout_terminal() { Behavior::Stdio } else { Behavior::PreferTerm })
         .build();
     let mut editor = LineEditor::with_config(config)?;

@@ -1,11 +1,11 @@
-//! Conversion of a prompt line to a command line.
+//! Conversion of a line at the prompt to a command line.
 
 use std::ffi::OsString;
 
 use crate::app::parser::{Owner, Parser};
 use armctl_frame::settings::target::Family;
 
-/// Inserts the family before its commands.
+/// Converter that inserts the family before the commands of the family.
 #[derive(Debug, Default)]
 pub struct LineParser {
     prefix: Vec<String>,
@@ -14,7 +14,7 @@ pub struct LineParser {
 }
 
 impl LineParser {
-    /// Creates it with the words to insert; the first is the family.
+    /// Creates a converter with the words to insert. The first word is the family.
     pub fn new(prefix: Vec<String>) -> Self {
         Self { prefix, parser: Parser::default() }
     }
@@ -28,7 +28,7 @@ impl LineParser {
         self.prefix.first()?.parse().ok()
     }
 
-    /// Command line for the words of a line.
+    /// Returns the command line for the words of a prompt line.
     pub fn args(&mut self, words: &[String]) -> Vec<OsString> {
         if let [word] = words
             && matches!(word.as_str(), "help" | "?" | "-h" | "--help")
@@ -36,14 +36,14 @@ impl LineParser {
             return family_help(&self.prefix);
         }
         let family = self.family();
-        // Flags can precede the command. An unknown word goes to the family, which reports the error.
+        // Flags may precede the command. An unknown word is passed to the family, and the family reports the error.
         let owner = words.iter().map(|word| self.parser.owner(word, family)).find(|owner| *owner != Owner::None);
         let prefix = self.prefix.iter().filter(|_| owner != Some(Owner::All));
         std::iter::once("armctl").chain(prefix.chain(words).map(String::as_str)).map(OsString::from).collect()
     }
 
-    /// Possible command lines for an incomplete line. Without a command word, it can belong to the family or be a
-    /// common one.
+    /// Returns the possible command lines for an incomplete line. Without a command word, the line may become a command
+    /// of the family or a common command.
     pub fn beginnings(&mut self, words: &[String]) -> Vec<Vec<OsString>> {
         let family = self.family();
         let mut beginnings = vec![self.args(words)];
@@ -55,7 +55,7 @@ impl LineParser {
     }
 }
 
-/// Command line that lists the commands of a family, or of all.
+/// Returns the command line that lists the commands of a family. Without a family, it lists all commands.
 pub fn family_help(prefix: &[String]) -> Vec<OsString> {
     std::iter::once("armctl").chain(prefix.iter().map(String::as_str)).chain(["-h"]).map(OsString::from).collect()
 }

@@ -12,7 +12,7 @@ use armctl_frame::output::{Screen, escape};
 use armctl_frame::script_line::Line;
 use armctl_frame::settings::Robot;
 
-/// Time limit for the state of the robot.
+/// Time limit for reading the state of the robot.
 const STATE_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// Reads the state of the robot over the open link.
@@ -29,14 +29,14 @@ pub async fn read_state(robot: &Robot, line: &Line, screen: &Screen) -> RobotSta
 pub enum RobotState {
     /// The state.
     State(Box<OverviewReport>),
-    /// No answer in time.
+    /// The robot did not answer in time.
     Silent,
-    /// Not requested.
+    /// The state was not requested.
     NotAsked,
 }
 
 impl RobotState {
-    /// Active commands that former clients left.
+    /// Active commands that earlier clients left.
     pub fn leftovers(&self) -> &[LeftOver] {
         match self {
             Self::State(state) => &state.left_over,
@@ -45,7 +45,7 @@ impl RobotState {
     }
 }
 
-/// A prompt without and with colors; both have the same width.
+/// A prompt without and with colors. Both texts have the same width.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Prompt {
     /// Without colors.
@@ -55,7 +55,7 @@ pub struct Prompt {
 }
 
 impl Prompt {
-    /// Format: `cell3 [servo on, ALARM] yerc> `.
+    /// Creates a prompt, for example `cell3 [servo on, ALARM] yerc> `.
     pub fn new(prefix: &[String], robot: Option<&Robot>, seen: &RobotState, colour: bool) -> Self {
         let shown = |colour: bool| {
             let mut parts = Vec::new();
@@ -71,7 +71,7 @@ impl Prompt {
     }
 }
 
-/// Important states of the robot.
+/// States of the robot that the prompt shows.
 fn states(robot: &Robot, seen: &RobotState) -> Vec<Cell> {
     let simulated = robot.target.value.is_simulated().then(|| Cell::from("simulated"));
     let seen = match seen {

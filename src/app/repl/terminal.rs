@@ -1,4 +1,4 @@
-//! Terminal settings, saved so that they can be restored. The editor can be waiting for a key when the process must
+//! Terminal settings. They are saved so that they can be restored: the editor may wait for a key when the process must
 //! end.
 
 use std::time::Duration;
@@ -7,22 +7,22 @@ use tokio::time::sleep;
 
 use armctl_frame::output::prompt;
 
-/// Attempts and interval of the check whether the editor has the terminal.
+/// Number and interval of the checks whether the editor has changed the terminal settings.
 const TRIES: u32 = 40;
 const RETRY_PAUSE: Duration = Duration::from_millis(5);
 
-/// The terminal of the prompt.
+/// The terminal on which the prompt runs.
 #[derive(Debug)]
 pub struct Terminal(());
 
 impl Terminal {
-    /// Saves the settings.
+    /// Saves the terminal settings.
     pub fn save() -> Self {
         prompt::save();
         Self(())
     }
 
-    /// Restores the settings while the editor reads a line. It first waits until the editor has changed them.
+    /// Restores the terminal settings while the editor reads a line. First waits until the editor has changed them.
     pub async fn restore_control(&self) {
         for _ in 0..TRIES {
             if Self::is_taken() {
@@ -37,7 +37,7 @@ impl Terminal {
     #[cfg(unix)]
     fn is_taken() -> bool {
         let now = rustix::termios::tcgetattr(std::io::stdin());
-        // A closed terminal needs no settings.
+        // If the terminal is closed, there is no need to wait for the editor.
         now.map_or(true, |now| !now.local_modes.contains(rustix::termios::LocalModes::ICANON))
     }
 

@@ -1,10 +1,11 @@
-//! Tables of synonyms and other word orders.
+//! Tables of synonyms, and of commands in another word order.
 
-/// Typed words without the family, and the commands for them.
+/// Words that users type without the family, and the commands that they mean.
 #[rustfmt::skip]
 pub const LINES: &[(&str, &[&str])] = &[
     ("add", &["setup", "robots add"]),
     ("alarms", &["yerc alarm list", "yrcx alarm list", "toyo alarm list"]),
+    ("compare", &["diff"]),
     ("config", &["robots list", "robots edit"]),
     ("configure", &["setup"]),
     ("connect", &["repl", "session open"]),
@@ -26,6 +27,7 @@ pub const LINES: &[(&str, &[&str])] = &[
     ("job run", &["yerc job start"]),
     ("jobs", &["yerc job list"]),
     ("jog", &["toyo jog", "yrcx jog", "yerc move relative"]),
+    ("label", &["names set"]),
     ("list", &["yerc file list", "toyo program list", "robots list"]),
     ("list job", &["yerc job list"]),
     ("list jobs", &["yerc job list"]),
@@ -57,24 +59,25 @@ pub const LINES: &[(&str, &[&str])] = &[
     ("where", &["yerc position", "yrcx position", "toyo position"]),
 ];
 
-/// Missing features of a family that others have: preceding words, synonyms, alternative.
+/// Features that a family does not have but others have: preceding words, synonyms, alternative.
 #[rustfmt::skip]
 pub const ABSENT: &[(&str, &[&str], &str)] = &[
     ("yerc", &["homing", "origin"],
-        "the protocol has no return to origin: start a job that moves there (see `armctl yerc job -h`). Set the \
-         mechanical origin at the pendant"),
+        "the protocol has no command for a return to origin. Start a job that moves there (see `armctl yerc job -h`). \
+         Set the mechanical origin at the pendant"),
     ("yrcx", &["jobs"], "a YRCX has programs, not jobs: see `armctl yrcx program -h`"),
     ("toyo", &["jobs"], "a Toyo controller has programs, not jobs: see `armctl toyo program list`"),
     ("yrcx run", &["point"], "move to a point with `armctl yrcx move`; see `armctl yrcx move -h`"),
     ("toyo io", &["in", "out", "internal"], "the command is `armctl toyo io list`"),
+    ("names", &["add"], "the command is `armctl names set NAME ADDRESS -r ROBOT`"),
     ("robots", &["names"], "the command is `armctl names list -r ROBOT`"),
     ("yerc names", &["list"], "the command is `armctl names list -r ROBOT`"),
     ("yrcx info", &["position"], "the command is `armctl yrcx position`"),
     ("toyo run point", &["--speed"],
-        "the speed override scales all speeds: see `armctl toyo override -h`"),
+        "no command sets the speed of one move; the stored override scales all of them: `armctl toyo override set 10`"),
 ];
 
-/// Synonyms of verbs, with the verbs that a noun can have.
+/// Synonyms of verbs, each with the verbs that a noun can have instead.
 pub const VERBS: &[(&str, &[&str])] = &[
     ("clear", &["reset", "cancel", "delete"]),
     ("del", &["delete", "remove"]),

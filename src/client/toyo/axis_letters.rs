@@ -1,4 +1,4 @@
-//! Axis letters, as the teach pendant shows them (E01). Axis 2 may be Y on one machine and Z on another.
+//! Axis letters, as the teach pendant shows them (parameter E01). Axis 2 may be Y on one machine and Z on another.
 
 use armctl_controller::toyo::layout::Record;
 use armctl_controller::toyo::request::Request;
@@ -16,10 +16,10 @@ pub struct Letters([Option<&'static str>; 4]);
 impl Letters {
     /// The default letters: X, Y, Z, R.
     pub const USUAL: Self = Self([Some("X"), Some("Y"), Some("Z"), Some("R")]);
-    /// No letters known: axes have numbers only.
+    /// No letter is known: reports name the axes by number.
     pub const UNKNOWN: Self = Self([None; 4]);
 
-    /// The letter of an axis, 0 to 3; empty if unknown.
+    /// The letter of the axis with this index, 0 to 3. The string is empty if the letter is unknown.
     pub fn of(&self, index: usize) -> &'static str {
         self.0.get(index).copied().flatten().unwrap_or("")
     }
@@ -29,7 +29,7 @@ impl Letters {
         [0, 1, 2, 3].map(|index| self.of(index).to_owned())
     }
 
-    /// The axis with this letter, 0 to 3; `None` if no axis has it, or several.
+    /// The index, 0 to 3, of the axis with this letter. `None` if no axis or more than one axis has this letter.
     pub fn axis(&self, letter: &str) -> Option<usize> {
         let mut matching_axes =
             (0..4).filter(|index| !letter.is_empty() && self.of(*index).eq_ignore_ascii_case(letter));
@@ -37,12 +37,12 @@ impl Letters {
         matching_axes.next().is_none().then_some(index)
     }
 
-    /// Whether the letters are X, Y, Z, R in this order: the order of coordinates in the protocol.
+    /// Whether the letters are X, Y, Z, R in this order. The protocol has the coordinates in this order.
     pub fn are_usual(&self) -> bool {
         *self == Self::USUAL
     }
 
-    /// Name of an axis (0 to 3) in settings and reports: `x`, or `ax1` if no letter identifies it.
+    /// Name of an axis (index 0 to 3) in settings and reports: `x`, or `ax1` if no letter identifies the axis.
     pub fn name(&self, index: usize) -> &'static str {
         const NUMBERED: [&str; 4] = ["ax1", "ax2", "ax3", "ax4"];
         let lower = ["x", "y", "z", "r"].into_iter().find(|lower| self.axis(lower) == Some(index));
@@ -63,16 +63,16 @@ impl Letters {
 }
 
 impl Client {
-    /// Reads the axis letters, once per connection; unknown if the controller refuses. A dry run plans the request and
-    /// continues with X, Y, Z and R.
+    /// Reads the axis letters, once per connection. If the controller refuses, the letters are [`Letters::UNKNOWN`]. A
+    /// dry run plans the request and continues with X, Y, Z and R.
     pub async fn letters(&mut self) -> Result<Letters, Error> {
         if let Some(letters) = self.letters {
             return Ok(letters);
         }
         let system = Request::bare(Command::Sysp);
         if self.is_dry() {
-            self.plan(&system, "the letters of the axes; later lines assume X, Y, Z and R");
-            self.plan_if(&letters_request(), "whether the controller refuses that");
+            self.plan(&system, "the letters of the axes; the following lines assume X, Y, Z and R");
+            self.plan_if(&letters_request(), "whether the controller refuses the previous request");
             self.letters = Some(Letters::USUAL);
             return Ok(Letters::USUAL);
         }
@@ -80,7 +80,8 @@ impl Client {
             Some(record) => Letters::from(&record, ["arm1", "arm2", "arm3", "arm4"]),
             None => match unless_malformed(self.try_ask(&letters_request()).await)? {
                 Some(record) => Letters::from(&record, ["ax1", "ax2", "ax3", "ax4"]),
-                // Not stored: a busy controller also refuses, and may answer later.
+                // The client does not store this result: a busy controller also refuses, and may answer the next
+                // request.
                 None => return Ok(Letters::UNKNOWN),
             },
         };
@@ -89,17 +90,17 @@ impl Client {
     }
 }
 
-/// The request for E01.
+/// The request that reads parameter E01, the axis letters.
 ///
 /// # Panics
-/// If E01 is missing in the parameter table; every test of a caller would show that.
+/// If E01 is missing in the parameter table. Every test that calls this function would then fail.
 pub fn letters_request() -> Request {
     let parameter = Parameter::named("E01").expect("the table has E01");
     Request::read_parameter(parameter, None).expect("E01 has no rows")
 }
 
-/// `None` after a refusal or a malformed answer. A line error is returned, so that no further request goes out on
-/// that line.
+/// Returns `None` after a refusal or a malformed answer. An error of the line is returned as an error: the caller must
+/// then send no further request on this line.
 fn unless_malformed(asked: Result<Result<Record, Refusal>, Error>) -> Result<Option<Record>, Error> {
     match asked {
         Ok(answer) => Ok(answer.ok()),

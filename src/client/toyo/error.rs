@@ -21,22 +21,24 @@ pub enum Error {
     /// The controller refused (`@NG`).
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// The controller refused even a status or position request (`@NG`): it is busy.
+    /// The controller refused (`@NG`) a status or position request. A controller refuses these requests only while it
+    /// is busy.
     #[error("the controller refused to report its status (@NG)")]
     StatusRefused,
     /// The host has no control: the teach pendant is ON (TO 2-2).
     #[error("the controller refused: the teach pendant is ON, so the host cannot take control")]
     PendantOn,
-    /// A read has no valid answer.
+    /// A read received no valid answer.
     #[error("{0}")]
     NoAnswer(Box<Unanswered>),
-    /// An order has no valid answer: it may or may not have been carried out. It was sent once.
+    /// An order received no valid answer: the controller may or may not have carried out the order. The order was sent
+    /// once.
     #[error("the command was sent, and may or may not have been carried out: {0}")]
     OutcomeUnknown(Box<Unanswered>),
-    /// The line was lost after an order was sent and before its answer.
+    /// The line was lost after an order was sent and before its answer arrived.
     #[error("{0}; the command was sent, and may or may not have been carried out")]
     LostAfterSending(Box<Self>),
-    /// An order was not sent, because the check of the line before it failed.
+    /// An order was not sent, because the check of the line before the order failed.
     #[error("the command was not sent: {0}")]
     NotSent(Box<Self>),
     /// An answer without the requested content.
@@ -44,28 +46,28 @@ pub enum Error {
     Malformed {
         /// The received block.
         block: String,
-        /// The problem.
+        /// What is wrong with the block.
         why: String,
     },
-    /// One exchange brought more characters than a controller sends.
+    /// The client received more characters in one exchange than a controller sends.
     #[error("received {received} characters, but no answer")]
     TooMuchData {
         /// Characters received.
         received: usize,
     },
-    /// A request with a value out of range; nothing was sent.
+    /// A request contains a value out of range. Nothing was sent.
     #[error("{0}")]
     InvalidRequest(#[from] BlockError),
     /// A temporary change was not undone.
-    #[error("a temporary change was not undone by {block}: {}", why(.cause.as_deref()))]
+    #[error("a temporary change could not be undone with {block}: {}", why(.cause.as_deref()))]
     NotUndone {
-        /// The block that undoes it.
+        /// The block that undoes the change.
         block: String,
-        /// The cause; `None` if the controller refused.
+        /// The cause; `None` if the controller refused to undo the change.
         cause: Option<Box<Self>>,
     },
-    /// The host is still ON; this client had switched it ON.
-    #[error("armctl switched host control ON and could not switch it OFF again: {}", why(.0.as_deref()))]
+    /// The host is still ON, and this client had switched the host ON. The cause is `None` if the controller refused.
+    #[error("armctl switched host control ON, but could not switch it OFF again: {}", why(.0.as_deref()))]
     HostNotReleased(Option<Box<Self>>),
     /// The robot still moves after a stop.
     #[error("the controller {}", stop_answer(*.is_refused))]
@@ -76,7 +78,7 @@ pub enum Error {
     /// No answer confirms that the robot stands still.
     #[error("armctl cannot confirm that the robot stands still: {0}")]
     StopUnconfirmed(Box<Self>),
-    /// The request is above the authorized risk.
+    /// The risk of the request is higher than the authorized risk. Nothing was sent.
     #[error(transparent)]
     NotAuthorized(#[from] NotAuthorized),
     /// The session on the line has ended, or another client uses the line.
@@ -94,21 +96,21 @@ pub enum Error {
     /// A device server that does not accept a connection.
     #[error("{host}, TCP port {port}: {error}")]
     DeviceServer {
-        /// Name or address.
+        /// Host name or address of the device server.
         host: String,
-        /// Its TCP port.
+        /// TCP port of the device server.
         port: u16,
         /// The cause.
         #[source]
         error: Arc<ConnectError>,
     },
-    /// A lost line that cannot be opened again.
+    /// The line was lost, and the client could not open the line again.
     #[error(transparent)]
     NotReopened(Box<Self>),
-    /// The caller's function that opens the line failed.
+    /// The caller's function that reopens the line failed.
     #[error("{0}")]
     Opener(Arc<dyn std::error::Error + Send + Sync>),
-    /// An I/O error of the line: unplugged, closed by the peer, broken.
+    /// An I/O error of the line: the adapter was unplugged, the peer closed the connection, or the line is broken.
     #[error("{error}")]
     Io {
         /// Whether a session holds the line.
@@ -155,7 +157,7 @@ pub struct Unanswered {
     pub waited: Duration,
     /// Line counters so far.
     pub counters: Counters,
-    /// The last received block that is not the answer, and the reason.
+    /// The last received block that is not the answer, and the reason why the block is not the answer.
     pub invalid_answer: Option<(String, String)>,
 }
 
@@ -192,7 +194,7 @@ mod tests {
         assert!(malformed.is_malformed() && !no_answer.is_malformed());
         assert_eq!(malformed.to_string(), "unexpected answer '@M': unknown command 'M'");
         let message = Error::HostNotReleased(None).to_string();
-        assert_eq!(message, "armctl switched host control ON and could not switch it OFF again: @NG");
+        assert_eq!(message, "armctl switched host control ON, but could not switch it OFF again: @NG");
         let refusal = Error::from(Refusal(Request::bare(Command::Home)));
         assert_eq!(refusal.to_string(), "the controller refused HOME (@NG)");
         let unseen = Error::StopUnconfirmed(Box::new(Error::StatusRefused)).to_string();

@@ -1,8 +1,9 @@
 //! Fence before an order, and reopening of a lost line.
 //!
-//! `@OK` does not identify the order that it answers. A late one may arrive: of an order that timed out, or of
-//! another client of a device server. A controller answers in order, and no `@OK` can be mistaken for the answer to a
-//! read. So once a read is answered, no older `@OK` can arrive, and the order is safe to send.
+//! An `@OK` does not identify the order that it answers. A late `@OK` may arrive: the answer to an order that timed
+//! out, or to an order of another client of a device server. The fence is a read before the order. A controller answers
+//! in the order of the requests, and the answer to a read cannot be mistaken for an `@OK`. After the answer to the
+//! read, no `@OK` of an earlier order can arrive, and it is safe to send the next order.
 
 use armctl_controller::Risk;
 
@@ -14,7 +15,8 @@ use crate::Reason;
 pub const FENCE: &str = "check that the line is quiet";
 
 impl Client {
-    /// Sends a harmless read before an order, unless the last exchange was an answered read.
+    /// Sends a harmless read before an order. The fence is not needed if the last exchange was a read that was
+    /// answered.
     pub(super) async fn fence(&mut self) -> Result<(), Error> {
         if self.is_fenced {
             return Ok(());
@@ -29,7 +31,7 @@ impl Client {
             .map_err(|error| Error::NotSent(Box::new(error)))
     }
 
-    /// Plans the fence of a dry run. It depends on the same answer as the frame before it.
+    /// Plans the fence in a dry run. The fence depends on the same answer as the frame before it.
     pub(super) fn plan_fence(&mut self) {
         if self.is_fenced {
             return;
@@ -40,8 +42,9 @@ impl Client {
         self.plan_depending(&status_page(0).text(), reason);
     }
 
-    /// Reopens a lost line for a read: after a re-plug, or a restart of the device server. Not if this client has a
-    /// motion to stop or a change to undo: hints explain that to the user.
+    /// Reopens a lost line before a read, for example after the cable was plugged in again or the device server
+    /// restarted. The line stays closed if this client has a motion to stop or a change to undo: the user must then see
+    /// the error, and its hints explain what to do.
     pub(super) async fn reopen_for_read(&mut self, risk: Risk) -> Result<(), Error> {
         let owes = self.moving.is_some() || self.host == HostState::SwitchedOn || !self.undo_requests.is_empty();
         if !self.is_line_lost || risk > Risk::Read || owes {
@@ -56,7 +59,7 @@ impl Client {
         self.is_line_lost = false;
         self.host = HostState::Unknown;
         self.is_fenced = false;
-        // The reopened line may lead to another machine.
+        // The reopened line may lead to another machine, with other axis letters.
         self.letters = None;
         self.watcher.event(Event::Reopened);
         Ok(())

@@ -1,4 +1,5 @@
-//! Toyo client: drives the session over a serial line. `TO` is the manual of the host communication over RS-232C.
+//! Toyo client: runs the protocol session over a serial line. `TO` is the manual of the host communication over
+//! RS-232C.
 
 mod axis_letters;
 mod error;
@@ -40,35 +41,35 @@ use crate::{Ends, Grant, NotAuthorized, Plan, Reason, Watcher};
 
 /// A connection to one controller.
 ///
-/// It has one request at a time. A call that is dropped early leaves the client usable: the session discards late
-/// answers.
+/// The client processes one request at a time. The client stays usable after a call is dropped early: the session
+/// discards late answers.
 #[derive(Debug)]
 pub struct Client {
     transport: Transport,
     session: LineSession,
-    /// The policy of the options, and the current one.
+    /// The policy from [`Options`], and the policy in use.
     configured_policy: Policy,
     policy: Policy,
     grant: Grant,
     /// The motion that this client started.
     moving: Option<Moving>,
     host: HostState,
-    /// Requests that undo temporary changes, the latest change last.
+    /// Requests that undo temporary changes, in the order of the changes.
     undo_requests: Vec<Request>,
     started: Instant,
     watcher: Box<dyn Watcher<Event>>,
     waited: Duration,
-    /// Whether the line is lost. Then only reads are sent, after a reopen.
+    /// Whether the line is lost. The client then sends only reads, and reopens the line first.
     is_line_lost: bool,
     opener: Option<Opener>,
     ends: Option<Ends>,
     /// Whether no answer to an earlier request can arrive any more.
     is_fenced: bool,
-    /// Dry run: the answer that decides whether the last planned frame is sent.
+    /// Dry run: the earlier answer that decides whether the last planned frame is sent.
     plan_condition: Option<String>,
     /// Dry run: the blocks that undo temporary changes.
     planned_undo_blocks: Vec<String>,
-    /// Axis letters, once read.
+    /// Axis letters; `None` until they are read.
     letters: Option<Letters>,
 }
 
@@ -77,9 +78,9 @@ pub struct Client {
 pub struct Options {
     /// The highest risk that may be sent.
     pub grant: Grant,
-    /// Time limit of one attempt, from the last character sent to the answer; 1 s in the manual (TO 1-3).
+    /// Time limit of one attempt, from the last character sent to the answer. The manual gives 1 s (TO 1-3).
     pub timeout: Duration,
-    /// Retries, after a timeout, of a request that changes nothing.
+    /// Number of retries after a timeout. Only a request that changes nothing is repeated.
     pub retries: u32,
 }
 
@@ -98,38 +99,38 @@ impl Options {
     }
 }
 
-/// An event of a client. A change of the controller is reported before it is sent. So a log can show how to undo it
-/// if this process is killed.
+/// An event of a client. The client reports a change of the controller before it sends the change. If this process is
+/// killed, a log of the events shows how to undo the change.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Event {
-    /// The motion is about to start; `None` when it has ended.
+    /// A motion is about to start; `None` after the motion has ended.
     Motion(Option<Moving>),
-    /// The host, which was OFF, is about to be switched ON temporarily; `false` when it is OFF again.
+    /// `true`: the client is about to switch the host ON temporarily. `false`: the host is OFF again.
     HostSwitch(bool),
-    /// A temporary change is about to be made; this request undoes it.
+    /// The client is about to make a temporary change. This request undoes the change.
     TemporaryChange(Request),
-    /// The change was undone, or was never made.
+    /// The change of this undo request was undone, or was never made.
     Undone(Request),
     /// The line is lost, and this undo request was not sent.
     NotUndone(Request),
-    /// Host control, as read.
+    /// The client read the state of host control.
     Host {
-        /// A status that includes at least the page with the host state.
+        /// The status that was read. It includes at least the page with the host state.
         status: Status,
         /// Whether this client switched the host ON.
         is_taken: bool,
     },
-    /// The current task, while it is not changed temporarily.
+    /// The client read the current task, while no temporary change was active.
     Task(Option<i32>),
     /// A lost line is open again.
     Reopened,
 }
 
 const BUFFER: usize = 1024;
-/// Limit of characters in one exchange: 5 s at the highest baud rate. Answers are short.
+/// Maximum number of characters in one exchange: about 5 s at the highest baud rate. Answers are much shorter.
 const MAX_RECEIVED: usize = 64 * 1024;
-/// Time limit of an answer while a motion runs that must be stopped.
+/// Time limit of an answer while a motion is in progress that this client must stop.
 const MOTION_TIMEOUT: Duration = Duration::from_millis(300);
 /// The status page with the host state.
 const HOST_PAGE: u8 = 2;
@@ -137,7 +138,8 @@ const HOST_PAGE: u8 = 2;
 const IDLE_POLL_INTERVAL: Duration = Duration::from_secs(3600);
 
 impl Client {
-    /// Connects to a controller. Sends nothing: only an answer shows that a controller is at the other end.
+    /// Opens the line to a controller. This function sends nothing: only the first answer shows that a controller is
+    /// connected.
     ///
     /// # Errors
     /// [`Error::Port`] and [`Error::DeviceServer`].
@@ -151,13 +153,13 @@ impl Client {
         Ok(client)
     }
 
-    /// Uses an open line; `character` is the time of one character.
+    /// Creates a client on an open line. `character` is the transmission time of one character.
     pub fn over(line: Line, character: Duration, options: Options) -> Self {
         Self::with(Transport::Line(Box::new(line)), character, options)
     }
 
-    /// Starts a dry run: requests are planned ([`Client::take_plan`]) and not sent. Orders count as carried out; a read
-    /// returns [`Error::DryRun`].
+    /// Creates a client for a dry run: it plans requests ([`Client::take_plan`]) and does not send them. Orders count
+    /// as carried out; a read returns [`Error::DryRun`].
     pub fn dry_run(options: Options) -> Self {
         Self::with(Transport::DryRun(Plan::default()), Duration::ZERO, options)
     }
@@ -186,7 +188,7 @@ impl Client {
         }
     }
 
-    /// Sets the observer. A line without addresses reports unspecified ones.
+    /// Sets the observer. For a line without addresses, the observer gets unspecified addresses.
     pub fn watch(&mut self, watcher: impl Watcher<Event> + 'static) {
         self.watcher = Box::new(watcher);
     }
@@ -206,18 +208,20 @@ impl Client {
         self.ends
     }
 
-    /// Sends one request; a refusal is an error. A parameter (RPAR), step (RSTX) or palletizing record (RPLT) returns
-    /// the stored values, in the units of [`Record`]. An order returns `OK`.
+    /// Sends one request, and returns a refusal as an error. The record of a parameter (RPAR), step (RSTX) or
+    /// palletizing record (RPLT) contains the stored values, in the units of [`Record`]. The record of an order
+    /// contains `OK`.
     pub async fn ask(&mut self, request: &Request) -> Result<Record, Error> {
         Ok(self.try_ask(request).await??)
     }
 
-    /// Sends one request; a refusal is an answer. Switches the host ON first if an order requires it. In a dry run,
-    /// orders count as carried out and a read returns [`Error::DryRun`].
+    /// Sends one request, and returns a refusal as a value. If the request is an order that requires the host, the
+    /// client switches the host ON first. In a dry run, orders count as carried out and a read returns
+    /// [`Error::DryRun`].
     pub async fn try_ask(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Error> {
         if needs_host(request) {
             match self.take_host().await {
-                // The manual does not require the host for this order (ambiguity C14): the controller decides.
+                // The manual does not say that this order requires the host (ambiguity C14): the controller decides.
                 Err(Error::PendantOn) if !request.row().needs_host => {}
                 taken => taken?,
             }
@@ -228,7 +232,7 @@ impl Client {
         self.ask_now(request).await
     }
 
-    /// [`Self::try_ask`] without host control and without the fence.
+    /// Sends one request like [`Self::try_ask`], without host control and without the fence.
     async fn ask_now(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Error> {
         let done = || Record::unlisted("OK");
         if self.is_dry() {
@@ -248,21 +252,22 @@ impl Client {
         Ok(Ok(content.unwrap_or(record)))
     }
 
-    /// Sends a request without host control and returns the whole answer, also a refusal.
+    /// Sends a request without host control and returns the answer, which may be a refusal.
     pub async fn raw(&mut self, request: &Request) -> Result<Answer, Error> {
         if request.risk() > Risk::Read && !is_stop(request) {
             self.fence().await?;
         }
         let planned = self.plan_all(std::slice::from_ref(request));
         if planned.is_err() && request.row().is_order() {
-            // A fence follows the order (see [`Self::settle`]).
+            // A fence is sent after the order (see [`Self::settle`]).
             self.plan_fence();
         }
         planned?;
         self.transact_fenced(request).await
     }
 
-    /// Sends a free-text block and returns the answer. Its effect is unknown, so it counts as a motion.
+    /// Sends a free-text block and returns the answer. The effect of the block is unknown, so the block counts as a
+    /// motion.
     pub async fn raw_text(&mut self, block: &str) -> Result<String, Error> {
         self.authorize(Risk::Motion, block)?;
         self.fence().await?;
@@ -280,8 +285,9 @@ impl Client {
         }
     }
 
-    /// Confirms that the last order received its own answer: sends a harmless read, unless one was answered since.
-    /// Answers arrive in the order of the requests, so the answers to the order arrive before the answer to the read.
+    /// Confirms that the last order received its own answer. Sends a harmless read, unless a read was answered after
+    /// the order. The controller answers in the order of the requests, so all answers to the order arrive before the
+    /// answer to the read.
     ///
     /// # Errors
     /// [`Error::OutcomeUnknown`] if the order received two contradictory answers.
@@ -301,7 +307,7 @@ impl Client {
         self.status_of(&[0, 1, 2, 3, 4]).await
     }
 
-    /// Reads some status pages, 0 to 4; the others are 0.
+    /// Reads some of the status pages 0 to 4. Pages that were not read are 0 in the result.
     ///
     /// # Errors
     /// [`Error::StatusRefused`] if the controller refuses.
@@ -319,7 +325,7 @@ impl Client {
         Ok(status)
     }
 
-    /// Axis positions: `x`, `y`, `z` and `r` in hundredths of a millimetre (MPST, TO 2-8).
+    /// Reads the axis positions: `x`, `y`, `z` and `r` in hundredths of a millimeter (MPST, TO 2-8).
     ///
     /// # Errors
     /// [`Error::StatusRefused`] if the controller refuses.
@@ -332,7 +338,8 @@ impl Client {
         Totals { counters: self.session.counters(), waited: self.waited }
     }
 
-    /// Undoes all temporary changes and closes the connection. Returns the line statistics also after an error.
+    /// Undoes all temporary changes and closes the connection. The line statistics are returned even if there is an
+    /// error.
     pub async fn close(mut self) -> (Totals, Result<(), Error>) {
         let put_back = self.put_back().await;
         let given_back = put_back.and(self.give_back().await);
@@ -343,7 +350,7 @@ impl Client {
         (totals, given_back)
     }
 
-    /// Hands over the line; `None` in a dry run.
+    /// Returns the line for further use; `None` in a dry run.
     pub fn into_line(self) -> Option<Line> {
         match self.transport {
             Transport::Line(line) => Some(*line),
@@ -351,13 +358,13 @@ impl Client {
         }
     }
 
-    /// Uses a short time limit without retries until [`Client::stop`]. A jog runs until it is stopped, so a lost
-    /// connection must be noticed at once.
+    /// Uses a short time limit without retries until [`Client::stop`] is called. A jog runs until it is stopped, so the
+    /// client must detect a lost connection at once.
     pub fn use_short_timeouts(&mut self) {
         self.set_policy(Policy { timeout: MOTION_TIMEOUT, retries: 0, ..self.configured_policy });
     }
 
-    /// The motion that this client started and that may still run.
+    /// The motion that this client started, if it may still be in progress.
     pub fn moving(&self) -> Option<Moving> {
         self.moving
     }
@@ -399,7 +406,7 @@ impl Client {
         self.acquire(risk).await?;
         self.is_fenced = false;
         if risk == Risk::Destroy {
-            // The request may change E01: a write, or a load from a card.
+            // A request of this risk may change E01: a write, or a load from a memory card.
             self.letters = None;
         }
         if risk == Risk::Motion {
@@ -412,7 +419,8 @@ impl Client {
         }
         match ended {
             ExchangeResult::Answered(block) => {
-                // The answer to an order may be a late one; the answer to a read is newer than all earlier answers.
+                // The answer to an order may be the late answer to an earlier order. An answer to a read proves that no
+                // earlier answer is pending.
                 self.is_fenced = risk == Risk::Read;
                 request.answer_kept(&block).map_err(|error| malformed(&block, &error))
             }
@@ -420,7 +428,8 @@ impl Client {
         }
     }
 
-    /// Runs the exchange to its end. The future may be dropped: the next exchange discards the pending answer.
+    /// Runs the exchange to its end. The caller may drop the future: the next exchange then discards the pending
+    /// answer.
     async fn exchange(&mut self, risk: Risk) -> Result<ExchangeResult, Error> {
         let ended = self.run_exchange(risk).await;
         if let Some(line) = self.transport.line() {
@@ -429,8 +438,8 @@ impl Client {
         ended
     }
 
-    /// Waits for the turn of this client on a shared session; it lasts until the end of the next [`Client::exchange`]. A
-    /// client that moves the robot keeps the others from moving it.
+    /// Waits for the turn of this client on a shared session. The turn ends with the next [`Client::exchange`]. A
+    /// client that moves the robot also prevents motions of the other clients.
     async fn acquire(&mut self, risk: Risk) -> Result<(), Error> {
         let Some(line) = self.transport.line() else { return Ok(()) };
         let until = Instant::now() + self.policy.timeout.max(self.configured_policy.timeout);
@@ -450,7 +459,7 @@ impl Client {
             let step = match self.session.poll(now) {
                 Step::Send(bytes) => {
                     let sent = self.send(&bytes).await;
-                    // A session sends a block completely or not at all; another line may have sent a part of it.
+                    // A session sends a block completely or not at all. Another line may have sent a part of the block.
                     is_sent |= sent.is_ok() || !self.transport.is_shared();
                     sent.map(|()| 0)
                 }
@@ -504,7 +513,7 @@ impl Client {
         if risk > Risk::Read { Error::OutcomeUnknown(unanswered) } else { Error::NoAnswer(unanswered) }
     }
 
-    /// The error of a failed line; `is_open` if an order has no answer yet.
+    /// Returns the error of a failed line. `is_open` is `true` if an order has no answer yet.
     fn broken(&mut self, error: io::Error, is_open: bool) -> Error {
         // A session that rejects a block has not sent it, and the line is unchanged.
         if let Some(busy) = SessionBusy::of(&error) {
@@ -543,8 +552,8 @@ pub fn is_stop(request: &Request) -> bool {
     }
 }
 
-/// A jog request (JGST, TO 2-7): one word for all axes, or for one axis (0 to 3) while the others stop. Words: `RS`
-/// (reset), `SP` (stop), or a sign with `C` (inch), `L` (low speed) or `H` (high speed).
+/// A jog request (JGST, TO 2-7). The word applies to all axes, or to one axis (0 to 3) while the other axes stop.
+/// Words: `RS` (reset), `SP` (stop), or a sign followed by `C` (inch), `L` (low speed) or `H` (high speed).
 pub fn jog(word: &'static str, axis: Option<usize>) -> Request {
     let of = |index| if axis.is_none_or(|axis| axis == index) { word } else { "SP" };
     Request::of(Command::Jgst, [0, 1, 2, 3].map(|index| Value::Word(of(index))))

@@ -16,13 +16,13 @@ impl Client {
         matches!(self.transport, Transport::DryRun(_))
     }
 
-    /// Takes the plan so far, with what is sent when the client ends.
+    /// Returns the plan so far, with the frames that the client sends at its end, and clears it.
     pub fn take_plan(&mut self) -> Plan {
         self.plan_end();
         self.transport.notes().map(std::mem::take).unwrap_or_default()
     }
 
-    /// Dry run: plans reads whose answers are then unknown.
+    /// Dry run: plans reads. In a dry run, their answers stay unknown.
     pub fn plan_all(&mut self, requests: &[Request]) -> Result<(), Error> {
         if !self.is_dry() || requests.is_empty() {
             return Ok(());
@@ -43,8 +43,8 @@ impl Client {
         self.note(request, Reason::default().depending_on(on));
     }
 
-    /// Dry run: plans a block that depends on an earlier answer: either a part of it, written `?`, or whether it is
-    /// sent.
+    /// Dry run: plans a block that depends on an earlier answer. Either a part of the block depends on the answer and
+    /// is written as `?`, or the answer decides whether the block is sent.
     pub fn plan_depending(&mut self, text: &str, reason: Reason<'_>) {
         if !self.is_dry() {
             return;
@@ -63,7 +63,7 @@ impl Client {
         Ok(())
     }
 
-    /// Dry run: adds the planned action for a file or a part.
+    /// Dry run: adds the planned action for a file or a part of a long task.
     pub fn plan_item(&mut self, item: Value) {
         if let Some(plan) = self.transport.notes() {
             plan.items.push(item);

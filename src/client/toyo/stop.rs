@@ -1,4 +1,4 @@
-//! Stop procedure: the order, its repetition, and the check that the robot stands still.
+//! Stop procedure: sends the stop order, repeats it, and checks that the robot has stopped.
 
 use std::time::Duration;
 
@@ -13,24 +13,25 @@ use super::temporary_changes::HostState;
 use super::{Client, Error, jog, status_page};
 use crate::{Grant, STOP_EVERY, STOP_WITHIN};
 
-/// Time after which the motion is assumed to be a jog, because a program would have stopped.
+/// If a program still seems to run after this time, the motion is assumed to be a jog: STOP would have stopped a
+/// program.
 const JOG_ASSUMED_AFTER: Duration = Duration::from_secs(1);
-/// Poll interval of the position.
+/// Poll interval for the position during a stop.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
-/// Retries of each request while a stop runs.
+/// Number of retries of each request during a stop.
 const REPETITIONS: u32 = 3;
 
-/// Kind of motion.
+/// Kind of motion that a stop must end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Moving {
     /// A jog: runs until it is stopped.
     Jog,
-    /// A program, an origin return, or servo power.
+    /// A program, an origin return, or a change of servo power.
     Program,
 }
 
 impl Moving {
-    /// The order that stops it (JGST or STOP, TO 2-7).
+    /// The order that stops this kind of motion (JGST or STOP, TO 2-7).
     pub fn stop(self) -> Request {
         match self {
             Self::Jog => jog("SP", None),
@@ -46,16 +47,16 @@ struct Attempt {
 }
 
 impl Client {
-    /// Stops the motion and returns the final position, as [`Client::read_position`] does. The order is repeated until the
-    /// robot stands still, regardless of grant and options. Repeating a stop is harmless. After a lost stop the robot
-    /// continues to move.
+    /// Stops the motion and returns the final position in the format of [`Client::read_position`]. The client repeats
+    /// the order until the robot has stopped, without a check of the grant and with its own time limits and retries. A
+    /// repeated stop is harmless, but after a lost stop the robot would continue to move.
     ///
     /// # Errors
-    /// [`Error::StopUnconfirmed`] if no answer confirms it, [`Error::StillMoving`] if the robot still moves.
+    /// [`Error::StopUnconfirmed`] if no answer confirms the stop, [`Error::StillMoving`] if the robot still moves.
     pub async fn stop(&mut self, moving: Moving) -> Result<Record, Error> {
         if self.is_dry() {
             self.plan(&moving.stop(), "repeated until the robot stands still");
-            self.plan(&status_page(0), "repeated until the robot stands still: does something run?");
+            self.plan(&status_page(0), "repeated until the robot stands still: whether a program runs");
             if moving == Moving::Program {
                 self.plan_if(&Moving::Jog.stop(), "whether something still runs: an axis may be jogging");
                 self.plan_if(&status_page(0), "whether something still runs");
@@ -79,7 +80,7 @@ impl Client {
         self.set_policy(self.configured_policy);
         match &stopped {
             Ok(_) => self.end_motion(),
-            // Leave the host ON: the next stop needs it.
+            // The host stays ON, because the next stop needs host control.
             Err(_) => self.keep_host(),
         }
         stopped
@@ -88,16 +89,17 @@ impl Client {
     /// Sends a stop at once while an answer is pending. [`Client::stop`] would wait for that answer first.
     pub async fn send_urgent(&mut self, moving: Moving) {
         if let Some(bytes) = self.session.begin_urgent(self.started.elapsed(), &moving.stop()) {
-            // If the line is broken, the stop that follows reports it.
+            // If the line is broken, the stop that follows reports the error.
             self.send(&bytes).await.unwrap_or_default();
         }
     }
 
-    /// Returns only when the robot stands still or the line is lost. `why` holds the latest obstacle.
+    /// Repeats the stop, and returns only when the robot has stopped or the line is lost. `why` contains the latest
+    /// reason why the stop is not confirmed.
     async fn stop_until_at_rest(&mut self, moving: Moving, why: &mut Option<Error>) -> Result<Record, Error> {
         let began = Instant::now();
         let stop = moving.stop();
-        // Position of the previous attempt, if nothing ran then.
+        // Position at the previous attempt; `None` if a program or origin return was still in progress then.
         let mut previous = None;
         loop {
             let attempt = self.try_stop(moving, &stop).await;
@@ -109,13 +111,13 @@ impl Client {
                 Err(error) if self.is_line_lost => return Err(stop_error(error)),
                 Ok(Attempt { is_refused, is_busy, position }) => {
                     *why = Some(Error::StillMoving { is_refused });
-                    // The next attempt shows any error of this one.
+                    // An error of the following requests can be ignored: the next attempt reports it.
                     if is_refused && moving == Moving::Jog {
                         // Stopping a jog requires host control.
                         self.take_host_to_stop().await.unwrap_or_default();
                         self.transact(&stop, true).await.map(|_| ()).unwrap_or_default();
                     } else if moving == Moving::Program && (is_slow || (!is_busy && previous.is_some())) {
-                        // Still moving, perhaps with no program running: an axis was left jogging.
+                        // The robot still moves, perhaps although no program runs: an axis may be jogging.
                         self.stop_a_jog().await;
                     }
                     (!is_busy).then_some(position)
@@ -129,14 +131,13 @@ impl Client {
         }
     }
 
-    /// Sends the stop, then reads status and position. The answer `@OK` alone does not show that the robot stands
-    /// still.
+    /// Sends the stop, then reads status and position. An `@OK` alone does not prove that the robot has stopped.
     async fn try_stop(&mut self, moving: Moving, stop: &Request) -> Result<Attempt, Error> {
         self.send_urgent(moving).await;
         let answer = self.transact(stop, true).await?;
         let mut state = self.status_of(&[0]).await?;
         if moving == Moving::Program && (state.executing() || state.homing()) {
-            // An axis may have been left jogging; STOP does not stop a jog.
+            // An axis may still be jogging, and STOP does not stop a jog.
             self.stop_a_jog().await;
             state = self.status_of(&[0]).await?;
         }
@@ -149,7 +150,8 @@ impl Client {
         self.take_host_by(&Grant::up_to(Risk::Write)).await
     }
 
-    /// Stops the jog of all axes, and takes host control if required. The next attempt shows any error.
+    /// Stops the jog of all axes. Takes host control first if the controller refuses the stop. Errors are ignored: the
+    /// next attempt reports them.
     async fn stop_a_jog(&mut self) {
         let stop = Moving::Jog.stop();
         if matches!(self.transact(&stop, true).await, Ok(Answer::Refused)) && self.take_host_to_stop().await.is_ok() {
@@ -157,8 +159,8 @@ impl Client {
         }
     }
 
-    /// Sends one stop after a motion was refused before it began. Another motion on the controller is not the concern
-    /// of this client.
+    /// Sends one stop after the controller refused a motion. The client does not wait for the robot to stop: a motion
+    /// in progress on the controller was not started by this client.
     pub async fn stop_refused_motion(&mut self, moving: Moving) {
         self.set_policy(self.configured_policy);
         self.transact(&moving.stop(), true).await.map(|_| ()).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Temporary changes that the client undoes at its end: host control and modes.
+//! Temporary changes: host control and modes that the client changes, and changes back at its end.
 
 use armctl_controller::Risk;
 use armctl_controller::toyo::request::{Answer, Request};
@@ -14,9 +14,9 @@ pub(super) enum HostState {
     Unknown,
     /// The host was ON already.
     AlreadyOn,
-    /// This client switched the host ON, and must switch it OFF at its end.
+    /// This client switched the host ON, and must switch the host OFF at its end.
     SwitchedOn,
-    /// Dry run: the host state is read and the host switched ON only if an earlier answer requires it.
+    /// Dry run: the client reads the host state and switches the host ON only if an earlier answer requires it.
     Conditional,
 }
 
@@ -33,7 +33,7 @@ impl Client {
         self.take_host_by(&grant).await
     }
 
-    /// [`Self::take_host`] with another grant.
+    /// Takes host control like [`Self::take_host`], with another grant.
     pub(super) async fn take_host_by(&mut self, grant: &Grant) -> Result<(), Error> {
         if self.is_dry() {
             self.plan_to_take_host(None);
@@ -54,7 +54,8 @@ impl Client {
         grant.check(order.risk(), &order.text())?;
         self.watcher.event(Event::HostSwitch(true));
         let answer = match self.transact(&order, false).await {
-            // The host status shows whether the order was carried out.
+            // The answer to the order is unknown, but the host status shows whether the controller carried out the
+            // order.
             Err(error @ Error::OutcomeUnknown(_)) => match self.is_host_on().await {
                 Ok(true) => Answer::Done,
                 Ok(false) => {
@@ -77,7 +78,8 @@ impl Client {
         }
     }
 
-    /// Plans the host switch of a dry run; `on` is the earlier answer that decides whether it is sent.
+    /// Dry run: plans the orders that switch the host ON. `on` is the earlier answer that decides whether they are
+    /// sent.
     pub(super) fn plan_to_take_host(&mut self, on: Option<&str>) {
         let host_read = Reason::about("whether the host is ON");
         let host_read = match (self.host, on) {
@@ -91,7 +93,8 @@ impl Client {
         self.host = if on.is_some() { HostState::Conditional } else { HostState::SwitchedOn };
     }
 
-    /// Plans a temporary change. `back` is the block that undoes it, with `?` for the value found.
+    /// Dry run: plans a temporary change. `back` is the block that undoes the change, with `?` for the value that the
+    /// client would read before.
     pub async fn plan_to_borrow(&mut self, change: &Request, back: &str, on: &str) -> Result<(), Error> {
         self.plan_to_take_host(Some(on));
         self.fence().await?;
@@ -100,9 +103,11 @@ impl Client {
         Ok(())
     }
 
-    /// Makes a temporary change. `back` undoes it, in [`Client::put_back`] or when the client ends.
+    /// Makes a temporary change. The request `back` undoes the change. It is sent by [`Client::put_back`] or at the end
+    /// of the client.
     pub async fn borrow(&mut self, change: &Request, back: Request) -> Result<(), Error> {
-        // Recorded before sending: if the answer is lost, the change may have been made.
+        // The undo request is recorded before the change is sent: if the answer is lost, the controller may have made
+        // the change.
         self.watcher.event(Event::TemporaryChange(back.clone()));
         self.undo_requests.push(back);
         match self.try_ask(change).await? {
@@ -116,8 +121,8 @@ impl Client {
         }
     }
 
-    /// Undoes all changes of [`Client::borrow`], without a check of the grant. An error does not stop the rest; the
-    /// first one is returned.
+    /// Undoes all changes of [`Client::borrow`], without a check of the grant. After an error, the other changes are
+    /// still undone. The first error is returned.
     ///
     /// # Errors
     /// [`Error::NotUndone`].
@@ -139,7 +144,7 @@ impl Client {
         outcome
     }
 
-    /// Leaves the host ON when the client ends, as the user requested.
+    /// Leaves the host ON at the end of the client.
     pub fn keep_host(&mut self) {
         self.host = HostState::AlreadyOn;
     }
@@ -155,7 +160,7 @@ impl Client {
         self.host = HostState::Unknown;
         let fenced = self.fence_at_end().await;
         let answer = match self.transact(&Request::bare(Command::Hsof), false).await {
-            // The status shows whether the order was executed.
+            // The answer to the order is unknown, but the status shows whether the controller carried out the order.
             Err(Error::OutcomeUnknown(_)) if matches!(self.is_host_on().await, Ok(false)) => Ok(Answer::Done),
             answer => answer,
         };
@@ -164,7 +169,8 @@ impl Client {
         fenced
     }
 
-    /// Whether the host is ON after an order of this client to switch it. The watcher gets no event of a foreign host.
+    /// Reads whether the host is ON, after an order of this client to switch it. During the read, the host state is
+    /// [`HostState::SwitchedOn`], so that the event names this client as the one that switched the host ON.
     async fn is_host_on(&mut self) -> Result<bool, Error> {
         let old = std::mem::replace(&mut self.host, HostState::SwitchedOn);
         let status = self.status_of(&[HOST_PAGE]).await;
@@ -172,8 +178,8 @@ impl Client {
         Ok(status?.host_on())
     }
 
-    /// Fence at the end of a client. Returns only a late refusal of an order that seemed confirmed: later requests
-    /// report every other fault.
+    /// Sends the fence at the end of a client. The only error that it returns is a late refusal of an order that seemed
+    /// confirmed: later requests report every other fault.
     pub(super) async fn fence_at_end(&mut self) -> Result<(), Error> {
         match self.fence().await {
             Err(Error::NotSent(cause)) if matches!(*cause, Error::OutcomeUnknown(_)) => Err(*cause),
@@ -209,7 +215,8 @@ fn undo_result(answer: Result<Answer, Error>) -> Result<(), Option<Box<Error>>> 
     }
 }
 
-/// Whether the host must be ON. Only reads certainly work without it (ambiguity C14). A stop must not wait for it.
+/// Whether the host must be ON for this request. Only reads are known to work while the host is OFF (ambiguity C14). A
+/// stop must not wait for host control.
 pub(super) fn needs_host(request: &Request) -> bool {
     request.risk() > Risk::Read && !matches!(request.command(), Command::Hson | Command::Hsof | Command::Stop)
 }

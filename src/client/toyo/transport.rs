@@ -24,7 +24,7 @@ pub type Line = Stream<Box<dyn Peer + Send>>;
 
 pub(super) struct Opener(pub Box<dyn Fn() -> Opening + Send>);
 
-/// A pending open of a line.
+/// A future that opens a line.
 pub type Opening = Pin<Box<dyn Future<Output = Result<Line, Error>> + Send>>;
 
 impl fmt::Debug for Opener {
@@ -38,22 +38,22 @@ impl fmt::Debug for Opener {
 pub enum Endpoint {
     /// A serial port of this machine.
     Serial(serial::Line),
-    /// A serial line behind a device server, which passes bytes on unchanged.
+    /// A serial line behind a device server. The device server passes the bytes on unchanged.
     Tcp {
-        /// Name or address.
+        /// Host name or address of the device server.
         host: String,
-        /// TCP port.
+        /// TCP port of the device server.
         port: u16,
-        /// Baud rate of the serial line behind it.
+        /// Baud rate of the serial line behind the device server.
         baud: u32,
     },
     /// A simulator in this process; it starts when a client connects.
     Simulator {
-        /// Its start state.
+        /// Start state of the simulator.
         start: Box<Start>,
-        /// Baud rate; without one, characters take no time.
+        /// Baud rate. Without a baud rate, the transmission of characters takes no time.
         baud: Option<u32>,
-        /// Line faults.
+        /// Line faults to simulate.
         faults: Option<LineFaultSpec>,
     },
 }
@@ -61,13 +61,13 @@ pub enum Endpoint {
 /// Factory baud rate of a controller (TO 1-2).
 pub const BAUD: u32 = 9600;
 
-/// Bits per character: start bit, 8 data bits, parity, one stop bit (TO 1-2).
+/// Bits per character: 1 start bit, 8 data bits, 1 parity bit, 1 stop bit (TO 1-2).
 pub const BITS: u32 = 11;
 
 /// Retry interval for a busy port.
 const BUSY_RETRY_INTERVAL: Duration = Duration::from_millis(20);
 
-/// Minimum time limit of a connection: a device server may be slower than a controller.
+/// Shortest time limit for opening a connection: a device server may be slower than a controller.
 const MIN_CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
 
 impl Endpoint {
@@ -96,7 +96,7 @@ impl Endpoint {
         }
     }
 
-    /// Opens the line. The limit for a device server is `timeout`, but at least 3 s.
+    /// Opens the line. The time limit for the connection to a device server is `timeout`, but at least 3 s.
     ///
     /// # Errors
     /// [`Error::Port`] and [`Error::DeviceServer`].
@@ -120,7 +120,7 @@ impl Endpoint {
     }
 }
 
-/// Opens a port. Waits up to `timeout` for a busy one: a short command of another program frees it soon.
+/// Opens a port. If the port is busy, waits up to `timeout`: another armctl command may use the port for a short time.
 async fn open_port(line: &serial::Line, timeout: Duration) -> Result<Serial, serial::OpenError> {
     let until = Instant::now() + timeout;
     loop {
@@ -139,7 +139,7 @@ fn pace(baud: u32) -> Pace {
 
 #[derive(Debug)]
 pub(super) enum Transport {
-    /// Over a line.
+    /// A serial line.
     Line(Box<Line>),
     /// A dry run: requests are only planned.
     DryRun(Plan),
@@ -165,7 +165,7 @@ impl Transport {
         matches!(self, Self::DryRun(plan) if !plan.frames.is_empty())
     }
 
-    /// Whether a session holds the line, so that others may use it too.
+    /// Whether a session owns the line, so that other clients may use the line too.
     pub(super) fn is_shared(&self) -> bool {
         matches!(self, Self::Line(line) if matches!(**line, Stream::Session(_)))
     }

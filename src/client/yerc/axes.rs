@@ -1,5 +1,5 @@
-//! Axes of a control group. A controller may answer with a word for each possible axis. Then the axis configuration
-//! (0x74), read once per connection, shows which axes exist.
+//! Axes of a control group. Some controllers answer with a word for each possible axis. The client then reads the axis
+//! configuration (0x74), once per connection, to find out which axes exist.
 
 use armctl_controller::yerc::group::Group;
 use armctl_controller::yerc::payload::{Axes, AxisNames, MAX_AXES};
@@ -12,14 +12,14 @@ use crate::Reason;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AxisSet(u8);
 
-/// Added status while a pendant screen is open during which axis names cannot be read (DX 3.3.5).
+/// Added status of a refusal while a certain pendant screen is open: axis names cannot be read then (DX 3.3.5).
 const CONVERTING: u32 = 0x2150;
 
 impl AxisSet {
-    /// All axes in the answer.
+    /// Every axis in the answer exists.
     pub const ALL: Self = Self(u8::MAX);
 
-    /// The axes with a name; all axes if none has a name.
+    /// Returns the set of the axes that have a name, or [`Self::ALL`] if no axis has a name.
     fn from_names(names: &AxisNames) -> Self {
         let mask = names.names.iter().enumerate().fold(0, |mask, (axis, name)| {
             let is_blank = name.as_bytes().iter().all(u8::is_ascii_whitespace);
@@ -28,12 +28,12 @@ impl AxisSet {
         if mask == 0 { Self::ALL } else { Self(mask) }
     }
 
-    /// Whether the axis exists, counted from 0.
+    /// Whether this axis exists. Axes are counted from 0.
     pub const fn has(self, axis: usize) -> bool {
         axis < MAX_AXES && self.0 >> axis & 1 == 1
     }
 
-    /// The values up to the last existing axis; 0 for missing axes before it.
+    /// Returns the values up to the last existing axis. A missing axis before it has the value 0.
     fn trim(self, axes: Axes) -> Axes {
         let count = (0..axes.as_slice().len()).rev().find(|axis| self.has(*axis)).map_or(0, |last| last + 1);
         let values = axes.as_slice().iter().enumerate().take(count);
@@ -43,7 +43,7 @@ impl AxisSet {
 }
 
 impl Client {
-    /// The values of the existing axes of a group, out of those in the answer.
+    /// Removes the values of missing axes from the answer `axes` of a group. Reads the axis configuration if needed.
     pub async fn existing_axes(&mut self, group: Group, coordinates: Coordinates, axes: Axes) -> (Axes, AxisSet) {
         if axes.as_slice().len() < MAX_AXES {
             // No group has eight axes, so a shorter answer contains only existing axes.
@@ -53,13 +53,13 @@ impl Client {
         (axis_set.trim(axes), axis_set)
     }
 
-    /// Dry run: plans the read of the axis configuration by [`Client::existing_axes`].
+    /// Dry run: plans the read of the axis configuration that [`Client::existing_axes`] may send.
     pub fn plan_existing_axes(&mut self, group: Group, coordinates: Coordinates) {
         let is_planned = self.axis_sets.iter().any(|known| (known.0, known.1) == (group, coordinates));
         let Ok(query) = ReadAxes::new(self.model_for_display(), group, coordinates) else { return };
         if !is_planned {
             let reason = Reason::about("which axes exist, if the answer has all eight");
-            self.plan_if(&query.request(), reason.depending_on("the number of axes in the answer before"));
+            self.plan_if(&query.request(), reason.depending_on("the number of axes in the previous answer"));
             self.axis_sets.push((group, coordinates, AxisSet::ALL));
         }
     }
@@ -72,7 +72,7 @@ impl Client {
         let Ok(query) = ReadAxes::new(self.model_for_display(), group, coordinates) else { return AxisSet::ALL };
         let axis_set = match self.try_ask(&query).await {
             Ok(Ok(names)) => AxisSet::from_names(&names),
-            // Not stored: the screen may be closed at the next read.
+            // The client does not store this result: the screen may be closed at the next read.
             Ok(Err(refusal)) if refusal.status.added == CONVERTING => return AxisSet::ALL,
             Ok(Err(_)) | Err(_) => AxisSet::ALL,
         };

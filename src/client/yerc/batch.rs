@@ -1,4 +1,4 @@
-//! Batch of reads with one result each: a refusal of one read does not hide the others.
+//! Batch of reads. Each read has its own result: a refusal of one read does not hide the results of the others.
 
 use armctl_controller::yerc::query::Query;
 use armctl_controller::yerc::status::is_absent;
@@ -12,7 +12,7 @@ pub enum ReadError<E = Error> {
     Refused(Refusal),
     /// The answer was invalid, or the connection was lost.
     Failed(E),
-    /// Not sent, because the connection was lost before, with this error.
+    /// The read was not sent, because the connection was lost before, with this error.
     NotSent(E),
 }
 
@@ -25,7 +25,7 @@ impl<E> ReadError<E> {
         matches!(self, Self::Refused(refusal) if is_absent(refusal.status))
     }
 
-    /// Converts the error.
+    /// Converts the error of the read to another type.
     pub fn map<F>(self, convert: impl FnOnce(E) -> F) -> ReadError<F> {
         match self {
             Self::Refused(refusal) => ReadError::Refused(refusal),
@@ -38,19 +38,20 @@ impl<E> ReadError<E> {
 /// State of a batch of reads ([`Client::ask_in_batch`]).
 #[derive(Debug, Default)]
 pub struct Batch {
-    /// Whether the controller has answered a request, also with a refusal.
+    /// Whether the controller has answered a request. A refusal is also an answer.
     has_answer: bool,
     malformed: u32,
     /// The error that ended the batch.
     lost: Option<Error>,
 }
 
-/// Number of invalid answers, without a valid one, after which the peer counts as no controller.
+/// Maximum number of invalid answers before the first valid one. After this number, the batch fails: the peer is
+/// probably not a controller.
 const MAX_MALFORMED: u32 = 2;
 
 impl Client {
-    /// Sends one read of a batch. Before the first answer, silence or repeated garbage ends the batch with an error.
-    /// After the connection is lost, the remaining reads are not sent.
+    /// Sends one read of a batch. Before the first answer, a timeout or repeated invalid data ends the batch with an
+    /// error. After the connection is lost, the remaining reads are not sent.
     pub async fn ask_in_batch<Q: Query>(&mut self, batch: &mut Batch, query: &Q) -> Result<Outcome<Q::Answer>, Error> {
         if let Some(lost) = &batch.lost {
             return Ok(Err(ReadError::NotSent(lost.clone())));
@@ -72,7 +73,7 @@ impl Client {
         }
     }
 
-    /// Sends several reads, each with its own result. A dry run plans them all.
+    /// Sends several reads and returns a result for each. A dry run plans all of them.
     pub async fn ask_each<Q: Query>(&mut self, queries: &[Q]) -> Result<Vec<Outcome<Q::Answer>>, Error> {
         self.plan_all(queries)?;
         let mut batch = Batch::default();

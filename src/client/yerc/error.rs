@@ -24,18 +24,18 @@ pub enum Error {
     /// The controller refused.
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// No answer to a request that can be repeated without harm.
+    /// No answer to a request. The request can be repeated without harm.
     #[error("no answer within {waited:?}")]
     NoAnswer {
-        /// Total wait.
+        /// Total waiting time.
         waited: Duration,
         /// What was received.
         counters: Counters,
     },
-    /// Data was received, but no valid frame.
+    /// Data was received, but it contained no valid frame.
     #[error("no valid answer within {waited:?}, but {counters}")]
     Garbage {
-        /// Total wait.
+        /// Total waiting time.
         waited: Duration,
         /// What was received.
         counters: Counters,
@@ -43,23 +43,23 @@ pub enum Error {
     /// An answer without the requested content.
     #[error("unexpected answer: {0}")]
     Unexpected(#[from] PayloadError),
-    /// A change without an answer: it may or may not have been carried out. It was sent once.
+    /// No answer to a change: the controller may or may not have carried out the change. The change was sent once.
     #[error("no answer within {waited:?}: the command was sent once, and may or may not have been carried out")]
     OutcomeUnknown {
         /// The request.
         request: Request,
-        /// Total wait.
+        /// Total waiting time.
         waited: Duration,
         /// What was received.
         counters: Counters,
     },
-    /// No answer to the stop, which was sent repeatedly.
-    #[error("the stop was sent repeatedly, no answer within {waited:?}: armctl cannot confirm that the robot is held")]
+    /// No answer to the stop, although the client sent the stop repeatedly.
+    #[error("no answer to the repeated stop within {waited:?}: armctl cannot confirm that the robot is held")]
     Unconfirmed {
-        /// Total wait.
+        /// Total waiting time.
         waited: Duration,
     },
-    /// The link was lost after a change was sent and before its answer.
+    /// The link was lost after a change was sent and before its answer arrived.
     #[error("{cause}; the command was sent, and may or may not have been carried out")]
     CutShort {
         /// The request.
@@ -70,7 +70,7 @@ pub enum Error {
     /// A file or list that was not received completely.
     #[error("the transfer failed: {0:?}")]
     Incomplete(DownloadEnd),
-    /// The request is above the authorized risk.
+    /// The risk of the request is higher than the authorized risk. Nothing was sent.
     #[error(transparent)]
     NotAuthorized(#[from] NotAuthorized),
     /// The session on the link has ended, or another client uses the link.
@@ -85,22 +85,23 @@ pub enum Error {
     /// An I/O error of the socket.
     #[error("{error}")]
     Io {
-        /// Port of the controller; `None` if a session has the socket.
+        /// Port of the controller; `None` if a session owns the socket.
         port: Option<u16>,
         /// The cause.
         #[source]
         error: Arc<io::Error>,
     },
-    /// The controller refused to report its model, which the request depends on. Nothing else was sent.
+    /// The controller refused to report its model. The request depends on the model and was not sent.
     #[error("the controller did not report its model: it refused {}: {}", .0.to, status::explain(.0.status).name)]
     ModelRefused(Refusal),
-    /// The software version belongs to no known model, and the request depends on the model. Nothing else was sent.
-    #[error("armctl supports no model with system software '{version}'")]
+    /// The software version belongs to no known model. The request depends on the model and was not sent.
+    #[error("armctl does not support the system software '{version}' of this controller")]
     UnknownSoftware {
         /// Software version, with unusual characters escaped.
         version: String,
     },
-    /// The controller is not the remembered model. It refused a request that the remembered model accepts.
+    /// The controller is not the model that the client remembers from an earlier connection. The controller refused a
+    /// request that the remembered model accepts.
     #[error("the controller was a {remembered} and is now a {found}, which refused this request")]
     AnotherModel {
         /// The remembered model.
@@ -119,7 +120,7 @@ impl Error {
         matches!(self, Self::Garbage { .. } | Self::Unexpected(_))
     }
 
-    /// Whether there is no connection to the controller, or no longer one.
+    /// Whether there is no connection to the controller, or the connection was lost.
     pub fn is_silence(&self) -> bool {
         match self {
             Self::NoAnswer { .. } | Self::HostNotFound { .. } | Self::Io { .. } => true,
@@ -178,16 +179,17 @@ impl fmt::Display for RefusedRequest {
     }
 }
 
-/// A transfer that ended early.
+/// The end of a transfer that did not complete.
 #[derive(Debug, Clone)]
 pub struct TransferError<E> {
-    /// Bytes sent or received until then. After an upload, the controller may hold a part of the file, or all of it.
+    /// Bytes sent or received before the end. After an upload, the controller may have stored a part of the file, or
+    /// all of it.
     pub bytes: u64,
     /// The cause.
     pub cause: Cause<E>,
 }
 
-/// The side that ended a transfer.
+/// The side that caused the end of a transfer.
 #[derive(Debug, Clone)]
 pub enum Cause<E> {
     /// The link or the controller.
@@ -214,7 +216,7 @@ impl<E> From<Error> for Cause<E> {
     }
 }
 
-/// Without such a function only the link can fail.
+/// A transfer without a function of the caller can fail only because of the link or the controller.
 impl From<Cause<Infallible>> for Error {
     fn from(cause: Cause<Infallible>) -> Self {
         match cause {

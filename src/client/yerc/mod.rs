@@ -1,4 +1,4 @@
-//! Yaskawa client (FS100, DX100, DX200, YRC1000): drives the sessions over datagrams.
+//! Yaskawa client (FS100, DX100, DX200, YRC1000): runs the protocol sessions over datagrams.
 
 mod axes;
 mod batch;
@@ -43,8 +43,8 @@ use crate::{Grant, NotAuthorized, Plan, STOP_EVERY, STOP_TRIES, STOP_WITHIN, Wat
 
 /// A connection to one controller.
 ///
-/// It has one request at a time. A call that is dropped early leaves the client usable: the session discards late
-/// answers.
+/// The client processes one request at a time. The client stays usable after a call is dropped early: the session
+/// discards late answers.
 #[derive(Debug)]
 pub struct Client {
     transport: Transport,
@@ -52,46 +52,47 @@ pub struct Client {
     ids: Ids,
     grant: Grant,
     has_moved: bool,
-    /// The model, as far as known; number ranges and layouts depend on it.
+    /// The model, if known, and its source. Number ranges and layouts depend on the model.
     model_source: ModelSource,
     /// Model and software version that the controller reported.
     identity: Option<Identity>,
-    /// Dry run: the model that the plan is shown for, if the frames depend on an unknown one.
+    /// Dry run: the model for which the plan is shown, if the frames depend on the model and the model is unknown.
     plan_model: Option<Model>,
     started: Instant,
     buffer: Box<[u8; BUFFER]>,
     watcher: Box<dyn Watcher<Event>>,
     totals: Totals,
-    /// The last download, kept because its final ACK may be lost.
+    /// The last completed download. The client keeps it, because the final ACK may have been lost.
     last_download: Option<Download>,
-    /// The session that ends an open or aborted transfer at the controller.
+    /// The session that ends a transfer at the controller after the transfer was aborted here.
     open: Option<Abandon>,
     /// Dry run: purpose of the next request.
     purpose: Option<&'static str>,
-    /// Existing axes of the groups read so far.
+    /// Existing axes of the groups whose axis configuration was read.
     axis_sets: Vec<(Group, Coordinates, AxisSet)>,
 }
 
 /// Settings of a client.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// Model of the controller; without one, it is read when a request depends on it. A simulator has its own model.
+    /// Model of the controller. Without a model, the client reads the model when a request depends on it. A simulator
+    /// always uses its own model.
     pub model: Option<Model>,
     /// The highest risk that may be sent.
     pub grant: Grant,
     /// Time limit of one attempt.
     pub timeout: Duration,
-    /// Retries, after a timeout, of a request that changes nothing, and of a file block.
+    /// Number of retries after a timeout, for a request that changes nothing and for a file block.
     pub retries: u32,
 }
 
 impl Options {
-    /// Read only, for this model, with the default limits: 3 s, 3 retries.
+    /// Options for this model, read only, with the default limits: 3 s, 3 retries.
     pub fn new(model: Model) -> Self {
         Self { model: Some(model), ..Self::auto() }
     }
 
-    /// The same, with a model that the controller has to report.
+    /// Options without a model, read only, with the default limits. The client reads the model from the controller.
     pub fn auto() -> Self {
         let Policy { timeout, retries, .. } = Policy::default();
         Self { model: None, grant: Grant::default(), timeout, retries }
@@ -108,9 +109,10 @@ impl Options {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Event {
-    /// An exchange or transfer ended, and there was other traffic than the request and its answer.
+    /// An exchange or transfer ended, and the client received other frames than the answers to its requests.
     UnexpectedTraffic(Counters),
-    /// A transfer was aborted, and the controller did not confirm its end. It may stay busy until its timer expires.
+    /// A transfer was aborted, and the controller did not confirm the end. The controller may stay busy until its timer
+    /// expires.
     TransferLeftOpen,
 }
 
@@ -129,13 +131,13 @@ pub struct Totals {
     pub disturbances: u64,
 }
 
-/// Larger than a frame, so that an oversized datagram is detected.
+/// Size of the receive buffer: larger than the largest frame, so that the client detects an oversized datagram.
 const BUFFER: usize = 2048;
 
-/// Largest file that [`Client::read_file`] takes.
+/// Largest file that [`Client::read_file`] reads, in bytes.
 const MAX_FILE: u64 = 1 << 30;
 
-/// Request of a session to the caller's function that reads or writes the file.
+/// Request of a session to the function of the caller that reads or writes the file.
 enum FileRequest<'a, S> {
     /// A received piece.
     Received(&'a [u8]),
@@ -144,8 +146,8 @@ enum FileRequest<'a, S> {
 }
 
 impl Client {
-    /// Connects to a controller. Sends nothing: UDP has no connection, so only an answer shows that a controller is
-    /// there.
+    /// Opens the sockets for a controller. This function sends nothing: UDP has no connection, so only the first answer
+    /// shows that the controller is reachable.
     ///
     /// # Errors
     /// [`Error::HostNotFound`].
@@ -154,13 +156,13 @@ impl Client {
         Ok(Self::release(endpoint.open().await?, Options { model, ..options }))
     }
 
-    /// Uses a session that holds the link and shares it with other clients.
+    /// Creates a client in a session. The session owns the link and shares it with other clients.
     pub fn in_session(session: Box<Attached>, options: Options) -> Self {
         Self::release(Transport::Session(session), options)
     }
 
-    /// Starts a dry run: requests are planned ([`Client::take_plan`]) and not sent. Orders count as carried out; a read
-    /// returns [`Error::DryRun`].
+    /// Creates a client for a dry run: it plans requests ([`Client::take_plan`]) and does not send them. Orders count
+    /// as carried out; a read returns [`Error::DryRun`].
     pub fn dry_run(options: Options) -> Self {
         Self::release(Transport::DryRun(Plan::default()), options)
     }
@@ -192,18 +194,18 @@ impl Client {
         self.watcher = Box::new(watcher);
     }
 
-    /// Sends one request; a refusal is an error.
+    /// Sends one request, and returns a refusal as an error.
     pub async fn ask<Q: Query>(&mut self, query: &Q) -> Result<Q::Answer, Error> {
         Ok(self.try_ask(query).await??)
     }
 
-    /// Sends one request; a refusal is an answer. In a dry run, orders count as carried out and a read returns
-    /// [`Error::DryRun`].
+    /// Sends one request, and returns a refusal as a value. In a dry run, orders count as carried out and a read
+    /// returns [`Error::DryRun`].
     pub async fn try_ask<Q: Query>(&mut self, query: &Q) -> Result<Result<Q::Answer, Refusal>, Error> {
         let request = query.request();
         if self.is_dry() && request.risk() > Risk::Read {
             self.plan_next(&request)?;
-            // An accepted order has no data.
+            // The answer to an accepted order contains no data.
             return query.decode(&[]).map(Ok).map_err(|_| Error::DryRun);
         }
         let Reply { status, data, .. } = self.raw(&request).await?;
@@ -214,7 +216,8 @@ impl Client {
         Ok(Ok(query.decode(&data)?))
     }
 
-    /// Sends a request and returns the whole reply, also a refusal. Only a request that changes nothing is repeated.
+    /// Sends a request and returns the whole reply, which may be a refusal. Only a request that changes nothing is
+    /// repeated after a timeout.
     pub async fn raw(&mut self, request: &Request) -> Result<Reply, Error> {
         self.prepare(request).await?;
         let reply = self.transact(request, request.risk() == Risk::Read).await?;
@@ -222,8 +225,9 @@ impl Client {
         Ok(reply)
     }
 
-    /// Stops the robot with HOLD on, without a check of the grant. This order is repeated after a timeout, regardless
-    /// of the options: repeating HOLD is harmless, and a lost one lets the robot move on.
+    /// Stops the robot with HOLD on, without a check of the grant. After a timeout, the client repeats the order,
+    /// independent of the configured retries. A repeated HOLD is harmless; after a lost HOLD the robot would continue
+    /// to move.
     ///
     /// # Errors
     /// [`Error::Unconfirmed`] without an answer within 3 s.
@@ -242,7 +246,7 @@ impl Client {
                     Err(error @ Error::Io { .. }) => lost = Some(error),
                     reply => return reply,
                 }
-                // A network error may be temporary.
+                // The cause may be temporary, for example an unreachable network.
                 sleep(STOP_EVERY).await;
             }
         };
@@ -258,16 +262,16 @@ impl Client {
         }
     }
 
-    /// Whether a motion request was sent.
+    /// Whether this client sent a motion request.
     pub fn has_moved(&self) -> bool {
         self.has_moved
     }
 
-    /// Reads a whole file, in the encoding of the controller; at most 1 GiB.
+    /// Reads a whole file of at most 1 GiB, in the encoding of the controller.
     ///
     /// # Errors
-    /// [`Error::Refused`] if it does not exist, [`Error::Incomplete`] if it was not received completely: nothing is
-    /// kept then.
+    /// [`Error::Refused`] if the file does not exist, [`Error::Incomplete`] if the client did not receive the complete
+    /// file. The received part is then discarded.
     pub async fn read_file(&mut self, file: &FileName) -> Result<Vec<u8>, Error> {
         let mut content = Vec::new();
         let take = |piece: &[u8]| {
@@ -283,8 +287,8 @@ impl Client {
         }
     }
 
-    /// Downloads a file or list. Passes the blocks to `take` in order; at most `limit` bytes. `first_wait` is the time
-    /// limit of the first answer if that one is slow.
+    /// Downloads a file or list of at most `limit` bytes. Passes the blocks to `take` in order. If the first answer is
+    /// slow, `first_wait` is its time limit.
     pub async fn download<E>(
         &mut self,
         request: &Request,
@@ -323,7 +327,8 @@ impl Client {
         }
         self.last_download = matches!(end, DownloadEnd::Complete { .. }).then_some(session);
         match end {
-            // The batch backup is the only download that changes something, and the only one with a long first wait.
+            // Only the batch backup has a risk above `Read` and a long first wait. It changes something in the
+            // controller.
             DownloadEnd::NoAnswer { bytes: 0, counters } if request.risk() > Risk::Read => {
                 let waited = first_wait.unwrap_or(self.policy.timeout);
                 Err(Error::OutcomeUnknown { request: request.clone(), waited, counters }.into())
@@ -335,8 +340,8 @@ impl Client {
         }
     }
 
-    /// Sends a file. `give` returns the next piece, empty at the end. The request is sent once; numbered blocks are
-    /// repeated after a timeout.
+    /// Uploads a file. `give` returns the next piece, and an empty piece at the end. The client sends the request once,
+    /// and repeats numbered blocks after a timeout.
     pub async fn upload<E>(
         &mut self,
         request: &Request,
@@ -351,8 +356,8 @@ impl Client {
         self.prepare(request).await?;
         self.abandon().await;
         let before = self.totals.sent;
-        // A controller that does not check ids could add a late block of the last upload to this one. A new port
-        // prevents that.
+        // A controller that does not check request ids could add a late block of the previous upload to this upload.
+        // With a new local port, this cannot happen.
         self.transport.renew(channel(Division::File));
         self.last_download = None;
         let mut session = Upload::new(&request.into(), self.policy, &self.ids);
@@ -384,7 +389,8 @@ impl Client {
         self.totals
     }
 
-    /// Closes the connection and returns its traffic. Ends an aborted transfer at the controller.
+    /// Closes the connection and returns its traffic. If a transfer was aborted, ends the transfer at the controller
+    /// first.
     pub async fn close(mut self) -> Result<Totals, Error> {
         self.abandon().await;
         self.linger().await?;
@@ -394,7 +400,8 @@ impl Client {
         Ok(self.totals)
     }
 
-    /// Ends an aborted transfer at the controller, which otherwise refuses others until its timer expires.
+    /// Ends an aborted transfer at the controller. Otherwise the controller refuses other transfers until its timer
+    /// expires.
     async fn abandon(&mut self) {
         let Some(mut abandon) = self.open.take().filter(Abandon::is_open) else { return };
         let ended = self.drive(Division::File, &mut abandon, |_| Ok::<(), Infallible>(())).await;
@@ -404,8 +411,8 @@ impl Client {
         }
     }
 
-    /// On a lossy link, waits briefly for a repeat of the last block: a repeat means that the final ACK was lost.
-    /// Without the ACK the controller keeps the transfer open.
+    /// Waits briefly after a download over a lossy link. If the controller repeats the last block, the final ACK was
+    /// lost and is sent again. Without the ACK, the controller would keep the transfer open.
     async fn linger(&mut self) -> Result<(), Error> {
         let Some(mut last) = self.last_download.take().filter(|last| last.counters() != Counters::default()) else {
             return Ok(());
@@ -423,7 +430,8 @@ impl Client {
         Ok(())
     }
 
-    /// Authorizes a request, as the last step before it is sent. A dry run plans it and has no answer.
+    /// Authorizes a request, as the last step before the request is sent. A dry run plans the request and returns
+    /// [`Error::DryRun`].
     async fn prepare(&mut self, request: &Request) -> Result<(), Error> {
         self.authorize(request)?;
         if self.is_dry() {
@@ -462,7 +470,7 @@ impl Client {
         }
     }
 
-    /// Runs a session to its end. A shared link is reserved until then.
+    /// Runs a session to its end. A shared link stays reserved for this client until then.
     async fn drive<S: Session, E>(
         &mut self,
         division: Division,
@@ -506,7 +514,7 @@ impl Client {
                 }
                 Step::Wait(until) => {
                     let received = self.receive(channel, self.started + until).await?;
-                    // A frame that arrived just before the deadline counts.
+                    // A frame that arrived just before the deadline still counts.
                     now = self.started.elapsed();
                     let Some(len) = received else { continue };
                     if division == Division::File
@@ -547,7 +555,7 @@ impl Client {
         Ok(Some(len))
     }
 
-    /// Counts a completed exchange or transfer, and reports other traffic.
+    /// Counts a completed exchange or transfer, and reports unexpected traffic to the watcher.
     fn count_exchange(&mut self, counters: Counters) {
         self.totals.exchanges += 1;
         self.totals.disturbances += counters.total();
@@ -556,14 +564,14 @@ impl Client {
         }
     }
 
-    /// The error of an unanswered read.
+    /// Returns the error of a read without an answer.
     fn silence_error(&self, counters: Counters) -> Error {
         let waited = self.policy.patience();
         if counters.is_garbage() { Error::Garbage { waited, counters } } else { Error::NoAnswer { waited, counters } }
     }
 
-    /// The error of a change whose session ended before the answer. `before` is the count of sent frames before the
-    /// request.
+    /// Returns the error of a change whose session ended before the answer arrived. `before` is the number of frames
+    /// sent before the request.
     fn cut_short_error<E>(&self, cause: Cause<E>, request: &Request, before: u64) -> Cause<E> {
         let (Some(why), Cause::Client(error)) = (self.transport.ended(), &cause) else { return cause };
         if request.risk() == Risk::Read {
@@ -576,7 +584,7 @@ impl Client {
         })
     }
 
-    /// The error of a failed socket.
+    /// Returns the error of a failed socket.
     fn io_error(&self, channel: usize, error: io::Error) -> Error {
         match (self.transport.ended(), SessionBusy::of(&error)) {
             (Some(why), _) => Error::Session(SessionBusy::Ended(why.to_owned())),

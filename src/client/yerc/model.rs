@@ -1,7 +1,9 @@
-//! Model of the controller: from the settings, remembered, or read when a request depends on it.
+//! Model of the controller. The model comes from the settings, from an earlier connection, or from the controller when
+//! a request depends on it.
 //!
-//! Most requests have the same bytes for every model, and are sent without it. For the others the system information
-//! (0x89) is read first, once per connection. The first letters of the software version identify the model.
+//! Most requests have the same bytes for every model, so the client sends them without the model. For other requests,
+//! the client first reads the system information (0x89), once per connection. The first letters of the software version
+//! identify the model.
 
 use armctl_controller::Risk;
 use armctl_controller::yerc::Model;
@@ -16,9 +18,9 @@ use armctl_controller::yerc::wire::Status;
 use super::{Client, Error, Refusal, RefusedRequest};
 use crate::Reason;
 
-/// Length of a version in bytes.
+/// Length of a software version in bytes.
 const VERSION: usize = 24;
-/// The command that reads it.
+/// The command that reads the software version.
 const SYSTEM_INFO: u16 = 0x89;
 /// The model for requests that are the same for all models.
 const DEFAULT_MODEL: Model = Model::Dx200;
@@ -26,7 +28,7 @@ const DEFAULT_MODEL: Model = Model::Dx200;
 /// Identification of a controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Identity {
-    /// Model of this software; `None` if unknown.
+    /// Model to which the software belongs; `None` if unknown.
     pub model: Option<Model>,
     /// System software version.
     pub software: Text<VERSION>,
@@ -37,9 +39,9 @@ pub struct Identity {
 pub(super) enum ModelSource {
     /// Unknown.
     Nothing,
-    /// From the settings; never read.
+    /// The model is in the settings, and the client never reads it.
     Configured(Model),
-    /// From an earlier connection.
+    /// Known from an earlier connection.
     Remembered(Model),
     /// Reported by the controller on this connection.
     Reported(Model),
@@ -61,30 +63,31 @@ impl ModelSource {
 }
 
 impl Client {
-    /// The model, as far as known without a request.
+    /// The model, if it is known without a request.
     pub fn known_model(&self) -> Option<Model> {
         self.model_source.model()
     }
 
-    /// The known model, or a default, for display only.
+    /// The known model, or a default model. Use the result only for display.
     pub fn model_for_display(&self) -> Model {
         self.known_model().unwrap_or(DEFAULT_MODEL)
     }
 
-    /// Sets the model of an earlier connection, until the controller reports another one. No effect if the model is set
-    /// or reported.
+    /// Sets the model of an earlier connection. It is used until the controller reports another model. No effect if the
+    /// settings contain a model or the controller reported one.
     pub fn remember(&mut self, model: Model) {
         if self.model_source == ModelSource::Nothing {
             self.model_source = ModelSource::Remembered(model);
         }
     }
 
-    /// Identification that the controller reported on this connection.
+    /// Identification of the controller; `None` if it was not read on this connection.
     pub fn identity(&self) -> Option<&Identity> {
         self.identity.as_ref()
     }
 
-    /// The model; reads it if unknown. A dry run plans the read and continues with a DX200.
+    /// Returns the model, and reads it from the controller if it is unknown. A dry run plans the read and continues
+    /// with a DX200.
     ///
     /// # Errors
     /// [`Error::ModelRefused`], [`Error::UnknownSoftware`], and errors of the link.
@@ -99,8 +102,9 @@ impl Client {
         }
     }
 
-    /// The model for `make`: the known one, or any if all models have the same result or all fail. Otherwise it is read
-    /// first. A remembered model is read again if `make` fails for it, but not for all models.
+    /// Returns the model to use for a request that `make` builds. If `make` has the same result for every model, or
+    /// fails for every model, the model need not be known. Otherwise the client reads an unknown model first. A
+    /// remembered model is read again if `make` fails for it but works for another model.
     pub async fn model_for<T: PartialEq, E>(&mut self, make: impl Fn(Model) -> Result<T, E>) -> Result<Model, Error> {
         let is_supported = || Model::ALL.iter().any(|model| make(*model).is_ok());
         match self.model_source {
@@ -120,7 +124,8 @@ impl Client {
                 }
                 let reported = self.model().await?;
                 if self.is_dry() && first.is_err() {
-                    // A dry run cannot read the model: the plan is shown for one that supports the request.
+                    // A dry run cannot read the model, so the plan is shown for the first model that supports the
+                    // request.
                     self.plan_model = Model::ALL.into_iter().find(|model| make(*model).is_ok());
                 }
                 Ok(self.plan_model.unwrap_or(reported))
@@ -128,14 +133,14 @@ impl Client {
         }
     }
 
-    /// Reads the identification.
+    /// Reads the identification of the controller.
     async fn ask_model(&mut self) -> Result<Model, Error> {
         let query =
             ReadSystemInfo::new(DEFAULT_MODEL, SystemPart::Group(Group::R1)).expect("every model has a first robot");
         let request = query.request();
         if self.is_dry() {
             let purpose = self.purpose.take();
-            self.plan_if(&request, Reason::about("which model the controller is"));
+            self.plan_if(&request, Reason::about("the model of the controller"));
             self.purpose = purpose;
             (self.model_source, self.plan_model) = (ModelSource::Assumed, Some(DEFAULT_MODEL));
             return Ok(DEFAULT_MODEL);
@@ -154,7 +159,7 @@ impl Client {
         }
     }
 
-    /// Stores the software version of any reply that contains it.
+    /// Stores the software version and the model, if this reply contains the software version.
     pub(super) fn learn_model(&mut self, request: &Request, reply: &Reply) {
         let has_all_attributes = request.service == service::GET_ALL;
         let has_version = has_all_attributes || request.service == service::GET_SINGLE && request.attribute == 1;
@@ -175,7 +180,7 @@ impl Client {
     /// [`Error::AnotherModel`] if the controller is another model.
     pub(super) async fn check_remembered_model(&mut self, request: &Request, status: Status) -> Result<(), Error> {
         let ModelSource::Remembered(model) = self.model_source else { return Ok(()) };
-        // An FS100 with older software refuses these requests too.
+        // An FS100 with older software also refuses these requests, so the refusal does not show another model.
         if request.row().is_some_and(|row| row.availability == Availability::Fs114) {
             return Ok(());
         }
@@ -183,7 +188,7 @@ impl Client {
         if !(is_of_another_model(status) || changes && is_of_another_range(status)) {
             return Ok(());
         }
-        // The original refusal is reported, whatever the result of this read.
+        // An error of this read is ignored: the caller reports the original refusal.
         let found = self.ask_model().await.unwrap_or(model);
         if self.model_source == ModelSource::Remembered(model) {
             self.model_source = ModelSource::Reported(model);
@@ -192,12 +197,12 @@ impl Client {
     }
 }
 
-/// Unknown command or service (DX 4 and 5).
+/// Whether the status means an unknown command or service (DX 4 and 5).
 const fn is_of_another_model(status: Status) -> bool {
     status.code == 0x08 || status.added == 0xA000
 }
 
-/// Unknown instance or size (DX 4 and 5).
+/// Whether the status means an unknown instance or size (DX 4 and 5).
 const fn is_of_another_range(status: Status) -> bool {
     status.code == 0x28 || matches!(status.added, 0xA001 | 0xB002 | 0xB003 | 0xB004)
 }
@@ -211,7 +216,7 @@ mod tests {
     use super::*;
     use crate::yerc::{Endpoint, Options};
 
-    /// Connects to a simulator of an unknown model.
+    /// Connects to a simulator, without a model in the options.
     async fn unknown(start: &str) -> Client {
         let start = Start::parse(start, |_| Err("there are no files".to_owned())).unwrap();
         let endpoint = Endpoint::Simulator { start: Box::new(start), faults: None };
@@ -268,7 +273,7 @@ mod tests {
         client.remember(Model::Dx200);
         assert_eq!(client.model_for(strings).await.unwrap(), Model::Dx200);
         assert_eq!(client.totals.exchanges, 0);
-        // No FS100 supports this request; a refusal of this kind causes a read of the model.
+        // No FS100 supports this request. After the refusal, the client reads the model.
         let error = client.try_ask(&ReadVariable::new(VariableKind::S32, 0)).await.unwrap_err();
         let (remembered, found) = (Model::Dx200, Model::Fs100);
         assert!(matches!(error, Error::AnotherModel { .. }), "{error}");
@@ -314,7 +319,7 @@ mod tests {
         let frames = client.take_plan().frames;
         assert_eq!(frames.len(), 3, "{frames:?}");
         assert!(frames[0]["depends_on"].is_null());
-        assert_eq!(frames[1]["about"], "which model the controller is");
+        assert_eq!(frames[1]["about"], "the model of the controller");
         assert!(frames[1]["depends_on"].is_null(), "{}", frames[1]);
         assert_eq!(frames[2]["depends_on"], "the model of the controller; shown for a dx200");
     }

@@ -19,7 +19,7 @@ impl Client {
         matches!(self.transport, Transport::DryRun(_))
     }
 
-    /// Takes the plan so far.
+    /// Returns the plan so far and clears it.
     pub fn take_plan(&mut self) -> Plan {
         self.transport.notes().map(std::mem::take).unwrap_or_default()
     }
@@ -30,12 +30,12 @@ impl Client {
         self
     }
 
-    /// Dry run: takes the purpose of the next requests.
+    /// Dry run: returns the purpose of the next request and clears it.
     pub fn take_purpose(&mut self) -> Option<&'static str> {
         self.purpose.take()
     }
 
-    /// Dry run: plans reads whose answers are then unknown.
+    /// Dry run: plans reads. In a dry run, their answers stay unknown.
     pub fn plan_all<Q: Query>(&mut self, queries: &[Q]) -> Result<(), Error> {
         if !self.is_dry() || queries.is_empty() {
             return Ok(());
@@ -61,8 +61,8 @@ impl Client {
         self.plan_request(request, reason);
     }
 
-    /// Dry run: plans a request that depends on an earlier answer. `other` is the request after another answer: bytes
-    /// that differ are unknown.
+    /// Dry run: plans a request that depends on an earlier answer. `other` is the request after a different answer. The
+    /// plan shows `??` for bytes that differ.
     pub fn plan_depending(&mut self, request: &Request, other: &Request, reason: Reason<'_>) {
         let id = self.ids.next_id();
         let (frame, other_frame) = (request.frame(id), other.frame(id));
@@ -74,7 +74,7 @@ impl Client {
         }
     }
 
-    /// Dry run: adds the planned action for a file or a part.
+    /// Dry run: adds the planned action for a file or a part of a long task.
     pub fn plan_item(&mut self, item: Value) {
         if let Some(plan) = self.transport.notes() {
             plan.items.push(item);
@@ -88,8 +88,8 @@ impl Client {
         }
     }
 
-    /// Dry run: plans [`Client::download`]: the request, and one ACK as an example. The number of blocks is unknown,
-    /// and the first block may be the last or have number 0.
+    /// Dry run: plans [`Client::download`] as the request and one ACK as an example. The number of blocks is unknown.
+    /// The first block may also be the last block or have number 0.
     pub fn plan_download(&mut self, request: &Request, reason: Reason<'_>) -> Result<(), NotAuthorized> {
         self.authorize(request)?;
         let id = self.plan_request(request, reason);
@@ -133,7 +133,7 @@ impl Client {
         id
     }
 
-    /// The dependency of a frame, with the model if that is unknown.
+    /// Returns the dependency of a frame. If the model is unknown, the dependency includes the model.
     fn depends_on(&self, reason: Reason<'_>) -> Option<String> {
         let model = self.plan_model.map(|model| format!("the model of the controller; shown for a {model}"));
         match (reason.depends_on, model) {
@@ -142,7 +142,7 @@ impl Client {
         }
     }
 
-    /// Plans a frame with two variants: bytes that differ are unknown.
+    /// Plans a frame with two variants. The plan shows `??` for bytes that differ.
     fn plan_masked(&mut self, frame: &[u8], other: &[u8], reason: Reason<'_>) {
         if let Some(plan) = self.transport.notes() {
             plan.note(json!({ "hex": mask_differences(frame, other) }), reason);
@@ -162,7 +162,7 @@ impl Client {
     }
 }
 
-/// Readable instance and data of a motion request, without reserved fields.
+/// Returns the readable instance and data fields of a motion request, without reserved fields.
 fn fields(request: &Request, frame: &[u8]) -> Vec<ReadableField> {
     const INSTANCE: usize = 26;
     if request.risk() < Risk::Motion {
@@ -173,7 +173,7 @@ fn fields(request: &Request, frame: &[u8]) -> Vec<ReadableField> {
     fields.filter(|note| !note.meaning.starts_with("reserved")).map(|note| (note.name, note.meaning)).collect()
 }
 
-/// Hexadecimal digits, with `??` where two frames differ.
+/// Returns a frame as hexadecimal digits, with `??` for bytes where the two frames differ.
 fn mask_differences(one: &[u8], other: &[u8]) -> String {
     let differs = |index: usize| other.get(index) != one.get(index);
     let digits = one.iter().enumerate().map(|(index, byte)| if differs(index) { "??".into() } else { hex(&[*byte]) });

@@ -1,4 +1,5 @@
-//! Adapter from the simulated controller to a transport peer: for one client in this process, or many on a server.
+//! Adapter from the simulated controller to a transport peer: for one client in this process, or for many clients of a
+//! server.
 
 use std::time::Duration;
 

@@ -123,7 +123,7 @@ async fn a_watcher_is_told_frames_and_what_else_was_on_the_line() {
     assert_eq!(told.1, [Event::UnexpectedTraffic(repeated)]);
 }
 
-/// Callers match errors, send them between threads and print them.
+/// Callers match errors, send them to other threads and print them.
 #[test]
 fn errors_are_errors() {
     fn is_error<E: std::error::Error + Send + Sync + Clone + fmt::Debug + 'static>() {}

@@ -21,16 +21,16 @@ use crate::{Ends, Plan};
 pub enum Endpoint {
     /// A controller on the network.
     Udp {
-        /// Name or address.
+        /// Host name or address.
         host: String,
         /// UDP ports of the robot server and the file server.
         ports: [u16; 2],
     },
     /// A simulator in this process; it starts when a client connects.
     Simulator {
-        /// Its start state.
+        /// Start state of the simulator.
         start: Box<Start>,
-        /// Line faults.
+        /// Line faults to simulate.
         faults: Option<FaultSpec>,
     },
 }
@@ -49,7 +49,7 @@ impl Endpoint {
         Self::Simulator { start: Box::new(Start::for_model(model)), faults: None }
     }
 
-    /// The model, if known before a connection.
+    /// The model, if it is known before a connection.
     pub fn model(&self) -> Option<Model> {
         match self {
             Self::Udp { .. } => None,
@@ -66,7 +66,7 @@ impl Endpoint {
         })
     }
 
-    /// Opens the transport for a session, which shares it between clients.
+    /// Opens the transport for a session. The session shares the transport between clients.
     pub async fn hold(self) -> Result<Datagrams, Error> {
         Ok(match self {
             Self::Udp { host, ports } => Datagrams::udp(connect(host, ports).await?),
@@ -88,14 +88,14 @@ pub(super) enum Transport {
     Udp(Udp),
     /// A simulator in this process.
     Sim(Box<InProcess<Simulated>>),
-    /// A session that holds the link.
+    /// A session that owns the link.
     Session(Box<Attached>),
     /// A dry run: requests are only planned.
     DryRun(Plan),
 }
 
 impl Transport {
-    /// Local and remote address of a channel; loopback addresses if this process has no socket.
+    /// Local and remote address of a channel. Loopback addresses if this process has no socket.
     pub(super) fn ends(&self, channel: usize) -> Ends {
         let loopback = |port| SocketAddr::from(([127, 0, 0, 1], port));
         match self {
@@ -133,7 +133,7 @@ impl Transport {
         }
     }
 
-    /// Opens a new socket for a channel, so that a late datagram on the old one is never received.
+    /// Opens a new socket for a channel. A late datagram for the old socket can then not be received.
     pub(super) fn renew(&mut self, channel: usize) {
         match self {
             Self::Udp(udp) => udp.renew(channel),
@@ -154,7 +154,7 @@ impl Transport {
         }
     }
 
-    /// Receives one datagram; `None` at the deadline. A datagram larger than the buffer is cut.
+    /// Receives one datagram; `None` at the deadline. A datagram larger than the buffer is truncated.
     pub(super) async fn receive(
         &mut self,
         channel: usize,

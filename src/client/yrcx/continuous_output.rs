@@ -1,4 +1,4 @@
-//! Continuous output: a remote command with repeated answers (4.7.4).
+//! Continuous output (4.7.4): a remote command that the controller answers repeatedly.
 
 use std::time::Duration;
 
@@ -10,12 +10,13 @@ use tokio::time::Instant;
 use super::error::Error;
 use super::{Client, Done};
 
-/// The running status may precede its data: within this time, zeros count as missing data.
+/// The controller may set the running status before it sets the data. Until this time after the status, zeros count as
+/// missing data.
 const DATA_WITHIN: Duration = Duration::from_millis(100);
 
 impl Client {
-    /// Returns the next values of continuous output (4.7.4). The first call starts it. It runs until another command,
-    /// or the end of the link, resets the status.
+    /// Returns the next values of continuous output (4.7.4). The first call starts the output. The output runs until
+    /// another command resets the status, or until the link ends.
     pub async fn next_output(&mut self, order: &Order) -> Result<Done, Error> {
         let is_running = self.exchange.as_ref().is_some_and(|exchange| exchange.order() == order);
         if self.is_dry() || !is_running {

@@ -20,7 +20,7 @@ pub enum Error {
     /// The controller refused, at the start or during execution.
     #[error(transparent)]
     Refused(#[from] Box<Refusal>),
-    /// A command was not sent. Nothing was done.
+    /// A command was not sent, so the controller did nothing.
     #[error("{} was not sent: {why}", .command.row().id)]
     NotSent {
         /// The command.
@@ -28,7 +28,7 @@ pub enum Error {
         /// The reason.
         why: NotSentReason,
     },
-    /// No answer to a command that can be repeated without harm.
+    /// No answer to a command. The command can be repeated without harm.
     #[error("no answer to {}: {why}", .command.row().id)]
     NoAnswer {
         /// The command.
@@ -36,8 +36,8 @@ pub enum Error {
         /// What was observed instead.
         why: Silence,
     },
-    /// No confirmation of a command that changes something: it may or may not have been carried out, or may still run.
-    /// It was sent once.
+    /// No confirmation of a command that changes something. The controller may or may not have carried out the command,
+    /// or may still execute it. The command was sent once.
     #[error("{} was sent, and may or may not have been carried out: {why}", .command.row().id)]
     OutcomeUnknown {
         /// The command.
@@ -46,9 +46,9 @@ pub enum Error {
         why: Silence,
         /// Current state of the stop input SI(06); `None` while the link is down.
         stop: Option<bool>,
-        /// Whether the stop input was left off, because the end of a motion was not observed.
+        /// Whether the client left the stop input off, because it did not observe the end of a motion.
         is_stop_held: bool,
-        /// Why the session that held the link has ended, if it has.
+        /// Why the session ended; `None` if it did not end, or there is no session.
         ended: Option<String>,
     },
     /// A signal procedure was not completed.
@@ -56,41 +56,41 @@ pub enum Error {
     Unfinished {
         /// Name of the procedure.
         name: &'static str,
-        /// Its outcome.
+        /// Outcome of the procedure.
         outcome: sequence::Outcome,
     },
-    /// A jog ended before its time.
+    /// A jog ended early.
     #[error("{by}; armctl stopped the jog for this reason")]
     Cut {
         /// The cause.
         by: Box<Error>,
-        /// The jog.
+        /// The jog command.
         order: Box<Order>,
         /// Final position, or the error of the stop.
         ended: Result<Values, Box<Self>>,
     },
-    /// The end of a jog was not observed, and the link is lost: the axis may still move.
-    #[error("the axis may still move: armctl cannot reach the controller any more")]
+    /// The link was lost before the client observed the end of a jog: the axis may still move.
+    #[error("the axis may still move: armctl cannot reach the controller any longer")]
     StillMoving {
-        /// The cause, if the jog ended before its time.
+        /// The cause, if the jog ended early.
         cut: Option<Box<Error>>,
     },
-    /// An earlier command of this client still runs; the controller takes one at a time.
+    /// An earlier command of this client is still running; the controller executes one command at a time.
     #[error("{} still runs", .command.row().id)]
     CommandRunning {
         /// The command.
         command: Command,
     },
-    /// An earlier command of another client of the session still runs.
+    /// An earlier command of another client of the session is still running.
     #[error("a command of another client still runs")]
     OtherClientRunning {
-        /// Its words WI0 to WI15.
+        /// Words WI0 to WI15 of the other client's command.
         words: Box<Words>,
     },
-    /// Another signal procedure still runs.
+    /// Another signal procedure is still running.
     #[error("another procedure is switching signals")]
     ProcedureRunning,
-    /// Words were not sent in time.
+    /// The words were not sent within the time limit.
     #[error("the words were not sent in time")]
     WordsNotSent,
     /// The fieldbus carries only signals, not the words of remote commands.
@@ -99,21 +99,21 @@ pub enum Error {
         /// The command.
         command: Command,
     },
-    /// A monitoring client cannot command the controller ([`Options::commands`](super::Options::commands)).
+    /// A monitoring client cannot send commands to the controller ([`Options::commands`](super::Options::commands)).
     #[error("{what} needs a connection that commands the controller")]
     MonitorOnly {
         /// The refused action.
         what: String,
     },
-    /// The connection ends with the client, and the robot stops with it
+    /// The connection ends with the client, and the controller then stops the robot
     /// ([`Options::is_held`](super::Options::is_held)).
-    #[error("the connection would end now, and the controller would stop the robot")]
+    #[error("the connection ends with this command, and the controller would then stop the robot")]
     NotHeld,
     /// The link is up, but the controller sends no data.
     #[error("the controller sends no data")]
     Silent,
     /// The data of the controller is too short for an image.
-    #[error("the controller sends {bytes} bytes, fewer than an image")]
+    #[error("the controller sends {bytes} bytes, too few for an image")]
     NoImage {
         /// Bytes received.
         bytes: usize,
@@ -121,7 +121,7 @@ pub enum Error {
     /// An error of the link.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// The request is above the authorized risk.
+    /// The risk of the request is higher than the authorized risk. Nothing was sent.
     #[error(transparent)]
     NotAuthorized(#[from] NotAuthorized),
     /// The session on the link has ended, or another client uses the link.
@@ -176,7 +176,7 @@ mod tests {
         );
         let outcome = sequence::Outcome::Broken { signal: output::ALARM };
         let broken = Error::Unfinished { name: "run", outcome };
-        assert_eq!(broken.to_string(), "run: alarm (SO(03)) went on during the procedure");
+        assert_eq!(broken.to_string(), "run: alarm (SO(03)) switched on during the procedure");
         let busy = Error::Session(SessionBusy::Busy(None));
         assert_eq!(busy.to_string(), "another client uses the connection");
     }

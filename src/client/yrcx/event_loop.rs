@@ -1,4 +1,4 @@
-//! Event loop of a client: poll sessions, send the output image, wait for events.
+//! Event loop of a client: polls the sessions, sends the output image and waits for events.
 
 use std::time::Duration;
 
@@ -25,8 +25,8 @@ pub(super) const NO_DEADLINE: Duration = Duration::from_secs(3600);
 const LEAVE_WITHIN: Duration = Duration::from_secs(1);
 
 impl Client {
-    /// Waits for the first input image and, on a commanding connection, until the resting image is sent: emergency stop
-    /// and stop inputs on, everything else off.
+    /// Waits for the first input image. On a commanding connection, also waits until the resting image is sent:
+    /// emergency stop and stop inputs on, everything else off.
     ///
     /// # Errors
     /// [`Error::Silent`] without an image within the time limit.
@@ -39,7 +39,8 @@ impl Client {
             self.turn_until(until).await?;
         }
         if !self.is_owner && self.input.is_some_and(|image| !output::CPU_OK.is_on(&image)) {
-            // The board accepts any monitoring connection, so the client has to notice a wrong image itself.
+            // The board accepts every monitoring connection, so the client itself must detect an image of something
+            // else.
             self.watcher.event(Event::CpuNotOk);
         }
         Ok(())
@@ -61,14 +62,15 @@ impl Client {
         Ok(())
     }
 
-    /// Reserves the words of remote commands, which no other command may use.
+    /// Reserves the words of remote commands for the next command. No other command may be running.
     pub(super) async fn reserve_words(&mut self) -> Result<(), Error> {
         self.end_previous_command().await?;
         self.acquire().await?;
         self.check_other_commands().await
     }
 
-    /// Ends an earlier command of this client and reports its failure. [`Error::CommandRunning`] while it runs.
+    /// Finishes an earlier command of this client and reports its failure. Returns [`Error::CommandRunning`] if the
+    /// command is still running.
     async fn end_previous_command(&mut self) -> Result<(), Error> {
         if self.exchange.is_some() {
             self.turn_until(Instant::now()).await?;
@@ -95,7 +97,8 @@ impl Client {
         Ok(())
     }
 
-    /// Runs until the remote command has ended. Waits for a lost link until the deadline.
+    /// Runs the event loop until the remote command has ended. If the link is lost during a motion, waits until the
+    /// deadline for the link to return.
     pub(super) async fn wait_for_outcome(&mut self, until: Option<Instant>) -> Result<Outcome, Error> {
         loop {
             if let Some(outcome) = self.ended.take() {
@@ -106,14 +109,15 @@ impl Client {
         }
     }
 
-    /// After a motion whose link was lost, waits until the link is up again, to report the state of the stop input.
+    /// Waits until the link is up again, if the link was lost during a motion. The client can then report the state of
+    /// the stop input.
     pub(super) async fn await_link(&mut self, outcome: &Outcome, until: Option<Instant>) {
         let moves = matches!(outcome.row.pace, Pace::Motion | Pace::Jog);
         if !moves || outcome.ended != Ended::OutcomeUnknown(Silence::LinkLost) {
             return;
         }
         let until = until.unwrap_or_else(|| Instant::now() + self.timeout);
-        // The next call reports any error of this wait.
+        // An error of this wait is ignored: the next call reports it.
         while !self.is_up && Instant::now() < until && self.turn_until(until).await.is_ok() {}
     }
 
@@ -138,7 +142,7 @@ impl Client {
         }
     }
 
-    /// Aborts a procedure. Signals that it pulsed go off.
+    /// Aborts a procedure. Signals that the procedure pulsed go off.
     pub(super) fn abandon_sequence(&mut self) {
         let now = self.now();
         if let Some(mut sequence) = self.sequence.take() {
@@ -155,8 +159,7 @@ impl Client {
         self.check_session()
     }
 
-    /// Waits at most 1 s for short commands to end and for the last change to be sent. A motion that was left running
-    /// continues.
+    /// Waits at most 1 s for short commands to end and for the last change to be sent. A running motion continues.
     ///
     /// # Errors
     /// Errors of the link.
@@ -166,7 +169,7 @@ impl Client {
             return Ok(());
         }
         let now = self.now();
-        // A jog does not end by itself.
+        // A jog counts as short here: it does not end by itself, so it is interrupted.
         let is_short = |exchange: &Exchange| exchange.order().row().pace != Pace::Motion;
         if let Some(exchange) = self.exchange.as_mut().filter(|exchange| is_short(exchange)) {
             exchange.interrupt(now);
@@ -182,12 +185,12 @@ impl Client {
         Ok(())
     }
 
-    /// One turn: returns after an event or a deadline.
+    /// Runs one turn of the event loop: polls, sends, and returns after one event or deadline.
     pub(super) async fn turn(&mut self) -> Result<(), Error> {
         self.turn_until(Instant::now() + NO_DEADLINE).await
     }
 
-    /// [`turn`](Self::turn) with a deadline.
+    /// Runs one [`turn`](Self::turn) with a deadline.
     pub(super) async fn turn_until(&mut self, until: Instant) -> Result<(), Error> {
         let mut due = until;
         if !self.in_flight {
@@ -196,7 +199,7 @@ impl Client {
             self.release();
             match next {
                 Some(next) => due = due.min(self.started + next.min(self.now().saturating_add(NO_DEADLINE))),
-                // The caller waits for an exchange that has just ended.
+                // A session has just ended, and the caller waits for its outcome.
                 None => return Ok(()),
             }
         }
@@ -207,7 +210,7 @@ impl Client {
         self.started.elapsed()
     }
 
-    /// Polls the sessions. Returns the next deadline; `None` if one has ended.
+    /// Polls the sessions. Returns the next deadline, or `None` if a session has ended.
     fn poll(&mut self) -> Option<Now> {
         let now = self.now();
         let mut due = Now::MAX;
@@ -249,7 +252,7 @@ impl Client {
         Ok(())
     }
 
-    /// Handles the next event; `false` without one before `until`.
+    /// Handles the next event. Returns `false` if there is no event before `until`.
     async fn event(&mut self, until: Instant) -> Result<bool, Error> {
         let link = match &mut self.transport {
             Transport::Image(link) => link,
@@ -280,7 +283,7 @@ impl Client {
             LinkEvent::OutputChanged(change) => self.apply_change(now, &change),
             LinkEvent::Denied => {
                 self.in_flight = false;
-                // A command that was sent before is still followed to its end.
+                // If a command was sent before, the client continues to observe it until its end.
                 self.exchange.take_if(|exchange| exchange.sent().is_none());
                 self.sequence = None;
                 self.words = Words::default();

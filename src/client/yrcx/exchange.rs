@@ -17,29 +17,29 @@ use super::error::{Error, Refusal};
 use super::{Client, Event};
 use crate::Reason;
 
-/// Result of a command that was carried out.
+/// Result of a completed command.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Done {
-    /// Data of the answer, by the fields of its table row (chapter 4 of the manual); empty in a dry run. See [`Values`]
-    /// for the units.
+    /// Data of the answer, named after the fields of the command's table row (chapter 4 of the manual). Empty in a dry
+    /// run. See [`Values`] for the units.
     pub values: Values,
     /// Time from the first attempt to the end.
     pub elapsed: Duration,
 }
 
-/// A whole answer, also a refusal.
+/// A whole answer, which may be a refusal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reply {
     /// The decoded answer.
     pub answer: Answer,
-    /// Its words WO0 to WO15.
+    /// Words WO0 to WO15 of the answer.
     pub words: Words,
     /// Time from the first attempt to the end.
     pub elapsed: Duration,
 }
 
 impl Reply {
-    /// The result, or the refusal.
+    /// Converts the reply to the result or the refusal.
     pub(super) fn of(self, order: &Order) -> Result<Done, Refusal> {
         match self.answer {
             Answer::Done(values) | Answer::Running(values) => Ok(Done { values, elapsed: self.elapsed }),
@@ -53,22 +53,22 @@ impl Reply {
 }
 
 impl Client {
-    /// Sends a remote command and waits for its end; a refusal is an error. Only a read is repeated, within the time
-    /// limit. A dry run plans it.
+    /// Sends a remote command and waits for its end; a refusal is returned as an error. Only a read is repeated, within
+    /// the time limit. A dry run plans the command.
     ///
     /// # Errors
-    /// [`Error::Refused`] with the alarm. [`Error::NotSent`] and [`Error::NoAnswer`]: it can be repeated without harm.
-    /// [`Error::OutcomeUnknown`]: it must not be repeated.
+    /// [`Error::Refused`] with the alarm. After [`Error::NotSent`] and [`Error::NoAnswer`], the command can be repeated
+    /// without harm. After [`Error::OutcomeUnknown`], it must not be repeated.
     pub async fn ask(&mut self, order: &Order) -> Result<Done, Error> {
         self.raw(order).await?.done(order)
     }
 
-    /// [`ask`](Self::ask) with a refusal as an answer.
+    /// Sends a command like [`ask`](Self::ask), but returns a refusal as a value.
     pub async fn try_ask(&mut self, order: &Order) -> Result<Result<Done, Refusal>, Error> {
         Ok(self.raw(order).await?.of(order))
     }
 
-    /// [`ask`](Self::ask) with the whole answer.
+    /// Sends a command like [`ask`](Self::ask), but returns the whole answer.
     pub async fn raw(&mut self, order: &Order) -> Result<Reply, Error> {
         self.authorize_command(order.row().id, order.risk())?;
         if self.is_dry() {
@@ -93,11 +93,12 @@ impl Client {
         }
     }
 
-    /// Sends a remote command and waits until it has ended, or until the controller executes it (`None`). A command in
-    /// execution continues, and the client sends no other until it ends.
+    /// Sends a remote command and waits until the command has ended, or until the controller starts to execute it
+    /// (`None`). A command in execution continues. The client sends no other command until it ends.
     ///
     /// # Errors
-    /// [`Error::NotHeld`] if the end of the connection would stop it; also those of [`ask`](Self::ask).
+    /// [`Error::NotHeld`] if the command would stop at the end of the connection; also the errors of
+    /// [`ask`](Self::ask).
     pub async fn begin(&mut self, order: &Order) -> Result<Option<Done>, Error> {
         if !self.is_held {
             return Err(Error::NotHeld);
@@ -128,7 +129,7 @@ impl Client {
         Ok(outcome)
     }
 
-    /// Counts a finished command, and reports a leftover status.
+    /// Counts a finished command, and reports a status that remained from before the command, or that was not released.
     pub(super) fn count(&mut self, order: &Order, outcome: &Outcome) {
         self.totals.commands += 1;
         self.totals.waited += outcome.elapsed;
@@ -138,7 +139,8 @@ impl Client {
         if matches!(outcome.ended, Ended::Answered(_)) && !outcome.released {
             self.watcher.event(Event::NotReleased(order.command()));
         }
-        // A motion has ended with its answer; a program has only begun.
+        // A motion command ends when the motion ends; a command that starts a program ends when the program has only
+        // begun.
         self.has_started |= order.risk() == Risk::Motion && order.row().pace == Pace::Quick;
     }
 

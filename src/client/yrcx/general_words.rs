@@ -1,4 +1,4 @@
-//! General-purpose words, which share their place in the image with remote commands.
+//! General-purpose words. They use the same words of the image as remote commands.
 
 use armctl_controller::Risk;
 use armctl_controller::yrcx::register::{Register, general};
@@ -10,11 +10,11 @@ use super::{Client, hex};
 use crate::Reason;
 
 impl Client {
-    /// Sets general-purpose words, all in one image. They stay until other words replace them. A remote command uses
-    /// the place while it runs, and restores the words at its end.
+    /// Sets general-purpose words, all of them in one image. They keep their values until other values replace them. A
+    /// remote command uses these words while it runs, and the client restores them at its end.
     ///
     /// # Errors
-    /// [`Error::WordsNotSent`] if they were not sent within the time limit.
+    /// [`Error::WordsNotSent`] if the words were not sent within the time limit.
     pub async fn set_words(&mut self, changes: &[(Register, u32)]) -> Result<(), Error> {
         self.authorize_command("set-words", Risk::Write)?;
         if self.is_dry() {

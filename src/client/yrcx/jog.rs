@@ -1,4 +1,5 @@
-//! Jog: a motion that runs until the stop input goes off (4.2.6). The client switches it off in every case.
+//! Jog: a motion that runs until the stop input goes off (4.2.6). The client switches the stop input off at the end of
+//! every jog.
 
 use std::time::Duration;
 
@@ -17,24 +18,25 @@ use super::event_loop::NO_DEADLINE;
 use super::{Client, Done, Transport};
 use crate::Reason;
 
-/// Limit of link faults while a jog is stopped.
+/// Maximum number of link errors while the client stops a jog.
 const MOST_FAULTS: u32 = 100;
 
 pub(super) struct JogOutcome {
     pub(super) outcome: Outcome,
-    /// Whether the jog was still running when it was stopped.
+    /// Whether the jog was still running when the client stopped it.
     is_stopped: bool,
-    /// The cause, if it ended before its time.
+    /// The cause, if the jog ended early.
     cut: Option<Error>,
 }
 
 impl Client {
-    /// Jogs for `time` after the command was sent, then stops and returns the position. If the call is dropped,
-    /// [`stop`](Self::stop) must follow. The stop alarm that ends the jog does not count as a refusal.
+    /// Jogs for `time` from the moment when the command is sent, then stops and returns the position. If the caller
+    /// drops the call, the caller must call [`stop`](Self::stop). The stop alarm that ends the jog does not count as a
+    /// refusal.
     ///
     /// # Errors
-    /// The jog was refused or ended by itself, or its end was not observed: then the stop input stays off.
-    /// [`Error::Cut`] if another cause ended it before its time.
+    /// The jog was refused or ended by itself, or the client did not observe its end. The stop input stays off if the
+    /// end was not observed. [`Error::Cut`] if another cause ended the jog early.
     pub async fn jog(&mut self, order: &Order, time: Option<Duration>) -> Result<Done, Error> {
         self.authorize_command(order.row().id, order.risk())?;
         if self.is_dry() {
@@ -71,7 +73,7 @@ impl Client {
         }
         let Some(outcome) = self.ended.take() else {
             return Err(match cut {
-                // The session did not send the jog, so there is nothing to stop.
+                // The session did not send the jog, so there is no motion to stop.
                 Some(denied @ Error::Session(SessionBusy::ReadOnly)) if self.exchange.is_none() => {
                     self.set_stop_last_will(false);
                     denied
@@ -85,7 +87,8 @@ impl Client {
         Ok(JogOutcome { outcome, is_stopped, cut })
     }
 
-    /// Sets or clears the last will of the session: it switches the stop input off if this process is killed.
+    /// Sets or clears the last will of the session. With the last will, the session switches the stop input off if this
+    /// process is killed.
     fn set_stop_last_will(&mut self, on: bool) {
         let Transport::Image(link) = &mut self.transport else { return };
         let mut mask = Image::default();
@@ -94,7 +97,7 @@ impl Client {
         link.set_last_will(on.then_some((&mask[..], &off[..])));
     }
 
-    /// Runs until the jog reaches its time or ends.
+    /// Runs the event loop until the time has passed or the jog ends.
     async fn run_for(&mut self, time: Option<Duration>) -> Result<(), Error> {
         while let Some(exchange) = &self.exchange {
             let until = match time.zip(exchange.sent()) {

@@ -1,8 +1,8 @@
-//! OMRON / Yamaha YRCX client: drives the sessions over process images on a fieldbus.
+//! OMRON / Yamaha YRCX client: runs the protocol sessions over process images on a fieldbus.
 //!
-//! At most one remote command and one signal procedure run at a time; the controller accepts both together (chapters
-//! 1 and 2 of the manual). Both are polled in every turn. Calls may be dropped at any await: the client keeps the
-//! running command, and [`Client::stop`] can end it properly. A command of a dropped call advances only while another
+//! At most one remote command and one signal procedure run at a time; the controller accepts both together (chapters 1
+//! and 2 of the manual). The client polls both in every turn. A call may be dropped at any await: the client keeps the
+//! running command, and [`Client::stop`] can end it properly. The command of a dropped call advances only while another
 //! call is awaited.
 //!
 //! Any [`ImageLink`] works: EtherNet/IP, DeviceNet, PROFIBUS, a session, or a simulator in this process.
@@ -44,21 +44,21 @@ pub use self::simulated::Simulated;
 pub use self::stop::StopResult;
 use crate::{Grant, Plan, STOP_WITHIN, Watcher};
 
-/// A connection to one controller. It belongs to one thread, as fieldbus links do.
+/// A connection to one controller. The client must stay on one thread, because fieldbus links do.
 #[derive(Debug)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent state")]
 pub struct Client {
     transport: Transport,
-    /// Size of the output image in bytes; 0 without one.
+    /// Size of the output image in bytes; 0 without an output image.
     size: usize,
-    /// Whether this connection owns the output image; otherwise it only monitors.
+    /// Whether this connection owns the output image. Otherwise it only monitors.
     is_owner: bool,
     /// The output image to send.
     output: Output,
     /// The output image last passed to the transport.
     last_output: Option<Image>,
-    /// Whether the transport has not sent it yet. No newer image is passed until then: a command must not overtake its
-    /// data.
+    /// Whether the transport has not sent the last output image yet. The client passes no newer image until then: a
+    /// command must not be sent before its data.
     in_flight: bool,
     /// The input image; `None` while the link is down.
     input: Option<Image>,
@@ -70,18 +70,18 @@ pub struct Client {
     sequence: Option<Sequence>,
     finished: Option<sequence::Outcome>,
     policy: Policy,
-    /// Time limit of a procedure for one output signal.
+    /// Time limit for one output signal in a procedure.
     procedure_timeout: Duration,
     timeout: Duration,
     retries: u32,
     grant: Grant,
-    /// Whether a program, or a motion by signals, was started that continues by itself.
+    /// Whether the client started a program, or a motion by signals, that continues by itself.
     has_started: bool,
-    /// General-purpose words before a remote command, which are restored after it.
+    /// General-purpose words before a remote command. The client restores them after the command.
     words: Words,
-    /// Whether the link outlives the client, so that a motion or program can continue.
+    /// Whether the link stays open after the client ends, so that a motion or program can continue.
     is_held: bool,
-    /// Whether a session holds the link, so that others may use it too.
+    /// Whether a session owns the link, so that other clients may use the link too.
     is_shared: bool,
     /// Whether a remote command has ended, so that another client may send the next one.
     is_turn_over: bool,
@@ -102,22 +102,24 @@ enum Transport {
 /// Settings of a client.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// Whether the client commands the controller; otherwise it only monitors the signals.
+    /// Whether the client sends commands to the controller. Otherwise it only monitors the signals.
     pub commands: bool,
-    /// Whether the connection outlives the client, so that a motion or program can continue. A controller stops when
-    /// its connection ends.
+    /// Whether the connection stays open after the client ends, so that a motion or program can continue. When its
+    /// connection ends, a controller stops the robot.
     pub is_held: bool,
     /// The highest risk that may be sent.
     pub grant: Grant,
-    /// Time limit of one attempt: until the controller is ready, takes a command, or sends an image. Execution has its
-    /// own limits: at least 10 s, 30 s for motor power, none for motions.
+    /// Time limit of one attempt: until the controller is ready, accepts a command, or sends an image. The execution of
+    /// a command has other limits: at least 10 s, 30 s for motor power, no limit for motions.
     pub timeout: Duration,
-    /// Retries of a command that changes nothing. No attempt begins after `timeout` times (`retries` + 1).
+    /// Number of retries of a command that changes nothing. No attempt starts later than `timeout` times (`retries` +
+    /// 1).
     pub retries: u32,
 }
 
 impl Default for Options {
-    /// Read only, on a connection that commands the controller, with the default limits: 3 s, 3 retries.
+    /// Options for a connection that can command the controller. The grant authorizes only reads. The default limits
+    /// are a timeout of 3 s and 3 retries.
     fn default() -> Self {
         Self { commands: true, is_held: false, grant: Grant::default(), timeout: Policy::default().accept, retries: 3 }
     }
@@ -139,10 +141,10 @@ pub enum Event {
     ImageSent(Image),
     /// This image was received from the controller.
     ImageReceived(Image),
-    /// CPU OK (SO(01)) is off in the first image of a monitoring connection: the controller is not working, or the data
-    /// does not come from a controller.
+    /// CPU OK (SO(01)) is off in the first image of a monitoring connection. Either the controller does not work, or
+    /// the data does not come from a controller.
     CpuNotOk,
-    /// The link was lost. Everything that ran has ended, and the controller stops.
+    /// The link was lost. All running commands and procedures have ended, and the controller stops the robot.
     Lost {
         /// The cause.
         why: LinkError,
@@ -154,22 +156,22 @@ pub enum Event {
         /// State of the stop input SI(06); `None` on a monitoring connection.
         stop: Option<bool>,
     },
-    /// The controller had this status before the command; it is reset first.
+    /// The controller had this status before the command. The client resets the status first.
     StatusReset(Command, Status),
-    /// The command has ended, and the controller is not ready again.
+    /// The command has ended, but the controller is not ready for the next command.
     NotReleased(Command),
-    /// A command that ran on without a caller was refused or aborted.
+    /// The controller refused or aborted a command that continued after its call was dropped.
     Aborted(Command, Alarm),
-    /// A command that ran on without a caller ended without an answer.
+    /// A command that continued after its call was dropped ended without an answer.
     Unanswered(Error),
-    /// A command that another client of the session had left running has ended.
+    /// A command of another client of the session has ended. The other client had not waited for its end.
     OtherCommandEnded {
-        /// WI0 to WI15.
+        /// Words WI0 to WI15.
         words: Words,
-        /// WO0 to WO15.
+        /// Words WO0 to WO15.
         answer: Words,
     },
-    /// The stop input SI(06) is about to go off.
+    /// The client is about to switch the stop input SI(06) off.
     Stopping,
 }
 
@@ -178,19 +180,19 @@ pub enum Event {
 pub struct Totals {
     /// Remote commands sent.
     pub commands: u32,
-    /// Total time from sending to the end of the commands.
+    /// Total execution time of the commands, from sending to their end.
     pub waited: Duration,
-    /// Losses of the link.
+    /// Number of times that the link was lost.
     pub losses: u32,
 }
 
-/// Minimum time limit where the manual gives none.
+/// Shortest time limit of a command for which the manual gives no limit.
 const QUICK_WITHIN: Duration = Duration::from_secs(10);
 const POWER_WITHIN: Duration = Duration::from_secs(30);
 
 impl Client {
-    /// Takes over a link and waits for the first image of the controller: [`over`](Self::over) and
-    /// [`ready`](Self::ready). Sends the resting image: emergency stop and stop inputs on, everything else off.
+    /// Creates a client on a link ([`over`](Self::over)) and waits for the first image of the controller
+    /// ([`ready`](Self::ready)). Sends the resting image: emergency stop and stop inputs on, everything else off.
     ///
     /// # Errors
     /// [`Error::Silent`] without an image within the time limit. The link is then closed.
@@ -199,7 +201,7 @@ impl Client {
         match client.ready().await {
             Ok(()) => Ok(client),
             Err(error) => {
-                // The missing image is the useful error, not a failed close.
+                // An error of the close is ignored: the missing image is the more useful error.
                 let _ = client.close().await;
                 Err(error)
             }
@@ -209,14 +211,14 @@ impl Client {
     /// Connects to a new simulator in this process.
     ///
     /// # Errors
-    /// None are known.
+    /// No error is known.
     pub async fn simulated(start: Start, options: Options) -> Result<Self, Error> {
         let peer = Box::new(Simulated::new(start));
         Self::connect(ImageLink::in_process(peer), Options { is_held: true, ..options }).await
     }
 
-    /// Takes over a link. Sends nothing yet: see [`ready`](Self::ready). Clients of a session share the link and take
-    /// turns with remote commands.
+    /// Creates a client on a link, and sends nothing yet: see [`ready`](Self::ready). Clients of a session share the
+    /// link and take turns with remote commands.
     pub fn over(link: ImageLink, options: Options) -> Self {
         let size = link.output_size();
         let mut client = Self::new(Transport::Image(Box::new(link)), size, options);
@@ -224,13 +226,13 @@ impl Client {
         client
     }
 
-    /// Starts a dry run: requests are planned ([`Client::take_plan`]) and not sent. Orders count as carried out; a read
-    /// returns [`Error::DryRun`].
+    /// Creates a client for a dry run: it plans requests ([`Client::take_plan`]) and does not send them. Orders count
+    /// as carried out; a read returns [`Error::DryRun`].
     pub fn dry_run(options: Options) -> Self {
         Self::new(Transport::DryRun(Plan::default()), Image::BYTES, options)
     }
 
-    /// A client without a link, for requests to the fieldbus device only. A request to the controller returns
+    /// Creates a client without a link, only for requests to the fieldbus device. A request to the controller returns
     /// [`Error::Silent`].
     pub fn without_link(options: Options) -> Self {
         Self::new(Transport::Nothing, Image::BYTES, Options { commands: false, ..options })
@@ -286,7 +288,7 @@ impl Client {
         self.grant = grant;
     }
 
-    /// Checks one request, as the last step before it is sent.
+    /// Checks one request, as the last step before the request is sent.
     ///
     /// # Errors
     /// [`Error::NotAuthorized`].
@@ -294,22 +296,22 @@ impl Client {
         Ok(self.grant.check(risk, what)?)
     }
 
-    /// Whether a session holds the link, so that others may use it too.
+    /// Whether a session owns the link, so that other clients may use the link too.
     pub fn is_shared(&self) -> bool {
         self.is_shared
     }
 
-    /// Whether the connection outlives the client.
+    /// Whether the connection stays open after the client ends.
     pub fn is_held(&self) -> bool {
         self.is_held
     }
 
-    /// Whether the client can send commands, or only monitors signals.
+    /// Whether the client can send commands. Otherwise it only monitors signals.
     pub fn commands(&self) -> bool {
         self.is_owner
     }
 
-    /// Whether the fieldbus carries the words of remote commands, or only signals.
+    /// Whether the fieldbus carries the words of remote commands. Otherwise it carries only signals.
     pub fn has_commands(&self) -> bool {
         self.size == 0 || Image::has_commands(self.size)
     }
@@ -327,11 +329,11 @@ impl Client {
         }
     }
 
-    /// Ends the connection: [`leave`](Self::leave), then [`end`](Self::end). Without a session, a controller treats the
-    /// end of the connection as a link fault: it stops and raises an alarm.
+    /// Ends the connection: [`leave`](Self::leave), then [`end`](Self::end). Without a session, the controller handles
+    /// the end of the connection as a link fault: it stops the robot and raises an alarm.
     ///
     /// # Errors
-    /// The first error of the two.
+    /// The first error of the two calls.
     pub async fn close(mut self) -> Result<Totals, Error> {
         let left = self.leave().await;
         let totals = self.totals;
@@ -341,7 +343,7 @@ impl Client {
         Ok(totals)
     }
 
-    /// Ends the connection at once; a session keeps its own.
+    /// Ends the connection at once. A session keeps its own connection to the controller.
     ///
     /// # Errors
     /// The peer did not receive the close.

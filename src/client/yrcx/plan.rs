@@ -7,7 +7,7 @@ use armctl_controller::yrcx::order::Order;
 use armctl_controller::yrcx::procedure::{Procedure, Step};
 use serde_json::{Value, json};
 
-use super::{Client, Error, Transport};
+use super::{Client, Transport};
 use crate::plan::{ReadableField, merge_fields, with_fields};
 use crate::{Plan, Reason};
 
@@ -17,23 +17,9 @@ impl Client {
         matches!(self.transport, Transport::DryRun(_))
     }
 
-    /// Takes the plan so far.
+    /// Returns the plan so far and clears it.
     pub fn take_plan(&mut self) -> Plan {
         self.plan_mut().map(std::mem::take).unwrap_or_default()
-    }
-
-    /// Dry run: plans reads whose answers are then unknown.
-    ///
-    /// # Errors
-    /// [`Error::DryRun`], in a dry run.
-    pub fn plan_all(&mut self, orders: &[Order]) -> Result<(), Error> {
-        if !self.is_dry() || orders.is_empty() {
-            return Ok(());
-        }
-        for order in orders {
-            self.plan_order(order, Reason::default());
-        }
-        Err(Error::DryRun)
     }
 
     /// Dry run: plans an order that depends on earlier answers.
@@ -41,8 +27,8 @@ impl Client {
         self.plan_order(order, Reason::about(about));
     }
 
-    /// Dry run: plans an order that depends on an earlier answer. `other` is the order after another answer: words that
-    /// differ are unknown.
+    /// Dry run: plans an order that depends on an earlier answer. `other` is the order after a different answer. Words
+    /// that differ are shown as unknown.
     pub fn plan_depending(&mut self, order: &Order, other: &Order, reason: Reason<'_>) {
         let word = |(one, other): (&u16, &u16)| if one == other { format!("0x{one:04X}") } else { "?".to_owned() };
         let words: Vec<String> = order.words().iter().zip(other.words()).map(word).collect();
@@ -57,7 +43,7 @@ impl Client {
         }
     }
 
-    /// Dry run: adds the planned action for a file or a part.
+    /// Dry run: adds the planned action for a file or a part of a long task.
     pub fn plan_item(&mut self, item: Value) {
         if let Some(plan) = self.plan_mut() {
             plan.items.push(item);
@@ -104,7 +90,7 @@ impl Client {
     }
 }
 
-/// Readable fields of a motion order, without absent ones.
+/// Returns the readable fields of a motion order, without absent fields.
 fn fields(order: &Order) -> Vec<ReadableField> {
     if order.risk() < Risk::Motion {
         return Vec::new();
@@ -113,7 +99,7 @@ fn fields(order: &Order) -> Vec<ReadableField> {
     notes.filter(|note| !note.meaning.starts_with("none")).map(|note| (note.name, note.meaning)).collect()
 }
 
-/// Words as text: `0x0604`.
+/// Formats words as text, for example `0x0604`.
 pub fn hex(words: &[u16]) -> Vec<String> {
     words.iter().map(|word| format!("0x{word:04X}")).collect()
 }

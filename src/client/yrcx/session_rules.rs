@@ -1,4 +1,4 @@
-//! Rules of a session that shares the link to a controller between clients.
+//! Rules of a session that shares the link to one controller between several clients.
 
 use armctl_controller::yrcx::answer::Status;
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Image};
@@ -9,8 +9,8 @@ use tokio::time::Instant;
 
 use super::Error;
 
-/// Starts a session on this link; `commands` if it commands the controller. Waits for the first image of the
-/// controller until the deadline.
+/// Starts a session on this link. `commands` is `true` if the session commands the controller. Waits until the deadline
+/// for the first image of the controller.
 ///
 /// # Errors
 /// [`Error::Silent`] without an image.
@@ -32,13 +32,13 @@ pub async fn hold(link: ImageLink, commands: bool, until: Instant) -> Result<Ima
     if images.begin(until).await {
         return Ok(images);
     }
-    // The missing image is the useful error, not a failed close.
+    // An error of the close is ignored: the missing image is the more useful error.
     let _ = SharedLink::Images(images).close().await;
     Err(Error::Silent)
 }
 
-/// The image after a loss of the link: the resting one, except that an emergency-stop or stop input that was off
-/// stays off.
+/// Returns the image to send after the link was lost. It is the resting image, except that an emergency-stop or stop
+/// input that was off stays off.
 pub(super) fn after_loss(before: &Image) -> Image {
     let mut after = resting();
     for signal in [input::EMERGENCY_STOP, input::STOP] {

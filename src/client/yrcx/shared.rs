@@ -1,4 +1,4 @@
-//! Shared link of a session: output of other clients, and turns.
+//! Shared link of a session: the output of other clients, and the turns of the clients.
 
 use armctl_controller::yrcx::answer::Status;
 use armctl_controller::yrcx::image::{Image, Output};
@@ -12,8 +12,8 @@ use super::error::Error;
 use super::{Client, Event, Transport};
 
 impl Client {
-    /// Takes over the output image of the session, if a session holds the link. The session commands the controller,
-    /// not this client.
+    /// Takes over the output image of the session, if a session owns the link. Only the session sends images to the
+    /// controller.
     pub(super) fn join(&mut self) {
         let Transport::Image(link) = &self.transport else { return };
         if link.output().is_none() {
@@ -52,8 +52,8 @@ impl Client {
         link.claim_motion().await.map_err(Error::Session)
     }
 
-    /// Reserves motion before the values that an order replaces are read. If another client moves the robot, this fails
-    /// at once instead of waiting for a turn. Sends nothing to the controller.
+    /// Reserves motion before the client reads the values that an order replaces. If another client moves the robot,
+    /// this call fails at once and does not wait for a turn. Sends nothing to the controller.
     ///
     /// # Errors
     /// [`Error::Session`].
@@ -61,8 +61,8 @@ impl Client {
         self.claim_motion(order.risk()).await
     }
 
-    /// Waits for the turn to send a remote command, and applies everything that others sent before. With an older image
-    /// a client could mistake its new command for one already sent.
+    /// Waits for the turn to send a remote command, and applies all changes that other clients sent before. With an
+    /// older image, the client could mistake its new command for one that was already sent.
     pub(super) async fn acquire(&mut self) -> Result<(), Error> {
         self.is_turn_over = false;
         let Transport::Image(link) = &mut self.transport else { return Ok(()) };
@@ -70,7 +70,7 @@ impl Client {
         self.catch_up().await
     }
 
-    /// Passes the turn on once the last command has ended.
+    /// Passes the turn to another client after the last command has ended.
     pub(super) fn release(&mut self) {
         if std::mem::take(&mut self.is_turn_over)
             && let Transport::Image(link) = &mut self.transport
@@ -79,7 +79,7 @@ impl Client {
         }
     }
 
-    /// An error if the link cannot come back.
+    /// Returns an error if the session has ended, so that the link cannot come back.
     pub(super) fn check_session(&self) -> Result<(), Error> {
         let Transport::Image(link) = &self.transport else { return Ok(()) };
         match link.ended() {
@@ -88,8 +88,8 @@ impl Client {
         }
     }
 
-    /// Checks that a command that another client left running has ended: replacing it would stop it.
-    /// [`Error::OtherClientRunning`] while it runs.
+    /// Checks that the last command of another client has ended: a new command would stop it. Returns
+    /// [`Error::OtherClientRunning`] if the other command is still running.
     pub(super) async fn check_other_commands(&mut self) -> Result<(), Error> {
         let words = self.output.next.command();
         if !self.is_shared || self.exchange.is_some() || words[0] == Status::Ready.word() {
@@ -104,7 +104,7 @@ impl Client {
                     self.release();
                     return Err(Error::OtherClientRunning { words: Box::new(words) });
                 }
-                // The controller may not have taken the command yet.
+                // The controller may not have accepted the other command yet.
                 Status::Ready if Instant::now() < until && self.is_up => self.turn_until(until).await?,
                 _ => {
                     self.watcher.event(Event::OtherCommandEnded { words, answer: seen });

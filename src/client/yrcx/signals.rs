@@ -1,4 +1,4 @@
-//! Dedicated signals (chapter 1): procedures that switch them, and the input image.
+//! Dedicated signals (chapter 1): the procedures that switch them, and the input image.
 
 use std::time::Duration;
 
@@ -13,8 +13,8 @@ use super::error::Error;
 use crate::STOP_WITHIN;
 
 impl Client {
-    /// Carries out a signal procedure, such as [`Procedure::run`], and returns its duration. A dry run plans the image
-    /// of each step.
+    /// Runs a signal procedure, for example [`Procedure::run`], and returns its duration. A dry run plans the image of
+    /// each step.
     ///
     /// # Errors
     /// [`Error::Unfinished`] without confirmation by the controller.
@@ -30,7 +30,8 @@ impl Client {
         self.switch(procedure, limit).await
     }
 
-    /// [`run_procedure`](Self::run_procedure) with a time limit and without authorization: a stop is always allowed.
+    /// Runs a procedure like [`run_procedure`](Self::run_procedure), with a time limit and without authorization: a
+    /// stop is always allowed.
     pub(super) async fn switch(&mut self, procedure: Procedure, limit: Duration) -> Result<Duration, Error> {
         self.catch_up().await?;
         self.claim_motion(procedure.risk).await?;
@@ -44,7 +45,7 @@ impl Client {
         }
     }
 
-    /// The current input image.
+    /// Returns the current input image. Waits for the image if there is none yet.
     ///
     /// # Errors
     /// [`Error::Silent`] without an image within the time limit.
@@ -65,10 +66,10 @@ impl Client {
         }
     }
 
-    /// Waits, without a limit, for an input image that meets the condition.
+    /// Waits, without a time limit, for an input image that meets the condition.
     ///
     /// # Errors
-    /// [`Error::Silent`] when the link is lost; the next call waits until it is open again.
+    /// [`Error::Silent`] if the link is lost. The next call waits until the link is open again.
     pub async fn wait_for_input(&mut self, mut condition: impl FnMut(&Image) -> bool) -> Result<Image, Error> {
         loop {
             let was_up = self.is_up;

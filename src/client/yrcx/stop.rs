@@ -1,4 +1,4 @@
-//! Stop of the motion or command of a client.
+//! Stop of a motion or command that this client started.
 
 use armctl_controller::yrcx::alarm::{Alarm, STOP_INPUT};
 use armctl_controller::yrcx::answer::Answer;
@@ -18,7 +18,7 @@ use crate::STOP_WITHIN;
 /// What a stop ended.
 #[derive(Debug, Clone, PartialEq)]
 pub enum StopResult {
-    /// Nothing: no motion was sent.
+    /// No motion was sent, so there was nothing to stop.
     Nothing,
     /// A motion. The stop input was switched off and is on again.
     Motion {
@@ -31,16 +31,16 @@ pub enum StopResult {
     Started,
     /// A command without motion.
     Command(Command),
-    /// Nothing: the command had already ended, with this alarm after a failure.
+    /// The command had already ended. The alarm is present if the command failed.
     AlreadyEnded(Command, Option<Alarm>),
 }
 
 impl Client {
-    /// Stops what this client started, without a check of the grant. The stop input SI(06) goes off, and on again once
-    /// the end is observed (chapter 1, 3.8). Takes at most 3 s.
+    /// Stops the motion or command that this client started, without a check of the grant. The client switches the stop
+    /// input SI(06) off, and on again after it has observed the end (chapter 1, 3.8). The stop takes at most 3 s.
     ///
     /// # Errors
-    /// [`Error::OutcomeUnknown`] if the end was not observed: the stop input stays off.
+    /// [`Error::OutcomeUnknown`] if the client did not observe the end. The stop input then stays off.
     pub async fn stop(&mut self) -> Result<StopResult, Error> {
         self.abandon_sequence();
         let until = Instant::now() + STOP_WITHIN;
@@ -75,7 +75,7 @@ impl Client {
         Ok(StopResult::Started)
     }
 
-    /// Whether a jog runs, which only a stop ends.
+    /// Whether a jog is running. Only a stop ends a jog.
     pub fn is_jogging(&self) -> bool {
         self.exchange.as_ref().is_some_and(|exchange| exchange.order().row().pace == Pace::Jog)
     }

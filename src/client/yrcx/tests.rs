@@ -38,7 +38,7 @@ fn jog() -> Order {
     order(Command::JogPulse.order().with(Key::Axes, "1").with(Key::Direction, 0).with(Key::Report, 1))
 }
 
-/// Sends the same image regardless of its input; with a time, nothing after it.
+/// A peer that always sends the same image, independent of its input. With a time, it sends nothing after that time.
 #[derive(Debug)]
 struct Deaf(Option<Duration>);
 
@@ -61,7 +61,7 @@ async fn deaf(risk: Risk, gone: Option<Duration>) -> Client {
     Client::connect(link, Options::default().with_risk(risk)).await.unwrap()
 }
 
-/// Takes a command and then runs forever.
+/// A peer that accepts a command and then executes it forever.
 #[derive(Debug, Default)]
 struct Stuck {
     runs: bool,
@@ -107,7 +107,7 @@ async fn a_stop_says_within_3_s_that_nobody_confirmed_it() {
     }
 }
 
-/// A client of the session at this spot.
+/// Creates a client of the session at this path.
 async fn attached(location: &SessionPath) -> Client {
     let AttachResult::Session(attached) =
         attach_at(location, "cell", "test", armctl_transport::session::wire::Purpose::Any).await.unwrap()
@@ -130,7 +130,7 @@ async fn who_waited_for_his_turn_knows_what_others_gave_meanwhile() {
         let (mut one, mut other) = (attached(&location).await, attached(&location).await);
         let (here, there) = (point(1), point(2));
         for _ in 0..100 {
-            // Both clients need the link at once: each must wait for the command of the other.
+            // Both clients need the link at the same time: each must wait for the command of the other.
             let (first, second) = tokio::join!(one.ask(&here), other.ask(&there));
             first.unwrap();
             second.unwrap();
@@ -277,7 +277,7 @@ async fn a_controller_that_shows_nothing_is_none() {
     assert!(matches!(Client::connect(link, Options::default()).await, Err(Error::Silent)));
 }
 
-/// Callers match errors, send them between threads and print them.
+/// Callers match errors, send them to other threads and print them.
 #[test]
 fn errors_are_errors() {
     fn is_error<E: std::error::Error + Send + Sync + Clone + fmt::Debug + 'static>() {}

@@ -175,7 +175,7 @@ mod tests {
     fn topics_fit_80_columns() {
         for (name, _) in topics().filter(|(name, _)| name != OPTIONS) {
             let text = text(std::slice::from_ref(&name), false, Cli::command).unwrap();
-            // A TOML table is in one line.
+            // A TOML table is on one line.
             let may_be_long = |line: &&str| line.contains(" = ") && !line.contains("  # ");
             let long = text.lines().filter(|line| line.chars().count() > COLUMNS && !may_be_long(line));
             let long: Vec<&str> = long.collect();

@@ -96,7 +96,7 @@ fn with_template(mut command: Command, root: &Command, path: &[&str], is_long: b
     command.after_help(after.trim_end().to_owned())
 }
 
-/// Template with the subcommands below their headings; one without a heading follows the previous one.
+/// Template with the subcommands below their headings. A subcommand without a heading follows the previous one.
 fn with_groups(command: &mut Command, headings: &[(Option<&'static str>, String)]) -> String {
     let (style, literal) = (*command.get_styles().get_header(), *command.get_styles().get_literal());
     let widest = command.get_subcommands().map(|word| word.get_name().len()).max().unwrap_or_default();
@@ -127,7 +127,7 @@ mod tests {
 
     /// Number of lines of a small terminal.
     const ROWS: usize = 24;
-    /// Number of lines of a command's own options, above which its help may be longer.
+    /// If a command's own options need more lines than this, its help may be longer than a small terminal.
     const OWN: usize = 7;
 
     fn whole() -> Command {

@@ -23,8 +23,8 @@ use armctl_frame::{CommandSet as _, SchemaEntry};
 
 /// Print the JSON Schema of `data` in the envelope, or the names of all reports.
 ///
-/// Three schemas belong to all commands: `envelope` (the output of `--json`), `failure` (its `error`), and `dry-run` (the
-/// data with --dry-run).
+/// Three schemas belong to all commands: `envelope` (the output of `--json`), `failure` (the `error` of the envelope),
+/// and `dry-run` (the data with --dry-run).
 #[derive(Debug, Args)]
 pub struct SchemaOf {
     /// Name of the report, such as yerc.status [default: list all names]
@@ -51,7 +51,7 @@ impl SchemaOf {
     }
 }
 
-/// Schemas of all reports, of the envelope, and of its failure and dry-run data.
+/// Schemas of all reports, of the envelope, and of the failure and dry-run data of the envelope.
 pub fn all() -> Vec<SchemaEntry> {
     let mut all: Vec<SchemaEntry> = FAMILIES.iter().flat_map(|face| face.schemas()).collect();
     all.extend(Overview::schemas());
@@ -106,7 +106,8 @@ pub fn files() -> BTreeMap<String, Value> {
             found.entry(name.clone()).or_default().push(definition.clone());
         }
     }
-    // A name that means different things stays where it is, and so does what refers to it.
+    // A name with different definitions in several schemas is not shared, and neither are definitions that refer to
+    // such a name.
     found.retain(|_, definitions| definitions.len() > 1 && definitions.iter().all(|other| *other == definitions[0]));
     loop {
         let names: Vec<String> = found.keys().cloned().collect();
@@ -151,7 +152,7 @@ fn references(schema: &Value) -> Vec<String> {
 /// Prefix of a reference to a definition in the same schema.
 const LOCAL: &str = "#/$defs/";
 
-/// Refers to the file of shared definitions, for those that are in it.
+/// Replaces references to shared definitions with references to the file of shared definitions.
 fn replace_reference(schema: &mut Value, is_shared: &impl Fn(&str) -> bool) {
     match schema {
         Value::Object(fields) => {

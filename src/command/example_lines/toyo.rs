@@ -1,4 +1,4 @@
-//! Lines of the commands of `toyo`.
+//! Example lines of the `toyo` commands.
 
 use super::ExampleLine;
 use armctl_controller::Risk::{Destroy, Motion, Read, Write};

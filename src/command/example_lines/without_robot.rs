@@ -1,9 +1,9 @@
-//! Lines of the commands that ask no controller for anything by themselves, or know their own robots.
+//! Example lines of the commands that send no request themselves, or that select robots in their own way.
 
 /// Commands of [`LINES`] that delete something, or move or stop a robot.
 pub const NO_DEFAULT: &[&str] = &["robots remove", "session close", "teach"];
 
-/// Their lines.
+/// The example lines.
 pub const LINES: &[&str] = &[
     "yerc repl -r cell3",
     "yerc repl --sim",

@@ -1,4 +1,4 @@
-//! Lines of the commands of `yerc`.
+//! Example lines of the `yerc` commands.
 
 use super::ExampleLine;
 use armctl_controller::Risk::{Destroy, Motion, Read, Write};
@@ -98,6 +98,14 @@ pub const LINES: &[ExampleLine] = &[
     ("yerc raw --command 0x86 --instance 1 --attribute 1 --service 0x10 --data 01000000", Motion),
     ("yerc register get 0", Read),
     ("yerc register get 0..20", Read),
+    ("yerc register list", Read),
+    ("yerc register list -o csv", Read),
+    ("yerc register copy 5 6..8", Write),
+    ("yerc register copy 5 6 --dry-run", Write),
+    ("yerc register dump registers.csv", Read),
+    ("yerc register dump registers.csv 0..99", Read),
+    ("yerc register restore registers.csv", Write),
+    ("yerc register restore registers.csv --dry-run", Write),
     ("yerc register set 5=1000", Write),
     ("yerc register set 5=0x03E8 6=0", Write),
     ("yerc register watch 0", Read),

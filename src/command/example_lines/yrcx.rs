@@ -1,4 +1,4 @@
-//! Lines of the commands of `yrcx`.
+//! Example lines of the `yrcx` commands.
 
 use super::ExampleLine;
 use armctl_controller::Risk::{Destroy, Motion, Read, Write};

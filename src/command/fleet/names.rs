@@ -31,7 +31,7 @@ pub struct List {
 
 /// Writes a name into the entry of the robot in robots.toml.
 #[derive(Debug, Args)]
-#[command(after_help = "Later commands accept the name in place of the address: `armctl yerc io get clamp`.")]
+#[command(after_help = "Later commands accept the name instead of the address: `armctl yerc io get clamp`.")]
 pub struct Set {
     /// The name, such as clamp
     #[arg(value_name = "NAME")]
@@ -66,7 +66,7 @@ fn one(run: &Run) -> Result<Robot, Failure> {
         (Some(robot), 0) => Ok(robot),
         (_, others) => {
             let message = format!("each robot has its own names, but {} robots are selected", others + 1);
-            Err(Failure::usage(message).hint("select one with -r"))
+            Err(Failure::usage(message).hint("select one robot with -r"))
         }
     }
 }

@@ -52,7 +52,7 @@ pub enum Robots {
 /// Arguments of `robots show`.
 #[derive(Debug, Args)]
 pub struct Show {
-    /// Its name
+    /// Name of the robot
     #[arg(add = ValueKind::Robot)]
     name: String,
     /// Show the origin of each value
@@ -154,7 +154,7 @@ struct Listed {
     family: &'static str,
     target: String,
     read_only: bool,
-    /// Used if no robot is selected.
+    /// Whether commands use this robot if no robot is selected.
     default: bool,
     tags: Vec<String>,
 }
@@ -229,7 +229,7 @@ pub struct Shown {
 struct Value {
     name: &'static str,
     value: String,
-    /// flag, environment, target URL, robot, defaults or built-in.
+    /// Origin of the value: flag, environment, target URL, robot, defaults or built-in.
     origin: String,
 }
 

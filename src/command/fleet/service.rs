@@ -82,7 +82,7 @@ impl Service {
     /// Reports to the service manager that the service stops.
     pub fn notify_stopping(&self) {
         self.log.summarize(true);
-        // An error cannot be reported any more.
+        // The error can no longer be reported.
         let _told = self.supervisor.stopping();
     }
 }
@@ -163,7 +163,7 @@ struct ServiceState {
     answering: BTreeMap<RobotId, Option<bool>>,
     /// Last read errors of the inventory and of the alarm texts.
     inventory_error: [Option<String>; 2],
-    /// Whether the start is over, so that robots now appear because of a change.
+    /// Whether the start is over. A robot that appears later was added by a change of the inventory.
     has_begun: bool,
 }
 
@@ -211,14 +211,18 @@ impl ServiceState {
     /// Logs a read error, once per text.
     fn unread(&mut self, log: &Log, which: usize, why: Option<&Failure>) {
         let Some(failure) = why else {
-            // A poll without a fault does not need alarm texts, so it does not clear their error.
+            // A poll without a fault does not need alarm texts, so it does not clear the error of `alarms.toml`.
             if which == 0 {
                 self.inventory_error[which] = None;
             }
             return;
         };
         if self.inventory_error[which].as_ref() != Some(&failure.message) {
-            let effect = if which == 0 { "armctl keeps the earlier robots" } else { "armctl does not use its texts" };
+            let effect = if which == 0 {
+                "armctl keeps the earlier robots"
+            } else {
+                "armctl does not use the texts of this file"
+            };
             log.say(Level::Warning, &format!("{}; {effect}", failure.message), &[("kind", &kind(failure))]);
             self.inventory_error[which] = Some(failure.message.clone());
         }
@@ -260,7 +264,7 @@ pub fn make_room() {
         use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 
         let Rlimit { maximum, .. } = getrlimit(Resource::Nofile);
-        // If this fails, the robot without a socket reports it.
+        // If this fails, the robot that gets no socket reports the failure.
         let _refused = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum });
     }
 }

@@ -38,7 +38,7 @@ impl Setup {
     pub async fn run(self, run: &Run) -> Result<(), RunError> {
         if !run.screen.can_ask() {
             return Err(Failure::usage("setup needs a terminal for its questions")
-                .hint("`armctl robots add NAME URL --read-only` does the same without questions")
+                .hint("use `armctl robots add NAME URL --read-only`, which does the same without questions")
                 .into());
         }
         let path = file::path(run)?.display().to_string();
@@ -54,7 +54,7 @@ impl Setup {
             return Err(Failure::new(Kind::Rejected, "not confirmed; nothing was written").into());
         }
         robot.add(run, "setup")?;
-        run.screen.note("`armctl status` shows the state of the robot; `armctl -h` lists the commands");
+        run.screen.note("use `armctl status` to see the state of the robot, and `armctl -h` to list the commands");
         Ok(())
     }
 }
@@ -63,7 +63,7 @@ impl Setup {
 fn no_terminal(failure: Failure) -> Failure {
     match failure.kind {
         Kind::Rejected => Failure::new(Kind::Rejected, "no answer; nothing was written")
-            .hint("`armctl robots add NAME URL --read-only` does the same without questions"),
+            .hint("use `armctl robots add NAME URL --read-only`, which does the same without questions"),
         Kind::Interrupted => Failure { message: format!("{}; nothing was written", failure.message), ..failure },
         _ => failure,
     }
@@ -129,7 +129,7 @@ async fn ask_address(run: &Run) -> Result<FoundTarget, Failure> {
     ask_missing_parts(run, &input.parse()?, None).await
 }
 
-/// Searches for controllers, and lets the user choose one; `None` if it is not listed.
+/// Searches for controllers, and lets the user select one; `None` if the wanted controller is not in the list.
 async fn search(run: &Run) -> Result<Option<(TargetArgument, Option<Family>)>, Failure> {
     let found = interruptible(Discover::default_arguments()?.find(run)).await??;
     let mut targets = found.places();
@@ -150,7 +150,7 @@ async fn simulator(run: &Run) -> Result<FoundTarget, Failure> {
     ask_missing_parts(run, &input.parse()?, Some(family)).await
 }
 
-/// Asks for what the address does not contain.
+/// Asks for the parts that the address does not contain.
 async fn ask_missing_parts(run: &Run, given: &TargetArgument, known: Option<Family>) -> Result<FoundTarget, Failure> {
     let hint = match given {
         TargetArgument::Url(target) => target.family(),
@@ -198,12 +198,14 @@ async fn describe(run: &Run, family: Family, target: Target) -> Result<NewRobot,
     let read_only = yes(run, "Read-only: reject commands that change something?", true).await?;
     let hold = family == Family::Yrcx
         && !read_only
-        && yes(run, "Hold: open a session automatically if a command needs one?", false).await?;
+        && yes(run, "Hold: open a session automatically if a command needs a session?", false).await?;
     let is_default = match &inventory.default {
         // The first robot becomes the default without a question.
         None if inventory.robots.is_empty() => true,
-        None => yes(run, "Default: use it if no robot is selected?", true).await?,
-        Some(other) => yes(run, format!("Default: use it if no robot is selected, instead of {other}?"), false).await?,
+        None => yes(run, "Default: use this robot if no robot is selected?", true).await?,
+        Some(other) => {
+            yes(run, format!("Default: use this robot if no robot is selected, instead of {other}?"), false).await?
+        }
     };
     Ok(NewRobot { name, target, family, read_only, hold, tags: Vec::new(), is_default })
 }

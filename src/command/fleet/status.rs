@@ -33,7 +33,7 @@ pub struct Absent {
     pub failure: Failure,
     robot: Robot,
     access: Access,
-    /// Whether the reason was reported: the next command then tries again.
+    /// Whether the reason was reported. If so, the next command tries again to connect.
     is_asked: bool,
 }
 
@@ -53,7 +53,7 @@ impl Link {
                     *self = Self::Open(face, connection);
                     return Ok(());
                 }
-                // Other commands share its link, as they do from the start of a watch.
+                // Other commands can then share the link of this robot, as they can from the start of a watch.
                 connection.close(screen).await?;
                 let robot = open_shared_session(driver, &robot).await?;
                 *self = Fleet::connect(&robot, access, screen).await?;
@@ -132,15 +132,18 @@ impl Command for Overview {
             },
             Err(failure) => Err(failure),
         };
-        let report = match found {
-            Err(failure) if failure.kind == Kind::NoAnswer => {
-                OverviewReport { failure: Some(failure), ..OverviewReport::default() }
-            }
-            found => found?,
-        };
+        let report = found.or_else(|failure| self.without_answer(context.robot, failure))?;
         let mut report = OverviewReport { family: context.robot.family.name(), ..report };
         report.state.fault.explain(context.robot)?;
         Ok(report)
+    }
+
+    /// A robot that does not answer is a state.
+    fn without_answer(&self, robot: &Robot, failure: Failure) -> Result<OverviewReport, Failure> {
+        if failure.kind != Kind::NoAnswer {
+            return Err(failure);
+        }
+        Ok(OverviewReport { family: robot.family.name(), failure: Some(failure), ..OverviewReport::default() })
     }
 
     /// Summary line: `32 robots, 30 answer, 1 alarm`.

@@ -35,7 +35,7 @@ impl Sim {
         }
     }
 
-    /// Whether it only lists the simulators.
+    /// Whether the command only lists the simulators.
     pub fn is_list(&self) -> bool {
         self.family.is_none()
     }
@@ -114,7 +114,7 @@ impl Word for Simulating {
     const KIND: ToolKind = ToolKind::Simulate;
 }
 
-/// Family and arguments after such a word.
+/// Family and arguments that follow the command word.
 pub struct FamilyTool<W> {
     family: Family,
     task: Box<dyn ToolTask>,

@@ -14,19 +14,20 @@ use armctl_frame::settings::duration;
 use armctl_frame::{AnyCommand, SchemaEntry};
 
 const DEFAULT_INTERVAL: Duration = Duration::from_millis(200);
-/// Nouns whose values have names, in the order in which a name is looked for.
+/// Nouns whose values can have names, in search order.
 const NOUNS: [&str; 7] = ["io", "var", "counter", "timer", "register", "port", "param"];
 
 /// Wait until a condition is true for all selected robots, and print their state
 #[derive(Debug, Args)]
-#[command(after_help = "Conditions: idle, running, held, faulted, homed, servo-on; NAME=VALUE with a key of `armctl \
-                        status`, or a signal, variable, counter or timer by name or label; or a jq filter over the \
-                        JSON of `armctl status` that begins with a dot. A robot that cannot be reached ends the wait \
-                        with exit code 4, except with reachable=true.")]
+#[command(after_help = "A condition is one of idle, running, held, faulted, homed and servo-on. It can also be \
+                        NAME=VALUE: NAME is a key of `armctl status`, or a signal, variable, counter or timer by name \
+                        or label. It can also be a jq filter over the JSON of `armctl status`; the filter begins with \
+                        a dot. A robot that cannot be reached ends the wait with exit code 4, except with \
+                        reachable=true.")]
 pub struct Wait {
     /// The condition: idle, servo-on, clamp=on, 'B5>=3', fault_code=4315, '.data.position.z_mm > 100'
     condition: String,
-    /// Longest wait, then exit code 8 [default: no limit]
+    /// Longest wait, then exit code 8, or 4 without an answer [default: no limit]
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
     within: Option<Duration>,
 }
@@ -35,7 +36,7 @@ impl Wait {
     /// Command that reads what the condition needs: the status, or a signal or variable.
     ///
     /// # Errors
-    /// If no family has a value of this name.
+    /// If no family has a value with this name.
     pub fn command(&self) -> Result<Box<dyn AnyCommand>, Failure> {
         Ok(match self.item()? {
             Some(comparison) => Box::new(SharedLine::reading("wait", &NOUNS, comparison.name)?),
@@ -57,7 +58,7 @@ impl Wait {
         Ok(Repeat { every, count: given.count, until, within: self.within, is_quiet: true, ..Repeat::default() })
     }
 
-    /// Comparison of a signal or variable; `None` if the status has all that the condition needs.
+    /// Comparison of a signal or variable; `None` if the condition needs only the status.
     fn item(&self) -> Result<Option<Comparison<'_>>, Failure> {
         let keys = as_value(&OverviewReport::default())?;
         Ok(Comparison::parse(&self.condition).filter(|comparison| keys.get(comparison.name).is_none()))

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use crate::Now;
 
-/// Queue of delayed answers. A full queue drops the oldest: a client may send without end.
+/// Queue of delayed answers. A full queue drops the oldest answer, because a client may send without end.
 #[derive(Debug, Clone)]
 pub(crate) struct Answers<T> {
     delay: Duration,
@@ -42,7 +42,7 @@ impl<T> Answers<T> {
     }
 }
 
-/// Refuses a random share of the requests as busy; deterministic for a seed.
+/// Refuses a random share of the requests as busy. The same seed gives the same sequence.
 #[derive(Debug, Clone)]
 pub(crate) struct Busy {
     share: f64,
@@ -60,7 +60,7 @@ impl Busy {
         self.share = share.clamp(0.0, 1.0);
     }
 
-    /// Decides about the next request.
+    /// Whether the controller refuses the next request.
     pub(crate) fn refuses(&mut self) -> bool {
         self.share > 0.0 && self.random.f64() < self.share
     }

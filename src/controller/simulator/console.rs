@@ -35,7 +35,7 @@ pub fn help_line(typed: &str, does: &str) -> String {
     format!("{typed:<32}  {does}")
 }
 
-/// Help text: the lines of a family, then the common ones.
+/// Help text: the lines of a family, and then the lines that all families share.
 pub(crate) fn help(lines: &[(&str, &str)]) -> String {
     let common = [
         ("robot", "show the state of the controller; also `state`"),
@@ -53,7 +53,7 @@ pub(crate) fn table(rows: &[(String, String)]) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// Comma-separated list of `always` and of the texts in `now` whose condition holds.
+/// Comma-separated list of `always`, and of the texts in `now` whose condition is true.
 pub(crate) fn summary<'a>(always: &[&'a str], now: impl IntoIterator<Item = (bool, &'a str)>) -> String {
     let now = now.into_iter().filter_map(|(holds, text)| holds.then_some(text));
     always.iter().copied().chain(now).collect::<Vec<_>>().join(", ")

@@ -31,7 +31,7 @@ pub(crate) fn parse<T: DeserializeOwned>(text: &str) -> Result<T, String> {
     })
 }
 
-/// An entry that is not in the text.
+/// An entry with a default value, which has no position in the text.
 pub(crate) fn default_entry<T>(value: T) -> Spanned<T> {
     Spanned::new(0..0, value)
 }
@@ -89,11 +89,12 @@ impl Source<'_> {
 
     /// Reads a date and time in a `strptime` format.
     pub(crate) fn time(&self, entry: &Spanned<String>, form: &str, example: &str) -> Result<DateTime, String> {
-        let wrong = |_| format!("write a time as in \"{example}\"");
+        let wrong = |_| format!("write a time, for example \"{example}\"");
         self.read(entry, |text| DateTime::strptime(form, text).map_err(wrong))
     }
 
-    /// Sorts events by time. Calls `check` in text order, so that a mistake is found at the start and not during a run.
+    /// Sorts events by time. Calls `check` in text order at the start, so that a mistake is not found only during a
+    /// run.
     pub(crate) fn timeline<R>(
         &self,
         entries: &[Spanned<Event>],
@@ -104,10 +105,10 @@ impl Source<'_> {
     }
 }
 
-/// Parses a numeric key; `things` names what it counts.
+/// Parses a numeric key. `things` names the counted objects for the error message.
 pub(crate) fn numbered(things: &str, key: &str, range: RangeInclusive<usize>) -> Result<usize, String> {
     let number = key.parse().ok().filter(|number| range.contains(number));
-    number.ok_or_else(|| format!("{things} are {} to {}", range.start(), range.end()))
+    number.ok_or_else(|| format!("{things} must be from {} to {}", range.start(), range.end()))
 }
 
 /// Line number, from 1, of a byte offset.

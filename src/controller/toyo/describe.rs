@@ -1,5 +1,5 @@
-//! Decoder of a protocol line into described fields, from the tables. It never fails: a damaged line is decoded up to
-//! the damage.
+//! Decoder of a protocol line into described fields. It uses the tables and never fails: a damaged line is decoded up
+//! to the damage.
 
 use std::ops::Range;
 
@@ -30,17 +30,17 @@ pub struct Description {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 #[schemars(rename = "FieldRow")]
 pub struct FieldNote {
-    /// Column of its first character, from 1.
+    /// Column of the first character, from 1.
     pub column: usize,
     /// Number of characters.
     pub width: usize,
-    /// Its name.
+    /// Name of the part.
     pub name: &'static str,
-    /// Its text in the line.
+    /// Text of the part in the line.
     pub raw: String,
-    /// Its meaning.
+    /// Meaning of the text.
     pub meaning: String,
-    /// Its description.
+    /// Description of the field.
     pub about: &'static str,
 }
 
@@ -54,8 +54,8 @@ pub enum Sender {
 }
 
 impl Sender {
-    /// Guesses the sender by the form that fits, or fits further. TYPE has the same form on both sides and counts as a
-    /// request.
+    /// Guesses the sender of a line: the host or the controller, depending on whose form fits a longer part of the
+    /// line. TYPE has the same form on both sides and counts as a request.
     pub fn guess(line: &str) -> Self {
         let text = line.trim_end_matches(['\r', '\n']);
         if matches!(text.trim_end_matches(' '), "@OK" | "@NG") {
@@ -72,8 +72,8 @@ impl Sender {
     }
 }
 
-/// Decodes a line, with or without line end. `request` is the request of an answer, if known: `@OK` and `@NG` do not
-/// contain it.
+/// Decodes a line, with or without line end. `request` is the request that an answer belongs to, if it is known: `@OK`
+/// and `@NG` do not contain their request.
 pub fn describe(line: &str, sender: Sender, request: Option<&Request>) -> Description {
     let text = line.trim_end_matches(['\r', '\n']);
     let request = request.filter(|_| sender == Sender::Controller);
@@ -87,7 +87,7 @@ pub fn describe(line: &str, sender: Sender, request: Option<&Request>) -> Descri
     if let Some(row) = row {
         notes = describe_block(text, row, sender);
     }
-    // An invalid block is reported as a whole; other damage with its position.
+    // An error of the block as a whole is reported here. An error at a position of the line comes from the notes.
     let damage = match Request::parse(text) {
         Err(BlockError::Layout(_) | BlockError::Values(_) | BlockError::Unknown { .. } | BlockError::Other { .. }) => {
             None
@@ -121,11 +121,11 @@ fn citation(row: &'static Row) -> String {
     format!("TO {}", row.section)
 }
 
-/// Meaning of `@OK` and `@NG`.
+/// Name and meaning of `@OK` and `@NG`.
 fn verdict(text: &str) -> Option<(&'static str, &'static str)> {
     match text.trim_end_matches(' ') {
         "@OK" => Some(("done", "accepted; a longer action has started")),
-        "@NG" => Some(("refused", "refused, now or always; the controller sends no code")),
+        "@NG" => Some(("refused", "refused: not possible now, or never possible; the controller sends no code")),
         _ => None,
     }
 }
@@ -141,7 +141,7 @@ fn describe_verdict(text: &str, what: &str, about: &'static str, request: Option
     Description { title, section: request.map(|request| citation(request.row())), fields: notes.fields, problem }
 }
 
-/// Command word of a block, with its row.
+/// Command word of a block, with its table row.
 fn command_of(text: &str) -> Option<(&str, &'static Row)> {
     let word = text.strip_prefix('@').unwrap_or(text).split(' ').next()?;
     Some((word, Row::named(word)?))
@@ -151,7 +151,7 @@ fn forms(row: &'static Row, sender: Sender) -> &'static [Layout] {
     if sender == Sender::Host { row.requests } else { row.answers }
 }
 
-/// Decodes a line by the form that fits, or else by the one that fits furthest.
+/// Decodes a line by the form that fits, or else by the form that fits the longest part of the line.
 fn describe_block<'t>(text: &'t str, row: &'static Row, sender: Sender) -> Notes<'t> {
     let mut best: Option<(usize, Notes<'t>)> = None;
     for form in forms(row, sender) {
@@ -184,7 +184,7 @@ struct Notes<'t> {
     problem: Option<String>,
 }
 
-/// Context of a value.
+/// What the meaning of a value depends on.
 #[derive(Clone, Copy)]
 struct MessageContext {
     command: Command,
@@ -193,7 +193,7 @@ struct MessageContext {
     sender: Sender,
 }
 
-/// Byte offset and reason of the end of decoding.
+/// Byte offset at which decoding ended, and the reason.
 type Damage = (usize, String);
 
 impl<'t> Notes<'t> {
@@ -218,7 +218,7 @@ impl<'t> Notes<'t> {
         start
     }
 
-    /// Adds command, values and their content, by one form.
+    /// Adds the command, its values and their content, by one form.
     fn block(&mut self, row: &'static Row, form: &Layout, sender: Sender) -> Result<(), Damage> {
         let start = self.command(row);
         // HTSK is parsed as CTSK, which has the same length.
@@ -275,7 +275,7 @@ impl<'t> Notes<'t> {
         end.map_err(|error| self.damage(start, &error))
     }
 
-    /// Adds a value. A value from the host must be in range; one from the controller may be any.
+    /// Adds a value. A value from the host must be in range. A value from the controller may be out of range.
     fn value(&mut self, of: MessageContext, field: &'static Field, value: &Value, bytes: Range<usize>) {
         let wrong = field.check(value).err().filter(|error| matches!(error, FieldError::Range { .. }));
         let mut meaning = meaning_of(of, field, value);
@@ -346,7 +346,7 @@ mod tests {
 
     #[test]
     fn requests_and_answers_are_explained() {
-        assert_eq!(meanings("@HSON\r\n"), ["command host ON: the host commands, the start input does not"]);
+        assert_eq!(meanings("@HSON\r\n"), ["command host ON: the host has control, and the start input is disabled"]);
         assert_eq!(
             meanings("@STAS SNO=0 ST1=22 ST2=00")[1..],
             ["page 0", "st1 in execution, positioning complete", "st2 00"]
@@ -356,7 +356,7 @@ mod tests {
         assert_eq!(meanings("@EHTR NO=01 ER=** AL=** H=*** M=** S=**")[2], "error the power was switched off");
         assert_eq!(meanings("@NG"), ["verdict refused"]);
         assert_eq!(explain("@STAS SNO=0").section.as_deref(), Some("TO 2-2"));
-        assert_eq!(explain("@HTSK TASK=02").title, "request: CTSK, choose the current task");
+        assert_eq!(explain("@HTSK TASK=02").title, "request: CTSK, select the current task");
     }
 
     #[test]

@@ -1,10 +1,10 @@
 //! The 104 error codes (TO 4-1) of STAS SNO=1 and EHTR.
 //!
-//! The manual has only names. Causes and remedies are the usual ones for such machines.
+//! The manual has only their names. The causes and remedies are usual ones for machines of this kind.
 
 use std::borrow::Cow;
 
-/// No error. It is not in the table of the manual; sample session 3-1 has it (ambiguity R26).
+/// No error. The table of the manual does not contain this code, but sample session 3-1 does (ambiguity R26).
 pub const NONE: u8 = 0x00;
 
 /// Description of an error code.
@@ -31,7 +31,7 @@ impl Explanation {
     }
 }
 
-/// Describes a code, also an unknown one.
+/// Describes a code. Unknown codes also have a description.
 pub fn explain(code: u8) -> Explanation {
     let (axis, row) = match code {
         0x20..=0x5F => {
@@ -65,8 +65,8 @@ pub fn explain(code: u8) -> Explanation {
             known: false,
             name: "not in the manual's table".into(),
             axis: None,
-            cause: "the controller's software may be newer than the manual",
-            remedy: "look it up in the controller's own manual",
+            cause: "the software of the controller may be newer than the manual",
+            remedy: "look up the code in the manual of this controller",
         },
     }
 }
@@ -79,9 +79,10 @@ pub fn all() -> impl Iterator<Item = Explanation> {
 const LIMIT_CAUSE: &str = "the target position is outside the soft limits";
 const LIMIT_REMEDY: &str =
     "correct the coordinates or the offset; `toyo param get soft-limit-plus soft-limit-minus` shows the limits";
-const DRIVE: &str = "cancel the error and try at low speed; if it comes again, check driver, motor and cables";
-const MEMORY: &str = "the stored data are damaged: restore them from a backup. If the error comes again, replace the \
-                      battery or the memory";
+const DRIVE: &str = "cancel the error and try at low speed; if the error comes again, check the driver, the motor and \
+                     the cables";
+const MEMORY: &str = "the stored data are damaged: restore the data from a backup. If the error comes again, replace \
+                      the battery or the memory";
 const PROGRAM: &str = "`toyo program get` and `toyo program check` show the step; correct the program";
 
 type Text = &'static str;
@@ -91,17 +92,22 @@ const AXIS: [(u8, Text, Text, Text); 14] = [
     (0x0, "communication error", "the controller lost contact with the driver of the axis", DRIVE),
     (0x1, "overspeed", "the axis exceeded its speed limit", "lower the speed or the gains; check the encoder"),
     (0x2, "overcurrent", "the motor drew too much current", DRIVE),
-    (0x3, "overload", "the load was too heavy for too long", "free the axis; lower load, speed or acceleration"),
+    (
+        0x3,
+        "overload",
+        "the load was too heavy for too long",
+        "free the axis; lower the load, the speed or the acceleration",
+    ),
     (
         0x4,
         "overflow",
         "the following error of the axis is too large",
-        "free the axis; lower speed or acceleration, check the brake",
+        "free the axis; lower the speed or the acceleration; check the brake",
     ),
     (
         0x6,
         "encoder error",
-        "the encoder gives no valid signal",
+        "the encoder sends no valid signal",
         "check the encoder cable; then switch the power off and on",
     ),
     (
@@ -115,14 +121,14 @@ const AXIS: [(u8, Text, Text, Text); 14] = [
     (
         0xA,
         "overvoltage",
-        "braking fed back more than can be absorbed",
-        "lower speed or deceleration; check the regeneration resistor",
+        "braking returned more energy than can be absorbed",
+        "lower the speed or the deceleration; check the regeneration resistor",
     ),
-    (0xB, "motor too hot", "the motor is overloaded or not cooled", "let it cool; lower load or duty"),
+    (0xB, "motor too hot", "the motor is overloaded or not cooled", "let the motor cool; lower the load or the duty"),
     (
         0xC,
         "encoder backup lost",
-        "the absolute position was lost, mostly by an empty battery",
+        "the absolute position was lost, usually because the battery is empty",
         "change the battery, then return to the origin",
     ),
     (
@@ -141,16 +147,21 @@ const OTHERS: [(u8, Text, Text, Text); 40] = [
         0x13,
         "emergency stop",
         "the emergency stop is or was pressed",
-        "make sure that it is safe, release it, then `toyo alarm reset`",
+        "make sure that the area is safe, release the emergency stop, then run `toyo alarm reset`",
     ),
     (
         0x60,
         "continuous run failed",
         "the program could not continue from its stop position",
-        "start it from a step: `toyo run sequential STEP`",
+        "start the program from a step: `toyo run sequential STEP`",
     ),
     (0x61, "return to origin not done", "the position of the axes is unknown", "run `toyo home` first"),
-    (0x62, "cannot be executed", "mode or state do not allow it", "`toyo status` shows mode, servo and errors"),
+    (
+        0x62,
+        "cannot be executed",
+        "the mode or the state does not allow the command",
+        "`toyo status` shows the mode, the servo state and the errors",
+    ),
     (
         0x63,
         "task cannot be started",
@@ -197,9 +208,9 @@ const OTHERS: [(u8, Text, Text, Text); 40] = [
     (0xA3, "stack overflow", "calls are nested too deep", PROGRAM),
     (0xA4, "stack underflow", "a return without a call", PROGRAM),
     (0xA5, "too few points for an arc", "an arc needs three points", PROGRAM),
-    (0xA6, "radius of an arc too large", "the three points lie almost on a line", PROGRAM),
+    (0xA6, "radius of an arc too large", "the three points are almost on a straight line", PROGRAM),
     (0xA7, "calculation error", "a value is out of range", PROGRAM),
-    (0xA8, "parameter error", "a parameter has an invalid value", "`toyo param list` shows them"),
+    (0xA8, "parameter error", "a parameter has an invalid value", "`toyo param list` shows the parameters"),
     (0xB0, "step number", "there is no such step", PROGRAM),
     (0xB1, "tag number", "there is no such tag number", PROGRAM),
     (0xB2, "palletizing program number", "there is no such palletizing program", PROGRAM),
@@ -210,7 +221,7 @@ const OTHERS: [(u8, Text, Text, Text); 40] = [
     (0xB7, "group number", "there is no such MVM group", PROGRAM),
     (0xB9, "easy program number", "there is no such easy program", PROGRAM),
     (0xBA, "task number", "there is no such task", PROGRAM),
-    (0xE0, "other error", "the controller reports no details", "read the teach pendant"),
+    (0xE0, "other error", "the controller reports no details", "read the display of the teach pendant"),
 ];
 
 #[cfg(test)]
@@ -228,7 +239,7 @@ mod tests {
     #[test]
     fn codes_name_their_axis() {
         assert_eq!(explain(0x38).in_a_line(), "38: axis 2: beyond the plus soft limit while moving");
-        // The manual also prints "+" for C3 (ambiguity R25).
+        // The manual prints "+" also for C3 (ambiguity R25).
         assert_eq!(explain(0xC3).in_a_line(), "C3: axis 2: target beyond the minus soft limit");
         assert_eq!(explain(0xC6).axis, Some(4));
         assert_eq!(explain(0x13).axis, None);

@@ -1,8 +1,8 @@
 //! Fields of a block, with their exact formats.
 //!
-//! Every field has a fixed width (templates in TO 2-4 to 2-8). Lines have no checksum: the width is the only
-//! protection against lost or doubled characters. So received values must have it, but may be out of range. User
-//! input may be shorter.
+//! Every field has a fixed width (templates in TO 2-4 to 2-8). Lines have no checksum: the width is the only protection
+//! against lost or doubled characters. For this reason, a received value must have exactly this width, but it may be
+//! out of range. User input may be shorter.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -18,7 +18,7 @@ pub struct Field {
     pub form: Form,
     /// Description.
     pub about: &'static str,
-    /// Unit of a number: `mm`, `mm/s`, `s`, `%`, …; empty without one.
+    /// Unit of a number: `mm`, `mm/s`, `s`, `%`, …; empty if there is no unit.
     pub unit: &'static str,
     /// Whether the controller may send asterisks instead (TO 2-8, error history).
     pub starred: bool,
@@ -31,7 +31,7 @@ pub enum Form {
     Number(Number),
     /// Two hexadecimal digits.
     Hex,
-    /// One of these words; the longest match counts.
+    /// One of these words. If several match, the longest is used.
     Word(&'static [Word]),
     /// Eight digits `0` or `1`, bit 8 first (ambiguity C9).
     Bits,
@@ -43,20 +43,20 @@ pub enum Form {
     Text,
 }
 
-/// Number format. Values count the last decimal: 12.34 is 1234.
+/// Number format. A value counts units of the last decimal: 12.34 is 1234.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Number {
     /// Whether a sign is always written.
     pub signed: bool,
     /// Digits before the decimal point.
     pub whole: u8,
-    /// Digits after it; with 0 there is no point.
+    /// Digits after the decimal point. With 0 digits, there is no point.
     pub decimals: u8,
-    /// Additional decimals that are accepted and kept (ambiguity R8).
+    /// Number of additional decimals that the parser accepts and keeps (ambiguity R8).
     pub spare: u8,
-    /// Minimum of a sent value.
+    /// Minimum of a value that armctl sends.
     pub least: i32,
-    /// Maximum of a sent value.
+    /// Maximum of a value that armctl sends.
     pub most: i32,
 }
 
@@ -65,11 +65,11 @@ pub struct Number {
 pub struct Word {
     /// Text in the protocol.
     pub text: &'static str,
-    /// Meaning; equal to `text` if that is clear.
+    /// Meaning; equal to `text` if the text is clear by itself.
     pub about: &'static str,
 }
 
-/// A value without its format.
+/// A value, independent of a format.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Value {
     /// In units of the last decimal.
@@ -91,9 +91,9 @@ pub enum Value {
 /// Conditions or actions for eight bits; bit 1 of the manual is the least significant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Mask {
-    /// Relevant bits.
+    /// Bits that the condition or action uses.
     pub care: u8,
-    /// States of these bits; 0 for irrelevant ones.
+    /// States of these bits. The other bits are 0.
     pub bits: u8,
 }
 
@@ -159,13 +159,14 @@ impl Number {
         Self { signed: true, whole, decimals, spare: 0, least, most }
     }
 
-    /// Adds decimals that may be received but are not sent; values and range count them.
+    /// Adds decimals that may be received but are not sent. The values and the range count units of the last additional
+    /// decimal.
     #[must_use]
     pub const fn with_spare(self, spare: u8) -> Self {
         Self { spare, ..self }
     }
 
-    /// Value units per 1.
+    /// Number of value units in 1.
     pub const fn scale(self) -> i32 {
         10_i32.pow(self.decimals as u32 + self.spare as u32)
     }
@@ -191,7 +192,7 @@ impl Number {
             || self.spare > 0 && fits(self.whole.saturating_sub(self.spare), self.decimals + self.spare)
     }
 
-    /// Value units between two values that can be sent.
+    /// Number of value units between two neighboring values that can be sent.
     const fn step(self) -> i32 {
         10_i32.pow(self.spare as u32)
     }
@@ -202,7 +203,7 @@ impl Number {
         format!("{sign}{}", self.unsigned(value, 0))
     }
 
-    /// Formats a value in full width; a value that is too large is wider.
+    /// Formats a value in full width. The text of a value that is too large is wider.
     fn emit(self, value: i32) -> String {
         let sign = match (self.signed, value < 0) {
             (_, true) => "-",
@@ -212,7 +213,8 @@ impl Number {
         format!("{sign}{}", self.unsigned(value, self.whole))
     }
 
-    /// Digits, padded to `whole` before the point; spare decimals use their places if needed.
+    /// Digits, padded to `whole` before the point. If the value needs the spare decimals, they replace leading digits,
+    /// so the width stays the same.
     fn unsigned(self, value: i32, whole: u8) -> String {
         let (scale, step) = (self.scale().unsigned_abs(), self.step().unsigned_abs());
         let digits = value.unsigned_abs();
@@ -226,7 +228,8 @@ impl Number {
         if decimals == 0 { format!("{integer:0whole$}") } else { format!("{integer:0whole$}.{fraction:0decimals$}") }
     }
 
-    /// Parses digits with optional sign and point. Decimals beyond the format must be zeros, so nothing is rounded.
+    /// Parses digits with an optional sign and point. Decimals beyond the format must be zeros, so that nothing is
+    /// rounded.
     fn parse(self, text: &str) -> Option<i32> {
         let (sign, digits) = match text.as_bytes().first()? {
             b'-' => (-1, &text[1..]),
@@ -326,7 +329,7 @@ impl Field {
         Self { name, ..self }
     }
 
-    /// Formats a value for sending; it must be in range.
+    /// Formats a value for sending. The value must be in range.
     pub fn emit(&self, value: &Value) -> Result<String, FieldError> {
         match (self.form, value) {
             (Form::Number(number), Value::Number(units)) => {
@@ -350,7 +353,7 @@ impl Field {
         }
     }
 
-    /// Formats a value that may be out of range, such as a received one.
+    /// Formats a value that may be out of range, such as a received value.
     pub fn written(&self, value: &Value) -> String {
         match (value, self.form) {
             (Value::Number(units), Form::Number(number)) => number.emit(*units),
@@ -365,7 +368,7 @@ impl Field {
         }
     }
 
-    /// Parses a value in full width at the start of a text. Returns it and the rest.
+    /// Parses a value in full width at the start of a text. Returns the value and the rest of the text.
     pub fn take<'t>(&self, text: &'t str) -> Result<(Value, &'t str), FieldError> {
         let misfit = || self.misfit(excerpt(text));
         let len = match self.form {
@@ -390,7 +393,7 @@ impl Field {
         }
     }
 
-    /// Parses user input; it must be in format and range.
+    /// Parses user input, which must be in format and in range.
     pub fn read(&self, text: &str) -> Result<Value, FieldError> {
         let value = self.value(text).ok_or_else(|| self.too_fine(text).unwrap_or_else(|| self.misfit(text)))?;
         if let (Form::Number(number), Value::Number(units)) = (self.form, &value)
@@ -407,7 +410,7 @@ impl Field {
         self.emit(value).map(|_| ())
     }
 
-    /// Whether a value is in the format of the field. One that is not was kept as received.
+    /// Whether a value is in the format of the field. A received value in another format is kept as text.
     pub fn is_listed(&self, value: &Value) -> bool {
         !matches!(value, Value::Text(_)) || matches!(self.form, Form::Token | Form::Text)
     }
@@ -425,8 +428,8 @@ impl Field {
                     _ => texts.concat(),
                 }
             }
-            Form::Bits => "eight of 0 and 1".to_owned(),
-            Form::Mask => "eight of 0, 1 and .".to_owned(),
+            Form::Bits => "eight digits, each 0 or 1".to_owned(),
+            Form::Mask => "eight characters, each 0, 1 or .".to_owned(),
             Form::Token => "one word".to_owned(),
             Form::Text => "a text".to_owned(),
         }
@@ -531,7 +534,7 @@ mod tests {
         for damaged in ["+010.00", "+0100.0", "0100.00 ", "+01000.0", "+01.0.00", "", "+"] {
             assert!(take(damaged).is_err(), "{damaged}");
         }
-        // A doubled digit shifts the rest, which then does not fit.
+        // A doubled digit shifts the rest of the text, which then does not fit.
         assert_eq!(take("+01100.00 Y"), Err(X.take("+01100.00 Y").unwrap_err()));
     }
 

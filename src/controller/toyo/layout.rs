@@ -1,4 +1,4 @@
-//! Layout of a block, or of a part of one: fixed words with fields between them.
+//! Layout of a block, or of a part of a block: fixed words with fields between them.
 
 use std::ops::Range;
 
@@ -35,7 +35,7 @@ pub struct LayoutError {
 /// Problem at one position of a text.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum LayoutProblem {
-    /// Other words than expected.
+    /// The text has other words than the expected ones.
     #[error("'{expected}' is expected")]
     Words {
         /// Expected words.
@@ -44,20 +44,20 @@ pub enum LayoutProblem {
     /// Not a valid value of the field.
     #[error(transparent)]
     Field(#[from] FieldError),
-    /// Too much text.
+    /// Text is left after the end of the layout.
     #[error("unexpected text '{}'", found.escape_debug())]
     Rest {
         /// The rest.
         found: String,
     },
-    /// A value that was kept as received; it is never sent.
+    /// A value that was kept as received. armctl never sends such a value.
     #[error("'{}' is not in the manual; armctl does not write it", found.escape_debug())]
     Unlisted {
         /// The received text.
         found: String,
     },
     /// Wrong number of values.
-    #[error("{found} values for {expected} fields")]
+    #[error("{found} values, but {expected} fields")]
     Count {
         /// Number of fields.
         expected: usize,
@@ -66,8 +66,8 @@ pub enum LayoutProblem {
     },
 }
 
-/// Layout of received content that is not in the manual, such as an instruction of a newer version. It is kept as
-/// received.
+/// Layout of received content that is not in the manual, such as an instruction of a newer version. The content is kept
+/// as received.
 pub const UNLISTED: Layout =
     Layout::new("{}", &[Field::new("unlisted", Form::Text, "a value that is not in the manual, as received")]);
 
@@ -82,7 +82,7 @@ impl Layout {
         Self { text, fields }
     }
 
-    /// Formats values; each must be in format and range.
+    /// Formats values. Each value must be in format and in range.
     pub fn emit(&self, values: &[Value]) -> Result<String, LayoutProblem> {
         if values.len() != self.fields.len() {
             return Err(LayoutProblem::Count { expected: self.fields.len(), found: values.len() });
@@ -93,7 +93,7 @@ impl Layout {
         self.join(|index, field| Ok(field.emit(&values[index])?))
     }
 
-    /// Formats the known values, each in format and range, with `?` for the others.
+    /// Formats the known values, and writes `?` for the others. Each known value must be in format and in range.
     pub fn sketch(&self, values: &[Option<Value>]) -> Result<String, LayoutProblem> {
         if values.len() != self.fields.len() {
             return Err(LayoutProblem::Count { expected: self.fields.len(), found: values.len() });
@@ -104,22 +104,22 @@ impl Layout {
         })
     }
 
-    /// Parses the values of a text. Surrounding and additional blanks do not matter (ambiguity A7).
+    /// Parses the values of a text. Surrounding blanks and additional blanks do not matter (ambiguity A7).
     pub fn parse(&self, text: &str) -> Result<Record, LayoutError> {
         let mut values = Vec::with_capacity(self.fields.len());
         self.scan(text, |_, value, _| values.push(value))?;
         Ok(Record { layout: *self, values })
     }
 
-    /// [`Layout::parse`], but keeps a value that is not in its format as [`Value::Text`], which is never sent. Words
-    /// and positions must be right.
+    /// Parses like [`Layout::parse`], but keeps a value that is not in its format as [`Value::Text`], which is never
+    /// sent. The words and positions must be right.
     pub fn parse_kept(&self, text: &str) -> Result<Record, LayoutError> {
         let mut values = Vec::with_capacity(self.fields.len());
         self.walk(text, true, |_, value, _| values.push(value))?;
         Ok(Record { layout: *self, values })
     }
 
-    /// Calls `found` for each value with its field and bytes, up to the first that does not fit.
+    /// Calls `found` for each value with its field and byte range, up to the first value that does not fit.
     pub fn scan(&self, text: &str, found: impl FnMut(&'static Field, Value, Range<usize>)) -> Result<(), LayoutError> {
         self.walk(text, false, found)
     }
@@ -160,7 +160,7 @@ impl Layout {
         }
     }
 
-    /// A record of these values, which may be out of range: content of a controller.
+    /// A record of values that may be out of range, such as content of a controller.
     pub fn record(&self, values: Vec<Value>) -> Result<Record, LayoutProblem> {
         if values.len() == self.fields.len() {
             Ok(Record { layout: *self, values })
@@ -185,7 +185,7 @@ impl Layout {
     }
 }
 
-/// A value outside its format: all text before the next words.
+/// Takes a value that is not in its format: all text before the next words.
 fn take_unlisted<'t>(text: &'t str, next: &str, is_last: bool) -> Option<(Value, &'t str)> {
     let end = match next {
         "" if is_last => text.len(),
@@ -197,7 +197,8 @@ fn take_unlisted<'t>(text: &'t str, next: &str, is_last: bool) -> Option<(Value,
     (!own.is_empty()).then(|| (Value::Text(own.to_owned()), rest))
 }
 
-/// Skips the expected words; a blank matches one or more. Returns the rest, or the position of the difference.
+/// Skips the expected words. A blank in `words` matches one or more blanks. On a difference, the error is the text from
+/// the difference on.
 fn skip_words<'t>(words: &str, mut text: &'t str) -> Result<&'t str, &'t str> {
     for expected in words.chars() {
         let rest = text.strip_prefix(expected).ok_or(text)?;
@@ -207,7 +208,7 @@ fn skip_words<'t>(words: &str, mut text: &'t str) -> Result<&'t str, &'t str> {
 }
 
 impl Record {
-    /// Its layout.
+    /// Layout of the record.
     pub fn layout(&self) -> Layout {
         self.layout
     }
@@ -232,7 +233,7 @@ impl Record {
         Self { layout: UNLISTED, values: vec![Value::Text(text.trim_matches(' ').to_owned())] }
     }
 
-    /// Replaces the value of a field, if it exists.
+    /// Replaces the value of a field, if the field exists.
     #[must_use]
     pub fn with(mut self, name: &str, value: Value) -> Self {
         if let Some(index) = self.layout.fields.iter().position(|field| field.name == name) {
@@ -241,7 +242,7 @@ impl Record {
         self
     }
 
-    /// Whether all values are in the format of the manual.
+    /// Whether all values are in the formats of the manual.
     pub fn is_listed(&self) -> bool {
         self.layout != UNLISTED && self.pairs().all(|(field, value)| field.is_listed(value))
     }
@@ -281,7 +282,7 @@ impl Record {
         self.layout.emit(&self.values)
     }
 
-    /// Formats the record without a range check: answers of a controller.
+    /// Formats the record without a range check, for answers of a controller.
     pub fn written(&self) -> String {
         let write = |index: usize, field: &Field| Ok(field.written(&self.values[index]));
         self.layout.join(write).unwrap_or_default()

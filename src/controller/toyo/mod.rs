@@ -1,7 +1,7 @@
 //! Toyo controllers: host communication over RS-232C.
 //!
-//! References such as "TO 2-4" are sections of the manual. "Ambiguity" refers to a note about an unclear or wrong
-//! place of it.
+//! References such as "TO 2-4" are sections of the manual. "Ambiguity" refers to a note about an unclear or wrong place
+//! in the manual.
 
 pub mod describe;
 pub mod errors;

@@ -6,7 +6,7 @@ use crate::typed::unsigned;
 /// Bits of internal ports and of ports of station 0, counters, timers and points.
 pub const GRAMMAR: Grammar = Grammar { address, prefixes: &["IN", "OUT", "INT", "CN", "TN", "PT", "PN", "F"] };
 
-/// Last port of a kind (DOUT takes 1 to 99), and last counter.
+/// Highest number of a port (DOUT accepts 1 to 99), and of a counter.
 const LAST: u8 = 99;
 
 const LAST_TIMER: u8 = 9;
@@ -67,7 +67,7 @@ pub fn point(row: u16) -> String {
 const FIELDS: [(&str, Kind, &str); 3] =
     [("point", Kind::Point, "PT"), ("counter", Kind::Counter, "CN"), ("timer", Kind::Timer, "TN")];
 
-/// Kind and address prefix of an instruction field; `None` if it accepts no name.
+/// Kind and address prefix for an instruction field; `None` if the field accepts no name.
 pub fn of_field(name: &str) -> Option<(Kind, &'static str)> {
     FIELDS.iter().find(|(field, ..)| *field == name).map(|(_, kind, prefix)| (*kind, *prefix))
 }

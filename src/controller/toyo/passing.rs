@@ -1,10 +1,10 @@
-//! Filter for a read-only line: decides which characters may pass.
+//! Filter for a read-only line: decides which characters may pass to the controller.
 
 use super::request::Request;
 use super::table::commands::Command;
 use crate::Risk;
 
-/// Whether the characters are whole blocks that only read, or stop the robot (STOP, and JGST without a moving axis;
+/// Whether the characters are whole blocks that only read data or stop the robot (STOP, and JGST without a moving axis;
 /// TO 2-7).
 pub fn only_reads_or_stops(characters: &[u8]) -> bool {
     let Ok(text) = std::str::from_utf8(characters) else { return false };

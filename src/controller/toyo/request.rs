@@ -36,7 +36,7 @@ pub enum BlockError {
     #[error("a block must begin with @")]
     Start,
     /// The block is too long.
-    #[error("{len} characters; a block has at most {MOST}, with its line end")]
+    #[error("the block has {len} characters; the maximum is {MOST}, with the line end")]
     Long {
         /// Characters, without line end.
         len: usize,
@@ -55,7 +55,7 @@ pub enum BlockError {
         /// The word after `@`.
         word: String,
     },
-    /// A known command in none of its forms.
+    /// The command is known, but the text fits none of its forms.
     #[error("{0}")]
     Layout(#[from] LayoutError),
     /// Values that must not be sent.
@@ -66,7 +66,7 @@ pub enum BlockError {
     Unknown {
         /// `parameter`, `instruction` or `record`.
         what: &'static str,
-        /// Its name.
+        /// Name of the parameter, instruction or record.
         name: String,
     },
     /// An answer to another request.
@@ -98,7 +98,7 @@ impl Request {
     /// A request with constant values.
     ///
     /// # Panics
-    /// If the values do not fit; every test of a caller would show that.
+    /// If the values do not fit the command. Any test of the caller would find this.
     pub fn of<const N: usize>(command: Command, values: [Value; N]) -> Self {
         Self::new(command, values.into()).expect("the caller's values fit")
     }
@@ -106,38 +106,38 @@ impl Request {
     /// A request without fields.
     ///
     /// # Panics
-    /// If the command has fields; every test of a caller would show that.
+    /// If the command has fields. Any test of the caller would find this.
     pub fn bare(command: Command) -> Self {
         Self::of(command, [])
     }
 
-    /// Reads a parameter, or a row of a table.
+    /// A request to read a parameter, or a row of a table.
     pub fn read_parameter(parameter: &Parameter, row: Option<i32>) -> Result<Self, LayoutProblem> {
         let key = parameter.key.emit(&row.map(Value::Number).into_iter().collect::<Vec<_>>())?;
         Self::new(Command::Rpar, vec![Value::Text(key)])
     }
 
-    /// Writes a parameter, or a row of a table, with all fields of [`Parameter::layout`].
+    /// A request to write a parameter, or a row of a table, with all fields of [`Parameter::layout`].
     pub fn write_parameter(parameter: &Parameter, values: &[Value]) -> Result<Self, LayoutProblem> {
         Self::new(Command::Wpar, vec![Value::Text(parameter.layout.emit(values)?)])
     }
 
-    /// Reads a step of the sequential program; 0 is the current one.
+    /// A request to read a step of the sequential program; 0 is the current step.
     pub fn read_step(step: i32) -> Result<Self, LayoutProblem> {
         Self::new(Command::Rstx, vec![Value::Number(step)])
     }
 
-    /// Writes a step of the sequential program.
+    /// A request to write a step of the sequential program.
     pub fn write_step(step: i32, instruction: &Record) -> Result<Self, LayoutProblem> {
         Self::new(Command::Wstx, vec![Value::Number(step), Value::Text(instruction.emit()?)])
     }
 
-    /// Reads a record of a palletizing program.
+    /// A request to read a record of a palletizing program.
     pub fn read_pallet(program: i32, record: &Pallet) -> Result<Self, LayoutProblem> {
         Self::new(Command::Rplt, vec![Value::Number(program), Value::Number(record.number.into())])
     }
 
-    /// Writes a record of a palletizing program.
+    /// A request to write a record of a palletizing program.
     pub fn write_pallet(program: i32, record: &Pallet, values: &[Value]) -> Result<Self, LayoutProblem> {
         let body = Value::Text(record.layout.emit(values)?);
         Self::new(Command::Wplt, vec![Value::Number(program), Value::Number(record.number.into()), body])
@@ -158,12 +158,12 @@ impl Request {
         self.row
     }
 
-    /// Its command.
+    /// Command of the request.
     pub fn command(&self) -> Command {
         self.row.command
     }
 
-    /// Its values.
+    /// Values of the request.
     pub fn record(&self) -> &Record {
         &self.record
     }
@@ -188,8 +188,8 @@ impl Request {
         self.row.risk
     }
 
-    /// The parameter, instruction or palletizing record of the request, if the command has one. A read contains only
-    /// its key.
+    /// The parameter, instruction or palletizing record of the request, if the command has one. A read request contains
+    /// only the key.
     pub fn content(&self) -> Result<Option<Record>, BlockError> {
         let text = |name| self.record.text(name).unwrap_or_default();
         Ok(match self.command() {
@@ -206,17 +206,18 @@ impl Request {
         Parameter::from_text(self.record.text("body").or(self.record.text("key"))?)
     }
 
-    /// Parses an answer strictly, except for the content of a step or record.
+    /// Parses an answer strictly, except for the stored content of a step or record.
     pub fn answer(&self, block: &str) -> Result<Answer, BlockError> {
         self.answer_as(block, Reading::Strict)
     }
 
-    /// Parses an answer. Stored content may be outside the manual.
+    /// Parses an answer. Stored content may have a form that is not in the manual.
     pub fn answer_kept(&self, block: &str) -> Result<Answer, BlockError> {
         self.answer_as(block, Reading::Kept)
     }
 
-    /// Checks strictly whether a block is the answer. Without a checksum, only this detects a damaged answer.
+    /// Checks strictly whether a block is the answer. The line has no checksum, so only this check detects a damaged
+    /// answer.
     pub fn check_answer(&self, block: &str) -> Result<(), BlockError> {
         if let Answer::Data(record) = self.answer(block)? {
             self.content_of(&record, Reading::Strict)?;
@@ -245,12 +246,13 @@ impl Request {
         Ok(Answer::Data(record))
     }
 
-    /// Whether the read data may be outside the manual: stored content, and identification.
+    /// Whether the answer may contain data that is not in the manual: stored content, or an identification.
     fn may_hold_more(&self) -> bool {
         matches!(self.command(), Command::Rpar | Command::Rstx | Command::Rplt | Command::Resy | Command::Sysp)
     }
 
-    /// The parameter, instruction or palletizing record of an answer. Content outside the manual is kept as received.
+    /// The parameter, instruction or palletizing record of an answer. Content that is not in the manual is kept as
+    /// received.
     pub fn answered(&self, answer: &Record) -> Result<Option<Record>, BlockError> {
         self.content_of(answer, Reading::Kept)
     }
@@ -278,8 +280,8 @@ impl Request {
         }
     }
 
-    /// Checks that an answer belongs to the request: fields with the same name have the same value. The answer to RSTX
-    /// 0000 has the number of the current step (ambiguity C4).
+    /// Checks that an answer belongs to the request: fields with the same name must have the same value. The answer to
+    /// RSTX 0000 contains the number of the current step (ambiguity C4).
     fn same(&self, answer: &Record, reading: Reading) -> Result<(), BlockError> {
         if self.command() == Command::Rpar {
             let (key, body) = (self.content()?, self.content_of(answer, reading)?);
@@ -327,7 +329,7 @@ impl Answer {
 enum Reading {
     /// Everything must be in the format of the manual.
     Strict,
-    /// Other content is kept as received.
+    /// Content in other formats is kept as received.
     Kept,
 }
 
@@ -348,7 +350,7 @@ fn instruction_as(text: &str, reading: Reading) -> Result<Record, BlockError> {
     let row = Instruction::named(word);
     let row = row.ok_or_else(|| BlockError::Unknown { what: "instruction", name: word.to_owned() })?;
     let record = parsed(&row.layout, text, reading)?;
-    // RSMV always passes its point. The template of the manual says POST, its legend PASS (ambiguity R4).
+    // RSMV always passes its point. The template of the manual says POST, but its legend says PASS (ambiguity R4).
     Ok(if row.op == Op::Rsmv { record.with("arrival", Value::Word("PASS")) } else { record })
 }
 
@@ -359,7 +361,7 @@ fn parameter(text: &str) -> Result<&'static Parameter, BlockError> {
     })
 }
 
-/// Common fields must be equal.
+/// Checks that the common fields are equal.
 fn agree(request: &Record, answer: &Record) -> Result<(), BlockError> {
     for (field, asked) in request.pairs() {
         match answer.value(field.name) {
@@ -385,7 +387,8 @@ fn unwrapped(block: &str) -> Result<&str, BlockError> {
     Ok(text.strip_prefix('@').ok_or(BlockError::Start)?.trim_end_matches(' '))
 }
 
-/// Parses by the first form that fits; otherwise returns the error of the form that fits furthest.
+/// Parses by the first form that fits. If no form fits, returns the error of the form that fits the longest part of the
+/// text.
 fn fitting(forms: &[Layout], text: &str) -> Result<Record, LayoutError> {
     let mut furthest: Option<LayoutError> = None;
     for form in forms {
@@ -459,7 +462,7 @@ mod tests {
         assert_eq!(kept("@RSTX 0007", "@RSTX 0007 FOO X=1"), "FOO X=1");
         assert_eq!(kept("@RSTX 0007", "@RSTX 0007 SPD V=99X"), "SPD V=99X");
         assert!(kept("@RPAR T2 V05", "@RPAR T2 V05=250").contains("=250"));
-        // A content mismatch is not a format error.
+        // Content that does not match is not a format error.
         for (request, block) in
             [("@RPAR E17", "@RPAR E18 E=I"), ("@RPAR T2 V05", "@RPAR T2 V06=250"), ("@STAS SNO=0", "@STAS SNO=0 ST1=2")]
         {
@@ -496,7 +499,7 @@ mod tests {
         assert_eq!(error("@XXXX"), "unknown command 'XXXX'");
         assert_eq!(error("@STAS SNO=x"), "page: 'x' is not a number, 0 to 4 at column 11");
         assert_eq!(error("@STAS\tSNO=0"), "character \\t at column 6 is not allowed");
-        assert!(error(&format!("@{}", "A".repeat(130))).starts_with("131 characters"));
+        assert!(error(&format!("@{}", "A".repeat(130))).starts_with("the block has 131 characters"));
         assert!(Request::parse("@STAS SNO=9").unwrap().check().is_err());
         assert_eq!(Request::parse("@HTSK TASK=01").unwrap().text(), "@CTSK TASK=01");
     }

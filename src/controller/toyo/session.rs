@@ -1,7 +1,8 @@
-//! Serial line session: one request at a time, one answer to each (TO 1-3).
+//! Serial line session: one request at a time, one answer to each request (TO 1-3).
 //!
-//! A line has no checksum, and answers have no number. So a late answer could be mistaken for the answer to the next
-//! request. The session counts the pending answers and discards them before it sends again.
+//! A line has no checksum, and answers have no sequence number. Because of this, the session could mistake a late
+//! answer for the answer to the next request. To prevent this, it counts the pending answers and discards them before
+//! it sends again.
 
 mod framer;
 
@@ -15,7 +16,7 @@ use crate::{Now, Risk, Session, Step};
 /// Time limits of a session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Policy {
-    /// From the last character sent to the answer; 1 s in the manual (TO 1-3, ambiguity A3).
+    /// Time from the last sent character to the answer; 1 s in the manual (TO 1-3, ambiguity A3).
     pub timeout: Duration,
     /// Retries of a repeatable request.
     pub retries: u32,
@@ -49,7 +50,7 @@ pub enum ExchangeResult {
     Answered(String),
     /// No answer.
     NoAnswer,
-    /// Only invalid answers: the last one, and the reason.
+    /// Only invalid answers arrived. Contains the last one and the reason.
     InvalidAnswer {
         /// The received block.
         block: String,
@@ -70,13 +71,14 @@ pub struct LineSession {
     pending_until: Now,
     /// Whether the line echoes the sent characters.
     echoes: bool,
-    /// Time at which the last line end of the controller is over, and the host may send (TO 1-3: half duplex).
+    /// Time at which the last line end of the controller is completely transmitted, so that the host may send (TO 1-3:
+    /// half duplex).
     send_allowed_at: Now,
     /// Time of the last unexpected block.
     last_unexpected: Option<Now>,
-    /// The last answered order, which a second answer would contradict, and the time of its answer.
+    /// The last answered order, and the time of its answer. A second, contradicting answer may still arrive.
     last_order: Option<(AnsweredOrder, Now)>,
-    /// An order that received both answers.
+    /// An order that received both `@OK` and `@NG`.
     refuted: Option<AnsweredOrder>,
 }
 
@@ -86,9 +88,9 @@ enum State {
     Ended(Option<ExchangeResult>),
     /// Waits until no answer is pending, then sends.
     Settling(Exchange),
-    /// Sent; waits for the answer until this time.
+    /// The request was sent. Waits for the answer until this time.
     Waiting(Exchange, Now),
-    /// An accepted order that is not read back: waits until this time for a contradicting `@NG`.
+    /// An accepted order that armctl does not read back. Waits until this time for a contradicting `@NG`.
     Confirming(String, Now),
 }
 
@@ -100,23 +102,24 @@ struct Exchange {
     request: Option<Request>,
     repetitions: u32,
     invalid_answer: Option<(String, String)>,
-    /// Whether an answer outside the manual may be requested once more, to distinguish it from a damaged one.
+    /// Whether the session may send the request once more after an answer that is not in the manual. If the same answer
+    /// arrives again, it is not damaged.
     may_confirm: bool,
     /// The echo of the request.
     echo: Option<String>,
-    /// Earliest time of sending: a noisy line must be quiet first.
+    /// Earliest time of sending. A noisy line must be quiet first.
     not_before: Now,
-    /// The order before this read, which may still receive its other answer.
+    /// The order before this read. A contradicting answer to the order may still arrive.
     previous_order: Option<AnsweredOrder>,
-    /// Whether an `@NG` arrived: the other answer to that order, or the answer to this read.
+    /// Whether an `@NG` arrived. It is either a contradicting answer to `previous_order`, or the answer to this read.
     is_refused: bool,
-    /// Whether an `@OK` arrived, which cannot answer a read.
+    /// Whether an `@OK` arrived. An `@OK` cannot answer a read.
     is_contradicted: bool,
     /// Limit of the wait for a quiet line before an order; set at the first poll.
     quiet_deadline: Option<Now>,
 }
 
-/// An order and its answer.
+/// An order, and whether the controller accepted it.
 #[derive(Debug, Clone)]
 struct AnsweredOrder {
     order: Request,
@@ -132,13 +135,14 @@ impl AnsweredOrder {
 
 /// Required silence before a retry after a garbled block, and before an order after an unexpected block.
 const QUIET_TIME: Duration = Duration::from_millis(50);
-/// Maximum wait for that silence. An order is then sent even on a line that is never quiet.
+/// Maximum wait for that silence. After it, an order is sent even if the line is never quiet.
 const MAX_QUIET_WAIT: Duration = Duration::from_millis(500);
-/// Wait for the answer to a read after an `@NG` that may belong to the order before it.
+/// Time to wait for the answer to a read, after an `@NG` that may be the answer to the order before the read.
 const LATE_ANSWER_WAIT: Duration = Duration::from_millis(200);
-/// Time after an `@OK` during which an `@NG` may belong to the same order.
+/// Time after an `@OK` in which an `@NG` may still be an answer to the same order.
 const CONTRADICTION_WINDOW: Duration = Duration::from_millis(500);
-/// Program starts: a program may end within the wait for a quiet line, so the status is read instead.
+/// Program starts. A program may end during the wait for a quiet line, so the session does not wait and the status is
+/// read instead.
 const PROGRAM_STARTS: [Command; 4] = [Command::Spst, Command::Ppst, Command::Sesy, Command::Extp];
 /// Reason why an `@OK` is not valid.
 const CONTRADICTORY_ANSWERS: &str = "received both @OK and @NG: one of them is for another client of this line";
@@ -161,12 +165,12 @@ impl LineSession {
         }
     }
 
-    /// Whether the last order may still receive its other answer: no read was answered since.
+    /// Whether a contradicting answer to the last order may still arrive. This is so until a read is answered.
     pub fn is_open(&self) -> bool {
         self.last_order.is_some()
     }
 
-    /// Takes the order that received both answers, and its outcome.
+    /// Takes the order that received both `@OK` and `@NG`, and its outcome.
     pub fn take_refuted(&mut self) -> Option<(Request, ExchangeResult)> {
         self.refuted.take().map(|answered| {
             let invalid = ExchangeResult::InvalidAnswer {
@@ -177,13 +181,13 @@ impl LineSession {
         })
     }
 
-    /// Begins an exchange. An open exchange is abandoned, and its answer discarded. A repeatable request is sent again
-    /// after a timeout.
+    /// Begins an exchange. A pending exchange is abandoned, and its answer is discarded. A repeatable request is sent
+    /// again after a timeout.
     pub fn begin(&mut self, request: &Request, is_repeatable: bool) {
         self.start_exchange(request.text(), Some(request.clone()), is_repeatable);
     }
 
-    /// Begins an exchange with a free-text block, including `@`; any block is its answer.
+    /// Begins an exchange with a free-text block, including `@`. Any block counts as its answer.
     pub fn begin_raw(&mut self, block: &str) {
         self.start_exchange(block.to_owned(), None, false);
     }
@@ -210,8 +214,8 @@ impl LineSession {
         });
     }
 
-    /// Bytes of an urgent block, such as a stop, to send at once while an answer is pending; otherwise `None`. Its own
-    /// answer is discarded, so that the next exchange gets the right one.
+    /// Returns the bytes of an urgent block, such as a stop, that must be sent at once while an answer is pending;
+    /// otherwise `None`. The answer to the urgent block is discarded, so that the next exchange gets its own answer.
     pub fn begin_urgent(&mut self, now: Now, request: &Request) -> Option<Vec<u8>> {
         let waits = matches!(self.state, State::Waiting(..));
         if !waits && (self.pending_answers == 0 || now >= self.pending_until) {
@@ -256,7 +260,8 @@ impl LineSession {
             self.last_order.take_if(|(_, at)| deadline >= *at + CONTRADICTION_WINDOW);
             return self.end(ExchangeResult::Answered(NG.to_owned()));
         }
-        // Only a copy of the request arrived: an equal answer, or the echo of a line without a controller.
+        // Only a copy of the request arrived. It is either an answer that equals the request, or the echo of a line
+        // without a controller.
         if let Some(block) = exchange.echo.take().filter(|echo| !self.echoes && exchange.accepts(echo).is_ok()) {
             self.counters.echoes -= 1;
             return self.end(ExchangeResult::Answered(block));
@@ -267,7 +272,7 @@ impl LineSession {
             exchange.repetitions -= 1;
             self.counters.repeats += 1;
             self.state = State::Settling(exchange);
-            // A retry is the same request, so any of the answers is valid.
+            // A retry sends the same request, so an answer to any of these requests is valid.
             return self.send(deadline);
         }
         self.end(match exchange.invalid_answer {
@@ -298,7 +303,7 @@ impl LineSession {
         now + self.policy.character.saturating_mul(length) + self.policy.timeout
     }
 
-    /// Handles a block while an exchange waits.
+    /// Handles a block that arrives while an exchange waits for its answer.
     fn handle_block(&mut self, now: Now, mut exchange: Exchange, deadline: Now, framed: Framed) -> State {
         self.counters.received += 1;
         let block = match framed {
@@ -323,7 +328,7 @@ impl LineSession {
         match exchange.accepts(&block) {
             Ok(()) => {
                 self.echoes |= exchange.echo.is_some();
-                // After retries, the other answers may arrive until this time.
+                // After retries, the answers to the other requests may arrive until this time.
                 self.pending_until = deadline;
                 if exchange.is_read() {
                     self.handle_read_answer(now, &mut exchange, &block);
@@ -337,7 +342,8 @@ impl LineSession {
                 exchange.invalid_answer = Some((block, error.to_string()));
                 State::Waiting(exchange, deadline)
             }
-            // Damage does not repeat exactly: this is the content of the controller.
+            // The same answer arrived twice. Damage does not repeat exactly, so the controller really stores this
+            // content.
             Err(_) if exchange.is_confirmed(&block) => {
                 self.pending_until = deadline;
                 State::Ended(Some(ExchangeResult::Answered(block)))
@@ -351,8 +357,8 @@ impl LineSession {
         }
     }
 
-    /// Handles the answer to a read. The controller answers in order, so it sends no older answer now. A device server
-    /// may still send blocks of another client.
+    /// Handles the answer to a read. The controller answers in order, so it sends no older answer after this one. A
+    /// device server may still send blocks that belong to another client.
     fn handle_read_answer(&mut self, now: Now, exchange: &mut Exchange, block: &str) {
         if exchange.is_contradicted || (exchange.is_refused && block != NG) {
             self.refuted = exchange.previous_order.take();
@@ -361,7 +367,7 @@ impl LineSession {
         self.last_order.take_if(|(_, at)| now >= *at + CONTRADICTION_WINDOW);
     }
 
-    /// Handles the answer to an order. A contradicting one may follow.
+    /// Handles the answer to an order. A contradicting answer may follow.
     fn handle_order_answer(&mut self, now: Now, order: Option<Request>, block: String) -> State {
         let is_accepted = block == OK;
         let waits = is_accepted && order.as_ref().is_some_and(needs_contradiction_wait);
@@ -383,7 +389,8 @@ impl LineSession {
         State::Ended(Some(ExchangeResult::InvalidAnswer { block, why: CONTRADICTORY_ANSWERS.to_owned() }))
     }
 
-    /// Handles a block before a read is sent: it may be the other answer to the order before it.
+    /// Handles a block that arrives before a read is sent. The block may be a contradicting answer to the order before
+    /// the read.
     fn record_contradiction(&mut self, state: &State, framed: &Framed) {
         let is_read = matches!(state, State::Settling(exchange) if exchange.is_read());
         let other = self.last_order.take_if(|(order, _)| is_read && contradicts(order.block(), framed));
@@ -414,8 +421,8 @@ impl LineSession {
 const OK: &str = "@OK";
 const NG: &str = "@NG";
 
-/// Whether an accepted order waits for a late `@NG`: motions without program starts, and memory clearing. A jog must
-/// not wait, because its stop must not be delayed.
+/// Whether the session waits for a late `@NG` after an accepted order. It waits after memory clearing and after
+/// motions, except program starts. A jog must not wait, because the wait would delay the stop of the jog.
 fn needs_contradiction_wait(order: &Request) -> bool {
     match order.command() {
         Command::Jgst => false,
@@ -424,14 +431,15 @@ fn needs_contradiction_wait(order: &Request) -> bool {
     }
 }
 
-/// Whether two answers contradict each other. A device server may send each answer to all clients.
+/// Whether two answers contradict each other. This can happen because a device server may send each answer to all
+/// clients.
 fn contradicts(first: &str, second: &Framed) -> bool {
     let Framed::Block(second) = second else { return false };
     matches!((first, second.as_str()), (OK, NG) | (NG, OK))
 }
 
 impl Exchange {
-    /// Whether it is a read. Neither `@OK` nor the answer to another read can be mistaken for its answer.
+    /// Whether the request is a read. Neither `@OK` nor the answer to another read can be mistaken for its answer.
     fn is_read(&self) -> bool {
         self.request.as_ref().is_some_and(|request| !request.row().is_order())
     }
@@ -440,7 +448,7 @@ impl Exchange {
         self.request.as_ref().map_or(Ok(()), |request| request.check_answer(block))
     }
 
-    /// Whether the block is an answer with content outside the manual.
+    /// Whether the block is an answer whose content is not in the manual.
     fn is_unlisted_answer(&self, block: &str) -> bool {
         self.request.as_ref().is_some_and(|request| request.answer_kept(block).is_ok())
     }
@@ -464,7 +472,8 @@ impl Session for LineSession {
                 }
                 let quiet = self.last_unexpected.map_or(now, |time| time + QUIET_TIME);
                 let State::Settling(exchange) = &mut self.state else { return Step::Wait(Now::MAX) };
-                // Any block could answer an order. Repeatable requests, such as a stop, do not wait.
+                // Any block could be mistaken for the answer to an order, so an order waits for a quiet line.
+                // Repeatable requests, such as a stop, do not wait.
                 let quiet = if exchange.may_confirm {
                     now
                 } else {

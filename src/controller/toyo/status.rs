@@ -116,7 +116,7 @@ bits! {
 }
 
 impl Status {
-    /// A page by its number; 0 beyond the last.
+    /// A page by its number; 0 if the page does not exist.
     pub const fn page(self, page: u8) -> u8 {
         match page {
             0 => self.state,
@@ -128,7 +128,7 @@ impl Status {
         }
     }
 
-    /// Replaces a page; no effect beyond the last.
+    /// Replaces a page. Has no effect if the page does not exist.
     #[must_use]
     pub const fn with(mut self, page: u8, byte: u8) -> Self {
         match page {
@@ -152,7 +152,7 @@ impl Status {
         }
     }
 
-    /// Run mode; `None` for the value that is not in the manual.
+    /// Run mode, or `None` for the bit combination that is not in the manual.
     pub const fn run_mode(self) -> Option<RunMode> {
         match self.mode >> 2 & 0b11 {
             0b00 => Some(RunMode::Automatic),

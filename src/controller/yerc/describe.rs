@@ -1,5 +1,5 @@
-//! Decoder of a frame into described fields, from the table. It never fails: a damaged frame is decoded up to the
-//! damage.
+//! Decoder of a frame into described fields. It uses the command table and never fails: a damaged frame is decoded up
+//! to the damage.
 
 mod data;
 
@@ -34,16 +34,16 @@ pub struct FieldNote {
     pub offset: usize,
     /// Number of bytes.
     pub size: usize,
-    /// Its name.
+    /// Name of the part.
     pub name: String,
-    /// Its bytes in the frame.
+    /// Bytes of the part in the frame.
     #[serde(rename = "raw_hex")]
     pub raw: String,
-    /// Its meaning.
+    /// Meaning of the bytes.
     pub meaning: String,
 }
 
-/// Who sent a frame.
+/// Sender of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Sender {
     /// The client: requests, file data to the controller, ACKs.
@@ -53,13 +53,13 @@ pub enum Sender {
 }
 
 impl Sender {
-    /// Guesses the sender by the ACK flag and, for files, by the sub-header.
+    /// Guesses the sender by the ACK flag and, for file frames, by the sub-header.
     pub fn guess(frame: &[u8]) -> Self {
         if frame.get(ACK_AT).is_none_or(|&ack| ack == 0) {
             return Self::Client;
         }
-        // In transfer frames of the client, the bytes of command, instance and attribute are 0; an answer has its
-        // service there.
+        // In transfer frames of the client, the bytes of command, instance and attribute are 0. In an answer, the first
+        // of these bytes is the service.
         match frame.get(24..30) {
             Some([0, 0, 0, 0, 0, service]) if *service != 0 => Self::Client,
             _ => Self::Controller,
@@ -70,7 +70,8 @@ impl Sender {
 /// Offset of the ACK flag.
 const ACK_AT: usize = 10;
 
-/// Decodes a frame. `request` is the request of an answer, if known: an answer does not contain it.
+/// Decodes a frame. `request` is the request that an answer belongs to, if it is known: an answer does not contain its
+/// request.
 pub fn describe(frame: &[u8], sender: Sender, request: Option<&Request>) -> Description {
     let mut notes = Notes::new(frame);
     notes.header();
@@ -160,12 +161,12 @@ fn status_words(status: Status) -> String {
 fn block_words(block: u32) -> String {
     match (block & LAST_BLOCK != 0, block & !LAST_BLOCK) {
         (true, 0) => "single frame".to_owned(),
-        (true, number) => format!("block {number}, the last"),
+        (true, number) => format!("block {number}, the last block"),
         (false, number) => format!("block {number}"),
     }
 }
 
-/// Name of an instance in parentheses; for both models if they differ.
+/// Name of an instance in parentheses. If the name depends on the model, both names.
 fn instance_words(request: &Request) -> String {
     let label = |model| {
         let instances = request.row()?.instances;
@@ -193,7 +194,7 @@ impl<'a> Notes<'a> {
         Self { frame, at: 0, fields: Vec::new(), problem: None }
     }
 
-    /// Adds the next `size` bytes; adds nothing after the first missing bytes.
+    /// Adds the next `size` bytes. After bytes were missing, adds nothing more.
     fn take(&mut self, size: usize, name: impl Into<String>, meaning: impl FnOnce(&[u8]) -> String) -> bool {
         let name = name.into();
         if self.problem.is_some() {
@@ -287,13 +288,13 @@ impl<'a> Notes<'a> {
         self.finish(title, row)
     }
 
-    /// Parses command, instance, attribute and service without adding them.
+    /// Parses command, instance, attribute and service, but does not add them to the fields.
     fn sub_header(&self) -> Option<Request> {
         let bytes = self.frame.get(24..30)?;
         let word = |at: usize| u16::try_from(little(&bytes[at..at + 2])).unwrap_or_default();
         let division = self.frame.get(9);
         let data = self.frame.get(HEADER_LEN..).unwrap_or_default().to_vec();
-        // In a file frame only the service is relevant.
+        // In a file frame, only the service matters.
         let command = if division == Some(&2) { 0 } else { word(0) };
         Some(Request { command, instance: word(2), attribute: bytes[4], service: bytes[5], data })
     }
@@ -331,7 +332,7 @@ impl<'a> Notes<'a> {
                 self.take_rest("data", |_| "more data than the command has".to_owned());
             }
             (Some(_), _) => self.take_rest("file data", |bytes| format!("{} bytes", bytes.len())),
-            // A file server answer identifies its content by the service.
+            // The service of a file server answer determines its content.
             _ if is_file && answered == Some(service::LIST) => {
                 self.take_rest("names", |bytes| format!("\"{}\"", bytes.escape_ascii()));
             }
@@ -363,12 +364,12 @@ fn attribute_words(row: &Row, allowed: bool, request: &Request) -> String {
     }
 }
 
-/// Little-endian value of at most 8 bytes.
+/// Little-endian value of up to 8 bytes.
 fn little(bytes: &[u8]) -> u64 {
     bytes.iter().take(8).rev().fold(0, |value, byte| value << 8 | u64::from(*byte))
 }
 
-/// Context of the following numbers in an element.
+/// Fields of an element that determine the meaning of the fields after them.
 #[derive(Default)]
 struct Meaning {
     kind: Option<PositionKind>,

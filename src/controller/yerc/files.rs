@@ -74,57 +74,57 @@ impl fmt::Display for FileType {
     }
 }
 
-/// An invalid file name or filter.
+/// Why a file name or filter is invalid.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum FileNameError {
-    /// Empty, or only an extension.
+    /// The name is empty, or only an extension.
     #[error("the file name is empty")]
     Empty,
-    /// Longer than a frame.
-    #[error("the file name has {len} bytes; at most {MAX_DATA} fit a frame")]
+    /// The name is longer than the data of a frame.
+    #[error("the file name has {len} bytes; a frame can have at most {MAX_DATA}")]
     TooLong {
         /// Length in bytes.
         len: usize,
     },
-    /// Names are sent without a NUL; controllers refuse one (E49D).
+    /// The name contains a NUL. Names are sent without a NUL, and controllers refuse a name with a NUL (E49D).
     #[error("the file name '{name}' contains a NUL byte")]
     Nul {
         /// The name, escaped.
         name: String,
     },
-    /// A path: controllers have no folders.
+    /// The name is a path, but controllers have no folders.
     #[error("the file name '{name}' contains a path separator")]
     Separator {
         /// The name, escaped.
         name: String,
     },
-    /// A control character: CR or LF would split lists, and others cannot be typed on a pendant.
+    /// The name contains a control character. CR or LF would split lists, and the others cannot be typed on a pendant.
     #[error("the file name '{name}' contains a control character")]
     Control {
         /// The name, escaped.
         name: String,
     },
-    /// Without extension.
-    #[error("the file name '{name}' needs an extension, as in TESTJOB.JBI")]
+    /// The name has no extension.
+    #[error("the file name '{name}' needs an extension, for example TESTJOB.JBI")]
     Extension {
         /// The name, escaped.
         name: String,
     },
-    /// Not one of the six extensions of files that can be sent.
-    #[error("the file name '{name}' needs an extension out of JBI, DAT, CND, PRM, SYS, LST to be sent")]
+    /// The extension is not one of the six extensions of files that can be sent.
+    #[error("the file name '{name}' must have the extension JBI, DAT, CND, PRM, SYS or LST to be sent")]
     Type {
         /// The name, escaped.
         name: String,
     },
-    /// A job name longer than 32 bytes.
-    #[error("the job name '{name}' has {len} bytes in the controller's encoding; at most {MAX_JOB_NAME} fit")]
+    /// The job name is longer than 32 bytes.
+    #[error("the job name '{name}' has {len} bytes in the controller's encoding; it can have at most {MAX_JOB_NAME}")]
     JobName {
         /// The name, escaped.
         name: String,
         /// Length in bytes without extension.
         len: usize,
     },
-    /// A filter that is not in the manual.
+    /// The filter is not in the manual.
     #[error("unknown filter '{filter}'; known: none, *.*, *.JBI, *.DAT, *.CND, *.PRM, *.SYS, *.LST")]
     Filter {
         /// The filter, escaped.
@@ -147,17 +147,17 @@ impl FileName {
         Ok(Self(name))
     }
 
-    /// Bytes as sent.
+    /// Bytes of the name as sent.
     pub fn as_bytes(&self) -> &[u8] {
         &self.0
     }
 
-    /// Type by extension; `None` if it is not in the manuals.
+    /// Type by extension; `None` if the extension is not in the manuals.
     pub fn file_type(&self) -> Option<FileType> {
         FileType::from_name(&self.0)
     }
 
-    /// Checks the additional rules for a file to be sent.
+    /// Checks the additional rules for the name of a file to be sent.
     pub fn check_load(&self) -> Result<(), FileNameError> {
         check_load_name(&self.0)
     }
@@ -184,18 +184,20 @@ impl fmt::Debug for FileName {
     }
 }
 
-/// Request for the names of one type.
+/// Request for the names of all files of one type.
 pub fn list(kind: FileType) -> Request {
     Request::file(service::LIST, kind.filter())
 }
 
-/// Request for names by a filter of the manuals. The controller decides about the empty filter.
+/// Request for the names that match a filter of the manuals. An empty filter is allowed; the controller decides what it
+/// means.
 pub fn list_by(filter: &str) -> Result<Request, FileNameError> {
     check_filter(filter.as_bytes())?;
     Ok(Request::file(service::LIST, filter))
 }
 
-/// Request for the batch backup, which takes about ten minutes; the same request fetches the file.
+/// Request that creates the batch backup, which takes about ten minutes. The same request also fetches the created
+/// backup.
 pub fn batch_backup() -> Request {
     Request::file(service::SAVE, BATCH_BACKUP_PATH)
 }
@@ -228,9 +230,9 @@ fn transfer_frame(id: u8, service: u8, block: u32, data: &[u8]) -> Vec<u8> {
     .emit()
 }
 
-/// A list line that is too long for a name.
+/// A line of a list that is longer than any name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error("line {line} of the list has {len} bytes; at most {MAX_DATA} fit a frame")]
+#[error("line {line} of the list has {len} bytes; a frame can have at most {MAX_DATA}")]
 pub struct ListError {
     /// Line number, from 1.
     pub line: usize,
@@ -238,8 +240,8 @@ pub struct ListError {
     pub len: usize,
 }
 
-/// Splits the data of a list into names. They end with CR LF in the manuals. A single CR or LF, NULs, and trailing
-/// blanks also separate names: none of these bytes is part of a multi-byte character.
+/// Splits the data of a list into names. In the manuals, each name ends with CR LF. A single CR or LF, NULs, and
+/// trailing blanks also separate names: none of these bytes is part of a multi-byte character.
 pub fn split_list(data: &[u8]) -> Result<Vec<&[u8]>, ListError> {
     let lines = data.split(|byte| matches!(byte, b'\r' | b'\n' | 0)).map(<[u8]>::trim_ascii_end);
     let mut names = Vec::new();
@@ -252,7 +254,7 @@ pub fn split_list(data: &[u8]) -> Result<Vec<&[u8]>, ListError> {
     Ok(names)
 }
 
-/// Checks the rules for names in requests; the batch backup path is allowed.
+/// Checks the rules for names in requests. The path of the batch backup is allowed.
 pub fn check_name(name: &[u8]) -> Result<(), FileNameError> {
     if name == BATCH_BACKUP_PATH {
         return Ok(());
@@ -277,7 +279,8 @@ pub fn check_name(name: &[u8]) -> Result<(), FileNameError> {
     if stem + 1 >= name.len() { Err(FileNameError::Extension { name: shown() }) } else { Ok(()) }
 }
 
-/// Checks the rules for a file to be sent: [`check_name`], an extension of the manuals, and the length of a job name.
+/// Checks the rules for a file to be sent: [`check_name`], an extension of the manuals, and the maximum length of a job
+/// name.
 pub fn check_load_name(name: &[u8]) -> Result<(), FileNameError> {
     check_name(name)?;
     let stem = stem_len(name);
@@ -295,7 +298,7 @@ fn stem_len(name: &[u8]) -> usize {
     name.iter().rposition(|&byte| byte == b'.').unwrap_or(name.len())
 }
 
-/// Checks a filter against the manuals (3.4.4).
+/// Checks that a filter is in the manuals (3.4.4).
 pub fn check_filter(filter: &[u8]) -> Result<(), FileNameError> {
     let known = filter.is_empty()
         || filter == b"*.*"

@@ -8,11 +8,11 @@ use super::Model;
 /// A control group, numbered from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Group {
-    /// R1 to R2 on FS100, to R8 on DX200.
+    /// A robot: R1 to R2 on FS100, up to R8 on DX200.
     Robot(u8),
-    /// B1 to B2 on FS100, to B8 on DX200.
+    /// A base: B1 to B2 on FS100, up to B8 on DX200.
     Base(u8),
-    /// S1 to S3 on FS100, to S24 on DX200.
+    /// A station: S1 to S3 on FS100, up to S24 on DX200.
     Station(u8),
 }
 
@@ -20,7 +20,7 @@ impl Group {
     /// The first robot.
     pub const R1: Self = Self::Robot(1);
 
-    /// Instance of pulses, torque and position error: 1, 11 or 21 for the first group.
+    /// Instance for pulses, torque and position error: 1, 11 or 21 for the first robot, base or station.
     pub const fn instance(self) -> u16 {
         match self {
             Self::Robot(number) => number as u16,
@@ -29,7 +29,7 @@ impl Group {
         }
     }
 
-    /// Instance of cartesian coordinates, which stations do not have: 101 or 111 for the first group.
+    /// Instance for cartesian coordinates: 101 or 111 for the first robot or base. Stations have none.
     pub const fn cartesian_instance(self) -> Option<u16> {
         match self {
             Self::Robot(_) | Self::Base(_) => Some(100 + self.instance()),

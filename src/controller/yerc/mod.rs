@@ -1,7 +1,7 @@
 //! Yaskawa FS100, DX100, DX200 and YRC1000: high-speed Ethernet server ("YERC", after the frame identifier).
 //!
 //! UDP, little-endian, one frame per datagram. Sources by short name: FS = FS100 manual HW1481031, DX = DX200 manual
-//! HW1481977. Section numbers are the same in both unless noted otherwise.
+//! HW1481977. A section has the same number in both manuals unless noted otherwise.
 
 pub mod describe;
 pub mod files;

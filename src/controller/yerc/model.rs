@@ -5,9 +5,10 @@
 //! | FS100 | FS, its own manual |
 //! | DX200 | DX, its own manual |
 //! | DX100 | DX 3.3 (strings of 16 bytes before the DX200); `WriteSingleIO.srv` of ROS-Industrial's `motoman_msgs` (network inputs from 25010 on, as on the FS100); the rest as in both manuals, or as in DX: unproven |
-//! | YRC1000 | captured answers of one (0x70 to 0x75, 0x77, 0x88, 0x89), clients that run on some; ranges as in DX |
+//! | YRC1000 | captured answers of one controller (0x70 to 0x75, 0x77, 0x88, 0x89), and other clients; ranges as in DX |
 //!
-//! The layouts of commands that only a YRC1000 has (0x0411 to 0x0413) are in no source, so these are not sent.
+//! No source contains the layouts of the commands that only a YRC1000 has (0x0411 to 0x0413), so armctl does not send
+//! them.
 
 /// Controller model. Number ranges, string sizes and move layouts depend on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -24,10 +25,10 @@ pub enum Model {
 
 /// Prefixes of the system software version by controller (0x89; FS and DX 3.3.26).
 ///
-/// FS100: examples in FS. DX100: versions reported by users (ros-industrial/motoman, issue 651:
-/// `DS3.93.00(us/de)-14`, `DS4.42.00A(…)-14`). DX repeats such an example, but no DX200 with it is known. DX200,
-/// YRC1000, YRC1000micro: requirements of the maker's `MotoROS2` (`DN2.44.00-00`, `YAS2.80.00-00`, `YBS2.45.00-00`),
-/// and a captured `YAS2.02`.
+/// FS100: examples in FS. DX100: versions reported by users (ros-industrial/motoman, issue 651: `DS3.93.00(us/de)-14`,
+/// `DS4.42.00A(…)-14`). DX repeats such an example, but no DX200 with such a version is known. DX200, YRC1000,
+/// YRC1000micro: requirements of the maker's `MotoROS2` (`DN2.44.00-00`, `YAS2.80.00-00`, `YBS2.45.00-00`), and a
+/// captured `YAS2.02`.
 const SOFTWARE: [(&str, Model); 5] = [
     ("FS", Model::Fs100),
     ("DS", Model::Dx100),
@@ -50,7 +51,7 @@ impl Model {
         }
     }
 
-    /// The model of a system software version such as `YAS2.02.11A(JP/EN)-97`; `None` if unknown.
+    /// The model for a system software version such as `YAS2.02.11A(JP/EN)-97`; `None` if the version is unknown.
     pub fn from_software(version: &[u8]) -> Option<Self> {
         let letters = version.iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
         let (prefix, number) = version.split_at(letters);
@@ -67,14 +68,16 @@ impl Model {
         }
     }
 
-    /// Unproven parts of the profile, to complete "unproven: …"; `None` if the manual of the model is the source.
+    /// Parts of the profile that no source proves. The text completes "unproven: …". `None` if the profile comes from
+    /// the manual of the model.
     pub const fn unproven(self) -> Option<&'static str> {
         match self {
             Self::Fs100 | Self::Dx200 => None,
             Self::Dx100 => Some(
-                "number ranges beyond those of an FS100, texts of sub-codes (0x30A, 0x30B), layouts of moves (0x8A, 0x8B)",
+                "number ranges beyond the ranges of an FS100, texts of sub-codes (0x30A, 0x30B), layouts of moves \
+                 (0x8A, 0x8B)",
             ),
-            Self::Yrc1000 => Some("ranges of I/O, registers and variables, which are those of a DX200"),
+            Self::Yrc1000 => Some("ranges of I/O, registers and variables (taken from the DX200)"),
         }
     }
 }

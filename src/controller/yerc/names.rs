@@ -6,9 +6,10 @@
 //! - The BSD-licensed editor extension `tshikina/YaskawaInformSupport` (`server/src/IoNameDatFile.ts`,
 //!   `VarNameDatFile.ts`, `IoMNameDatFile.ts` and its grammars): sections, numbers of the names, 16 characters per
 //!   name.
-//! - Published backups of controllers. `lukelalondePZ/Fiberdome-GP88-Spindle-Cell` (YRC1000): the name at position 17
-//!   of the outputs is that of the job with `OT#(17)`, 19 to 21 likewise, and its ladder program copies #10030 to
-//!   `OT#(17)`. `SinaiAranda/motoman_sda20d_sys`: its variables are unordered and have gaps.
+//! - Published backups of controllers. In `lukelalondePZ/Fiberdome-GP88-Spindle-Cell` (YRC1000), the name at position
+//!   17 of the outputs is the name of the job with `OT#(17)`. The same is true for positions 19 to 21. The ladder
+//!   program of this backup copies #10030 to `OT#(17)`. In `SinaiAranda/motoman_sda20d_sys`, the variables are
+//!   unordered and have gaps.
 //!
 //! Other files with names (`.LST`, `.CND`) have no public description and are not parsed.
 
@@ -28,19 +29,19 @@ pub const FILES: [&str; 4] = ["IONAME.DAT", "EXIONAME.DAT", "VARNAME.DAT", "IOMN
 /// Signals, variables and registers: `#27010`, `B5`, `M5`.
 pub const GRAMMAR: Grammar = Grammar { address, prefixes: &["B", "I", "D", "R", "S", "P", "BP", "EX", "M"] };
 
-/// Limit of names: a controller has 8192 signals, and some thousand variables of each kind.
+/// Maximum number of names: a controller has 8192 signals, and some thousand variables of each kind.
 const MOST: usize = 1 << 16;
 
-/// A file in another format.
+/// Why a file cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum WrongFile {
-    /// Unknown first line.
-    #[error("its first line is not that of a file of names")]
+    /// The first line is unknown.
+    #[error("its first line is not the first line of a name file")]
     Head,
-    /// No known section.
+    /// The file has no known section.
     #[error("it has no known section")]
     Sections,
-    /// Too many names.
+    /// The file has too many names.
     #[error("it has more than {MOST} names")]
     Many,
 }
@@ -48,9 +49,9 @@ pub enum WrongFile {
 /// Names of a file.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct FileNames {
-    /// In file order.
+    /// Names in file order.
     pub names: Vec<Name>,
-    /// Number of skipped lines in another format.
+    /// Number of lines that were skipped because they have another format.
     pub passed_over: usize,
 }
 
@@ -84,7 +85,7 @@ pub fn register_address(number: u16) -> String {
 /// Parses one of [`FILES`].
 ///
 /// # Errors
-/// The file has another format.
+/// If the file has another format.
 pub fn read(file: &str, bytes: &[u8], encoding: Encoding) -> Result<FileNames, WrongFile> {
     let mut reader = Reader { file, encoding, section: None, line: 0, found: FileNames::default(), is_known: false };
     // Line feeds and commas are never part of a multi-byte character.
@@ -101,7 +102,7 @@ pub fn read(file: &str, bytes: &[u8], encoding: Encoding) -> Result<FileNames, W
 /// Format of the lines of a section.
 #[derive(Debug, Clone, Copy)]
 enum Section {
-    /// Four names per line, from the signals of this group on.
+    /// Four names per line, for the signals from this group on.
     Signals(u16),
     /// One variable of this kind per line: `0012 1,0,NAME`.
     Variables(&'static str),
@@ -164,7 +165,7 @@ impl Reader<'_> {
 
     fn signals(&mut self, first_group: u16, at: usize, line: &[u8]) {
         let names: Vec<&[u8]> = line.split(|byte| *byte == b',').collect();
-        // In a line of another length, the names cannot be assigned to signals.
+        // If the number of names in a line is not four, the names cannot be assigned to signals.
         if names.len() != A_LINE {
             self.found.passed_over += usize::from(!line.is_empty());
             return;
@@ -183,7 +184,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Parses `0012 1,0,NAME`. The meaning of the two numbers is unknown and not needed.
+    /// Parses `0012 1,0,NAME`. The meaning of `1` and `0` is unknown and not needed.
     fn variable(&mut self, letters: &str, line: &[u8]) {
         if line.is_empty() {
             return;
@@ -219,7 +220,7 @@ impl Reader<'_> {
     }
 }
 
-/// Formats a file as a controller does, for the simulator, with CR LF.
+/// Formats a file as a controller does, with CR LF. The simulator uses this function.
 pub(in crate::yerc) fn written(head: &str, sections: &[(&str, Vec<String>)]) -> String {
     let mut text = format!("{head}\n");
     for (section, lines) in sections {
@@ -236,8 +237,8 @@ pub(in crate::yerc) fn written(head: &str, sections: &[(&str, Vec<String>)]) -> 
 mod tests {
     use super::*;
 
-    /// Hand-made files in the format of the published ones, which may not be copied. Names and positions differ, except
-    /// those that prove a position.
+    /// Reads hand-made files in the format of the published files, which may not be copied. The names and positions
+    /// differ, except for those that prove a position.
     fn read_text(file: &str, text: &str) -> Vec<String> {
         let found = read(file, &encode(text), Encoding::ShiftJis).unwrap();
         found.names.iter().map(|name| format!("{}={}", name.address, name.name)).collect()
@@ -277,7 +278,7 @@ mod tests {
 
     #[test]
     fn registers_are_counted_by_lines() {
-        // The controllers use this spelling of the head.
+        // Controllers write the first line with this spelling.
         assert_eq!(read_text("IOMNAME.DAT", "/IOMMAME\n//NAME\n\n\nSPEED\n\nCOUNT\n"), ["M2=SPEED", "M4=COUNT"]);
     }
 

@@ -1,12 +1,12 @@
-//! Filter for a read-only link: decides which datagrams may pass.
+//! Filter for a read-only link: decides which datagrams may pass to the controller.
 
 use super::request::Request;
 use super::table::service;
 use super::wire::RequestFrame;
 use crate::Risk;
 
-/// Whether a datagram only reads, or stops the robot (HOLD on; FS and DX 3.3.20). Of a transfer, only the frames of a
-/// download may pass.
+/// Whether a datagram only reads data, or stops the robot (HOLD on; FS and DX 3.3.20). Of transfer frames, only the
+/// frames of a download may pass.
 pub fn only_reads_or_stops(datagram: &[u8]) -> bool {
     let Ok(frame) = RequestFrame::parse(datagram) else { return false };
     if frame.ack {

@@ -1,7 +1,7 @@
-//! Typed queries: each builds its request and decodes its answer.
+//! Typed queries: each query builds its request and decodes its answer.
 //!
 //! A query cannot be built with numbers that the model does not have. Extended variables are an exception, because
-//! their count is a parameter of the controller.
+//! their number is a parameter of the controller.
 
 mod control;
 mod read;
@@ -35,7 +35,7 @@ pub trait Query {
     /// Content of the answer.
     type Answer;
 
-    /// The request; it passes [`Request::check`] for the model of the query.
+    /// Builds the request. It passes [`Request::check`] for the model of the query.
     fn request(&self) -> Request;
 
     /// Decodes the data of a successful answer.
@@ -49,7 +49,7 @@ pub trait Query {
 
 /// A query whose answer contains only its status.
 pub trait WriteQuery {
-    /// The request, as in [`Query::request`].
+    /// Builds the request, as [`Query::request`] does.
     fn write_request(&self) -> Request;
 }
 
@@ -77,7 +77,7 @@ pub enum QueryError {
         /// The controller.
         model: Model,
     },
-    /// A control group that is not valid for this query.
+    /// A control group that this query does not support.
     #[error("{group} cannot be used here: {reason}")]
     GroupKind {
         /// The group given.
@@ -107,7 +107,7 @@ pub enum QueryError {
         /// Maximum.
         last: u32,
     },
-    /// A text that does not fit.
+    /// A text that does not fit its field.
     #[error("{what}: {error}")]
     Text {
         /// Name of the text.
@@ -115,7 +115,7 @@ pub enum QueryError {
         /// The reason.
         error: TextError,
     },
-    /// A missing name.
+    /// A name that is missing.
     #[error("{what} is empty")]
     Empty {
         /// Name of the text.
@@ -140,8 +140,8 @@ pub enum QueryError {
         /// The bits.
         bits: u32,
     },
-    /// Different kinds of values in one plural write.
-    #[error("a plural write needs at least one value, and all of one type")]
+    /// Values of different kinds in one plural write.
+    #[error("a plural write needs at least one value, and all values must have the same type")]
     MixedKinds,
     /// A request that violates the table.
     #[error(transparent)]
@@ -154,7 +154,7 @@ fn checked<Q: Query>(model: Model, query: Q) -> Result<Q, QueryError> {
     Ok(query)
 }
 
-/// A request without data.
+/// A request that reads, and therefore has no data.
 fn reading(command: u16, instance: u16, attribute: u8, service: u8) -> Request {
     Request { command, instance, attribute, service, data: Vec::new() }
 }
@@ -163,7 +163,7 @@ fn read_all(command: u16, instance: u16) -> Request {
     reading(command, instance, 0, service::GET_ALL)
 }
 
-/// Writes the only field of an instance.
+/// A request that writes the only field of an instance.
 fn write_one(command: u16, instance: u16, data: impl Into<Vec<u8>>) -> Request {
     Request { command, instance, attribute: 1, service: service::SET_SINGLE, data: data.into() }
 }
@@ -173,15 +173,15 @@ fn read_plural(command: u16, first: u16, count: u16) -> Request {
     Request { command, instance: first, attribute: 0, service: service::READ_PLURAL, data }
 }
 
-/// Writes `count` consecutive elements.
+/// A request that writes `count` consecutive elements.
 fn write_plural(command: u16, first: u16, count: usize, elements: impl IntoIterator<Item = u8>) -> Request {
-    // The check after every construction refuses such a large count.
+    // The check after the construction refuses a count that large.
     let mut data = u32::try_from(count).unwrap_or(u32::MAX).to_le_bytes().to_vec();
     data.extend(elements);
     Request { command, instance: first, attribute: 0, service: service::WRITE_PLURAL, data }
 }
 
-/// The elements of a plural answer, which must have the requested count.
+/// The elements of a plural answer. Their number must be the requested count.
 fn elements<'a>(
     what: &'static str,
     data: &'a [u8],
@@ -201,7 +201,7 @@ fn known_group(model: Model, group: Group) -> Result<Group, QueryError> {
     if group.exists_on(model) { Ok(group) } else { Err(QueryError::Group { group, model }) }
 }
 
-/// The last task; 0 is the master.
+/// Number of the last task; task 0 is the master task.
 const fn last_task(model: Model) -> u8 {
     match model {
         Model::Fs100 => 5,

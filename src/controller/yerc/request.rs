@@ -8,7 +8,7 @@ use super::table::{Action, Field, Kind, Plural, RiskRule, Row, Service, service,
 use super::wire::{Division, MAX_DATA, RequestFrame};
 use crate::Risk;
 
-/// A request without its id.
+/// A request without a request id.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Request {
     /// Command number; 0 for files.
@@ -19,7 +19,7 @@ pub struct Request {
     pub attribute: u8,
     /// Service.
     pub service: u8,
-    /// At most 479 bytes.
+    /// Data, at most 479 bytes.
     pub data: Vec<u8>,
 }
 
@@ -43,17 +43,17 @@ pub enum RequestError {
     Model {
         /// The number given.
         command: u16,
-        /// Its name.
+        /// Name of the command.
         name: &'static str,
         /// The controller.
         model: Model,
     },
     /// A service that the command does not have.
-    #[error("service {found:#04x} is not one of command {command:#06x} ({name}); allowed: {allowed}")]
+    #[error("command {command:#06x} ({name}) has no service {found:#04x}; allowed: {allowed}")]
     Service {
         /// The command.
         command: u16,
-        /// Its name.
+        /// Name of the command.
         name: &'static str,
         /// The service given.
         found: u8,
@@ -130,7 +130,7 @@ pub enum RequestError {
         /// Maximum count.
         max: u16,
     },
-    /// An odd count where only even ones are valid.
+    /// An odd count, although only even counts are valid.
     #[error("{name}: count {found} is odd; allowed: even counts from 2 to {max}")]
     OddCount {
         /// The command's name.
@@ -140,8 +140,8 @@ pub enum RequestError {
         /// Maximum count.
         max: u16,
     },
-    /// Elements beyond the range of the first one.
-    #[error("{name}: {count} elements from {first} on exceed the last one, {last}")]
+    /// Elements beyond the end of the range that contains the first element.
+    #[error("{name}: {count} elements from {first} end after the last element {last}")]
     Overrun {
         /// The command's name.
         name: &'static str,
@@ -187,7 +187,7 @@ impl Request {
         Self { command: 0, instance: 0, attribute: 0, service, data: data.into() }
     }
 
-    /// The server of the request; command 0 is not a robot command.
+    /// The server that the request is for. Command 0 is not a robot command, so it is for the file server.
     pub const fn division(&self) -> Division {
         if self.command == 0 { Division::File } else { Division::Robot }
     }
@@ -195,7 +195,7 @@ impl Request {
     /// Encodes the datagram.
     ///
     /// # Panics
-    /// If the data has more than 479 bytes; [`Request::check`] detects that.
+    /// If the data has more than 479 bytes. [`Request::check`] detects such a request.
     pub fn frame(&self, id: u8) -> Vec<u8> {
         RequestFrame { id, ..self.into() }.emit()
     }
@@ -208,7 +208,7 @@ impl Request {
         }
     }
 
-    /// Risk of the request; an unknown one counts as a motion.
+    /// Risk of the request. An unknown request counts as a motion.
     pub fn risk(&self) -> Risk {
         let Some(service) = self.row().and_then(|row| row.service(self.service)) else { return Risk::Motion };
         match service.risk {
@@ -251,7 +251,7 @@ impl Request {
         }
     }
 
-    /// The last instance that a request can reach from here.
+    /// Checks the instance, and returns the last instance that a plural request can reach from it.
     fn check_instance(&self, row: &Row, service: &Service, model: Model) -> Result<u16, RequestError> {
         let span = row.instances.find(model, self.instance).ok_or_else(|| RequestError::Instance {
             name: row.name,
@@ -296,7 +296,7 @@ impl Request {
         if u32::from(self.instance) + count - 1 > u32::from(last) {
             return Err(RequestError::Overrun { name: row.name, first: self.instance, count, last });
         }
-        // At most 479 by the check above, so both conversions and the product are in range.
+        // The check above limits the count to at most 479, so the conversion and the product are in range.
         let expected = if self.service == service::WRITE_PLURAL {
             usize::try_from(count).unwrap_or(MAX_DATA).saturating_mul(row.size())
         } else {
@@ -324,7 +324,7 @@ impl Request {
     }
 }
 
-/// Checks words with defined values; `data` has any number of elements.
+/// Checks the words that have defined values. `data` can have any number of elements.
 fn check_values(row: &Row, fields: &[Field], data: &[u8]) -> Result<(), RequestError> {
     let size = total(fields);
     if size == 0 {

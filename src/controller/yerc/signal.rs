@@ -9,7 +9,7 @@ use super::Model;
 use super::table::{Row, Span};
 use crate::typed::unsigned;
 
-/// A signal by its logical number; the last digit is 0 to 7.
+/// A signal by its logical number, whose last digit is 0 to 7.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Signal {
     group: u16,
@@ -20,13 +20,13 @@ pub struct Signal {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum SignalError {
     /// Not a number of up to five digits.
-    #[error("'{found}' is not a valid signal number, e.g. 10010")]
+    #[error("'{found}' is not a valid signal number, for example 10010")]
     Malformed {
         /// The invalid text.
         found: String,
     },
     /// A last digit above 7.
-    #[error("signal {number} does not exist: the last digit goes from 0 to 7")]
+    #[error("signal {number} does not exist: the last digit must be from 0 to 7")]
     Digit {
         /// The number given.
         number: u32,
@@ -41,12 +41,12 @@ impl Signal {
         Ok(Self { group: u16::try_from(number / 10).map_err(malformed)?, bit })
     }
 
-    /// Instance of its group of eight.
+    /// Instance of the group of eight signals that contains the signal.
     pub const fn group(self) -> u16 {
         self.group
     }
 
-    /// Bit in the byte of the group, 0 the lowest.
+    /// Bit number in the byte of the group; 0 is the lowest bit.
     pub const fn bit(self) -> u8 {
         self.bit
     }
@@ -56,12 +56,12 @@ impl Signal {
         u32::from(self.group) * 10 + u32::from(self.bit)
     }
 
-    /// Whether it is on in the byte of its group.
+    /// Whether the signal is on. `byte` contains the eight signals of its group.
     pub const fn is_on(self, byte: u8) -> bool {
         byte >> self.bit & 1 == 1
     }
 
-    /// Its class, with name and write permission; `None` if the model does not have the signal.
+    /// Class of the signal, with name and write permission; `None` if the model does not have the signal.
     pub fn class(self, model: Model) -> Option<&'static Span> {
         io_class(model, self.group)
     }

@@ -1,7 +1,7 @@
 //! Alarm sub-codes: 32-bit values whose meaning depends on the alarm type (FS and DX 3.3.1, 3.3.2, 3.3.37).
 //!
-//! The manuals specify the types and their display on the pendant, but not the layout of the bits. So each rendering
-//! has a trust level:
+//! The manuals specify the types and their display on the pendant, but not the layout of the bits. For this reason,
+//! each rendered text has a trust level:
 //!
 //! | types | trust | reason |
 //! |---|---|---|
@@ -11,8 +11,8 @@
 //! | 20-25, 27 | [`Trust::Raw`] | several fields in one word in an unknown order; a guess could send a technician to the wrong axis |
 //! | others | [`Trust::Raw`] | not in the manuals (7, 13-19, 26) |
 //!
-//! A value that does not fit the format of its type is displayed raw. Controllers with 0x30A and 0x30B send the text
-//! of the pendant for every type, which is better.
+//! A value that does not fit the format of its type is displayed raw. Controllers with 0x30A and 0x30B send the text of
+//! the pendant for every type. That text is better than a text rendered here.
 
 use std::fmt;
 
@@ -20,7 +20,7 @@ use super::Model;
 use super::group::Group;
 use super::table::ALARM_KINDS;
 
-/// Format of a sub-code; undefined numbers are kept.
+/// Format of a sub-code. Numbers that are not defined are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct AlarmKind(pub u32);
 
@@ -31,7 +31,7 @@ impl AlarmKind {
     }
 }
 
-/// Trust level of a rendering.
+/// Trust level of a rendered text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Trust {
     /// Fully specified in the manuals.
@@ -60,17 +60,17 @@ pub struct SubCode {
     pub alarm_type: u32,
     /// Sub-code, as received.
     pub data: u32,
-    /// Description of the type.
+    /// Name of the type.
     pub type_name: &'static str,
-    /// Text as on the pendant, such as `[1]` or `[SLU]`. If [`trust`](Self::trust) is raw: the bytes in hexadecimal,
-    /// lowest first. Empty without a sub-code.
+    /// Text as on the pendant, such as `[1]` or `[SLU]`. If [`trust`](Self::trust) is raw, the bytes in hexadecimal,
+    /// lowest byte first. Empty without a sub-code.
     pub text: String,
     /// Trust level of the text.
     pub trust: Trust,
 }
 
-/// Renders the sub-code `data` of an alarm of type `kind`. The model limits the number of robots. Never fails:
-/// unknown types and values that do not fit are rendered raw.
+/// Renders the sub-code `data` of an alarm of type `kind`. The model limits the number of robots. Rendering never
+/// fails: unknown types and values that do not fit are rendered raw.
 pub fn render(kind: AlarmKind, data: u32, model: Model) -> SubCode {
     let alarm_type = kind.0;
     let form = TYPES.iter().find(|(number, _)| *number == alarm_type).map_or(Form::Unknown, |(_, form)| *form);
@@ -137,7 +137,7 @@ impl Form {
                 Some((format!("[{number}]"), Trust::Printed))
             }
             Self::Signed16 => {
-                // -1 may arrive as 0x0000FFFF or extended to 0xFFFFFFFF.
+                // A controller may send -1 as 0x0000FFFF, or extended to 0xFFFFFFFF.
                 let number = u16::try_from(data).map(u16::cast_signed);
                 let number = number.or_else(|_| i16::try_from(data.cast_signed())).ok()?;
                 Some((format!("[{number}]"), Trust::Printed))
@@ -176,12 +176,12 @@ fn is_set(data: u32, bit: u32) -> bool {
     data >> bit & 1 == 1
 }
 
-/// `[…]`, or empty for an empty set, as on the pendant.
+/// Puts a set in brackets, as on the pendant. An empty set gives an empty text.
 fn bracketed(set: &str) -> String {
     if set.is_empty() { String::new() } else { format!("[{set}]") }
 }
 
-/// Bits as on the pendant, highest first: `[0000_0001]`.
+/// Bits as on the pendant, highest bit first: `[0000_0001]`.
 fn pattern(data: u32, width: u32) -> String {
     let mut text = String::from("[");
     for bit in (0..width).rev() {
@@ -194,7 +194,7 @@ fn pattern(data: u32, width: u32) -> String {
     text
 }
 
-/// Bytes in order of arrival, lowest first.
+/// Bytes in the order of arrival, lowest byte first.
 fn bytes(data: u32) -> String {
     let [a, b, c, d] = data.to_le_bytes();
     format!("{a:02x} {b:02x} {c:02x} {d:02x}")

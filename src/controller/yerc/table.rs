@@ -1,8 +1,8 @@
 //! Table of commands: numbers, ranges, sizes and permissions of the manuals (FS and DX table 3-1, sections 3.3 and
 //! 3.4).
 //!
-//! It is the single source for validation, descriptions and the simulator. Misprinted ranges and sizes of the manuals
-//! are corrected; the golden frames are the evidence.
+//! The table is the single source for validation, descriptions and the simulator. The manuals misprint some ranges and
+//! sizes; the table has the corrected values. The golden frames are the evidence.
 
 mod bits;
 mod fields;
@@ -33,7 +33,7 @@ pub mod service {
     pub const SET_SINGLE: u8 = 0x10;
     /// Send a file to the controller.
     pub const LOAD: u8 = 0x15;
-    /// Fetch a file from the controller; with the path of the batch backup, create one.
+    /// Fetch a file from the controller. With the path of the batch backup, create the backup.
     pub const SAVE: u8 = 0x16;
     /// List files.
     pub const LIST: u8 = 0x32;
@@ -63,7 +63,7 @@ impl Availability {
         !matches!((self, model), (Self::Dx200, Model::Fs100 | Model::Dx100))
     }
 
-    /// Hint for a refusal of the command.
+    /// Hint for the user if a controller refuses the command.
     pub const fn note(self) -> Option<&'static str> {
         match self {
             Self::Both => None,
@@ -80,7 +80,7 @@ pub enum Attribute {
     Zero,
     /// 1.
     One,
-    /// 1 as printed; 0 is also known to be accepted.
+    /// 1, as in the manuals. Controllers are known to accept 0 too.
     OneOrZero,
     /// The number of a field, from 1.
     Field,
@@ -89,9 +89,10 @@ pub enum Attribute {
 /// Rule for the risk of a service.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum RiskRule {
-    /// Independent of the data.
+    /// The risk does not depend on the data.
     Always(Risk),
-    /// Servo power on and off is a motion, because an axis may sink. HOLD and HLOCK are writes (3.3.20).
+    /// The risk depends on the switch: servo power on and off is a motion, because an axis may sink. HOLD and HLOCK are
+    /// writes (3.3.20).
     Switches,
 }
 
@@ -133,7 +134,7 @@ pub struct Plural {
 pub struct Row {
     /// Command number; 0 for files.
     pub number: u16,
-    /// Robot or file.
+    /// Server that executes the row: robot or file.
     pub division: Division,
     /// Readable name.
     pub name: &'static str,
@@ -145,9 +146,9 @@ pub struct Row {
     pub services: &'static [Service],
     /// Valid instances.
     pub instances: Instances,
-    /// Fields of the data; of one element for plural commands. Attribute numbers count from 1.
+    /// Fields of the data; for plural commands, the fields of one element. Attribute numbers count from 1.
     pub fields: &'static [Field],
-    /// The 25-word layout of the cartesian move in the FS100 manual; only for an FS100.
+    /// The 25-word layout of the cartesian move in the FS100 manual. It is valid only for an FS100.
     pub alternative: Option<&'static [Field]>,
     /// Limits, for plural commands.
     pub plural: Option<Plural>,
@@ -159,7 +160,7 @@ impl Row {
         ROWS.iter().find(|row| row.division == Division::Robot && row.number == command)
     }
 
-    /// The row of a file service; `data` distinguishes save and batch backup.
+    /// The row of a file service. `data` distinguishes a save from the batch backup.
     pub fn of_file(service: u8, data: &[u8]) -> Option<&'static Self> {
         let backup = service == service::SAVE && data == BATCH_BACKUP_PATH;
         ROWS.iter().find(|row| {
@@ -182,12 +183,12 @@ impl Row {
         self.services.iter().find(|service| service.number == number)
     }
 
-    /// Size of all fields in bytes; of one element for plural commands.
+    /// Size of all fields in bytes; for plural commands, the size of one element.
     pub fn size(&self) -> usize {
         total(self.fields)
     }
 
-    /// The fields of a single (not plural) read or write of `attribute`; empty for an unknown attribute.
+    /// The fields of a single (not plural) read or write of `attribute`; empty if the attribute is unknown.
     pub fn fields_of(&self, service: &Service, attribute: u8) -> &'static [Field] {
         match service.attribute {
             Attribute::Field => match usize::from(attribute).checked_sub(1) {
@@ -198,14 +199,14 @@ impl Row {
         }
     }
 
-    /// Whether it is the batch backup, which has the same service as save.
+    /// Whether the row is the batch backup, which has the same service number as save.
     pub fn is_batch_backup(&self) -> bool {
         self.section == rows::BATCH_BACKUP_SECTION
     }
 }
 
 impl Service {
-    /// Whether an attribute number is valid for this number of fields.
+    /// Whether an attribute number is valid for a command with this number of fields.
     pub fn takes(&self, attribute: u8, fields: usize) -> bool {
         match self.attribute {
             Attribute::Zero => attribute == 0,
@@ -225,13 +226,13 @@ impl Service {
         }
     }
 
-    /// Whether it reads or writes several elements.
+    /// Whether the row reads or writes several elements.
     pub const fn is_plural(&self) -> bool {
         matches!(self.number, service::READ_PLURAL | service::WRITE_PLURAL)
     }
 }
 
-/// Size of some fields in bytes.
+/// Size of these fields in bytes.
 pub fn total(fields: &[Field]) -> usize {
     fields.iter().map(Field::size).sum()
 }

@@ -1,4 +1,4 @@
-//! Variables: kinds, values, references such as `B0..B99`, and request plans for many of them.
+//! Variables: kinds, values, references such as `B0..B99`, and plans of requests for many variables.
 
 mod plan;
 pub(super) mod reference;

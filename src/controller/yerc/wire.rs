@@ -1,8 +1,8 @@
 //! Frame format: 24-byte header, 8-byte sub-header, at most 479 bytes of data (FS and DX section 3.1).
 //!
-//! Frames of the client (request, file data, ACK) have the request sub-header, frames of the controller the answer
-//! sub-header. Parsing accepts what real controllers send (reserved and padding bytes are ignored); encoding follows
-//! the manual.
+//! Frames of the client (request, file data, ACK) have the request sub-header. Frames of the controller have the answer
+//! sub-header. Parsing accepts what real controllers send: it ignores reserved bytes and padding bytes. Encoding
+//! follows the manual.
 
 use std::ops::Range;
 
@@ -14,7 +14,7 @@ pub const HEADER_LEN: usize = 32;
 pub const MAX_DATA: usize = 479;
 /// Maximum size of a datagram.
 pub const MAX_FRAME: usize = HEADER_LEN + MAX_DATA;
-/// Bit in the block number of the last frame of an answer or transfer.
+/// Bit in the block number that marks the last frame of an answer or transfer.
 pub const LAST_BLOCK: u32 = 0x8000_0000;
 /// Bit in the service of an answer.
 pub const ANSWER_BIT: u8 = 0x80;
@@ -50,7 +50,7 @@ mod field {
     pub(super) const ADDED: Range<usize> = 28..32;
 }
 
-/// Server of a frame; each has its own UDP port.
+/// Server of a frame. Each server has its own UDP port.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Division {
     /// Robot control, UDP 10040.
@@ -68,34 +68,34 @@ impl Division {
     }
 }
 
-/// An invalid datagram, with the wrong field.
+/// Why a datagram is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum WireError {
-    /// Too short for header and sub-header.
+    /// The datagram is too short for header and sub-header.
     #[error("{len} bytes are too short: a frame has at least {HEADER_LEN}")]
     Truncated {
         /// Bytes received.
         len: usize,
     },
-    /// Longer than any frame.
+    /// The datagram is longer than any valid frame.
     #[error("{len} bytes are too long: a frame has at most {MAX_FRAME}")]
     Oversized {
         /// Bytes received.
         len: usize,
     },
-    /// Identifier other than YERC.
+    /// The identifier is not YERC.
     #[error("identifier at offset 0 is {found:02x?}, not \"YERC\"")]
     Identifier {
         /// The value found.
         found: [u8; 4],
     },
-    /// Header size other than 0x20.
+    /// The header size is not 0x20.
     #[error("header size at offset 4 is {found:#06x}, not 0x0020")]
     HeaderSize {
         /// The value found.
         found: u16,
     },
-    /// Size field that does not match the data.
+    /// The size field does not match the size of the data.
     #[error("data size at offset 6 is {stated}, but {present} bytes follow the header")]
     DataSize {
         /// Size in the header.
@@ -103,13 +103,13 @@ pub enum WireError {
         /// Actual size.
         present: usize,
     },
-    /// Division other than robot (1) and file (2).
+    /// The division is neither robot (1) nor file (2).
     #[error("processing division at offset 9 is {found}, neither 1 (robot) nor 2 (file)")]
     Division {
         /// The value found.
         found: u8,
     },
-    /// ACK flag other than 0 and 1.
+    /// The ACK flag is neither 0 nor 1.
     #[error("ACK at offset 10 is {found}, neither 0 nor 1")]
     Ack {
         /// The value found.
@@ -164,7 +164,7 @@ impl Header {
 
     /// Encodes a frame with an empty sub-header.
     fn emit(self, data: &[u8]) -> Vec<u8> {
-        assert!(data.len() <= MAX_DATA, "a frame holds {MAX_DATA} data bytes, not {}", data.len());
+        assert!(data.len() <= MAX_DATA, "a frame can have {MAX_DATA} data bytes, not {}", data.len());
         let mut frame = vec![0; HEADER_LEN + data.len()];
         frame[field::IDENTIFIER].copy_from_slice(IDENTIFIER);
         frame[field::HEADER_SIZE].copy_from_slice(&le16(HEADER_LEN));
@@ -223,7 +223,7 @@ impl<'a> RequestFrame<'a> {
     /// Encodes the datagram.
     ///
     /// # Panics
-    /// If `data` is longer than [`MAX_DATA`]; callers use payloads that fit by construction.
+    /// If `data` is longer than [`MAX_DATA`]. The callers build only data that fits.
     pub fn emit(&self) -> Vec<u8> {
         let Self { division, ack, id, block, .. } = *self;
         let mut frame = Header { division, ack, id, block }.emit(self.data);
@@ -242,7 +242,7 @@ pub struct Status {
     pub code: u8,
     /// Size of the added status in 16-bit words, 0 to 2.
     pub added_size: u8,
-    /// Added status; 0 if its size is 0.
+    /// Added status; 0 if `added_size` is 0.
     pub added: u32,
 }
 
@@ -255,8 +255,8 @@ impl Status {
         Self { code: 0x1F, added_size: 1, added: added as u32 }
     }
 
-    /// Whether the request was carried out. An added status may still report that there was no object for it (DX: E29C,
-    /// E2A7 with status 0).
+    /// Whether the controller carried out the request. An added status may still report that the object of the request
+    /// did not exist (DX: E29C, E2A7 with status 0).
     pub const fn is_ok(self) -> bool {
         self.code == 0
     }
@@ -323,14 +323,14 @@ impl<'a> AnswerFrame<'a> {
     }
 }
 
-/// The bytes of a range, whose length must be `N`.
+/// The bytes of a range. The length of the range must be `N`.
 fn array<const N: usize>(bytes: &[u8], range: Range<usize>) -> [u8; N] {
     let mut out = [0; N];
     out.copy_from_slice(&bytes[range]);
     out
 }
 
-/// A size of at most 511, which always fits.
+/// Encodes a size. It is at most 511, so it always fits.
 fn le16(size: usize) -> [u8; 2] {
     u16::try_from(size).expect("frame sizes are at most 511").to_le_bytes()
 }

@@ -1,8 +1,8 @@
 //! Alarms: a group and a category, written `12.600` (chapter 2, section 1.2).
 //!
-//! The remote I/O manual names only a few alarms and refers to the controller manual for the rest. The names of
-//! groups and fieldbus alarms are general knowledge about these controllers. Causes and remedies follow from the
-//! remote I/O manual, or are hints.
+//! The remote I/O manual names only a few alarms, and refers to the controller manual for the others. The names of
+//! groups and fieldbus alarms are general knowledge about these controllers. Causes and remedies follow from the remote
+//! I/O manual, or are hints.
 
 use std::fmt;
 use std::str::FromStr;
@@ -12,20 +12,20 @@ use thiserror::Error;
 /// An alarm number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Alarm {
-    /// Alarm group: WO1 of an abnormal end.
+    /// Alarm group: WO1 after an abnormal end.
     pub group: u16,
-    /// Category within the group: WO2.
+    /// Category within the group: WO2 after an abnormal end.
     pub category: u16,
 }
 
 /// Description of an alarm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Known {
-    /// Its number.
+    /// Number of the alarm.
     pub alarm: Alarm,
     /// Message text.
     pub text: &'static str,
-    /// Usual causes; empty if no source has any.
+    /// Usual causes; empty if no source has a cause.
     pub causes: &'static [&'static str],
     /// Remedies.
     pub remedies: &'static [&'static str],
@@ -33,13 +33,13 @@ pub struct Known {
 
 /// An invalid alarm number.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("'{found}' is not a valid alarm number, e.g. 12.600")]
+#[error("'{found}' is not a valid alarm number, for example 12.600")]
 pub struct AlarmError {
     /// The invalid text.
     pub found: String,
 }
 
-/// A motion was ended by the stop input (4.2.6).
+/// The stop input ended a motion (4.2.6).
 pub const STOP_INPUT: Alarm = Alarm::new(12, 400);
 /// The words of the command are invalid (4.2.1).
 pub const INPUT_FORMAT: Alarm = Alarm::new(4, 202);
@@ -55,18 +55,18 @@ impl Alarm {
         GROUPS.iter().find(|(group, _)| *group == self.group).map(|(_, text)| *text)
     }
 
-    /// Description of this alarm, if known.
+    /// Description of this alarm; `None` if the alarm is unknown.
     pub fn known(self) -> Option<&'static Known> {
         KNOWN.iter().find(|known| known.alarm == self)
     }
 
-    /// The related alarm of a link that is lost for too long.
+    /// For an alarm of a lost link, the related alarm that the link was lost for too long.
     #[must_use]
     pub const fn too_long(self) -> Self {
         Self::new(self.group, self.category + 1)
     }
 
-    /// Best known text.
+    /// Text of the alarm, or of its group if the alarm is unknown.
     pub fn text(self) -> &'static str {
         self.known().map(|known| known.text).or_else(|| self.group_text()).unwrap_or("unknown alarm group")
     }
@@ -81,7 +81,7 @@ impl fmt::Display for Alarm {
 impl FromStr for Alarm {
     type Err = AlarmError;
 
-    /// Parses `12.600` or `12:600`; the manual uses both (4.7.17).
+    /// Parses `12.600` or `12:600`. The manual uses both forms (4.7.17).
     fn from_str(text: &str) -> Result<Self, AlarmError> {
         let number = |digits: &str| if digits.starts_with('+') { None } else { digits.parse().ok() };
         text.split_once(['.', ':'])
@@ -117,7 +117,7 @@ const LINK_REMEDIES: &[&str] =
     &["keep the connection open with one session", "open the connection again, then reset the alarm"];
 const UNIT_REMEDIES: &[&str] = &["switch the controller off and on", "check the option unit and its settings"];
 
-/// Alarms that are named in the sources.
+/// Alarms that the sources name.
 pub const KNOWN: [Known; 19] = [
     Known {
         alarm: Alarm::new(2, 334),
@@ -128,28 +128,29 @@ pub const KNOWN: [Known; 19] = [
     Known {
         alarm: INPUT_FORMAT,
         text: "input format error",
-        causes: &["a word of the command has an invalid value, e.g. both position outputs at once"],
-        remedies: &["compare the words sent with the section of the command: armctl decode yrcx"],
+        causes: &["a word of the command has an invalid value, for example both position outputs at once"],
+        remedies: &["compare the sent words with the manual section of the command; `armctl decode yrcx` shows the \
+                     words"],
     },
     Known {
         alarm: Alarm::new(12, 75),
         text: "illegal remote command",
         causes: &["the code in WI0 does not exist"],
-        remedies: &["check the code, and that words arrive in the right order and byte order"],
+        remedies: &["check the code, and that words arrive in the correct order and byte order"],
     },
     Known {
         alarm: Alarm::new(12, 76),
         text: "remote command not enabled",
         causes: &[
             "the programming box has control: the controller accepts only references",
-            "a safety setting disables the dedicated inputs, and with them every remote command",
+            "a safety setting disables the dedicated inputs and all remote commands",
         ],
         remedies: &["give control back at the programming box", "check mode and safety settings"],
     },
     Known {
         alarm: STOP_INPUT,
         text: "stopped by the stop input",
-        causes: &["SI(06) went off: the motion was stopped"],
+        causes: &["SI(06) was switched off: the motion was stopped"],
         remedies: &["switch SI(06) on again before the next motion"],
     },
     link(541, "DeviceNet link error"),
@@ -164,7 +165,7 @@ pub const KNOWN: [Known; 19] = [
         alarm: Alarm::new(12, 600),
         text: "emergency stop on",
         causes: &["an emergency stop was pressed, or SI(00) is off", "a connection was opened with SI(00) off"],
-        remedies: &["release it, switch SI(00) on, reset the alarm, switch the servos on"],
+        remedies: &["release the emergency stop, switch SI(00) on, reset the alarm, switch the servos on"],
     },
     unit(761),
     unit(762),

@@ -14,11 +14,11 @@ use super::value::{Value, Values};
 pub enum Status {
     /// 0x0000: ready for a command.
     Ready,
-    /// 0x0100: a command runs. A short command may skip this status.
+    /// 0x0100: a command runs. The controller may skip this status for a short command.
     Running,
-    /// 0x0200: carried out. For a program start: accepted.
+    /// 0x0200: the command was carried out. For a program start: the start was accepted.
     NormalEnd,
-    /// 0x4000: refused or aborted, with an alarm.
+    /// 0x4000: the command was refused or aborted, with an alarm.
     AbnormalEnd,
     /// A value that is not in the manual.
     Other(u16),
@@ -65,24 +65,24 @@ impl fmt::Display for Status {
     }
 }
 
-/// Answer to an order; a refusal is an answer too.
+/// Answer to an order. A refusal is also an answer.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Answer {
-    /// Still running. Only continuous output has values.
+    /// The command still runs. Only continuous output has values.
     Running(Values),
-    /// Carried out.
+    /// The command was carried out.
     Done(Values),
-    /// Refused or aborted.
+    /// The command was refused or aborted.
     Refused {
-        /// Reason.
+        /// Alarm that gives the reason.
         alarm: Alarm,
-        /// Final position after a jog that was stopped (4.2.6).
+        /// Final position, if the command is a jog that was stopped (4.2.6).
         positions: Values,
     },
 }
 
 impl Answer {
-    /// Decodes the answer to `order`; `None` if WO0 contains no answer. Accepts any words and keeps unknown numbers.
+    /// Decodes the answer to `order`; `None` if WO0 contains no answer. Accepts any words, and keeps unknown numbers.
     pub fn parse(order: &Order, words: &Words) -> Option<Self> {
         let collect = || fields(order, words).map(|(field, value)| (field.key, value)).collect();
         let none = Values::default;
@@ -123,7 +123,7 @@ pub(super) fn is_stopped_jog(order: &Order, alarm: Alarm) -> bool {
     order.row().pace == Pace::Jog && alarm == STOP_INPUT
 }
 
-/// The fields and values of an answer to `order`, for any words.
+/// The fields and values of an answer to `order`. The words can have any content.
 pub fn fields<'a>(order: &'a Order, words: &'a Words) -> impl Iterator<Item = (&'static Field, Value)> + 'a {
     codec::read(order.row().answer(), words, Some(order.values()))
 }

@@ -1,6 +1,6 @@
 //! Memory map of the image on each fieldbus (chapter 1, section 1), for the programmer of the master.
 //!
-//! The bit table of compact DeviceNet in the manual lacks bits 14 and 15; they are as in the full tables.
+//! The bit table of compact DeviceNet in the manual lacks bits 14 and 15. Here they are as in the full tables.
 
 use super::image::{COMMAND_WORDS, DEDICATED_WORD};
 use super::signal::{Side, Signal};
@@ -61,7 +61,7 @@ impl std::str::FromStr for Bus {
 /// A row of the map.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MapRow {
-    /// SI and WI are inputs of the controller, SO and WO its outputs.
+    /// Direction. SI and WI are inputs of the controller, SO and WO are its outputs.
     pub side: Side,
     /// Prefix of the address: `m` or `n` for words, `Im` or `Qn` for bytes.
     pub base: &'static str,
@@ -71,7 +71,7 @@ pub struct MapRow {
     pub low: u8,
     /// The highest bit of the row.
     pub high: u8,
-    /// Signals, such as `SI(20) to SI(27)`; empty if reserved.
+    /// Signals, such as `SI(20) to SI(27)`; empty if the bits are reserved.
     pub signal: String,
     /// Readable name.
     pub meaning: String,
@@ -80,7 +80,7 @@ pub struct MapRow {
 }
 
 impl MapRow {
-    /// Address as in the manual, or from a start address of the master.
+    /// Address as in the manual, or relative to a start address of the master.
     pub fn address(&self, start: Option<u32>) -> String {
         match (start, self.offset) {
             (Some(start), offset) => {
@@ -92,13 +92,13 @@ impl MapRow {
         }
     }
 
-    /// Bits: `3`, or `0 - 7`.
+    /// Bits of the row: `3`, or `0 - 7`.
     pub fn bits(&self) -> String {
         if self.low == self.high { self.low.to_string() } else { format!("{} - {}", self.low, self.high) }
     }
 }
 
-/// The map of a fieldbus: first outputs of the controller, as in the manual; in ascending order.
+/// The map of a fieldbus in ascending order. The outputs of the controller come first, as in the manual.
 pub fn map(bus: Bus) -> Vec<MapRow> {
     [Side::Output, Side::Input].into_iter().flat_map(|side| half(bus, side)).collect()
 }
@@ -153,7 +153,7 @@ fn half(bus: Bus, side: Side) -> Vec<MapRow> {
     places
 }
 
-/// Last word of general-purpose bits; a reserved word follows.
+/// Last word of general-purpose bits. A reserved word follows it.
 const LAST_GENERAL: usize = 22;
 
 /// Name and use of a word register.

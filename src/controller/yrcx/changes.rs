@@ -1,4 +1,5 @@
-//! Differences between consecutive images, for traces and captures: images are cyclic and rarely change.
+//! Differences between consecutive images, for traces and captures. Masters and controllers send images cyclically, but
+//! the images rarely change.
 
 use super::describe::{answer_summary, command_summary};
 use super::image::{COMMAND_WORDS, Image, Words};
@@ -8,7 +9,7 @@ use super::table::STATUS_RESET;
 /// A difference.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Change {
-    /// The words of a command or an answer.
+    /// The words of a command or an answer have changed.
     Words {
         /// Command or answer.
         side: Side,
@@ -17,7 +18,7 @@ pub enum Change {
         /// One-line summary.
         summary: String,
     },
-    /// A bit.
+    /// A bit has changed.
     Signal {
         /// The signal.
         signal: Signal,
@@ -27,7 +28,7 @@ pub enum Change {
 }
 
 impl Change {
-    /// One-line text, with all words or only those up to the last used one.
+    /// One-line text with all words, or only with the words up to the last used word.
     pub fn line(&self, all: bool) -> String {
         match self {
             Self::Words { side, words, summary } => {
@@ -45,8 +46,8 @@ impl Change {
     }
 }
 
-/// Differences from the previous image of the same side. In the first image, all nonzero values and the words of an
-/// answer count.
+/// Differences from the previous image of the same direction. In a first image, all values that are not 0 and the words
+/// of an answer count as differences.
 pub fn changes(side: Side, before: Option<&Image>, image: &Image) -> Vec<Change> {
     let mut changes = Vec::new();
     let words = image.command();

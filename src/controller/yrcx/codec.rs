@@ -1,4 +1,4 @@
-//! Codec between values and words, by the layouts of the table.
+//! Codec between values and words. It uses the layouts of the table.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -13,9 +13,9 @@ use super::value::{Key, Value, Values};
 /// Command or answer words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Side {
-    /// WI: from the master to the controller.
+    /// WI words: from the master to the controller.
     Command,
-    /// WO: from the controller to the master.
+    /// WO words: from the controller to the master.
     Answer,
 }
 
@@ -28,7 +28,7 @@ impl fmt::Display for Side {
     }
 }
 
-/// An encoding or decoding error.
+/// Why values cannot be encoded or words cannot be decoded.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{place}{problem}")]
 pub struct WordError {
@@ -36,11 +36,11 @@ pub struct WordError {
     pub place: FieldLocation,
     /// The problem.
     pub problem: String,
-    /// Alarm of a controller for this error, if the manual specifies it (4.2.1).
+    /// The alarm that a controller raises for this error, if the manual specifies one (4.2.1).
     pub alarm: Option<Alarm>,
 }
 
-/// Place of an error.
+/// Location of an error.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldLocation {
     /// WI or WO.
@@ -72,13 +72,13 @@ impl WordError {
     }
 }
 
-/// Fields of a layout, in order.
+/// Fields of a layout, in their order.
 pub(super) trait Layout: Iterator<Item = &'static Field> + Clone {}
 
 impl<I: Iterator<Item = &'static Field> + Clone> Layout for I {}
 
-/// Encodes values. `context` has the values of the command, for an answer that depends on them. Word 0 only gets
-/// values of its fields.
+/// Encodes values. `context` contains the values of the command, for an answer that depends on them. Word 0 gets only
+/// the values of its fields.
 pub(super) fn encode(
     side: Side,
     layout: impl Layout,
@@ -98,7 +98,8 @@ pub(super) fn encode(
         };
         field.accept(&value).and_then(|()| field.write(&mut words, &value)).map_err(|problem| {
             let error = WordError::of_field(side, field, problem);
-            // Position output in both units at once: the manual specifies an alarm only for this error (4.2.1).
+            // The values request a position output in both units at once. The manual specifies an alarm only for this
+            // error (4.2.1).
             WordError { alarm: (field.key == Key::Report).then_some(INPUT_FORMAT), ..error }
         })?;
         used.insert(field.key);
@@ -109,10 +110,10 @@ pub(super) fn encode(
     }
 }
 
-/// Given values, with text parsed by the fields, and with the flags that they imply.
+/// Returns the given values, after the fields parsed their text, and with the flags that the values imply.
 fn implied(side: Side, layout: impl Layout, given: &Values, context: Option<&Values>) -> Result<Values, WordError> {
     let mut state = Values::default();
-    // Two passes: parsing a field may depend on a later one.
+    // Two passes, because the condition of a field may depend on a later field.
     for _ in 0..2 {
         for field in layout.clone() {
             let Some(value) = given.value(field.key) else { continue };
@@ -140,7 +141,7 @@ fn implied(side: Side, layout: impl Layout, given: &Values, context: Option<&Val
     Ok(state)
 }
 
-/// Looks up numbers in the values, then in those of the command; 0 if missing.
+/// Looks up the number of a key in the values, then in the values of the command. A missing number is 0.
 fn look_in(values: &Values, context: Option<&Values>) -> impl Fn(Key) -> i32 {
     move |key| values.int(key).or_else(|| context?.int(key)).unwrap_or_default()
 }
@@ -149,12 +150,12 @@ fn holds(when: When, value: i32) -> bool {
     (when.least..=when.most).contains(&value)
 }
 
-/// Whether a field is in use, by the values of other fields.
+/// Whether a field is in use. This depends on the value of another field.
 fn counts(field: &Field, look: impl Fn(Key) -> i32) -> bool {
     field.when.is_none_or(|when| holds(when, look(when.key)))
 }
 
-/// Whether a missing field may be 0.
+/// Whether a field may be missing. It is then 0.
 fn may_be_missing(field: &Field, look: impl Fn(Key) -> i32) -> bool {
     match field.need {
         Presence::Required => false,
@@ -171,7 +172,7 @@ fn misplaced(side: Side, mut layout: impl Layout, key: Key) -> WordError {
     WordError::at(side, None, Some(key), problem)
 }
 
-/// The fields in use in `words`, with their values; accepts any words.
+/// The fields that `words` use, with their values. The words can have any content.
 pub(super) fn read<'a>(
     layout: impl Layout + 'a,
     words: &'a Words,
@@ -188,7 +189,7 @@ pub(super) fn read<'a>(
     layout.filter(move |field| counts(field, &look)).map(|field| (field, field.read(words)))
 }
 
-/// Unused bits in words 1 to 15, as word and mask.
+/// Bits in words 1 to 15 that no field uses. Each item is a word number and a mask.
 pub(super) fn strays(
     layout: impl Layout,
     words: &Words,
@@ -217,7 +218,7 @@ pub(super) fn decode_strictly(layout: impl Layout, words: &Words) -> Result<Valu
     }
     match strays(layout, words, None).next() {
         Some((word, bits)) => {
-            Err(WordError::at(side, Some(word), None, format!("bits {bits:#06x} are set, which must be 0 here")))
+            Err(WordError::at(side, Some(word), None, format!("bits {bits:#06x} must be 0 here, but are set")))
         }
         None => Ok(values),
     }

@@ -1,4 +1,4 @@
-//! Decoder of command and answer words into described fields, from the table. It never fails: problems are listed
+//! Decoder of command and answer words into described fields. It uses the table and never fails: problems are listed
 //! separately.
 
 use schemars::JsonSchema;
@@ -17,9 +17,9 @@ use super::value::{Key, Value, Values};
 pub struct Description {
     /// One-line summary.
     pub title: String,
-    /// Section of the manual in chapter 2, for a known command.
+    /// Section of the manual in chapter 2; `None` for an unknown command.
     pub section: Option<&'static str>,
-    /// Fields in order, without unused words that are 0.
+    /// Fields in their order. Unused words that are 0 are omitted.
     pub fields: Vec<FieldNote>,
     /// Problems of the words.
     pub problems: Vec<String>,
@@ -31,20 +31,20 @@ pub struct Description {
 pub struct FieldNote {
     /// Word and bits, as in `WI1 bits 2-1`; `-` outside words.
     pub place: String,
-    /// Its name for programs; null for the code, the status and unused fields.
+    /// Name of the field for programs; `None` for the code, the status and unused fields.
     #[serde(serialize_with = "key_name")]
     #[schemars(with = "Option<String>")]
     pub key: Option<Key>,
-    /// Its name.
+    /// Readable name of the field.
     pub name: String,
-    /// Its value in the words.
+    /// Value in the words.
     pub raw: String,
-    /// Its meaning.
+    /// Meaning of the value.
     pub meaning: String,
 }
 
 impl FieldNote {
-    /// A part of a message that is not a field of a command.
+    /// A part of a message that is not a field of the command.
     pub fn of_message(place: &str, name: &str, raw: String, meaning: &str) -> Self {
         Self { place: place.to_owned(), key: None, name: name.to_owned(), raw, meaning: meaning.to_owned() }
     }
@@ -78,7 +78,7 @@ pub fn command(words: &Words) -> Description {
     notes.description(format!("{} {}", row.code_text(), row.name), Some(row.section))
 }
 
-/// Decodes WO0 to WO15; `request` is the command, if known.
+/// Decodes WO0 to WO15. `request` contains the words of the command, if they are known.
 pub fn answer(words: &Words, request: Option<&Words>) -> Description {
     let mut notes = Notes { side: Side::Answer, words, fields: Vec::new(), problems: Vec::new() };
     let status = Status::from_word(words[0]);
@@ -133,13 +133,13 @@ pub fn answer_summary(words: &Words) -> String {
     }
 }
 
-/// Values of a command, also invalid ones.
+/// Values of a command. They may be invalid.
 fn values_of(words: &Words) -> Option<Values> {
     let row = Row::from_word(words[0])?;
     Some(codec::read(row.request(), words, None).map(|(field, value)| (field.key, value)).collect())
 }
 
-/// Fields that are collected for a description.
+/// Fields and problems that are collected for a description.
 struct Notes<'a> {
     side: Side,
     words: &'a Words,
@@ -163,7 +163,7 @@ impl Notes<'_> {
         self.rest(|word| strays.iter().find(|(at, _)| *at == word).map_or(u16::MAX, |(_, bits)| !bits));
     }
 
-    /// Adds the words 1 to 15 with bits outside the fields.
+    /// Adds those of the words 1 to 15 that have bits outside of the fields.
     fn rest(&mut self, accounted: impl Fn(usize) -> u16) {
         let alarm_words =
             if self.side == Side::Answer && Status::from_word(self.words[0]) == Status::AbnormalEnd { 3 } else { 1 };
@@ -205,7 +205,7 @@ impl Notes<'_> {
     }
 }
 
-/// Bits of a mask in the notation of the manual; empty for a whole word.
+/// Bits of a mask in the notation of the manual; empty if the mask is a whole word.
 fn bits(mask: u16) -> String {
     match (mask.trailing_zeros(), mask.checked_ilog2().unwrap_or_default()) {
         (0, 15) => String::new(),
@@ -240,12 +240,12 @@ mod tests {
     fn a_command_is_explained_field_by_field() {
         // Example of 4.2.1, linear interpolation.
         let linear = command(&words(&[0x0003, 0x8026, 0, 0x00C8, 0x0064, 0, 0, 0, 0, 0, 0x0032]));
-        assert_eq!(linear.title, "0xR003 move to a point in a line");
+        assert_eq!(linear.title, "0xR003 move to a point on a straight line");
         assert_eq!(linear.section, Some("4.2.1"));
         assert_eq!(
             lines(&linear),
             [
-                "WI0 bits 11-0: command code 0x0003 = move-linear: move to a point in a line",
+                "WI0 bits 11-0: command code 0x0003 = move-linear: move to a point on a straight line",
                 "WI0 bits 15-12: robot 0x0000 = none (robot 1)",
                 "WI1 bit 0: axes flag 0x0000 = all axes",
                 "WI1 bits 2-1: speed flag 0x0003 = mm/s",
@@ -271,7 +271,7 @@ mod tests {
             problems(&[0x0001, 0x0004, 0, 101]),
             ["WI3 speed_percent: 101 is out of range; allowed: 1 to 100 %"]
         );
-        assert_eq!(problems(&[0x0406, 0x0100]), ["WI1: bits 0x0100 are set, which must be 0 here"]);
+        assert_eq!(problems(&[0x0406, 0x0100]), ["WI1: bits 0x0100 must be 0 here, but are set"]);
         assert_eq!(problems(&[0x0999]), ["0x0999 is not a remote command code; known: 111"]);
     }
 

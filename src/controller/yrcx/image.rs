@@ -5,7 +5,7 @@ use crate::Now;
 /// Number of words of a remote command or its answer: WI0 to WI15, WO0 to WO15.
 pub const COMMAND_WORDS: usize = 16;
 
-/// Number of words of the whole image, including the reserved one.
+/// Number of words of the whole image, including the reserved word.
 pub const IMAGE_WORDS: usize = 24;
 
 /// Word of the dedicated signals (SI(00) to SI(17), SO(00) to SO(17)).
@@ -53,7 +53,7 @@ impl Image {
         bytes >= Self::BYTES
     }
 
-    /// Decodes link data: an image, perhaps with more data after it, or signals only (all else 0).
+    /// Decodes link data: an image, perhaps with more data after it, or only signals (then all other words are 0).
     pub fn from_link(bytes: &[u8]) -> Option<Self> {
         if bytes.len() != Self::SIGNAL_BYTES {
             return Self::from_bytes(bytes.get(..Self::BYTES)?);
@@ -63,7 +63,7 @@ impl Image {
         Self::from_bytes(&whole)
     }
 
-    /// Encodes the image as link data of this size; bytes after the image are 0.
+    /// Encodes the image as link data of this size. Bytes after the image are 0.
     pub fn to_link(self, bytes: usize) -> Vec<u8> {
         let whole = self.to_bytes();
         if bytes == Self::SIGNAL_BYTES {
@@ -81,27 +81,28 @@ impl Image {
         words
     }
 
-    /// Replaces the words of the remote command, but no bits.
+    /// Replaces the words of the remote command. The bits stay unchanged.
     pub fn set_command(&mut self, words: &Words) {
         self.0[..COMMAND_WORDS].copy_from_slice(words);
     }
 }
 
-/// Output image of the master, with the history of sending.
+/// Output image of the master, with a record of what was sent and when.
 ///
-/// The driver sends [`next`](Self::next) cyclically and then calls [`sent`](Self::sent). Sessions change `next` and
-/// check what was sent: a command word must not overtake its data, and edges need a minimum interval.
+/// The driver sends [`next`](Self::next) cyclically, and calls [`sent`](Self::sent) after each sending. Sessions change
+/// `next` and check what was sent: a command word must not be sent before its data, and edges of inputs need a minimum
+/// interval.
 #[derive(Debug, Clone, Default)]
 pub struct Output {
     /// Image to send in the next cycle.
     pub next: Image,
     sent: Option<Image>,
-    /// Time of the last change of each word after the command.
+    /// Time of the last change of each word after the command words.
     edges: [Option<Now>; IMAGE_WORDS - COMMAND_WORDS],
 }
 
 impl Output {
-    /// Starts with `image`, which is not sent yet.
+    /// Starts with `image`, which has not been sent yet.
     pub fn new(image: Image) -> Self {
         Self { next: image, ..Self::default() }
     }
@@ -109,7 +110,7 @@ impl Output {
     /// Records that `next` was sent at `now`.
     pub fn sent(&mut self, now: Now) {
         for (at, edge) in (COMMAND_WORDS..).zip(&mut self.edges) {
-            // The first image may differ from anything the controller had before.
+            // For the controller, every word of the first image may be a change.
             if self.sent.is_none_or(|sent| sent.0[at] != self.next.0[at]) {
                 *edge = Some(now);
             }
@@ -117,7 +118,7 @@ impl Output {
         self.sent = Some(self.next);
     }
 
-    /// Records bits under the mask that another client of the same image changed at `now`.
+    /// Records that another client of the same image changed the bits under the mask at `now`.
     pub fn changed(&mut self, now: Now, mask: &Image, value: &Image) {
         for (at, mask) in mask.0.iter().enumerate() {
             let bits = |word: u16| (word & !mask) | (value.0[at] & mask);
@@ -134,12 +135,12 @@ impl Output {
         }
     }
 
-    /// Records that the link is down: the controller sees the next image as a new one.
+    /// Records that the link is down. The next image is a new first image for the controller.
     pub fn unlinked(&mut self) {
         self.sent = None;
     }
 
-    /// The last image sent; `None` before the first one and while the link is down.
+    /// The last sent image; `None` before the first image and while the link is down.
     pub fn last_sent(&self) -> Option<&Image> {
         self.sent.as_ref()
     }
@@ -169,7 +170,7 @@ mod tests {
 
     #[test]
     fn signals_alone_are_an_image_too() {
-        // DeviceNet, I/O size Compact: word 0 holds the dedicated signals, word 1 the first general-purpose ones.
+        // DeviceNet, I/O size Compact: word 0 contains the dedicated signals, word 1 the first general-purpose signals.
         let mut image = Image::default();
         (image.0[0], image.0[DEDICATED_WORD], image.0[17], image.0[18]) = (1, 0x0041, 0x8001, 7);
         assert_eq!(image.to_link(4), [0x41, 0, 0x01, 0x80]);

@@ -11,7 +11,7 @@ pub const GRAMMAR: Grammar = Grammar {
     prefixes: &["SI", "SO", "SIW", "SOW", "SID", "SOD", "SGI", "SGR", "DI", "DO", "MO", "LO", "TO"],
 };
 
-/// Kinds of ports; SI and SO are handled as signals.
+/// Kinds of ports. SI and SO are not in the list, because they are parsed as signals.
 const PORTS: [&str; 5] = ["DI", "DO", "MO", "LO", "TO"];
 
 /// Parses an address and normalizes it.
@@ -20,7 +20,7 @@ fn address(text: &str) -> Option<(Kind, String)> {
         return register.ok().map(|register| (Kind::Signal, register.to_string()));
     }
     for side in [Side::Input, Side::Output] {
-        // A bare number could belong to either side.
+        // A number without SI or SO could belong to either side.
         let is_named = text.get(..2).is_some_and(|prefix| prefix.eq_ignore_ascii_case(side.name()));
         let is_dedicated = Signal::of_side(side).any(|row| row.name == text);
         if let (true, Ok(signal)) = (is_named || is_dedicated, Signal::parse(side, text)) {
@@ -46,7 +46,7 @@ fn port(text: &str) -> Option<(Kind, String)> {
         None => rest.split_once('.').map_or((rest, None), |(port, bit)| (port, Some(bit))),
     };
     let digit = |text: &str| unsigned::<u8>(text).filter(|_| text.bytes().all(|byte| byte.is_ascii_digit()));
-    // `DO(1)` has no port number.
+    // The port number is omitted in `DO(1)`. It is 0.
     let is_first = port.is_empty() && rest.starts_with('(');
     let port = digit(if is_first { "0" } else { port }).filter(|port| port % 10 < 8 && *port <= 27)?;
     let written = match bit {
@@ -56,7 +56,7 @@ fn port(text: &str) -> Option<(Kind, String)> {
     Some((Kind::Port, written))
 }
 
-/// The signal of a port bit of SI or SO: `SO2.1` is `SO(21)`.
+/// The signal for a bit of port SI or SO: `SO2.1` is `SO(21)`.
 pub fn signal_of_port(port: &str) -> Option<String> {
     let (place, bit) = port.split_once('.')?;
     let (letters, number) = place.split_at_checked(2)?;

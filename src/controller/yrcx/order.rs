@@ -30,7 +30,7 @@ impl Command {
 }
 
 impl Draft {
-    /// Sets a field, and the flags that depend on it. Text is parsed in the unit of the field.
+    /// Sets a field, and the flags that depend on it. Text is parsed as a value in the unit of the field.
     #[must_use]
     pub fn with(mut self, key: Key, value: impl Into<Value>) -> Self {
         self.values.set(key, value);
@@ -93,7 +93,7 @@ impl Order {
         &self.words
     }
 
-    /// Whether the output continues until the status reset (4.7.4).
+    /// Whether the controller sends output continuously until the status reset (4.7.4).
     pub fn is_continuous(&self) -> bool {
         self.values.int(Key::Continuous) == Some(1)
     }

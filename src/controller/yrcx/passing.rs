@@ -1,9 +1,10 @@
-//! Filter for a read-only link: decides which images may pass.
+//! Filter for a read-only link: decides which images may pass to the controller.
 
 use super::image::{COMMAND_WORDS, Image};
 use super::signal::input;
 
-/// Whether the change of the image contains no command and switches nothing except a stop: SI(00) or SI(06) off.
+/// Whether the change from one image to the next contains no command, and switches nothing except a stop: SI(00) or
+/// SI(06) off.
 pub fn only_stops(before: &[u8], after: &[u8]) -> bool {
     let image = |bytes: &[u8]| Image::from_link(bytes).unwrap_or_default();
     let (before, after) = (image(before), image(after));

@@ -7,25 +7,25 @@ use crate::Risk;
 /// A step of a procedure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
-    /// Requires the state of an output to begin or continue.
+    /// Requires that an output has this state. Otherwise the procedure does not begin or continue.
     Require {
         /// The output.
         signal: Signal,
         /// Required state.
         on: bool,
-        /// Hint for another state.
+        /// Hint if the output has another state.
         hint: &'static str,
     },
-    /// Switches an input; no effect if it has this state.
+    /// Switches an input. Has no effect if the input already has this state.
     Set {
         /// The input.
         signal: Signal,
         /// New state.
         on: bool,
     },
-    /// Switches an input from off to on; first off, if it is on.
+    /// Switches an input from off to on. If the input is on, it is first switched off.
     Rise(Signal),
-    /// Waits for the state of an output.
+    /// Waits until an output has this state.
     Await {
         /// The output.
         signal: Signal,
@@ -39,15 +39,15 @@ pub enum Step {
 pub struct Procedure {
     /// Name, such as `power-on`.
     pub name: &'static str,
-    /// Effect, to complete "This will …".
+    /// Effect. The text completes "This will …".
     pub intent: String,
     /// Risk of the procedure.
     pub risk: Risk,
-    /// Section of the manual in chapter 1; empty without a timing chart.
+    /// Section of the manual in chapter 1; empty if there is no timing chart.
     pub section: &'static str,
     /// Steps in order.
     pub steps: Vec<Step>,
-    /// Output that aborts the procedure if it comes on during a wait.
+    /// Output that aborts the procedure if it switches on during a wait.
     pub breaks_on: Option<Signal>,
 }
 
@@ -100,7 +100,7 @@ impl Procedure {
         Self::new("recover", "end the emergency stop and switch the servos on", Risk::Motion, "3.1", &steps)
     }
 
-    /// Waits for AUTO mode, which a person selects at the SAFETY connector and the programming box.
+    /// Waits for AUTO mode. A person must select this mode with the SAFETY connector and the programming box.
     pub fn auto_mode() -> Self {
         let steps = [wait(output::AUTO_MODE, true)];
         Self::new("auto-mode", "wait for AUTO mode", Risk::Read, "3.2", &steps)
@@ -113,7 +113,7 @@ impl Procedure {
         Self::new("program-reset", "reset the robot program", Risk::Write, "3.2", &steps)
     }
 
-    /// Starts the program, also after a stop. The stop input goes on first if it is off (3.2, 3.3).
+    /// Starts the program, also after a stop. If the stop input is off, it is switched on first (3.2, 3.3).
     pub fn run() -> Self {
         let steps = [
             require(output::EMERGENCY_STOP, false, "release the emergency stop, then run the recovery"),
@@ -135,12 +135,12 @@ impl Procedure {
         Self::new("stop", "stop the robot program", Risk::Write, "3.3", &steps)
     }
 
-    /// Whether it switches no inputs.
+    /// Whether the procedure switches no inputs.
     pub fn only_awaits(&self) -> bool {
         !self.steps.iter().any(|step| matches!(step, Step::Set { .. } | Step::Rise(_)))
     }
 
-    /// Whether it switches an emergency-stop or stop input off.
+    /// Whether the procedure switches an emergency-stop or stop input off.
     pub fn stops(&self) -> bool {
         let is_stop = |signal: &Signal| [input::STOP, input::EMERGENCY_STOP].contains(signal);
         self.steps.iter().any(|step| matches!(step, Step::Set { signal, on: false } if is_stop(signal)))

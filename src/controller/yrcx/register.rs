@@ -1,5 +1,5 @@
-//! General-purpose words SIW(2) to SIW(15) and SOW(2) to SOW(15), and their double words (chapter 1, sections 1 and
-//! 2). Remote commands and answers use the same words while they run.
+//! General-purpose words SIW(2) to SIW(15) and SOW(2) to SOW(15), and their double words (chapter 1, sections 1 and 2).
+//! A running remote command and its answer use the same words.
 
 use std::fmt;
 
@@ -11,12 +11,12 @@ use crate::typed::integer;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Register {
     side: Side,
-    /// The word, or the low word of two.
+    /// Number of the word, or of the low word of a double word.
     word: usize,
     is_double: bool,
 }
 
-/// First general-purpose word; the words before it belong to remote commands.
+/// First general-purpose word. The words before it belong to remote commands.
 const FIRST: usize = 2;
 const PREFIXES: [(&str, Side, bool); 4] = [
     ("SIW", Side::Input, false),
@@ -29,7 +29,7 @@ impl Register {
     /// Parses `SIW2`, `sow(15)`, `SID4`; `None` for other text.
     ///
     /// # Errors
-    /// A word that does not exist, or is not a general-purpose word.
+    /// If the word does not exist, or is not a general-purpose word.
     pub fn parse(text: &str) -> Option<Result<Self, String>> {
         let (prefix, rest) = text.split_at_checked(3)?;
         let (name, side, is_double) = PREFIXES.into_iter().find(|(name, ..)| name.eq_ignore_ascii_case(prefix))?;
@@ -41,7 +41,7 @@ impl Register {
                 Ok(Self { side, word, is_double })
             }
             Some(0 | 1) => {
-                Err(format!("{name}(0) and {name}(1) belong to remote commands; general-purpose are 2 to 15"))
+                Err(format!("{name}(0) and {name}(1) belong to remote commands; the words 2 to 15 are general-purpose"))
             }
             _ if is_double => Err(format!("'{text}' is not a valid double word; use {name}2, {name}4, … {name}14")),
             _ => Err(format!("'{text}' is not a valid word; use {name}2 to {name}15")),
@@ -59,7 +59,7 @@ impl Register {
         if self.is_double { low | u32::from(words[self.word + 1]) << 16 } else { low }
     }
 
-    /// Writes the value; a single word takes its low half.
+    /// Writes the value. A single word uses only the low half of the value.
     pub fn write(self, words: &mut Words, value: u32) {
         let [low, high] = [value & 0xFFFF, value >> 16].map(|half| u16::try_from(half).unwrap_or_default());
         words[self.word] = low;
@@ -68,10 +68,10 @@ impl Register {
         }
     }
 
-    /// Parses a value: decimal, also negative, or hexadecimal as in `0x1F`.
+    /// Parses a value: decimal, which may be negative, or hexadecimal as in `0x1F`.
     ///
     /// # Errors
-    /// An invalid number, or one that does not fit.
+    /// If the number is invalid, or does not fit.
     pub fn value(self, text: &str) -> Result<u32, String> {
         let bits = if self.is_double { 32 } else { 16 };
         let (least, most) = (-(1_i64 << (bits - 1)), (1_i64 << bits) - 1);
@@ -79,7 +79,7 @@ impl Register {
         if !(least..=most).contains(&number) {
             return Err(format!("{number} is out of range for {self}; allowed: {least} to {most}"));
         }
-        // Negative numbers in two's complement.
+        // A negative number is converted to two's complement.
         Ok(u32::try_from(number.rem_euclid(most + 1)).unwrap_or_default())
     }
 
@@ -95,7 +95,7 @@ impl fmt::Display for Register {
     }
 }
 
-/// The general-purpose words of an output image; zeros while a remote command uses them.
+/// The general-purpose words of an output image. They are zeros while a remote command uses the words.
 pub fn general(words: &Words) -> Words {
     let mut general = *words;
     match words[0] {

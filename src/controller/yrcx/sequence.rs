@@ -1,5 +1,5 @@
-//! Execution of signal procedures: minimum interval between edges of dedicated inputs, confirmation by outputs
-//! (chapter 1, section 3).
+//! Execution of signal procedures. It keeps the minimum interval between edges of dedicated inputs, and waits for
+//! confirmation by outputs (chapter 1, section 3).
 
 use std::fmt;
 use std::time::Duration;
@@ -13,17 +13,17 @@ use crate::Now;
 /// Outcome of a procedure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
-    /// All steps done and confirmed.
+    /// All steps were done and confirmed.
     Done,
-    /// An output did not have the required state.
+    /// An output does not have the required state.
     NotPossible {
         /// The output.
         signal: Signal,
         /// Required state.
         on: bool,
-        /// Hint.
+        /// Hint for the user.
         hint: &'static str,
-        /// Whether an input was switched before.
+        /// Whether the procedure had already switched an input.
         begun: bool,
     },
     /// An output did not reach the expected state in time.
@@ -38,11 +38,11 @@ pub enum Outcome {
         /// The output.
         signal: Signal,
     },
-    /// No image received.
+    /// No image was received.
     NoImage,
     /// The link was lost.
     LinkLost {
-        /// Whether an input may have been switched before.
+        /// Whether the procedure may have switched an input before.
         begun: bool,
     },
 }
@@ -56,8 +56,8 @@ impl fmt::Display for Outcome {
                 let after = if begun { ", after inputs were switched" } else { "; nothing was switched" };
                 write!(f, "{} is not {}{after}", signal.named(), state(on))
             }
-            Self::TimedOut { signal, on } => write!(f, "{} did not go {} in time", signal.named(), state(on)),
-            Self::Broken { signal } => write!(f, "{} went on during the procedure", signal.named()),
+            Self::TimedOut { signal, on } => write!(f, "{} did not switch {} in time", signal.named(), state(on)),
+            Self::Broken { signal } => write!(f, "{} switched on during the procedure", signal.named()),
             Self::NoImage => f.write_str("the controller sends no data"),
             Self::LinkLost { begun: false } => f.write_str("the connection was lost before the first switch"),
             Self::LinkLost { begun: true } => f.write_str("the connection was lost during the procedure"),
@@ -70,7 +70,7 @@ impl fmt::Display for Outcome {
 pub struct Sequence {
     procedure: Procedure,
     patience: Duration,
-    /// Limit of the total duration, and start time.
+    /// Maximum total duration, and start time.
     longest: Duration,
     began: Option<Now>,
     at: usize,
@@ -78,7 +78,7 @@ pub struct Sequence {
     input: Option<Image>,
     linked: bool,
     begun: bool,
-    /// Input that was pulsed and is still on: a failure must switch it off.
+    /// Input that was pulsed and is still on. If the procedure fails, the input must be switched off.
     raised: Option<Signal>,
     outcome: Option<Outcome>,
 }
@@ -91,7 +91,7 @@ enum Advance {
 }
 
 impl Sequence {
-    /// A session for `procedure`, with a wait of at most `patience` for each output.
+    /// Creates a session for `procedure`. It waits at most `patience` for each output.
     pub fn new(procedure: Procedure, patience: Duration) -> Self {
         Self {
             procedure,
@@ -114,12 +114,12 @@ impl Sequence {
         Self { longest, ..self }
     }
 
-    /// The current step; `None` at the end.
+    /// The current step; `None` at the end of the procedure.
     pub fn step(&self) -> Option<Step> {
         self.procedure.steps.get(self.at).copied()
     }
 
-    /// Switches an input after the minimum edge interval. Done when it was sent.
+    /// Switches an input after the minimum interval between edges. The step is done when the change was sent.
     fn switch(&mut self, now: Now, output: &mut Output, signal: Signal, on: bool) -> Advance {
         if signal.is_on(&output.next) != on {
             if let Some(due) = edge_due(now, output, signal) {
@@ -179,7 +179,7 @@ impl Sequence {
         }
     }
 
-    /// Ends the procedure, and switches a pulsed input off.
+    /// Ends the procedure. A pulsed input is switched off.
     fn end(&mut self, output: &mut Output, outcome: Outcome) {
         if let Some(signal) = self.raised.take() {
             signal.set(&mut output.next, false);

@@ -1,9 +1,9 @@
 //! Image sessions, without link and without clock.
 //!
-//! The driver sends the [`Output`] cyclically and passes every received image. After each of both, and at a deadline,
-//! it polls until the session waits again. A session changes only its own part of the image: an [`Exchange`] the
-//! words of the remote command, a [`Sequence`](super::sequence::Sequence) its inputs. So one command runs at a time,
-//! in parallel with the bits.
+//! The driver sends the [`Output`] cyclically and passes every received image. After a sent image, after a received
+//! image, and at a deadline, the driver polls until the session waits again. A session changes only its own part of the
+//! image: an [`Exchange`] changes the words of the remote command, a [`Sequence`](super::sequence::Sequence) its
+//! inputs. Because of this, one remote command can run at the same time as changes of the bits.
 
 mod exchange;
 
@@ -21,11 +21,11 @@ pub use exchange::{Ended, Exchange, NotSentReason, Outcome, Silence};
 pub enum Next<T> {
     /// Wait until this time, or until an image is sent or received.
     Wait(Now),
-    /// The session has ended with this outcome. Further polls return the same.
+    /// The session has ended with this outcome. Further polls return the same outcome.
     Done(T),
 }
 
-/// A protocol exchange by images; [`Session`](crate::Session) is the counterpart for bytes.
+/// A protocol exchange by images. [`Session`](crate::Session) is the same for bytes.
 pub trait ImageSession {
     /// Result of the session.
     type Outcome;
@@ -33,34 +33,34 @@ pub trait ImageSession {
     /// Updates the output and returns the next wait.
     fn poll(&mut self, now: Now, output: &mut Output) -> Next<Self::Outcome>;
 
-    /// Takes an input image. Pass the last known one at the start: it may already contain the ready status.
+    /// Handles an input image. At the start, pass the last received image: it may already contain the ready status.
     fn handle(&mut self, now: Now, input: &Image);
 
-    /// Records the loss of the link. No more images follow; poll for the outcome.
+    /// Records that the link was lost. The session receives no more images; poll for the outcome.
     fn lost(&mut self, now: Now);
 }
 
-/// Time limits of an exchange.
+/// Time limits of an exchange. Each is the maximum time until the named event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Policy {
-    /// Ready status before the command.
+    /// The controller is ready before the command.
     pub ready: Duration,
-    /// First reaction to the command, and return to a valid status.
+    /// The controller reacts to the command, or returns to a valid status.
     pub accept: Duration,
-    /// End of a quick command.
+    /// A quick command ends.
     pub quick: Duration,
-    /// End of a command that switches servos or motor power.
+    /// A command that switches servos or motor power ends.
     pub power: Duration,
-    /// End of a motion; `None` without a limit.
+    /// A motion ends; `None` without a limit.
     pub motion: Option<Duration>,
-    /// Ready status after the command.
+    /// The controller is ready after the command.
     pub release: Duration,
-    /// End of an interrupted command.
+    /// An interrupted command ends.
     pub stop: Duration,
 }
 
 impl Policy {
-    /// Time limit of a command.
+    /// Time limit of a command, by its duration class.
     pub const fn longest(&self, pace: Pace) -> Option<Duration> {
         match pace {
             Pace::Quick => Some(self.quick),
@@ -88,7 +88,7 @@ impl Default for Policy {
 /// (chapter 1, section 3). The rest covers a late packet and the scan time of 5 ms.
 pub const EDGE_INTERVAL: Duration = Duration::from_millis(120);
 
-/// Earliest time of an edge of `signal` after the last one in its word; `None` if it may follow now.
+/// Earliest time at which `signal` may change after the last edge in its word; `None` if it may change now.
 pub(super) fn edge_due(now: Now, output: &Output, signal: Signal) -> Option<Now> {
     let due = output.last_edge(signal.word())?.saturating_add(EDGE_INTERVAL);
     (due > now).then_some(due)

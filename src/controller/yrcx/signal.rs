@@ -1,7 +1,7 @@
 //! Dedicated and general-purpose signals: the bits after the remote command (chapter 1, sections 1 and 2).
 //!
-//! Directions are those of the controller: the master sets SI and reads SO. Numbers are octal, as printed: SI(00) to
-//! SI(07), SI(10) to SI(17), … SI(150) to SI(157).
+//! Directions are as seen from the controller: the master sets SI and reads SO. Numbers are octal, as in the manual:
+//! SI(00) to SI(07), SI(10) to SI(17), … SI(150) to SI(157).
 
 use std::fmt;
 
@@ -14,9 +14,9 @@ use crate::nearest::nearest;
 /// Direction of a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Side {
-    /// SI: set by the master.
+    /// SI signals, which the master sets.
     Input,
-    /// SO: set by the controller.
+    /// SO signals, which the controller sets.
     Output,
 }
 
@@ -30,23 +30,23 @@ impl Side {
     }
 }
 
-/// A usable signal; never a reserved bit.
+/// A signal that can be used. It is never a reserved bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Signal {
     side: Side,
     index: u8,
 }
 
-/// Activation of a dedicated signal.
+/// When a dedicated signal is active.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Trigger {
-    /// Active while off; on in normal operation.
+    /// Active while off. The signal is on in normal operation.
     WhileOff,
     /// Active while on.
     WhileOn,
     /// Active at the edge from off to on.
     Rise,
-    /// An output: on while the state holds.
+    /// An output, which is on while its state lasts.
     State,
 }
 
@@ -55,29 +55,29 @@ pub enum Trigger {
 pub struct Dedicated {
     /// The bit.
     pub signal: Signal,
-    /// Name on the command line.
+    /// Name of the signal on the command line.
     pub name: &'static str,
-    /// Name in the tables.
+    /// Name of the signal in the tables.
     pub text: &'static str,
     /// Activation.
     pub trigger: Trigger,
     /// Effect or meaning.
     pub effect: &'static str,
-    /// Risk of switching it on; for an output, of reading it.
+    /// Risk of switching the input on; for an output, risk of reading it.
     pub risk: Risk,
 }
 
 /// An invalid signal.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum SignalError {
-    /// Neither a name nor a number.
+    /// The text is neither a name nor a valid number.
     #[error(
         "'{found}' is not a valid signal; use a name such as {example}, or a number from 20 to 157 with digits 0 to 7"
     )]
     Unknown {
         /// The invalid text.
         found: String,
-        /// A valid name, similar if possible.
+        /// A valid name, similar to the text if possible.
         example: &'static str,
     },
     /// A reserved bit.
@@ -85,7 +85,7 @@ pub enum SignalError {
     Reserved {
         /// Direction.
         side: Side,
-        /// Octal number as printed.
+        /// Octal number, as in the manual.
         number: u16,
     },
 }
@@ -95,7 +95,7 @@ const FIRST_GENERAL: u8 = 0o20;
 /// Last general-purpose signal: SI(157) or SO(157).
 const LAST: u8 = 0o157;
 
-/// Dedicated inputs, set by the master.
+/// Dedicated inputs, which the master sets.
 pub mod input {
     use super::{Side, Signal};
 
@@ -119,7 +119,7 @@ pub mod input {
     pub const ORIGIN_ABSOLUTE: Signal = Signal::at(Side::Input, 0o17);
 }
 
-/// Dedicated outputs, set by the controller.
+/// Dedicated outputs, which the controller sets.
 pub mod output {
     use super::{Side, Signal};
 
@@ -154,7 +154,7 @@ pub const DEDICATED: [Dedicated; 20] = [
         "emergency-stop",
         "emergency stop input",
         Trigger::WhileOff,
-        "off puts the controller into emergency stop; no substitute for a hard-wired safety circuit",
+        "off puts the controller into emergency stop; this does not replace a hard-wired safety circuit",
         Risk::Write,
     ),
     given(
@@ -162,7 +162,8 @@ pub const DEDICATED: [Dedicated; 20] = [
         "servo-on",
         "servo ON input",
         Trigger::Rise,
-        "cancels the emergency stop state and switches the servos on; SI(00) must be on and every stop released",
+        "cancels the emergency stop state and switches the servos on; SI(00) must be on, and every stop must be \
+         released",
         Risk::Motion,
     ),
     given(
@@ -170,7 +171,7 @@ pub const DEDICATED: [Dedicated; 20] = [
         "stop",
         "stop input",
         Trigger::WhileOff,
-        "off stops programs and jogs; must be on to run",
+        "off stops programs and jogs; the signal must be on to run",
         Risk::Write,
     ),
     given(
@@ -210,7 +211,7 @@ pub const DEDICATED: [Dedicated; 20] = [
         "alarm-reset",
         "alarm reset input",
         Trigger::Rise,
-        "resets the alarm; if that does not help, the power must be switched off and on",
+        "resets the alarm; if the alarm stays, switch the power off and on",
         Risk::Write,
     ),
     given(
@@ -218,7 +219,7 @@ pub const DEDICATED: [Dedicated; 20] = [
         "origin-absolute",
         "return-to-origin input (absolute type axis)",
         Trigger::Rise,
-        "returns absolute axes to origin; with parameter DI17 at ABS/ORG the incremental ones after them",
+        "returns absolute axes to origin; if parameter DI17 is ABS/ORG, then also the incremental axes",
         Risk::Motion,
     ),
     says(
@@ -254,7 +255,7 @@ pub const DEDICATED: [Dedicated; 20] = [
         output::PROGRAM_RESET,
         "program-reset",
         "program reset status output",
-        "the robot program is reset; off when it starts",
+        "the robot program is reset; off when the program starts",
     ),
     says(output::WARNING, "warning", "warning output", "a warning is active"),
 ];
@@ -287,7 +288,7 @@ impl Signal {
         Self { side, index }
     }
 
-    /// The signal with this printed number: 157 is SI(157).
+    /// The signal with this number, written as in the manual: 157 is SI(157).
     pub fn new(side: Side, number: u16) -> Result<Self, SignalError> {
         let digits = [number / 100, number / 10 % 10, number % 10];
         let index = u8::try_from(digits[0] * 64 + digits[1] * 8 + digits[2]).ok();
@@ -301,7 +302,7 @@ impl Signal {
         }
     }
 
-    /// Parses a name such as `servo-on`, or a number as in `20`, `SI20` or `SI(20)`.
+    /// Parses a name such as `servo-on`, or a number such as `20`, `SI20` or `SI(20)`.
     pub fn parse(side: Side, text: &str) -> Result<Self, SignalError> {
         if let Some(dedicated) = Self::of_side(side).find(|dedicated| dedicated.name == text) {
             return Ok(dedicated.signal);
@@ -327,7 +328,7 @@ impl Signal {
         self.side
     }
 
-    /// Number as printed, in octal digits.
+    /// Number in octal digits, as in the manual.
     pub const fn number(self) -> u16 {
         let index = self.index as u16;
         index / 64 * 100 + index / 8 % 8 * 10 + index % 8
@@ -343,27 +344,28 @@ impl Signal {
         self.index % 16
     }
 
-    /// Whether it is a general-purpose signal, free for robot programs.
+    /// Whether the signal is a general-purpose signal, which robot programs can use freely.
     pub const fn is_general(self) -> bool {
         self.index >= FIRST_GENERAL
     }
 
-    /// Fixed meaning, if any.
+    /// Fixed meaning; `None` for a general-purpose signal.
     pub fn dedicated(self) -> Option<&'static Dedicated> {
         DEDICATED.iter().find(|dedicated| dedicated.signal == self)
     }
 
-    /// Name and address: `servo-on (SI(01))`; a general-purpose signal has only its address.
+    /// Name and address: `servo-on (SI(01))`. A general-purpose signal has only an address.
     pub fn named(self) -> String {
         self.dedicated().map_or_else(|| self.to_string(), |dedicated| format!("{} ({self})", dedicated.name))
     }
 
-    /// Name, or `SI(20)`.
+    /// Name, or the address `SI(20)` for a signal without a name.
     pub fn name(self) -> String {
         self.dedicated().map_or_else(|| self.to_string(), |dedicated| dedicated.name.to_owned())
     }
 
-    /// Risk of switching it. Off is at most a write. The meaning of general-purpose inputs depends on programs.
+    /// Risk of switching the signal. Switching it off is at most a write. The meaning of general-purpose inputs depends
+    /// on the programs.
     pub fn risk(self, on: bool) -> Risk {
         match self.dedicated() {
             Some(dedicated) if on => dedicated.risk,
@@ -371,12 +373,12 @@ impl Signal {
         }
     }
 
-    /// Whether it is on.
+    /// Whether the signal is on in the image.
     pub fn is_on(self, image: &Image) -> bool {
         image.0[self.word()] >> self.bit() & 1 == 1
     }
 
-    /// Switches it.
+    /// Switches the signal in the image.
     pub fn set(self, image: &mut Image, on: bool) {
         let mask = 1 << self.bit();
         let word = &mut image.0[self.word()];

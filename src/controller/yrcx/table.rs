@@ -1,7 +1,7 @@
 //! Table of remote commands: codes, words, ranges, answers and risks (chapter 2, sections 3 and 4).
 //!
-//! It is the single source for encoding, decoding, descriptions and the simulator. If tables and detail pages of the
-//! manual contradict each other, detail pages and examples have priority.
+//! The table is the single source for encoding, decoding, descriptions and the simulator. If tables and detail pages of
+//! the manual contradict each other, detail pages and examples have priority.
 
 mod field;
 mod layouts;
@@ -14,13 +14,13 @@ pub use rows::{Command, ROWS};
 use super::value::Key;
 use crate::Risk;
 
-/// Status reset in WI0; also "no command".
+/// Status reset in WI0. It also means "no command".
 pub const STATUS_RESET: u16 = 0x0000;
 
 /// Duration class of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Pace {
-    /// Ends at once. A program start ends when it is accepted (chapter 2, 1.2).
+    /// Ends at once. A program start ends when the controller accepts it (chapter 2, 1.2).
     Quick,
     /// Ends when servos or motor power have switched.
     Power,
@@ -35,7 +35,7 @@ pub enum Pace {
 pub enum Rule {
     /// The product of X, Y and Z positions is at most 32767 (4.3.3).
     PalletSize,
-    /// One axis for an axis parameter, none for a robot parameter (4.4.2).
+    /// An axis parameter needs one axis; a robot parameter needs none (4.4.2).
     ParameterAxis,
     /// The value is within the range of the parameter (4.4.2).
     ParameterValue,
@@ -70,7 +70,7 @@ pub struct Row {
 pub type Fields = std::iter::Flatten<std::iter::Copied<std::slice::Iter<'static, &'static [Field]>>>;
 
 impl Row {
-    /// The row of the code in WI0, for any robot.
+    /// The row for the code in WI0. If the command has a robot, WI0 may contain any robot.
     pub fn from_word(wi0: u16) -> Option<&'static Self> {
         let row = ROWS.iter().find(|row| row.code == wi0 & 0x0FFF)?;
         (wi0 & 0xF000 == 0 || row.has_robot()).then_some(row)
@@ -96,18 +96,19 @@ impl Row {
         self.answer.iter().copied().flatten()
     }
 
-    /// Whether bits 15 to 12 of WI0 contain a robot.
+    /// Whether bits 15 to 12 of WI0 contain a robot number.
     pub fn has_robot(&self) -> bool {
         self.request().any(|field| field.key == Key::Robot)
     }
 
-    /// Whether it is accepted while the programming box has control: references only (chapter 2, 3). The reference of
-    /// program execution (4.6.4) is missing in that list, so it is not accepted.
+    /// Whether the controller accepts the command while the programming box has control. It accepts only references
+    /// (chapter 2, 3). The reference of program execution (4.6.4) is missing in that list, so it is not accepted.
     pub const fn enabled_under_programming_box(&self) -> bool {
         matches!(self.risk, Risk::Read) && !matches!(self.command, Command::ProgramShow)
     }
 
-    /// Whether a repetition after a stop continues to the old target, unless a setting says otherwise (4.2.2, 4.2.4).
+    /// Whether the command, when it is repeated after a stop, continues to the old target. A setting of the controller
+    /// can change this (4.2.2, 4.2.4).
     pub const fn keeps_target(&self) -> bool {
         matches!(
             self.command,

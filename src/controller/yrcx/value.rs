@@ -155,8 +155,8 @@ impl fmt::Display for Key {
 /// Value of a field.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// An integer in raw units, for example 0.001 mm or 0.01 %; the number of a choice; or a set of axes as bits, bit 0
-    /// for axis 1.
+    /// An integer in raw units, for example 0.001 mm or 0.01 %; or the number of a choice; or a set of axes as bits, in
+    /// which bit 0 is axis 1.
     Int(i32),
     /// A single-precision number of a real static variable.
     Real(f32),
@@ -202,8 +202,8 @@ impl From<String> for Value {
     }
 }
 
-/// Values by key, in word order. Numbers are raw: pulses, percent and mm/s as integers, mm and degrees in
-/// thousandths, percent of the maximum in hundredths. [`Field::show`](super::table::Field::show) formats them.
+/// Values by key, in word order. Numbers are raw: pulses, percent and mm/s are integers, mm and degrees are in
+/// thousandths, percent of the maximum is in hundredths. [`Field::show`](super::table::Field::show) formats them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Values(Vec<(Key, Value)>);
 
@@ -213,7 +213,7 @@ impl Values {
         self.0.iter().find(|(known, _)| *known == key).map(|(_, value)| value)
     }
 
-    /// Integer of a key.
+    /// The integer of a key.
     pub fn int(&self, key: Key) -> Option<i32> {
         match self.value(key)? {
             Value::Int(number) => Some(*number),
@@ -229,13 +229,13 @@ impl Values {
         }
     }
 
-    /// Numbers of all four axes: a position, or a state per axis.
+    /// Numbers for all four axes: a position, or a state of each axis.
     pub fn axes(&self) -> Option<[i32; 4]> {
         let [first, second, third, fourth] = Key::AXES.map(|key| self.int(key));
         Some([first?, second?, third?, fourth?])
     }
 
-    /// Sets a value, and replaces an earlier one.
+    /// Sets a value. An earlier value of the key is replaced.
     pub fn set(&mut self, key: Key, value: impl Into<Value>) {
         let value = value.into();
         match self.0.iter_mut().find(|(known, _)| *known == key) {

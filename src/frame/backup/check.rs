@@ -37,7 +37,7 @@ struct Backup {
 }
 
 impl Checked {
-    /// The backup in a folder, or those in its subfolders, one per robot.
+    /// The backup in a folder, or the backups in its subfolders, one per robot.
     pub fn check_folder(folder: &Path) -> Result<Self, Failure> {
         let several = if folder.join(MANIFEST).exists() { Vec::new() } else { manifest::folders_in(folder) };
         // Without a backup, the read of the folder's manifest reports the error.

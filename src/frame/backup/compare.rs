@@ -108,7 +108,7 @@ pub enum State {
     OnlyOld,
     /// Only in the new backup.
     OnlyNew,
-    /// Unknown: one of them was not saved, or was changed since then.
+    /// Unknown: one of the files was not saved, or was changed since the backup.
     Unknown,
 }
 
@@ -218,7 +218,7 @@ fn compare_files(
     manner: CompareOptions,
 ) -> Difference {
     let name = entry.or(partner).map(|entry| entry.name.clone()).unwrap_or_default();
-    // The file of the old side, or of the only one.
+    // The file of the old side, or of the only side that has the file.
     let (side, saved) = if entry.is_some() { (old, entry) } else { (new, partner) };
     let described = |file: Difference| match saved.and_then(|entry| entry.copy.as_ref()) {
         Some(copy) if side.is_controller => Difference { path: None, ..file.from_copy(&side.folder, copy) },
@@ -236,8 +236,8 @@ fn compare_files(
         }
         _ => {
             let other = if entry.is_some() { new } else { old };
-            let why = if other.manifest.complete { "it was not selected" } else { "the backup is incomplete" };
-            let why = format!("{} does not contain it: {why}", Of::new(other));
+            let why = if other.manifest.complete { "the file was not selected" } else { "the backup is incomplete" };
+            let why = format!("{} does not contain this file: {why}", Of::new(other));
             let failure = Failure::new(Kind::ConditionNotMet, why);
             let failure = failure.hint("complete the backup with `armctl backup --resume`");
             return described(FileItem::new(name, Compared::new(State::Unknown), Err(failure)));
@@ -246,8 +246,8 @@ fn compare_files(
     described(FileItem::new(name, Compared::new(state), Ok(())))
 }
 
-/// Whether a file that is missing in a backup was missing on the controller, because the backup would have included
-/// it.
+/// Whether a file that is missing in a backup was also missing on the controller. This is the case if the backup would
+/// have included the file.
 fn is_in_scope(backup: &Manifest, other: &Manifest, name: &str) -> bool {
     let is_common = |word: &String| Only::of_scope(std::slice::from_ref(word)) != Only::default();
     backup.complete
@@ -295,7 +295,7 @@ fn pair_files(
 fn copy<'e>(side: &BackupSide, entry: &'e Entry) -> Result<&'e Saved, Failure> {
     let copy = entry.copy.as_ref().ok_or_else(|| {
         let why = entry.error.as_ref().map_or("no reason recorded", |reason| &reason.message);
-        Failure::new(Kind::ConditionNotMet, format!("{} does not contain it: {why}", Of::new(side)))
+        Failure::new(Kind::ConditionNotMet, format!("{} does not contain this file: {why}", Of::new(side)))
             .hint("see manifest.json: the backup does not contain data that the controller refused")
     })?;
     copy.check(&side.folder)?;

@@ -40,11 +40,11 @@ impl DiffOptions {
     pub fn folder(&self) -> Result<&Path, Failure> {
         self.old.as_deref().ok_or_else(|| {
             Failure::usage("no backup to compare")
-                .hint("give the folder of a backup, or two robots: `armctl diff ROBOT ROBOT`")
+                .hint("type the folder of a backup, or two robots: `armctl diff ROBOT ROBOT`")
         })
     }
 
-    /// Whether one of the names is that of a folder or a file.
+    /// Whether one of the names is an existing folder or file.
     pub fn names_folder(&self) -> bool {
         [&self.old, &self.new].into_iter().flatten().any(|path| path.exists())
     }
@@ -103,7 +103,7 @@ impl DiffOptions {
         Differences::of(old, new, &Only(self.only.clone()), options)
     }
 
-    /// Scope of the controller read: that of the backup, or the selection within it.
+    /// Scope of the controller read: the scope of the backup, or the selection within it.
     fn scope(&self, old: &BackupSide) -> Vec<String> {
         let scope = &old.manifest.scope;
         let only = Only(self.only.clone());

@@ -25,10 +25,10 @@ pub trait Backups: Family {
     /// Names of `backup`, `restore` and `diff` in envelopes and schemas.
     const IDS: [&'static str; 3];
 
-    /// Maximum risk of reading all of a robot.
+    /// Maximum risk of reading all data of a robot.
     const BACKUP_RISK: Risk = Risk::Read;
 
-    /// Risk of reading all of this robot.
+    /// Risk of reading all data of this robot.
     fn backup_risk(_robot: &Robot) -> Risk {
         Self::BACKUP_RISK
     }
@@ -42,11 +42,12 @@ pub trait Backups: Family {
 #[derive(Debug, Args)]
 #[group(skip)]
 #[command(
-    after_help = "Files of a yerc, points and data of a yrcx, parameters, points and programs of a toyo controller. \
-                  With several robots, each has a folder with its name. manifest.json lists the files with sizes and \
-                  hashes, and the missing data with the reason. `yrcx backup` and `toyo backup` have more \
-                  options.\n\nTo save every task of a toyo controller, armctl selects each task temporarily. \
-                  That is a change, so on a read-only robot only the current task is saved."
+    after_help = "The backup contains the files of a yerc controller, the points and data of a yrcx controller, or \
+                  the parameters, points and programs of a toyo controller. With several robots, each robot has a \
+                  folder with its name. manifest.json lists the files with sizes and hashes, and the missing data \
+                  with the reason. `yrcx backup` and `toyo backup` have more options.\n\nTo save every task of a toyo \
+                  controller, armctl selects each task temporarily. That is a change, so armctl saves only the \
+                  current task of a read-only robot."
 )]
 pub struct Backup<F: Backups> {
     #[command(flatten)]
@@ -85,9 +86,9 @@ impl<F: Backups> Command for Backup<F> {
 #[command(
     after_help = "armctl first checks all files against their hashes, then writes the data that differs from the \
                   controller. After an interruption, run the same command again to continue. Data that is not in the \
-                  backup stays on the controller.\n\nWithout --machine, data that changes the machine itself is not \
-                  written: parameters and system data (yerc), parameters and settings (yrcx), machine parameters \
-                  (toyo). `toyo restore` has more options."
+                  backup stays on the controller.\n\nWithout --machine, armctl does not write data that changes the \
+                  machine itself: parameters and system data (yerc), parameters and settings (yrcx), machine \
+                  parameters (toyo). `toyo restore` has more options."
 )]
 pub struct Restore<F: Backups> {
     #[command(flatten)]
@@ -123,13 +124,14 @@ impl<F: Backups> Command for Restore<F> {
 #[derive(Debug, Args)]
 #[group(skip)]
 #[command(
-    after_help = "With two folders, armctl reads no robot. With one folder, it reads the same data from the controller \
-                  and shows the changes since the backup: - is the backup, + the controller. `armctl diff ROBOT ROBOT` \
-                  reads and compares two controllers of a family. If a folder has the same name, use -r for the \
-                  robots. Texts are compared by lines, other files by their hashes.\n\nPositions (points, shifts, \
-                  hands, positions of jobs) within the tolerance are equal: 0.001 mm, 0.001 degrees and 1 pulse, or \
-                  the value of --tolerance. The line ///DATE of jobs is ignored, because controllers rewrite it. The \
-                  result lists the files to which this applies. --exact compares every byte. Exit code 0: equal; 8: \
+    after_help = "With two folders, armctl reads no robot. With one folder, armctl reads the same data from the \
+                  controller and shows the changes since the backup: - is the backup, + is the controller. `armctl \
+                  diff ROBOT ROBOT` reads and compares two controllers of a family. If a folder has the name of a \
+                  robot, select the robots with -r. armctl compares texts by lines, and other files by their \
+                  hashes.\n\nPositions (points, shifts, hands, positions of jobs) are equal if they differ by less \
+                  than the tolerance: 0.001 mm, 0.001 degrees and 1 pulse, or the value of --tolerance. The \
+                  comparison ignores the line ///DATE of jobs, because controllers rewrite this line. The result \
+                  lists the files with such differences. --exact compares every byte. Exit code 0: equal; 8: \
                   different."
 )]
 pub struct Diff<F: Backups> {

@@ -154,7 +154,7 @@ impl<C: About> Manifest<C> {
         if let Some(family) = C::FAMILY
             && family.name() != self.family
         {
-            return Err(format!("its family is {}, not {}", self.family, family.name()));
+            return Err(format!("the family is {}, not {}", self.family, family.name()));
         }
         let (mut names, mut copies) = (HashSet::new(), HashSet::new());
         for entry in &self.files {
@@ -200,18 +200,20 @@ pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
         text => text.with_context(|| path.display().to_string())?,
     };
     let invalid = |why: String| {
-        Failure::local(format!("{}: {why}", path.display())).hint("the manifest is damaged; create a new backup")
+        Failure::local(format!("{}: {why}", path.display()))
+            .hint("create a new backup, because the manifest is damaged")
     };
     match serde_json::from_str(&text).map_err(|error| invalid(error.to_string()))? {
         Head { format, .. } if format != FORMAT => {
-            return Err(invalid(format!("its format is '{format}', not '{FORMAT}'")));
+            return Err(invalid(format!("the format is '{format}', not '{FORMAT}'")));
         }
         Head { version, .. } if version > VERSION => {
-            return Err(invalid(format!("its version is {version}; this armctl supports up to {VERSION}")));
+            return Err(invalid(format!("the version is {version}; this armctl supports up to {VERSION}")));
         }
         Head { family: Some(family), .. } if C::FAMILY.is_some_and(|own| own.name() != family) => {
             let own = C::FAMILY.map_or("this", Family::name);
-            let message = format!("{} is a backup of a {family} controller, not of a {own} one", folder.display());
+            let message =
+                format!("{} is a backup of a {family} controller, not of a {own} controller", folder.display());
             return Err(Failure::usage(message).hint(format!("use a backup of a {own} controller")));
         }
         Head { .. } => {}
@@ -224,11 +226,15 @@ pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
 /// Reads the manifest in `folder`, which must exist.
 pub fn open_existing<C: About>(folder: &Path) -> Result<Manifest<C>, Failure> {
     read(folder)?.ok_or_else(|| {
-        let failure = Failure::local(format!("{} holds no {MANIFEST}", folder.display()));
+        let shown = folder.display();
+        let failure = Failure::local(if folder.exists() {
+            format!("{shown} holds no {MANIFEST}")
+        } else {
+            format!("there is no folder {shown}")
+        });
         match folders_in(folder).first() {
-            Some(one) => {
-                failure.hint(format!("the backups are in its subfolders: select one, as in {}", one.display()))
-            }
+            Some(one) => failure
+                .hint(format!("select a subfolder, such as {}: the backups are in the subfolders", one.display())),
             None => failure.hint("use the folder of a backup; create one with `armctl backup`"),
         }
     })
@@ -256,13 +262,14 @@ pub fn inspect_folder<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Fa
     match entries.next() {
         None => Ok(None),
         Some(_) => {
-            Err(Failure::local(format!("{} holds other files", folder.display())).hint("use an empty or a new folder"))
+            Err(Failure::local(format!("{} contains other files", folder.display()))
+                .hint("use an empty or a new folder"))
         }
     }
 }
 
-/// Earlier backup in a folder that a new one continues, if any: with `resume`, one of the same target and scope;
-/// `scope` is the new selection, `None` if not given. With `force`, the new backup replaces it.
+/// Earlier backup in a folder that a new backup continues, if there is one. With `resume`, it must have the same target
+/// and scope; `scope` is the new selection, `None` if not given. With `force`, the new backup replaces it.
 pub fn find_earlier_backup<C: About>(
     folder: &Path,
     robot: &Robot,
@@ -274,8 +281,8 @@ pub fn find_earlier_backup<C: About>(
     let name = &earlier.robot;
     if !resume {
         let state = if earlier.complete { "a backup" } else { "an incomplete backup" };
-        return Err(Failure::local(format!("{} holds {state} of {name}", folder.display()))
-            .hint("add --resume to continue it or --force to replace it, or use another folder"));
+        return Err(Failure::local(format!("{} contains {state} of {name}", folder.display()))
+            .hint("add --resume to continue the backup or --force to replace it, or use another folder"));
     }
     if earlier.target != robot.target.value.url() || earlier.family != robot.family.name() {
         return Err(Failure::usage(format!("{} is a backup of {name} ({})", folder.display(), earlier.target))
@@ -297,7 +304,7 @@ pub fn check_origin(manifest: &Manifest, robot: &Robot, force: bool) -> Result<(
     let Manifest { family, robot: name, target, .. } = manifest;
     if *family != robot.family.name() {
         return Err(Failure::usage(format!(
-            "the backup is from a {family} controller, {} is {}",
+            "the backup is from a {family} controller, but {} is a {} controller",
             robot.label(),
             robot.family
         ))
@@ -315,9 +322,9 @@ pub fn check_origin(manifest: &Manifest, robot: &Robot, force: bool) -> Result<(
 pub struct Saved {
     /// Name in the folder.
     pub file: String,
-    /// Its size.
+    /// Size of the file.
     pub bytes: u64,
-    /// Its SHA-256 in hexadecimal.
+    /// SHA-256 of the file in hexadecimal.
     pub sha256: String,
 }
 
@@ -343,7 +350,7 @@ impl Saved {
         let path = folder.join(&self.file);
         let damaged = |why: String| {
             Err(Failure::local(format!("{}: {why}", path.display()))
-                .hint("the file has changed since the backup; use another copy of the backup, or exclude the file"))
+                .hint("use another copy of the backup, or exclude the file; the file has changed since the backup"))
         };
         let mut file = match files::open(&path) {
             Err(error) if error.kind() == ErrorKind::NotFound => return damaged("file missing".to_owned()),

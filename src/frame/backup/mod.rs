@@ -7,6 +7,7 @@ mod diff;
 pub mod family_backup;
 pub mod job_date;
 pub mod manifest;
+pub mod parts;
 pub mod save;
 pub mod text_diff;
 mod tolerance;
@@ -99,7 +100,7 @@ pub fn continues_after(failure: &Failure) -> bool {
     matches!(failure.kind, Kind::Refused | Kind::Malformed | Kind::Usage | Kind::Rejected)
 }
 
-/// Severity of a failure kind: first that an action may have been executed, then that the work ended early.
+/// Severity of a failure kind. The highest is an unknown outcome; next are failures that ended the work early.
 pub fn severity(kind: Kind) -> u8 {
     match kind {
         Kind::OutcomeUnknown => 4,
@@ -123,9 +124,9 @@ pub fn would_leave(item: impl fmt::Display, why: &str) -> Value {
 /// Reason for an item that is not selected.
 pub const NOT_CHOSEN: &str = "not selected";
 /// Reason for an item that changes the machine itself.
-pub const NOT_MACHINE: &str = "changes the machine itself; written only with --machine";
+pub const NOT_MACHINE: &str = "changes the machine itself; armctl writes it only with --machine";
 
-/// Adds the way to continue to the hint of a failure.
+/// Adds the way to continue the work to the hint of a failure.
 pub fn add_hint(failure: Failure, again: &str) -> Failure {
     let hint = failure.hint.as_ref().map_or(again.to_owned(), |hint| format!("{hint}\n{again}"));
     failure.hint(hint)
@@ -222,7 +223,7 @@ impl Report for Restored {
 }
 
 /// Way to continue a restore.
-pub const RETRY_HINT: &str = "run the same command again to continue; equal values are not written again";
+pub const RETRY_HINT: &str = "run the same command again to continue; armctl does not write equal values again";
 
 #[cfg(test)]
 mod tests {

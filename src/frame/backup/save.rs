@@ -1,5 +1,5 @@
 //! Backup procedure of all families. Complete parts are kept, each part has its own result, and the manifest always
-//! shows the progress. A family supplies the list of parts and reads them.
+//! shows the progress. A family supplies the list of parts and the code that reads them.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -71,8 +71,8 @@ impl<C: About> Task<C> {
         Ok(Self { folder, scope, earlier })
     }
 
-    /// Starts the backup and writes the manifest at once to check that it is writable. It contains the existing parts
-    /// that are complete and that `is_kept` accepts, based on the earlier manifest and its entry.
+    /// Starts the backup and writes the manifest at once to check that the folder is writable. The manifest contains
+    /// the existing parts that are complete and that `is_kept` accepts, based on the earlier manifest and its entry.
     pub fn begin<'a>(
         &'a self,
         (screen, robot): (&'a Screen, &Robot),
@@ -82,7 +82,7 @@ impl<C: About> Task<C> {
         let folder = &self.folder;
         make_folder(folder)?;
         let mut list = Manifest::new(robot, controller, self.scope.clone());
-        // Earlier parts stay in the manifest, so that they are kept if the backup is interrupted.
+        // Earlier parts stay in the manifest. So they are not lost if the backup is interrupted.
         if let Some(earlier) = &self.earlier {
             let is_whole = |entry: &&Entry| entry.copy.as_ref().is_some_and(|copy| copy.check(folder).is_ok());
             let kept_entry = earlier.files.iter().filter(|entry| is_kept(earlier, entry)).filter(is_whole);

@@ -10,7 +10,7 @@ use crate::backup::manifest::Entry;
 /// Tolerance of positions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Tolerance {
-    /// Millimetres; also degrees if a file does not identify rotary axes.
+    /// Millimeters; also degrees if a file does not identify rotary axes.
     mm: f64,
     /// Degrees.
     deg: f64,
@@ -32,7 +32,7 @@ enum Unit {
     Pulses,
 }
 
-/// Minimum step that controllers store.
+/// Smallest step that controllers store.
 const DEFAULT: Tolerance = Tolerance { mm: 0.001, deg: 0.001, pulses: 1.0 };
 /// Rounding margin, because decimals are not exact in binary: 0.003 - 0.002 is more than 0.001.
 const SLACK: f64 = 1e-7;
@@ -163,7 +163,7 @@ fn aligned(
 /// Location of a position: section heading and key.
 type Position = (String, String);
 
-/// Lines of a text, with the location of each position.
+/// Lines of a text. A line with a robot position has its location: section heading and key.
 fn with_positions(text: &[u8], key: impl Fn(&str) -> Option<&str>) -> Vec<(Option<Position>, &[u8])> {
     let mut headline = String::new();
     let mut lines = Vec::new();

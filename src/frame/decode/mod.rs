@@ -47,7 +47,7 @@ pub fn run<D: Decode>(arguments: &D, run: &Run) -> Result<(), RunError> {
     }
     if arguments.needs_capture() {
         let failure = Failure::usage("--frame and the other options for capture files need a capture file");
-        return Err(failure.hint("give a file whose name ends in .pcap, .pcapng or .cap").into());
+        return Err(failure.hint("use a file whose name ends in .pcap, .pcapng or .cap").into());
     }
     run.local(D::ID, &arguments.decode()?)
 }
@@ -58,7 +58,7 @@ pub fn schemas<D: Decode>() -> [SchemaEntry; 2] {
     [SchemaEntry::of::<D::Report>(D::ID), SchemaEntry::of::<capture::Capture<Field<D>>>(D::CAPTURE_ID)]
 }
 
-/// Text on stdin; invalid bytes are replaced and then reported as such.
+/// Text on stdin; invalid bytes are replaced and then reported as invalid.
 pub fn stdin() -> Result<String, Failure> {
     Ok(String::from_utf8_lossy(&stdin_bytes()?).into_owned())
 }
@@ -138,6 +138,6 @@ pub fn damage<'a>(what: &str, problems: impl ExactSizeIterator<Item = Option<&'a
         1 => format!("the {what} is damaged: {first}"),
         _ => format!("{} of {all} {what}s are damaged; the first: {first}", problems.len()),
     };
-    let hint = "the fields before the damage are shown";
+    let hint = "read the fields before the damage, which the command shows";
     Some(Failure::new(Kind::Malformed, message).hint(hint))
 }

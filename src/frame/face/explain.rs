@@ -87,7 +87,7 @@ impl<T: ExtraColumns + Serialize + JsonSchema> Report for Codes<T> {
     }
 }
 
-/// Report of present or past alarms.
+/// Report of active or past alarms.
 pub trait RecordedAlarm {
     /// Each alarm with its data; `what` is the name of the list.
     fn recorded(&self, what: &str) -> Vec<Occurrence>;
@@ -108,7 +108,7 @@ impl<T: ExtraColumns, S> RecordedAlarm for Alarms<T, S> {
     }
 }
 
-/// Name of the list of present alarms.
+/// Name of the list of active alarms.
 const PRESENT: &str = "present";
 
 /// An alarm that a controller has or had.
@@ -137,7 +137,7 @@ pub struct Explained<R> {
 #[derive(Debug, Serialize, JsonSchema)]
 struct Told {
     robot: String,
-    /// Occurrences in its alarm list and history, the latest first.
+    /// Occurrences in the robot's alarm list and history, the latest first.
     alarms: Vec<Occurrence>,
     /// Lists that were not read, and the reason.
     errors: Vec<String>,
@@ -159,7 +159,7 @@ impl Told {
             table.row([place.as_str().into(), text, data, time]);
         }
         let found = if self.alarms.is_empty() && self.errors.is_empty() {
-            format!("{} does not have this alarm, neither present nor in its recent history.", self.robot)
+            format!("This alarm is not present on {}, and is not in its recent history.", self.robot)
         } else if self.alarms.is_empty() {
             String::new()
         } else {
@@ -196,7 +196,7 @@ impl<F: Declaration> ToolTask for Explaining<F> {
     }
 }
 
-/// Occurrences of an alarm on a controller, present and past, and the lists that were not read.
+/// Occurrences of an alarm on a controller, active and past, and the lists that were not read.
 async fn recall<F: Declaration>(run: &Run, robot: &Robot, alarm: &str) -> (Vec<Occurrence>, Vec<String>) {
     let mut link = match connect::<F>(run, robot).await {
         Ok(link) => link,
@@ -216,8 +216,8 @@ async fn recall<F: Declaration>(run: &Run, robot: &Robot, alarm: &str) -> (Vec<O
 /// Connects, unless the connection would affect the robot.
 async fn connect<F: Declaration>(run: &Run, robot: &Robot) -> Result<F::Link, String> {
     if matches!(F::entry(robot, ConnectMode::Control), Entry::Stops(_)) {
-        return Err("not read: this needs a command connection, and its end stops the robot. `armctl session open` \
-                    keeps a connection open"
+        return Err("not read: the read needs a command connection, and the end of that connection stops the robot. \
+                    Use `armctl session open` to keep a connection open"
             .to_owned());
     }
     let access = Access::reading(ConnectMode::Control);

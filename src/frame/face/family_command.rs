@@ -20,7 +20,7 @@ pub enum ParsedCommand {
     Command(Box<dyn AnyCommand>),
     /// Interactive prompt.
     Prompt,
-    /// None.
+    /// No action.
     Nothing,
 }
 

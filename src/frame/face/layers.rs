@@ -91,7 +91,7 @@ impl Layers {
         self.add(layer, State::Failed, message.to_owned(), failure.hint.clone());
     }
 
-    /// Adds an ok layer or a warning.
+    /// Adds an ok layer if `is_well` is true, otherwise a warning.
     pub fn judge(&mut self, layer: &'static str, is_well: bool, (well, ill): (&str, &str), advice: &str) {
         if is_well { self.ok(layer, well) } else { self.warn(layer, ill, advice) }
     }
@@ -140,7 +140,7 @@ pub fn drafts() -> Option<Layer> {
         layer: "partial files",
         state: if left > 0 { State::Warning } else { State::Ok },
         found: format!("partial files of killed commands (.armctl-*.part): {removed} removed, {left} not removed"),
-        advice: (left > 0).then(|| "remove them as a user with permission".to_owned()),
+        advice: (left > 0).then(|| "remove the files as a user with permission".to_owned()),
     })
 }
 

@@ -31,17 +31,17 @@ use armctl_controller::Risk;
 use armctl_transport::session::host::Guard;
 use armctl_transport::session::host::shared_link::SharedLink;
 
-/// A family, as the rest of the program sees it; [`registration`] derives it from the declaration.
+/// Interface of a family for the rest of the program; [`registration`] derives it from the declaration.
 pub trait Face: Sync {
     /// Family.
     fn family(&self) -> Family;
     /// Manufacturers and models, for completion.
     fn title(&self) -> &'static str;
-    /// Prefixes of its target URLs, with their continuation.
+    /// Prefixes of the family's target URLs, with the text that can follow each prefix.
     fn urls(&self) -> Vec<(String, &'static str)>;
     /// Codes that `explain` supports, with their names.
     fn codes(&self) -> Vec<(String, String)>;
-    /// Whether `explain` supports a code; of a code that is not known, whether it has the form of one.
+    /// Whether `explain` supports a code. For an unknown code: whether it has the form of a code of this family.
     fn explains(&self, code: &str) -> bool;
     /// Help topic `NAME-setup`: summary and text.
     fn setup(&self) -> (&'static str, &'static str);
@@ -52,25 +52,25 @@ pub trait Face: Sync {
     /// Example of a simulator start state.
     fn start_state(&self) -> &'static str;
 
-    /// Its command with all subcommands and arguments.
+    /// Command of the family with all subcommands and arguments.
     fn augment(&self, command: clap::Command) -> clap::Command;
-    /// Its command with the named subcommands only.
+    /// Command of the family with only the named subcommands.
     fn lay_out(&self, command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command;
-    /// Parses the arguments after its name.
+    /// Parses the arguments after the name of the family.
     fn read(&self, matches: &mut ArgMatches) -> Result<FamilyLine, clap::Error>;
-    /// Schemas of all its reports.
+    /// Schemas of all reports of the family.
     fn schemas(&self) -> Vec<SchemaEntry>;
 
-    /// Its tool of this kind.
+    /// Tool of the family of this kind.
     fn tool(&self, kind: ToolKind) -> Tool;
 
-    /// Driver of its robots.
+    /// Driver of the family's robots.
     fn driver(&self) -> &'static dyn Driver;
     /// Summary for `status`.
     fn overview<'a>(&self, connection: &'a mut dyn Connection) -> LocalBoxFuture<'a, Result<OverviewReport, Failure>>;
-    /// Present alarms, for `alarm list`.
+    /// Active alarms, for `alarm list`.
     fn alarms<'a>(&self, connection: &'a mut dyn Connection) -> LocalBoxFuture<'a, Result<Vec<Alarm>, Failure>>;
-    /// Its command for a shared verb.
+    /// Command of the family for a shared verb.
     fn shared(&self, verb: SharedVerb) -> Box<dyn AnyCommand>;
     /// Keys of `armctl teach`.
     fn panel(&self) -> Panel;
@@ -96,7 +96,7 @@ pub trait Face: Sync {
         access: &'a Access,
         screen: &'a Screen,
     ) -> LocalBoxFuture<'a, Result<HeldLink, Failure>>;
-    /// Words of its stop command, after its name.
+    /// Words of the family's stop command, after the name of the family.
     fn stop(&self) -> &'static [&'static str];
     /// Filter of the requests that may reach a read-only robot through a session.
     fn guard(&self) -> Guard;
@@ -105,7 +105,7 @@ pub trait Face: Sync {
     /// Whether an open session commands the controller, which a read-only robot does not allow.
     fn session_commands(&self) -> bool;
 
-    /// Risk of reading all of a controller.
+    /// Risk of reading all data of a controller.
     fn backup_risk(&self, robot: &Robot) -> Risk;
     /// Makes a backup.
     fn back_up<'a>(

@@ -21,7 +21,7 @@ pub struct OverviewReport {
     /// State that an earlier client left, and how to undo it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_over: Vec<LeftOver>,
-    /// Reason why it is not reachable.
+    /// Reason why the robot is not reachable.
     #[serde(skip)]
     pub failure: Option<Failure>,
 }
@@ -36,7 +36,7 @@ pub struct LeftOver {
 }
 
 impl LeftOver {
-    /// Creates the entry if `is_so`.
+    /// Creates the entry if `is_so` is true.
     pub fn new(is_so: bool, what: &str, undo: &str) -> Option<Self> {
         is_so.then(|| Self { what: what.to_owned(), undo: undo.to_owned() })
     }

@@ -33,13 +33,13 @@ use armctl_transport::session::host::Guard;
 /// A family, declared in its `face.rs`.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Declaration: Backups {
-    /// Commands after its name.
+    /// Commands after the name of the family.
     type Commands: CommandSet + Subcommand;
     /// `armctl decode`.
     type Decode: Decode + Args + 'static;
     /// `armctl explain`.
     type Explain: Explain + Args + 'static;
-    /// Command that lists present alarms.
+    /// Command that lists active alarms.
     type Alarms: Command<Family = Self, Report: RecordedAlarm> + Args;
     /// Command that lists past alarms.
     type AlarmHistory: Command<Family = Self, Report: RecordedAlarm + CommonReport> + Args;
@@ -58,9 +58,9 @@ pub trait Declaration: Backups {
     const NAME: target::Family;
     /// See [`Face::title`].
     const TITLE: &'static str;
-    /// Help text of its name.
+    /// Help text of the family's command.
     const ABOUT: &'static str;
-    /// Text below the help of its name.
+    /// Text below the help of the family's command.
     const AFTER_HELP: &'static str;
     /// See [`Face::setup`].
     const SETUP: (&'static str, &'static str);
@@ -84,17 +84,17 @@ pub trait Declaration: Backups {
         Vec::new()
     }
 
-    /// Adds arguments between its name and a command.
+    /// Adds arguments between the name of the family and a command.
     fn arguments(command: clap::Command) -> clap::Command {
         command
     }
-    /// Reads the arguments between its name and a command.
+    /// Reads the arguments between the name of the family and a command.
     fn read_arguments(_matches: &mut ArgMatches) -> Result<FamilyArguments, clap::Error> {
         Ok(FamilyArguments::default())
     }
     /// Stop command, equivalent to the words of [`STOP`](connection::Family::STOP).
     fn stop_command() -> Self::Stop;
-    /// Present alarms, the latest first, as far as they can be read.
+    /// Active alarms, the latest first, as far as they can be read.
     async fn alarms(link: &mut Self::Link) -> Result<Vec<Alarm>, Failure>;
     /// Traffic counted on a link so far.
     fn traffic(link: &Self::Link) -> Traffic;

@@ -1,4 +1,4 @@
-//! Result of one poll of a robot of any family, for a live view. It only reads.
+//! Result of one poll of a robot of any family, for a live view. The poll only reads.
 
 use std::time::Duration;
 
@@ -64,7 +64,7 @@ pub struct Sample {
     /// Response time of the first answer; `None` if nothing is requested, because the controller sends its state on
     /// its own.
     pub answered_in: Option<Duration>,
-    /// Present alarms and errors, the latest first, as far as they can be read.
+    /// Active alarms and errors, the latest first, as far as they can be read.
     pub alarms: Vec<Alarm>,
     /// Data of [`Detail::Full`], and part of it for [`Detail::Axes`].
     pub full: Option<Whole>,

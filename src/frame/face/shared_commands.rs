@@ -53,7 +53,7 @@ pub fn command<F: Declaration>(verb: SharedVerb) -> Box<dyn AnyCommand> {
 /// A command with default arguments.
 ///
 /// # Panics
-/// If it has arguments without a default, which a test excludes.
+/// If the command has arguments without a default, which a test excludes.
 pub fn default_arguments<C: Args>() -> C {
     // The position command of a YRCX reads this global option.
     let until = clap::Arg::new("until").long("until").global(true);

@@ -11,7 +11,8 @@ pub struct Panel {
     pub position: &'static [&'static str],
     /// Command that stops the robot.
     pub stop: &'static [&'static str],
-    /// Command that enables motion after a stop, and may continue a stopped motion; none if not needed.
+    /// Command that enables motion after a stop, and may continue a stopped motion; none if the controller needs no
+    /// such command.
     pub release: Option<&'static [&'static str]>,
     /// Command that reads a point.
     pub stored: fn(point: u32) -> Vec<String>,
@@ -21,14 +22,14 @@ pub struct Panel {
     pub go: fn(point: u32, system: &System, speed: u32) -> Vec<String>,
     /// Name of a point: `P5`, `point 5`.
     pub point: fn(u32) -> String,
-    /// Inching step of the controller, if it has its own.
+    /// Inching step that is set in the controller, if there is one.
     pub small_step: Option<SmallStep>,
 }
 
 /// Inching step of a controller.
 #[derive(Debug, Clone, Copy)]
 pub struct SmallStep {
-    /// Command that reads it.
+    /// Command that reads the inching step.
     pub words: &'static [&'static str],
     /// Size in the answer, for axis 0, 1 and so on.
     pub size: fn(&Value, usize) -> Option<f64>,
@@ -43,7 +44,7 @@ pub struct System {
     pub axes: &'static [(&'static str, &'static str)],
     /// Step sizes, the smallest first; the last one is the maximum per key press.
     pub steps: &'static [f64],
-    /// Speeds, the lowest first; empty if the controller has its own for inching.
+    /// Speeds, the lowest first; empty if the controller has its own speed for inching.
     pub speeds: &'static [u32],
     /// Unit of speeds: `mm/s, deg/s`, `%`.
     pub speed_unit: &'static str,

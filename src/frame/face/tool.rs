@@ -34,7 +34,7 @@ pub struct Tool {
     pub augment: fn(Command) -> Command,
     /// Parser of the arguments.
     pub read: fn(&mut ArgMatches) -> Result<Box<dyn ToolTask>, clap::Error>,
-    /// Schemas of its reports.
+    /// Schemas of the tool's reports.
     pub schemas: fn() -> Vec<SchemaEntry>,
 }
 

@@ -1,9 +1,9 @@
-//! Reports as CSV (RFC 4180): one row per list entry. The columns come from the schema of the report, never from its
-//! data.
+//! Reports as CSV (RFC 4180), with one row per list entry. The columns come from the schema of the report, never from
+//! the data of the report.
 //!
 //! A column has the name of its field; fields of a nested object are joined with `_`: `error_code`. A list with a
-//! maximum length has one column per entry (`axes_1`). A list of plain values is one cell. A list of objects in a row
-//! is omitted. If a report has several lists, their names precede the field names.
+//! maximum length has one column per entry (`axes_1`). A list of plain values, or of named values, is one cell. A list
+//! of other objects in a row is omitted. If a report has several lists, their names precede the field names.
 
 use std::collections::BTreeSet;
 
@@ -11,21 +11,23 @@ use serde_json::Value;
 
 use super::escape;
 
-/// Limit of nesting. Deeper values are one cell.
+/// Maximum nesting depth. Deeper values are one cell.
 const MAX_DEPTH: usize = 5;
-/// Column with the value of an entry.
+/// Name of the column with the value of an entry.
 const VALUE: &str = "value";
-/// Columns of the result of a robot.
+/// Field with the name of a value, in a list of named values.
+const NAME: &str = "name";
+/// Names of the columns with the result of a robot.
 const OUTCOME: [&str; 5] = ["ok", "error_kind", "error_code", "error_message", "error_hint"];
-/// Longest list with one column per entry.
+/// Maximum length of a list that gets one column per entry.
 const MAX_COLUMNS: u64 = 16;
 
-/// Rows of a report.
+/// Selection of the rows of a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RowsOf {
-    /// Entries of all required lists of objects. Without such a list, the report is one row.
+    /// The entries of all required lists of objects are rows. A report without such a list is one row.
     Lists,
-    /// Entries of this list, without the other fields.
+    /// The entries of this list are rows. Other fields are omitted.
     List(&'static str),
     /// The report is one row.
     Report,
@@ -34,28 +36,37 @@ pub enum RowsOf {
 /// Columns of a report.
 #[derive(Debug, Clone)]
 pub struct Sheet {
-    /// Fields of the report itself, in every row.
+    /// Fields of the report itself. They are in every row.
     common: Vec<Column>,
     /// Lists of the report, with the fields of their entries.
     lists: Vec<(String, Vec<Column>)>,
-    /// Columns of the result of a robot that the report does not have, at the end of every row.
+    /// Columns with the result of a robot, at the end of every row. Columns that the report already has are omitted.
     outcome: Vec<&'static str>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Column {
     name: String,
-    /// JSON pointer, relative to the report or the entry.
+    /// JSON pointer to the value, relative to the report or to the list entry.
     pointer: String,
+    /// Whether the fields of an object at this place have columns of their own.
+    has_fields: bool,
+}
+
+impl Column {
+    /// Value of this column in a report or an entry; none if the value has columns of its own.
+    fn find<'v>(&self, entry: &'v Value) -> Option<&'v Value> {
+        entry.pointer(&self.pointer).filter(|value| !(self.has_fields && value.is_object()))
+    }
 }
 
 impl Sheet {
-    /// Columns of a report with this schema.
+    /// Creates the columns of a report with this schema.
     pub fn from_schema(schema: &Value, rows: RowsOf) -> Self {
         let mut sheet = Self { common: Vec::new(), lists: Vec::new(), outcome: Vec::new() };
         let all = fields(schema, &[schema]);
         if all.is_empty() {
-            sheet.common.push(Column { name: VALUE.to_owned(), pointer: String::new() });
+            sheet.common.push(Column { name: VALUE.to_owned(), pointer: String::new(), has_fields: false });
         }
         for (name, variants) in all {
             let entries: Vec<&Value> = variants.iter().flat_map(|one| items(schema, one)).collect();
@@ -88,7 +99,7 @@ impl Sheet {
         sheet
     }
 
-    /// Adds the columns of the result of each robot, as far as entries do not have them.
+    /// Adds the columns with the result of each robot. Columns that the entries already have are omitted.
     #[must_use]
     pub fn with_outcome(mut self) -> Self {
         self.outcome = OUTCOME.into_iter().filter(|name| !self.has_column(name)).collect();
@@ -106,15 +117,16 @@ impl Sheet {
         self.common.iter().chain(listed).map(|column| column.name.as_str()).chain(self.outcome.iter().copied())
     }
 
-    /// Header line, with the names of other columns first.
+    /// Returns the header line. The names `before` of other columns come first.
     pub fn header(&self, before: &[&str]) -> String {
         let mut out = String::new();
         line(&mut out, before.iter().copied().chain(self.columns()));
         out
     }
 
-    /// Appends only the values of a report, separated by tabs: one line, or one per list entry. An entry with a value
-    /// has only that; a position has what can be typed, and a list has the values in it. The outcome fields are omitted.
+    /// Appends only the values of a report, separated by tabs: one line for the report, or one line per list entry. If
+    /// an entry has a value, the line contains only this value. The line of a position contains the text that a user
+    /// can type. The line of a list contains the values of the list. The outcome fields are omitted.
     pub fn values(&self, before: &[&str], data: &Value, out: &mut String) {
         let mut add = |columns: &[Column], entry: &Value| {
             let is_position = columns.iter().any(|column| column.name == "frame");
@@ -126,7 +138,7 @@ impl Sheet {
             let has_values = columns.iter().any(|column| is_value(&column));
             let chosen =
                 columns.iter().filter(|column| if has_values { is_value(column) } else { !is_outcome(column) });
-            let cell_text = |column: &Column| entry.pointer(&column.pointer).map_or_else(String::new, plain);
+            let cell_text = |column: &Column| column.find(entry).map_or_else(String::new, plain);
             let before = before.iter().map(|text| escape::line(text).into_owned());
             let cells: Vec<String> = match typed_values(&entry[VALUE]) {
                 Some(values) => before.chain(values).collect(),
@@ -143,20 +155,20 @@ impl Sheet {
         }
     }
 
-    /// Appends the row of a robot without a report. `before` are the cells of other columns.
+    /// Appends the row of a robot that has no report. `before` contains the cells of other columns.
     pub fn failed(&self, before: &[&str], error: &Value, out: &mut String) {
         let before: Vec<String> = before.iter().map(|text| neutralize_formula(text)).collect();
         let cells: Vec<String> = self.columns().map(|column| outcome(column, Some(error))).collect();
         line(out, before.iter().chain(&cells).map(String::as_str));
     }
 
-    /// Appends the rows of a report; `error` is the reason why it is not complete. `before` are the cells of other
-    /// columns.
+    /// Appends the rows of a report. `error` is the reason why the report is not complete. `before` contains the cells
+    /// of other columns.
     pub fn rows(&self, before: &[&str], data: &Value, error: Option<&Value>, out: &mut String) {
         let outcome: Vec<String> = self.outcome.iter().map(|column| outcome(column, error)).collect();
         let outcome = || outcome.iter().map(String::as_str);
         let cells = |columns: &[Column], value: &Value| -> Vec<String> {
-            columns.iter().map(|column| value.pointer(&column.pointer).map_or_else(String::new, cell)).collect()
+            columns.iter().map(|column| column.find(value).map_or_else(String::new, cell)).collect()
         };
         let mut common: Vec<String> = before.iter().map(|text| neutralize_formula(text)).collect();
         common.extend(cells(&self.common, data));
@@ -178,7 +190,7 @@ impl Sheet {
     }
 }
 
-/// Cell of a column about the result: `error_code` of `{"code":…}`.
+/// Returns the cell of a column with the result, for example `error_code` from `{"code":…}`.
 fn outcome(column: &str, error: Option<&Value>) -> String {
     match (column.strip_prefix("error_"), error) {
         (None, error) if column == "ok" => error.is_none().to_string(),
@@ -187,10 +199,10 @@ fn outcome(column: &str, error: Option<&Value>) -> String {
     }
 }
 
-/// Adds the columns of a field: its own if it can be a plain value, and those of nested fields.
+/// Adds the columns of a field: a column of its own if it can be a plain value, and the columns of nested fields.
 fn add(root: &Value, name: &str, place: &str, variants: &[&Value], depth: usize, columns: &mut Vec<Column>) {
-    let leaf = || Column { name: name.to_owned(), pointer: place.to_owned() };
-    let Some(depth) = depth.checked_sub(1) else { return columns.push(leaf()) };
+    let leaf = |has_fields| Column { name: name.to_owned(), pointer: place.to_owned(), has_fields };
+    let Some(depth) = depth.checked_sub(1) else { return columns.push(leaf(false)) };
     let nested = fields(root, variants);
     let lists: Vec<&Value> =
         variants.iter().flat_map(|one| resolve_references(root, one)).filter(|one| is_list(one)).collect();
@@ -198,8 +210,11 @@ fn add(root: &Value, name: &str, place: &str, variants: &[&Value], depth: usize,
     let length =
         lists.iter().filter_map(|list| list["maxItems"].as_u64()).max().filter(|length| *length <= MAX_COLUMNS);
     let is_plain = variants.iter().flat_map(|one| resolve_references(root, one)).any(is_plain);
-    if is_plain || (length.is_none() && !lists.is_empty() && fields(root, &of_list).is_empty()) {
-        columns.push(leaf());
+    let entry_fields = fields(root, &of_list);
+    let has_entry_field = |name: &str| entry_fields.iter().any(|(field, _)| field == name);
+    let is_one_cell = entry_fields.is_empty() || (has_entry_field(NAME) && has_entry_field(VALUE));
+    if is_plain || (length.is_none() && !lists.is_empty() && is_one_cell) {
+        columns.push(leaf(!nested.is_empty()));
     }
     for (field, of_field) in nested {
         add(root, &format!("{name}_{field}"), &pointer(place, &field), &of_field, depth, columns);
@@ -209,7 +224,7 @@ fn add(root: &Value, name: &str, place: &str, variants: &[&Value], depth: usize,
     }
 }
 
-/// Properties of values with these schemas, each with its own schemas, in order.
+/// Returns the properties of values with these schemas, in order. Each property has its own schemas.
 fn fields<'a>(root: &'a Value, variants: &[&'a Value]) -> Vec<(String, Vec<&'a Value>)> {
     let mut all: Vec<(String, Vec<&Value>)> = Vec::new();
     for schema in variants.iter().flat_map(|one| resolve_references(root, one)) {
@@ -228,7 +243,7 @@ fn is_required(root: &Value, name: &str) -> bool {
     lists.flatten().any(|required| required == name)
 }
 
-/// Schemas of the items of a list.
+/// Returns the schemas of the items of a list.
 fn items<'a>(root: &'a Value, schema: &'a Value) -> Vec<&'a Value> {
     let lists = resolve_references(root, schema).into_iter().filter(|one| is_list(one));
     lists
@@ -236,7 +251,7 @@ fn items<'a>(root: &'a Value, schema: &'a Value) -> Vec<&'a Value> {
         .collect()
 }
 
-/// The schema with references and alternatives resolved.
+/// Returns the schema with all references and alternatives resolved.
 fn resolve_references<'a>(root: &'a Value, schema: &'a Value) -> Vec<&'a Value> {
     let mut found = Vec::new();
     let mut open = vec![(schema, MAX_DEPTH)];
@@ -247,7 +262,7 @@ fn resolve_references<'a>(root: &'a Value, schema: &'a Value) -> Vec<&'a Value> 
         let alternatives = ["allOf", "anyOf", "oneOf"].into_iter().filter_map(|kind| schema[kind].as_array()).flatten();
         let pointers: Vec<_> =
             reference.and_then(|place| root.pointer(place)).into_iter().chain(alternatives).collect();
-        // The stack is last in, first out.
+        // The order is reversed, because the stack returns the last schema first.
         open.extend(pointers.into_iter().rev().map(|schema| (schema, depth)));
     }
     found
@@ -257,7 +272,7 @@ fn is_list(schema: &Value) -> bool {
     types(schema).any(|name| name == "array")
 }
 
-/// Whether a value can be a single cell. A map without known keys also can.
+/// Whether a value can be a single cell. A map without known keys can also be a single cell.
 fn is_plain(schema: &Value) -> bool {
     let is_scalar = types(schema).any(|name| ["string", "number", "integer", "boolean"].contains(&name));
     let is_map = types(schema).any(|name| name == "object") && schema.get("properties").is_none();
@@ -266,7 +281,7 @@ fn is_plain(schema: &Value) -> bool {
     is_scalar || is_map || is_any || schema.get("enum").is_some() || schema.get("const").is_some()
 }
 
-/// Types that a schema names directly.
+/// Types that the schema itself names.
 fn types(schema: &Value) -> impl Iterator<Item = &str> {
     let named = &schema["type"];
     named.as_str().into_iter().chain(named.as_array().into_iter().flatten().filter_map(Value::as_str))
@@ -276,13 +291,13 @@ fn pointer(place: &str, field: &str) -> String {
     format!("{place}/{}", field.replace('~', "~0").replace('/', "~1"))
 }
 
-/// Value of a cell; empty if the value has its own columns.
+/// Text of a cell.
 fn cell(value: &Value) -> String {
     neutralize_formula(&text(value))
 }
 
-/// Values of an item whose value is not in columns of its own: a position as it can be typed, or a list of values;
-/// `None` for every other value.
+/// Returns the values of an entry whose value has no columns of its own. A position is the text that a user can type; a
+/// list is its values. `None` for every other value.
 fn typed_values(value: &Value) -> Option<Vec<String>> {
     match value {
         Value::Object(position) => position.get("text").filter(|text| text.is_string()).map(|text| vec![plain(text)]),
@@ -291,7 +306,7 @@ fn typed_values(value: &Value) -> Option<Vec<String>> {
     }
 }
 
-/// Value in a tab-separated line.
+/// Formats a value for a tab-separated line.
 fn plain(value: &Value) -> String {
     escape::line(&text(value)).into_owned()
 }
@@ -306,19 +321,26 @@ fn text(value: &Value) -> String {
             let texts = values.iter().map(|value| value.as_str().map_or_else(|| value.to_string(), str::to_owned));
             texts.collect::<Vec<_>>().join(between)
         }
+        Value::Array(values) => named_values(values).unwrap_or_else(|| value.to_string()),
         _ => value.to_string(),
     }
 }
 
+/// A list of named values as it can be typed: `ax1=10.0 ax2=2.0`; `None` for another list.
+fn named_values(values: &[Value]) -> Option<String> {
+    let pair = |entry: &Value| Some(format!("{}={}", entry.get(NAME)?.as_str()?, text(entry.get(VALUE)?)));
+    Some(values.iter().map(pair).collect::<Option<Vec<_>>>()?.join(" "))
+}
+
 /// Makes a text harmless for terminals and spreadsheets. A text that could be a formula gets an apostrophe (OWASP).
-/// Signed numbers and a single dash are not formulas.
+/// Signed numbers, one or several, and a single dash are not formulas.
 pub(super) fn neutralize_formula(text: &str) -> String {
     let shown = escape::lines(text);
-    let is_plain = shown == "-" || shown.parse::<f64>().is_ok();
+    let is_plain = shown == "-" || shown.split(' ').all(|number| number.parse::<f64>().is_ok());
     if shown.starts_with(['=', '+', '-', '@']) && !is_plain { format!("'{shown}") } else { shown.into_owned() }
 }
 
-/// Appends a line of fields, quoted if necessary.
+/// Appends a line of fields. Fields are quoted if necessary.
 pub(super) fn line<'a>(out: &mut String, fields: impl Iterator<Item = &'a str>) {
     for (index, field) in fields.enumerate() {
         if index > 0 {
@@ -356,7 +378,7 @@ mod tests {
         value: Number,
         axes: [i32; 2],
         remedies: Vec<String>,
-        /// Inside a row: only in the JSON.
+        /// A list within a row: the CSV omits it, only the JSON contains it.
         details: Vec<SubCode>,
         group: Option<u8>,
     }
@@ -433,10 +455,30 @@ mod tests {
         };
         let alarms = vec![alarm(Some(SubCode { raw: 7 }), Number::Whole(5)), alarm(None, Number::Point { x_mm: 1.5 })];
         let many = serde_json::to_value(Report { group: 1, alarms }).unwrap();
-        assert_eq!(
-            rows(&sheet(), &many),
-            "1,4315,7,5,,1,-2,\"a, b; c\",\n1,4315,,\"{\"\"x_mm\"\":1.5}\",1.5,1,-2,\"a, b; c\",\n"
-        );
+        assert_eq!(rows(&sheet(), &many), "1,4315,7,5,,1,-2,\"a, b; c\",\n1,4315,,,1.5,1,-2,\"a, b; c\",\n");
+    }
+
+    #[test]
+    fn list_of_named_values_is_one_cell() {
+        #[derive(Serialize, JsonSchema)]
+        struct Parameters {
+            items: Vec<Parameter>,
+        }
+        #[derive(Serialize, JsonSchema)]
+        struct Parameter {
+            value: Vec<Named>,
+        }
+        #[derive(Serialize, JsonSchema)]
+        struct Named {
+            name: &'static str,
+            value: Value,
+            unit: Option<&'static str>,
+        }
+        let value = |name, value| Named { name, value, unit: Some("mm") };
+        let items = vec![Parameter { value: vec![value("ax1", json!(10.5)), value("mode", json!("fast"))] }];
+        let sheet = Sheet::from_schema(&schema_for!(Parameters).to_value(), RowsOf::Lists);
+        assert_eq!(sheet.header(&[]), "value\n");
+        assert_eq!(rows(&sheet, &serde_json::to_value(Parameters { items }).unwrap()), "ax1=10.5 mode=fast\n");
     }
 
     #[test]
@@ -518,6 +560,7 @@ mod tests {
             ("=1+1", "'=1+1\n"),
             ("@SUM", "'@SUM\n"),
             ("-12.5", "-12.5\n"),
+            ("-12.5 7 -1", "-12.5 7 -1\n"),
             ("-", "-\n"),
             ("-x", "'-x\n"),
             ("\u{1b}[2J", "\\x1b[2J\n"),

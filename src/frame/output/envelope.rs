@@ -1,4 +1,4 @@
-//! Envelope of all JSON answers.
+//! Envelope that all JSON answers have.
 
 use jiff::Timestamp;
 use schemars::JsonSchema;
@@ -17,25 +17,25 @@ use crate::settings::Robot;
     {"if": {"properties": {"robot": {"type": "string"}}}, "then": {"required": ["family", "target", "simulated"]}}
 ]))]
 pub struct Envelope {
-    /// Time of the complete answer; only in `jsonl`.
+    /// Time when the answer was complete; only in `jsonl`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "String", extend("format" = "date-time"))]
     pub time: Option<Timestamp>,
-    /// File of the command; only in a batch.
+    /// File that contains the command; only in a batch.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "String")]
     pub file: Option<String>,
-    /// Its line in the file, from 1.
+    /// Line of the command in the file, from 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "usize")]
     pub line: Option<usize>,
     /// Name of the robot.
     pub robot: Option<String>,
-    /// Its family.
+    /// Family of the robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "String")]
     pub family: Option<&'static str>,
-    /// Its URL.
+    /// URL of the robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "String")]
     pub target: Option<String>,
@@ -43,24 +43,24 @@ pub struct Envelope {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "bool")]
     pub simulated: Option<bool>,
-    /// Command, such as `yerc.status`.
+    /// Command, for example `yerc.status`.
     pub command: Option<String>,
     /// Whether the command succeeded.
     pub ok: bool,
-    /// The report.
+    /// Report of the command.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Value")]
     pub data: Option<Value>,
-    /// Why the report is missing or incomplete.
+    /// The reason why the report is missing or incomplete.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "ErrorBody")]
     pub error: Option<ErrorBody>,
 }
 
-/// Why a command failed: `{"kind":"refused","exit":3,"code":"0x2060","message":…,"hint":…}`.
+/// The reason why a command failed: `{"kind":"refused","exit":3,"code":"0x2060","message":…,"hint":…}`.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct ErrorBody {
-    /// Exit code of the kind.
+    /// Exit code of this kind of failure.
     exit: u8,
     #[serde(flatten)]
     failure: Failure,
@@ -73,7 +73,7 @@ impl From<Failure> for ErrorBody {
 }
 
 impl Envelope {
-    /// Answer of one robot.
+    /// Creates the answer of one robot.
     pub fn of(robot: &Robot, command: &str, result: Result<Value, Failure>) -> Self {
         let (data, error) = match result {
             Ok(data) => (Some(data), None),
@@ -94,7 +94,7 @@ impl Envelope {
         }
     }
 
-    /// Answer of a command without a robot.
+    /// Creates the answer of a command that needs no robot.
     pub fn local(command: &str, data: Value) -> Self {
         Self {
             time: None,
@@ -111,7 +111,7 @@ impl Envelope {
         }
     }
 
-    /// Failure before a robot was selected.
+    /// Creates the answer for a failure that occurred before a robot was selected.
     pub fn failed(command: Option<&str>, failure: Failure) -> Self {
         Self {
             time: None,

@@ -1,8 +1,9 @@
 //! Escaping of untrusted text for terminals.
 //!
-//! Names and messages of a controller can contain any character. Printed unchanged, some of them move the cursor, set
-//! the window title, reverse the direction of a line or hide text. [`line()`] and [`lines()`] make them visible escapes
-//! for people. [`Safe`] writes them as `\uXXXX` in JSON, which parses to the same value.
+//! Names and messages of a controller can contain any character. If they are printed unchanged, some characters move
+//! the cursor, set the window title, reverse the direction of a line or hide text. For people, [`line()`] and
+//! [`lines()`] convert these characters to visible escapes. In JSON, [`Safe`] writes them as `\uXXXX`, and a JSON
+//! parser returns the same value.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
@@ -12,28 +13,28 @@ use std::ops::RangeInclusive;
 use serde::Serialize;
 use serde_json::ser::{CompactFormatter, Formatter, PrettyFormatter, Serializer};
 
-/// Escapes one line of text: characters that a terminal does not simply draw become `\n`, `\x1b`, `\u{202e}`.
-/// Backslashes are not escaped, because the result is for reading and not for parsing.
+/// Escapes one line of text. Characters that a terminal does not simply draw are replaced by `\n`, `\x1b`, `\u{202e}`.
+/// Backslashes are not escaped, because people read the result, and no program parses it.
 pub fn line(text: &str) -> Cow<'_, str> {
     escape_hidden(text, is_hidden)
 }
 
-/// Escapes several lines: as [`line()`], but line feeds are kept.
+/// Escapes several lines of text like [`line()`], but keeps line feeds.
 pub fn lines(text: &str) -> Cow<'_, str> {
     escape_hidden(text, |character| character != '\n' && is_hidden(character))
 }
 
-/// Compact JSON, safe for a terminal.
+/// Returns a value as compact JSON that is safe for a terminal.
 pub fn json_line<T: Serialize + ?Sized>(value: &T) -> serde_json::Result<String> {
     json(value, CompactFormatter)
 }
 
-/// Indented JSON, safe for a terminal.
+/// Returns a value as indented JSON that is safe for a terminal.
 pub fn json_pretty<T: Serialize + ?Sized>(value: &T) -> serde_json::Result<String> {
     json(value, PrettyFormatter::new())
 }
 
-/// Writes JSON without building the text in memory.
+/// Writes a value as JSON. The text is not built in memory first.
 pub fn json_to<T: Serialize + ?Sized>(writer: impl io::Write, value: &T, pretty: bool) -> serde_json::Result<()> {
     if pretty {
         value.serialize(&mut Serializer::with_formatter(writer, Safe(PrettyFormatter::new())))
@@ -42,12 +43,13 @@ pub fn json_to<T: Serialize + ?Sized>(writer: impl io::Write, value: &T, pretty:
     }
 }
 
-/// JSON formatter that writes hidden characters in strings as `\uXXXX`, and everything else like the inner formatter.
+/// JSON formatter that writes hidden characters in strings as `\uXXXX`. For everything else, it uses the inner
+/// formatter.
 #[derive(Debug, Clone, Default)]
 pub struct Safe<F>(pub F);
 
 impl<F: Formatter> Formatter for Safe<F> {
-    /// The fragment already has the JSON escapes. This adds those for terminals.
+    /// The fragment already contains the JSON escapes. This function adds the escapes for terminals.
     fn write_string_fragment<W: ?Sized + io::Write>(&mut self, writer: &mut W, fragment: &str) -> io::Result<()> {
         let mut rest = fragment;
         while let Some((at, character)) = rest.char_indices().find(|(_, character)| is_hidden(*character)) {
@@ -102,8 +104,8 @@ impl<F: Formatter> Formatter for Safe<F> {
     }
 }
 
-/// Non-ASCII characters that are invisible, affect the surrounding text, or break lines, in ascending order. These are
-/// Unicode format characters (Cf), line and paragraph separators, and default-ignorable characters.
+/// Characters outside ASCII that are invisible, affect the text around them, or break lines, in ascending order. These
+/// are the format characters of Unicode (Cf), the line and paragraph separators, and the default-ignorable characters.
 const HIDDEN: &[RangeInclusive<char>] = &[
     '\u{00AD}'..='\u{00AD}',   // soft hyphen
     '\u{034F}'..='\u{034F}',   // grapheme joiner
@@ -132,7 +134,7 @@ const HIDDEN: &[RangeInclusive<char>] = &[
     '\u{E0000}'..='\u{E0FFF}', // tags and more variation selectors
 ];
 
-/// Whether a terminal does anything but draw the character.
+/// Whether a terminal does not simply draw the character.
 fn is_hidden(character: char) -> bool {
     if character.is_ascii() {
         return character.is_ascii_control();
@@ -245,7 +247,7 @@ mod tests {
         assert_eq!(json_pretty(&value).unwrap(), serde_json::to_string_pretty(&value).unwrap());
     }
 
-    /// Text with many special characters.
+    /// Generates text with many special characters.
     fn hostile_text() -> impl Strategy<Value = String> {
         let character = prop_oneof![
             any::<char>(),

@@ -1,5 +1,5 @@
-//! Full-screen mode of the terminal. The terminal is restored on every exit, also after a panic and during a
-//! suspension.
+//! Full-screen mode of the terminal. The terminal is restored at every end of the mode, also after a panic and while
+//! the process is suspended.
 
 use std::io::{self, BufWriter, Stdout, Write as _};
 use std::mem::ManuallyDrop;
@@ -24,22 +24,23 @@ use crate::failure::Failure;
 
 /// Whether the terminal is in full-screen mode.
 static IS_ACTIVE: AtomicBool = AtomicBool::new(false);
-/// Installs a panic hook that restores the terminal before it prints.
+/// Ensures that the panic hook is installed once. The hook restores the terminal before it prints.
 static OLD_PANIC_HOOK: Once = Once::new();
 
-/// Buffer for a screen update, so that it is written at once.
+/// Size of the buffer for a screen update. The buffer allows one write per update.
 const BUFFER_SIZE: usize = 64 * 1024;
-/// Interval at which the key thread checks for its end.
+/// Interval at which the key thread checks whether it must end.
 const KEY_POLL: Duration = Duration::from_millis(100);
 
-/// The terminal in full-screen mode, until it is dropped.
+/// The terminal in full-screen mode. The mode ends when this value is dropped.
 #[derive(Debug)]
 pub struct Fullscreen {
-    /// Never dropped. [`restore`] restores the terminal; the drop of this value would panic on a closed terminal.
+    /// This value is never dropped, because its drop would panic on a closed terminal. [`restore`] restores the
+    /// terminal.
     terminal: ManuallyDrop<Terminal<CrosstermBackend<BufWriter<Stdout>>>>,
 }
 
-/// Thread that reads keys and size changes, until it is dropped.
+/// Thread that reads keys and size changes. It ends when this value is dropped.
 #[derive(Debug)]
 pub struct Keys {
     is_over: Arc<AtomicBool>,
@@ -52,7 +53,7 @@ impl Screen {
         self.is_stdout_terminal() && !is_dumb()
     }
 
-    /// Whether the terminal can show more than ASCII, according to locale and terminal type.
+    /// Whether the terminal can show characters outside ASCII, according to the locale and the terminal type.
     pub fn is_unicode(&self) -> bool {
         let given = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
         let locale = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(given);
@@ -81,15 +82,17 @@ impl Screen {
 }
 
 impl Fullscreen {
-    /// Draws the differences to the last screen.
+    /// Draws the differences from the last screen.
     pub fn draw(&mut self, render: impl FnOnce(&mut Frame<'_>)) -> Result<(), Failure> {
         self.terminal.draw(render).map(|_| ()).map_err(|error| terminal_lost(&error))
     }
 
-    /// Enters full-screen mode again and redraws everything, because another program can have written on the terminal.
+    /// Enters full-screen mode again and redraws the whole screen, because another program may have written to the
+    /// terminal.
     pub fn refresh(&mut self) -> Result<(), Failure> {
         restore();
-        // `clear` would ask the terminal for its cursor position, and the answer would appear among the keys.
+        // `clear` would request the cursor position from the terminal, and the terminal's answer would arrive among the
+        // keys.
         let mut is_full_redraw = || {
             activate()?;
             let size = self.terminal.size()?;
@@ -98,7 +101,7 @@ impl Fullscreen {
         is_full_redraw().map_err(|error| terminal_lost(&error))
     }
 
-    /// Restores the terminal and suspends the process, as Ctrl-Z does. Returns when the process continues.
+    /// Restores the terminal and suspends the process, like Ctrl-Z. Returns when the process continues.
     #[cfg(unix)]
     pub fn suspend(&mut self) -> Result<(), Failure> {
         restore();
@@ -106,7 +109,7 @@ impl Fullscreen {
         self.refresh()
     }
 
-    /// Not supported on this system.
+    /// Does nothing: not supported on this system.
     #[cfg(not(unix))]
     pub fn suspend(&mut self) -> Result<(), Failure> {
         Ok(())
@@ -120,13 +123,13 @@ impl Drop for Fullscreen {
 }
 
 impl Keys {
-    /// Reads keys and size changes, and passes them to `tell` until it returns `false`.
+    /// Starts a thread that reads keys and size changes, and passes them to `tell` until `tell` returns `false`.
     pub fn listen(mut tell: impl FnMut(Event) -> bool + Send + 'static) -> Self {
         let is_over = Arc::new(AtomicBool::new(false));
         let watched = Arc::clone(&is_over);
         let thread = std::thread::spawn(move || {
-            // If SIGHUP is ignored, as under `nohup`, no signal reports a closed terminal. Waiting for keys would then
-            // be a busy loop.
+            // If SIGHUP is ignored, as under `nohup`, no signal reports a closed terminal. Without this check, the wait
+            // for keys would then become a busy loop.
             while !watched.load(Ordering::Relaxed) && terminal_exists(KEY_POLL) {
                 match event::poll(Duration::ZERO) {
                     Ok(false) => {}
@@ -137,7 +140,7 @@ impl Keys {
                         }
                     }
                     Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                    // The terminal is closed; a signal also reports that.
+                    // The terminal is closed. A signal also reports this.
                     Err(_) => return,
                 }
             }
@@ -149,26 +152,27 @@ impl Keys {
 impl Drop for Keys {
     fn drop(&mut self) {
         self.is_over.store(true, Ordering::Relaxed);
-        // Wait for the thread, so that the next reader gets all keys. A panic of the thread also ends it.
+        // Wait until the thread has ended, so that the next reader gets all keys. If the thread panicked, it has also
+        // ended.
         let _ended = self.thread.take().map(JoinHandle::join);
     }
 }
 
-/// Whether stdin is still a terminal. Waits for a key, at most `within`.
+/// Whether stdin is still a terminal. Waits at most `within` for a key.
 #[cfg(unix)]
 fn terminal_exists(within: Duration) -> bool {
     use rustix::event::{PollFd, PollFlags, Timespec, poll};
     let stdin = io::stdin();
     let mut watched = [PollFd::new(&stdin, PollFlags::IN)];
     let within = Timespec::try_from(within).ok();
-    // An interrupted wait reports no events.
+    // An error is ignored: after an interrupted wait, there are no events.
     let _seen = poll(&mut watched, within.as_ref());
     !watched[0].revents().intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL)
 }
 
 #[cfg(not(unix))]
 fn terminal_exists(within: Duration) -> bool {
-    // Also returns at the first key.
+    // The wait also ends at the first key.
     let _seen = event::poll(within);
     true
 }
@@ -182,7 +186,7 @@ fn activate() -> io::Result<()> {
 /// Restores the terminal. Errors are ignored.
 pub fn restore() {
     if IS_ACTIVE.swap(false, Ordering::Relaxed) {
-        // First what no other thread can block.
+        // The raw mode ends first, because no other thread can block this step.
         let _cooked = disable_raw_mode();
         let _shown = execute!(io::stdout(), ResetColor, LeaveAlternateScreen, Show);
         let _flushed = io::stdout().flush();

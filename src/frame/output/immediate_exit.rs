@@ -1,4 +1,4 @@
-//! Immediate exit from any thread: prints the reason, and restores the terminal.
+//! Immediate exit of the process from any thread. Prints the reason, and restores the terminal.
 
 use std::sync::{Mutex, PoisonError, mpsc};
 use std::time::Duration;
@@ -8,24 +8,24 @@ use super::{Screen, fullscreen, prompt};
 use crate::failure::{Failure, Kind, exit_process};
 use armctl_files as files;
 
-/// Screen for the last message, once known.
+/// Screen for the last message; `None` until it is set.
 static SCREEN: Mutex<Option<Screen>> = Mutex::new(None);
 
-/// Time limit for the last message, because a stopped terminal blocks.
+/// Time limit for the last message. A write to a stopped terminal would block.
 const MESSAGE_TIMEOUT: Duration = Duration::from_millis(200);
 
 impl Screen {
-    /// Uses this screen for the message of an immediate exit.
+    /// Sets this screen for the message of an immediate exit.
     pub fn use_for_exit(self) {
         *SCREEN.lock().unwrap_or_else(PoisonError::into_inner) = Some(self);
     }
 }
 
-/// Restores the terminal, prints the reason, and exits as interrupted.
+/// Restores the terminal, prints the reason, and exits with the exit code for an interruption.
 pub fn exit_now(why: &str) -> ! {
     let (done, is_done) = mpsc::channel();
     let failure = Failure::new(Kind::Interrupted, why);
-    // On its own thread, because another thread can hold the lock of stdout or stderr.
+    // The message is printed on its own thread, because another thread may hold the lock of stdout or stderr.
     std::thread::spawn(move || {
         fullscreen::restore();
         prompt::restore();
@@ -42,18 +42,19 @@ pub fn exit_now(why: &str) -> ! {
     exit_process(Kind::Interrupted)
 }
 
-/// Suspends the process group, as a shell expects of Ctrl-Z. Returns when it continues; at once without a shell that
-/// could continue it.
+/// Suspends the process group, as a shell expects after Ctrl-Z. Returns when the process continues. Returns at once if
+/// no shell could continue the process.
 #[cfg(unix)]
 pub fn suspend() {
     use nix::unistd::{getpgid, getpgrp, getppid, getsid};
     use rustix::process::{Signal, kill_current_process_group};
 
-    // In a container, the session leader can be outside, with process id 0. rustix panics at that, nix does not.
+    // In a container, the session leader may be outside of the container. Its process id is then 0. `rustix` would
+    // panic in this case; `nix` does not.
     let parent = getppid();
     let is_same_session = getsid(Some(parent)).is_ok_and(|its| getsid(None) == Ok(its));
     if is_same_session && getpgid(Some(parent)).is_ok_and(|its| its != getpgrp()) {
-        // SIGTSTP would be handled by our own signal handler.
+        // SIGSTOP is sent, because our own signal handler would handle SIGTSTP.
         let _ = kill_current_process_group(Signal::STOP);
     }
 }

@@ -1,4 +1,4 @@
-//! jq filters of `--jq` and `--until`, applied to envelopes.
+//! jq filters for `--jq` and `--until`. They are applied to envelopes.
 
 mod program;
 pub mod worker;
@@ -10,20 +10,20 @@ use crate::failure::{Failure, Kind};
 
 use self::worker::FilterError;
 
-/// A filter that has been compiled successfully.
+/// A compiled filter.
 #[derive(Debug)]
 pub struct Filter {
     text: String,
 }
 
 impl Filter {
-    /// Compiles a filter; an error in it is a usage failure.
+    /// Compiles a filter. A syntax error in the filter is a usage failure.
     pub fn new(text: &str) -> Result<Self, Failure> {
         let filter = Self { text: text.to_owned() };
         filter.ask(None, |_| Ok(())).map(|()| filter)
     }
 
-    /// Passes every output of the filter to `take`.
+    /// Passes each output of the filter to `take`.
     pub fn apply(&self, input: &Value, take: impl FnMut(Value) -> Result<(), Failure>) -> Result<(), Failure> {
         self.ask(Some(input), take)
     }
@@ -50,17 +50,17 @@ impl Filter {
             FilterError::Mistake(why) => Failure::usage(format!("jq filter '{}': {why}", self.text))
                 .hint("a filter gets the whole envelope: try '.data', or remove --jq to see the envelope"),
             FilterError::Failed(why) => Failure::new(Kind::Malformed, format!("jq filter '{}': {why}", self.text))
-                .hint("--json shows the input of the filter"),
+                .hint("use --json to see the input of the filter"),
             FilterError::Halted { exit, text } => Failure::new(Kind::Halted(exit), text),
         })
     }
 }
 
-/// Runs in the worker process.
+/// Filters run in the worker process.
 #[cfg(not(test))]
 use worker::ask;
 
-/// Runs in this process, because the test binary is not armctl.
+/// In tests, filters run in this process, because the test binary is not armctl.
 #[cfg(test)]
 fn ask(filter: &str, input: Option<&Value>, take: impl FnMut(Value) -> bool) -> Result<(), FilterError> {
     let program = program::Program::new(filter).map_err(FilterError::Mistake)?;
@@ -69,12 +69,13 @@ fn ask(filter: &str, input: Option<&Value>, take: impl FnMut(Value) -> bool) -> 
     program.run(input, take).map_err(FilterError::from)
 }
 
-/// Output of the worker process.
+/// Where the worker process writes its output.
 fn answers() -> std::io::Stdout {
     std::io::stdout()
 }
 
-/// Marks a report failure after a change, so that the user does not correct the line and repeat the change.
+/// Marks a report failure that occurred after a change. The user must not correct the command line and repeat the
+/// change.
 #[must_use]
 pub fn failure_after_change(failure: Failure) -> Failure {
     if failure.kind == Kind::PipeClosed {
@@ -118,8 +119,8 @@ mod tests {
         let made = |filter: &str| outputs(filter, &rows);
         assert_eq!(made(".[0] | @csv").unwrap(), [json!("1,2.5,,\"say \"\"hi\"\"\",true")]);
         assert_eq!(made(".[1] | @tsv").unwrap(), [json!("tab\\tand\\nline \\\\")]);
-        assert!(made("@csv").unwrap_err().message.contains("array is no cell"));
-        assert!(made("{} | @tsv").unwrap_err().message.contains("object is no row"));
+        assert!(made("@csv").unwrap_err().message.contains("array cannot be a cell"));
+        assert!(made("{} | @tsv").unwrap_err().message.contains("object is not a row"));
     }
 
     #[test]

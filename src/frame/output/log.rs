@@ -1,6 +1,6 @@
 //! Log of a service on stderr. If stderr is connected to the systemd journal, each line starts with its priority
-//! (`sd-daemon(3)`) and ends with its fields. So `journalctl -p warning` and `grep robot=cell3` find it. With direct
-//! access to the journal, entries are written instead.
+//! (`sd-daemon(3)`) and ends with its fields. `journalctl -p warning` and `grep robot=cell3` can then find the line. If
+//! the journal can be accessed directly, entries are written to it instead.
 
 use std::fmt::Write as _;
 
@@ -9,18 +9,18 @@ use super::{Screen, escape};
 /// Level of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// A problem of this service.
+    /// A problem of the service itself.
     Error,
-    /// A problem of a robot or another watched object.
+    /// A problem of something that the service watches, for example a robot.
     Warning,
-    /// An occasional event.
+    /// An event that occurs from time to time.
     Notice,
-    /// Details for troubleshooting, from `-v` on.
+    /// Details for troubleshooting. They are printed with `-v`.
     Detail,
 }
 
 impl Level {
-    /// Priority of syslog(3).
+    /// Returns the priority of the level (syslog(3)).
     pub fn priority(self) -> u8 {
         match self {
             Self::Error => 3,
@@ -39,10 +39,10 @@ impl Level {
     }
 }
 
-/// Longest field value, in characters.
+/// Maximum length of a field value in characters.
 const MAX_VALUE_LENGTH: usize = 200;
 
-/// Escapes a field value, and limits its length.
+/// Escapes a field value and limits its length.
 pub fn value(text: &str) -> String {
     let text: String = text.chars().take(MAX_VALUE_LENGTH).collect();
     escape::line(&text).into_owned()
@@ -58,7 +58,7 @@ impl Screen {
         }
     }
 
-    /// Logs a message with journal fields.
+    /// Logs a message. The fields are added if the log goes to the journal.
     pub fn log(&self, level: Level, text: &str, fields: &[(&str, &str)]) {
         if !self.is_enabled(level) {
             return;
@@ -72,7 +72,7 @@ impl Screen {
     }
 }
 
-/// Formats fields as ` name=value`, with quotes if necessary.
+/// Formats fields as ` name=value`. Values are quoted if necessary.
 fn list(fields: &[(&str, &str)]) -> String {
     let mut all = String::new();
     for (name, value) in fields {
@@ -87,7 +87,7 @@ fn list(fields: &[(&str, &str)]) -> String {
     all
 }
 
-/// Whether stderr is the journal. The variable alone is not enough, because a terminal can have inherited it.
+/// Whether stderr is the journal. The environment variable is not sufficient, because a terminal may have inherited it.
 #[cfg(unix)]
 fn is_journal() -> bool {
     let Some(named) = std::env::var_os("JOURNAL_STREAM") else { return false };
@@ -100,7 +100,7 @@ fn is_journal() -> bool {
     false
 }
 
-/// Whether stderr is the journal's socket, and not a file in its place.
+/// Whether stderr is the socket of the journal, and not a file to which stderr was redirected.
 #[cfg(unix)]
 pub fn is_journal_socket() -> bool {
     let is_socket = rustix::fs::fstat(std::io::stderr())

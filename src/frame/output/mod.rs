@@ -1,6 +1,6 @@
-//! Output: the only writer to stdout and stderr.
+//! Output: the only module that writes to stdout and stderr.
 //!
-//! stdout has only data; prompts, progress, hints and logs go to stderr.
+//! stdout contains only data. Prompts, progress, hints and logs are written to stderr.
 
 pub mod busy_work;
 pub mod csv;
@@ -34,43 +34,43 @@ use crate::failure::{Failure, Kind};
 pub enum Format {
     /// Tables for people.
     Table,
-    /// One envelope, or an array of them.
+    /// One envelope, or an array of envelopes.
     Json,
     /// One envelope per line, with the time.
     Jsonl,
     /// Comma-separated values.
     Csv,
-    /// Only values, with tabs between them, for a shell.
+    /// Only values, separated by tabs, for a shell.
     Value,
 }
 
 impl Format {
-    /// Whether a report is written as rows with columns from its schema.
+    /// Whether the format writes a report as rows, with columns from the schema of the report.
     pub fn is_rows(self) -> bool {
         matches!(self, Self::Csv | Self::Value)
     }
 }
 
-/// When to use colour.
+/// Use of color.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum ColorChoice {
-    /// On a terminal with colours, or if `CLICOLOR_FORCE` is set, but not if `NO_COLOR` is set.
+    /// On a terminal with colors, or if `CLICOLOR_FORCE` is set, but not if `NO_COLOR` is set.
     Auto,
-    /// Always, also in a file.
+    /// Always, even in a file.
     Always,
     /// Never.
     Never,
 }
 
-/// Output settings.
+/// Output settings, and functions that print.
 #[derive(Debug, Clone, Copy)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent flag")]
 pub struct Screen {
-    /// Format of data.
+    /// Format of the data on stdout.
     pub format: Format,
-    /// Only errors and questions on stderr.
+    /// Whether only errors and questions are printed on stderr.
     pub quiet: bool,
-    /// `-v` is 1: summary, `-vv` is 2: frames, `-vvv` is 3: bytes.
+    /// Verbosity: 1 (`-v`) summary, 2 (`-vv`) frames, 3 (`-vvv`) bytes.
     pub verbosity: u8,
     color: ColorChoice,
     pager: bool,
@@ -79,12 +79,12 @@ pub struct Screen {
 }
 
 impl Screen {
-    /// Settings of flags and environment.
+    /// Creates the output settings from flags and environment.
     pub fn new(format: Format, color: ColorChoice, quiet: bool, verbosity: u8) -> Self {
         Self { format, quiet, verbosity, color, pager: false, plain_errors: false, questions: true }
     }
 
-    /// Sets whether errors are plain text even if data is JSON; only for `--jq`.
+    /// Sets whether errors are printed as plain text even if the data is JSON. Only `--jq` uses this.
     #[must_use]
     pub fn with_plain_errors(self, plain_errors: bool) -> Self {
         Self { plain_errors, ..self }
@@ -96,13 +96,13 @@ impl Screen {
         Self { questions, ..self }
     }
 
-    /// Sets whether long texts use a pager.
+    /// Sets whether long texts are shown in a pager.
     #[must_use]
     pub fn with_pager(self, pager: bool) -> Self {
         Self { pager, ..self }
     }
 
-    /// Only errors, as JSON; for tests.
+    /// Returns output settings that print only errors, as JSON. For tests.
     #[cfg(any(test, feature = "testing"))]
     pub const fn silent() -> Self {
         Self {
@@ -116,13 +116,13 @@ impl Screen {
         }
     }
 
-    /// The same, but only with errors.
+    /// Returns the same settings, but only errors are printed.
     #[must_use]
     pub fn silenced(self) -> Self {
         Self { quiet: true, verbosity: 0, ..self }
     }
 
-    /// Whether errors are JSON too.
+    /// Whether errors are printed as JSON.
     pub fn is_json(&self) -> bool {
         matches!(self.format, Format::Json | Format::Jsonl) && !self.plain_errors
     }
@@ -132,18 +132,18 @@ impl Screen {
         io::stdout().is_terminal()
     }
 
-    /// Whether the user can press Ctrl-C: stdin is a terminal.
+    /// Whether the user can press Ctrl-C, because stdin is a terminal.
     pub fn can_interrupt(&self) -> bool {
         io::stdin().is_terminal()
     }
 
-    /// Whether the user can choose something that is missing in the line: questions are allowed, and the output is not
-    /// for a program.
+    /// Whether the user can select something that is missing in the command line. Questions must be allowed, and the
+    /// output must not be for a program.
     pub fn can_choose(&self) -> bool {
         self.can_ask() && !self.is_json() && std::env::var_os("CI").is_none_or(|value| value.is_empty())
     }
 
-    /// Whether questions are possible: stdin and stderr are terminals.
+    /// Whether the user can be asked, because stdin and stderr are terminals and questions are allowed.
     pub fn can_ask(&self) -> bool {
         self.questions && io::stdin().is_terminal() && io::stderr().is_terminal()
     }
@@ -158,12 +158,12 @@ impl Screen {
         self.format == Format::Table && io::stdout().is_terminal() && !is_dumb()
     }
 
-    /// Width of tables.
+    /// Width of tables in columns.
     pub fn width(&self) -> u16 {
         if io::stdout().is_terminal() { console_width() } else { 80 }
     }
 
-    /// Whether stdout has colors.
+    /// Whether output on stdout has colors.
     pub fn stdout_color(&self) -> bool {
         self.wants_color(io::stdout().is_terminal())
     }
@@ -185,24 +185,24 @@ impl Screen {
         self.bytes(text.as_bytes())
     }
 
-    /// Writes raw data.
+    /// Writes bytes to stdout.
     pub fn bytes(&self, bytes: &[u8]) -> Result<(), Failure> {
         let _busy = busy_work::register();
         let mut stdout = io::stdout().lock();
         Ok(stdout.write_all(bytes).and_then(|()| stdout.flush()).context("stdout")?)
     }
 
-    /// Writes a value as JSON: one line in a pipe or with `jsonl`, indented on a terminal.
+    /// Writes a value as JSON. In a pipe or with `jsonl`, this is one line; on a terminal, the JSON is indented.
     pub fn json(&self, value: &impl Serialize) -> Result<(), Failure> {
         let _busy = busy_work::register();
         let pretty = self.format == Format::Json && self.is_stdout_terminal();
         let mut text = if pretty { escape::json_pretty(value) } else { escape::json_line(value) }
-            .map_err(|error| Failure::local(format!("report as JSON: {error}")))?;
+            .map_err(|error| Failure::local(format!("cannot write the report as JSON: {error}")))?;
         text.push('\n');
         self.data(&text)
     }
 
-    /// Writes a value as JSON without building the text in memory.
+    /// Writes a value as JSON. The text is not built in memory first.
     pub fn json_as_it_comes(&self, value: &impl Serialize) -> Result<(), Failure> {
         let pretty = self.format == Format::Json && self.is_stdout_terminal();
         let mut stdout = io::BufWriter::new(io::stdout().lock());
@@ -211,15 +211,15 @@ impl Screen {
         Ok(ended.context("stdout")?)
     }
 
-    /// Prints a message on stderr, unless `--quiet`.
+    /// Prints a message on stderr, unless `--quiet` is set.
     pub fn note(&self, text: &str) {
         if !self.quiet {
             Self::prose(&format!("{}\n", escape::lines(text)));
         }
     }
 
-    /// Prints a command line under its description on stderr, unless `--quiet`. The line is not wrapped, because a line
-    /// feed in it would end a pasted command early.
+    /// Prints a description and a command line below it on stderr, unless `--quiet`. The command line is not wrapped: a
+    /// line feed in a pasted command would end the command early.
     pub fn note_command(&self, description: &str, command: &str) {
         self.note(description);
         if !self.quiet {
@@ -227,7 +227,7 @@ impl Screen {
         }
     }
 
-    /// Prints once on a terminal that the output is from a simulator.
+    /// Prints a note that the output is from a simulator, once, and only on a terminal.
     pub fn note_simulator(&self) {
         static IS_TOLD: AtomicBool = AtomicBool::new(false);
 
@@ -236,21 +236,22 @@ impl Screen {
         }
     }
 
-    /// Prints progress of long work where no bar is possible, unless stderr is for a program.
+    /// Prints progress of long work where a progress bar is not possible. Nothing is printed if stderr is for a
+    /// program.
     pub fn step(&self, text: &str) {
         if !self.can_redraw() && !self.is_json() {
             self.note(text);
         }
     }
 
-    /// Prints a message on stderr, from verbosity `level` on.
+    /// Prints a message on stderr if the verbosity is at least `level`.
     pub fn detail(&self, level: u8, text: &str) {
         if self.verbosity >= level {
             Self::prose(&format!("{}\n", escape::lines(text)));
         }
     }
 
-    /// Prints a failure on stderr: `error:`, then `hint:` after an empty line.
+    /// Prints a failure on stderr: `error:`, then an empty line and `hint:`.
     pub fn failure(&self, failure: &Failure) {
         if failure.kind == Kind::PipeClosed {
             return;
@@ -268,7 +269,7 @@ impl Screen {
         Self::prose(&format!("{} {message}{code}\n{}", self.paint_stderr("1;31", label), hint.unwrap_or_default()));
     }
 
-    /// A word for stderr, with color if possible.
+    /// Formats a word for stderr, with color if possible.
     fn paint_stderr(&self, code: &str, word: &str) -> String {
         let color = self.wants_color(io::stderr().is_terminal());
         if color { format!("\x1b[{code}m{word}\x1b[0m") } else { word.to_owned() }
@@ -288,7 +289,7 @@ impl Screen {
         }
     }
 
-    /// Prints text for people, with line breaks between words on a terminal.
+    /// Prints text for people. On a terminal, lines are broken between words.
     fn prose(text: &str) {
         if io::stderr().is_terminal() {
             let (_, columns) = dialoguer::console::Term::stderr().size();
@@ -298,7 +299,7 @@ impl Screen {
         }
     }
 
-    /// An error here cannot be reported; the exit code remains.
+    /// An error is ignored, because it cannot be reported. The exit code still shows the result.
     fn stderr(text: &str) {
         let _ = io::stderr().lock().write_all(text.as_bytes());
     }

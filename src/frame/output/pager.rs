@@ -9,11 +9,12 @@ use super::wrap::wrap;
 use super::{Screen, is_dumb};
 use crate::failure::Failure;
 
-/// Limit of a text that fits into a pipe without a reader.
+/// Maximum length of a text for the pager, in bytes. A text up to this length fits into a pipe before the pager reads
+/// it.
 const MAX_LINES: usize = 60_000;
 
 impl Screen {
-    /// Prints a text, with a pager if it is longer than the terminal.
+    /// Prints a text. If the text is longer than the terminal, uses a pager.
     pub fn read(&self, text: &str) -> Result<(), Failure> {
         let (rows, _) = Term::stdout().size();
         let is_terminal = self.is_stdout_terminal();
@@ -24,7 +25,7 @@ impl Screen {
     }
 }
 
-/// Shows the text in a pager. Returns whether there is one.
+/// Shows the text in a pager. Returns `false` if there is no pager.
 fn show(text: &str) -> bool {
     let words = match std::env::var("PAGER") {
         Ok(pager) => shlex::split(&pager).unwrap_or_default(),
@@ -34,14 +35,14 @@ fn show(text: &str) -> bool {
     let Some((program, arguments)) = words.split_first().filter(|(program, _)| *program != "cat") else { return false };
     let mut pager = Command::new(program);
     pager.args(arguments);
-    // Colors, and exit if the text fits on one screen; as in git.
+    // The pager shows colors, and exits at once if the text fits on one screen. `git` uses the same settings.
     if std::env::var_os("LESS").is_none() {
         pager.env("LESS", OsString::from("FRX"));
     }
     become_pager(pager, text)
 }
 
-/// Writes the text into a pipe and replaces the process by the pager, so that keys and Ctrl-C go to the pager.
+/// Writes the text into a pipe, and replaces this process by the pager. The pager then gets the keys and Ctrl-C.
 #[cfg(unix)]
 fn become_pager(mut pager: Command, text: &str) -> bool {
     use std::io::Write as _;
@@ -60,7 +61,7 @@ fn become_pager(mut pager: Command, text: &str) -> bool {
     use std::io::Write as _;
 
     let Ok(mut child) = pager.stdin(std::process::Stdio::piped()).spawn() else { return false };
-    // A write error means that the user has left the pager.
+    // If the write fails, the user has left the pager.
     let _ = child.stdin.take().map(|mut stdin| stdin.write_all(text.as_bytes()));
     child.wait().is_ok()
 }

@@ -1,4 +1,4 @@
-//! Text drawing for full-screen mode: cut to the available width, escaped, with colors by meaning.
+//! Text drawing for full-screen mode. Text is escaped, cut to the available width, and colored by its meaning.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -9,17 +9,17 @@ use ratatui::widgets::{Block, Clear, Widget as _};
 use super::escape;
 use super::view::Tone;
 
-/// Abilities of the terminal.
+/// What the terminal can show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Palette {
-    /// Colors. Without them: bold, underlined and reversed.
+    /// Whether the terminal has colors. Without colors, text is bold, underlined or reversed.
     pub has_color: bool,
-    /// More than ASCII.
+    /// Whether the terminal can show more than ASCII.
     pub is_unicode: bool,
 }
 
 impl Palette {
-    /// Style of a tone.
+    /// Style for a tone.
     pub fn tone(self, tone: Tone) -> Style {
         let style = Style::new();
         match (tone, self.has_color) {
@@ -32,45 +32,45 @@ impl Palette {
         }
     }
 
-    /// Style of less important text: headings, units, values that are off.
+    /// Style for less important text: headings, units, and values that are off.
     pub fn quiet(self) -> Style {
         if self.has_color { Style::new().fg(Color::DarkGray) } else { Style::new() }
     }
 
-    /// Style of keys and of the selection.
+    /// Style for keys and for the selection.
     pub fn accent(self) -> Style {
         let bold = Style::new().add_modifier(Modifier::BOLD);
         if self.has_color { bold.fg(Color::Cyan) } else { bold }
     }
 
-    /// Style of column headings.
+    /// Style for column headings.
     pub fn heading(self) -> Style {
         self.quiet().add_modifier(Modifier::UNDERLINED)
     }
 }
 
-/// A key and its help.
+/// A key with its help texts.
 #[derive(Debug, Clone, Copy)]
 pub struct Explained {
     /// Name of the key.
     pub key: &'static str,
-    /// Text for the last line of the screen; empty for keys that are only in the help.
+    /// Text for the last line of the screen. Empty if the key is only in the help.
     pub short: &'static str,
     /// Text for the help.
     pub full: &'static str,
 }
 
-/// Draws text into the buffer of a screen. Text outside of it is omitted.
+/// Draws text into the buffer of a screen. Text outside of the buffer is omitted.
 #[derive(Debug)]
 pub struct Painter<'a> {
-    /// Buffer.
+    /// Buffer that receives the text.
     pub buffer: &'a mut Buffer,
-    /// Colors.
+    /// Styles that the terminal can show.
     pub palette: Palette,
 }
 
 impl Painter<'_> {
-    /// Draws text at the left of a line. Returns its width.
+    /// Draws text at the left end of a line. Returns the width of the text.
     pub fn draw_left(&mut self, line: Rect, text: &str, style: Style) -> u16 {
         let line = line.intersection(self.buffer.area);
         if line.is_empty() {
@@ -87,14 +87,14 @@ impl Painter<'_> {
         line.width
     }
 
-    /// Draws text at the right of a line. Text that does not fit is cut.
+    /// Draws text at the right end of a line. Text that does not fit is cut.
     pub fn draw_right(&mut self, line: Rect, text: &str, style: Style) {
         let taken = u16::try_from(width(&escape::line(text))).unwrap_or(u16::MAX).min(line.width);
         let start = line.x + (line.width - taken);
         self.draw_left(Rect { x: start, width: taken, ..line }, text, style);
     }
 
-    /// Draws parts of a line in sequence. Returns their width.
+    /// Draws the parts of a line one after the other. Returns their total width.
     pub fn draw_parts(&mut self, line: Rect, parts: &[(&str, Style)]) -> u16 {
         let mut taken = 0;
         for (text, style) in parts {
@@ -103,7 +103,7 @@ impl Painter<'_> {
         taken
     }
 
-    /// Draws the last line of a screen: keys, as many as fit. The last two are always shown.
+    /// Draws the last line of a screen with as many keys as fit. The last two keys are always shown.
     pub fn draw_keys(&mut self, line: Rect, keys: &[&Explained]) {
         let (accent, quiet) = (self.palette.accent(), self.palette.quiet());
         let columns = |key: &Explained| width(key.key) + width(key.short) + 3;
@@ -125,7 +125,7 @@ impl Painter<'_> {
         }
     }
 
-    /// Draws the help with all keys over the screen.
+    /// Draws the help for all keys over the screen.
     pub fn draw_help<'a>(
         &mut self,
         area: Rect,
@@ -165,13 +165,13 @@ impl Painter<'_> {
     }
 }
 
-/// Rest of a line after `columns`.
+/// Returns the rest of a line after `columns`.
 pub fn rest_after(line: Rect, columns: u16) -> Rect {
     let columns = columns.min(line.width);
     Rect { x: line.x + columns, width: line.width - columns, ..line }
 }
 
-/// A line of an area, from its top; empty beyond its end.
+/// Returns a line of an area, counted from the top. The line is empty if it is below the area.
 pub fn line_of(area: Rect, line: u16) -> Rect {
     Rect { y: area.y.saturating_add(line), height: u16::from(line < area.height), ..area }
 }
@@ -197,7 +197,7 @@ pub fn wrap(text: &str, columns: usize) -> Vec<String> {
     lines
 }
 
-/// ASCII replacements for symbols. Other characters are text and not replaced.
+/// ASCII replacements for symbols. All other characters are text and are not replaced.
 const ASCII: [(&str, &str); 24] = [
     ("●", "*"),
     ("○", "."),
@@ -225,7 +225,7 @@ const ASCII: [(&str, &str); 24] = [
     ("·", "-"),
 ];
 
-/// Replaces symbols by ASCII, each in its cell.
+/// Replaces symbols by ASCII. Each symbol stays in its cell.
 pub fn to_ascii(buffer: &mut Buffer) {
     for cell in &mut buffer.content {
         if let Some((_, plain)) = ASCII.iter().find(|(sign, _)| *sign == cell.symbol()) {
@@ -242,7 +242,7 @@ mod tests {
         let area = Rect::new(0, 0, columns, 1);
         let mut buffer = Buffer::empty(area);
         draw(&mut Painter { buffer: &mut buffer, palette: Palette { has_color: false, is_unicode: true } }, area);
-        // The cell after a wide character contains a blank.
+        // The cell after a wide character contains a space.
         buffer.content.iter().map(ratatui::buffer::Cell::symbol).collect()
     }
 
@@ -256,7 +256,7 @@ mod tests {
         assert_eq!(left(5, "abcdef"), "abcd…");
         assert_eq!(left(1, "ab"), "…");
         assert_eq!(left(0, "ab"), "");
-        // Two columns per character: three do not fit, and half a character is not drawn.
+        // Each character has two columns. Three characters do not fit, and a part of a character is not drawn.
         assert_eq!(left(6, "溶接機"), "溶 接 機 ");
         assert_eq!(left(4, "溶接機"), "溶 … ");
     }

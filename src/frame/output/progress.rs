@@ -1,4 +1,4 @@
-//! Progress of long work on stderr: a bar on a terminal, otherwise lines at intervals.
+//! Progress of long work on stderr: a bar on a terminal, otherwise lines from time to time.
 
 use std::time::{Duration, Instant};
 
@@ -6,7 +6,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::{Screen, escape};
 
-/// Progress of one task, shown until it is dropped.
+/// Progress of one task. It is shown until this value is dropped.
 #[derive(Debug)]
 pub struct Progress {
     bar: Option<ProgressBar>,
@@ -16,22 +16,22 @@ pub struct Progress {
     next_line: NextLine,
 }
 
-/// Time of the next line without a terminal.
+/// Time of the next progress line, if there is no terminal.
 #[derive(Debug)]
 enum NextLine {
-    /// At this number of bytes, if the total is unknown.
+    /// The next line is printed at this number of bytes. Used if the total is unknown.
     Bytes(u64),
-    /// At each tenth of `total`, unless the work is short. The amount is counted in KiB or items.
+    /// A line is printed at each tenth of `total`, unless the work is short. The amount is counted in KiB or in items.
     Tenths { total: u64, began: Instant, told: u64, in_kib: bool },
 }
 
-/// Bytes between two lines if the total is unknown.
+/// Number of bytes between two lines, if the total is unknown.
 const LINE_INTERVAL: u64 = 1 << 20;
-/// Shorter work prints no lines.
+/// Work that takes less than this time prints no lines.
 const QUICK_DURATION: Duration = Duration::from_secs(10);
 
 impl Screen {
-    /// Starts the progress of a transfer; `total` if known.
+    /// Starts the progress of a transfer. `total` is the number of bytes, if known.
     pub fn bytes_progress(&self, what: &str, total: Option<u64>) -> Progress {
         let template = match total {
             Some(_) => "{msg} {bar:24} {percent}% {bytes}/{total_bytes} {bytes_per_sec} {eta}",
@@ -44,21 +44,21 @@ impl Screen {
         self.progress(what, total, template, next_line)
     }
 
-    /// Starts the progress of a number of items, with the remaining time.
+    /// Starts the progress of a number of items. The progress shows the remaining time.
     pub fn items_progress(&self, what: &str, total: u64) -> Progress {
         let next_line = NextLine::Tenths { total, began: Instant::now(), told: 0, in_kib: false };
         self.progress(what, Some(total), "{msg} {bar:24} {percent}% {pos}/{len} {eta} left", next_line)
     }
 
-    /// Starts the progress of parts that have their own bars on a terminal. Without a terminal, it prints a line for
-    /// each tenth.
+    /// Starts the progress of parts. On a terminal, the parts have their own bars. Without a terminal, a line is
+    /// printed for each tenth.
     pub fn parts_progress(&self, what: &str, total: usize) -> Progress {
         let next_line = NextLine::Tenths { total: total as u64, began: Instant::now(), told: 0, in_kib: false };
         let lines = !self.can_redraw() && !self.quiet && !self.is_json();
         Progress { bar: None, lines, label: what.to_owned(), completed: 0, next_line }
     }
 
-    /// Starts a spinner for work of unknown duration.
+    /// Starts a spinner for work whose duration is unknown.
     pub fn spinner(&self, what: &str) -> Progress {
         self.progress(what, None, "{msg} {spinner} {elapsed}", NextLine::Bytes(LINE_INTERVAL))
     }
@@ -89,7 +89,7 @@ impl Progress {
         }
     }
 
-    /// Prints a line if one is due.
+    /// Prints a line if it is time for one.
     fn line(&mut self, now: Instant) {
         let (what, done) = (&self.label, self.completed);
         match &mut self.next_line {
@@ -106,7 +106,7 @@ impl Progress {
         }
     }
 
-    /// Changes the text next to the bar; without a terminal, prints nothing.
+    /// Changes the text next to the bar. Without a terminal, nothing is printed.
     pub fn print_line(&self, text: &str) {
         if let Some(bar) = &self.bar {
             bar.set_message(escape::line(text).into_owned());
@@ -122,7 +122,7 @@ impl Drop for Progress {
     }
 }
 
-/// Line for a new tenth; `told` is the last one.
+/// Returns the line for a new tenth. `told` is the last tenth that was printed.
 fn tenth(done: u64, total: u64, passed: Duration, told: &mut u64, in_kib: bool) -> Option<String> {
     let tenths = done.saturating_mul(10) / total.max(1);
     if tenths <= *told || passed < QUICK_DURATION {
@@ -133,7 +133,7 @@ fn tenth(done: u64, total: u64, passed: Duration, told: &mut u64, in_kib: bool) 
     Some(format!("{}0 %, {done_now} of {total_now}{unit}, {} left", tenths, remaining(done, total, passed)))
 }
 
-/// Estimated remaining time: `1 min 20 s`.
+/// Returns the estimated remaining time, for example `1 min 20 s`.
 fn remaining(done: u64, total: u64, passed: Duration) -> String {
     let rest = u128::from(total.saturating_sub(done)) * passed.as_millis() / u128::from(done.max(1));
     let seconds = rest.div_ceil(1000);

@@ -1,4 +1,4 @@
-//! Confirmation questions on stderr.
+//! Questions for confirmation on stderr.
 
 use std::io::BufRead as _;
 #[cfg(unix)]
@@ -8,23 +8,23 @@ use super::Screen;
 use crate::failure::{Failure, Kind};
 
 impl Screen {
-    /// Prints the robot of a question, with a highlighted word.
+    /// Prints the robot to which a question applies, with a highlighted word.
     pub fn ask_title(&self, word: &str, whom: &str) {
         Self::prose(&format!("{} {}\n", self.paint_stderr("1;31", word), super::escape::lines(whom)));
     }
 
-    /// Prints the subject of a question, even with `--quiet`.
+    /// Prints what a question is about, even with `--quiet`.
     pub fn ask_note(&self, text: &str) {
         Self::prose(&format!("{}\n", super::escape::lines(text)));
     }
 
-    /// Asks a yes/no question; an empty answer means no. The terminal settings are not changed, so nothing must be
-    /// restored.
+    /// Asks a yes/no question. An empty answer means no. The terminal settings are not changed, so nothing must be
+    /// restored afterwards.
     pub fn confirm(&self, question: &str) -> Result<bool, Failure> {
         Self::ask(&format!("{question} [y/N]")).map(|answer| is_yes(&answer))
     }
 
-    /// Prints the effect, and asks the user to type `word`.
+    /// Prints the effect of a command, and asks the user to type `word`.
     pub fn confirm_word(&self, what: &str, word: &str) -> Result<bool, Failure> {
         Self::ask(&format!("{what} Type '{word}' to continue:")).map(|answer| answer.trim_ascii() == word.as_bytes())
     }
@@ -32,7 +32,7 @@ impl Screen {
     pub(super) fn ask(question: &str) -> Result<Vec<u8>, Failure> {
         Self::prose(&format!("{} ", super::escape::line(question)));
         let mut answer = Vec::new();
-        // A closed terminal also gives no answer.
+        // Without an answer, for example from a closed terminal, nothing is confirmed.
         if std::io::stdin().lock().read_until(b'\n', &mut answer).unwrap_or(0) == 0 {
             Self::stderr("\n");
             return Err(Failure::new(Kind::Rejected, "not confirmed: no answer; nothing was sent")
@@ -42,7 +42,7 @@ impl Screen {
     }
 }
 
-/// Saved terminal settings.
+/// The saved terminal settings.
 #[cfg(unix)]
 static SAVED_MODES: Mutex<Option<rustix::termios::Termios>> = Mutex::new(None);
 
@@ -58,20 +58,20 @@ pub fn restore() {
     use rustix::termios::{LocalModes, tcgetattr};
 
     if let Some(found) = &*SAVED_MODES.lock().unwrap_or_else(PoisonError::into_inner) {
-        // A program in raw mode has also switched on bracketed paste.
+        // If another program has set raw mode, it has also switched on bracketed paste.
         if tcgetattr(std::io::stdin()).is_ok_and(|now| !now.local_modes.contains(LocalModes::ICANON)) {
             Screen::stderr("\x1b[?2004l");
         }
-        // A closed terminal needs no settings.
+        // An error is ignored: a closed terminal needs no settings.
         let _ = rustix::termios::tcsetattr(std::io::stdin(), rustix::termios::OptionalActions::Now, found);
     }
 }
 
-/// Not necessary on this system.
+/// Does nothing, because this is not necessary on this system.
 #[cfg(not(unix))]
 pub fn save() {}
 
-/// Not necessary on this system.
+/// Does nothing, because this is not necessary on this system.
 #[cfg(not(unix))]
 pub fn restore() {}
 

@@ -1,39 +1,39 @@
-//! Text on a terminal that is overwritten by the next version.
+//! Text on a terminal that replaces its previous version.
 
 use std::cell::{Cell, RefCell};
 
 use dialoguer::console::{Term, measure_text_width};
 
-/// Lines of the last text on the screen.
+/// Number of lines of the last text on the screen.
 #[derive(Debug, Default)]
 pub struct Redraw {
     drawn: Cell<usize>,
-    /// Lines that the next text replaces.
+    /// Number of lines that the next text replaces.
     old: Cell<usize>,
     is_on: Cell<bool>,
-    /// Header of the current CSV output.
+    /// Header of the CSV output that was printed last.
     pub header: RefCell<String>,
 }
 
 impl Redraw {
-    /// Starts a new text in place of the last one.
+    /// Starts a new text, which replaces the last text.
     pub fn begin(&self) {
         self.is_on.set(true);
         self.old.set(self.drawn.take());
     }
 
-    /// Something else was printed, so the next text starts below it.
+    /// Forgets the last text, because other text was printed below it. The next text starts at the cursor.
     pub fn forget(&self) {
         self.drawn.take();
         self.old.take();
     }
 
-    /// Whether texts replace each other.
+    /// Whether a new text replaces the last text.
     pub fn is_on(&self) -> bool {
         self.is_on.get()
     }
 
-    /// Next part of the text, preceded by the codes that remove the old one.
+    /// Returns the next part of the text. The codes that erase the old text come first.
     pub fn with_erase(&self, text: String) -> String {
         if !self.is_on() {
             return text;
@@ -44,14 +44,15 @@ impl Redraw {
         self.drawn.set(self.drawn.get() + lines);
         match old {
             0 => text,
-            // The start of the old text has scrolled off the screen, where the cursor cannot go.
+            // The start of the old text has scrolled off the screen. The cursor cannot reach it, so the whole screen is
+            // erased.
             old if old >= usize::from(height) => format!("\x1b[H\x1b[2J{text}"),
             old => format!("\x1b[{old}A\r\x1b[J{text}"),
         }
     }
 }
 
-/// Terminal lines of a text line.
+/// Returns the number of terminal lines that a text line occupies.
 fn rows(columns: usize, width: usize) -> usize {
     columns.div_ceil(width.max(1)).max(1)
 }

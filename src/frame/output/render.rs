@@ -9,14 +9,14 @@ use dialoguer::console::measure_text_width;
 use super::view::{Cell, Section, Table, Tone, View};
 use super::{busy_work, escape};
 
-/// The view as text of at most `width` columns.
+/// Returns the view as text of at most `width` columns.
 pub fn text(view: &View, width: u16, color: bool) -> String {
     let _busy = busy_work::register();
     let parts: Vec<String> = view.sections.iter().map(|section| section_text(section, width, color)).collect();
     parts.join("\n")
 }
 
-/// Tables and fields of a view as CSV, for tests.
+/// Returns the tables and fields of a view as CSV, for tests.
 #[cfg(any(test, feature = "testing"))]
 pub fn csv(view: &View) -> String {
     let mut out = String::new();
@@ -71,7 +71,8 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
     }
 }
 
-/// Fields, one per line or more. A word that is too long next to the names has its own line.
+/// Formats fields, each on one or more lines. If a word is too long for the space after the names, the value starts on
+/// its own line.
 fn fields_text(fields: &[(&'static str, Cell)], width: u16, color: bool) -> String {
     const INDENT: usize = 2;
     let names = fields.iter().map(|(name, _)| measure_text_width(name)).max().unwrap_or_default();
@@ -106,14 +107,14 @@ fn fields_text(fields: &[(&'static str, Cell)], width: u16, color: bool) -> Stri
     out
 }
 
-/// Space between columns.
+/// Number of blanks between columns.
 const PADDING: u16 = 2;
 
-/// Number of rows laid out at a time, to limit memory.
+/// Number of rows that are rendered at a time, to limit memory.
 const LONG_VALUE: usize = 1000;
 
-/// Layout of a table whose rows are rendered in pieces: first all rows are measured, then the columns are fitted to a
-/// width. So all pieces look like one table.
+/// Layout of a table whose rows are rendered in pieces. First all rows are measured, then the columns are fitted to a
+/// width. All pieces therefore have the same columns.
 #[derive(Debug)]
 pub struct Layout {
     names: Vec<&'static str>,
@@ -124,9 +125,9 @@ pub struct Layout {
 
 #[derive(Debug)]
 struct Column {
-    /// Width of the widest cell; after fitting, the assigned width.
+    /// Width of the widest cell. After fitting, the assigned width.
     width: usize,
-    /// Minimum width without broken words.
+    /// Minimum width at which no word is broken.
     min_width: usize,
     is_number: bool,
     is_whole: bool,
@@ -154,23 +155,23 @@ impl Layout {
         }
     }
 
-    /// Total space between columns.
+    /// Total number of spaces between columns.
     fn gaps(&self) -> usize {
         usize::from(PADDING) * self.columns.len().saturating_sub(1)
     }
 
-    /// Minimum total width without broken words.
+    /// Minimum total width that breaks no word.
     fn least(&self) -> usize {
         let words = self.columns.iter().map(|column| if column.is_whole { column.width } else { column.min_width });
         words.sum::<usize>() + self.gaps()
     }
 
-    /// Assigns the width: small columns get what they need, the others share the rest. No column is narrower than its
-    /// longest word.
+    /// Assigns the width. Narrow columns get the width that they need, and the others share the rest. No column is
+    /// narrower than its longest word.
     #[must_use]
     pub fn fit_width(mut self, width: u16) -> Self {
         self.width = width;
-        // The last column is also followed by a space, if there is room.
+        // If there is room, a space also follows the last column.
         let room =
             usize::from(width).saturating_sub(self.gaps() + usize::from(PADDING)).max(self.least() - self.gaps());
         let at = |column: &Column, share: usize| {
@@ -187,7 +188,7 @@ impl Layout {
         self
     }
 
-    /// Renders the next rows; the first piece has the header.
+    /// Renders the next rows. The first piece includes the header.
     pub fn piece(&mut self, rows: &[Vec<Cell>], color: bool) -> String {
         let header = |(name, column): (&&str, &Column)| {
             let cell = comfy_table::Cell::new(name.to_uppercase()).add_attribute(Attribute::Bold);
@@ -220,22 +221,23 @@ fn grid(width: u16, color: bool) -> comfy_table::Table {
     grid
 }
 
-/// Longest part of a breakable word that is kept together.
+/// Maximum length of a part that is kept together in a breakable word.
 const MIN_WORD: usize = 16;
 
-/// Whether a word can be broken anywhere: very long words, bytes and bits, and languages without blanks.
+/// Whether a word may be broken anywhere. This applies to very long words, to bytes and bits, and to languages without
+/// blanks.
 fn may_break(word: &str) -> bool {
     let is_digit = |byte: u8| byte.is_ascii_hexdigit() || b"?_[]".contains(&byte);
     word.len() >= GIANT_WORD || !word.is_ascii() || word.bytes().all(is_digit)
 }
 
-/// Parts of a word that stay together: lists are split after commas, addresses are not split.
+/// Returns the parts of a word that stay together. Lists are split after commas; addresses are not split.
 fn pieces(word: &str) -> impl Iterator<Item = &str> {
     let is_address = word.contains("://");
     word.split_inclusive(move |c: char| c == ',' && !is_address)
 }
 
-/// Minimum width of a text without broken words.
+/// Minimum width of a text that breaks no word.
 fn least(text: &str) -> usize {
     let of_piece = |piece: &str| {
         let wide = measure_text_width(piece);
@@ -244,7 +246,7 @@ fn least(text: &str) -> usize {
     text.split(' ').flat_map(pieces).map(of_piece).max().unwrap_or_default()
 }
 
-/// Rows as lists of fields, for a terminal that is too narrow for columns.
+/// Renders rows as lists of fields. Used if a terminal is too narrow for the columns.
 fn records(table: &Table, width: u16, color: bool) -> String {
     let rows = table.rows.iter().map(|row| {
         let fields = table.columns.iter().copied().zip(row.iter().cloned()).collect();
@@ -253,10 +255,10 @@ fn records(table: &Table, width: u16, color: bool) -> String {
     rows.collect::<Vec<_>>().join("\n")
 }
 
-/// Length of a very long word. Normal breaking would take quadratic time.
+/// Length from which a word counts as giant. The normal line breaking would need quadratic time for it.
 const GIANT_WORD: usize = 4096;
 
-/// Breaks a text into lines of `room` columns, between words.
+/// Breaks a text between words, into lines of `room` columns.
 fn fold(text: &str, room: usize) -> String {
     let mut out = String::with_capacity(text.len() + text.len() / room.max(1) + 1);
     let mut column = 0;
@@ -305,12 +307,12 @@ fn apply_tone(cell: &Cell, room: usize) -> comfy_table::Cell {
     if cell.is_number { shown.set_alignment(CellAlignment::Right) } else { shown }
 }
 
-/// A line without breaks, with its color.
+/// Formats a line in its color, without line breaks.
 pub fn with_color(line: &Cell, color: bool) -> String {
     with_sgr(&escape::line(&line.text), line.tone, color).into_owned()
 }
 
-/// A text with the color of its tone.
+/// Adds the color of a tone to a text.
 fn with_sgr(text: &str, tone: Tone, color: bool) -> Cow<'_, str> {
     let code = match tone {
         Tone::Good if color => 32,
@@ -332,7 +334,7 @@ fn column_id(name: &str) -> String {
     if id.is_empty() { "number".to_owned() } else { id }
 }
 
-/// Text of a cell; numbers are unchanged.
+/// Text of a cell. Numbers are not changed.
 #[cfg(any(test, feature = "testing"))]
 fn csv_cell(cell: &Cell) -> String {
     if cell.is_number { escape::lines(&cell.text).into_owned() } else { super::csv::neutralize_formula(&cell.text) }
@@ -372,7 +374,7 @@ mod tests {
         assert!(long.lines().all(|line| line.len() <= 60) && long.lines().count() > short.lines().count());
     }
 
-    /// A quadratic algorithm would take hours here.
+    /// An algorithm with quadratic time would need hours for this word.
     #[test]
     fn wraps_a_giant_word() {
         let giant = "A".repeat(8 << 20);

@@ -1,58 +1,58 @@
-//! Views: content of a report independent of its format, as fields, tables and lines.
+//! Views: the content of a report as fields, tables and lines, independent of the output format.
 
-/// Importance of a cell, shown as a color.
+/// Meaning of a cell, which is shown as a color.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Tone {
-    /// Plain text.
+    /// No special meaning.
     #[default]
     Plain,
-    /// Good.
+    /// A good state.
     Good,
-    /// Warning.
+    /// A warning.
     Warning,
-    /// Error.
+    /// An error.
     Bad,
 }
 
-/// One value of a table.
+/// One value in a table, in a field or in a line.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Cell {
-    /// Text, not escaped.
+    /// Text of the cell. It is not escaped.
     pub text: String,
-    /// Numbers are right-aligned.
+    /// Whether the cell is a number. Numbers are right-aligned.
     pub is_number: bool,
-    /// Color.
+    /// Meaning of the cell.
     pub tone: Tone,
-    /// The column is never broken into lines, for example times.
+    /// Whether the column must not be broken into lines, for example for times.
     pub is_whole: bool,
 }
 
 impl Cell {
-    /// A number with its own format, such as `100.000`.
+    /// Creates a cell with a formatted number, for example `100.000`.
     pub fn number(text: impl Into<String>) -> Self {
         Self { text: text.into(), is_number: true, ..Self::default() }
     }
 
-    /// The same cell, never broken into lines.
+    /// Returns the cell with the property that it is not broken into lines.
     #[must_use]
     pub fn whole(mut self) -> Self {
         self.is_whole = true;
         self
     }
 
-    /// The same cell in another tone.
+    /// Returns the cell with another tone.
     #[must_use]
     pub fn tone(mut self, tone: Tone) -> Self {
         self.tone = tone;
         self
     }
 
-    /// A switch: `on` or `off`.
+    /// Creates a cell for a switch: `on` or `off`.
     pub fn switch(on: bool) -> Self {
         Self::from(if on { "on" } else { "off" })
     }
 
-    /// A value that can be missing.
+    /// Creates a cell for a value that may be missing.
     pub fn optional<T: Into<Self>>(value: Option<T>) -> Self {
         value.map_or_else(|| Self::from("-"), Into::into)
     }
@@ -84,23 +84,23 @@ cell_from_number!(u8, u16, u32, u64, usize, i16, i32, i64);
 /// A table.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Table {
-    /// Column names; for CSV they are converted to identifiers.
+    /// Column names. For CSV, they are converted to identifiers.
     pub columns: Vec<&'static str>,
-    /// Rows with one cell per column.
+    /// Rows, each with one cell for each column.
     pub rows: Vec<Vec<Cell>>,
-    /// Text for an empty table.
+    /// Text that is shown if the table has no rows.
     pub empty: &'static str,
 }
 
 impl Table {
-    /// A table without rows; `empty` is its text if none are added.
+    /// Creates a table without rows. `empty` is the text that is shown if no row is added.
     pub fn new(columns: &[&'static str], empty: &'static str) -> Self {
         Self { columns: columns.to_vec(), rows: Vec::new(), empty }
     }
 
     /// Adds a row.
     pub fn row<const N: usize>(&mut self, cells: [Cell; N]) {
-        debug_assert_eq!(N, self.columns.len(), "a row has a cell a column");
+        debug_assert_eq!(N, self.columns.len(), "a row has one cell per column");
         self.rows.push(cells.into());
     }
 }
@@ -120,8 +120,9 @@ impl Table {
 }
 
 impl Table {
-    /// Joins tables, with their names in a first column. The columns are those of the widest table; the others can have
-    /// fewer. `None` if one has other columns.
+    /// Joins tables. The first column contains the names of the tables. The other columns are those of the widest
+    /// table; the other tables may have fewer columns. `None` if a table has a column that the widest table does not
+    /// have.
     pub fn joined(name: &'static str, tables: &[(&str, &Self)]) -> Option<Self> {
         let (_, widest) = tables.iter().rev().max_by_key(|(_, table)| table.columns.len())?;
         let place = |table: &Self, column: &&str| table.columns.iter().position(|own| own == column);
@@ -145,43 +146,43 @@ impl Table {
     }
 }
 
-/// Part of a view.
+/// A part of a view.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Section {
-    /// Names and values, one per line.
+    /// Names and values, one pair on each line.
     Fields(Vec<(&'static str, Cell)>),
     /// Rows and columns.
     Table(Table),
-    /// Text of several lines.
+    /// Text with several lines.
     Text(String),
-    /// Lines with their own colors, such as a diff.
+    /// Lines with their own colors, for example a diff.
     Lines(Vec<Cell>),
 }
 
-/// Content of a report for people.
+/// Content of a report, for people.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct View {
-    /// Parts, separated by an empty line.
+    /// Parts of the view. They are separated by an empty line.
     pub sections: Vec<Section>,
 }
 
 impl View {
-    /// A view of fields.
+    /// Creates a view with fields.
     pub fn fields<const N: usize>(fields: [(&'static str, Cell); N]) -> Self {
         Self { sections: vec![Section::Fields(fields.into())] }
     }
 
-    /// A view of one table.
+    /// Creates a view with one table.
     pub fn table(table: Table) -> Self {
         Self { sections: vec![Section::Table(table)] }
     }
 
-    /// A view of one text.
+    /// Creates a view with one text.
     pub fn text(text: impl Into<String>) -> Self {
         Self { sections: vec![Section::Text(text.into())] }
     }
 
-    /// The table, if the view contains nothing else.
+    /// The table, if the view contains only one table.
     pub fn as_table(&self) -> Option<&Table> {
         match &self.sections[..] {
             [Section::Table(table)] => Some(table),

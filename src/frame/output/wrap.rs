@@ -1,11 +1,11 @@
-//! Line breaking between words.
+//! Breaking of lines between words.
 
 use std::borrow::Cow;
 
 use dialoguer::console::measure_text_width;
 
-/// Breaks the text into lines of at most `width` columns, only between words, so that an address or a command can be
-/// copied. Continued lines have the indentation of their first line.
+/// Breaks the text into lines of at most `width` columns. Lines are broken only between words, so that a user can copy
+/// an address or a command. Continuation lines have the indentation of their first line.
 pub fn wrap(text: &str, width: usize) -> Cow<'_, str> {
     if text.lines().all(|line| measure_text_width(line) <= width) {
         return text.into();

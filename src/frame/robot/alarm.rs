@@ -9,6 +9,7 @@ use crate::failure::Failure;
 use crate::items::{ItemError, ItemOutcome, verdict};
 use crate::output::view::{Cell, Section, Table, Tone, View};
 use crate::settings::alarms::Explanation;
+use crate::settings::target::Family;
 
 /// An alarm or error. Null means that the protocol does not report it, or that it is unknown.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, JsonSchema)]
@@ -29,6 +30,15 @@ pub struct Alarm {
     pub remedy: Option<String>,
     /// Source of the texts.
     pub source: Source,
+}
+
+/// Hint after an alarm that ended a motion or program, with its code if it was read.
+pub fn hint_after(family: Family, code: Option<&str>) -> String {
+    let first = match code {
+        Some(code) => format!("`armctl explain {family} {code}` shows what to do"),
+        None => format!("`armctl {family} alarm history` shows the alarm; remove the cause"),
+    };
+    format!("{first}, then use `armctl {family} alarm reset`")
 }
 
 /// Alarm, error or warning.
@@ -174,7 +184,7 @@ pub struct AllAlarms {
 }
 
 impl AllAlarms {
-    /// Present alarms.
+    /// Report of active alarms.
     pub fn present(alarms: Vec<Alarm>) -> Self {
         let row = |(index, alarm)| Row::new(index, "alarm", Ok(AlarmEntry { alarm, own: InWords::default() }));
         Self { alarms: (1..).zip(alarms).map(row).collect() }

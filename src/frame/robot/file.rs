@@ -223,7 +223,7 @@ impl<M> Files<M> {
         Self { asked: files.len(), files, show }
     }
 
-    /// Sets the number of requested results, if it is not that of the files: lists of files.
+    /// Sets the number of requested results, if it differs from the number of files, as for lists of files.
     #[must_use]
     pub fn asked(self, asked: usize) -> Self {
         Self { asked, ..self }

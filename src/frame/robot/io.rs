@@ -191,7 +191,13 @@ pub struct WrittenSignal {
 impl WrittenSignal {
     /// Result of an accepted write.
     pub fn new(item: IoItem, old: Option<IoValue>, new: IoValue) -> Self {
-        Self { row: IoRow::new(item, Ok(new)), old, new, written: true }
+        Self::with_outcome(item, old, new, Ok(true))
+    }
+
+    /// Whether it was written, or the reason why it was not.
+    pub fn with_outcome(item: IoItem, old: Option<IoValue>, new: IoValue, outcome: Result<bool, Failure>) -> Self {
+        let written = outcome == Ok(true);
+        Self { row: IoRow::new(item, outcome.map(|_| new)), old, new, written }
     }
 
     /// Result of a write with a different value read back.
@@ -214,6 +220,16 @@ impl WrittenSignals {
     pub fn new(items: Vec<WrittenSignal>) -> Self {
         Self { items }
     }
+
+    /// The report, unless all signals failed for the same reason.
+    pub fn unless_all_failed(self) -> Result<Self, Failure> {
+        all_failed(self.items.len(), self.errors())?;
+        Ok(self)
+    }
+
+    fn errors(&self) -> impl Iterator<Item = &ItemError> {
+        self.items.iter().filter_map(|written| written.row.error.as_ref())
+    }
 }
 
 impl Report for WrittenSignals {
@@ -228,7 +244,7 @@ impl Report for WrittenSignals {
     }
 
     fn failure(&self) -> Option<Failure> {
-        verdict(self.items.len(), self.items.iter().filter_map(|written| written.row.error.as_ref()))
+        verdict(self.items.len(), self.errors())
     }
 }
 

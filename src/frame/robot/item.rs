@@ -10,7 +10,7 @@ use crate::Report;
 use crate::failure::Failure;
 use crate::items::{ItemError, verdict};
 use crate::output::csv::RowsOf;
-use crate::output::view::{Cell, Table, View};
+use crate::output::view::{Cell, Section, Table, View};
 
 /// No family-specific fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, JsonSchema)]
@@ -97,7 +97,7 @@ pub struct Items<V, M = Plain> {
     /// Number of requested items; the table has only these.
     #[serde(skip)]
     asked: usize,
-    /// Reasons why items that were read have no value; they count if no item has one.
+    /// Reasons why items that were read have no value; used only if no item has a value.
     #[serde(skip)]
     undefined: Vec<ItemError>,
     #[serde(skip)]
@@ -110,13 +110,13 @@ impl<V, M> Items<V, M> {
         Self { asked: items.len(), items, undefined: Vec::new(), columns }
     }
 
-    /// Sets the number of items that were requested, if the others were not read because they would fail alike.
+    /// Sets the number of requested items, if the other items were not read because they would fail in the same way.
     #[must_use]
     pub fn asked(self, asked: usize) -> Self {
         Self { asked, ..self }
     }
 
-    /// Sets the reasons why items have no value. If no item has one, the command fails with these.
+    /// Sets the reasons why items have no value. If no item has a value, the command fails with these reasons.
     #[must_use]
     pub fn undefined(self, undefined: Vec<ItemError>) -> Self {
         Self { undefined, ..self }
@@ -137,21 +137,28 @@ impl<V, M> Items<V, M> {
 }
 
 /// Table of items: name, label, cells, and errors.
-fn table<'i, V: 'i, M: 'i>(
-    Columns { name, values, empty }: &Columns,
-    items: impl Iterator<Item = &'i Item<V, M>> + Clone,
-) -> Table {
+fn table<'i, V: 'i, M: 'i>(columns: &Columns, items: impl Iterator<Item = &'i Item<V, M>> + Clone) -> Table {
     let has_errors = items.clone().any(|item| item.error.is_some());
-    let columns = [*name, "label"].into_iter().chain(values.iter().copied());
-    let columns: Vec<_> = columns.chain(has_errors.then_some("error")).collect();
-    let row = |item: &Item<V, M>| {
+    let last = |item: &Item<V, M>| item.error.as_ref().map_or_else(|| "-".into(), ItemError::cell);
+    let rows = items.map(|item| (item, item.cells.clone(), has_errors.then(|| last(item))));
+    rows_table(columns, has_errors.then_some("error"), rows)
+}
+
+/// Table of items, each with its cells and those of a last column.
+fn rows_table<'i, V: 'i, M: 'i>(
+    Columns { name, values, empty }: &Columns,
+    last: Option<&'static str>,
+    rows: impl Iterator<Item = (&'i Item<V, M>, Vec<Cell>, Option<Cell>)>,
+) -> Table {
+    let columns = [*name, "label"].into_iter().chain(values.iter().copied()).chain(last);
+    let row = |(item, cells, last): (&Item<V, M>, Vec<Cell>, Option<Cell>)| {
         let mut row = vec![numeric(&item.name), Cell::optional(item.label.as_deref())];
-        row.extend(item.cells.iter().cloned());
+        row.extend(cells);
         row.resize_with(2 + values.len(), || "-".into());
-        row.extend(has_errors.then(|| item.error.as_ref().map_or_else(|| "-".into(), ItemError::cell)));
+        row.extend(last);
         row
     };
-    Table { rows: items.map(row).collect(), columns, empty }.without_blank("label")
+    Table { columns: columns.collect(), rows: rows.map(row).collect(), empty }.without_blank("label")
 }
 
 /// Name cell, right-aligned if it is a number.
@@ -188,7 +195,13 @@ pub struct Written<V, M = Plain> {
     pub new: Option<V>,
     /// Whether it was written; false if the value was equal, or after a failure.
     pub written: bool,
+    /// Table cells of the old value.
+    #[serde(skip)]
+    pub old_cells: Vec<Cell>,
 }
+
+/// If more rows than this are unchanged, a table has only their number.
+const MANY_UNCHANGED: usize = 8;
 
 /// Items that were written.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -227,7 +240,39 @@ impl<V: Clone, M> Written<V, M> {
     /// Item with the new value.
     pub fn new(item: Item<V, M>, old: Option<V>, written: bool) -> Self {
         let new = item.value.clone();
-        Self { item, old, new, written }
+        Self { item, old, new, written, old_cells: Vec::new() }
+    }
+}
+
+impl<V, M> Written<V, M> {
+    /// Adds the table cells of the old value.
+    #[must_use]
+    pub fn with_old_cells(self, old_cells: Vec<Cell>) -> Self {
+        Self { old_cells, ..self }
+    }
+
+    /// Table cells of what was written: where the old value differs, both.
+    fn change_cells(&self) -> Vec<Cell> {
+        let cell = |(at, new): (usize, &Cell)| match self.old_cells.get(at) {
+            Some(old) if self.written && old.text != new.text => {
+                let [old, text] = [old, new].map(|cell| if cell.text.is_empty() { "\"\"" } else { &cell.text });
+                Cell { text: format!("{old} -> {text}"), ..new.clone() }
+            }
+            _ => new.clone(),
+        };
+        self.item.cells.iter().enumerate().map(cell).collect()
+    }
+
+    fn is_unchanged(&self) -> bool {
+        self.item.error.is_none() && !self.written
+    }
+
+    fn result_cell(&self) -> Cell {
+        match &self.item.error {
+            Some(error) => error.cell(),
+            None if self.written => "written".into(),
+            None => "unchanged".into(),
+        }
     }
 }
 
@@ -235,10 +280,19 @@ impl<V: Serialize + JsonSchema, M: Serialize + JsonSchema> Report for WrittenIte
     const ROWS: RowsOf = RowsOf::List("items");
 
     fn view(&self) -> View {
-        match &self.words {
-            Some(words) => View::text(words.clone()),
-            None => View::table(table(&self.columns, self.items.iter().map(|written| &written.item))),
+        if let Some(words) = &self.words {
+            return View::text(words.clone());
         }
+        let unchanged = self.items.iter().filter(|row| row.is_unchanged()).count();
+        let is_shown = |row: &&Written<V, M>| unchanged <= MANY_UNCHANGED || !row.is_unchanged();
+        let rows = self.items.iter().filter(is_shown);
+        let rows = rows.map(|row| (&row.item, row.change_cells(), Some(row.result_cell())));
+        let table = rows_table(&self.columns, Some("result"), rows);
+        if unchanged <= MANY_UNCHANGED {
+            return View::table(table);
+        }
+        let words = format!("{unchanged} unchanged");
+        if table.rows.is_empty() { View::text(words) } else { View::table(table).append(Section::Text(words)) }
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -1,4 +1,5 @@
-//! Data types common to all families: one type per concept. JSON, schemas, CSV and tables follow from them.
+//! Data types that are common to all families: one type per concept. JSON, schemas, CSV and tables are derived from
+//! them.
 
 pub mod alarm;
 pub mod file;

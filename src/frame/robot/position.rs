@@ -1,8 +1,9 @@
 //! Positions: common keys of `position` in every family, `armctl position`, motions and taught points.
 
+use std::borrow::Cow;
 use std::fmt::Write as _;
 
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
 
 use crate::Report;
@@ -49,6 +50,25 @@ pub struct Position {
     pub text: Option<String>,
 }
 
+/// Position of a controller with at most four axes: the same keys, with fewer columns in CSV.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct FourAxes(pub Position);
+
+impl JsonSchema for FourAxes {
+    fn schema_name() -> Cow<'static, str> {
+        "FourAxes".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let mut schema = Position::json_schema(generator);
+        if let Some(longest) = schema.pointer_mut("/properties/joints/maxItems") {
+            *longest = 4.into();
+        }
+        schema
+    }
+}
+
 /// Position of an axis.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct Joint {
@@ -58,7 +78,7 @@ pub struct Joint {
     pub pulses: Option<i32>,
     /// Degrees.
     pub degrees: Option<f64>,
-    /// Millimetres; degrees for a rotary axis of a YRCX or Toyo.
+    /// Millimeters; degrees for a rotary axis of a YRCX or Toyo.
     pub mm: Option<f64>,
     /// Number of decimals of the controller.
     #[serde(skip)]
@@ -66,7 +86,7 @@ pub struct Joint {
 }
 
 impl Position {
-    /// Position of the axes in millimetres.
+    /// Position of the axes in millimeters.
     pub fn of_axes(names: [String; 4], mm: [f64; 4], decimals: usize) -> Self {
         let joints =
             names.into_iter().zip(mm).map(|(axis, mm)| Joint { axis, mm: Some(mm), decimals, ..Joint::default() });
@@ -88,7 +108,7 @@ impl Position {
         all.filter_map(|(name, value, unit, decimals)| Some((name, value?, unit, decimals)))
     }
 
-    /// All values: name, unit, decimals, value. Axes have priority, because they are equivalent.
+    /// All values: name, unit, decimals, value. Axes have priority, because coordinates and axes are equivalent.
     fn values(&self) -> Vec<(String, &'static str, usize, f64)> {
         let joint = |joint: &Joint| {
             let (value, unit, decimals) = match (joint.mm, joint.pulses) {
@@ -138,7 +158,7 @@ impl Position {
 }
 
 impl Joint {
-    /// Value in its unit: millimetres, or pulses.
+    /// Value in its unit: millimeters, or pulses.
     pub fn cell(&self) -> Cell {
         let Self { decimals, .. } = self;
         match (self.mm, self.pulses) {
@@ -223,7 +243,7 @@ impl Positions {
         self.positions.iter().filter_map(|row| row.error.as_ref())
     }
 
-    /// Replaces the table by a chart of the rounds so far, if requested; coordinates have priority over axes.
+    /// Replaces the table with a chart of the rounds so far, if requested; coordinates have priority over axes.
     #[must_use]
     pub fn plotted(self, is_asked: bool, past: &SeriesHistory) -> Self {
         let has_coordinates = |position: &&Position| position.joints.is_empty();
@@ -314,7 +334,10 @@ impl Report for AllPositions {
 mod tests {
     use super::*;
     use crate::failure::Kind;
+    use crate::output::csv::Sheet;
     use crate::output::render;
+    use crate::report::sheet_of;
+    use crate::robot::item::Items;
 
     fn cartesian() -> Position {
         Position {
@@ -337,6 +360,15 @@ mod tests {
             |(name, pulses): (&str, &i32)| Joint { axis: name.to_owned(), pulses: Some(*pulses), ..Joint::default() };
         let joints = ["S", "L", "U"].into_iter().zip(values).map(joint).collect();
         Position { frame: "joint".to_owned(), joints, ..Position::default() }
+    }
+
+    #[test]
+    fn four_axes_have_the_columns_of_a_position_without_the_last_axes() {
+        let columns = |sheet: Sheet| sheet.columns().map(ToOwned::to_owned).collect::<Vec<_>>();
+        let (all, four) = (columns(sheet_of::<Items<Position>>()), columns(sheet_of::<Items<FourAxes>>()));
+        let is_kept = |column: &&String| !["_5_", "_6_", "_7_", "_8_"].iter().any(|axis| column.contains(axis));
+        assert_eq!((four.len(), all.len()), (all.iter().filter(is_kept).count(), four.len() + 16));
+        assert!(all.iter().filter(is_kept).eq(&four), "{four:?}");
     }
 
     #[test]

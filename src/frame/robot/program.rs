@@ -7,7 +7,7 @@ use super::item::Plain;
 use crate::cycle::Cycle;
 use crate::output::view::{Cell, Tone};
 
-/// A program or job. A field is null if the protocol does not report it, or without a wait for the end.
+/// A program or job. A field is null if the protocol does not report it, or if the command did not wait for the end.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 pub struct Program<M = Plain> {
     /// Name, or number if there is no name.

@@ -49,7 +49,7 @@ pub enum Mode {
 }
 
 impl Mode {
-    /// Mode from a flag.
+    /// `Automatic` if `is_so` is true, otherwise `Manual`.
     pub const fn automatic(is_so: bool) -> Self {
         if is_so { Self::Automatic } else { Self::Manual }
     }
@@ -86,7 +86,7 @@ impl Fault {
         }
     }
 
-    /// Replaces the text by that of the operator's `alarms.toml`, if it has one for the code.
+    /// Replaces the text with the text of the operator's `alarms.toml`, if the file has one for the code.
     pub fn explain(&mut self, robot: &Robot) -> Result<(), Failure> {
         if let Some(code) = &self.fault_code
             && let Some(explained) = alarms::find(robot, code)?

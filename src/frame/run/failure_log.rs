@@ -1,4 +1,4 @@
-//! Failures of a watch, with limited repetition.
+//! Failures of a watch. Repeated failures are limited.
 
 use std::time::Instant;
 
@@ -9,7 +9,7 @@ use crate::output::log::Level;
 use crate::repeat_limiter::{Line, RepeatLimiter};
 use crate::settings::Robot;
 
-/// Missing answers of a watched robot.
+/// Missing answers of a robot that is watched.
 pub(super) struct FailureLog<'a> {
     run: &'a Run,
     robot: &'a Robot,
@@ -22,13 +22,13 @@ impl<'a> FailureLog<'a> {
         Self { run, robot, repeats: RepeatLimiter::default(), last: None }
     }
 
-    /// Reports a missing answer, unless it was just reported.
+    /// Reports a missing answer, unless it was already reported often.
     pub fn report(&mut self, failure: &Failure) {
         let failures = self.limit(failure);
         self.print(failures);
     }
 
-    /// Failures to report now: this one, unless it was just reported, and the counts that are due.
+    /// Failures to report now: this failure, unless it was already reported often, and the counts that are due.
     pub fn limit(&mut self, failure: &Failure) -> Vec<Failure> {
         let line = Line::new(Level::Warning, &failure.message, &[("robot", &self.robot.name)]);
         self.last = Some(failure.clone());
@@ -57,12 +57,12 @@ impl<'a> FailureLog<'a> {
     }
 }
 
-/// Failure, with the name of its robot if several are watched.
+/// Failure with the name of its robot, if several robots are watched.
 fn with_robot_label(run: &Run, robot: &Robot, failure: Failure) -> Failure {
     if run.sources.selection.is_plural() { with_robot_name(robot, failure) } else { failure }
 }
 
-/// Output of a watch of several robots in the rounds so far.
+/// What a watch of several robots has printed in the rounds so far.
 pub(super) struct RoundFailures<'a> {
     /// Failures of each robot, in the order of the robots.
     silences: Vec<FailureLog<'a>>,
@@ -70,12 +70,12 @@ pub(super) struct RoundFailures<'a> {
 }
 
 impl<'a> RoundFailures<'a> {
-    /// Nothing yet.
+    /// State before the first round.
     pub fn nothing(run: &'a Run, robots: &'a [Robot]) -> Self {
         Self { silences: robots.iter().map(|robot| FailureLog::new(run, robot)).collect(), summary: None }
     }
 
-    /// Failures to report now for a robot that failed, or did not.
+    /// Failures to report now for a robot in this round. `failure` is `None` if the robot did not fail.
     pub fn of(&mut self, index: usize, failure: Option<&Failure>) -> Vec<Failure> {
         match (self.silences.get_mut(index), failure) {
             (Some(silences), Some(failure)) => silences.limit(failure),
@@ -87,7 +87,7 @@ impl<'a> RoundFailures<'a> {
         }
     }
 
-    /// Line below a table, if it has changed since the last round.
+    /// Line below a table; `None` if it has not changed since the last round.
     pub fn summary(&mut self, summary: String) -> Option<&str> {
         if self.summary.as_ref() == Some(&summary) {
             return None;

@@ -16,29 +16,29 @@ use crate::output::{Format, escape, render};
 use crate::settings::Robot;
 use crate::{AnyCommand, AnyReport, Outcome};
 
-/// Report or failure of a robot; no robot if there is only one.
+/// Report or failure of a robot. With only one robot, there is no robot in the row.
 type RobotRow<'r> = (Option<&'r Robot>, Result<&'r dyn AnyReport, &'r Failure>);
 
-/// Position of a report among others.
+/// Position of a report among other reports.
 #[derive(Debug, Clone, Copy)]
 pub enum ReportPosition<'a> {
-    /// The only one.
+    /// The only report.
     Alone,
-    /// The first of a watch.
+    /// The first report of a watch.
     First,
     /// A later report of a watch.
     Next,
-    /// A report of a watch with one line per report.
+    /// A report in a watch with one line per report.
     Line,
-    /// A line of a robot in a watch of several robots.
+    /// A line about a robot in a watch of several robots.
     LineOf(&'a Robot),
-    /// One of several robots.
-    Among { robot: &'a Robot, first: bool },
+    /// One of several robots, with its label.
+    Among { label: &'a str, first: bool },
 }
 
 impl Run {
-    /// Writes the envelope of a failed line in the order of the lines; `false` for people, who see the failure on
-    /// stderr.
+    /// Writes the envelope of a failed line, in the order of the lines. Returns `false` if the output is for people,
+    /// who see the failure on stderr.
     pub fn report_failure(&self, stopped: &RunError) -> Result<bool, Failure> {
         if self.is_for_people() {
             return Ok(false);
@@ -61,7 +61,7 @@ impl Run {
         failure.map_or(Ok(()), |failure| Err(RunError { failure, envelope: None, is_reported: self.screen.is_json() }))
     }
 
-    /// Writes what several robots reported, and says it as envelopes.
+    /// Writes the reports of several robots, and also returns them as envelopes.
     pub(super) fn print_many(
         &self,
         command: &dyn AnyCommand,
@@ -85,8 +85,9 @@ impl Run {
         for (index, (robot, outcome)) in robots.iter().zip(outcomes).enumerate() {
             let reason = match outcome {
                 Ok(report) => {
-                    views.push((robot, report.view()));
-                    report.failure()
+                    let failure = report.failure();
+                    views.push(RobotView { robot, view: report.view(), has_failed: failure.is_some(), alike: 0 });
+                    failure
                 }
                 Err(failure) => Some(failure.clone()),
             };
@@ -101,7 +102,7 @@ impl Run {
                 self.show_csv(&sheet.with_outcome(), &rows, place)?;
             }
         } else {
-            self.show_many(&views, place)?;
+            self.show_many(&fold_failed(views), place)?;
         }
         let summary = command.summary(&envelopes).filter(|_| self.has_trailer());
         if let Some(summary) = summary.and_then(|summary| said.summary(summary).map(str::to_owned)) {
@@ -114,24 +115,26 @@ impl Run {
         Ok(envelopes)
     }
 
-    /// Whether the output is a single table for people, with a possible summary below.
+    /// Whether the output is a single table for people, below which a summary can be printed.
     fn has_trailer(&self) -> bool {
         self.screen.format == Format::Table && !self.redraw.is_on() && !self.gate.dry_run
     }
 
-    /// Merges tables with the same columns into one, with the robot in front; other views are printed one below the
-    /// other.
-    fn show_many(&self, views: &[(&Robot, View)], place: ReportPosition<'_>) -> Result<(), Failure> {
-        let tables = views.iter().map(|(robot, view)| Some((robot.name.as_str(), view.as_table()?)));
+    /// Merges tables with the same columns into one table, with the robot in the first column. Other views are printed
+    /// one below the other.
+    fn show_many(&self, views: &[RobotView<'_>], place: ReportPosition<'_>) -> Result<(), Failure> {
+        let names: Vec<String> = views.iter().map(|of| of.named(&of.robot.name)).collect();
+        let tables = names.iter().zip(views).map(|(name, of)| Some((name.as_str(), of.view.as_table()?)));
         match tables.collect::<Option<Vec<_>>>().and_then(|tables| Table::joined("robot", &tables)) {
             Some(table) => self.show(&View::table(table), place),
-            None => views.iter().enumerate().try_for_each(|(index, (robot, view))| {
-                self.show(view, ReportPosition::Among { robot, first: index == 0 })
+            None => views.iter().enumerate().try_for_each(|(index, of)| {
+                let label = of.named(&of.robot.label());
+                self.show(&of.view, ReportPosition::Among { label: &label, first: index == 0 })
             }),
         }
     }
 
-    /// Whether reports are printed as views: tables, or CSV.
+    /// Whether reports are printed as views: as tables or as CSV.
     pub fn is_for_people(&self) -> bool {
         self.filter.is_none() && matches!(self.screen.format, Format::Table | Format::Csv | Format::Value)
     }
@@ -156,12 +159,12 @@ impl Run {
         self.emit(if is_stream { with_time(envelope) } else { envelope })
     }
 
-    /// Adds the time to an envelope in a stream format.
+    /// Adds the time to an envelope if the format is a stream.
     fn of_stream(&self, envelope: Envelope) -> Envelope {
         if self.screen.format == Format::Jsonl { with_time(envelope) } else { envelope }
     }
 
-    /// Starts a round of a watch. On a terminal it replaces the previous round; lines of a log stay.
+    /// Starts a round of a watch. On a terminal, the round replaces the round before it. Lines of a log are kept.
     pub(super) fn round(&self, is_first: bool, stays: bool) -> ReportPosition<'static> {
         if !stays && self.screen.can_replace() && self.is_for_people() {
             self.redraw.begin();
@@ -185,7 +188,7 @@ impl Run {
         }
     }
 
-    /// Writes JSON, or the results of the filter, one per line: strings raw, the rest as JSON.
+    /// Writes JSON, or the results of the filter, one per line. Strings are written raw, all other results as JSON.
     fn write(&self, value: &impl Serialize) -> Result<(), Failure> {
         let value = match &self.line {
             Some(line) => line.stop_passing(as_value(value)?),
@@ -207,8 +210,8 @@ impl Run {
         }
     }
 
-    /// Writes reports of one kind as CSV, with a row for each robot that failed. Later rounds of a watch go below the
-    /// first header.
+    /// Writes reports of one kind as CSV, with a row for each robot that failed. Later rounds of a watch are written
+    /// below the first header.
     fn show_csv(&self, sheet: &Sheet, rows: &[RobotRow<'_>], place: ReportPosition<'_>) -> Result<(), Failure> {
         let is_csv = self.screen.format == Format::Csv;
         let is_round = is_csv
@@ -253,8 +256,8 @@ impl Run {
             }
             ReportPosition::Next if self.redraw.is_on() => text,
             ReportPosition::Next => format!("\n{text}"),
-            ReportPosition::Among { robot, first } => {
-                format!("{}{}\n{text}", if first { "" } else { "\n" }, escape::line(&robot.label()))
+            ReportPosition::Among { label, first } => {
+                format!("{}{}\n{text}", if first { "" } else { "\n" }, escape::line(label))
             }
         };
         screen.data(&self.redraw.with_erase(text))
@@ -266,10 +269,54 @@ fn sheet_of(report: &dyn AnyReport) -> Sheet {
     Sheet::from_schema(&report.schema().to_value(), report.rows())
 }
 
-/// Failures of robots, with common ones merged.
+/// Maximum number of robots that failed alike and are listed individually.
+const MIN_GROUP: usize = 5;
+
+/// View of a robot, among others.
+struct RobotView<'r> {
+    robot: &'r Robot,
+    view: View,
+    has_failed: bool,
+    /// Number of other robots with the same view.
+    alike: usize,
+}
+
+impl RobotView<'_> {
+    /// Name, with the number of robots that failed alike.
+    fn named(&self, name: &str) -> String {
+        if self.alike == 0 { name.to_owned() } else { format!("{name} and {} more", self.alike) }
+    }
+}
+
+/// Merges views of many robots that failed alike. A robot that works always has its own.
+fn fold_failed(views: Vec<RobotView<'_>>) -> Vec<RobotView<'_>> {
+    let mut groups: Vec<(View, usize)> = Vec::new();
+    let group_of = |groups: &[(View, usize)], view: &View| groups.iter().position(|(other, _)| other == view);
+    for RobotView { view, .. } in views.iter().filter(|of| of.has_failed) {
+        match group_of(&groups, view) {
+            Some(at) => groups[at].1 += 1,
+            None => groups.push((view.clone(), 1)),
+        }
+    }
+    groups.retain(|(_, robots)| *robots > MIN_GROUP);
+    let mut folded = Vec::new();
+    for of in views {
+        match group_of(&groups, &of.view).filter(|_| of.has_failed) {
+            Some(at) => {
+                let alike = std::mem::take(&mut groups[at].1);
+                // Only the first of the group has not been counted yet.
+                if alike > 0 {
+                    folded.push(RobotView { alike: alike - 1, ..of });
+                }
+            }
+            None => folded.push(of),
+        }
+    }
+    folded
+}
+
+/// Failures of robots. Failures that robots have in common are merged.
 fn common_failures(reasons: &[(&Robot, Failure)]) -> Vec<Failure> {
-    /// Maximum number of robots that are listed individually.
-    const MIN_GROUP: usize = 5;
     /// Maximum number of robot names in a merged failure.
     const MAX_NAMES: usize = 3;
 
@@ -299,7 +346,7 @@ fn common_failures(reasons: &[(&Robot, Failure)]) -> Vec<Failure> {
     failures.collect()
 }
 
-/// Text with the name, host and port of the robot replaced by dots.
+/// Text in which dots replace the name, host and port of the robot.
 fn generalize(text: &str, robot: &Robot) -> String {
     let url = robot.target.value.url();
     let parts = url.split(|one: char| !one.is_alphanumeric() && !"._-".contains(one));
@@ -309,7 +356,7 @@ fn generalize(text: &str, robot: &Robot) -> String {
         .fold(text.replace(url, "…"), |text, part| without_part(&text, part))
 }
 
-/// Text with a word replaced by dots.
+/// Text in which dots replace a word.
 fn without_part(text: &str, word: &str) -> String {
     let is_part = |one: Option<char>| one.is_some_and(|one| one.is_alphanumeric() || one == '_' || one == '-');
     let mut out = String::with_capacity(text.len());
@@ -326,7 +373,7 @@ fn without_part(text: &str, word: &str) -> String {
     out
 }
 
-/// Failure with the robot's name, unless a link failure already has it.
+/// Failure with the name of the robot, unless it is a link failure that already has the name.
 pub(super) fn with_robot_name(robot: &Robot, failure: Failure) -> Failure {
     let label = robot.label();
     let is_named = failure.message.starts_with(&label);
@@ -334,7 +381,7 @@ pub(super) fn with_robot_name(robot: &Robot, failure: Failure) -> Failure {
     Failure { message, ..failure }
 }
 
-/// Envelopes of reports or failures of several robots.
+/// Envelopes for the reports or failures of several robots.
 pub(super) fn envelopes(robots: &[Robot], id: &str, outcomes: &[Outcome]) -> Result<Vec<Envelope>, Failure> {
     let pairs = robots.iter().zip(outcomes);
     pairs.map(|(robot, outcome)| envelope(robot, id, outcome.as_deref().map_err(Clone::clone))).collect()
@@ -354,7 +401,7 @@ pub fn with_time(envelope: Envelope) -> Envelope {
     Envelope { time: Some(Timestamp::now()), ..envelope }
 }
 
-/// JSON value of the output.
+/// Converts an output to a JSON value.
 pub fn as_value(value: &impl Serialize) -> Result<Value, Failure> {
     serde_json::to_value(value).map_err(|error| Failure::local(format!("report as JSON: {error}")))
 }
@@ -366,17 +413,37 @@ mod tests {
     use crate::settings::Sources;
     use crate::settings::inventory::Inventory;
 
+    fn robots(count: u16) -> Vec<Robot> {
+        let one = |at: u16| {
+            format!("[[robot]]\nname = \"r{at}\"\nfamily = \"yerc\"\ntarget = \"udp://127.0.0.1:{}\"\n", 2000 + at)
+        };
+        let inventory = Inventory::parse(&(0..count).map(one).collect::<String>(), "robots.toml").unwrap();
+        let mut sources = Sources { inventory, ..Sources::default() };
+        sources.selection.all = true;
+        sources.robots(None).unwrap()
+    }
+
+    #[test]
+    fn merges_rows_of_robots_that_failed_alike() {
+        let names = |failed: &dyn Fn(usize) -> bool, count: u16| -> Vec<String> {
+            let robots = robots(count);
+            let view = |(at, robot)| RobotView {
+                robot,
+                view: View::text(if failed(at) { "no answer" } else { "stopped" }.to_owned()),
+                has_failed: failed(at),
+                alike: 0,
+            };
+            let folded = fold_failed(robots.iter().enumerate().map(view).collect());
+            folded.iter().map(|of| of.named(&of.robot.name)).collect()
+        };
+        assert_eq!(names(&|_| true, 2500), ["r0 and 2499 more"]);
+        assert_eq!(names(&|at| at != 1, 8), ["r0 and 6 more", "r1"]);
+        assert_eq!(names(&|_| true, 5).len(), 5, "few are listed");
+        assert_eq!(names(&|_| false, 8).len(), 8, "robots that work are listed");
+    }
+
     #[test]
     fn merges_common_failures() {
-        let robots = |count: u16| -> Vec<Robot> {
-            let one = |at: u16| {
-                format!("[[robot]]\nname = \"r{at}\"\nfamily = \"yerc\"\ntarget = \"udp://127.0.0.1:{}\"\n", 2000 + at)
-            };
-            let inventory = Inventory::parse(&(0..count).map(one).collect::<String>(), "robots.toml").unwrap();
-            let mut sources = Sources { inventory, ..Sources::default() };
-            sources.selection.all = true;
-            sources.robots(None).unwrap()
-        };
         let failures = |robots: &[Robot]| -> Vec<String> {
             let failure = |robot: &Robot| {
                 let message = format!("{}: nothing listens on UDP port {}", robot.label(), 2000 + robots.len());

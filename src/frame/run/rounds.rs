@@ -1,52 +1,81 @@
-//! Repeated reads.
+//! Rounds of a repeated read.
 
 use std::time::Duration;
 
 use serde::Serialize;
-use tokio::time::Instant;
+use tokio::time::{Instant, timeout_at};
 
 use super::print::as_value;
 use crate::condition::Condition;
 use crate::failure::{Failure, Kind};
 use crate::interrupt::interruptible;
 use crate::output::Screen;
+use crate::settings::{Robot, duration};
 
-/// `--watch`, `--count`, `--until`, `--for`.
+/// Time that every look has, even if `--for` ends earlier: a robot that answers at once is not missed.
+const SHORTEST_LOOK: Duration = Duration::from_millis(250);
+
+/// Repetition options: `--watch`, `--count`, `--until`, `--for`.
 #[derive(Debug, Default)]
 pub struct Repeat {
-    /// Interval from start to start.
+    /// Interval from the start of a run to the start of the next run.
     pub every: Option<Duration>,
     /// Maximum number of runs.
     pub count: Option<u64>,
     /// Condition that ends the repetition.
     pub until: Option<Condition>,
-    /// Condition that a single run must meet.
+    /// Condition that a command without repetition must meet.
     pub check: Option<Condition>,
-    /// Maximum wait for the condition.
+    /// Maximum time to wait for the condition.
     pub within: Option<Duration>,
-    /// Whether only the last round is shown.
+    /// Whether only the last round is printed.
     pub is_quiet: bool,
 }
 
 impl Repeat {
-    /// Whether any of the options was given.
+    /// Whether the user gave any of the options.
     pub fn is_wanted(&self) -> bool {
         self.every.is_some() || self.count.is_some() || self.until.is_some()
     }
 
-    /// Whether a wait ends with this failure of a robot: one in the first round, or another one than silence. Only a
-    /// robot that answered before may be silent for a while.
+    /// Whether a failure of a robot ends a wait. Any failure in the first round does. Later, a missing answer does not
+    /// end the wait, because a robot that answered before may be unreachable for a while.
     pub fn ends_with(&self, failure: &Failure, is_first: bool) -> bool {
         self.is_quiet && !self.allows(failure) && (is_first || failure.kind != Kind::NoAnswer)
     }
 
-    /// Whether the condition is about a robot that does not answer.
+    /// Whether the condition is about a robot that does not answer, so that this failure is allowed.
     pub fn allows(&self, failure: &Failure) -> bool {
         failure.kind == Kind::NoAnswer && self.until.as_ref().is_some_and(Condition::is_about_connection)
     }
 }
 
-/// Rounds of a watch, at fixed intervals without drift.
+/// End of `--for`. Everything that waits for a robot takes one, so that no wait can outlast it.
+#[derive(Debug, Clone, Copy)]
+pub struct Deadline(Option<(Instant, Duration)>);
+
+impl Deadline {
+    /// For a command that runs once.
+    pub const NONE: Self = Self(None);
+
+    /// Result of `work` with a robot, or a missing answer when the time is over.
+    pub async fn bound<T>(self, robot: &Robot, work: impl Future<Output = Result<T, Failure>>) -> Result<T, Failure> {
+        let Some((end, within)) = self.0 else { return work.await };
+        let end = end.max(Instant::now() + SHORTEST_LOOK);
+        timeout_at(end, work).await.unwrap_or_else(|_| {
+            let (label, typed, within) = (robot.label(), robot.as_typed(), duration::display(within));
+            Err(Failure::new(Kind::NoAnswer, format!("{label}: no answer within {within} (--for)"))
+                .hint(format!("use a longer --for, or find the reason with `armctl robots check {typed}`")))
+        })
+    }
+
+    /// Whether the time is over.
+    fn is_over(self) -> bool {
+        self.0.is_some_and(|(end, _)| Instant::now() >= end)
+    }
+}
+
+/// Rounds of a watch, at fixed intervals that do not drift.
 #[derive(Debug)]
 pub struct Rounds<'a> {
     repeat: &'a Repeat,
@@ -56,21 +85,28 @@ pub struct Rounds<'a> {
 }
 
 impl<'a> Rounds<'a> {
-    /// `every` is the default interval.
+    /// Creates the rounds. `every` is the default interval.
     pub fn new(repeat: &'a Repeat, every: Duration) -> Self {
         Self { repeat, every: repeat.every.unwrap_or(every), began: Instant::now(), completed: 0 }
     }
 
-    /// Deadline of `--for`.
-    pub fn deadline(&self) -> Option<Instant> {
-        self.repeat.within.map(|within| self.began + within)
+    /// End of `--for`.
+    pub fn deadline(&self) -> Deadline {
+        Deadline(self.repeat.within.map(|within| (self.began + within, within)))
+    }
+
+    /// Whether `--for` ended during a round in which a robot did not answer. Only the first round counts then: it is
+    /// not known whether a robot that answered before would have answered.
+    pub fn is_cut(&self, failure: &Failure) -> bool {
+        !self.is_first() && failure.kind == Kind::NoAnswer && self.deadline().is_over()
     }
 
     pub fn is_first(&self) -> bool {
         self.completed == 0
     }
 
-    /// Whether the condition is true. A condition that can never be true is reported in the first round.
+    /// Whether the condition of `--until` is true. In the first round, a note is printed if the condition can never be
+    /// true.
     pub fn is_met(&self, value: &impl Serialize, screen: &Screen) -> Result<bool, Failure> {
         let Some(until) = &self.repeat.until else { return Ok(false) };
         let value = as_value(value)?;
@@ -92,14 +128,14 @@ impl<'a> Rounds<'a> {
             || self.repeat.within.is_some_and(|within| self.every.saturating_mul(done) > within)
     }
 
-    /// Waits for the next round; `false` if there is none.
+    /// Waits for the next round. Returns `false` if there is no further round.
     pub async fn next(&mut self) -> Result<bool, Failure> {
         let is_over = self.is_last();
         self.completed = self.completed.saturating_add(1);
         let next = self.began + self.every.saturating_mul(self.completed);
         if !is_over {
             let rest = async {
-                // Signals must be handled even without a pause.
+                // Signals must be handled even without a pause between rounds.
                 tokio::task::yield_now().await;
                 tokio::time::sleep_until(next).await;
             };
@@ -108,10 +144,55 @@ impl<'a> Rounds<'a> {
         Ok(!is_over)
     }
 
-    /// Result after the last round.
+    /// Result of the repetition after the last round.
     pub fn end(&self) -> Result<(), Failure> {
         let Some(until) = &self.repeat.until else { return Ok(()) };
         Err(Failure::new(Kind::ConditionNotMet, format!("the condition '{until}' was not met"))
-            .hint("--for sets how long to wait for it"))
+            .hint("use --for to set a longer wait"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::target::Family;
+    use crate::settings::{Sources, target};
+
+    fn robot() -> Robot {
+        let simulator = "sim:".parse::<target::Target>().unwrap();
+        Sources::default().at(&simulator, Family::Yerc).unwrap()
+    }
+
+    fn repeat(within: Duration) -> Repeat {
+        Repeat { within: Some(within), ..Repeat::default() }
+    }
+
+    async fn answer_after(time: Duration) -> Result<(), Failure> {
+        tokio::time::sleep(time).await;
+        Ok(())
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn the_deadline_bounds_every_look() {
+        let (robot, within) = (robot(), Duration::from_secs(1));
+        let repeat = repeat(within);
+        let mut rounds = Rounds::new(&repeat, Duration::from_millis(200));
+        let silent = || std::future::pending::<Result<(), Failure>>();
+        let failure = rounds.deadline().bound(&robot, silent()).await.unwrap_err();
+        assert_eq!((failure.kind, rounds.began.elapsed()), (Kind::NoAnswer, within), "{failure}");
+        assert!(!rounds.is_cut(&failure), "the robot never answered");
+        // A look that begins at the end is short, and says nothing about a robot that answered before.
+        rounds.completed = 1;
+        rounds.deadline().bound(&robot, silent()).await.unwrap_err();
+        assert_eq!(rounds.began.elapsed(), within + SHORTEST_LOOK);
+        assert!(rounds.is_cut(&failure));
+        let answer = answer_after(SHORTEST_LOOK / 2);
+        assert_eq!(rounds.deadline().bound(&robot, answer).await, Ok(()));
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn without_a_deadline_nothing_is_cut() {
+        let hour = Duration::from_secs(3600);
+        assert_eq!(Deadline::NONE.bound(&robot(), answer_after(hour)).await, Ok(()));
     }
 }

@@ -1,21 +1,22 @@
-//! A command for several robots: in parallel, one connection each.
+//! A command for several robots. It runs in parallel, with one connection for each robot.
 
 use std::time::{Duration, Instant};
 
 use super::failure_log::RoundFailures;
 use super::print::{ReportPosition, envelopes, with_robot_name, with_time};
 use super::rounds::Rounds;
-use super::{DEFAULT_INTERVAL, Granted, Run, RunError, run_parallel};
+use super::{DEFAULT_INTERVAL, Granted, Run, RunError, failure_of, run_parallel};
 use crate::failure::{Failure, Kind};
 use crate::output::envelope::Envelope;
 use crate::settings::Robot;
 use crate::{AnyCommand, Outcome};
 
-/// Time between attempts of a watch to reach a robot that did not answer.
+/// Time after which a watch tries again to reach a robot that did not answer.
 const RECONNECT_EVERY: Duration = Duration::from_secs(2);
 
 impl Run {
-    /// Runs on several robots in parallel, one connection each, and reports in the order of the robots.
+    /// Runs on several robots in parallel, with one connection for each robot. Prints the reports in the order of the
+    /// robots.
     pub(super) async fn run_many(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
         if command.is_endless() && !self.gate.dry_run {
             return self.watch_each(command, robots).await;
@@ -28,8 +29,10 @@ impl Run {
             self.verdict(&outcomes)?;
             return Ok(self.check(&printed)?);
         }
-        let mut links = run_parallel(robots.iter().map(|robot| self.connect(command, robot))).await;
-        let verdict = self.run_connected(command, robots, &mut links).await;
+        let rounds = Rounds::new(&self.repeat, DEFAULT_INTERVAL);
+        let end = rounds.deadline();
+        let mut links = run_parallel(robots.iter().map(|robot| self.connect(command, robot, end))).await;
+        let verdict = self.run_connected(command, robots, (&mut links, rounds)).await;
         let mut closed = Ok(());
         for (link, _) in links.into_iter().flatten() {
             closed = closed.and(link.close(&self.screen).await);
@@ -42,9 +45,10 @@ impl Run {
         &self,
         command: &dyn AnyCommand,
         robots: &[Robot],
-        links: &mut [Result<Granted, Failure>],
+        (links, mut rounds): (&mut [Result<Granted, Failure>], Rounds<'_>),
     ) -> Result<(), RunError> {
-        let mut rounds = Rounds::new(&self.repeat, DEFAULT_INTERVAL);
+        let end = rounds.deadline();
+        let mut last: Option<Vec<Outcome>> = None;
         let mut reported = RoundFailures::nothing(self, robots);
         let mut reconnect_at = Instant::now() + RECONNECT_EVERY;
         loop {
@@ -53,25 +57,31 @@ impl Run {
                 reconnect_at = Instant::now() + RECONNECT_EVERY;
             }
             let attempts = robots.iter().zip(&mut *links).map(|(robot, link)| async move {
-                // A robot that did not answer may be reachable now.
+                // A robot that did not answer before may be reachable now.
                 if matches!(link, Err(failure) if failure.kind == Kind::NoAnswer && reconnects) {
-                    *link = self.connect(command, robot).await;
+                    *link = self.connect(command, robot, end).await;
                 }
                 match link {
-                    Ok((link, grant)) => self.attempt(command, robot, &mut **link, grant).await,
-                    Err(failure) => Err(failure.clone()),
+                    Ok((link, grant)) => self.attempt(command, robot, &mut **link, (grant, end)).await,
+                    Err(failure) => command.without_answer(robot, failure.clone()),
                 }
             });
-            let outcomes = run_parallel(attempts).await;
+            let mut outcomes = run_parallel(attempts).await;
+            let is_cut = failures(&outcomes).any(|failure| rounds.is_cut(&failure));
+            if is_cut {
+                outcomes = last.take().unwrap_or(outcomes);
+            }
             let place = self.round(rounds.is_first(), false);
-            let is_met = if self.repeat.is_quiet {
+            let is_met = if is_cut {
+                false
+            } else if self.repeat.is_quiet {
                 rounds.is_met(&envelopes(robots, command.id(), &outcomes)?, &self.screen)?
             } else {
                 let envelopes = self.print_many(command, robots, &outcomes, (place, &mut reported))?;
                 rounds.is_met(&envelopes, &self.screen)?
             };
             let ends = |failure: Failure| self.repeat.ends_with(&failure, rounds.is_first());
-            let goes_on = !is_met && !failures(&outcomes).any(ends) && rounds.next().await?;
+            let goes_on = !is_met && !is_cut && !failures(&outcomes).any(ends) && rounds.next().await?;
             if self.repeat.is_quiet && !goes_on {
                 self.print_many(command, robots, &outcomes, (ReportPosition::First, &mut reported))?;
             }
@@ -82,16 +92,17 @@ impl Run {
                 self.verdict(&outcomes)?;
                 return rounds.end().map_err(RunError::from);
             }
+            last = Some(outcomes);
         }
     }
 
-    /// Common result of several robots.
+    /// Common result for several robots.
     fn verdict(&self, outcomes: &[Outcome]) -> Result<(), RunError> {
         let failures: Vec<Failure> = failures(outcomes).filter(|failure| !self.repeat.allows(failure)).collect();
         self.failed(&failures, outcomes.len())
     }
 
-    /// Common result of failures that were already reported.
+    /// Common result for failures that were already reported.
     fn failed(&self, failures: &[Failure], robots: usize) -> Result<(), RunError> {
         let Some(first) = failures.first() else { return Ok(()) };
         let failure = if failures.len() == robots && failures.iter().all(|failure| failure.kind == first.kind) {
@@ -102,7 +113,7 @@ impl Run {
         Err(RunError { failure, envelope: None, is_reported: !self.is_for_people() })
     }
 
-    /// Watches several robots in parallel, each on its own connection, until all watches have ended.
+    /// Watches several robots in parallel, each on its own connection. Returns when all watches have ended.
     async fn watch_each(&self, command: &dyn AnyCommand, robots: &[Robot]) -> Result<(), RunError> {
         let watches = robots.iter().map(|robot| async move {
             let watched = self.watch(command, robot, Some(ReportPosition::LineOf(robot))).await;
@@ -124,9 +135,7 @@ impl Run {
     }
 }
 
-/// Failures of robots and of their reports.
+/// Failures of robots, and failures that their reports state.
 fn failures(outcomes: &[Outcome]) -> impl Iterator<Item = Failure> {
-    outcomes
-        .iter()
-        .filter_map(|outcome| outcome.as_ref().map_or_else(|failure| Some(failure.clone()), |report| report.failure()))
+    outcomes.iter().filter_map(failure_of)
 }

@@ -18,7 +18,9 @@ impl TerminalLink {
         let failed = |error: io::Error| {
             let failure = Failure::io(name.display(), &error);
             match error.kind() {
-                io::ErrorKind::AlreadyExists => failure.hint("remove it, or use another name for --link"),
+                io::ErrorKind::AlreadyExists => {
+                    failure.hint("remove the existing file, or use another name for --link")
+                }
                 _ => failure,
             }
         };

@@ -1,4 +1,4 @@
-//! `alarms.toml` next to `robots.toml`: meaning of alarm codes at this site.
+//! `alarms.toml` next to `robots.toml`: the meaning of alarm codes at this site.
 //!
 //! ```toml
 //! [[alarm]]
@@ -10,8 +10,8 @@
 //! robot = "cell3"
 //! ```
 //!
-//! `robot` and `model` restrict an entry; the most specific matching entry is used. A mistake in the file is an error
-//! with line and suggestion.
+//! `robot` and `model` restrict an entry. If several entries match an alarm, the most specific entry is used. A mistake
+//! in the file is an error with the line and a suggestion.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -29,65 +29,65 @@ use armctl_files as files;
 
 const FILE_NAME: &str = "alarms.toml";
 
-/// Explanation of an alarm in the file.
+/// Explanation of an alarm, from the file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Explanation {
-    /// Its meaning.
+    /// Meaning of the alarm.
     pub text: String,
-    /// Its usual cause.
+    /// Usual cause of the alarm.
     pub cause: Option<String>,
-    /// Remedy.
+    /// Remedy for the alarm.
     pub remedy: Option<String>,
 }
 
-/// Origin of an alarm, as far as known.
+/// Robot that raised an alarm, as far as known.
 #[derive(Debug, Clone, Copy)]
 pub struct Origin<'a> {
     /// Family.
     pub family: Family,
     /// Name of the robot.
     pub robot: Option<&'a str>,
-    /// Model of its controller.
+    /// Model of the controller, if known.
     pub model: Option<Model>,
 }
 
 impl Explanation {
-    /// All parts in one line.
+    /// Returns all parts of the explanation in one line.
     pub fn line(&self) -> String {
         let parts = [Some(&self.text), self.cause.as_ref(), self.remedy.as_ref()].into_iter().flatten();
         parts.map(String::as_str).collect::<Vec<_>>().join("; ")
     }
 
-    /// The explanation as a field for people, if there is one.
+    /// Returns the explanation as a field of a report for people, if there is an explanation.
     pub fn field<C: From<String>>(explained: Option<&Self>) -> Option<(&'static str, C)> {
         explained.map(|explained| ("alarms.toml", explained.line().into()))
     }
 }
 
 impl<'a> Origin<'a> {
-    /// Any robot of a family.
+    /// Returns the origin for any robot of a family.
     pub fn any(family: Family) -> Self {
         Self { family, robot: None, model: None }
     }
 
-    /// This robot.
+    /// Returns the origin for this robot.
     pub fn of(robot: &'a Robot) -> Self {
         let model = (robot.family == Family::Yerc).then(|| robot.likely_model()).flatten();
         Self { robot: Some(&robot.name), model, ..Self::any(robot.family) }
     }
 }
 
-/// Path of the file of an inventory; the file can be missing.
+/// Path of the alarm file of an inventory. The file may be missing.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Alarms(Option<PathBuf>);
 
 impl Alarms {
-    /// The file next to this inventory.
+    /// Returns the alarm file next to this inventory.
     pub fn load_beside(inventory: Option<&Path>) -> Self {
         Self(inventory.map(|path| path.with_file_name(FILE_NAME)))
     }
 
-    /// Explanation of an alarm; `None` without a file or entry.
+    /// Returns the explanation of an alarm; `None` if there is no file or no matching entry.
     pub fn find(&self, origin: Origin<'_>, code: &str) -> Result<Option<Explanation>, Failure> {
         let Some(path) = &self.0 else { return Ok(None) };
         let text = match files::text(path, files::SETTINGS) {
@@ -102,7 +102,7 @@ impl Alarms {
     }
 }
 
-/// Explanation of an alarm of a robot, from the file of its inventory.
+/// Returns the explanation of an alarm of a robot, from the alarm file of the robot's inventory.
 pub fn find(robot: &Robot, code: &str) -> Result<Option<Explanation>, Failure> {
     robot.alarms.find(Origin::of(robot), code)
 }
@@ -120,7 +120,7 @@ struct Entry {
 }
 
 impl Table {
-    /// Parses the text of a file; `name` is for messages.
+    /// Parses the text of a file. `name` is the file name for error messages.
     fn parse(text: &str, name: &str) -> Result<Self, Failure> {
         let at = |start: usize, what: &str| {
             let (line, column) = line_and_column(text, start);
@@ -148,7 +148,7 @@ impl Table {
         file.alarm.into_iter().map(entry).collect::<Result<_, Failure>>().map(Self)
     }
 
-    /// Most specific matching entry.
+    /// Returns the most specific matching entry.
     fn find(&self, origin: Origin<'_>, code: &str) -> Option<Explanation> {
         let code = normalize(code);
         let fits = |entry: &&Entry| {
@@ -158,13 +158,13 @@ impl Table {
                 && entry.model.is_none_or(|model| Some(model) == origin.model)
         };
         let specificity = |entry: &&Entry| (entry.robot.is_some(), entry.model.is_some());
-        // Of equally specific entries, the first.
+        // If several entries are equally specific, the first of them is used.
         let found = self.0.iter().rev().filter(fits).max_by_key(specificity);
         found.map(|entry| entry.explanation.clone())
     }
 }
 
-/// Normalizes a code.
+/// Converts a code to a form in which equal codes have equal text.
 fn normalize(code: &str) -> String {
     let code = code.trim().to_ascii_lowercase();
     let digits = code.strip_prefix("0x").unwrap_or(&code).trim_start_matches('0');
@@ -190,7 +190,7 @@ struct RawEntry {
     model: Option<Spanned<String>>,
 }
 
-/// A number, or a text such as `12.600` or `A1`.
+/// A code: a number, or a text such as `12.600` or `A1`.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Code {

@@ -1,24 +1,24 @@
-//! Editor for `robots.toml` that keeps comments and order.
+//! Editor for `robots.toml`. It keeps the comments and the order.
 
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, TomlError, Value, value};
 
-/// Text of an inventory, for editing.
+/// Content of an inventory that can be edited.
 #[derive(Debug, Clone)]
 pub struct Document(DocumentMut);
 
-/// Reason why the text cannot be edited.
+/// Reason why the inventory cannot be edited.
 pub type DocumentError = &'static str;
 
 const NO_LIST: DocumentError = "`robot` is not a list of [[robot]] tables";
 const NO_ENTRY: DocumentError = "the robot has no [[robot]] table";
 
 impl Document {
-    /// Parses a text.
+    /// Parses the content of an inventory.
     pub fn parse(text: &str) -> Result<Self, TomlError> {
         text.parse().map(Self)
     }
 
-    /// Appends an entry. The first entry becomes the default.
+    /// Appends an entry. If it is the first entry, it becomes the default.
     pub fn add(&mut self, entry: Table, is_default: bool) -> Result<(), DocumentError> {
         let name = entry.get("name").cloned().unwrap_or_default();
         let list = self.0.entry("robot").or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
@@ -30,13 +30,13 @@ impl Document {
         Ok(())
     }
 
-    /// Removes an entry with the comment directly above it.
+    /// Removes an entry, and the comment directly above it.
     pub fn remove(&mut self, name: &str) -> Result<(), DocumentError> {
         let list = self.list()?;
         let at = list.iter().position(|entry| is_called(entry, name)).ok_or(NO_ENTRY)?;
         let removed_lines = list.remove(at);
         let above = removed_lines.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
-        // A comment separated by an empty line is about something else, such as the file.
+        // A comment above an empty line is not about the entry. It may be about the file, for example, so it is kept.
         let kept = above.rfind("\n\n").map_or("", |end| &above[..=end]);
         if kept.contains('#') {
             self.insert_before_table(removed_lines.position(), kept);
@@ -47,7 +47,7 @@ impl Document {
         Ok(())
     }
 
-    /// Renames an entry, and the default if it names the entry.
+    /// Renames an entry. If the entry is the default robot, the default gets the new name.
     pub fn rename(&mut self, old: &str, new: &str) -> Result<(), DocumentError> {
         insert(self.entry(old)?, "name", new.into());
         if self.default() == Some(old) {
@@ -65,7 +65,7 @@ impl Document {
         }
     }
 
-    /// Keeps the header comment of the file above its first key.
+    /// Moves the header comment of the file above the new first key.
     fn keep_header(&mut self) {
         let Some(first) = self.tables().min_by_key(|table| table.position()) else { return };
         let above = first.decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default().to_owned();
@@ -93,7 +93,7 @@ impl Document {
         self.0.get("default").and_then(Item::as_str)
     }
 
-    /// Removes the default, but keeps the comment above it, which can be that of the file.
+    /// Removes the default robot, but keeps the comment above it. The comment may be the header comment of the file.
     fn remove_default(&mut self) {
         let Some((key, _)) = self.0.as_table_mut().remove_entry("default") else { return };
         let above = key.leaf_decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
@@ -118,7 +118,7 @@ impl Document {
         })
     }
 
-    /// Inserts comments before the table that follows a position, or at the end.
+    /// Inserts comments before the table that follows a position. If no table follows, inserts them at the end.
     fn insert_before_table(&mut self, place: Option<isize>, text: &str) {
         let next = self.tables().filter(|table| table.position() > place).min_by_key(|table| table.position());
         if let Some(next) = next {
@@ -142,7 +142,7 @@ fn is_called(entry: &Table, name: &str) -> bool {
     entry.get("name").and_then(Item::as_str) == Some(name)
 }
 
-/// Sets or removes a name of an entry. An empty table of names is removed.
+/// Sets or removes a name in the table of names of an entry. If the table is then empty, it is removed.
 fn set_name(entry: &mut Table, name: &str, new: Option<Value>) -> Result<Option<Value>, DocumentError> {
     const NO_TABLE: DocumentError = "`names` is not a table";
 
@@ -166,7 +166,8 @@ fn set_name(entry: &mut Table, name: &str, new: Option<Value>) -> Result<Option<
     Ok(None)
 }
 
-/// Replaces a value and keeps the comment after it, or adds it at the end of the table. Returns the old value.
+/// Replaces a value, and keeps the comment after it. If the key is missing, adds it at the end of the table. Returns
+/// the old value.
 fn insert(table: &mut Table, key: &str, mut new: Value) -> Option<Value> {
     if let Some(Item::Value(old)) = table.get_mut(key) {
         *new.decor_mut() = old.decor().clone();
@@ -180,7 +181,7 @@ fn insert(table: &mut Table, key: &str, mut new: Value) -> Option<Value> {
 mod tests {
     use super::*;
 
-    /// With a comment in every usual place.
+    /// A file with a comment in every usual place.
     const TEXT: &str = "\
 # Hall 3, kept by Ann
 
@@ -211,7 +212,7 @@ name = \"b\"
         document.to_string()
     }
 
-    /// Removed and added lines in order.
+    /// Returns the removed lines and the added lines, in their order.
     fn difference(text: &str) -> (Vec<&str>, Vec<&str>) {
         let (old, new): (Vec<&str>, Vec<&str>) = (TEXT.lines().collect(), text.lines().collect());
         let gone = old.iter().filter(|line| !new.contains(line)).copied().collect();

@@ -1,11 +1,11 @@
-//! Typed durations: `500ms`, `3s`, `2m`, `1h`, or seconds without a unit.
+//! Durations as users type them: `500ms`, `3s`, `2m`, `1h`, or seconds without a unit.
 
 use std::time::Duration;
 
-/// Units, longest suffix first, so that `ms` is not parsed as `m`.
+/// Units. The longest suffix is first, so that `ms` is not parsed as `m`.
 const UNITS: [(&str, u64); 4] = [("ms", 1), ("s", 1_000), ("m", 60_000), ("h", 3_600_000)];
 
-/// Longest duration: a day. Longer ones are typing errors.
+/// Longest valid duration: one day. A longer duration is probably a typing error.
 const MAX: Duration = Duration::from_secs(24 * 3600);
 
 /// Parses a duration.
@@ -38,7 +38,7 @@ pub fn parse_some(text: &str) -> Result<Duration, String> {
     }
 }
 
-/// Shortest exact form; the inverse of [`parse`].
+/// Formats a duration in its shortest exact form. [`parse`] parses this form.
 pub fn display(duration: Duration) -> String {
     let ms = duration.as_millis();
     match ms {
@@ -50,7 +50,7 @@ pub fn display(duration: Duration) -> String {
     }
 }
 
-/// A field of a TOML file: a string as above, not 0.
+/// A duration in a TOML file: a string as described above. It must not be 0.
 pub(super) mod field {
     use serde::{Deserialize, Deserializer, de::Error};
 

@@ -17,7 +17,8 @@
 //! parts = "B5"
 //! ```
 //!
-//! A mistake in the file is an error with line, column and a suggestion. Nothing is guessed.
+//! The message for an error in the file contains the line, the column and a suggestion. armctl does not guess what is
+//! meant.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -39,10 +40,10 @@ use armctl_controller::text::Encoding;
 use armctl_controller::yerc::payload::MAX_AXES;
 use armctl_files as files;
 
-/// File name in the platform's configuration folder, below `armctl/`.
+/// Name of the file, in the folder `armctl/` of the platform's configuration folder.
 const FILE_NAME: &str = "robots.toml";
 
-/// Settings that a robot, the `[defaults]` of the file, a flag or the environment can have.
+/// Settings that can come from a robot, from the `[defaults]` of the file, from a flag or from the environment.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Options {
     /// Time limit of one attempt.
@@ -53,7 +54,7 @@ pub struct Options {
     pub encoding: Option<Encoding>,
     /// Whether only reads and stops are accepted.
     pub read_only: Option<bool>,
-    /// Whether the first command that needs a control connection opens a session (yrcx).
+    /// Whether the first command that requires a control connection opens a session (yrcx).
     pub hold: Option<bool>,
     /// Controller model (yerc).
     pub model: Option<ModelSetting>,
@@ -62,7 +63,7 @@ pub struct Options {
 /// A robot of the inventory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
-    /// Name, unique in the file.
+    /// Name of the robot, which is unique in the file.
     pub name: String,
     /// Target.
     pub target: Target,
@@ -74,16 +75,16 @@ pub struct Entry {
     pub pulses_per_degree: Vec<f64>,
     /// Tags.
     pub tags: Vec<String>,
-    /// Names of its signals, variables and registers.
+    /// Names of the robot's signals, variables and registers.
     pub names: Arc<[Name]>,
 }
 
-/// Content of the file.
+/// Content of the inventory file.
 #[derive(Debug, Clone, Default)]
 pub struct Inventory {
-    /// Path of the file, whether it exists or not.
+    /// Path of the file, even if the file does not exist.
     pub path: Option<PathBuf>,
-    /// Default robot.
+    /// Name of the default robot.
     pub default: Option<String>,
     /// Settings for all robots.
     pub defaults: Options,
@@ -91,19 +92,19 @@ pub struct Inventory {
     pub robots: Vec<Entry>,
 }
 
-/// Path of the inventory: from flag or environment, or in the platform's folder.
+/// Path of the inventory. It comes from a flag or the environment, or is in the configuration folder of the platform.
 #[derive(Debug, Clone)]
 pub enum Location {
-    /// Named by the user; it must exist.
+    /// Path that the user named. The file must exist.
     Named(PathBuf),
-    /// In the platform's folder; it can be missing.
+    /// Path in the configuration folder of the platform. The file may be missing.
     Default(PathBuf),
-    /// There is no home folder.
+    /// There is no path, because the user has no home folder.
     Nowhere,
 }
 
 impl Location {
-    /// Selects the location; `named` is from flag or environment.
+    /// Selects the location. `named` is the path from a flag or the environment.
     pub fn find(named: Option<PathBuf>) -> Self {
         match (named, etcetera::choose_base_strategy()) {
             (Some(path), _) => Self::Named(path),
@@ -122,7 +123,7 @@ impl Location {
 }
 
 impl Inventory {
-    /// Reads the file. A missing file in the platform's folder counts as empty.
+    /// Reads the file. If the file in the configuration folder is missing, the inventory is empty.
     pub fn load(location: &Location) -> Result<Self, Failure> {
         let Some(path) = location.path() else { return Ok(Self::default()) };
         let text = match files::text(path, files::SETTINGS) {
@@ -140,7 +141,7 @@ impl Inventory {
         Ok(inventory)
     }
 
-    /// Parses the text of a file; `name` is for messages.
+    /// Parses the text of a file. `name` is the file name for error messages.
     pub fn parse(text: &str, name: &str) -> Result<Self, Failure> {
         let at = |span: std::ops::Range<usize>, what: &str| {
             let (line, column) = line_and_column(text, span.start);
@@ -184,7 +185,9 @@ impl Inventory {
             };
             target.check(family).map_err(|why| at(span, &why).hint("correct `target` or `family`"))?;
             if let Some(model) = raw.model.as_ref().filter(|_| !family.has_model()) {
-                return Err(at(model.span(), &format!("a {family} robot has no model")).hint("remove `model`"));
+                return Err(
+                    at(model.span(), &format!("a {family} robot has no `model` setting")).hint("remove `model`")
+                );
             }
             for value in &raw.pulses_per_degree {
                 let is_number = value.as_ref().is_finite() && *value.as_ref() > 0.0;
@@ -235,19 +238,20 @@ impl Inventory {
         })
     }
 
-    /// Robots whose name matches a pattern with `*` and `?`.
+    /// Returns the robots whose name matches a pattern with `*` and `?`.
     pub fn matching<'a>(&'a self, pattern: &'a str) -> impl Iterator<Item = &'a Entry> {
         self.robots.iter().filter(move |robot| matches_pattern(pattern, &robot.name))
     }
 }
 
-/// Whether `name` is a valid robot name. Names are used in tables, file names and patterns.
+/// Whether `name` is a valid robot name. Robot names are used in tables, file names and patterns, so few characters are
+/// allowed.
 pub fn is_name(name: &str) -> bool {
     let plain = |c: char| c.is_alphanumeric() || "-_.".contains(c);
     !name.is_empty() && name.len() <= 64 && name.chars().all(plain)
 }
 
-/// Pattern match with `*` and `?`.
+/// Whether a name matches a pattern with `*` and `?`.
 pub fn matches_pattern(pattern: &str, name: &str) -> bool {
     let mut pattern_chars = pattern.chars();
     match pattern_chars.next() {
@@ -265,7 +269,7 @@ pub fn matches_pattern(pattern: &str, name: &str) -> bool {
     }
 }
 
-/// Parses a value of the file; an error has its position.
+/// Parses a value of the file. An error contains the position of the value.
 fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(
     raw: Option<Spanned<String>>,
     at: &dyn Fn(std::ops::Range<usize>, &str) -> Failure,
@@ -291,7 +295,7 @@ fn named_address(
     })
 }
 
-/// Checks a name and the address it stands for.
+/// Checks a name and its address.
 pub fn named(family: Family, name: &str, address: &str) -> Result<Name, Failure> {
     let examples = match family {
         Family::Yerc => "examples: clamp = 27010, parts = \"B5\", speed = \"M10\"",
@@ -303,19 +307,21 @@ pub fn named(family: Family, name: &str, address: &str) -> Result<Name, Failure>
     }
     match (grammar(family).address)(address) {
         Some((kind, address)) => Ok(Name { kind, address, name: name.to_owned(), source: Source::Inventory }),
-        None => Err(Failure::usage(format!("'{address}' is not an address that can have a name on a {family} robot"))
-            .hint(examples)),
+        None => {
+            Err(Failure::usage(format!("'{address}' is not a valid address for a name on a {family} robot"))
+                .hint(examples))
+        }
     }
 }
 
-/// Line and column of a byte offset, both from 1.
+/// Line and column of a byte offset. Both start with 1.
 pub(super) fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
     let before = text.get(..offset).unwrap_or(text);
     let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
     (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
 }
 
-/// Most similar word in serde's "unknown field `x`, expected one of `a`, `b`".
+/// Returns the most similar word in a message of serde such as "unknown field `x`, expected one of `a`, `b`".
 pub(super) fn suggestion(message: &str) -> Option<String> {
     let (_, rest) = message.split_once("unknown field `")?;
     let (word, rest) = rest.split_once('`')?;
@@ -419,9 +425,9 @@ mod tests {
         let names = inventory.robots[0].names.iter().map(|name| format!("{}={}", name.name, name.address));
         assert_eq!(names.collect::<Vec<_>>(), ["FILTER CLEAN=#10011", "clamp=#27010", "parts=B5", "speed=M10"]);
         for (names, place, why) in [
-            ("clamp = 27018", ":6:9:", "'27018' is not an address that can have a name on a yerc robot"),
+            ("clamp = 27018", ":6:9:", "'27018' is not a valid address for a name on a yerc robot"),
             ("clamp = \"SO(20)\"", ":6:9:", "yerc"),
-            ("B5 = 27010", ":6:6:", "'B5' cannot be a name: it looks like an address"),
+            ("B5 = 27010", ":6:6:", "'B5' cannot be a name: it has the form of an address"),
             ("clamp = true", ":6:9:", "'true'"),
             ("\"a,b\" = 27010", ":6:9:", "comma"),
         ] {

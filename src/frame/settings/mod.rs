@@ -1,6 +1,7 @@
 //! Settings: the selected robots, and every setting with its origin.
 //!
-//! Priority: flag, environment, robot, `[defaults]` of the file, built-in.
+//! If several sources contain a setting, the first of them is used: flag, environment, robot, `[defaults]` of the file,
+//! built-in default.
 
 pub mod alarms;
 pub mod document;
@@ -28,7 +29,7 @@ use model::{ModelCache, ModelSetting};
 use names::RobotNames;
 use target::{Address, Family, Target, TargetArgument};
 
-/// Origin of a setting.
+/// Where a setting comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Origin {
     /// Command line flag.
@@ -58,7 +59,7 @@ impl fmt::Display for Origin {
     }
 }
 
-/// A value and its origin.
+/// A value with its origin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Setting<T> {
     /// Value.
@@ -70,7 +71,7 @@ pub struct Setting<T> {
 /// A robot with all its settings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Robot {
-    /// Name in the inventory, or a short form of the target.
+    /// Name in the inventory. If the robot is not in the inventory, a short form of the target.
     pub name: String,
     /// Family.
     pub family: Family,
@@ -84,41 +85,42 @@ pub struct Robot {
     pub encoding: Setting<Encoding>,
     /// Whether only reads and stops are accepted.
     pub read_only: Setting<bool>,
-    /// Inventory entry with the same address that makes it read-only, if that is another one.
+    /// Name of another inventory entry with the same address, if that entry makes the robot read-only.
     pub read_only_entry: Option<String>,
-    /// Other addresses of it, if its network was asked.
+    /// Other addresses of the robot, if its network was queried.
     pub aliases: Vec<Address>,
-    /// Whether the first command that needs a control connection opens a session.
+    /// Whether the first command that requires a control connection opens a session.
     pub hold: Setting<bool>,
-    /// Controller model; only for yerc.
+    /// Controller model (only yerc).
     pub model: Setting<ModelSetting>,
-    /// Pulses per degree of each axis of the first robot; empty if not set. Only for yerc.
+    /// Pulses per degree of each axis of robot R1 (only yerc). Empty if not set.
     pub pulses_per_degree: Vec<f64>,
     /// Tags.
     pub tags: Vec<String>,
-    /// Which sessions its commands use.
+    /// Sessions that commands of the robot use.
     pub sessions: Sessions,
-    /// Alarm explanations of its site.
+    /// Alarm explanations of the robot's site.
     pub alarms: Alarms,
-    /// Names of its signals, variables and registers.
+    /// Names of the robot's signals, variables and registers.
     pub names: RobotNames,
-    /// Path of the inventory, which can make it read-only at any time.
+    /// Path of the inventory. A change of the inventory can make the robot read-only at any time.
     pub inventory: Option<PathBuf>,
 }
 
-/// Folder for persistent state of the user, if there is a home folder.
+/// Folder for persistent state of the user; `None` without a home folder.
 pub fn state_folder() -> Option<PathBuf> {
     let folders = etcetera::choose_base_strategy().ok()?;
     Some(folders.state_dir().unwrap_or_else(|| folders.cache_dir()).join("armctl"))
 }
 
 impl Robot {
-    /// Whether this is one of its known addresses.
+    /// Whether this is a known address of the robot.
     pub fn has_address(&self, address: &Address) -> bool {
         self.target.value.address().meets(address) || self.aliases.iter().any(|alias| alias.meets(address))
     }
 
-    /// Probable model of its controller: from the settings, from an earlier answer, or that of the simulator.
+    /// Probable model of the controller: the model in the settings, the model that the controller reported earlier, or
+    /// the model of the simulator.
     pub fn likely_model(&self) -> Option<Model> {
         let target = &self.target.value;
         let cached = || ModelCache::of_user()?.find(&target.address()).map(|told| told.model());
@@ -126,19 +128,24 @@ impl Robot {
         self.model.value.named().or_else(cached).or_else(simulated)
     }
 
-    /// Label in messages: `cell3 (udp://192.168.1.31)`.
+    /// What a command line calls it: its name in the inventory, or its URL.
+    pub fn as_typed(&self) -> &str {
+        if self.target.origin == Origin::Robot { &self.name } else { self.target.value.url() }
+    }
+
+    /// Label in messages, for example `cell3 (udp://192.168.1.31)`.
     pub fn label(&self) -> String {
         let url = self.target.value.url();
         if self.target.origin == Origin::Robot {
             format!("{} ({url})", self.name)
         } else {
-            // `sim:` without its colon, because a colon follows a label.
+            // The colon of `sim:` is removed, because a colon follows the label in messages.
             url.trim_end_matches(':').to_owned()
         }
     }
 }
 
-/// Selection of robots by flags and environment.
+/// Robot selection, from flags and environment.
 #[derive(Debug, Clone, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag, or a command's value for one")]
 pub struct Selection {
@@ -146,9 +153,9 @@ pub struct Selection {
     pub sim: bool,
     /// `--target`.
     pub target: Option<TargetArgument>,
-    /// `--robot`: names or patterns. Without flags, those of `ARMCTL_ROBOT`.
+    /// `--robot`: names or patterns. If no flag selects robots, the names or patterns of `ARMCTL_ROBOT`.
     pub robots: Vec<String>,
-    /// Whether `robots` is from `ARMCTL_ROBOT`.
+    /// Whether the value of `robots` comes from `ARMCTL_ROBOT`.
     pub from_environment: bool,
     /// `--tag`.
     pub tags: Vec<String>,
@@ -156,30 +163,31 @@ pub struct Selection {
     pub all: bool,
     /// `ARMCTL_TARGET`.
     pub environment: Option<TargetArgument>,
-    /// Which sessions commands use.
+    /// Sessions that commands use.
     pub sessions: Sessions,
-    /// Family of a simulator without a family in the line; `None` means the first one.
+    /// Family of the simulator, if the command line names no family. `None` means the first family.
     pub simulated: Option<Family>,
-    /// Whether `--sim` without a family means the simulators of all families.
+    /// Whether `--sim` without a family selects the simulators of all families.
     pub every_simulator: bool,
 }
 
-/// Which sessions commands use.
+/// Sessions that commands use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Sessions {
-    /// None (`--no-session`).
+    /// Commands use no session (`--no-session`).
     #[default]
     None,
-    /// Sessions of this user.
+    /// Commands use the sessions of this user.
     Shared,
-    /// Only sessions of this user; no direct connection.
+    /// Commands use only sessions of this user, and open no direct connection.
     Only,
-    /// Sessions of this user, except that simulators run in this process, which executes several command lines.
+    /// Commands use the sessions of this user, except for simulators. Simulators run in this process, which executes
+    /// several command lines.
     OwnSimulators,
 }
 
 impl Selection {
-    /// Whether no robot was selected.
+    /// Whether neither a flag nor the environment selects a robot.
     pub fn is_empty(&self) -> bool {
         !self.has_flags() && self.environment.is_none() && self.robots.is_empty()
     }
@@ -190,12 +198,13 @@ impl Selection {
         self.sim || self.all || self.target.is_some() || by_name || !self.tags.is_empty()
     }
 
-    /// Whether a flag contains exactly this name. A name from the environment can be meant for another command.
+    /// Whether a flag contains exactly this name. A name from the environment does not count, because it may be meant
+    /// for another command.
     pub fn is_typed(&self, name: &str) -> bool {
         !self.from_environment && self.robots.iter().any(|robot| robot == name)
     }
 
-    /// Whether the line can select several robots, so that the answer is a list.
+    /// Whether the command line can select several robots. The answer is then a list.
     pub fn is_plural(&self) -> bool {
         self.all
             || self.sim && self.every_simulator
@@ -205,14 +214,14 @@ impl Selection {
     }
 }
 
-/// Sources of all settings.
+/// All sources of settings.
 #[derive(Debug, Clone, Default)]
 pub struct Sources {
     /// Selection of robots.
     pub selection: Selection,
-    /// Settings of flags.
+    /// Settings from flags.
     pub flags: Options,
-    /// Settings of environment variables.
+    /// Settings from environment variables.
     pub environment: Options,
     /// Inventory.
     pub inventory: Inventory,
@@ -222,7 +231,7 @@ pub struct Sources {
 const RETRIES: u32 = 3;
 
 impl Sources {
-    /// Selected robots for a command of `family` (`None`: any family); at least one.
+    /// Returns the selected robots for a command of `family` (`None`: any family). There is at least one.
     pub fn robots(&self, family: Option<Family>) -> Result<Vec<Robot>, Failure> {
         let selection = &self.selection;
         if selection.from_environment && selection.environment.is_some() {
@@ -257,14 +266,14 @@ impl Sources {
         )))
     }
 
-    /// Whether the robots are from the inventory, so that a changed inventory can change them.
+    /// Whether the robots come from the inventory. A change of the inventory can then change the robots.
     pub fn follows_inventory(&self) -> bool {
         let Selection { sim, target, all, robots, tags, environment, .. } = &self.selection;
         let by_entry = *all || !robots.is_empty() || !tags.is_empty();
         !*sim && target.is_none() && (by_entry || environment.is_none())
     }
 
-    /// Selected robots that a changed inventory still contains; can be empty.
+    /// Returns the selected robots that the changed inventory still contains. The list may be empty.
     pub fn remaining_robots(&self) -> Result<Vec<Robot>, Failure> {
         let Selection { robots, tags, all, .. } = &self.selection;
         let is_named = |entry: &Entry| match &robots[..] {
@@ -276,12 +285,12 @@ impl Sources {
         self.inventory.robots.iter().filter(is_chosen).map(|entry| self.resolve(entry, None)).collect()
     }
 
-    /// Alarm explanations of the inventory's site.
+    /// Alarm explanations of the site that the inventory describes.
     pub fn alarms(&self) -> Alarms {
         Alarms::load_beside(self.inventory.path.as_deref())
     }
 
-    /// Without a selection, selects all robots of the inventory instead of the default.
+    /// Selects all robots of the inventory if no robot was selected. Without this call, the default robot is selected.
     pub fn default_to_all(&mut self) {
         self.selection.all |= self.selection.is_empty() && !self.inventory.robots.is_empty();
     }
@@ -289,10 +298,10 @@ impl Sources {
     /// Selects robots by name.
     ///
     /// # Errors
-    /// A flag also selects robots.
+    /// If a flag also selects robots.
     pub fn choose_all(&mut self, names: &[String]) -> Result<(), Failure> {
         if self.selection.has_flags() {
-            return Err(Failure::usage(format!("{} and a flag both select robots", names.join(" and ")))
+            return Err(Failure::usage(format!("{} and a flag each select robots", names.join(" and ")))
                 .hint("remove one of the two"));
         }
         (self.selection.robots, self.selection.from_environment) = (names.to_vec(), false);
@@ -303,7 +312,7 @@ impl Sources {
     pub fn choose(&mut self, robot: &str) -> Result<(), Failure> {
         if self.selection.has_flags() {
             return Err(
-                Failure::usage(format!("'{robot}' and a flag both select a robot")).hint("remove one of the two")
+                Failure::usage(format!("'{robot}' and a flag each select a robot")).hint("remove one of the two")
             );
         }
         let Selection { target, robots, from_environment, .. } = &mut self.selection;
@@ -318,13 +327,13 @@ impl Sources {
         Ok(())
     }
 
-    /// Resolves an inventory entry to a robot with all settings.
+    /// Creates the robot of an inventory entry, with all settings.
     pub fn resolve(&self, entry: &Entry, family: Option<Family>) -> Result<Robot, Failure> {
         if let Some(family) = family
             && family != entry.family
         {
             return Err(Failure::usage(format!("robot '{}' is a {} robot, not {family}", entry.name, entry.family))
-                .hint(format!("use `armctl {} …` for it", entry.family)));
+                .hint(format!("use `armctl {} …` for this robot", entry.family)));
         }
         let target = Setting { value: entry.target.clone(), origin: Origin::Robot };
         let robot = self.robot(entry.name.clone(), entry.family, target, &entry.options, entry.tags.clone());
@@ -332,14 +341,14 @@ impl Sources {
         Ok(Robot { pulses_per_degree: entry.pulses_per_degree.clone(), names, ..robot })
     }
 
-    /// The robot at a target, with all settings.
+    /// Returns the robot at a target, with all settings.
     pub fn at(&self, target: &Target, family: Family) -> Result<Robot, Failure> {
         self.robot_at(&TargetArgument::Url(target.clone()), Origin::Flag, Some(family))
     }
 
     fn robot_at(&self, given: &TargetArgument, origin: Origin, family: Option<Family>) -> Result<Robot, Failure> {
         let target = given.resolve(family)?;
-        // For a simulator without a family, the first family.
+        // A simulator without a family is a simulator of the first family.
         let simulated = target.is_simulated().then_some(self.selection.simulated.unwrap_or(Family::Yerc));
         let Some(family) = family.or(target.family()).or(simulated) else {
             return Err(Failure::usage(format!("armctl cannot infer the family from target '{target}'"))
@@ -375,7 +384,7 @@ impl Sources {
                         failure.hint(format!("`armctl robots list` lists the robots in {}", path.display()))
                     }
                     (None, None) => {
-                        failure.hint("armctl finds no home folder for robots.toml; set the file with --config")
+                        failure.hint("set the file with --config: armctl finds no home folder for robots.toml")
                     }
                 });
             }
@@ -394,8 +403,8 @@ impl Sources {
             }
         }
         chosen.retain(|robot| selection.tags.iter().all(|tag| robot.tags.contains(tag)));
-        // A command of a family on a mixed selection applies only to its own robots. A robot named explicitly gives an
-        // error below.
+        // A command of a family applies only to the robots of this family in a mixed selection. A robot of another
+        // family that the user named explicitly causes an error below.
         if selection.is_plural()
             && let Some(family) = family
         {
@@ -408,8 +417,8 @@ impl Sources {
         chosen.into_iter().map(|entry| self.resolve(entry, family)).collect()
     }
 
-    /// Addresses of the read-only robots of a family, with their entries. Read-only applies to the controller,
-    /// independent of the name.
+    /// Returns the addresses of the read-only robots of a family, with their entries. A controller is read-only under
+    /// every name that leads to it.
     pub fn read_only(&self, family: Family) -> impl Iterator<Item = (Address, &Entry)> {
         let file = self.inventory.defaults.read_only;
         let entries = self.inventory.robots.iter();
@@ -418,7 +427,7 @@ impl Sources {
         binding_entry.map(|entry| (entry.target.address(), entry))
     }
 
-    /// Makes a robot read-only if an entry with one of its addresses is.
+    /// Makes a robot read-only if an entry with one of the robot's addresses is read-only.
     pub fn apply_read_only(&self, robot: &mut Robot) {
         if robot.read_only.value || robot.target.value.is_simulated() {
             return;
@@ -430,7 +439,7 @@ impl Sources {
         }
     }
 
-    /// Names of the entry with this address. They belong to the controller, independent of the target.
+    /// Returns the names in the entry with this address. Names belong to the controller, whatever form the target has.
     fn names_at(&self, family: Family, address: &Address) -> Arc<[Name]> {
         let mut named = self.inventory.robots.iter().filter(|entry| entry.family == family && !entry.names.is_empty());
         let entry = named.find(|entry| entry.target.address().meets(address));
@@ -472,7 +481,7 @@ impl Sources {
             tags,
             sessions: self.selection.sessions,
             alarms: self.alarms(),
-            // An absolute path, valid in any folder.
+            // The path is absolute, so that it stays valid in any folder.
             inventory: self.inventory.path.as_deref().and_then(|path| std::path::absolute(path).ok()),
         };
         self.apply_read_only(&mut robot);
@@ -480,7 +489,7 @@ impl Sources {
     }
 }
 
-/// First candidate with a value.
+/// Returns the first candidate that has a value.
 fn first<T>(candidates: [(Option<T>, Origin); 4], built_in: T) -> Setting<T> {
     let found = candidates.into_iter().find_map(|(value, origin)| value.map(|value| Setting { value, origin }));
     found.unwrap_or(Setting { value: built_in, origin: Origin::BuiltIn })

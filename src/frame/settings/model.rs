@@ -1,7 +1,8 @@
-//! Controller model in settings, and a cache of the models that controllers reported.
+//! Controller model in the settings, and a cache of the models that controllers reported.
 //!
-//! If no model is set, the controller is asked for its software once. The answer is cached in the state folder of the
-//! user, by address. No file of the user is changed. Without the cache, the controller is asked again.
+//! If the settings contain no model, armctl reads the software version of the controller once. The answer is cached by
+//! address in the state folder of the user. No file that the user wrote is changed. Without the cache, armctl reads the
+//! version again.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -17,21 +18,21 @@ use super::target::Address;
 use armctl_controller::yerc::Model;
 use armctl_files as files;
 
-/// Model in settings.
+/// Model setting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ModelSetting {
-    /// Ask the controller.
+    /// Read the model from the controller.
     #[default]
     Auto,
-    /// This model.
+    /// Use this model.
     Is(Model),
 }
 
 impl ModelSetting {
-    /// Text of the automatic setting.
+    /// Text of the setting [`Self::Auto`].
     pub const AUTO: &str = "auto";
 
-    /// The model, if it is set.
+    /// The model, if the setting contains one.
     pub const fn named(self) -> Option<Model> {
         match self {
             Self::Auto => None,
@@ -57,25 +58,25 @@ impl FromStr for ModelSetting {
     }
 }
 
-/// Model that a controller reported.
+/// Model that a controller reported, with the time of the report.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ReportedModel {
     #[serde(with = "by_name")]
     model: Model,
     software: String,
-    /// Time of the report, in seconds since 1970.
+    /// When the controller reported it, in seconds since 1970.
     at: u64,
 }
 
-/// Validity of a cached answer.
+/// Time for which a cached answer is valid.
 const VALIDITY: Duration = Duration::from_secs(24 * 3600);
-/// Age at which an answer is removed from the file.
+/// Age at which an answer is removed from the cache file.
 const RETENTION: Duration = Duration::from_secs(90 * 24 * 3600);
 /// Size limit of the cache file.
 const SIZE_LIMIT: u64 = 1 << 20;
 
 impl ReportedModel {
-    /// A new answer.
+    /// Creates an answer with the current time.
     pub fn now(model: Model, software: String) -> Self {
         Self { model, software, at: now() }
     }
@@ -90,46 +91,46 @@ impl ReportedModel {
         &self.software
     }
 
-    /// Whether model and software are the same.
+    /// Whether model and software of both answers are equal.
     pub fn is_same_as(&self, other: &Self) -> bool {
         (self.model, &self.software) == (other.model, &other.software)
     }
 
-    /// Age of the answer.
+    /// Time since the controller reported the model.
     pub fn age(&self) -> Duration {
         Duration::from_secs(now().saturating_sub(self.at))
     }
 
-    /// Whether it is still valid. An answer from the future, after a change of the clock, is not.
+    /// Whether the answer is still valid. An answer with a time in the future is not valid; the clock was changed then.
     pub fn is_fresh(&self) -> bool {
         self.at <= now() && self.age() < VALIDITY
     }
 }
 
-/// Cache of the models by address.
+/// Cache of models, by address.
 #[derive(Debug, Clone)]
 pub struct ModelCache {
     path: PathBuf,
 }
 
 impl ModelCache {
-    /// Cache of this user, if there is a home folder.
+    /// Returns the cache of this user; `None` without a home folder.
     pub fn of_user() -> Option<Self> {
         state_folder().map(|folder| Self { path: folder.join("models.json") })
     }
 
-    /// Cache in a file.
+    /// Returns the cache in this file.
     #[cfg(test)]
     pub fn at(path: PathBuf) -> Self {
         Self { path }
     }
 
-    /// Last answer of the controller at an address.
+    /// Returns the last answer of the controller at an address.
     pub fn find(&self, address: &Address) -> Option<ReportedModel> {
         self.find_by_key(&address.key()?)
     }
 
-    /// Last answer by address key.
+    /// Returns the last answer for the key of an address.
     pub fn find_by_key(&self, key: &str) -> Option<ReportedModel> {
         self.read().remove(key)
     }
@@ -157,7 +158,7 @@ impl ModelCache {
         files::replace(&self.path, serde_json::to_string_pretty(all)?.as_bytes())
     }
 
-    /// All answers; empty if the file is missing or not valid.
+    /// Reads all answers. The result is empty if the file is missing or not valid.
     fn read(&self) -> BTreeMap<String, ReportedModel> {
         let text = files::text(&self.path, SIZE_LIMIT).unwrap_or_default();
         serde_json::from_str(&text).unwrap_or_default()

@@ -1,8 +1,8 @@
-//! Names of a robot: from its inventory entry, and from files that were read from its controller.
+//! Names of a robot: from its inventory entry, and from files that armctl read from the controller.
 //!
-//! Names from a controller are cached in the state folder of the user. There is one file per controller address, with
-//! the time and the hashes of the controller's files. If the address now belongs to a controller with other software,
-//! the cached names are not used. A simulator has no cache; its names are built in.
+//! Names from a controller are cached in the state folder of the user. There is one cache file per controller address.
+//! It contains the time and the hashes of the controller's files. If the controller at the address now has other
+//! software, the cached names are not used. A simulator has no cache; its names are built in.
 
 use std::fmt::Write as _;
 use std::io::ErrorKind;
@@ -22,13 +22,13 @@ use armctl_controller::text::Encoding;
 use armctl_controller::{toyo, yerc, yrcx};
 use armctl_files as files;
 
-/// Format field of a cache file, to recognize other files.
+/// Value of the format field in a cache file. Other files do not have this value.
 const FORMAT: &str = "armctl-names";
 const VERSION: u64 = 1;
 /// Size limit of a cache file.
 const SIZE_LIMIT: u64 = 32 << 20;
 
-/// Address grammar of a family.
+/// Returns the grammar of addresses in a family.
 pub fn grammar(family: Family) -> Grammar {
     match family {
         Family::Yerc => yerc::names::GRAMMAR,
@@ -37,7 +37,7 @@ pub fn grammar(family: Family) -> Grammar {
     }
 }
 
-/// Names of a robot, read at the first lookup.
+/// Names of a robot. They are read at the first lookup.
 #[derive(Debug, Clone, Default)]
 pub struct RobotNames {
     entry_names: Arc<[Name]>,
@@ -47,7 +47,7 @@ pub struct RobotNames {
     all: Arc<OnceLock<AllNames>>,
 }
 
-/// Robots with the same entries are equal, independent of the cache.
+/// The names of robots with the same entries are equal, whatever the cache contains.
 impl PartialEq for RobotNames {
     fn eq(&self, other: &Self) -> bool {
         self.entry_names == other.entry_names && self.cache == other.cache && self.is_simulated == other.is_simulated
@@ -57,16 +57,16 @@ impl PartialEq for RobotNames {
 /// All names of a robot.
 #[derive(Debug, Clone, Default)]
 pub struct AllNames {
-    /// Names.
+    /// Names from all sources.
     pub names: Names,
-    /// Cached names of its controller.
+    /// Cached names of the robot's controller.
     pub kept: Option<CachedNames>,
-    /// Error of the cache file.
+    /// Error of the cache file, if it could not be read.
     pub damage: Option<Failure>,
 }
 
 impl RobotNames {
-    /// Names of an entry, and the cache for an address.
+    /// Creates the names from an entry, with the cache for an address.
     pub fn new(entry_names: Arc<[Name]>, family: Family, address: &Address) -> Self {
         let is_yerc = family == Family::Yerc;
         let cache = if is_yerc { CacheFile::of(address) } else { None };
@@ -75,12 +75,12 @@ impl RobotNames {
         Self { entry_names, cache, models, is_simulated, all: Arc::default() }
     }
 
-    /// Location of the cache, for controllers that have names.
+    /// Location of the cache; `None` for controllers that have no names.
     pub fn cache_file(&self) -> Option<&CacheFile> {
         self.cache.as_ref()
     }
 
-    /// Reads the cache, unless the controller has reported other software in the meantime.
+    /// Reads the cache. The result is an error if the controller has reported other software in the meantime.
     fn read(&self, place: &CacheFile) -> Result<Option<CachedNames>, Failure> {
         let cached = place.read()?;
         let told = self.models.as_ref().and_then(|models| models.find_by_key(&place.address));
@@ -105,14 +105,14 @@ impl RobotNames {
     }
 }
 
-/// Built-in names of a simulator.
+/// Returns the built-in names of a simulator.
 fn simulated() -> Vec<Name> {
     let files = yerc::simulator::name_files();
     let read = |(file, bytes): (&str, Vec<u8>)| yerc::names::read(file, &bytes, Encoding::ShiftJis);
     files.into_iter().filter_map(|file| read(file).ok()).flat_map(|found| found.names).collect()
 }
 
-/// Location of the cache file of a controller.
+/// Path of the cache file of a controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CacheFile {
     path: PathBuf,
@@ -126,28 +126,28 @@ pub struct CachedNames {
     version: u64,
     /// Address of the controller.
     address: String,
-    /// Time of the read.
+    /// Time when the names were read.
     pub read_at: Timestamp,
     /// Encoding of the files.
     pub encoding: String,
-    /// System software of the controller at that time, if reported.
+    /// System software of the controller at that time, if the controller reported it.
     #[serde(default)]
     software: Option<String>,
-    /// Files with the names.
+    /// Files that contain the names.
     pub files: Vec<KeptFile>,
     names: Vec<KeptName>,
 }
 
-/// A file of names.
+/// A file of the controller that contains names.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct KeptFile {
-    /// Its name on the controller.
+    /// Name of the file on the controller.
     pub file: String,
-    /// Its size.
+    /// Size of the file in bytes.
     pub bytes: u64,
-    /// SHA-256 of its bytes.
+    /// SHA-256 of the file content.
     pub sha256: String,
-    /// Number of names in it.
+    /// Number of names in the file.
     pub names: usize,
 }
 
@@ -171,7 +171,7 @@ impl KeptFile {
 }
 
 impl CachedNames {
-    /// Names that were just read from a controller with this software.
+    /// Creates a cache with names that were just read from a controller with this software.
     pub fn new(
         place: &CacheFile,
         encoding: Encoding,
@@ -201,22 +201,22 @@ impl CachedNames {
         self.names.len()
     }
 
-    /// Rejects names of a controller that had other software.
+    /// Returns an error if the names were read from a controller with other software.
     pub fn check(&self, software: &str) -> Result<(), Failure> {
         match self.software.as_deref().filter(|then| *then != software) {
             None => Ok(()),
             Some(then) => Err(Failure::local(format!(
-                "the stored names for this address belong to a controller with software {then}; this controller has \
-                 {software}"
+                "the stored names for this address are from a controller with software {then}; this controller has \
+                 software {software}"
             ))
             .hint(
-                "read the names of this controller with `armctl yerc names get`, or delete the stored ones with \
+                "read the names of this controller with `armctl yerc names get`, or delete the stored names with \
                  `armctl yerc names forget`",
             )),
         }
     }
 
-    /// The names; invalid addresses are skipped.
+    /// Returns the names. Names with an invalid address are skipped.
     fn names(&self) -> impl Iterator<Item = Name> {
         self.names.iter().filter_map(|kept| {
             let (kind, address) = (yerc::names::GRAMMAR.address)(&kept.address)?;
@@ -226,18 +226,19 @@ impl CachedNames {
 }
 
 impl CacheFile {
-    /// Location for a controller on the network, if the user has a state folder.
+    /// Returns the location for a controller on the network; `None` if the user has no state folder.
     fn of(address: &Address) -> Option<Self> {
         let address = address.key()?;
         let plain = |c: char| if c.is_ascii_alphanumeric() || ".-".contains(c) { c } else { '_' };
         let name: String = address.chars().map(plain).take(100).collect();
-        // Makes the name unique, because several characters are replaced.
+        // The digest makes the file name unique: different addresses can have the same text after characters are
+        // replaced.
         let digest = &KeptFile::new("", address.as_bytes(), 0).sha256[..8];
         let path = super::state_folder()?.join("names").join(format!("{name}-{digest}.json"));
         Some(Self { path, address })
     }
 
-    /// Reads the cache; `None` if it does not exist.
+    /// Reads the cache; `None` if the file does not exist.
     pub fn read(&self) -> Result<Option<CachedNames>, Failure> {
         let damaged = |why: String| {
             Failure::local(format!("the stored names in {} cannot be used: {why}", self.path.display())).hint(
@@ -256,15 +257,16 @@ impl CacheFile {
         Ok(Some(kept))
     }
 
-    /// Replaces the cache.
+    /// Replaces the cache file.
     pub fn write(&self, kept: &CachedNames) -> Result<(), Failure> {
         let failed = |error: &std::io::Error| Failure::io(self.path.display(), error);
-        let text = serde_json::to_vec(kept).map_err(|error| Failure::local(format!("names as JSON: {error}")))?;
+        let text = serde_json::to_vec(kept)
+            .map_err(|error| Failure::local(format!("cannot write the names as JSON: {error}")))?;
         std::fs::create_dir_all(files::folder_of(&self.path)).map_err(|error| failed(&error))?;
         files::replace(&self.path, &text).map_err(|error| failed(&error))
     }
 
-    /// Removes the cache. Returns whether it existed.
+    /// Removes the cache file. Returns whether it existed.
     pub fn forget(&self) -> Result<bool, Failure> {
         match std::fs::remove_file(&self.path) {
             Ok(()) => Ok(true),
@@ -325,7 +327,7 @@ mod tests {
         models.store(&address, ReportedModel::now(Model::Dx200, "DN2.07.00A(EN)-00".to_owned())).unwrap();
         let damage = robot().all().damage.clone().unwrap();
         assert!(
-            damage.message.contains("YAS2.80") && damage.message.contains("this controller has DN2.07"),
+            damage.message.contains("YAS2.80") && damage.message.contains("this controller has software DN2.07"),
             "{damage}"
         );
     }

@@ -1,4 +1,4 @@
-//! Target URLs: location and transport of a robot.
+//! Target URLs. A target URL contains the location and the transport of a robot.
 
 mod address;
 mod bare;
@@ -27,7 +27,7 @@ pub use address::Address;
 pub use bare::TargetArgument;
 pub use bus::{BUSES, Bus};
 
-/// A controller family; its name is that of its subcommand.
+/// A controller family. It has the name of its subcommand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Family {
     /// Yaskawa FS100, DX100, DX200, YRC1000: high-speed Ethernet server.
@@ -39,10 +39,10 @@ pub enum Family {
 }
 
 impl Family {
-    /// All families in the order of help texts.
+    /// All families, in the order of the help texts.
     pub const ALL: [Self; 3] = [Self::Yerc, Self::Yrcx, Self::Toyo];
 
-    /// Name: subcommand, name of a link to the binary, value in JSON.
+    /// Name of the family. It is the subcommand, the name of a link to the binary, and the value in JSON.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Yerc => "yerc",
@@ -60,8 +60,8 @@ impl Family {
         }
     }
 
-    /// Default time limit of one attempt. On a network, a controller answers in 5 to 20 ms, a busy one within seconds.
-    /// On a serial line, it answers within one second (TO 1-3).
+    /// Default time limit of one attempt. On a network, a controller answers in 5 to 20 ms, and a busy controller
+    /// within seconds. On a serial line, it answers within one second (TO 1-3).
     pub const fn timeout(self) -> Duration {
         match self {
             Self::Yerc | Self::Yrcx => Duration::from_secs(3),
@@ -69,12 +69,12 @@ impl Family {
         }
     }
 
-    /// Whether its controllers have different models, which settings can name.
+    /// Whether controllers of this family have different models. The settings can then contain a model.
     pub const fn has_model(self) -> bool {
         matches!(self, Self::Yerc)
     }
 
-    /// Whether the scheme is valid for the family.
+    /// Whether a URL scheme is valid for the family.
     fn is_reached_over(self, scheme: &str) -> bool {
         scheme == "sim"
             || match self {
@@ -103,9 +103,9 @@ impl FromStr for Family {
 /// A parsed target URL.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Target {
-    /// The URL as given.
+    /// The URL as the user typed it.
     url: String,
-    /// Its parts.
+    /// Parts of the URL.
     pub place: Place,
 }
 
@@ -142,23 +142,23 @@ pub struct Udp {
 pub struct YercTraits {
     /// Controller model.
     pub model: Option<ModelSetting>,
-    /// Words of the cartesian move, 25 or 26 (FS 3.3.39 has 25 for the FS100; all public clients send 26).
+    /// Number of words of the cartesian move: 25 or 26. FS 3.3.39 gives 25 for the FS100; all public clients send 26.
     pub move_words: Option<u8>,
 }
 
-/// A serial port of this computer. The defaults are those of a Toyo controller (TO 1-2): 9600 baud, 8 data bits, even
-/// parity, 1 stop bit.
+/// A serial port of this computer. The defaults are the settings of a Toyo controller (TO 1-2): 9600 baud, 8 data bits,
+/// even parity, 1 stop bit.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Serial {
-    /// `/dev/ttyUSB0`, `COM3`.
+    /// Name of the port, for example `/dev/ttyUSB0` or `COM3`.
     pub path: String,
     /// Bits per second.
     pub baud: u32,
-    /// Data bits per character.
+    /// Data bits in a character.
     pub data_bits: DataBits,
     /// Parity bit.
     pub parity: Parity,
-    /// Stop bits per character.
+    /// Stop bits in a character.
     pub stop_bits: StopBits,
 }
 
@@ -167,9 +167,9 @@ pub struct Serial {
 pub struct Tcp {
     /// Host name or address.
     pub host: String,
-    /// TCP port of the line.
+    /// TCP port of the serial line on the device server.
     pub port: u16,
-    /// Baud rate of the line, to compute transmission times. The device server has its own setting.
+    /// Baud rate of the line, for the calculation of transmission times. The device server has its own setting.
     pub baud: u32,
 }
 
@@ -180,38 +180,39 @@ pub struct Sim {
     pub traits: YercTraits,
     /// Number of axes of a toyo controller, 1 to 4.
     pub axes: Option<u8>,
-    /// Baud rate of the line to a toyo controller; without it, transmission takes no time.
+    /// Baud rate of the line to a toyo controller. Without a baud rate, transmission takes no time.
     pub baud: Option<u32>,
     /// File with the start state.
     pub state: Option<PathBuf>,
-    /// Faults of link and device, in the form of `armctl sim --fault`.
+    /// Faults of link and device, in the format of `armctl sim --fault`.
     pub fault: Option<String>,
-    /// Fieldbus of a yrcx controller, of [`bus::simulators`]. Without it, a network is only simulated if it has faults.
+    /// Fieldbus of a yrcx controller: one of [`bus::simulators`]. Without it, a network is simulated only if the
+    /// network has faults.
     pub bus: Option<&'static str>,
 }
 
-/// UDP port of the robot server (spec: frame table).
+/// UDP port of the robot server (from the frame table of the manual).
 const ROBOT_PORT: u16 = 10040;
 /// Default baud rate of a serial line (TO 1-2).
 const BAUD: u32 = 9600;
 
 impl Target {
-    /// The simulator with its built-in start state.
+    /// Returns the target of the simulator with its built-in start state.
     pub fn simulator() -> Self {
         Self { url: "sim:".to_owned(), place: Place::Sim(Sim::default()) }
     }
 
-    /// The URL as given.
+    /// The URL as the user typed it.
     pub fn url(&self) -> &str {
         &self.url
     }
 
-    /// Whether it is a simulator.
+    /// Whether the target is a simulator.
     pub fn is_simulated(&self) -> bool {
         matches!(self.place, Place::Sim(_))
     }
 
-    /// `udp`, `sim`, …
+    /// Scheme of the URL: `udp`, `sim`, …
     pub fn scheme(&self) -> &str {
         match &self.place {
             Place::Udp(_) => "udp",
@@ -222,12 +223,12 @@ impl Target {
         }
     }
 
-    /// Address, independent of the form of the URL.
+    /// Address of the robot. Different forms of a URL have the same address.
     pub fn address(&self) -> Address {
         Address::of(self)
     }
 
-    /// Short name for messages without an inventory: the host, the port without its folder, or `sim`.
+    /// Short name for messages without an inventory: the host, the port name without its folder, or `sim`.
     pub fn short_name(&self) -> String {
         match &self.place {
             Place::Udp(udp) => udp.host.clone(),
@@ -247,7 +248,7 @@ impl Target {
         }
     }
 
-    /// The family of this URL, if only one can use it.
+    /// The family of this URL, if only one family can use it.
     pub fn family(&self) -> Option<Family> {
         let mut families = Family::ALL.into_iter().filter(|family| family.is_reached_over(self.scheme()));
         let first = families.next();
@@ -257,7 +258,7 @@ impl Target {
     /// Checks that the URL and all its options are valid for a family.
     pub fn check(&self, family: Family) -> Result<(), String> {
         if !family.is_reached_over(self.scheme()) {
-            return Err(format!("a {family} robot has no {}: URL", self.scheme()));
+            return Err(format!("a {family} robot cannot have a {}: URL", self.scheme()));
         }
         match &self.place {
             Place::Sim(sim) => sim.check(family),
@@ -285,7 +286,7 @@ impl FromStr for Target {
             return Err(wrong(format!("port {rest} is not from 1 to 65535")));
         }
         if scheme.is_empty() {
-            return Err(wrong("the scheme is missing, such as udp://".into()));
+            return Err(wrong("the scheme is missing, for example udp://".into()));
         }
         let (place, query) = rest.split_once('?').unwrap_or((rest, ""));
         let mut query = Query::parse(query).map_err(wrong)?;
@@ -305,7 +306,7 @@ impl FromStr for Target {
     }
 }
 
-/// Form of a URL with this scheme, or of all schemes.
+/// Returns the form of a URL with this scheme. For an unknown scheme, returns the forms of all schemes.
 fn hint(scheme: &str) -> String {
     let buses = BUSES.iter().map(|bus| (bus.name, bus.form));
     match FORMS.into_iter().chain(buses).find(|(known, _)| *known == scheme) {
@@ -318,7 +319,7 @@ fn hint(scheme: &str) -> String {
     }
 }
 
-/// Forms of the other URLs.
+/// Forms of URLs that are not fieldbuses.
 const FORMS: [(&str, &str); 4] = [
     ("udp", "udp://HOST[:10040][?file_port=PORT+1&model=auto]"),
     ("serial", "serial:///dev/ttyUSB0[?baud=9600&parity=even&data_bits=8&stop_bits=1], or serial://COM3"),
@@ -335,7 +336,7 @@ fn udp(place: &str, query: &mut Query) -> Result<Udp, String> {
     };
     let file_port = match query.take("file_port") {
         Some(port) => self::port("file_port", &port)?,
-        // By default the next port, also behind a port forwarding.
+        // The default is the next port. With port forwarding, this is the port after the forwarded one.
         None => port.checked_add(1).ok_or("port 65535 has no next port for files; set one with file_port=PORT")?,
     };
     Ok(Udp { host, port, file_port, traits: traits(query)? })
@@ -386,7 +387,7 @@ fn sim(place: &str, query: &mut Query) -> Result<Sim, String> {
     })
 }
 
-/// Finds a fieldbus of simulators by name.
+/// Finds a fieldbus that simulators support, by name.
 fn bus(name: &str) -> Result<&'static str, String> {
     let found = bus::simulators().find(|(known, _)| *known == name);
     found.map(|(known, _)| known).ok_or_else(|| {
@@ -396,7 +397,7 @@ fn bus(name: &str) -> Result<&'static str, String> {
 }
 
 impl Sim {
-    /// Rejects options of another family.
+    /// Returns an error if an option belongs to another family.
     fn check(&self, family: Family) -> Result<(), String> {
         let given = [
             ("model", self.traits.model.is_some(), Family::Yerc),
@@ -541,8 +542,8 @@ mod tests {
             ("sim:?baud=9600", Family::Yerc, Some("'baud' in a sim: URL is for toyo, not for yerc")),
             ("sim:?model=fs100", Family::Toyo, Some("'model' in a sim: URL is for yerc, not for toyo")),
             ("sim:?move_words=25", Family::Toyo, Some("'move_words' in a sim: URL is for yerc, not for toyo")),
-            ("tcp://h:1", Family::Yerc, Some("a yerc robot has no tcp: URL")),
-            ("udp://h", Family::Toyo, Some("a toyo robot has no udp: URL")),
+            ("tcp://h:1", Family::Yerc, Some("a yerc robot cannot have a tcp: URL")),
+            ("udp://h", Family::Toyo, Some("a toyo robot cannot have a udp: URL")),
         ] {
             assert_eq!(target(url).check(family).err().as_deref(), why, "{url}");
         }

@@ -1,4 +1,5 @@
-//! Write of rows: read the old rows, confirm the changes, write different rows, each with its own result.
+//! Write of rows: reads the old rows, confirms the changes, and writes the rows that differ. Each row has its own
+//! result.
 
 use super::{Answers, Differing, Store, Writable, WrittenOf, columns, item};
 use crate::authority::Authority;
@@ -7,6 +8,7 @@ use crate::dry_run::{Known as _, unknown};
 use crate::failure::{Failure, Kind};
 use crate::gate::{Change, Confirmation};
 use crate::interrupt::interruptible;
+use crate::items::describe_request;
 use crate::names;
 use crate::output::Screen;
 use crate::robot::item::{Written, WrittenItems};
@@ -14,7 +16,7 @@ use crate::settings::Robot;
 use crate::settings_report::nothing_written;
 use armctl_controller::Risk;
 
-/// Type of confirmation for a write.
+/// Kind of confirmation for a write.
 pub const fn confirmation<S: Writable>() -> Confirmation {
     match S::RISK {
         Risk::Destroy => Confirmation::WhenKnown,
@@ -22,7 +24,7 @@ pub const fn confirmation<S: Writable>() -> Confirmation {
     }
 }
 
-/// Completes "This will …".
+/// Text that completes "This will …".
 pub fn intent<S: Writable>() -> String {
     format!("overwrite {}", S::WORDS.nouns[1])
 }
@@ -38,43 +40,45 @@ pub struct TableWrite<'a, S: Store> {
     pub robot: &'a Robot,
     /// Connection to the robot.
     pub link: &'a mut <S::Family as Family>::Link,
-    /// Screen for progress.
+    /// Screen for progress and notes.
     pub screen: &'a Screen,
-    /// Authority to confirm overwriting.
+    /// Authority that confirms the overwriting of user data.
     pub authority: Authority<'a>,
 }
 
-/// A row, compared with the controller.
+/// A row, and its comparison with the controller.
 #[derive(Debug)]
 pub struct ComparedRow<S: Store> {
-    /// The row.
+    /// Key of the row.
     pub key: S::Key,
-    old: Option<S::Wire>,
-    new: S::Wire,
-    /// Whether it was written, or why not.
+    /// Content on the controller; none if it is unknown.
+    pub old: Option<S::Wire>,
+    /// New content.
+    pub new: S::Wire,
+    /// Whether the row was written, or why it was not written.
     pub outcome: Result<bool, Failure>,
-    /// Whether an earlier failure ended the work before this row.
+    /// Whether the row was not tried, because an earlier failure ended the write.
     pub is_skipped: bool,
 }
 
 impl<S: Store> ComparedRow<S> {
-    /// Whether the row was refused, so that the controller does not have it yet.
+    /// Whether the controller refused to report the row, because the row is not defined yet.
     pub fn is_undefined(&self) -> bool {
         self.old.is_none()
     }
 
-    /// Whether the controller holds something else.
+    /// Whether the controller has another content.
     pub fn is_different(&self) -> bool {
         self.old.as_ref().is_none_or(|old| !S::is_equal(old, &self.new))
     }
 }
 
-/// Writes the rows that differ. Stops at the first failure of the link; each row has its own result.
+/// Writes the rows that differ. Stops at the first failure of the link. Each row has its own result.
 pub async fn write<S: Writable>(work: TableWrite<'_, S>, rows: Vec<Row<S>>) -> Result<WrittenOf<S>, Failure> {
     let TableWrite { mut table, robot, link, screen, authority } = work;
     table.select(link).await.map_err(nothing_written)?;
-    let compared = write_selected(&table, link, screen, authority, rows).await;
-    // After Ctrl-C nothing more is requested. The close of the link restores the selected table.
+    let compared = write_rows(&table, link, screen, authority, rows).await;
+    // After Ctrl-C, no more requests are sent. When the link is closed, the selected table is restored.
     let is_interrupted = |rows: &Vec<ComparedRow<S>>| {
         rows.iter().any(|row| row.outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Interrupted))
     };
@@ -95,15 +99,16 @@ pub async fn write<S: Writable>(work: TableWrite<'_, S>, rows: Vec<Row<S>>) -> R
                 Ok(is_written) => (is_written, Ok(Some(new))),
                 Err(failure) => (false, Err(failure)),
             };
+            let old_cells = old.as_ref().map(|old| table.cells(key, old)).unwrap_or_default();
             let old = old.as_ref().and_then(|old| table.value(old));
-            Written::new(item(&table, names, key, outcome), old, is_written)
+            Written::new(item(&table, names, key, outcome), old, is_written).with_old_cells(old_cells)
         })
         .collect();
     Ok(WrittenItems::new(columns(&table), items))
 }
 
-/// Compares rows with the controller, confirms the change, and writes the rows that differ.
-async fn write_selected<S: Writable>(
+/// Compares rows with the controller, asks the user to confirm, and writes the rows that differ.
+pub async fn write_rows<S: Writable>(
     table: &S,
     link: &mut <S::Family as Family>::Link,
     screen: &Screen,
@@ -119,10 +124,11 @@ async fn write_selected<S: Writable>(
     Ok(compared)
 }
 
-/// Reads rows and compares them with their new content; `None` in a dry run, which does not know the content.
+/// Reads rows and compares them with their new content. Returns `None` in a dry run, in which the old content is
+/// unknown.
 ///
 /// # Errors
-/// Those of the reads, which state that nothing was written.
+/// If a read fails. The failure states that nothing was written.
 pub async fn compare<S: Writable>(
     table: &S,
     link: &mut <S::Family as Family>::Link,
@@ -130,7 +136,7 @@ pub async fn compare<S: Writable>(
     rows: &[Row<S>],
 ) -> Result<Option<Vec<ComparedRow<S>>>, Failure> {
     let read = match table.read_old(link, screen, rows).await {
-        // All are refused alike: each is judged below.
+        // The controller refused all rows with one refusal. Each row is judged below.
         Err(failure) if failure.kind == Kind::Refused => {
             let refused = rows.iter().map(|_| Err(failure.clone()));
             Ok(Answers { rows: refused.collect(), asked: rows.len() })
@@ -142,7 +148,13 @@ pub async fn compare<S: Writable>(
     for ((key, draft), old) in rows.iter().zip(answers.rows) {
         let old = match old {
             Ok(old) => old,
-            Err(failure) if S::risk(*key) < Risk::Destroy && failure.kind == Kind::Refused => None,
+            Err(failure) if S::risk(*key) < Risk::Destroy && failure.kind == Kind::Refused => {
+                // Without the old row, only a complete one can be written.
+                if table.complete_draft(*key, draft, None).is_err() {
+                    return Err(nothing_written(describe_request(&S::asked(*key), failure)));
+                }
+                None
+            }
             Err(failure) if S::is_undefined(&failure) => None,
             Err(failure) => return Err(nothing_written(failure)),
         };
@@ -157,7 +169,7 @@ pub fn differing<S: Writable>(rows: &[ComparedRow<S>]) -> Vec<Differing<'_, S>> 
     rows.iter().filter(|row| row.is_different()).map(|row| (row.key, row.old.as_ref(), &row.new)).collect()
 }
 
-/// Values that a person wrote and that are replaced: name, old value, new value.
+/// Values that a person wrote and that will be replaced: name, old value, new value.
 pub fn replaced<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Vec<[String; 3]> {
     let lost = rows.iter().filter_map(|(key, old, new)| {
         let is_lost = |old: &&S::Wire| S::risk(*key) == S::RISK && !S::is_equal(old, new) && !table.is_blank(old);
@@ -168,12 +180,12 @@ pub fn replaced<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Vec<[Strin
     lost.collect()
 }
 
-/// What is overwritten that a person wrote, for a question.
+/// Question about the data that a person wrote and that will be overwritten.
 pub fn describe_change<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Change {
     table.consequences(rows).into_iter().fold(overwriting(table, &replaced(table, rows)), Change::note)
 }
 
-/// Question about rows that are overwritten: the name of each, old and new.
+/// Question about rows that will be overwritten: the name, the old value and the new value of each row.
 pub fn overwriting<S: Writable>(table: &S, lost: &[[String; 3]]) -> Change {
     let [one, many] = S::WORDS.nouns;
     let (article, place) = (if one.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }, table.table_suffix());
@@ -185,7 +197,7 @@ pub fn overwriting<S: Writable>(table: &S, lost: &[[String; 3]]) -> Change {
     lost.iter().fold(change, |change, [name, old, new]| change.replaces(name, old, new))
 }
 
-/// Writes the rows that differ and records the outcome of each.
+/// Writes the rows that differ, and records the result of each row.
 pub async fn write_each<S: Writable>(
     table: &S,
     link: &mut <S::Family as Family>::Link,
@@ -202,7 +214,7 @@ pub async fn write_each<S: Writable>(
         let is_skipped = end.is_some();
         let outcome = match &end {
             Some(failure) => Err(unwritten_rows(failure)),
-            // After Ctrl-C, the report still lists the written rows.
+            // After Ctrl-C, the report still lists the rows that were written.
             None => match interruptible(table.write(link, screen, &changes(rows, &block))).await {
                 Ok(outcome) => outcome.map(|()| true),
                 Err(interrupted) => Err(interrupted),
@@ -224,14 +236,14 @@ pub async fn write_each<S: Writable>(
     }
 }
 
-/// Rows with these indices, with old and new content.
+/// The rows with these indices, each with its old and new content.
 fn changes<'r, S: Writable>(rows: &'r [ComparedRow<S>], indices: &[usize]) -> Vec<Differing<'r, S>> {
     indices.iter().map(|index| &rows[*index]).map(|row| (row.key, row.old.as_ref(), &row.new)).collect()
 }
 
-/// Failure of the rows after the one that ended the work.
+/// Failure of the rows that were not tried, because an earlier failure ended the work.
 fn unwritten_rows(failure: &Failure) -> Failure {
     let kind = if failure.kind == Kind::OutcomeUnknown { Kind::NoAnswer } else { failure.kind };
     Failure { kind, message: format!("not written: {}", failure.message), ..failure.clone() }
-        .hint("the same command goes on: what is stored already is not written again")
+        .hint("repeat the same command: armctl does not write values that are already stored")
 }

@@ -12,7 +12,7 @@ use crate::robot::item::as_requested;
 use crate::{Command, Context};
 use armctl_controller::Risk;
 
-/// Copies a row to another one, or to several.
+/// Copies a row to one or several other rows.
 #[derive(Debug, Args)]
 #[command(after_help = S::WORDS.writing)]
 pub struct Copy<S: Writable> {
@@ -47,22 +47,27 @@ impl<S: Writable> Command for Copy<S> {
         let name = as_requested(copy_one, &S::name(from));
         let to = Rows::of(&self.to);
         if to.contains(&from) {
-            return Err(Failure::usage(format!("{name} cannot be copied to itself")).hint("name another row"));
+            return Err(Failure::usage(format!("{name} cannot be copied to itself")).hint("type another row"));
         }
         let mut table = S::open(link, &self.options).await?;
         table.prepare(link, &[&to[..], &[from]].concat()).await?;
-        // In a dry run, the values are unknown.
+        // In a dry run, the values of the row are unknown.
         let mut texts = vec![None; table.fields().len()];
         if let Some(answers) = read(&mut table, link, screen, &[from]).await.known()? {
             let stored = answers.rows.into_iter().next().transpose()?.flatten().ok_or_else(|| {
                 let message = format!("{name} is not defined: there is nothing to copy");
-                Failure::new(Kind::ConditionNotMet, message).hint("nothing was written")
+                Failure::new(Kind::ConditionNotMet, message).hint("type a row that is defined; nothing was written")
             })?;
             texts = table.texts(&stored).into_iter().map(Some).collect();
         }
         let texts: Vec<Option<&str>> = texts.iter().map(Option::as_deref).collect();
         let draft = |key: S::Key| {
-            Ok((key, table.draft(key, &texts).map_err(|why| Failure::usage(why).hint("nothing was written"))?))
+            Ok((
+                key,
+                table
+                    .draft(key, &texts)
+                    .map_err(|why| Failure::usage(why).hint("correct the command; nothing was written"))?,
+            ))
         };
         let rows = to.into_iter().map(draft).collect::<Result<_, Failure>>()?;
         write(TableWrite { table, robot, link, screen, authority }, rows).await?.or_only_failure()

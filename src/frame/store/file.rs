@@ -1,4 +1,4 @@
-//! `dump` and `restore`: rows as a CSV file for spreadsheets.
+//! `dump` and `restore`: save rows to a CSV file for spreadsheets, and write them back.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -26,12 +26,12 @@ use armctl_controller::sheet::{Column, Sheet};
 /// Saves rows to a CSV file.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The file has a row per line: its name, then its values, each in a column of its own. `restore` writes \
-                        them back. Empty rows are left out. With --update, a file that exists keeps its own columns \
-                        (names that begin with comment) and its order."
+    after_help = "The file has one row per line: the name of the row, then its values, each value in its own column. \
+                  `restore` writes the rows back. Empty rows are omitted. With --update, an existing file keeps its \
+                  own columns (names that begin with comment) and the order of its rows."
 )]
 pub struct Dump<S: Store> {
-    /// A new CSV file
+    /// CSV file to write
     file: PathBuf,
     #[command(flatten)]
     options: S::Options,
@@ -54,7 +54,7 @@ impl<S: Store> Command for Dump<S> {
     async fn run(&self, context: Context<'_, S::Family>) -> Result<Dumped, Failure> {
         let Context { link, screen, several, .. } = context;
         let target = self.manner.target(self.file.clone(), several)?;
-        // An update writes all rows of the file, also if they are blank now.
+        // An update writes all rows of the file, including rows that are blank now.
         let old = target.old();
         let keys = old
             .filter(|_| self.rows.is_empty())
@@ -67,7 +67,7 @@ impl<S: Store> Command for Dump<S> {
             let is_wanted = |wire: &S::Wire| S::SAVES_BLANK || old.is_some() || !table.is_blank(wire);
             match kept.add(&table, *key, outcome) {
                 Answer::Row(wire) if is_wanted(&wire) => kept.save(&table, *key, Some(&wire)),
-                // A row without values can be restored.
+                // `restore` accepts a row without values.
                 Answer::Undefined if old.is_some() && table.fields().iter().all(|field| field.is_optional) => {
                     kept.save(&table, *key, None);
                 }
@@ -91,10 +91,10 @@ impl<S: Store> Dump<S> {
     }
 }
 
-/// Rows for a file, as they are read.
+/// Rows for a file, as they were read.
 #[derive(Debug, Default)]
 pub struct Kept {
-    /// Name and values of each row.
+    /// Name and values of each row in the file.
     pub rows: Vec<Vec<String>>,
     /// Rows that cannot be written back.
     pub left_out: Vec<LeftOut>,
@@ -105,25 +105,25 @@ pub struct Kept {
 /// A row that is not in the file.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct LeftOut {
-    /// Name of the row.
+    /// Name of the row, as it can be typed.
     pub name: String,
-    /// Reason.
+    /// Reason why the row is not in the file.
     pub why: String,
 }
 
-/// Content of a row for a file.
+/// What an answer means for a file.
 #[derive(Debug)]
 pub enum Answer<W> {
-    /// It can be in the file.
+    /// The row can be in the file.
     Row(W),
     /// The row is not defined.
     Undefined,
-    /// It cannot be in the file, or was not read.
+    /// The row cannot be in the file, or was not read.
     LeftOut,
 }
 
 impl Kept {
-    /// Sorts an answer, and records a row that cannot be in a file.
+    /// Decides whether an answer can be in the file. Records a row that cannot.
     pub fn add<S: Store>(
         &mut self,
         table: &S,
@@ -153,7 +153,7 @@ impl Kept {
     }
 }
 
-/// Removes optional columns in which no row has a value.
+/// Removes the optional columns that have no value in any row.
 pub fn leave_out_unused<S: Store>(table: &S, columns: &mut Vec<Column>, rows: &mut [Vec<String>]) {
     let optional = std::iter::once(false).chain(table.fields().into_iter().map(|field| field.is_optional));
     let is_used = |(at, is_optional): (usize, bool)| !is_optional || rows.iter().any(|row| !row[at].is_empty());
@@ -169,7 +169,7 @@ pub fn leave_out_unused<S: Store>(table: &S, columns: &mut Vec<Column>, rows: &m
 /// Reads and checks the rows of a file.
 ///
 /// # Errors
-/// All mistakes in the file.
+/// If the file has mistakes. The failure lists all of them.
 pub fn rows_of_file<S: Writable>(table: &S, path: &Path) -> Result<Vec<Row<S>>, Failure> {
     let bytes = text_files::read(path)?;
     let mut findings = Findings::default();
@@ -180,7 +180,7 @@ pub fn rows_of_file<S: Writable>(table: &S, path: &Path) -> Result<Vec<Row<S>>, 
     Ok(rows)
 }
 
-/// The rows that a file has, in its order.
+/// Keys of the rows in a file, in the order of the file.
 pub fn keys_of<S: Store>(path: &Path, bytes: &[u8]) -> Result<Vec<S::Key>, Failure> {
     let (mut findings, mut keys) = (Findings::default(), Vec::new());
     let expected = "the first column is name";
@@ -188,7 +188,7 @@ pub fn keys_of<S: Store>(path: &Path, bytes: &[u8]) -> Result<Vec<S::Key>, Failu
         let Some(at) = sheet.column("name") else {
             let message = format!("column name is missing ({expected})");
             return Err(Failure::usage(format!("{}: {message}", text_files::display_path(path)))
-                .hint("nothing was read; --force replaces the file"));
+                .hint("add --force to replace the file; nothing was read from the controller"));
         };
         for row in sheet.rows() {
             match read_keys::<S>(row.text(at)) {
@@ -203,7 +203,7 @@ pub fn keys_of<S: Store>(path: &Path, bytes: &[u8]) -> Result<Vec<S::Key>, Failu
     Ok(keys)
 }
 
-/// Canonical spelling of a row.
+/// Canonical spelling of the key of a row.
 fn canonical<S: Store>(text: &str) -> String {
     match S::keys(text).as_deref() {
         Ok([key]) => S::name(*key),
@@ -211,13 +211,13 @@ fn canonical<S: Store>(text: &str) -> String {
     }
 }
 
-/// Report of a saved table.
+/// Report of `dump`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Dumped {
     file: String,
-    /// Number of rows in it.
+    /// Number of rows in the file.
     saved: usize,
-    /// Rows that are not defined: `3, 7..9`.
+    /// Rows that are not defined on the controller, for example `3, 7..9`.
     not_defined: String,
     /// Rows that cannot be written back, or that the controller does not have.
     left_out: Vec<LeftOut>,
@@ -246,12 +246,12 @@ impl Report for Dumped {
 /// Writes rows from a CSV file.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "All of the file is checked before anything is sent. A value without a column stays as it is on the \
-                        controller. What the controller holds already is not written: the same command goes on where one \
-                        was cut off. Columns whose names begin with comment are yours."
+    after_help = "armctl checks the whole file before it sends anything. A value without a column stays as it is on \
+                  the controller. armctl does not write values that are already stored, so the same command continues \
+                  after an interruption. Columns whose names begin with comment are for your own use."
 )]
 pub struct Restore<S: Writable> {
-    /// What `dump` wrote, or a table like it; - is stdin
+    /// A file that `dump` wrote, or a table of the same form; - is stdin
     file: PathBuf,
     #[command(flatten)]
     options: S::Options,
@@ -293,13 +293,13 @@ impl<S: Writable> Command for Restore<S> {
         }
         if rows.is_empty() {
             let message = format!("{name}: the file has no {} to write", S::WORDS.nouns[1]);
-            return Err(Failure::usage(message).hint("`dump FILE` writes such a file"));
+            return Err(Failure::usage(message).hint("use `dump FILE` to write such a file"));
         }
         write(TableWrite { table, robot, link, screen, authority }, rows).await
     }
 }
 
-/// Whether a column in the first line is an alias of a field.
+/// Whether the first line has a column that is the alias of a field.
 fn has_aliases<S: Store>(table: &S, bytes: &[u8]) -> bool {
     let head = bytes.split(|byte| *byte == b'\n').find(|line| !line.trim_ascii().is_empty()).unwrap_or_default();
     let head = String::from_utf8_lossy(head).to_lowercase();
@@ -307,7 +307,7 @@ fn has_aliases<S: Store>(table: &S, bytes: &[u8]) -> bool {
     table.fields().iter().any(|field| field.alias.is_some_and(|alias| columns().any(|column| column == alias)))
 }
 
-/// Rows of a file, with what each shall hold.
+/// Parses the rows of a file, each with its new content.
 pub fn parse<S: Writable>(table: &S, bytes: &[u8], findings: &mut Findings) -> Vec<(S::Key, S::Draft)> {
     let mut columns = sheet(table);
     if has_aliases(table, bytes) {
@@ -329,7 +329,7 @@ pub fn parse<S: Writable>(table: &S, bytes: &[u8], findings: &mut Findings) -> V
         let key = match read_keys::<S>(row.text(of_name)).as_deref() {
             Ok([key]) => *key,
             Ok(_) => {
-                findings.error(row.place(of_name), "one row per line".to_owned(), None);
+                findings.error(row.place(of_name), "a line can have only one row".to_owned(), None);
                 continue;
             }
             Err(why) => {
@@ -338,7 +338,7 @@ pub fn parse<S: Writable>(table: &S, bytes: &[u8], findings: &mut Findings) -> V
             }
         };
         if let Some(other) = seen.insert(key, row.line) {
-            findings.error(row.place(of_name), format!("{} is in line {other} already", S::name(key)), None);
+            findings.error(row.place(of_name), format!("{} is already in line {other}", S::name(key)), None);
         }
         let mut texts = Vec::new();
         for ((column, place), field) in columns.iter().zip(&places).skip(1).zip(&fields) {
@@ -348,7 +348,7 @@ pub fn parse<S: Writable>(table: &S, bytes: &[u8], findings: &mut Findings) -> V
                 Some(at) if column.is_number => match sheet.number(row, *at) {
                     Ok(number) if !number.is_empty() => Some(number.into_owned()),
                     Ok(_) => {
-                        let message = format!("{} is empty; to keep its value, remove the column", column.name);
+                        let message = format!("{} is empty; remove the column to keep the stored value", column.name);
                         findings.error(row.place(*at), message, None);
                         None
                     }
@@ -360,7 +360,7 @@ pub fn parse<S: Writable>(table: &S, bytes: &[u8], findings: &mut Findings) -> V
                 Some(at) => Some(row.string(*at).to_owned()),
             });
         }
-        // An undefined row has no values in its file.
+        // In a file, an undefined row is a row without values.
         if fields.iter().all(|field| field.is_optional) && texts.iter().all(Option::is_none) {
             continue;
         }

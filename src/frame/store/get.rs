@@ -1,4 +1,4 @@
-//! `get` and `list`; `watch` repeats `get`.
+//! `get` and `list`. `watch` repeats `get`.
 
 use clap::Args;
 
@@ -11,7 +11,7 @@ use crate::watch::{Watchable, Watched};
 use crate::{Command, Context};
 use armctl_controller::{Risk, typed};
 
-/// Parsed row arguments.
+/// Row arguments, after parsing.
 #[derive(Debug)]
 pub struct Rows<S: Store>(pub Vec<S::Key>);
 
@@ -25,12 +25,12 @@ impl<S: Store> Rows<S> {
     /// Parses the arguments.
     ///
     /// # Errors
-    /// An argument is not a row.
+    /// If an argument is not a row.
     pub fn parse(text: &str) -> Result<Self, String> {
         read_keys::<S>(text).map(Self)
     }
 
-    /// The typed rows, without repetitions; all rows if none was typed.
+    /// The rows that the user typed, without duplicates; all rows if the user typed none.
     pub fn of(given: &[Self]) -> Vec<S::Key> {
         if given.is_empty() { S::all() } else { typed::once(given.iter().flat_map(|rows| rows.0.iter().copied())) }
     }
@@ -80,20 +80,22 @@ impl<S: Store> Command for Get<S> {
 }
 
 impl<S: Store> Watchable for Get<S> {
+    type Value = S::Value;
+
     const WATCH: &'static str = S::IDS.watch;
     const WATCHED: Watched = Watched::ITEMS;
 }
 
-/// Reads all rows, and shows those that hold something.
+/// Reads all rows, and shows the rows that are not empty.
 #[derive(Debug, Args)]
 pub struct List<S: Store> {
     #[command(flatten)]
     options: S::Options,
-    /// Only these
+    /// Show only these rows
     #[arg(value_name = S::WORDS.placeholder, value_delimiter = ',', required = S::all().is_empty(),
         value_parser = Rows::<S>::parse)]
     rows: Vec<Rows<S>>,
-    /// Empty rows as well
+    /// Show empty rows too
     #[arg(long)]
     empty: bool,
 }
@@ -125,7 +127,7 @@ impl<S: Store> Command for List<S> {
     }
 }
 
-/// For a list of all rows, the refusal of an undefined row counts as an answer.
+/// In a list of all rows, a refusal because a row is not defined counts as an answer.
 pub fn defined<S: Store>(outcome: Result<Option<S::Wire>, Failure>) -> Result<Option<S::Wire>, Failure> {
     match outcome {
         Err(failure) if S::is_undefined(&failure) => Ok(None),

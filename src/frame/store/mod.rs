@@ -1,5 +1,5 @@
-//! Tables of a controller. A family declares a table ([`Store`], [`Writable`]). The commands `get`, `list`, `watch`, `set`,
-//! `copy`, `dump` and `restore` are generic, so that they are the same for every table of every family.
+//! Tables of a controller. A family declares a table ([`Store`], [`Writable`]). The commands `get`, `list`, `watch`,
+//! `set`, `copy`, `dump` and `restore` are generic, so that they are the same for every table in every family.
 
 mod change;
 mod copy;
@@ -16,11 +16,11 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-pub use self::change::{Row, TableWrite, describe_change, overwriting, write};
+pub use self::change::{ComparedRow, Row, TableWrite, describe_change, overwriting, write, write_rows};
 pub use self::copy::Copy;
 pub use self::file::{Dump, LeftOut, Restore, keys_of, rows_of_file};
 pub use self::get::{Get, List};
-pub use self::part::{Part, PartResult, TablePart, Text};
+pub use self::part::{Part, PartResult, TablePart, Text, part_text};
 pub use self::set::Set;
 use super::connection::Family;
 use super::kind::ValueKind;
@@ -33,74 +33,75 @@ use armctl_controller::Risk;
 use armctl_controller::names::{Kind, Names};
 use armctl_controller::sheet::Column;
 
-/// Field of a row, for tables and files.
+/// A field of a row, in tables and files.
 #[derive(Debug, Clone)]
 pub struct Field {
-    /// Column of a file: `speed_mm_s`.
+    /// Column name in a file, such as `speed_mm_s`.
     pub name: Cow<'static, str>,
-    /// Alternative column name: `ax1_mm` for `x_mm`.
+    /// Alternative column name, for example `ax1_mm` for `x_mm`.
     pub alias: Option<&'static str>,
-    /// Heading of a table: `speed (mm/s)`.
+    /// Heading in a table, such as `speed (mm/s)`.
     pub heading: &'static str,
-    /// Whether it is a number.
+    /// Whether the field is a number.
     pub is_number: bool,
-    /// Whether only some rows have it. Then an empty cell means no value, and a file has the column only if a row has a value.
+    /// Whether only some rows have the field. If so, an empty cell means no value, and a file has the column only if a
+    /// row has a value.
     pub is_optional: bool,
 }
 
 impl Field {
-    /// A number.
+    /// Field with a number.
     pub const fn number(name: &'static str, heading: &'static str) -> Self {
         Self { name: Cow::Borrowed(name), alias: None, heading, is_number: true, is_optional: false }
     }
 
-    /// A text.
+    /// Field with a text.
     pub const fn text(name: &'static str, heading: &'static str) -> Self {
         Self { name: Cow::Borrowed(name), alias: None, heading, is_number: false, is_optional: false }
     }
 
-    /// A field that only some rows have.
+    /// Marks the field as one that only some rows have.
     #[must_use]
     pub fn optional(self) -> Self {
         Self { is_optional: true, ..self }
     }
 }
 
-/// Names of a table and its rows in texts.
+/// Texts with the names of a table and its rows.
 #[derive(Debug, Clone, Copy)]
 pub struct TableWords {
-    /// Singular and plural of a row: `counter`, `counters`. The singular is `kind` in reports.
+    /// Singular and plural of the name of a row, such as `counter`, `counters`. The singular is `kind` in reports.
     pub nouns: [&'static str; 2],
-    /// Placeholder of a row on the command line: `N`, `POINT`.
+    /// Placeholder for a row on the command line: `N`, `POINT`.
     pub placeholder: &'static str,
-    /// Valid rows, for the help: `1 to 99: 5, CN05 or 1-10, or a name`.
+    /// Description of valid rows for the help, for example `1 to 99: 5, CN05 or 1-10, or a name`.
     pub range: &'static str,
-    /// Additional help of commands that read.
+    /// Additional help for commands that read.
     pub reading: Option<&'static str>,
-    /// Additional help of commands that write.
+    /// Additional help for commands that write.
     pub writing: Option<&'static str>,
 }
 
 /// Report names of the commands of a table.
 #[derive(Debug, Clone, Copy)]
 pub struct Ids {
-    /// Of `get`: `toyo.counter.get`.
+    /// Report name of `get`, such as `toyo.counter.get`.
     pub get: &'static str,
-    /// Of `list`.
+    /// Report name of `list`.
     pub list: &'static str,
-    /// Of `watch`.
+    /// Report name of `watch`.
     pub watch: &'static str,
-    /// Of `set`.
+    /// Report name of `set`.
     pub set: &'static str,
-    /// Of `copy`.
+    /// Report name of `copy`.
     pub copy: &'static str,
-    /// Of `dump`.
+    /// Report name of `dump`.
     pub dump: &'static str,
-    /// Of `restore`.
+    /// Report name of `restore`.
     pub restore: &'static str,
 }
 
-/// Report names for a noun: `ids!("toyo.counter")`.
+/// Report names for the commands of a noun, for example `ids!("toyo.counter")`.
 #[macro_export]
 macro_rules! ids {
     ($noun:literal) => {
@@ -117,7 +118,7 @@ macro_rules! ids {
 }
 pub use ids;
 
-/// Declares the commands of a table: the generic verbs, then additional ones.
+/// Declares the commands of a table: the generic commands, and then additional ones.
 #[macro_export]
 macro_rules! table_commands {
     ($(#[$meta:meta])* $name:ident of $store:ty { $($(#[$doc:meta])* $variant:ident($arguments:ty),)* }) => {
@@ -126,13 +127,13 @@ macro_rules! table_commands {
             pub enum $name {
                 /// Read by number or range
                 Get($crate::store::Get<$store>),
-                /// List all that hold something
+                /// List all that are not empty
                 List($crate::store::List<$store>),
                 /// Print each change
                 Watch($crate::watch::Watch<$crate::store::Get<$store>>),
-                /// Set one: its number, then its values
+                /// Set an item: its number, then its values
                 Set($crate::store::Set<$store>),
-                /// Copy one to others: 5 6-8
+                /// Copy an item to others: 5 6-8
                 Copy($crate::store::Copy<$store>),
                 /// Save to a CSV file
                 Dump($crate::store::Dump<$store>),
@@ -145,23 +146,23 @@ macro_rules! table_commands {
 }
 pub use table_commands;
 
-/// Result of each row: its content, `None` if it is not defined, or the reason why it was not read.
+/// Results of rows. Each is the content, `None` if the row is not defined, or the reason why the row was not read.
 #[derive(Debug)]
 pub struct Answers<W> {
-    /// One result per row, in the requested order.
+    /// One result for each row, in the requested order.
     pub rows: Vec<Result<Option<W>, Failure>>,
-    /// Number of rows that were requested. The remaining rows would fail in the same way.
+    /// Number of rows that were requested. The other rows were not requested, because they would fail in the same way.
     pub asked: usize,
 }
 
 impl<W> Answers<W> {
-    /// Results of rows that were all requested, and are defined if they were read.
+    /// Creates the results of rows that were all requested. A row that was read is defined.
     pub fn of(rows: Vec<Result<W, Failure>>) -> Self {
         Self { asked: rows.len(), rows: rows.into_iter().map(|row| row.map(Some)).collect() }
     }
 }
 
-/// Options of a table that exists once per controller.
+/// Options of a table that exists only once per controller.
 #[derive(Debug, Clone, Copy, Args)]
 pub struct Single {}
 
@@ -176,74 +177,78 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     type Wire: Debug + Clone + PartialEq;
     /// Content of a row in reports.
     type Value: Debug + Clone + Serialize + JsonSchema;
-    /// Additional fields of an item; [`Plain`](crate::robot::item::Plain) for none.
+    /// Additional fields of an item. [`Plain`](crate::robot::item::Plain) if there are none.
     type More: Debug + Clone + Serialize + JsonSchema;
-    /// Options that say which table is meant, where there are several: [`Single`] otherwise.
+    /// Options that select the table, if there are several; otherwise [`Single`].
     type Options: Args + Debug + Clone + Send + Sync;
 
-    /// Names in texts.
+    /// Words for messages and help.
     const WORDS: TableWords;
-    /// Report names.
+    /// Names of the reports.
     const IDS: Ids;
-    /// Kind of the user names of rows.
+    /// Kind of the names that a user can give to rows, if any.
     const LABELS: Option<Kind> = None;
-    /// Completion of a row argument.
+    /// Completion of the row argument.
     const COMPLETE: ValueKind = ValueKind::Listed(Vec::new);
-    /// Whether `dump` saves blank rows as well.
+    /// Whether `dump` also saves blank rows.
     const SAVES_BLANK: bool = false;
-    /// Whether a row is a text, which `set` takes as one word, with whatever signs.
+    /// Whether a row is a text. `set` accepts it as one word, which may begin with any sign.
     const IS_TEXT: bool = false;
-    /// Whether `get` reports a row that is not defined as null beside rows that are, and fails only if none is defined.
+    /// Whether `get` reports an undefined row as null if other rows are defined, and fails only if none is defined.
     const UNDEFINED_IS_NULL: bool = false;
 
-    /// Help of `get` and `set` that is not a constant.
+    /// Why `restore` skips certain rows unless the user types them.
+    const NOT_RESTORED: &'static str = "to write these rows, type them in the command";
+
+    /// Help text of `get` and `set` that is not a constant.
     fn help() -> Option<&'static str> {
         None
     }
 
-    /// Rows as typed: one, or a range.
+    /// Parses rows as typed: one row, or a range.
     ///
     /// # Errors
-    /// The text is not a row.
+    /// If the text is not a row.
     fn keys(text: &str) -> Result<Vec<Self::Key>, String>;
 
-    /// All rows, if they are few enough to read without a selection; otherwise none.
+    /// All rows, if they are few enough to be read without a selection; otherwise an empty list.
     fn all() -> Vec<Self::Key> {
         Vec::new()
     }
 
-    /// Rows that `dump` saves if none is typed.
+    /// Rows that `dump` saves if the user types none.
     fn saved() -> Vec<Self::Key> {
         Self::all()
     }
 
-    /// A row that is always there: it stands for a name that is not looked up yet.
+    /// A row that always exists. It stands for a name that is not resolved yet.
     fn any() -> String {
         Self::all().first().map_or_else(String::new, |key| Self::name(*key))
     }
 
-    /// Row as typed.
+    /// Name of a row as the user types it.
     fn name(key: Self::Key) -> String;
 
-    /// Several rows as they are typed.
+    /// Names of several rows as the user types them.
     fn names(keys: &[Self::Key]) -> String {
         keys.iter().map(|key| Self::name(*key)).collect::<Vec<_>>().join(", ")
     }
 
-    /// A row in questions.
+    /// Name of a row in questions.
     fn asked(key: Self::Key) -> String {
         as_requested(Self::WORDS.nouns[0], &Self::name(key))
     }
 
-    /// Address of the row in the user names.
+    /// Address to which the user-defined name of the row belongs.
     fn address(key: Self::Key) -> String {
         Self::name(key)
     }
 
-    /// Reads the information that is needed before a row is read or written, such as the axis letters. Changes nothing.
+    /// Reads the information that is needed before a row is read or written, such as the axis letters. It changes
+    /// nothing.
     async fn open(link: &mut <Self::Family as Family>::Link, options: &Self::Options) -> Result<Self, Failure>;
 
-    /// Reads the information about these rows that is needed before they are read, or parsed from a file.
+    /// Reads the information that is needed before these rows are read, or parsed from a file.
     async fn prepare(
         &mut self,
         _link: &mut <Self::Family as Family>::Link,
@@ -252,17 +257,17 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
         Ok(())
     }
 
-    /// Risk of a read: Write, if another table must be selected on the controller for it.
+    /// Risk of a read. It is Write if another table must be selected on the controller before the read.
     fn risk_of_reading(_options: &Self::Options) -> Risk {
         Risk::Read
     }
 
-    /// Selects the table, if the controller has several.
+    /// Selects this table, if the controller has several tables.
     async fn select(&mut self, _link: &mut <Self::Family as Family>::Link) -> Result<(), Failure> {
         Ok(())
     }
 
-    /// Selects the table again that was selected before [`select`](Self::select), also after a failure.
+    /// Restores the table that was selected before [`select`](Self::select), also after a failure.
     async fn deselect<T>(
         &self,
         _link: &mut <Self::Family as Family>::Link,
@@ -271,37 +276,37 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
         outcome
     }
 
-    /// Suffix for one of several tables, in questions: ` of task 2`.
+    /// Text that names one of several tables in questions, such as ` of task 2`.
     fn table_suffix(&self) -> String {
         String::new()
     }
 
-    /// Fields of a row.
+    /// Fields that a row of this table can have.
     fn fields(&self) -> Vec<Field>;
 
-    /// Text of each field.
+    /// Text of each field, in the order of [`fields`](Self::fields).
     fn texts(&self, wire: &Self::Wire) -> Vec<String>;
 
-    /// Headings of a table; by default those of the fields.
+    /// Headings of a table. By default, these are the headings of the fields.
     fn headings(&self) -> Vec<&'static str> {
         self.fields().iter().map(|field| field.heading).collect()
     }
 
-    /// Cells of a row in a table.
+    /// Cells of a row in the table output.
     fn cells(&self, _key: Self::Key, wire: &Self::Wire) -> Vec<Cell> {
         let cell = |(field, text): (Field, String)| if field.is_number { Cell::number(text) } else { text.into() };
         self.fields().into_iter().zip(self.texts(wire)).map(cell).collect()
     }
 
-    /// Differences of two rows: one line for the old, one for the new.
+    /// Differences between two rows: one line for the old row, one line for the new row.
     fn difference(&self, old: &Self::Wire, new: &Self::Wire) -> [String; 2] {
         difference(self, old, new)
     }
 
-    /// Content of a row for reports; `None` if it has no report type.
+    /// Content of a row for reports; `None` if the content cannot be reported.
     fn value(&self, wire: &Self::Wire) -> Option<Self::Value>;
 
-    /// Additional fields of the item of a row. Without `wire`, the row was not read or is not defined.
+    /// Additional fields for the item of a row. `wire` is `None` if the row was not read or is not defined.
     fn more(&self, key: Self::Key, wire: Option<&Self::Wire>) -> Self::More;
 
     /// Whether two rows have the same content.
@@ -309,26 +314,46 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
         old == new
     }
 
-    /// Whether a row has no user data.
+    /// Whether a row contains no user data.
     fn is_blank(&self, _wire: &Self::Wire) -> bool {
         false
     }
 
-    /// Reason why a row is not in a file, although it was read; without `wire`, it is not defined.
+    /// Reason why a row is not in a file although it was read. `wire` is `None` if the row is not defined.
     fn unsaved(&self, _key: Self::Key, _wire: Option<&Self::Wire>) -> Option<String> {
         None
     }
 
-    /// Whether a refusal to report a row says that it is not defined.
+    /// Whether a refusal to report a row means that the row is not defined.
     fn is_undefined(_failure: &Failure) -> bool {
         false
+    }
+
+    /// Whether `restore` writes this row if the user types no rows.
+    fn is_restored(_key: Self::Key) -> bool {
+        true
+    }
+
+    /// Whether a row that was not read does not exist on this controller. A backup without such a row is complete.
+    fn is_absent(_key: Self::Key) -> bool {
+        false
+    }
+
+    /// Consequences of the write, for the question to the user.
+    fn consequences(&self, _rows: &[Differing<'_, Self>]) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Note about what the user must do after these rows were written.
+    fn follow_up_note(&self, _written: &[Self::Key]) -> Option<String> {
+        None
     }
 
     /// Reads rows, each with its own result. A dry run notes the requests and fails with
     /// [`unknown`](super::dry_run::unknown).
     ///
     /// # Errors
-    /// A failure before any row was read.
+    /// If a failure occurs before any row was read.
     async fn read(
         &self,
         link: &mut <Self::Family as Family>::Link,
@@ -343,10 +368,10 @@ pub type Differing<'r, S> = (<S as Store>::Key, Option<&'r <S as Store>::Wire>, 
 /// A table that can be written.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait Writable: Store {
-    /// New content of a row; can be incomplete.
+    /// New content of a row. It can be incomplete.
     type Draft: Debug + Clone;
 
-    /// Highest risk of all rows: Destroy, if user data can be overwritten, otherwise Write.
+    /// Highest risk of all rows: Destroy if user data can be overwritten, otherwise Write.
     const RISK: Risk;
 
     /// Risk of writing this row.
@@ -354,37 +379,24 @@ pub trait Writable: Store {
         Self::RISK
     }
 
-    /// Why `restore` skips rows unless they are typed.
-    const NOT_RESTORED: &'static str = "type them to write them";
-
-    /// Whether `restore` writes this row if no rows are typed.
-    fn is_restored(_key: Self::Key) -> bool {
-        true
-    }
-
-    /// Whether this controller does not have the row, if it was not read; a backup without it is complete.
-    fn is_absent(_key: Self::Key) -> bool {
-        false
-    }
-
     /// What a row shall hold, from the text of each field; a field without text stays.
     ///
     /// # Errors
-    /// The content is not valid.
+    /// If the content is not valid.
     fn draft(&self, key: Self::Key, texts: &[Option<&str>]) -> Result<Self::Draft, String>;
 
-    /// New content from words of a command line: all values in their order, or some as `NAME=VALUE`.
+    /// New content, from words of a command line: all values in their order, or some values as `NAME=VALUE`.
     ///
     /// # Errors
-    /// The content is not valid.
+    /// If the content is not valid.
     fn typed(&self, key: Self::Key, words: &[String]) -> Result<Self::Draft, Failure> {
         set::typed(self, key, words)
     }
 
-    /// Completes the new content with the old one.
+    /// Completes the new content with the old content.
     ///
     /// # Errors
-    /// An old value is needed, but it is unknown or cannot be written.
+    /// If an old value is needed, but is unknown or cannot be written.
     fn complete_draft(
         &self,
         key: Self::Key,
@@ -392,17 +404,7 @@ pub trait Writable: Store {
         old: Option<&Self::Wire>,
     ) -> Result<Self::Wire, Failure>;
 
-    /// Consequences of the write, for the question.
-    fn consequences(&self, _rows: &[Differing<'_, Self>]) -> Vec<String> {
-        Vec::new()
-    }
-
-    /// Note about steps after the write of these rows.
-    fn follow_up_note(&self, _written: &[Self::Key]) -> Option<String> {
-        None
-    }
-
-    /// Reads rows before a write. A dry run can note another purpose for the requests.
+    /// Reads rows before a write. A dry run can show another purpose for these requests.
     ///
     /// # Errors
     /// As [`read`](Store::read).
@@ -416,12 +418,12 @@ pub trait Writable: Store {
         self.read(link, screen, &keys).await
     }
 
-    /// Groups of row indices that one request can write; by default, one row per request.
+    /// Groups of row indices that one request can write. By default, each request writes one row.
     fn blocks(&self, rows: &[Differing<'_, Self>]) -> Vec<Vec<usize>> {
         (0..rows.len()).map(|index| vec![index]).collect()
     }
 
-    /// Notes in a dry run the requests that write rows and read them back.
+    /// In a dry run, records the requests that write rows and read them back.
     async fn plan(&self, link: &mut <Self::Family as Family>::Link, rows: &[Row<Self>]) -> Result<(), Failure>;
 
     /// Writes the rows of a [block](Self::blocks).
@@ -433,12 +435,12 @@ pub trait Writable: Store {
     ) -> Result<(), Failure>;
 }
 
-/// Report of reads.
+/// Report of commands that read rows.
 type ItemsOf<S> = Items<<S as Store>::Value, <S as Store>::More>;
-/// Report of writes.
+/// Report of commands that write rows.
 pub type WrittenOf<S> = WrittenItems<<S as Store>::Value, <S as Store>::More>;
 
-/// Item of a row.
+/// Report item for a row.
 fn item<S: Store>(
     table: &S,
     names: &Names,
@@ -449,18 +451,18 @@ fn item<S: Store>(
     let label = S::LABELS.and_then(|kind| labels::label(names, kind, &S::address(key)));
     let wire = outcome.as_ref().ok().and_then(Option::as_ref);
     let (cells, more) = (wire.map(|wire| table.cells(key, wire)).unwrap_or_default(), table.more(key, wire));
-    // The row was read and has no value.
+    // The row was read, and has no value.
     let cells = if matches!(outcome, Ok(None)) { vec!["undefined".into()] } else { cells };
     let value = outcome.map(|wire| wire.as_ref().and_then(|wire| table.value(wire)));
     Item { cells, ..Item::with(S::WORDS.nouns[0], name, more, value) }.labelled(label)
 }
 
-/// Columns of a table of rows.
+/// Columns of the table output.
 fn columns<S: Store>(table: &S) -> Columns {
     Columns { name: S::WORDS.nouns[0], values: table.headings(), empty: "nothing stored" }
 }
 
-/// Columns of a file: the row, its fields, and its user name.
+/// Columns of a file: the row, its fields, and its user-defined name.
 fn sheet<S: Store>(table: &S) -> Vec<Column> {
     let column = |field: Field| {
         let name = field.name.into_owned();
@@ -469,7 +471,7 @@ fn sheet<S: Store>(table: &S) -> Vec<Column> {
     std::iter::once(Column::text("name")).chain(table.fields().into_iter().map(column)).collect()
 }
 
-/// Content of a row in one line: `250.0 mm/s`, or `limit=2.50 load=1.00`.
+/// Content of a row in one line, such as `250.0 mm/s`, or `limit=2.50 load=1.00`.
 fn line<S: Store>(table: &S, wire: &S::Wire) -> String {
     let (fields, texts) = (table.fields(), table.texts(wire));
     if let ([field], [text]) = (&fields[..], &texts[..]) {
@@ -480,7 +482,7 @@ fn line<S: Store>(table: &S, wire: &S::Wire) -> String {
     pairs.collect::<Vec<_>>().join(" ")
 }
 
-/// What differs between two rows, in a line each.
+/// Differences between two rows, in one line for each row.
 pub fn difference<S: Store>(table: &S, old: &S::Wire, new: &S::Wire) -> [String; 2] {
     let (fields, old_texts, new_texts) = (table.fields(), table.texts(old), table.texts(new));
     if fields.len() < 2 || old_texts.len() != fields.len() {
@@ -494,7 +496,7 @@ pub fn difference<S: Store>(table: &S, old: &S::Wire, new: &S::Wire) -> [String;
     [differ(&old_texts), differ(&new_texts)]
 }
 
-/// Selects the table, reads rows, and restores the selection.
+/// Selects the table, reads rows, and selects the previous table again.
 async fn read<S: Store>(
     table: &mut S,
     link: &mut <S::Family as Family>::Link,
@@ -506,7 +508,7 @@ async fn read<S: Store>(
     table.deselect(link, read).await
 }
 
-/// Rows as typed, with their user names.
+/// Parses the rows that the user typed: keys or user-defined names.
 fn read_keys<S: Store>(text: &str) -> Result<Vec<S::Key>, String> {
     let Some(kind) = S::LABELS else { return S::keys(text) };
     labels::parse_or_name(&[kind], &S::any(), text, S::keys)

@@ -1,4 +1,4 @@
-//! A table as a part of a backup: all rows as text, and back.
+//! A table as a part of a backup: converts all rows to text, and back.
 
 use std::fmt::Debug;
 
@@ -7,62 +7,65 @@ use futures_util::future::LocalBoxFuture;
 use super::change::{ComparedRow, Row, compare, differing, replaced, write_each};
 use super::file::{Answer, Kept, LeftOut, leave_out_unused, parse};
 use super::get::defined;
-use super::{Writable, read, sheet};
+use super::{Store, Writable, read, sheet};
 use crate::connection::Family;
 use crate::failure::{Failure, Kind};
 use crate::output::Screen;
 use armctl_controller::findings::{Finding, Findings};
-use armctl_controller::sheet::{self, Dialect};
+use armctl_controller::sheet;
+use armctl_controller::sheet::Dialect;
 
-/// Text of a part.
+/// Content of a part as text.
 #[derive(Debug)]
 pub struct Text {
-    /// CSV.
+    /// Text as CSV.
     pub text: String,
-    /// Rows that are not in it.
+    /// Rows that are not in the text.
     pub left_out: Vec<LeftOut>,
+    /// Rows that the controller refused because they are not defined, grouped by the reason.
+    pub undefined: Vec<LeftOut>,
 }
 
-/// Result of the writes of a part.
+/// Result of writing a part.
 #[derive(Debug, Default)]
 pub struct PartResult {
     /// Number of written rows.
     pub written: usize,
-    /// Number of rows that were already equal.
+    /// Number of rows that were already equal on the controller.
     pub unchanged: usize,
-    /// Rows that this controller does not have.
+    /// Rows that this controller does not have, or that it refused.
     pub left_out: Vec<LeftOut>,
-    /// First failure, with the account of all rows.
+    /// First failure, with the number of rows that were written and not written.
     pub failure: Option<Failure>,
 }
 
-/// A part of a backup, whatever the type of its rows.
+/// A part of a backup, for any type of rows.
 pub trait TablePart<F: Family>: Debug {
-    /// One row and several: `point`, `points`.
+    /// Singular and plural of the name of a row, such as `point`, `points`.
     fn nouns(&self) -> [&'static str; 2];
 
     /// Number of rows to write.
     fn count(&self) -> usize;
 
-    /// Reads all rows. A dry run notes the requests.
+    /// Reads all rows. A dry run records the requests.
     fn read<'t>(&'t mut self, link: &'t mut F::Link, screen: &'t Screen) -> LocalBoxFuture<'t, Result<Text, Failure>>;
 
-    /// Compares the rows of the file with the controller. A dry run notes the requests.
+    /// Compares the rows of the file with the controller. A dry run records the requests.
     fn compare<'t>(&'t mut self, link: &'t mut F::Link, screen: &'t Screen) -> LocalBoxFuture<'t, Result<(), Failure>>;
 
     /// Names of the rows that will be written.
     fn differing(&self) -> Vec<String>;
 
-    /// Values that a person wrote and that will be replaced: name, old value, new value.
+    /// User data that the write replaces: name, old value, new value.
     fn replaced(&self) -> Vec<[String; 3]>;
 
-    /// Consequences of the writes, for the question.
+    /// Consequences of the writes, for the question to the user.
     fn consequences(&self) -> Vec<String>;
 
-    /// Writes the rows that differ. A dry run notes the requests.
+    /// Writes the rows that differ. A dry run records the requests.
     ///
     /// # Errors
-    /// Where nothing was tried; a failure of a row is in the result.
+    /// If no row was tried. A failure of a row is in the result.
     fn write<'t>(
         &'t mut self,
         link: &'t mut F::Link,
@@ -80,29 +83,29 @@ pub struct Part<S: Writable> {
 }
 
 impl<S: Writable> Part<S> {
-    /// A table that is read, or written with these rows.
+    /// A table that is read, or to which these rows are written.
     pub fn new(table: S, rows: Vec<Row<S>>) -> Self {
         Self { table, rows, compared: Vec::new(), absent: Vec::new() }
     }
 
-    /// The rows of a file.
+    /// Parses the rows of a file.
     ///
     /// # Errors
-    /// All mistakes in the file.
+    /// If the file has mistakes. All of them are returned.
     pub fn parse(table: S, bytes: &[u8]) -> Result<Self, Vec<Finding>> {
         let mut findings = Findings::default();
         let rows = parse(&table, bytes, &mut findings);
         if findings.errors() > 0 { Err(findings.into_errors()) } else { Ok(Self::new(table, rows)) }
     }
 
-    /// Splits the rows into those for which `is_first` holds, and the others.
+    /// Splits the rows: the first part has the rows for which `is_first` is true, the second part has the others.
     #[must_use]
     pub fn split(self, other: S, is_first: impl Fn(S::Key) -> bool) -> [Self; 2] {
         let (first, second) = self.rows.into_iter().partition(|(key, _)| is_first(*key));
         [Self::new(self.table, first), Self::new(other, second)]
     }
 
-    /// First failure, with the account of all rows.
+    /// First failure, with the number of rows that were written and not written.
     fn failure(&self) -> Option<Failure> {
         let failed = self.compared.iter().filter(|row| row.outcome.is_err());
         let (written, unchanged) = self.counts();
@@ -113,7 +116,7 @@ impl<S: Writable> Part<S> {
         if written + unchanged > 0 {
             parts.push(format!("{written} written, {unchanged} unchanged"));
         }
-        // Only these failures prove that the row did not change.
+        // Only these kinds of failure prove that the row did not change.
         let is_unwritten =
             |failure: &Failure| matches!(failure.kind, Kind::Refused | Kind::NoAnswer | Kind::Rejected | Kind::Usage);
         let tried = || failed.clone().filter(|row| !row.is_skipped);
@@ -126,19 +129,72 @@ impl<S: Writable> Part<S> {
                 parts.push(format!("{state}: {}", span(&names)));
             }
         }
-        let again = "repeat the command: it continues and skips stored values".to_owned();
+        let again = "repeat the command to continue; it skips stored values".to_owned();
         let hint = failure.hint.as_ref().map_or(again.clone(), |hint| format!("{hint}; then {again}"));
         Some(Failure { message: parts.join("; "), ..failure }.hint(hint))
     }
 
-    /// Number of written rows and of equal rows.
+    /// Number of written rows and of unchanged rows.
     fn counts(&self) -> (usize, usize) {
         let count = |wanted| self.compared.iter().filter(|row| row.outcome == Ok(wanted)).count();
         (count(true), count(false))
     }
 }
 
-/// A few names, or the first and the last.
+/// Text of rows that were read. A row is in it only if `restore` can read it there.
+///
+/// # Errors
+/// The connection was lost: the part is not complete.
+pub fn part_text<S: Writable>(
+    table: &S,
+    keys: &[S::Key],
+    rows: Vec<Result<Option<S::Wire>, Failure>>,
+) -> Result<Text, Failure> {
+    let (mut kept, mut refused) = (Kept::default(), Vec::new());
+    let fields = table.fields();
+    for (key, outcome) in keys.iter().zip(rows) {
+        if let Some(failure) = outcome.as_ref().err().filter(|failure| S::is_undefined(failure)) {
+            refused.push((*key, failure.message.clone()));
+        }
+        match defined::<S>(outcome) {
+            Err(failure) if failure.kind == Kind::NoAnswer => return Err(failure),
+            Err(failure) => kept.left_out.push(LeftOut { name: S::name(*key), why: failure.message }),
+            Ok(wire) => {
+                let Answer::Row(wire) = kept.add(table, *key, Ok(wire)) else { continue };
+                let texts = table.texts(&wire);
+                let cells = fields.iter().zip(&texts);
+                let cells =
+                    cells.map(|(field, text)| Some(&**text).filter(|text| !field.is_optional || !text.is_empty()));
+                match table.draft(*key, &cells.collect::<Vec<_>>()) {
+                    Ok(_) => kept.save(table, *key, Some(&wire)),
+                    Err(why) => {
+                        let why = format!("{} cannot be written back: {why}", texts.join(" "));
+                        kept.left_out.push(LeftOut { name: S::name(*key), why });
+                    }
+                }
+            }
+        }
+    }
+    let Kept { mut rows, left_out, .. } = kept;
+    let mut columns = sheet(table);
+    leave_out_unused(table, &mut columns, &mut rows);
+    let text = sheet::write(Dialect::COMMAS, &columns, &rows);
+    Ok(Text { text, left_out, undefined: by_reason::<S>(refused) })
+}
+
+/// Rows with the same reason, in an entry each.
+fn by_reason<S: Store>(rows: Vec<(S::Key, String)>) -> Vec<LeftOut> {
+    let mut groups: Vec<(String, Vec<S::Key>)> = Vec::new();
+    for (key, why) in rows {
+        match groups.iter_mut().find(|(reason, _)| *reason == why) {
+            Some((_, keys)) => keys.push(key),
+            None => groups.push((why, vec![key])),
+        }
+    }
+    groups.into_iter().map(|(why, keys)| LeftOut { name: S::names(&keys), why }).collect()
+}
+
+/// Text for names: all names if they are few, otherwise the first and the last.
 fn span(names: &[String]) -> String {
     match names {
         [first, _, _, .., last] => format!("{first} to {last}"),
@@ -164,23 +220,7 @@ impl<S: Writable> TablePart<S::Family> for Part<S> {
             let keys = S::saved();
             self.table.prepare(link, &keys).await?;
             let answers = read(&mut self.table, link, screen, &keys).await?;
-            let mut kept = Kept::default();
-            for (key, outcome) in keys.into_iter().zip(answers.rows) {
-                match defined::<S>(outcome) {
-                    // The connection is lost: the part is not complete.
-                    Err(failure) if failure.kind == Kind::NoAnswer => return Err(failure),
-                    Err(failure) => kept.left_out.push(LeftOut { name: S::name(key), why: failure.message }),
-                    Ok(wire) => {
-                        if let Answer::Row(wire) = kept.add(&self.table, key, Ok(wire)) {
-                            kept.save(&self.table, key, Some(&wire));
-                        }
-                    }
-                }
-            }
-            let Kept { mut rows, left_out, .. } = kept;
-            let mut columns = sheet(&self.table);
-            leave_out_unused(&self.table, &mut columns, &mut rows);
-            Ok(Text { text: sheet::write(Dialect::COMMAS, &columns, &rows), left_out })
+            part_text(&self.table, &keys, answers.rows)
         })
     }
 
@@ -233,7 +273,12 @@ impl<S: Writable> TablePart<S::Family> for Part<S> {
             self.table.select(link).await?;
             write_each(&self.table, link, screen, &mut self.compared).await;
             let (written, unchanged) = self.counts();
-            Ok(PartResult { written, unchanged, left_out: self.absent.clone(), failure: self.failure() })
+            let refused = self.compared.iter().filter_map(|row| {
+                let failure = row.outcome.as_ref().err().filter(|failure| failure.kind == Kind::Refused)?;
+                Some(LeftOut { name: S::name(row.key), why: failure.message.clone() })
+            });
+            let left_out = self.absent.iter().cloned().chain(refused).collect();
+            Ok(PartResult { written, unchanged, left_out, failure: self.failure() })
         })
     }
 }

@@ -12,7 +12,7 @@ use crate::{Command, Context};
 use armctl_controller::Risk;
 use armctl_controller::nearest::nearest;
 
-/// A row, and what it shall hold.
+/// A row, and its new content.
 #[derive(Debug, Args)]
 #[command(after_help = S::help().or(S::WORDS.writing))]
 pub struct Set<S: Writable> {
@@ -20,14 +20,14 @@ pub struct Set<S: Writable> {
     options: S::Options,
     #[arg(value_name = S::WORDS.placeholder, value_parser = one::<S>, help = S::WORDS.range, add = S::COMPLETE)]
     row: SingleRow<S>,
-    /// All values in their order, or some as NAME=VALUE, which keeps the others
+    /// All values in their order, or some as NAME=VALUE; the others keep their value
     #[arg(required = true, value_name = "VALUE", allow_negative_numbers = true, allow_hyphen_values = S::IS_TEXT,
         action = if S::IS_TEXT { ArgAction::Set } else { ArgAction::Append },
         num_args = if S::IS_TEXT { ValueRange::SINGLE } else { ValueRange::from(1..) })]
     values: Vec<String>,
 }
 
-/// A single row.
+/// A row argument that must be a single row.
 #[derive(Debug)]
 struct SingleRow<S: Store>(S::Key);
 
@@ -40,7 +40,7 @@ impl<S: Store> Clone for SingleRow<S> {
 fn one<S: Store>(text: &str) -> Result<SingleRow<S>, String> {
     match read_keys::<S>(text)?[..] {
         [key] => Ok(SingleRow(key)),
-        _ => Err(format!("'{text}' names several {}; name one", S::WORDS.nouns[1])),
+        _ => Err(format!("'{text}' selects several {}; type one", S::WORDS.nouns[1])),
     }
 }
 
@@ -64,24 +64,26 @@ impl<S: Writable> Command for Set<S> {
     }
 }
 
-/// New content from words: all values in their order, or some as `NAME=VALUE`.
+/// Parses new content from words: all values in their order, or some values as `NAME=VALUE`.
 pub fn typed<S: Writable>(table: &S, key: S::Key, words: &[String]) -> Result<S::Draft, Failure> {
     let fields = table.fields();
     let row = as_requested(S::WORDS.nouns[0], &S::name(key));
     let names: Vec<&str> = fields.iter().map(|field| &*field.name).collect();
     let usage = match &names[..] {
-        [_] => "give one value".to_owned(),
-        names => format!("give all values in this order, or some by name: {}", names.join("=… ") + "=…"),
+        [_] => "type one value".to_owned(),
+        names => format!("type all values in this order, or some values by name: {}", names.join("=… ") + "=…"),
     };
     let invalid = |message: String| Failure::usage(format!("{row}: {message}")).hint(usage.as_str());
     let mut texts: Vec<Option<&str>> = vec![None; fields.len()];
     let has_name = |word: &String| word.split_once('=').is_some_and(|(name, _)| name.starts_with(char::is_alphabetic));
     if !S::IS_TEXT && words.iter().any(has_name) {
         for word in words {
-            let (name, value) = word.split_once('=').ok_or_else(|| invalid(format!("'{word}' has no name")))?;
+            let (name, value) = word
+                .split_once('=')
+                .ok_or_else(|| invalid(format!("'{word}' has no name, but other values have names")))?;
             let requested = name.to_ascii_lowercase().replace('-', "_");
             let exact = names.iter().position(|field| *field == requested);
-            // Accepts `speed` for `speed_mm_s`.
+            // A shorter name is accepted: `speed` for `speed_mm_s`.
             let begins = |field: &&str| field.strip_prefix(&*requested).is_some_and(|rest| rest.starts_with('_'));
             let at = exact.or_else(|| names.iter().position(begins)).ok_or_else(|| {
                 let similar = nearest(name, names.iter().copied());
@@ -95,7 +97,7 @@ pub fn typed<S: Writable>(table: &S, key: S::Key, words: &[String]) -> Result<S:
     } else if words.len() == fields.len() {
         texts = words.iter().map(|word| Some(word.as_str())).collect();
     } else {
-        return Err(invalid(format!("{} values needed, {} given", fields.len(), words.len())));
+        return Err(invalid(format!("{} values needed, but {} typed", fields.len(), words.len())));
     }
     table.draft(key, &texts).map_err(invalid)
 }

@@ -1,4 +1,4 @@
-//! The parts of a controller as tables and texts.
+//! Conversion between the data of a controller and the text files of a backup.
 
 use std::path::Path;
 
@@ -22,19 +22,20 @@ use armctl_controller::toyo::program::{MOST_STEPS, Program, Rows, Style, check_k
 use armctl_controller::toyo::request::Request;
 use armctl_controller::toyo::table::{Command, Parameter};
 use armctl_frame::backup::manifest::LeftOut;
+use armctl_frame::backup::parts;
 use armctl_frame::failure::Failure;
 use armctl_frame::output::Screen;
-use armctl_frame::store::{self, TablePart};
+use armctl_frame::store;
 
-/// A part as text.
+/// Text of a part.
 pub struct Text {
-    /// What its file holds.
+    /// Content of the file.
     pub text: String,
-    /// What it does not hold.
+    /// Rows that are not in the file.
     pub left_out: Vec<LeftOut>,
 }
 
-/// Asks type and version of the controller.
+/// Reads type and version of the controller.
 pub async fn controller(link: &mut Link) -> Result<Controller, Failure> {
     let system = link.ask(&Request::bare(Command::Sysp)).await?;
     let shown = |name: &str, show: fn(&Field, &Value) -> String| {
@@ -50,7 +51,7 @@ pub async fn controller(link: &mut Link) -> Result<Controller, Failure> {
     Ok(Controller {
         robot_type: shown("robot_type", Field::written),
         version: shown("version", |field, value| field.meaning(value).into_owned()),
-        // What the manual does not list is kept as it came.
+        // A value that the manual does not list is kept as received.
         task_axes: axes.word("axes").or(axes.text("axes")).unwrap_or_default().to_owned(),
         axis_letters: letters.map(|record| written(&record)),
         task_steps: steps::rooms(link).await?,
@@ -58,7 +59,7 @@ pub async fn controller(link: &mut Link) -> Result<Controller, Failure> {
     })
 }
 
-/// What a dry run notes of [`controller`].
+/// In a dry run, records the requests of [`controller`].
 pub fn plan_controller(link: &mut Link) {
     link.plan(&Request::bare(Command::Sysp), "type and version of the controller");
     link.plan(&task_axes(), "which tasks have axes");
@@ -67,7 +68,7 @@ pub fn plan_controller(link: &mut Link) {
     link.plan(&steps::rooms_request(), "number of steps of the tasks");
 }
 
-/// The values of a record in a line.
+/// The values of a record in one line.
 fn written(record: &Record) -> String {
     record.pairs().map(|(field, value)| field.written(value)).collect::<Vec<_>>().join(" ")
 }
@@ -78,7 +79,7 @@ fn task_axes() -> Request {
 }
 
 impl Controller {
-    /// The letters of its axes; unknown where it refused to tell.
+    /// Letters of the axes; unknown if the controller refused to report them.
     pub fn letters(&self) -> Letters {
         self.axis_letters.as_deref().map_or(Letters::UNKNOWN, Letters::of_words)
     }
@@ -95,18 +96,19 @@ impl Controller {
 }
 
 /// A table of rows.
-pub type Table = Box<dyn TablePart<Toyo>>;
+pub type Table = parts::Table<Toyo>;
 
-/// How a part is read.
+/// How armctl reads a part.
 enum Source {
     Table(Table),
     /// Steps of a task, as text.
     Program(u8),
 }
 
-/// The source of a part, on a machine with these letters.
+/// The source of a part, on a machine whose axes have these letters.
 fn source(part: Part, letters: Letters) -> Source {
-    // Columns by axis number, where letters would mean other axes to `point restore`.
+    // If the letters are unusual, the columns have axis numbers, because `point restore` would apply the letters to
+    // other axes.
     let columns = if letters.are_usual() { Letters::USUAL } else { Letters::UNKNOWN };
     Source::Table(match part {
         Part::Parameters => Box::new(store::Part::new(Parameters, Vec::new())),
@@ -117,12 +119,12 @@ fn source(part: Part, letters: Letters) -> Source {
     })
 }
 
-/// Reads a part. A dry run notes the requests.
+/// Reads a part. A dry run records the requests.
 pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Controller) -> Result<Text, Failure> {
     let task = match source(part, controller.letters()) {
         Source::Table(mut table) => {
-            let store::Text { text, left_out } = table.read(link, screen).await?;
-            return Ok(Text { text, left_out: left_out.into_iter().map(left_out_row).collect() });
+            let store::Text { text, left_out, .. } = table.read(link, screen).await?;
+            return Ok(Text { text, left_out: left_out.into_iter().map(LeftOut::from).collect() });
         }
         Source::Program(task) => task,
     };
@@ -134,31 +136,26 @@ pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Con
     let left_out = foreign.map(|(step, record): (i32, _)| LeftOut {
         key: step.to_string(),
         why: format!(
-            "'{}' is {NOT_IN_MANUAL}; the backup has its text, but a restore cannot write it",
+            "'{}' is {NOT_IN_MANUAL}; the backup contains this text, but a restore cannot write it",
             record.written()
         ),
     });
     Ok(Text { text, left_out: left_out.collect() })
 }
 
-/// A row that is not in a file, for the manifest.
-pub fn left_out_row(store::LeftOut { name, why }: store::LeftOut) -> LeftOut {
-    LeftOut { key: name, why }
-}
-
-/// The content of the file of a part.
+/// The content of the file for a part.
 #[derive(Debug)]
 pub enum Content {
     /// Rows of a table.
     Table(Table),
-    /// Parameters of the machine itself, and all others.
+    /// Parameters of the machine itself, and all other parameters.
     Parameters([store::Part<Parameters>; 2]),
     /// Program of a task.
     Program(u8, Program),
 }
 
 impl Content {
-    /// Reads and checks the file of a part of a machine with these letters.
+    /// Reads and checks the file of a part. The axes of the machine have these letters.
     pub fn load(part: Part, folder: &Path, letters: Letters, screen: &Screen) -> Result<Self, Failure> {
         let path = folder.join(part.file());
         let (name, bytes) = (files::display_path(&path), files::read(&path)?);
@@ -181,20 +178,21 @@ impl Content {
                 Self::Table(Box::new(store::Part::parse(table, &bytes).map_err(file_failure)?))
             }
             Part::Program(task) => {
-                // The program of a backup was on a controller: warnings are nothing new.
+                // The program in a backup was already on a controller, so its warnings are not shown again.
                 Self::Program(task, text::program(&name, check_kept(&bytes, MOST_STEPS), &screen.silenced())?)
             }
         })
     }
 
-    /// Steps that it needs: up to the last that is not a NOP.
+    /// Number of steps that the program needs: up to the last step that is not a NOP.
     pub fn steps(&self) -> u16 {
         let Self::Program(_, program) = self else { return 0 };
         let records: Vec<Record> = program.steps.iter().map(|step| step.record.clone()).collect();
         u16::try_from(used(&records)).unwrap_or(u16::MAX)
     }
 
-    /// Parameters of the machine itself, and the table of the part. A program becomes all steps of its task.
+    /// Parameters of the machine itself, and the table of the part. The table of a program contains all steps of its
+    /// task.
     pub fn tables(self, room: u16) -> [Option<Table>; 2] {
         match self {
             Self::Table(table) => [None, Some(table)],

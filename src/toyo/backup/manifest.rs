@@ -1,4 +1,4 @@
-//! What the list of a backup says of a Toyo controller.
+//! Manifest entries of a Toyo backup.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -8,25 +8,25 @@ use armctl_frame::backup::manifest;
 use armctl_frame::backup::manifest::{About, Entry};
 use armctl_frame::settings::target::Family;
 
-/// The list of a backup.
+/// Manifest of a backup.
 pub type Manifest = manifest::Manifest<Controller>;
 
-/// What a controller is.
+/// Controller from which a backup comes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Controller {
-    /// Six digits.
+    /// Robot type, six digits.
     pub robot_type: String,
-    /// Of the controller: `3.36`.
+    /// Version of the controller, such as `3.36`.
     pub version: String,
-    /// A digit for the axes of each task (E19): `2000`.
+    /// Axes of the tasks, one digit for each task (E19), such as `2000`.
     pub task_axes: String,
-    /// The letters of the axes (E01): `X Y Z R`; null if the controller refused to tell, or the backup is of an older
-    /// armctl.
+    /// Letters of the axes (E01), such as `X Y Z R`; null if the controller refused to report them, or if an older
+    /// armctl made the backup.
     #[serde(default)]
     pub axis_letters: Option<String>,
-    /// Steps of each task (E22).
+    /// Number of steps of each task (E22).
     pub task_steps: [u16; 4],
-    /// Null if the controller refused to tell.
+    /// Speed override; null if the controller refused to report it.
     pub speed_override_percent: Option<u8>,
 }
 
@@ -44,7 +44,7 @@ impl About for Controller {
         let name = &entry.name;
         let part: Part = name.parse()?;
         if part.to_string() != *name {
-            return Err(format!("'{name}' is {part}"));
+            return Err(format!("'{name}' must be written as {part}"));
         }
         match &entry.copy {
             Some(copy) if copy.file != part.file() => {

@@ -1,4 +1,4 @@
-//! `toyo backup` and `toyo restore`: all that is stored in a controller, in a folder of text files with a list of itself.
+//! `toyo backup` and `toyo restore`: all data that a controller stores, in a folder of text files with a manifest.
 
 mod content;
 mod manifest;

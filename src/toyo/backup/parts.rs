@@ -1,14 +1,14 @@
-//! The parts of a controller.
+//! The parts of a backup.
 
 use std::fmt;
 use std::str::FromStr;
 
 use armctl_controller::nearest::nearest;
 
-/// What is stored in a file of its own.
+/// A part of a backup. Each part has its own file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// Parameters, and all tables but the points.
+    /// Parameters, and all tables except the points.
     Parameters,
     /// The easy programs.
     Easy,
@@ -21,7 +21,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// All that a controller with these tasks can have, in the order of reading and writing.
+    /// All parts that a controller with these tasks can have, in the order of reading and writing.
     pub fn all(points: &[u8], programs: &[u8]) -> Vec<Self> {
         let mut parts = vec![Self::Parameters, Self::Easy];
         parts.extend((1..=16).map(Self::Palletizing));
@@ -32,7 +32,7 @@ impl Part {
         parts
     }
 
-    /// Its file in the folder.
+    /// File of the part in the folder.
     pub fn file(self) -> String {
         let ending = match self {
             Self::Parameters | Self::Easy | Self::Palletizing(_) | Self::Points(_) => "csv",
@@ -41,12 +41,12 @@ impl Part {
         format!("{self}.{ending}")
     }
 
-    /// Of which kind it is.
+    /// Kind of the part.
     pub fn kind(self) -> &'static str {
         self.words().0
     }
 
-    /// What it is called: its name, that without a leading zero, and its kind.
+    /// Names of the part: its name, the same name without a leading zero, and its kind.
     pub fn names(self) -> [String; 3] {
         [self.to_string(), self.plain_name(), self.kind().to_owned()]
     }

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::content::{self, Content, Table, left_out_row};
+use super::content::{self, Content, Table};
 use super::manifest::{Controller, Manifest};
 use super::parts::Part;
 use crate::eeprom::{Cell, Cells};
@@ -20,10 +20,11 @@ use armctl_frame::authority::Authority;
 use armctl_frame::backup::arguments::RestoreOptions;
 use armctl_frame::backup::manifest;
 use armctl_frame::backup::manifest::{MANIFEST, Saved};
+use armctl_frame::backup::parts::{Replaced, compare_all, overwriting, settle, write_all};
 use armctl_frame::backup::{NOT_CHOSEN, NOT_MACHINE, Only, RestoreSelection, Restored, would_leave, would_write};
 use armctl_frame::dry_run::unknown;
 use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::{Change, Confirmation};
+use armctl_frame::gate::Confirmation;
 use armctl_frame::interrupt::interruptible;
 use armctl_frame::local_names::private_folder;
 use armctl_frame::output::Screen;
@@ -34,22 +35,22 @@ use armctl_frame::{Command, Context};
 
 /// Write a backup back to the controller.
 #[derive(Debug, Args)]
-#[command(after_help = "All files are checked first: their hashes and their content. Each value is compared \
-                  before the write. Equal values are not written, because the EEPROM takes about a \
-                  million rewrites. After an interrupted restore, the same command continues.\n\n\
-                  Machine parameters (E) and special ones (U) need --machine. They are written first; \
-                  after a change of E nothing else is written, because the controller executes nothing before a \
-                  restart. Then restore again without --machine.\n\nThe restore \
-                  selects program mode temporarily.")]
+#[command(after_help = "armctl first checks all files: their hashes and their content. It compares each value before \
+                        the write. It does not write equal values, because an EEPROM cell wears out after about a \
+                        million writes. After an interrupted restore, the same command continues.\n\nMachine \
+                        parameters (E) and special parameters (U) need --machine. armctl writes them first. After a \
+                        change of a machine parameter (E), armctl writes nothing else, because the controller \
+                        executes no command until a restart. Restart the controller, then restore again without \
+                        --machine.\n\nThe restore selects program mode temporarily.")]
 pub struct Restore {
     #[command(flatten)]
     options: RestoreOptions,
-    /// Continue an interrupted restore; with a part, earlier parts are not compared
+    /// Continue an interrupted restore; with a part, do not compare the parts before it
     #[arg(long, value_name = "PART", num_args = 0..=1, require_equals = true, default_missing_value = "parameters")]
     resume: Option<Part>,
 }
 
-/// What is asked for of a restore.
+/// Options of a restore.
 struct Asked {
     restoring: RestoreSelection,
     resume: Option<Part>,
@@ -59,30 +60,27 @@ struct Asked {
 struct Job {
     part: Part,
     saved: Saved,
-    /// Steps that a program needs.
+    /// Number of steps that a program needs.
     steps: u16,
-    /// Its rows.
+    /// Rows of the part.
     table: Table,
 }
 
 /// Everything to restore, in the order of the writes.
 struct Jobs {
-    /// Parameters of the machine itself, if they are wanted.
+    /// Parameters of the machine itself, if the user requested them.
     machine: Option<Table>,
     parts: Vec<Job>,
-    /// Speed override, and the present one.
+    /// Speed override of the backup, and the current speed override.
     speed: Option<(Cell, Option<u8>)>,
 }
-
-/// Number of values that a question shows one by one; more are counted by parts.
-const SHOWN: usize = 10;
 
 impl Command for Restore {
     type Family = Toyo;
     type Report = Restored;
     const ID: &'static str = "toyo.restore";
     const RISK: Risk = Risk::Destroy;
-    const INTENT: &'static str = "overwrite what the controller stores by the backup";
+    const INTENT: &'static str = "overwrite the data of the controller with the backup";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Restored, Failure> {
@@ -92,7 +90,7 @@ impl Command for Restore {
     }
 }
 
-/// Writes back what a backup holds.
+/// Writes the data of a backup back to the controller.
 pub async fn restore(context: Context<'_, Toyo>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
     Asked { restoring: restoring.clone(), resume: None }.run(context).await
 }
@@ -102,7 +100,7 @@ impl Asked {
         let Context { link, screen, robot, authority, .. } = context;
         let folder = &self.restoring.folder;
         let manifest: Manifest = manifest::open_existing(folder)?;
-        // Whether robot and address are those of the backup; the machine itself is asked later.
+        // Checks that robot and address are as in the backup. The machine itself is checked later.
         manifest::check_origin(&manifest::open_existing::<serde_json::Value>(folder)?, robot, self.restoring.force)?;
         let parts = self.chosen(&manifest)?;
         if self.restoring.machine && !parts.contains(&Part::Parameters) {
@@ -123,13 +121,13 @@ impl Asked {
         }
         let outcome = self.restore((link, screen, &authority), &manifest.controller, contents).await;
         match outcome {
-            // Nothing more is sent then but what puts things back at the end of the link.
+            // After Ctrl-C, only the blocks that restore temporary changes are sent, when the link is closed.
             Ok(report) if report.is_interrupted() => Ok(report),
             outcome => tasks::done(link, outcome).await,
         }
     }
 
-    /// The tables of the parts. Programs fill the steps of their tasks, which a dry run does not know.
+    /// Tables of the parts. The table of a program fills all steps of its task. Their number is not known in a dry run.
     fn jobs(
         &self,
         backup: &Controller,
@@ -166,14 +164,15 @@ impl Asked {
         only.check(&parts.iter().flat_map(|part| part.names()).collect::<Vec<_>>())?;
         parts.retain(|part| only.has_any(&part.names()));
         if parts.is_empty() {
-            return Err(Failure::usage("the backup has none of these parts").hint(format!("{MANIFEST} lists them")));
+            return Err(Failure::usage("the backup has none of these parts")
+                .hint(format!("see {MANIFEST} for the parts of the backup")));
         }
         if let Some(resume) = self.resume {
             let first = parts.iter().position(|part| *part == resume);
-            // All of them, where it is the first that there can be.
+            // The parameters are always the first part, so without them all parts are restored.
             let first = first.or_else(|| (resume == Part::Parameters).then_some(0));
             let first = first.ok_or_else(|| {
-                Failure::usage(format!("--resume={resume}: the backup does not have it"))
+                Failure::usage(format!("--resume={resume}: the backup does not contain this part"))
                     .hint("type a part from the manifest of the backup, or --resume alone")
             })?;
             parts.drain(..first);
@@ -207,15 +206,17 @@ impl Asked {
             speed = None;
         } else {
             check_room(&parts, &found)?;
-            compare_all(link, screen, &mut parts, &mut results).await?;
+            compare_all(link, screen, tables(&mut parts).zip(&mut results)).await?;
             if let Some((cell, present)) = &mut speed {
                 *present =
                     link.read_if_there(&cell.read).await.map_err(nothing_written)?.map(|record| percent(&record));
             }
         }
         let compared = || parts.iter().zip(&results).filter(|(_, result)| !needs_power_cycle && result.error.is_none());
-        authority.confirm(&replacing(machine.as_ref(), compared(), speed.as_ref())).await?;
-        let is_ready: Vec<bool> = parts.iter().zip(&results).map(|(_, result)| result.error.is_none()).collect();
+        let machine_values = machine.iter().map(|table| Replaced::of(&"machine", table));
+        let values = compared().map(|(job, _)| Replaced::of(&job.part, &job.table));
+        let replaced: Vec<_> = machine_values.chain(values).chain(speed.as_ref().and_then(replaced_speed)).collect();
+        authority.confirm(&overwriting(folder, &replaced)).await?;
         steps::open(link).await?;
         if let Some(machine) = &mut machine {
             let written = interruptible(machine.write(link, screen)).await.and_then(|written| written);
@@ -223,7 +224,7 @@ impl Asked {
             if needs_power_cycle || !is_whole {
                 if let Some(result) = results.iter_mut().find(|result| result.name == Part::Parameters.to_string()) {
                     settle(result, written);
-                    // The other parameters were not written.
+                    // The parameters that do not belong to the machine were not written.
                     if is_whole {
                         (result.more.state, result.ok) = (State::NotTried, false);
                     }
@@ -233,11 +234,7 @@ impl Asked {
                 return Ok(restored);
             }
         }
-        for ((job, result), _) in parts.iter_mut().zip(&mut results).zip(is_ready).filter(|(_, is_ready)| *is_ready) {
-            if !settle(result, job.table.write(link, screen).await) {
-                break;
-            }
-        }
+        write_all(link, screen, tables(&mut parts).zip(&mut results)).await;
         if let Some((cell, present)) = speed {
             let mut result = FileItem::values("override");
             if results.iter().all(|result| result.more.state != State::NotTried) {
@@ -255,7 +252,7 @@ impl Asked {
         manifest: &Manifest,
         jobs: Jobs,
     ) -> Result<Restored, Failure> {
-        const ON: &str = "the comparison: values that differ are written";
+        const ON: &str = "the comparison: armctl writes the values that differ";
         let Jobs { machine, mut parts, speed } = jobs;
         for entry in manifest.files.iter().filter(|entry| entry.copy.is_some()) {
             let Some(job) = parts.iter().find(|job| job.part.to_string() == entry.name) else {
@@ -264,7 +261,7 @@ impl Asked {
             };
             link.plan_item(would_write(&entry.name, ("values", job.table.count() as u64), ON));
             if let Some(machine) = machine.as_ref().filter(|table| job.part == Part::Parameters && table.count() > 0) {
-                let name = format!("{}: machine and special", entry.name);
+                let name = format!("{}: machine and special parameters", entry.name);
                 let written = || would_write(&name, ("values", machine.count() as u64), ON);
                 link.plan_item(if self.restoring.machine { written() } else { would_leave(&name, NOT_MACHINE) });
             }
@@ -278,7 +275,7 @@ impl Asked {
             job.table.compare(link, screen).await?;
             if let Part::Program(_) = job.part {
                 let behind = steps::read_request(job.steps.saturating_add(1).min(5000));
-                link.plan(&behind, "and so on to the end of the task");
+                link.plan(&behind, "and so on to the last step of the task");
             }
         }
         if let Some((cell, _)) = &speed {
@@ -291,7 +288,7 @@ impl Asked {
         for job in &mut parts {
             job.table.write(link, screen).await?;
             if let Part::Program(_) = job.part {
-                link.then(&format!("steps behind those of {} that are no NOP become one", job.part));
+                link.then(&format!("after the steps of {}, each later step that is not NOP becomes NOP", job.part));
             }
         }
         if let Some((cell, _)) = &speed {
@@ -302,80 +299,31 @@ impl Asked {
     }
 }
 
-/// Whether a part changes the machine itself, so that the controller needs a restart.
+/// Whether a part changes parameters of the machine itself, so that the controller needs a restart.
 fn changes_machine(table: &Table) -> bool {
     let parameter = |name: &String| Parameter::named(name).is_some_and(|found| found.group() == Group::Machine);
     table.differing().iter().any(parameter)
 }
 
-/// Compares all parts with the controller. A part that cannot be read fails alone; nothing of it is written.
-async fn compare_all(
-    link: &mut Link,
-    screen: &Screen,
-    jobs: &mut [Job],
-    results: &mut [FileItem],
-) -> Result<(), Failure> {
-    let mut read = screen.parts_progress("parts read", jobs.len());
-    let mut lost = None;
-    for (job, result) in jobs.iter_mut().zip(results) {
-        if let Some(failure) = &lost {
-            result.fail(Failure::clone(failure));
-            continue;
-        }
-        match interruptible(job.table.compare(link, screen)).await.and_then(|compared| compared) {
-            Ok(()) => {}
-            Err(failure) if failure.kind == Kind::Interrupted => return Err(nothing_written(failure)),
-            Err(failure) => {
-                if !result.fail(failure.clone()) {
-                    lost = Some(failure);
-                }
-            }
-        }
-        read.advance(1);
-    }
-    Ok(())
+/// The tables of the parts.
+fn tables(parts: &mut [Job]) -> impl ExactSizeIterator<Item = &mut Table> {
+    parts.iter_mut().map(|job| &mut job.table)
 }
 
-/// Change to confirm: a few values one by one, many by parts.
-fn replacing<'j>(
-    machine: Option<&Table>,
-    parts: impl Iterator<Item = (&'j Job, &'j FileItem)>,
-    speed: Option<&(Cell, Option<u8>)>,
-) -> Change {
-    let lost_of = |part: String, table: &Table| (part, table.nouns(), table.replaced());
-    let mut lost: Vec<_> = machine.map(|table| lost_of("machine".to_owned(), table)).into_iter().collect();
-    lost.extend(parts.map(|(job, _)| lost_of(job.part.to_string(), &job.table)));
-    if let Some((cell, Some(present))) = speed {
-        let new = percent(&cell.wanted);
-        if new != *present {
-            let row = ["override".to_owned(), format!("{present} %"), format!("{new} %")];
-            lost.push(("override".to_owned(), ["override", "overrides"], vec![row]));
-        }
-    }
-    lost.retain(|(_, _, replaced)| !replaced.is_empty());
-    let total: usize = lost.iter().map(|(_, _, replaced)| replaced.len()).sum();
-    let values = if total == 1 { "a value" } else { &format!("{total} values") };
-    let change = match total {
-        0 => return Change::none(),
-        _ => Change::new(format!("overwrite {values} by the backup")),
-    };
-    let notes = machine.map(|table| table.consequences()).unwrap_or_default();
-    let change = notes.into_iter().fold(change, Change::note);
-    lost.iter().fold(change, |change, (part, [one, many], replaced)| {
-        if total > SHOWN {
-            let count = replaced.len();
-            return change.item(format!("{part}: {count} {}", if count == 1 { one } else { many }));
-        }
-        replaced.iter().fold(change, |change, [what, old, new]| change.replaces(&format!("{part}, {what}"), old, new))
-    })
+/// The override, if it will be replaced.
+fn replaced_speed((cell, present): &(Cell, Option<u8>)) -> Option<Replaced> {
+    let (present, new) = ((*present)?, percent(&cell.wanted));
+    let row = ["override".to_owned(), format!("{present} %"), format!("{new} %")];
+    let values = if new == present { Vec::new() } else { vec![row] };
+    Some(Replaced { part: "override".to_owned(), nouns: ["override", "overrides"], values, notes: Vec::new() })
 }
 
-/// Override in an answer or a request.
+/// Speed override in an answer or a request.
 fn percent(record: &Record) -> u8 {
     small(record, "override")
 }
 
-/// The override of the backup.
+/// Speed override of the backup.
 fn speed(backup: &Controller) -> Result<Option<Cell>, Failure> {
     let Some(percent) = backup.speed_override_percent else { return Ok(None) };
     let values = vec![Value::Number(percent.into())];
@@ -387,7 +335,7 @@ fn speed(backup: &Controller) -> Result<Option<Cell>, Failure> {
     }))
 }
 
-/// Writes the override if it differs.
+/// Writes the speed override if it differs.
 async fn write_speed(
     link: &mut Link,
     screen: &Screen,
@@ -401,8 +349,8 @@ async fn write_speed(
     Ok(PartResult { written: 1, ..PartResult::default() })
 }
 
-/// Whether the controller is the machine that the backup is of: its robot type (SYSP), which task has which axes (E19), and
-/// what the axes are called (E01). With `machine`, E19 and E01 are among what is restored.
+/// Checks that the controller is the machine of the backup: its robot type (SYSP), the axes of each task (E19), and the
+/// letters of the axes (E01). With `machine`, E19 and E01 are restored, so they are not compared.
 fn identify(backup: &Controller, found: &Controller, machine: bool) -> Result<(), Failure> {
     let none = String::new();
     let letters = [backup, found].map(|one| one.axis_letters.as_ref());
@@ -417,16 +365,17 @@ fn identify(backup: &Controller, found: &Controller, machine: bool) -> Result<()
         ),
     ];
     let other = marks.iter().filter(|(_, saved, found, counts)| *counts && saved != found);
-    let other: Vec<String> =
-        other.map(|(what, saved, found, _)| format!("{what} is {saved} in the backup and {found} here")).collect();
+    let other: Vec<String> = other
+        .map(|(what, saved, found, _)| format!("{what} is {saved} in the backup and {found} on this controller"))
+        .collect();
     if other.is_empty() {
         return Ok(());
     }
-    Err(Failure::new(Kind::Rejected, format!("the backup is of another machine: {}", other.join(", ")))
-        .hint("use the backup of this robot, or --force to write this one; nothing was written"))
+    Err(Failure::new(Kind::Rejected, format!("the backup is from another machine: {}", other.join(", ")))
+        .hint("use a backup of this robot, or add --force to write this backup anyway; nothing was written"))
 }
 
-/// Whether all programs fit the tasks; before anything is written.
+/// Checks before the first write that all programs fit the tasks.
 fn check_room(jobs: &[Job], found: &Controller) -> Result<(), Failure> {
     for Job { part, steps, .. } in jobs {
         let Part::Program(task) = part else { continue };
@@ -438,19 +387,4 @@ fn check_room(jobs: &[Job], found: &Controller) -> Result<(), Failure> {
         }
     }
     Ok(())
-}
-
-/// Records the result of a part. Returns whether the next one can be tried.
-fn settle(result: &mut FileItem, outcome: Result<PartResult, Failure>) -> bool {
-    let PartResult { written, unchanged, left_out, failure } = match outcome {
-        Ok(outcome) => outcome,
-        Err(failure) => return result.fail(failure),
-    };
-    (result.more.written, result.more.unchanged) = (Some(written), Some(unchanged));
-    result.more.left_out = left_out.into_iter().map(left_out_row).collect();
-    if let Some(failure) = failure {
-        return result.fail(failure);
-    }
-    result.succeed(State::Done);
-    true
 }

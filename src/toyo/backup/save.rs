@@ -25,21 +25,21 @@ use armctl_frame::{Command, Context};
 /// Save all data of a controller to a folder of text files.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The backup has parameters, tables, palletizing and easy programs, and the points and program of each task. \
-                  manifest.json lists them with sizes and hashes, and the reason for missing parts. At 9600 baud a backup \
-                  takes some minutes: half a minute for the parameters, and for each task a minute and a half for the \
-                  points and 35 ms for each step.\n\nEach task is made the current one for a while, which is a change: \
-                  use --current-task for a read-only robot."
+    after_help = "The backup contains parameters, tables, palletizing and easy programs, and the points and program \
+                  of each task. manifest.json lists these parts with sizes and hashes, and the reason for missing \
+                  parts. At 9600 baud a backup takes some minutes: half a minute for the parameters. Each task takes \
+                  a minute and a half for the points, and 35 ms for each step.\n\narmctl selects each task \
+                  temporarily, which is a change: use --current-task for a read-only robot."
 )]
 pub struct Backup {
     #[command(flatten)]
     options: BackupOptions,
-    /// Points and program of the current task only, so that nothing is changed
+    /// Only points and program of the current task, so that nothing is changed on the controller
     #[arg(long)]
     current_task: bool,
 }
 
-/// In the scope of a backup, where the other tasks are not in it.
+/// Marks in the scope of a backup that it contains only the current task.
 const CURRENT_TASK: &str = "the current task";
 
 impl Command for Backup {
@@ -57,7 +57,7 @@ impl Command for Backup {
     }
 }
 
-/// Makes a backup; of the current task only where nothing may be changed.
+/// Makes a backup. If nothing may be changed on the controller, the backup contains only the current task.
 pub async fn back_up(
     context: Context<'_, Toyo>,
     mut making: SaveOptions,
@@ -122,12 +122,12 @@ async fn dry_run(link: &mut Link, current_task: bool) -> Result<BackedUp, Failur
     if !current_task {
         tasks::choose(link, Some(1)).await?;
     }
-    let points = if current_task { "of the current task" } else { "of every task, which is made the current one" };
+    let points = if current_task { "of the current task" } else { "of every task, after the selection of the task" };
     link.then(&format!("every parameter, row, easy program and record is read, then every point and step {points}"));
     Err(unknown())
 }
 
-/// What there is, or what there is of the current task alone.
+/// Parts of the controller. With `current_task`, the points and the program of the other tasks are omitted.
 async fn parts(link: &mut Link, controller: &Controller, current_task: bool) -> Result<Vec<Part>, Failure> {
     let current = tasks::choose(link, None).await?;
     let wanted = |task: &u8| !current_task || *task == current;

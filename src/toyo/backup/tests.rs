@@ -8,7 +8,7 @@ use tempfile::TempDir;
 use crate::testing::{Bench, Fault, blocks};
 use armctl_frame::failure::{Failure, Kind};
 
-/// A controller with something of everything, and a small memory.
+/// A controller with some content in each part, and a small memory.
 const FULL: &str = r#"
 axes = 2
 points = { 1 = { 1 = [100.0, 20.0, 0.0, 0.0], 999 = [-1.5, 0.0, 0.0, 0.0] } }
@@ -17,10 +17,10 @@ write = ["WPAR M09 J", "WPAR T2 V05=0250.0", "WPLT 03 SNO=01 TAG=007 MOD=M-M",
          "WPAR E22 TASK01=0010 TASK02=0005 TASK03=0000 TASK04=0000",
          "WESY PNO=02 ST=000 START=010 LOOP=0005 END=020"]
 "#;
-/// The same controller with nothing in it.
+/// The same controller without content.
 const EMPTY: &str = "axes = 2\nwrite = [\"WPAR E22 TASK01=0010 TASK02=0005 TASK03=0000 TASK04=0000\"]\n";
 
-/// The files of a backup of [`FULL`], which takes its time.
+/// The files of a backup of [`FULL`]. The backup takes some time, so it is made only once.
 static SAVED: LazyLock<BTreeMap<String, String>> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();
     controller(FULL).data(&["backup", folder.path().to_str().unwrap()]);
@@ -41,7 +41,7 @@ impl Desk {
         self.folder.path().join(name)
     }
 
-    /// The backup of [`FULL`].
+    /// Writes the backup of [`FULL`] to the folder.
     fn saved(&self) -> String {
         let folder = self.path("saved");
         std::fs::create_dir(&folder).unwrap();
@@ -188,7 +188,10 @@ fn another_robot_is_refused() {
     let mut other = controller(&format!("robot_types = [7]\n{EMPTY}"));
     let failed = failure(&mut other, &["restore", &folder]);
     assert_eq!(failed.kind, Kind::Rejected);
-    assert_eq!(failed.message, "the backup is of another machine: robot type is 000000 in the backup and 000007 here");
+    assert_eq!(
+        failed.message,
+        "the backup is from another machine: robot type is 000000 in the backup and 000007 on this controller"
+    );
     other.data(&["restore", &folder, "--force", "--only", "program"]);
 }
 
@@ -212,7 +215,7 @@ fn machine_parameters_come_first_and_alone() {
     assert_eq!((&data["needs_power_cycle"], &part(&data, "points-1")["state"]), (&true.into(), &"not_tried".into()));
     let written: Vec<String> = heard.borrow().iter().filter(|block| block.starts_with("@W")).cloned().collect();
     assert_eq!(written, ["@WPAR E22 TASK01=0010 TASK02=0005 TASK03=0000 TASK04=0000"]);
-    // What is the same already is no change.
+    // A value that is already equal is not a change.
     let data = controller(EMPTY).data(&["restore", &folder, "--machine"]);
     assert_eq!((&data["needs_power_cycle"], &part(&data, "points-1")["state"]), (&false.into(), &"done".into()));
 }
@@ -290,7 +293,8 @@ fn one_word_that_the_manual_does_not_list_spoils_no_backup() {
     let files = files(folder);
     assert!(files["program-1.txt"].contains("\nFOO X=1      # not in the manual\n"), "{}", files["program-1.txt"]);
     assert!(!files["points-1.csv"].contains("\n5,"));
-    // The machine that holds it gets the rest back; another one nothing of that program.
+    // The machine that already has this step gets the rest of the program back. On another machine, nothing of the
+    // program is written.
     assert_eq!(part(&bench.data(&["restore", folder]), "program-1")["state"], "done");
     let (mut bench, heard) = Bench::with_faults(EMPTY, |_, _| Fault::None);
     let failed = failure(&mut bench, &["restore", folder]);
@@ -307,22 +311,22 @@ fn axes_of_another_machine_are_refused_before_anything_is_written() {
     let desk = Desk::new();
     let folder = desk.saved();
     for (other, told) in [
-        ("write = [\"WPAR E19 1100\"]\n", "E19 (task-axes) is 2000 in the backup and 1100 here"),
+        ("write = [\"WPAR E19 1100\"]\n", "E19 (task-axes) is 2000 in the backup and 1100 on this controller"),
         (
             "axes = 2\nwrite = [\"WPAR E01 AX1=X AX2=Z AX3=Y AX4=R\"]\n",
-            "E01 (axis-letters) is X Y Z R in the backup and X Z Y R here",
+            "E01 (axis-letters) is X Y Z R in the backup and X Z Y R on this controller",
         ),
     ] {
         let (mut bench, heard) = Bench::with_faults(other, |_, _| Fault::None);
         let failed = failure(&mut bench, &["restore", &folder, "--only", "parameters"]);
         assert_eq!(
             (failed.kind, &*failed.message),
-            (Kind::Rejected, &*format!("the backup is of another machine: {told}"))
+            (Kind::Rejected, &*format!("the backup is from another machine: {told}"))
         );
         assert!(!heard.borrow().iter().any(|block| block.starts_with("@W")));
         bench.data(&["restore", &folder, "--only", "parameters", "--force"]);
     }
-    // Name and address are those of the list, as with `armctl restore`.
+    // Robot name and address must be those of the manifest, as with `armctl restore`.
     let failed = blocks(&["restore", &folder]).unwrap_err();
     assert_eq!(failed.kind, Kind::Rejected);
     assert!(failed.message.contains("the backup is from sim (sim:), not from tcp://127.0.0.1:1"), "{failed}");

@@ -11,25 +11,25 @@ use armctl_frame::decode::capture::{CaptureDecoder, DecodedCapture, DecodedMessa
 use armctl_transport::capture::{Carrier, Message};
 use armctl_transport::tap::Direction;
 
-/// All streams that can be a conversation. The lines decide at the end.
+/// All streams that may be host communication. At the end, their lines decide whether they are.
 #[derive(Debug, Default)]
 pub struct LineDecoder {
     conversations: BTreeMap<Connection, Conversation>,
-    /// Bytes that the conversations occupy.
+    /// Bytes that the stored conversations use.
     kept: usize,
     decoded: DecodedCapture<FieldRow>,
 }
 
-/// Medium of a conversation.
+/// Connection over which a conversation runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Connection {
-    /// A serial line, by section of the file.
+    /// A serial line; the number is its section in the file.
     Serial(usize),
-    /// A TCP connection, with its ends in order.
+    /// A TCP connection; the smaller address comes first.
     Tcp(SocketAddr, SocketAddr),
 }
 
-/// Lines of both ends.
+/// Lines of both ends of a connection.
 #[derive(Debug, Default)]
 struct Conversation {
     lines: Vec<ReceivedLine>,
@@ -37,30 +37,30 @@ struct Conversation {
     pending: [Vec<u8>; 2],
     packets: u64,
     notes: Vec<String>,
-    /// Whether a line proves that this is host communication.
+    /// Whether a line proves that the stream is host communication.
     is_ours: bool,
-    /// Bytes that the lines occupy.
+    /// Bytes that the stored lines use.
     kept: usize,
 }
 
-/// A line, with the packet of its end.
+/// A line, and the packet that contains its end.
 #[derive(Debug)]
 struct ReceivedLine {
     number: u64,
     time: Duration,
-    /// 0 for the first end of the connection.
+    /// End that sent the line: 0 for the first end of the connection.
     end: usize,
     text: String,
     is_cut: bool,
 }
 
-/// Bytes of a conversation without its lines.
+/// Size of a conversation in bytes, without its lines.
 const CONVERSATION: usize = 1024;
-/// Limit of stored bytes. The lines are printed in order at the end, so they are all stored.
+/// Maximum number of stored bytes. All lines are stored, because they are printed in order at the end.
 const ROOM: usize = 64 << 20;
-/// Limit of characters without a line end; the longest block is shorter.
+/// Maximum number of characters without a line end. The longest block is shorter.
 const MOST: usize = 512;
-/// Number of lines without a block after which a stream is not stored further.
+/// If a stream has this number of lines without a block, no more of it is stored.
 const MOST_FOREIGN: usize = 1000;
 
 impl CaptureDecoder for LineDecoder {
@@ -146,7 +146,7 @@ impl Conversation {
         }
     }
 
-    /// Index of the controller: the end whose lines are answers.
+    /// Index of the controller: the end that sends answers.
     fn controller(&self, connection: Connection) -> usize {
         if let Connection::Serial(_) = connection {
             return 1;
@@ -197,7 +197,7 @@ impl Conversation {
     }
 }
 
-/// Whether a line belongs to this protocol for certain: a verdict, or `@` and a word of the table.
+/// Whether a line certainly belongs to this protocol: `@OK`, `@NG`, or `@` and a word of the command table.
 fn is_block(text: &str) -> bool {
     matches!(text.trim_end_matches(' '), "@OK" | "@NG") || Request::parse(text).is_ok()
 }

@@ -34,12 +34,12 @@ commands! {
         Restore(Restore<Rows<Numbered>>),
         /// Select the program that `run easy` starts
         Select(Select<Numbered>),
-        /// Progress of the running program
+        /// Show the progress of the running program
         Progress(progress::Progress),
     }
 }
 
-/// The easy programs as a table and as a type of program.
+/// The easy programs, as a table and as a type of numbered programs.
 #[derive(Debug)]
 pub struct Numbered;
 
@@ -126,11 +126,11 @@ impl rows::Kind for Numbered {
 /// An easy program.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Program {
-    /// Start tag in the sequential program.
+    /// Tag in the sequential program at which the easy program starts.
     start_tag: i32,
     /// Number of repetitions.
     loops: i32,
-    /// End tag.
+    /// Tag in the sequential program at which the easy program ends.
     end_tag: i32,
 }
 

@@ -36,7 +36,7 @@ impl Command for Progress {
 /// Progress of an easy program.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ProgressReport {
-    /// 1 to 8.
+    /// Number of the program, 1 to 8.
     #[serde(rename = "number")]
     program: i32,
     /// Current step of the easy program.
@@ -45,7 +45,7 @@ pub struct ProgressReport {
     sequential_step: i32,
     /// Current tag of the hand program.
     hand_tag: i32,
-    /// Repetitions.
+    /// Number of repetitions.
     loops: i32,
 }
 

@@ -10,15 +10,15 @@ use crate::link::Toyo;
 use armctl_controller::typed;
 use armctl_frame::failure::Failure;
 use armctl_frame::names;
-use armctl_frame::robot::io::{Signals, WATCHED};
+use armctl_frame::robot::io::{IoValue, Signals, WATCHED};
 use armctl_frame::watch::{self, Watchable};
 use armctl_frame::{Command, Context};
 
-/// Read signals, or all signals of ports.
+/// Read signals, or all signals of a port.
 #[derive(Debug, Args)]
 #[command(after_help = BITS)]
 pub struct Get {
-    /// Signals, such as IN1.3, OUT1.1..OUT1.8, INT2 or IN1..3, or names
+    /// Signals, for example IN1.3, OUT1.1..OUT1.8, INT2 or IN1..3; or names
     #[arg(required = true, value_name = "SIGNAL", value_delimiter = ',', add = complete::SIGNAL)]
     signals: Vec<SignalRange>,
     #[command(flatten)]
@@ -42,7 +42,7 @@ async fn get(
 ) -> Result<Signals, Failure> {
     if station != 0 && arguments.iter().any(|signals| signals.is_named) {
         return Err(Failure::usage("names belong to ports of station 0, the controller itself")
-            .hint("type port and bit, as in IN1.3"));
+            .hint("type the port and the bit, such as IN1.3"));
     }
     let signals: Vec<Signal> = typed::once(arguments.iter().flat_map(|signals| signals.signals.iter().copied()));
     let names = names::of_robot(context.robot, context.screen);
@@ -50,11 +50,11 @@ async fn get(
     Signals::new(signals.into_iter().filter_map(|signal| row(signal, station, &bytes, names)).collect())
 }
 
-/// Signals for a watch; default: inputs and outputs.
+/// Arguments: the signals to watch. Default: inputs and outputs.
 #[derive(Debug, Args)]
 #[command(after_help = BITS)]
 pub struct Watched {
-    /// Signals, such as IN1.3, OUT1.1..OUT1.8, INT2 or IN1..3, or names; default: all inputs and outputs
+    /// Signals, for example IN1.3, OUT1.1..OUT1.8, INT2 or IN1..3; or names. Default: all inputs and outputs
     #[arg(value_name = "SIGNAL", value_delimiter = ',', add = complete::SIGNAL)]
     signals: Vec<SignalRange>,
     #[command(flatten)]
@@ -75,6 +75,8 @@ impl Command for Watched {
 }
 
 impl Watchable for Watched {
+    type Value = IoValue;
+
     const WATCH: &'static str = "toyo.io.watch";
     const WATCHED: watch::Watched = WATCHED;
 }

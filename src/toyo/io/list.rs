@@ -50,7 +50,7 @@ async fn rows(
     let names = names::of_robot(context.robot, context.screen);
     let mut bytes = read(context.link, station, &signals).await?;
     let refused = |byte: &Result<u8, Failure>| byte.as_ref().is_err_and(|failure| failure.kind == Kind::Refused);
-    // A controller can have fewer ports. It is an error if it refuses all ports.
+    // A controller may have fewer ports. If it refuses all ports, this is an error.
     if !bytes.values().all(refused) {
         bytes.retain(|_, byte| !refused(byte));
     }

@@ -17,11 +17,11 @@ use super::super::numbers::small;
 /// A port with its bits.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Port {
-    /// Name in the manual: `PN01`, `SY01` for the system port.
+    /// Name in the manual, for example `PN01`; `SY01` for the system port.
     pub name: String,
-    /// 0 for the system port.
+    /// Number of the port; 0 for the system port.
     pub number: u8,
-    /// Bit 1 is the lowest.
+    /// Bits of the port. Bit 1 is the lowest bit.
     pub byte: u8,
 }
 
@@ -31,7 +31,7 @@ impl Port {
     }
 }
 
-/// `PN01`, `SY01`.
+/// Name of a port: `PN01`, `SY01`.
 pub fn name(number: u8) -> String {
     if number == 0 { "SY01".to_owned() } else { format!("PN{number:02}") }
 }
@@ -39,18 +39,18 @@ pub fn name(number: u8) -> String {
 /// Type of ports, in the order of lists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PortBank {
-    /// `MINP`.
+    /// Input ports (`MINP`).
     Input,
-    /// `MOUT`.
+    /// Output ports (`MOUT`).
     Output,
-    /// `MNIN`.
+    /// Internal ports (`MNIN`).
     Internal,
 }
 
 pub use PortBank::{Input as INPUTS, Output as OUTPUTS};
 
 impl PortBank {
-    /// All of them.
+    /// All types of ports.
     pub const ALL: [Self; 3] = [Self::Input, Self::Output, Self::Internal];
 
     const fn command(self) -> table::Command {
@@ -78,7 +78,7 @@ impl PortBank {
         }
     }
 
-    /// Kind in reports.
+    /// Returns the kind of signal for reports.
     pub const fn kind(self) -> IoKind {
         match self {
             Self::Input => IoKind::Input,
@@ -87,12 +87,13 @@ impl PortBank {
         }
     }
 
-    /// First port of a station.
+    /// Returns the number of the first port of a station.
     pub const fn first(self, station: u8) -> u8 {
         if station == 0 && !matches!(self, Self::Internal) { 0 } else { 1 }
     }
 
-    /// Last port of a station (TO 2-8). The manual also allows screen 7 of the inputs, which is beyond this port (C8).
+    /// Last port of a station (TO 2-8). The manual also allows screen 7 of the inputs, but that screen is beyond this
+    /// port (ambiguity C8).
     pub const fn last(self, station: u8) -> u8 {
         match (self, station) {
             (Self::Input, 0) => 23,
@@ -104,23 +105,25 @@ impl PortBank {
         }
     }
 
-    /// Screen of a port: 1 to 3, 4 to 7, 8 to 11, and so on. Only the controller has more than one screen.
+    /// Returns the screen that contains a port. Screen 1 has ports up to 3, screen 2 has ports 4 to 7, screen 3 has
+    /// ports 8 to 11, and so on. Only station 0, the controller, has more than one screen.
     pub fn screen(self, station: u8, port: u8) -> u8 {
         if station == 0 && self != Self::Internal && port > 3 { port / 4 + 1 } else { 1 }
     }
 
-    /// Screen of a port; `None` if the station has no such port.
+    /// Returns the screen that contains a port; `None` if the station does not have this port.
     pub fn screen_of(self, station: u8, port: u8) -> Option<u8> {
         (port <= self.last(station)).then(|| self.screen(station, port))
     }
 
-    /// Request for a screen.
+    /// Builds the request that reads a screen.
     pub fn request(self, station: u8, screen: u8) -> Request {
         Request::of(self.command(), [Value::Number(station.into()), Value::Number(screen.into())])
     }
 }
 
-/// Ports in an answer. A repeated number means the next port, because the manual prints PN02 twice (ambiguity C7).
+/// Ports in an answer. If a number is repeated, it means the next port, because the manual prints PN02 twice (ambiguity
+/// C7).
 pub fn ports_of(record: &Record) -> Vec<Port> {
     let mut ports: Vec<Port> = record.bits("sy01").map(|byte| Port::new(0, byte)).into_iter().collect();
     for (number, bits) in [("port1", "bits1"), ("port2", "bits2"), ("port3", "bits3"), ("port4", "bits4")] {
@@ -140,9 +143,9 @@ pub fn ports_of(record: &Record) -> Vec<Port> {
 pub struct Signal {
     /// Type of the port.
     pub bank: PortBank,
-    /// 0 for the system port.
+    /// Number of the port; 0 for the system port.
     pub port: u8,
-    /// 1 to 8.
+    /// Number of the bit, 1 to 8.
     pub bit: u8,
 }
 
@@ -153,12 +156,12 @@ impl std::hash::Hash for PortBank {
 }
 
 impl Signal {
-    /// Whether the bit is on in the byte of its port.
+    /// Whether the bit is on. `byte` contains the bits of its port.
     pub const fn is_on(self, byte: u8) -> bool {
         byte >> (self.bit - 1) & 1 == 1
     }
 
-    /// Report item; names belong to station 0.
+    /// Report item. User-defined names apply only to station 0.
     pub fn item(self, station: u8, names: &Names) -> IoItem {
         let Self { bank, port, bit } = self;
         let kind = match bank {
@@ -178,12 +181,12 @@ impl Signal {
     }
 }
 
-/// Signals as typed: one signal, all signals of a port, a range, or a name.
+/// Signals that the user typed: one signal, all signals of a port, a range, or a name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SignalRange {
     /// Signals in order.
     pub signals: Vec<Signal>,
-    /// Whether a name was typed; names belong to station 0.
+    /// Whether the user typed a name. Names apply only to station 0.
     pub is_named: bool,
 }
 
@@ -202,7 +205,7 @@ fn addresses(text: &str) -> Result<Vec<Signal>, String> {
     let ends = rest.split_once("..").or_else(|| rest.split_once('-'));
     let first = ends.map_or(rest, |(first, _)| first);
     let port_of = |text: &str| typed::unsigned::<u8>(text).filter(|port| *port <= 99);
-    // `IN1.3` is port 1, bit 3. The end of a range can omit the part that equals the beginning.
+    // `IN1.3` is port 1, bit 3. The end of a range can omit the part that is equal to its beginning.
     let parse_signal = |text: &str| {
         let text = bank_of(text).filter(|(other, _)| *other == bank).map_or(text, |(_, rest)| rest);
         let (port, bit) = match text.split_once('.') {
@@ -239,7 +242,7 @@ fn addresses(text: &str) -> Result<Vec<Signal>, String> {
     Ok((least..=most).filter_map(signal_at).collect())
 }
 
-/// The range in reverse order.
+/// A range with its ends exchanged, for the message.
 fn reversed(text: &str) -> String {
     let ends = text.split_once("..").or_else(|| text.split_once('-'));
     ends.map_or_else(|| text.to_owned(), |(from, to)| format!("{to}..{from}"))
@@ -290,7 +293,7 @@ mod tests {
     #[test]
     fn a_repeated_port_number_counts_as_the_next_port() {
         let request = Request::parse("@MOUT SNO=0 GN=1").unwrap();
-        // Text of TO 2-8.
+        // Example in TO 2-8.
         let printed = "@MOUT SNO=0 GN=1 SY01=00000001 PN01=00000010 PN02=00000100 PN02=00001000";
         let Answer::Data(record) = request.answer(printed).unwrap() else { panic!("it is data") };
         let ports: Vec<(String, u8)> = ports_of(&record).into_iter().map(|port| (port.name, port.byte)).collect();

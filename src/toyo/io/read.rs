@@ -1,4 +1,4 @@
-//! Reads of ports, one screen at a time.
+//! Reads of ports. One request reads one screen.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,13 +8,13 @@ use armctl_controller::names::Names;
 use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::robot::io::IoRow;
 
-/// Bytes of ports, or the reason for a missing byte.
+/// Bytes of ports, or the reason why a byte is missing.
 pub type Bytes = BTreeMap<(PortBank, u8), Result<u8, Failure>>;
 
-/// Reads the ports of signals. After a lost connection the remaining ports are not read.
+/// Reads the ports of signals. After a lost connection, the remaining ports are not read.
 ///
 /// # Errors
-/// A port that the station does not have, or a lost connection. A dry run ends here.
+/// If the station does not have a port, or the connection is lost. A dry run ends here.
 pub async fn read(link: &mut Link, station: u8, signals: &[Signal]) -> Result<Bytes, Failure> {
     let ports: BTreeSet<(PortBank, u8)> = signals.iter().map(|signal| (signal.bank, signal.port)).collect();
     for (bank, port) in &ports {
@@ -47,13 +47,13 @@ pub async fn read(link: &mut Link, station: u8, signals: &[Signal]) -> Result<By
     Ok(bytes)
 }
 
-/// Report item of a signal.
+/// Builds the report row of a signal.
 pub fn row(signal: Signal, station: u8, bytes: &Bytes, names: &Names) -> Option<IoRow> {
     let byte = bytes.get(&(signal.bank, signal.port))?.clone();
     Some(IoRow::state(signal.item(station, names), byte.map(|byte| signal.is_on(byte))))
 }
 
-/// Refuses a port that the station does not have.
+/// Returns an error if the station does not have this port.
 fn exists(bank: PortBank, station: u8, port: u8) -> Result<(), Failure> {
     let (first, last) = (bank.first(station), bank.last(station));
     if (first..=last).contains(&port) {
@@ -63,6 +63,6 @@ fn exists(bank: PortBank, station: u8, port: u8) -> Result<(), Failure> {
         Failure::usage("only station 0, the controller itself, has internal ports").hint("remove --station")
     } else {
         let message = format!("station {station} has {} ports {first} to {last}, not {port}", bank.word());
-        Failure::usage(message).hint("`armctl toyo io list` lists the signals of a station")
+        Failure::usage(message).hint("use `armctl toyo io list` to list the signals of a station")
     })
 }

@@ -27,12 +27,12 @@ use armctl_frame::{Command, Context};
 /// Set outputs. All bits of a port change at once; ports change in the typed order.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "A whole port is eight characters for bits 8 to 1; the rightmost character is bit 1. 1 is on, 0 is off, \
-                        and a dot keeps the bit. Each port that `io list` shows is read back. \
-                        A running program can set the same outputs."
+    after_help = "A whole port is eight characters for bits 8 to 1; the rightmost character is bit 1. 1 is on, 0 is \
+                  off, and a dot keeps the bit. armctl reads back each port that `io list` shows. A running program \
+                  can set the same outputs."
 )]
 pub struct Set {
-    /// Outputs with states, such as OUT1.3=on (port 1, bit 3), OUT1=.......1 (port 1, bits 8 to 1), or NAME=on
+    /// Outputs with states, for example OUT1.3=on (port 1, bit 3), OUT1=.......1 (port 1, bits 8 to 1), or NAME=on
     #[arg(required = true, value_name = "PORT[.BIT]=VALUE", add = complete::OUTPUT_STATE)]
     assignments: Vec<Assignment>,
     #[command(flatten)]
@@ -46,7 +46,7 @@ pub struct Set {
                         bits, or whether a bit is set or toggled. Check the result with `toyo io list --out`."
 )]
 pub struct Direct {
-    /// 1 to 4
+    /// Number of the output, 1 to 4
     #[arg(value_name = "1..4", value_parser = clap::value_parser!(u8).range(1..=4))]
     number: u8,
 }
@@ -56,11 +56,11 @@ pub struct Direct {
 struct Assignment {
     port: u8,
     mask: Mask,
-    /// Whether a name was typed; names belong to station 0.
+    /// Whether the user typed a name. Names apply only to station 0.
     is_named: bool,
 }
 
-/// A port or a bit of it, as typed.
+/// A port or a bit of a port, as typed.
 #[derive(Debug, Clone, Copy)]
 struct Target {
     port: u8,
@@ -94,8 +94,8 @@ impl FromStr for Assignment {
                 Ok(field::Value::Mask(mask)) => mask,
                 _ => {
                     return Err(format!(
-                        "'{value}' is not a valid port: eight of 0, 1 and . are expected, for the bits 8 to 1; \
-                         one bit is set by OUT{port}.1=on"
+                        "'{value}' is not a valid port value: type eight characters (0, 1 or a dot) for bits 8 to 1; \
+                         for a single bit, type OUT{port}.1=on"
                     ));
                 }
             },
@@ -110,7 +110,7 @@ fn one_bit(number: u8, value: &str) -> Result<Mask, String> {
 }
 
 impl Set {
-    /// One assignment for each port, in the order of the first mention. A repeated bit is an error.
+    /// One assignment for each port, in the order in which the ports first occur. It is an error if a bit occurs twice.
     fn orders(&self) -> Result<Vec<Assignment>, Failure> {
         let mut orders: Vec<Assignment> = Vec::new();
         for assignment in &self.assignments {
@@ -140,7 +140,7 @@ impl Command for Set {
         let Station { station } = self.station;
         if station != 0 && self.assignments.iter().any(|assignment| assignment.is_named) {
             return Err(Failure::usage("names belong to ports of station 0, the controller itself")
-                .hint("type port and bit, as in OUT1.3=on"));
+                .hint("type the port and the bit, such as OUT1.3=on"));
         }
         let orders = self.orders()?;
         let names = names::of_robot(context.robot, context.screen);
@@ -154,11 +154,11 @@ impl Command for Set {
     }
 }
 
-/// A port before and after a command, if it was read.
+/// A port before and after a command; `None` if it was not read.
 struct PortChange {
     old: Option<u8>,
     now: Option<u8>,
-    /// Failure if bits differ from the command.
+    /// Failure, if the bits differ from the command.
     failure: Option<Failure>,
 }
 
@@ -177,14 +177,14 @@ impl PortChange {
 }
 
 impl Assignment {
-    /// Signals of the assignment.
+    /// Returns the signals that the assignment sets.
     fn bits(&self) -> impl Iterator<Item = Signal> {
         let Self { port, mask, .. } = *self;
         let signals = (1..=8).map(move |bit| Signal { bank: OUTPUTS, port, bit });
         signals.filter(move |signal| signal.is_on(mask.care))
     }
 
-    /// Sets the port, and reads it back if possible.
+    /// Sets the port. Reads it back, if this is possible.
     async fn set(&self, link: &mut Link, station: u8) -> Result<PortChange, Failure> {
         let order = self.order(station)?;
         let Some(screen) = OUTPUTS.screen_of(station, self.port) else {
@@ -201,13 +201,17 @@ impl Assignment {
         }
         let answer = read_back(link, &order, &read).await?;
         let Some(written) = own(&answer) else {
-            let message =
-                format!("{} was accepted, but {} is not in '{}'", order.text(), name(self.port), answer.written());
+            let message = format!(
+                "the controller accepted {}, but {} is not in its answer '{}'",
+                order.text(),
+                name(self.port),
+                answer.written()
+            );
             return Err(Failure::new(Kind::OutcomeUnknown, message).hint(refusal::verification_hint(order.command())));
         };
         let reads = format!("{} reads {:08b}", written.name, written.byte);
         let failure = stored_otherwise(&order, &reads)
-            .hint("a running program can set the same outputs; `toyo io list --out` shows the outputs");
+            .hint("use `toyo io list --out` to see the outputs; a running program can set the same outputs");
         Ok(PortChange { old, now: Some(written.byte), failure: Some(failure) })
     }
 
@@ -222,7 +226,7 @@ impl Assignment {
     }
 }
 
-/// Failure of a command with the result of the others; the controller accepted `done` of them.
+/// Failure of a command, with the results of the other commands. The controller accepted `done` of them.
 fn with_results(failure: Failure, orders: &[Assignment], done: usize) -> Failure {
     if orders.len() == 1 {
         return failure;
@@ -281,12 +285,12 @@ mod tests {
     #[test]
     fn wrong_arguments_are_rejected_before_any_block_is_sent() {
         for (words, why) in [
-            (["io", "set", "1"], "as in OUT1.3=on"),
+            (["io", "set", "1"], "for example OUT1.3=on"),
             (["io", "set", "1.9=on"], "bits 1 to 8"),
             (["io", "set", "1.0=on"], "bits 1 to 8"),
             (["io", "set", "1.1=yes"], "on or off"),
             (["io", "set", "100=........"], "1 to 99"),
-            (["io", "set", "1=.1"], "eight of 0, 1 and ."),
+            (["io", "set", "1=.1"], "eight characters, each 0, 1 or ."),
             (["io", "set", "1=on"], "OUT1.1=on"),
             (["io", "direct", "5"], "1..=4"),
         ] {
@@ -312,7 +316,7 @@ mod tests {
         let keys = |item: &Value| [item["name"].clone(), item["old"].clone(), item["value"].clone()];
         assert_eq!(keys(&set["items"][0]), [Value::from("OUT1.3"), false.into(), true.into()], "{set}");
         assert_eq!(keys(&set["items"][1]), [Value::from("OUT18.1"), false.into(), true.into()], "{set}");
-        // A bit marked with a dot can have any state.
+        // The command does not set a bit that is marked with a dot, so the bit can have any state.
         let odd = |block: &str, _| match block {
             "@MOUT SNO=0 GN=1" => {
                 Fault::Answered("@MOUT SNO=0 GN=1 SY01=00000000 PN01=10000000 PN02=10000001 PN03=00000000")
@@ -334,7 +338,10 @@ mod tests {
             |block: &str, count| if block.starts_with("@MOUT") && count > 1 { Fault::Lost } else { Fault::None };
         let failure = Bench::with_faults("", silent).0.run(&["io", "set", "1.3=on", "2.1=on"]).unwrap_err();
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
-        assert!(failure.message.contains("DOUT STN=0 PN01=.....1.. was accepted, but not read back"), "{failure}");
+        assert!(
+            failure.message.contains("DOUT STN=0 PN01=.....1.., but the value could not be read back"),
+            "{failure}"
+        );
         assert!(failure.message.ends_with("; not set: PN02"), "{failure}");
     }
 }

@@ -13,7 +13,7 @@ fn count(received: &ReceivedBlocks, block: &str) -> usize {
     received.borrow().iter().filter(|received| *received == block).count()
 }
 
-/// The stop must come after the last block that moves.
+/// Asserts that the last block that moves an axis is followed by the stop.
 #[track_caller]
 fn assert_stop_is_last(received: &ReceivedBlocks) {
     let received = received.borrow();
@@ -34,7 +34,7 @@ fn a_dry_run_shows_the_whole_sequence() {
             "@STAS SNO=0",
             "@JGST X=RS Y=RS Z=RS R=RS",
             "@MPST",
-            // Which axis is X, the controller tells.
+            // The controller reports which axis is X.
             "@JGST X=? Y=? Z=? R=?",
             "@STAS SNO=0",
             "@MPST",
@@ -70,7 +70,7 @@ fn a_jog_without_time_limit_is_rejected_before_any_block_is_sent() {
 fn an_axis_moves_for_its_time() {
     let (mut bench, received) = Bench::with_faults(READY, |_, _| Fault::None);
     let data = bench.data(&LOW);
-    // 10 mm/s for half a second, with a ramp of 0.1 s at either end.
+    // The axis moves at 10 mm/s for half a second, with ramps of 0.1 s at both ends.
     let moved_mm = data["moved_mm"].as_f64().unwrap();
     assert!((4.9..5.2).contains(&moved_mm), "{data}");
     assert_eq!(data["position"]["x_mm"], data["moved_mm"]);
@@ -92,15 +92,15 @@ fn inching_steps_are_sent_one_by_one() {
     );
     let failure = bench.run(&["jog", "x", "+", "inch", "--steps", "3"]).unwrap_err();
     assert!(
-        failure
-            .message
-            .starts_with("step 1 of 3: the step was accepted, but the axis did not move; the axis was stopped")
+        failure.message.starts_with(
+            "step 1 of 3: the controller accepted the step, but the axis did not move; the axis was stopped"
+        )
     );
     assert_eq!(count(&received, "@JGST X=+C Y=SP Z=SP R=SP"), 1);
     assert_stop_is_last(&received);
 }
 
-/// What becomes of `LOW` if blocks have this fate; the stop comes, and the axis stands.
+/// Result of `LOW` if this fault occurs. The stop must be sent, and the axis must stand still.
 #[track_caller]
 fn with_faults(
     fault: impl FnMut(&str, usize) -> Fault + Send + 'static,
@@ -174,7 +174,7 @@ fn a_lost_line_has_a_hint_to_press_the_emergency_stop() {
     assert!(hint.starts_with("press the emergency stop") && hint.contains("`toyo stop --jog`"), "{hint}");
     assert!(count(&received, STOP) > 10);
     assert_stop_is_last(&received);
-    // Once the line is back.
+    // Now the line works again.
     dead.store(false, Relaxed);
     assert!(bench.data(&["stop", "--jog"])["position"]["x_mm"].as_f64().unwrap() > 20.0);
     assert_eq!(bench.data(&["status"])["running"], false);
@@ -249,7 +249,7 @@ fn an_unanswered_inching_step_is_not_repeated() {
 fn the_shortest_jog_moves_the_axis() {
     let (mut bench, received) = Bench::with_faults(READY, |_, _| Fault::None);
     let data = bench.data(&["jog", "X", "+", "high", "--for", "100ms"]);
-    // 50 mm/s, reached after 0.1 s.
+    // 50 mm/s, which the axis reaches after 0.1 s.
     assert!((2.0..8.0).contains(&data["moved_mm"].as_f64().unwrap()), "{data}");
     assert_stop_is_last(&received);
 }
@@ -284,7 +284,7 @@ fn a_letter_selects_the_axis_with_this_letter_on_the_machine() {
     assert_eq!(axes.collect::<serde_json::Value>(), serde_json::json!(["X", "Z", "Y", "R"]));
     assert_eq!(bench.data(&["point", "get", "1"])["items"][0]["value"]["joints"][1]["axis"], "Z");
 
-    // Two axes of one letter: only the number tells them apart.
+    // Two axes have the same letter, so only the number identifies the axis.
     let twice = "origin = true\nwrite = [\"WPAR E01 AX1=X AX2=X AX3=Z AX4=R\"]\n";
     let (mut bench, received) = Bench::with_faults(twice, |_, _| Fault::None);
     let failure = bench.run(&["jog", "x", "+", "low", "--for", "300ms"]).unwrap_err();

@@ -1,4 +1,4 @@
-//! Report of changes that an ended process left on the controller.
+//! Reports changes that another process left on the controller when it ended.
 
 use super::Link;
 use crate::change_journal::AbandonedEntry;
@@ -8,14 +8,14 @@ use armctl_controller::toyo::status::{RunMode, Status};
 use armctl_controller::toyo::table::commands::Command;
 
 impl Link {
-    /// Reads whether the changes are still present, and reports how to undo them. This happens before every command
+    /// Reads whether the changes are still present, and reports how to undo them. armctl does this before every command
     /// except a stop, and after a stop.
     pub(super) async fn report_abandoned_changes(&mut self) {
         if self.is_dry() || self.is_line_lost() {
             return;
         }
         for abandoned in std::mem::take(&mut self.abandoned) {
-            // If the request fails, the next command tries again.
+            // If a read fails, report nothing now. The journal entry stays, so the next command tries again.
             let Ok(notices) = self.remaining_changes(&abandoned).await else { return };
             if notices.is_empty() {
                 abandoned.delete();
@@ -26,7 +26,7 @@ impl Link {
         }
     }
 
-    /// Changes that are still present, each with the command that undoes it.
+    /// Changes that are still present. Each text names the command that undoes the change.
     async fn remaining_changes(&mut self, abandoned: &AbandonedEntry) -> Result<Vec<String>, Error> {
         let mut notices = Vec::new();
         let mut status = Status::default();
@@ -36,10 +36,11 @@ impl Link {
             }
         }
         if abandoned.entry.moving.is_some() && (status.executing() || status.homing()) {
-            notices.push("the robot still runs a program or a jog; `toyo stop` stops it".to_owned());
+            notices.push("the robot still runs a program or a jog; use `toyo stop` to stop it".to_owned());
         }
         if abandoned.entry.host && status.host_on() {
-            notices.push("the host is still ON and was OFF before; `toyo host off` releases it".to_owned());
+            notices
+                .push("the host is still ON, and was OFF before; use `toyo host off` to release the host".to_owned());
         }
         for block in &abandoned.entry.back {
             let Ok(back) = Request::parse(block) else { continue };
@@ -50,16 +51,19 @@ impl Link {
                     let (current, earlier) = (record.number("task"), back.record().number("task"));
                     let (current, earlier) = (current.unwrap_or_default(), earlier.unwrap_or_default());
                     let notice = format!(
-                        "the current task is {current} and was {earlier} before; `toyo task set {earlier}` selects it"
+                        "the current task is {current}, and was {earlier} before; use `toyo task set {earlier}` to \
+                         select the earlier task"
                     );
                     (current != earlier).then_some(notice)
                 }
                 Command::Maut if status.run_mode() == Some(RunMode::Program) => Some(
-                    "the controller is in program mode and was in automatic mode before; `toyo mode auto` selects it"
+                    "the controller is in program mode, and was in automatic mode before; use `toyo mode auto` to \
+                     select automatic mode"
                         .to_owned(),
                 ),
                 Command::Mstp if status.run_mode() == Some(RunMode::Program) => Some(
-                    "the controller is in program mode and was in step mode before; `toyo mode step` selects it"
+                    "the controller is in program mode, and was in step mode before; use `toyo mode step` to select \
+                     step mode"
                         .to_owned(),
                 ),
                 _ => None,

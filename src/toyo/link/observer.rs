@@ -1,6 +1,6 @@
-//! Observer of the client: it records the trace, and keeps the journal of temporary changes. It also reports a host that
-//! is ON, or a current task, if this user did not select it. It sends no requests; it uses the answers that commands
-//! read.
+//! Observer of the client. It records the trace, and keeps the journal of temporary changes. It also reports a host
+//! that is ON, or a current task, if this user did not select it. It sends no requests; it uses the answers that
+//! commands read.
 
 use std::sync::{Arc, Mutex};
 
@@ -16,11 +16,11 @@ use armctl_frame::output::Screen;
 use armctl_frame::trace::lock_writer;
 use armctl_transport::tap::Direction;
 
-/// State that a link shares with its client.
+/// State that a link and its client share.
 #[derive(Debug)]
 pub(super) struct Observer {
     pub(super) trace: Trace,
-    /// Temporary changes, for other processes to find if this process is killed.
+    /// Temporary changes. If this process is killed, other processes find them in the journal.
     pub(super) journal: ChangeJournal,
     /// Settings that the user chose to keep.
     pub(super) choices: UserChoices,
@@ -29,7 +29,7 @@ pub(super) struct Observer {
     pub(super) label: String,
 }
 
-/// Notices that were printed or are not needed. A link prints each one once.
+/// Notices that were already printed, or that are not needed. A link prints each notice only once.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PrintedNotices {
     host: bool,
@@ -39,7 +39,7 @@ pub(super) struct PrintedNotices {
 impl PrintedNotices {
     pub(super) const ALL: Self = Self { host: true, task: true };
 
-    /// Notices that the journal entries of this user already contain.
+    /// Notices that are not needed because the journal entries of this user already explain them.
     pub(super) fn from_journal(abandoned: &[AbandonedEntry]) -> Self {
         let selects_task = |block: &String| block.trim_start_matches('@').starts_with(Command::Ctsk.row().word);
         Self {
@@ -49,7 +49,7 @@ impl PrintedNotices {
     }
 }
 
-/// Client's reference to the observer.
+/// Reference to the observer, for the client.
 #[derive(Debug)]
 pub(super) struct SharedObserver(pub(super) Arc<Mutex<Observer>>);
 
@@ -77,8 +77,8 @@ impl Watcher<Event> for SharedObserver {
 }
 
 impl Observer {
-    /// Prints a notice if the host is ON and this user did not switch it ON. Execution while the host is ON was started
-    /// by a host.
+    /// Prints a notice if the host is ON and this user did not switch it ON. If the controller executes something while
+    /// the host is ON, a host has started it.
     fn report_foreign_host(&mut self, status: Status, is_taken: bool) {
         let Some(choice) = self.choices.get() else { return };
         if !status.host_on() {
@@ -92,16 +92,16 @@ impl Observer {
         }
         self.printed.host = true;
         let what = if status.executing() || status.homing() {
-            "another client switched the host ON and started a program: if no other person uses the robot, \
-             `toyo stop` stops it and `toyo host off` releases the host"
+            "another client switched the host ON and started a program; if no other person uses the robot, use `toyo \
+             stop` to stop the program and `toyo host off` to release the host"
         } else {
-            "another client switched the host ON, which disables the start input; \
-             `toyo host off` releases the host"
+            "another client switched the host ON, which disables the start input; use `toyo host off` to release the \
+             host"
         };
         self.screen.note(&format!("{}: {what}", self.label));
     }
 
-    /// Prints a notice if another client selected the current task. Task 1 is the default and needs no notice.
+    /// Prints a notice if another client selected the current task. Task 1 is the default, so it needs no notice.
     fn report_foreign_task(&mut self, task: Option<i32>) {
         let Some(task) = task.and_then(|task| u8::try_from(task).ok()) else { return };
         let Some(choice) = self.choices.get() else { return };
@@ -116,8 +116,8 @@ impl Observer {
         }
         self.printed.task = true;
         self.screen.note(&format!(
-            "{}: another client selected task {task}, and commands without --task use \
-             it; `toyo task set 1` selects task 1",
+            "{}: another client selected task {task}, and commands without --task use that task; use `toyo task set \
+             1` to select task 1",
             self.label
         ));
     }
@@ -128,14 +128,14 @@ impl Observer {
         self.choices.change(|choice| choice.host = is_on);
     }
 
-    /// Records that the user chose this task as the current one.
+    /// Records that the user chose this task as the current task.
     pub(super) fn choose_task(&mut self, task: u8) {
         self.printed.task = true;
         self.choices.change(|choice| choice.task = Some(task));
     }
 
-    /// Whether a notice must wait. A blocked terminal must not delay a stop during motion. The setting can also be a
-    /// temporary change of another process of this user.
+    /// Whether a notice must wait. During a motion, a blocked terminal must not delay a stop. The setting can also be a
+    /// temporary change by another process of this user.
     fn must_wait(&self) -> bool {
         self.journal.entry().moving.is_some() || self.journal.has_entry_of_running_process()
     }

@@ -47,12 +47,12 @@ commands! {
         Restore(Restore<Records>),
         /// Select the program that `run palletizing` starts
         Select(Select<Numbered>),
-        /// Progress of the running program
+        /// Show the progress of the running program
         Progress(progress::Progress),
     }
 }
 
-/// The palletizing programs as a type of program.
+/// The palletizing programs, as a type of numbered programs.
 #[derive(Debug)]
 pub struct Numbered;
 
@@ -106,13 +106,13 @@ pub struct Records {
 }
 
 impl Records {
-    /// Records of a program of a machine whose axes have these letters.
+    /// Records of a program, on a machine whose axes have these letters.
     pub const fn new(program: i32, letters: Letters) -> Self {
         Self { program, letters }
     }
 }
 
-/// Program to use.
+/// Argument that selects the program.
 #[derive(Debug, Clone, Args)]
 pub struct ProgramOptions {
     /// Program, 1 to 16
@@ -120,7 +120,7 @@ pub struct ProgramOptions {
     program: i32,
 }
 
-/// A record of a program.
+/// Key of a record of a program.
 #[derive(Debug, Clone, Copy)]
 pub struct Key(&'static Pallet);
 
@@ -138,7 +138,7 @@ impl Hash for Key {
     }
 }
 
-/// Additional keys of a record.
+/// Fields that toyo adds to a record.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct About {
     /// Number of the program, 1 to 16.
@@ -146,7 +146,7 @@ pub struct About {
     program: i32,
     /// Number of the record, 1 to 16.
     record: u8,
-    /// Content.
+    /// Description of the content.
     about: &'static str,
     #[serde(flatten)]
     listed: Listed,
@@ -166,9 +166,9 @@ impl Store for Records {
         range: "Records by name or number: start source-p0 6",
         reading: None,
         writing: Some(
-            "All values of a record in order, or some by name; the others stay: `palletizing set 1 source-p1 \
-             100 0 0`, `palletizing set 1 start mode=M-M`. `palletizing get 1` shows the names. Equal values \
-             are not written, because the EEPROM takes about a million rewrites.",
+            "Type all values of a record in order, or only some values by name; the other values stay: `palletizing \
+             set 1 source-p1 100 0 0`, `palletizing set 1 start mode=M-M`. `palletizing get 1` shows the names. \
+             armctl does not write equal values, because an EEPROM cell wears out after about a million writes.",
         ),
     };
     const IDS: Ids = ids!("toyo.palletizing");
@@ -262,7 +262,7 @@ impl EepromRow for Records {
         cell(self.program, record, values)
     }
 
-    /// Block that writes a record, with `?` in place of unchanged values.
+    /// Block that writes a record. `?` stands for unchanged values.
     fn sketch(&self, Key(record): Key, values: &[Option<Value>]) -> String {
         let body = record.layout.sketch(values).unwrap_or_default();
         format!("@WPLT {:02} SNO={:02} {body}", self.program, record.number)

@@ -29,18 +29,18 @@ impl Command for Progress {
 /// Progress of a palletizing program.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ProgressReport {
-    /// 1 to 16.
+    /// Number of the program, 1 to 16.
     #[serde(rename = "number")]
     program: i32,
-    /// Which sides are a matrix: `M-1`, `1-M` or `M-M`.
+    /// Mode: which sides are a matrix (`M-1`, `1-M` or `M-M`).
     mode: &'static str,
     /// Meaning of the mode.
     mode_meaning: String,
-    /// Current part: `START`, `SOURCE`, `DESTI` or `END`.
+    /// Part of the program that runs now: `START`, `SOURCE`, `DESTI` or `END`.
     state: &'static str,
     /// Meaning of the state.
     state_meaning: String,
-    /// Pieces in the three directions.
+    /// Progress in each of the three directions.
     directions: [Pieces; 3],
     /// Current tag of the hand program.
     hand_tag: i32,
@@ -48,12 +48,12 @@ pub struct ProgressReport {
     sequential_step: i32,
 }
 
-/// Pieces in one direction.
+/// Progress in one direction.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Pieces {
     /// Number of the current piece.
     done: i32,
-    /// Number of pieces.
+    /// Total number of pieces.
     pieces: i32,
 }
 

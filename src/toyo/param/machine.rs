@@ -1,19 +1,20 @@
-//! Special rules of parameters 2 (E) and 3 (U).
+//! Special rules for parameters 2 (E, machine) and parameters 3 (U, special).
 
 use armctl_controller::toyo::field::Value;
 use armctl_controller::toyo::layout::Record;
 use armctl_controller::toyo::table::{Group, Parameter};
 use armctl_frame::failure::Failure;
 
-/// Limit of the steps of all tasks together (TO 2-4, E22).
+/// Maximum number of steps of all tasks together (TO 2-4, E22).
 const MOST_STEPS: i32 = 5000;
-/// Limit of steps with easy programs.
+/// Maximum number of steps if there are easy programs.
 const BESIDE_EASY: i32 = 2000;
 
 /// Remedy after a change of a machine parameter.
-pub const POWER_CYCLE: &str = "switch the controller's power off and on; until then it executes nothing";
+pub const POWER_CYCLE: &str = "switch the controller's power off and on; until then the controller executes no \
+                               command";
 
-/// Consequence of a change of several machine parameters.
+/// Describes the consequence of a change of these machine parameters.
 pub fn consequence_of(parameters: &[&Parameter]) -> String {
     let names: Vec<String> =
         parameters.iter().map(|parameter| format!("{} ({})", parameter.id, parameter.name)).collect();
@@ -21,17 +22,18 @@ pub fn consequence_of(parameters: &[&Parameter]) -> String {
     of_machine(&what, parameters.iter().any(|parameter| is_task_steps(parameter)))
 }
 
-/// Consequence of a change of machine parameters; `has_steps` if the steps of tasks are among them.
+/// Consequence of a change of machine parameters. `has_steps` is whether the number of steps of the tasks changes.
 fn of_machine(what: &str, has_steps: bool) -> String {
     let lost = if has_steps {
-        "; steps above a smaller limit are lost, and above 2000 steps all easy programs are lost"
+        "; a task with fewer steps loses its last steps, and with more than 2000 steps in total all easy programs are \
+         lost"
     } else {
         ""
     };
-    format!("after a change of {what} the controller executes nothing before a restart{lost}")
+    format!("after a change of {what}, the controller executes no command until a restart{lost}")
 }
 
-/// Warnings before a parameter changes.
+/// Returns the warnings to print before a parameter changes.
 pub fn warnings(parameter: &Parameter, stored: Option<&Record>, values: &[Value]) -> Vec<String> {
     if parameter.group() == Group::Special {
         return vec![format!("warning: {} ({}) is not for normal use", parameter.id, parameter.name)];
@@ -42,7 +44,7 @@ pub fn warnings(parameter: &Parameter, stored: Option<&Record>, values: &[Value]
     }
 }
 
-/// Checks that new values fit together.
+/// Checks that the new values are consistent.
 pub fn check(parameter: &Parameter, values: &[Value]) -> Result<(), Failure> {
     let steps = total(values);
     if is_task_steps(parameter) && steps > MOST_STEPS {

@@ -40,7 +40,7 @@ commands! {
         Get(Get<Parameters>),
         /// Read all parameters, or a group of them
         List(List<Parameters>),
-        /// Print each change
+        /// Print each change of parameters
         Watch(Watch<Get<Parameters>>),
         /// Change a parameter: soft-limit-plus 100 200 0 0
         Set(Set<Parameters>),
@@ -51,7 +51,7 @@ commands! {
     }
 }
 
-/// All parameters, and the rows of parameters that are tables.
+/// The table of all parameters. A parameter that is itself a table is present with its rows.
 #[derive(Debug)]
 pub struct Parameters;
 
@@ -60,7 +60,7 @@ pub struct Parameters;
 pub struct Key {
     /// The parameter.
     pub parameter: &'static Parameter,
-    /// Row of a table.
+    /// Row, for a parameter that is a table.
     pub row: Option<i32>,
 }
 
@@ -84,25 +84,26 @@ impl Key {
     }
 }
 
-/// Additional keys of a parameter.
+/// Fields that toyo adds to a parameter.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct About {
-    /// `P01`.
+    /// Id of the parameter, such as `P01`.
     pub id: &'static str,
-    /// `mode`, `axis`, `machine`, `special` or `table`.
+    /// Group of the parameter: `mode`, `axis`, `machine`, `special` or `table`.
     pub group: &'static str,
-    /// Content.
+    /// Description of the content.
     pub about: &'static str,
-    /// Controllers with the parameter; empty for all.
+    /// Controllers that have the parameter; empty for all controllers.
     pub only_on: &'static [&'static str],
     #[serde(flatten)]
     listed: Listed,
 }
 
-/// Groups, in the order of the writes: after a machine parameter, a controller can refuse all others.
+/// Groups in the order of the writes. After a machine parameter, a controller may refuse all other parameters, so the
+/// machine group is last.
 const GROUPS: [Group; 5] = [Group::Mode, Group::Axis, Group::Table, Group::Special, Group::Machine];
 
-/// The table of points, which `point` reads.
+/// The table of points. It has its own commands (`point`).
 const POINTS: &str = "T1";
 
 /// Rows of all tables except the points.
@@ -118,12 +119,12 @@ pub fn is_machine(key: Key) -> bool {
     matches!(key.parameter.group(), Group::Machine | Group::Special)
 }
 
-/// Parameters without rows.
+/// Returns the parameters that are not tables.
 fn singles() -> impl Iterator<Item = &'static Parameter> {
     PARAMETERS.iter().filter(|parameter| parameter.row().is_none())
 }
 
-/// A parameter by name or id, a row of a table such as `T2.5`, or all of a group.
+/// Parses the name or id of a parameter, a row of a table such as `T2.5`, or a group.
 fn parse(name: &str) -> Result<Vec<Key>, String> {
     if let Some(group) = GROUPS.iter().find(|group| group.name().eq_ignore_ascii_case(name)) {
         if *group == Group::Table {
@@ -136,7 +137,7 @@ fn parse(name: &str) -> Result<Vec<Key>, String> {
     }
     match Parameter::named(name) {
         Some(parameter) if parameter.row().is_some() => {
-            Err(format!("{} is a table; `toyo {} get` reads its rows", parameter.name, command_of(parameter)))
+            Err(format!("{} is a table; use `toyo {} get` to read its rows", parameter.name, command_of(parameter)))
         }
         Some(parameter) => Ok(vec![Key::single(parameter)]),
         None => {
@@ -148,7 +149,7 @@ fn parse(name: &str) -> Result<Vec<Key>, String> {
     }
 }
 
-/// `P01`, or a row as `T2.5`.
+/// Text for a key: `P01`, or `T2.5` for a row.
 pub fn key_text(Key { parameter, row }: Key) -> String {
     match row {
         Some(row) => format!("{}.{row}", parameter.id),
@@ -166,7 +167,7 @@ fn values_of(record: &Record) -> Vec<NamedValue> {
     values::named_values(body.as_ref().unwrap_or(record))
 }
 
-/// Command name for the rows of a table.
+/// Returns the name of the command that reads the rows of a table.
 fn command_of(table: &Parameter) -> &'static str {
     match &table.id[..2] {
         "T1" => "point",
@@ -177,15 +178,15 @@ fn command_of(table: &Parameter) -> &'static str {
     }
 }
 
-/// Reads parameters and rows, each with its own result. A refused read has a second attempt, because a busy controller
-/// also refuses.
+/// Reads parameters and rows. Each has its own result. A refused read is repeated once, because a busy controller also
+/// refuses.
 pub async fn read(link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Records, Failure> {
     let request = |key: &Key| Request::read_parameter(key.parameter, key.row);
     let requests = keys.iter().map(request).collect::<Result<Vec<Request>, _>>().map_err(|error| wrong(&error))?;
     let rare = |key: &Key, failure: Failure| match &failure.hint {
         Some(hint) if failure.kind == Kind::Refused && !key.parameter.only_on.is_empty() => {
             let (id, models) = (key.parameter.id, key.parameter.only_on.join(", "));
-            let hint = format!("only some controllers have {id}: {models}; {hint}");
+            let hint = format!("check the model, because only these controllers have {id}: {models}; {hint}");
             failure.hint(hint)
         }
         _ => failure,
@@ -213,19 +214,21 @@ impl Store for Parameters {
         placeholder: "NAME",
         range: "Names or ids such as soft-limit-plus, P01; or a group: mode, axis, table, machine, special",
         reading: Some(
-            "`param list` shows the names of the parameters of this controller. In JSON, each value has its unit, \
-             its protocol text and its meaning.",
+            "`param list` shows the names of the parameters of this controller. In JSON, each parameter has the unit, \
+             the protocol text and the meaning of its value.",
         ),
         writing: Some(
-            "All values in order, or some by name; the others stay: `param set soft-limit-plus 100 200 0 0`, \
-             `param set P01 ax2=150`. Words of the protocol or their meaning: `param set pendant-language english`. A bit \
-             of a port is STATION/PORT/BIT: 0/01/3.\n\nEqual values are not written, because the EEPROM takes \
-             about a million rewrites. After a change of machine parameters (E) the controller executes nothing before a \
-             restart.",
+            "Type all values in order, or only some values by name; the other values stay: `param set soft-limit-plus \
+             100 200 0 0`, `param set P01 ax2=150`. A value is the word of the protocol or its meaning: `param set \
+             pendant-language english`. A bit of a port is STATION/PORT/BIT: 0/01/3.\n\narmctl does not write equal \
+             values, because an EEPROM cell wears out after about a million writes. After a change of machine \
+             parameters (E), the controller executes no command until a restart.",
         ),
     };
     const IDS: Ids = ids!("toyo.param");
     const COMPLETE: ValueKind = complete::PARAMETER;
+    const NOT_RESTORED: &'static str = "to write machine and special parameters, type their groups, such as `param \
+                                        restore FILE machine special`";
 
     fn keys(text: &str) -> Result<Vec<Key>, String> {
         parse(text)
@@ -288,14 +291,35 @@ impl Store for Parameters {
     }
 
     fn unsaved(&self, key: Key, record: Option<&Record>) -> Option<String> {
-        let Some(record) = record else { return Some("the controller refused it".to_owned()) };
+        let Some(record) = record else { return Some("the controller refused to report the parameter".to_owned()) };
         let values = &record.values()[key.parameter.key.fields.len()..];
         let unwritable = || {
             let error = self.cell(key, values.to_vec()).err()?;
             let value = values::in_a_line(&values_of(record));
-            Some(format!("its value {value} cannot be written back: {}", error.message))
+            Some(format!("the value {value} cannot be written back: {}", error.message))
         };
         unlisted(Some(record)).or_else(unwritable)
+    }
+
+    fn is_restored(key: Key) -> bool {
+        !is_machine(key)
+    }
+
+    fn is_absent(key: Key) -> bool {
+        !key.parameter.only_on.is_empty()
+    }
+
+    fn consequences(&self, rows: &[Differing<'_, Self>]) -> Vec<String> {
+        let is_machine = |key: &Key| key.parameter.group() == Group::Machine;
+        let changed: Vec<&Parameter> =
+            rows.iter().filter(|(key, ..)| is_machine(key)).map(|(key, ..)| key.parameter).collect();
+        let machine = (!changed.is_empty()).then(|| consequence_of(&changed));
+        let warnings = rows.iter().flat_map(|(key, old, new)| machine::warnings(key.parameter, *old, new.values()));
+        warnings.chain(machine).collect()
+    }
+
+    fn follow_up_note(&self, written: &[Key]) -> Option<String> {
+        written.iter().any(|key| key.parameter.group() == Group::Machine).then(|| POWER_CYCLE.to_owned())
     }
 
     async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Answers<Record>, Failure> {
@@ -305,16 +329,6 @@ impl Store for Parameters {
 
 impl EepromRow for Parameters {
     const IS_MIXED: bool = true;
-    const NOT_RESTORED: &'static str = "machine and special parameters are written if their group is typed, such as \
-                                        `param restore FILE machine special`";
-
-    fn is_restored(key: Key) -> bool {
-        !is_machine(key)
-    }
-
-    fn is_absent(key: Key) -> bool {
-        !key.parameter.only_on.is_empty()
-    }
 
     fn rank(key: Key) -> usize {
         GROUPS.iter().position(|group| *group == key.parameter.group()).unwrap_or_default()
@@ -332,7 +346,7 @@ impl EepromRow for Parameters {
         let values = key.row.map(Value::Number).into_iter().chain(values).collect();
         parameter_cell(key.parameter, values).map_err(|error| {
             Failure::usage(format!("{}: {error}", key.parameter.name))
-                .hint("the stored value cannot be written back; type all values")
+                .hint("type all values; the stored value cannot be written back")
         })
     }
 
@@ -342,19 +356,6 @@ impl EepromRow for Parameters {
 
     fn check(&self, key: Key, values: &[Value]) -> Result<(), Failure> {
         machine::check(key.parameter, values)
-    }
-
-    fn consequences(&self, rows: &[Differing<'_, Self>]) -> Vec<String> {
-        let is_machine = |key: &Key| key.parameter.group() == Group::Machine;
-        let changed: Vec<&Parameter> =
-            rows.iter().filter(|(key, ..)| is_machine(key)).map(|(key, ..)| key.parameter).collect();
-        let machine = (!changed.is_empty()).then(|| consequence_of(&changed));
-        let warnings = rows.iter().flat_map(|(key, old, new)| machine::warnings(key.parameter, *old, new.values()));
-        warnings.chain(machine).collect()
-    }
-
-    fn follow_up_note(&self, written: &[Key]) -> Option<String> {
-        written.iter().any(|key| key.parameter.group() == Group::Machine).then(|| POWER_CYCLE.to_owned())
     }
 }
 

@@ -15,14 +15,14 @@ use armctl_frame::store::{Store as _, Writable as _};
 fn parameters_are_read_by_name_or_id() {
     assert_eq!(blocks(&["param", "get", "Soft-Limit-Plus", "p01", "M09"]).unwrap(), ["@RPAR P01", "@RPAR M09"]);
     assert_eq!(blocks(&["param", "list", "special"]).unwrap(), ["@RPAR U03", "@RPAR U21", "@RPAR U22"]);
-    // Parameters that only some controllers have get a second request after a refusal.
+    // A parameter that only some controllers have is requested a second time after a refusal.
     let mut all = blocks(&["param", "list"]).unwrap();
     all.dedup();
     assert_eq!(all.len(), 74);
     let error = objection(&["param", "get", "soft-limit-pluss"]);
     assert!(error.contains("unknown parameter; did you mean soft-limit-plus?"), "{error}");
     let error = objection(&["param", "get", "t4.s1"]);
-    assert!(error.contains("mvm-points is a table; `toyo mvm get` reads its rows"), "{error}");
+    assert!(error.contains("mvm-points is a table; use `toyo mvm get` to read its rows"), "{error}");
 }
 
 #[test]
@@ -42,7 +42,7 @@ fn a_write_compares_first_and_takes_the_host() {
     assert_eq!(blocks(&["param", "set", "m09", "english"]).unwrap(), ["@RPAR M09", "@WPAR M09 E", "@RPAR M09"]);
     assert_eq!(blocks(&["param", "set", "m01", "0/01/3"]).unwrap(), ["@RPAR M01", "@WPAR M01 0/01/3", "@RPAR M01"]);
     assert_eq!(blocks(&["param", "set", "p13", "<=", "-5", "0/01/3"]).unwrap()[1], "@WPAR P13 AX1<=-0005.00 0/01/3");
-    // Kept values are unknown in a dry run.
+    // Values that are kept are unknown in a dry run.
     assert_eq!(
         all_blocks(&["param", "set", "p01", "ax2=150"]).unwrap(),
         [
@@ -81,7 +81,7 @@ fn wrong_arguments_send_nothing() {
 #[test]
 fn the_confirmation_names_the_effects_of_machine_parameters() {
     let told = |id| machine::consequence_of(&[Parameter::named(id).unwrap()]);
-    assert_eq!(told("E06"), "after a change of E06 (max-speed) the controller executes nothing before a restart");
+    assert_eq!(told("E06"), "after a change of E06 (max-speed), the controller executes no command until a restart");
     assert!(told("E22").contains("easy programs"));
 }
 
@@ -104,12 +104,12 @@ fn the_confirmation_names_steps_that_would_be_lost() {
     );
 }
 
-/// Number of written items.
+/// Returns the number of items that were written.
 fn written(report: &serde_json::Value) -> usize {
     report["items"].as_array().unwrap().iter().filter(|item| item["written"] == true).count()
 }
 
-/// A file in its own folder.
+/// Writes a file to its own folder, and returns the folder and the path.
 fn file_of(text: &str) -> (tempfile::TempDir, String) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("parameters.csv").to_str().unwrap().to_owned();
@@ -210,13 +210,13 @@ fn a_dump_names_values_that_cannot_be_written_back() {
     let left_out = dumped["left_out"].as_array().unwrap().iter().find(|row| row["name"] == "cc-link").unwrap();
     assert_eq!(
         left_out["why"],
-        "its value station=0 rate=156K options=0 cannot be written back: cc-link: station: 0 is out of range (a number, \
-         1 to 61)"
+        "the value station=0 rate=156K options=0 cannot be written back: cc-link: station: 0 is out of range (a \
+         number, 1 to 61)"
     );
     assert!(!std::fs::read_to_string(&file).unwrap().contains("cc-link"));
 }
 
-/// A value of a field, selected by a number.
+/// A value for a field. `pick` selects which one.
 fn value(field: &Field, pick: u32) -> Value {
     let [low, high, ..] = pick.to_le_bytes();
     match field.form {
@@ -242,7 +242,7 @@ proptest! {
             let Ok(cell) = Parameters.cell(key, values) else { continue };
             let texts = Parameters.texts(&cell.wanted);
             let texts: Vec<Option<&str>> = texts.iter().map(|text| Some(text.as_str())).collect();
-            // The steps of all tasks must fit together.
+            // The total number of steps of all tasks is limited, so some values of E22 are rejected.
             let Ok(draft) = Parameters.draft(key, &texts) else {
                 prop_assert!(key.parameter.id == "E22", "{}: {texts:?}", key_text(key));
                 continue;
@@ -277,7 +277,7 @@ fn a_partial_change_reads_the_parameter_once_before_the_write() {
         received.borrow_mut().clear();
         bench.data(words);
         let received = received.borrow();
-        // Once before the write, and once to read it back.
+        // The value is read once before the write, and once after it.
         assert_eq!(received.iter().filter(|block| *block == read).count(), 2, "{received:#?}");
     }
 }

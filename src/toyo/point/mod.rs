@@ -28,7 +28,7 @@ use armctl_controller::toyo::table::Parameter;
 use armctl_frame::ValueKind;
 use armctl_frame::failure::Failure;
 use armctl_frame::output::Screen;
-use armctl_frame::robot::position::Position;
+use armctl_frame::robot::position::FourAxes;
 use armctl_frame::store::{Answers, Field, Ids, Store, TableWords, ids, table_commands};
 use armctl_frame::teach::parse_printed_position;
 
@@ -37,7 +37,7 @@ table_commands! {
     Point of Points {}
 }
 
-/// Every point has four coordinates, regardless of the number of axes.
+/// Number of coordinates of a point. It does not depend on the number of axes.
 pub const AXES: usize = 4;
 
 /// The coordinate table of a task.
@@ -45,33 +45,33 @@ pub const AXES: usize = 4;
 pub struct Points {
     letters: Letters,
     selected_task: Option<u8>,
-    /// Task of the points.
+    /// Task that the points belong to.
     task: u8,
 }
 
 impl Points {
-    /// Table of a task, or of the current task.
+    /// The table of a task, or of the current task.
     pub async fn of_task(link: &mut Link, task: Option<u8>) -> Result<Self, Failure> {
         Ok(Self { letters: link.letters().await?, selected_task: task, task: task.unwrap_or_default() })
     }
 
-    /// Table of a task of a machine whose axes have these letters.
+    /// The table of a task, on a machine whose axes have these letters.
     pub const fn with_letters(task: u8, letters: Letters) -> Self {
         Self { letters, selected_task: Some(task), task }
     }
 
-    /// The letters of the axes.
+    /// Letters of the axes.
     pub fn letters(&self) -> Letters {
         self.letters
     }
 
-    /// The task that was selected.
+    /// Task of the table.
     pub fn task(&self) -> u8 {
         self.task
     }
 }
 
-/// Task of the points.
+/// Argument that selects the task of the points.
 #[derive(Debug, Clone, Args)]
 pub struct TaskOptions {
     /// Task, 1 to 4; default: the current task. armctl selects it temporarily, which a read-only robot does not allow
@@ -79,16 +79,16 @@ pub struct TaskOptions {
     pub task: Option<u8>,
 }
 
-/// Additional keys of a point.
+/// Fields that toyo adds to a point.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct OfTask {
-    /// Task of the point.
+    /// Task that the point belongs to.
     pub task: u8,
     #[serde(flatten)]
     listed: Listed,
 }
 
-/// The coordinate table, T1.
+/// Returns the parameter that is the coordinate table, T1.
 pub fn table() -> &'static Parameter {
     Parameter::named("T1").expect("the parameter table has the coordinate table")
 }
@@ -98,7 +98,7 @@ fn field() -> field::Field {
     table().key.fields[0].named("point")
 }
 
-/// Parses a point number or a name.
+/// Parses a point number, or a name that the user assigned.
 pub fn parse_point(text: &str) -> Result<i32, String> {
     named(Kind::Point, text, |text| number(&field(), text))
 }
@@ -108,7 +108,7 @@ fn request(point: i32) -> Result<Request, Failure> {
     Request::read_parameter(table(), Some(point)).map_err(|error| wrong(&error))
 }
 
-/// Reads points of the selected task, each with its own result.
+/// Reads points of the selected task. Each point has its own result.
 pub async fn read(link: &mut Link, screen: &Screen, points: &[i32]) -> Result<Records, Failure> {
     let requests = points.iter().copied().map(request).collect::<Result<Vec<Request>, Failure>>()?;
     read_each(link, screen, "reading points", &requests).await
@@ -118,7 +118,7 @@ impl Store for Points {
     type Family = Toyo;
     type Key = i32;
     type Wire = Record;
-    type Value = Position;
+    type Value = FourAxes;
     type More = OfTask;
     type Options = TaskOptions;
 
@@ -126,13 +126,13 @@ impl Store for Points {
         nouns: ["point", "points"],
         placeholder: "POINT",
         range: "Rows of the coordinate table, 1 to 999: 1-10,20; or names",
-        reading: Some("999 points take a minute and a half at 9600 baud."),
+        reading: Some("At 9600 baud, a read of 999 points takes a minute and a half."),
         writing: Some(
-            "Values are x, y, z and r in mm, all in this order or some by name; the others stay: z=12.5. Names are the \
-             letters on the teach pendant (E01). If they are not X, Y, Z and R in this order, names are necessary. \
-             ax1 to ax4 are axes 1 to 4 on every machine. @FILE reads the output of `position --json`, @- reads it from \
-             stdin, `here` is the current position. Equal values are not written, because the EEPROM takes about a \
-             million rewrites.",
+            "The values are x, y, z and r in mm. Type all values in this order, or only some values by name; the \
+             other values stay: z=12.5. The names are the letters on the teach pendant (E01). If the letters are not \
+             X, Y, Z and R in this order, names are necessary. ax1 to ax4 are axes 1 to 4 on every machine. @FILE \
+             reads the output of `position --json`, @- reads it from stdin, `here` is the current position. armctl \
+             does not write equal values, because an EEPROM cell wears out after about a million writes.",
         ),
     };
     const IDS: Ids = ids!("toyo.point");
@@ -197,8 +197,8 @@ impl Store for Points {
         values::difference(old, new, &self.letters)
     }
 
-    fn value(&self, record: &Record) -> Option<Position> {
-        record.is_listed().then(|| Coordinates::of(record, self.letters).position())
+    fn value(&self, record: &Record) -> Option<FourAxes> {
+        record.is_listed().then(|| FourAxes(Coordinates::of(record, self.letters).position()))
     }
 
     fn more(&self, _point: i32, record: Option<&Record>) -> OfTask {

@@ -1,4 +1,4 @@
-//! `toyo teach`: stores the current position as a point. `point set 5 here` and `point teach 5` are equivalent.
+//! Command `toyo teach`: stores the current position as a point. `point set 5 here` and `point teach 5` are aliases.
 
 use clap::Args;
 
@@ -23,19 +23,18 @@ use armctl_frame::{Command, Context};
 /// Store the current position as a point, and read it back.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The command stores the position of `toyo position`, with servo power on or off. It needs a completed return \
-                  to the origin. `toyo point set 5 here` and `toyo point teach 5` are \
-                  the same."
+    after_help = "The command stores the position of `toyo position`, with servo power on or off. The axes must have \
+                  returned to the origin before. `toyo point set 5 here` and `toyo point teach 5` are the same."
 )]
 pub struct Teach {
-    /// Row of the coordinate table, 1 to 999, or a name
+    /// Row of the coordinate table, 1 to 999, or the name of a point
     #[arg(value_name = "POINT", value_parser = parse_point, add = complete::POINT)]
     point: i32,
     #[command(flatten)]
     options: TaskOptions,
 }
 
-/// Position as text.
+/// Formats a position for messages.
 fn position_text(coordinates: &Coordinates) -> String {
     format!("{} (mm)", coordinates.in_a_line())
 }
@@ -92,7 +91,7 @@ impl Teach {
         if !is_stored {
             points.write(link, screen, &[(point, Some(&stored), &new)]).await?;
         }
-        // The value was written and read back.
+        // The position was written and read back.
         let name = point.to_string();
         let taught =
             Taught::new(name, Some(old.position()), coordinates.position(), coordinates.position().of_group(UNIT));

@@ -78,7 +78,7 @@ fn all_errors_of_a_file_are_reported_and_nothing_is_sent() {
     assert_eq!(failure.kind.exit(), 2);
     let lines: Vec<&str> = failure.message.lines().collect();
     assert_eq!(lines.len(), 2);
-    assert!(lines[0].ends_with(":2:1: 4 cells for 5 columns"), "{}", lines[0]);
+    assert!(lines[0].ends_with(":2:1: the row has 4 cells, but the table has 5 columns"), "{}", lines[0]);
 }
 
 fn five_points() -> tempfile::NamedTempFile {
@@ -97,13 +97,13 @@ fn a_failed_write_ends_the_restore_with_a_report() {
     let failure = failure.unwrap();
     assert_eq!(failure.kind.exit(), 9);
     assert!(failure.message.starts_with("3 of 5 failed: point 3: "), "{failure}");
-    assert!(failure.message.contains("holds something else"), "{failure}");
+    assert!(failure.message.contains("the stored value differs"), "{failure}");
     assert_eq!(outcomes(&report), [(true, true), (true, true), (false, false), (false, false), (false, false)]);
     let last = report["items"][4]["error"]["message"].as_str().unwrap();
     assert!(last.starts_with("not written: "), "{last}");
 }
 
-/// Whether each point has a result, and whether it was written.
+/// For each point: whether it has a result, and whether it was written.
 fn outcomes(report: &serde_json::Value) -> Vec<(bool, bool)> {
     let flag = |item: &serde_json::Value, key: &str| item[key].as_bool().unwrap();
     report["items"].as_array().unwrap().iter().map(|item| (flag(item, "ok"), flag(item, "written"))).collect()
@@ -128,7 +128,7 @@ fn an_accepted_write_without_read_back_has_an_unknown_outcome() {
     });
     let points = five_points();
     let (report, failure) = bench.run(&["point", "restore", points.path().to_str().unwrap()]).unwrap();
-    assert!(failure.unwrap().message.contains("was accepted, but not read back: "));
+    assert!(failure.unwrap().message.contains("but the value could not be read back: "));
     let kinds: Vec<_> = report["items"].as_array().unwrap().iter().map(|item| item["error"]["kind"].clone()).collect();
     assert_eq!(kinds[2..], ["outcome_unknown", "no_answer", "no_answer"]);
     assert_eq!(received.borrow().iter().filter(|block| block.starts_with("@WPAR")).count(), 3);
@@ -153,7 +153,7 @@ fn the_current_task_is_restored_after_the_command() {
     assert_eq!(bench.data(&["point", "get", "1"])["items"][0]["task"], 3);
 }
 
-/// Axes 2 and 3 have exchanged letters, as on a machine with a vertical second axis.
+/// The letters of axes 2 and 3 are exchanged, as on a machine whose second axis is vertical.
 const CROSSED: &str = "write = [\"WPAR E01 AX1=X AX2=Z AX3=Y AX4=R\"]\norigin = true\n";
 
 #[test]
@@ -188,7 +188,7 @@ fn values_without_names_are_rejected_if_letters_are_not_in_default_order() {
         let failure = bench.run(words).unwrap_err();
         assert_eq!(failure.kind.exit(), 2);
         assert!(failure.message.ends_with("axes 1 to 4 have the letters X, Z, Y, R"), "{failure}");
-        assert!(failure.hint.unwrap().starts_with("type them by name: x=… z=… y=… r=…"));
+        assert!(failure.hint.unwrap().starts_with("type the coordinates by name: x=… z=… y=… r=…"));
     }
     assert!(!received.borrow().iter().any(|block| block.starts_with("@WPAR T1") || block.starts_with("@MRSS")));
 }

@@ -23,13 +23,13 @@ use armctl_frame::{OfflineCommand, Report};
 /// Check program files and print each error with line and column. Needs no robot.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The exit code is 0 if all files are valid programs, 8 if a file has errors, and 1 if a file cannot be read. \
-                        `program put` and `sim run` check too, and end with exit code 2.\n\n\
-                        Form of a file: one step per line, # or ; begins a comment, labels stand for tags, numbers can \
-                        be short. Warnings show where a controller stops: a RET without a call, a call that leads \
-                        back to itself, half an arc, a missing point, or an error in an offline run of some \
-                        seconds.\n\n      SPD V=5\nnext: MOVP a PT=1 CN=0 S V=0 POST\n      \
-                        JMPI TAG=next STN=0 PN1=.......1   ; while the gripper is full\n      END"
+    after_help = "The exit code is 0 if all files are valid programs, 8 if a file has errors, and 1 if a file cannot \
+                  be read. `program put` and `sim run` also check the file, and end with exit code 2 after an \
+                  error.\n\nForm of a file: one step per line, # or ; begins a comment, a label can replace a tag, \
+                  numbers can be short. Warnings show where a controller stops: a RET without a call, a call that \
+                  leads back to itself, an incomplete arc, a missing point, or an error in an offline run of some \
+                  seconds.\n\n      SPD V=5\nnext: MOVP a PT=1 CN=0 S V=0 POST\n      JMPI TAG=next STN=0 \
+                  PN1=.......1   ; while the gripper is full\n      END"
 )]
 pub struct Check {
     /// Program files; - is stdin
@@ -38,10 +38,10 @@ pub struct Check {
     /// Number of steps of the task
     #[arg(long, value_name = "STEPS", default_value_t = 5000, value_parser = clap::value_parser!(u16).range(1..=5000))]
     room: u16,
-    /// Taught points (CSV from `point dump`); a move to another point causes a warning
+    /// CSV file of the taught points from `point dump`; a move to a point that is not in it causes a warning
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
-    /// Name of a point, a counter or a timer, as in robots.toml: pick=PT1 (repeatable)
+    /// Name of a point, a counter or a timer, in the form of robots.toml: pick=PT1 (repeatable)
     #[arg(long, value_name = "NAME=ADDRESS", value_parser = text::name)]
     name: Vec<Name>,
     /// Treat warnings as errors
@@ -49,7 +49,7 @@ pub struct Check {
     strict: bool,
 }
 
-/// Error of a TSTR whose task has no program.
+/// Error code of a TSTR step for a task that has no program.
 const NO_TASK: u8 = 0x63;
 
 impl OfflineCommand for Check {
@@ -75,13 +75,13 @@ impl OfflineCommand for Check {
     }
 }
 
-/// Adds the step at which an offline run stops with an error, unless it already has a finding.
+/// Adds the step at which an offline run stops with an error, unless there is already a finding for this step.
 fn rehearsed(findings: &mut Vec<Finding>, stop: Option<&Stop>) {
     let Some(Stop { code, after_s, line }) = stop else { return };
     let said = findings.iter().filter(|finding| finding.line == *line).map(|finding| finding.severity).min();
     let severity = match said {
         Some(Severity::Error | Severity::Warning) => return,
-        // The result depends on the controller, or another file has the program of the task.
+        // Here the result depends on the controller, or the program of the task is in another file.
         Some(Severity::Note) => Severity::Note,
         None if code.is_none_or(|code| code == NO_TASK) => Severity::Note,
         None => Severity::Warning,
@@ -90,7 +90,7 @@ fn rehearsed(findings: &mut Vec<Finding>, stop: Option<&Stop>) {
         Some(code) => {
             format!("a controller stops here after {after_s:.3} s: error {}", errors::explain(*code).in_a_line())
         }
-        None => format!("everything waits here after {after_s:.3} s"),
+        None => format!("all tasks wait here after {after_s:.3} s"),
     };
     let at = findings.iter().position(|finding| finding.line > *line).unwrap_or(findings.len());
     findings.insert(
@@ -100,7 +100,9 @@ fn rehearsed(findings: &mut Vec<Finding>, stop: Option<&Stop>) {
             line: *line,
             column: 1,
             message: format!("in an offline run {what}"),
-            hint: Some("`toyo sim run` shows the earlier steps; counters begin at 0, inputs are off".to_owned()),
+            hint: Some(
+                "use `toyo sim run` to see the earlier steps; counters begin at 0, and inputs are off".to_owned(),
+            ),
         },
     );
 }
@@ -129,15 +131,15 @@ struct FileVerdict {
     findings: Vec<Remark>,
 }
 
-/// A label.
+/// A label of a program file, with the tag that it becomes.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Labelled {
     name: String,
-    /// Number of its tag.
+    /// Tag number of the label.
     tag: i32,
-    /// Step of the tag.
+    /// Number of the step that contains the tag.
     step: usize,
-    /// Line of the file.
+    /// Line of the label in the file.
     line: usize,
 }
 
@@ -151,7 +153,7 @@ impl Labelled {
         program.labels.iter().map(labelled).collect()
     }
 
-    /// `next = tag 001, step 2`.
+    /// Describes the label, for example `next = tag 001, step 2`.
     pub fn in_a_line(&self) -> String {
         format!("{} = tag {:03}, step {}", self.name, self.tag, self.step)
     }
@@ -174,7 +176,7 @@ impl FileVerdict {
         }
     }
 
-    /// `pick.txt: 12 steps, 2 labels, 1 warning`.
+    /// Describes the result, for example `pick.txt: 12 steps, 2 labels, 1 warning`.
     fn in_a_line(&self) -> Cell {
         let counted = |count: usize, what: &str| match count {
             0 => None,
@@ -259,7 +261,7 @@ b.txt: 2 steps, 1 label
         assert_eq!((failure.kind.exit(), failure.message.as_str()), (8, "a.txt has errors"));
     }
 
-    /// Errors that appear only when the steps run.
+    /// A run finds errors that the steps alone do not show.
     #[test]
     fn a_run_finds_what_the_steps_do_not_show() {
         let folder = tempfile::tempdir().unwrap();
@@ -283,7 +285,7 @@ b.txt: 2 steps, 1 label
         assert_eq!(findings("NOP\nTSTR TASK=2\nEND\n"), [("note", 2, error("63: task cannot be started"))]);
         assert_eq!(
             findings("NOP\nIN STN=0 PN1=.......1 AND\nEND\n"),
-            [("note", 2, "in an offline run everything waits here after 0.001 s".to_owned())]
+            [("note", 2, "in an offline run all tasks wait here after 0.001 s".to_owned())]
         );
         for text in ["RET\n", "a: SPD V=1\nJMP TAG=a\n", "SPD V=1\nEND\n"] {
             assert_eq!(findings(text), [], "{text}: it is said already, or nothing stops");

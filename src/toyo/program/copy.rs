@@ -23,23 +23,24 @@ use armctl_frame::output::Screen;
 use armctl_frame::output::view::View;
 use armctl_frame::{Command, Context, Report};
 
-/// Copy steps over others, within a task or to another task.
+/// Copy steps over other steps, within a task or to another task.
 #[derive(Debug, Args)]
-#[command(after_help = and_mode("A tag that is copied within a task exists twice, and a program stops there with error A2."))]
+#[command(after_help = and_mode("If you copy a tag within a task, the task contains the tag twice, and a program \
+                                 stops there with error A2."))]
 pub struct Copy {
-    /// First step
+    /// First step to copy
     #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
     from: u16,
-    /// Last step
+    /// Last step to copy
     #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
     to: u16,
-    /// First target step; the copy overwrites the steps from here on
+    /// First step to overwrite
     #[arg(long, value_name = "STEP", value_parser = clap::value_parser!(u16).range(1..=5000))]
     at: u16,
-    /// Task of the steps, 1 to 4; default: the current task
+    /// Task to copy from, 1 to 4; default: the current task
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     from_task: Option<u8>,
-    /// Task of the copy, 1 to 4; default: the task of the steps
+    /// Task to copy to, 1 to 4; default: the task to copy from
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     to_task: Option<u8>,
 }
@@ -55,7 +56,7 @@ impl Command for Copy {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Copied, Failure> {
         let Context { link, screen, authority, .. } = context;
         if self.to < self.from {
-            return Err(Failure::usage(format!("the last step, {}, is before the first, {}", self.to, self.from))
+            return Err(Failure::usage(format!("the last step {} is before the first step {}", self.to, self.from))
                 .hint("type the lower step first"));
         }
         if usize::from(self.end()) > armctl_controller::toyo::program::MOST_STEPS {
@@ -74,18 +75,19 @@ impl Command for Copy {
 }
 
 impl Copy {
-    /// Last step of the copy.
+    /// Returns the number of the last step that the copy overwrites.
     fn end(&self) -> u16 {
         self.at.saturating_add(self.to - self.from)
     }
 
-    /// The manual does not define the result of an overlap.
+    /// Returns an error if the steps and their copy overlap, because the manual does not define what the controller
+    /// then does.
     fn overlap(&self) -> Result<(), Failure> {
         if self.at > self.to || self.end() < self.from {
             return Ok(());
         }
         let Self { from, to, at, .. } = self;
-        Err(Failure::usage(format!("steps {from} to {to} and their copy, {at} to {}, overlap", self.end()))
+        Err(Failure::usage(format!("steps {from} to {to} overlap their copy, steps {at} to {}", self.end()))
             .hint("use `program get --from --to` and `program put --at` instead"))
     }
 
@@ -96,7 +98,7 @@ impl Copy {
         Request::of(table::Command::Cpss, values)
     }
 
-    /// Command text without the current task, which is not known yet.
+    /// Text of the command. The current task is omitted, because it is not known yet.
     fn sketch(&self) -> String {
         let step = |step: u16| Some(Value::Number(step.into()));
         let task = |task: Option<u8>| task.map(|task| Value::Number(task.into()));
@@ -163,9 +165,9 @@ impl Copy {
             link.plan(read, "the target of the copy");
         }
         steps::plan_open(link).await?;
-        link.plan_order(&self.sketch(), "whether they differ, and the current task").await?;
+        link.plan_order(&self.sketch(), "whether the steps differ, and the current task").await?;
         for read in &there {
-            link.plan_if(read, "whether they differ");
+            link.plan_if(read, "whether the steps differ");
         }
         link.put_back().await?;
         Err(unknown())
@@ -179,11 +181,11 @@ pub struct Copied {
     first_step: u16,
     last_step: u16,
     to_task: u8,
-    /// First step of the copy.
+    /// First step that the copy overwrites.
     at_step: u16,
-    /// Number of steps.
+    /// Number of steps that were copied.
     steps: usize,
-    /// Whether the steps were already equal, so that nothing was written.
+    /// Whether the target steps were already equal, so that nothing was written.
     was_there: bool,
 }
 

@@ -28,10 +28,10 @@ use armctl_frame::{Command, Context, Report};
 #[derive(Debug, Args)]
 #[command(after_help = and_mode("The command prints the deleted steps in the form of a program file."))]
 pub struct Delete {
-    /// Step, or the first of several steps
+    /// Step to delete, or the first of several steps
     #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
     step: u16,
-    /// Last of several steps
+    /// Last of several steps to delete
     #[arg(long, value_name = "STEP", value_parser = clap::value_parser!(u16).range(1..=5000))]
     to: Option<u16>,
     /// Task, 1 to 4; default: the current task
@@ -73,9 +73,9 @@ impl Delete {
         }
     }
 
-    /// Change to confirm.
+    /// Builds the change that the user must confirm.
     fn change(&self, deleted: &[Record], task: u8) -> Change {
-        // A step without effect also counts, because later steps move up.
+        // Steps that do nothing are also listed, because later steps move up.
         let steps = (self.step..).zip(deleted).map(|(step, record)| format!("step {step}: {}", record.written()));
         let change = match deleted.len() {
             1 => Change::new(format!("delete a step of task {task}")),
@@ -131,13 +131,13 @@ impl Delete {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Deleted {
     task: u8,
-    /// The steps with their former numbers.
+    /// Deleted steps, with the numbers that they had.
     deleted: Vec<Step>,
 }
 
 impl Report for Deleted {
     fn view(&self) -> View {
-        let lines = self.deleted.iter().map(|Step { step, instruction, .. }| format!("{step:04}  {instruction}\n"));
+        let lines = self.deleted.iter().map(|step| format!("{}\n", step.line()));
         View::text(format!("# deleted from task {}\n{}", self.task, lines.collect::<String>()))
     }
 }

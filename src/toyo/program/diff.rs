@@ -26,17 +26,17 @@ use armctl_frame::{Command, Context, Report};
 
 /// Compare a program in the controller with a text file. The exit code is 8 if they differ.
 #[derive(Debug, Args)]
-#[command(after_help = "The comparison ignores labels, comments, the form of numbers, and NOPs at the end. \
-                        It reads all steps of the task, which takes about 35 ms each at 9600 baud. For another task \
-                        than the current one, armctl selects that task temporarily. This is a change, which a \
-                        read-only robot does not allow.")]
+#[command(after_help = "The comparison ignores labels, comments, the form of numbers, and NOPs at the end. It reads \
+                        all steps of the task, which takes about 35 ms per step at 9600 baud. If the task is not the \
+                        current task, armctl selects it temporarily. This is a change, which a read-only robot does \
+                        not allow.")]
 pub struct Diff {
     /// A program file; - is stdin
     file: PathBuf,
     /// Task, 1 to 4; default: the current task
     #[arg(value_name = "TASK", value_parser = clap::value_parser!(u8).range(1..=4))]
     number: Option<u8>,
-    /// Task as a flag
+    /// Task as an option
     #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
 }
@@ -83,19 +83,19 @@ pub struct Difference {
     task: u8,
     /// Whether the steps are equal.
     equal: bool,
-    /// The file.
+    /// Comparison with the file.
     files: [FileItem<Steps>; 1],
 }
 
-/// Comparison of the steps with a file.
+/// Comparison of the steps in the controller with the steps of a file.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 struct Steps {
-    /// Changes from the controller (old) to the file (new); one line per step.
+    /// Changes from the controller (old) to the file (new). Each line is one step.
     #[serde(flatten)]
     compared: Compared,
-    /// Steps in the controller, up to the last step that is not a NOP.
+    /// Number of steps in the controller, up to the last step that is not a NOP.
     controller_steps: usize,
-    /// Steps of the file, up to the last step that is not a NOP.
+    /// Number of steps in the file, up to the last step that is not a NOP.
     file_steps: usize,
 }
 

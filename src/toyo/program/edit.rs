@@ -27,9 +27,9 @@ use armctl_frame::{Command, Context, Report};
 /// Edit the program of a task.
 #[derive(Debug, Args)]
 #[command(after_help = and_mode(
-    "armctl reads the program, opens it in $VISUAL or $EDITOR, and checks it. After a confirmation it writes the changed steps \
-     and reads them back. It does not overwrite a program that another client changed. After a failure, your text stays in a \
-     file that the message names."
+    "armctl reads the program, opens it in $VISUAL or $EDITOR, and checks it. After a confirmation, armctl writes the \
+     changed steps and reads them back. It does not overwrite a program that another client changed. After a failure, \
+     armctl keeps your text in a file, and the message shows the path."
 ))]
 pub struct Edit {
     /// Task, 1 to 4; default: the current task
@@ -83,21 +83,21 @@ impl Command for Edit {
             Err(failure) => {
                 let task = self.task.map_or_else(String::new, |task| format!(" --task {task}"));
                 Err(edited.keep_file(failure, |path| {
-                    format!("your text is in {path}: `toyo program put {path}{task}` writes it")
+                    format!("use `toyo program put {path}{task}` to write your text, which is in {path}")
                 }))
             }
         }
     }
 }
 
-/// Result of an edit.
+/// Report of an edited program.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct EditedProgram {
-    /// Whether the text was changed.
+    /// Whether the user changed the text.
     changed: bool,
-    /// Changes of the text.
+    /// Changes of the text, as diff hunks.
     hunks: Vec<Hunk>,
-    /// Result for the steps.
+    /// Result of the write; null if the text was not changed.
     #[serde(skip_serializing_if = "Option::is_none")]
     stored: Option<Stored>,
 }

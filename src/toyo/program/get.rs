@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::kept::Source;
 use super::steps;
-use crate::items::{self, Answers, Item, in_a_word};
+use crate::items::Answers;
 use crate::link::{Link, Toyo, misuse};
 use crate::tasks;
 use armctl_controller::Risk;
@@ -19,6 +19,7 @@ use armctl_controller::toyo::table::{Op, Parameter};
 use armctl_frame::backup::manifest::Hash;
 use armctl_frame::dry_run::unknown;
 use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::items::{ItemOutcome, verdict};
 use armctl_frame::local_names::Target;
 use armctl_frame::names;
 use armctl_frame::output::Screen;
@@ -32,22 +33,23 @@ use armctl_frame::{Command, Context, Report};
 /// Read the program of a task as text, which `program put` writes back.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "All steps are read, because subroutines can follow END. The text omits NOPs at the end. A step takes about 35 ms at 9600 baud. For another task than the current one, armctl selects that task \
-                        temporarily. This is a change, which a read-only robot does not allow.\n\nA controller \
-                        stores neither labels nor comments. If it has the steps that `program put` of this computer \
-                        wrote last, the command prints that text; otherwise it prints a note and the steps.\
-                        \n\nIf the controller \
-                        refuses a step, the text has ? in its place. Such a text \
-                        is not a valid program, and no file is written."
+    after_help = "All steps are read, because subroutines can follow END. The text omits NOPs at the end. A step \
+                  takes about 35 ms at 9600 baud. If the task is not the current task, armctl selects it temporarily. \
+                  This is a change, which a read-only robot does not allow.\n\nA controller stores neither labels nor \
+                  comments. If the controller has the steps that the last `program put` on this computer wrote, the \
+                  command prints the text of that file. Otherwise the command prints a note and the steps.\n\nIf the \
+                  controller refuses a step, the text has ? in its place. Such a text is not a valid program, and \
+                  armctl writes no file."
 )]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag")]
 pub struct Get {
-    /// A new file; default: stdout
+    /// New file for the program; default: stdout
+    #[arg(value_parser = parse_file)]
     file: Option<PathBuf>,
     /// Task, 1 to 4; default: the current task
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
-    /// First step
+    /// First step to read
     #[arg(long, value_name = "STEP", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=5000))]
     from: u16,
     /// Last step; default: the last step of the task
@@ -62,12 +64,22 @@ pub struct Get {
     /// Add comments with the points, speeds and other table rows of the program
     #[arg(long)]
     explain: bool,
-    /// Print the steps of the controller, without labels and comments of the text that was written
+    /// Print only the steps of the controller, without labels and comments of the text that `program put` wrote
     #[arg(long)]
     plain: bool,
     /// Replace the file if it exists
     #[arg(long)]
     force: bool,
+}
+
+/// Parses the name of a file. A number is meant as a step.
+fn parse_file(text: &str) -> Result<PathBuf, String> {
+    let is_step = text.starts_with(|first: char| first.is_ascii_digit())
+        && text.chars().all(|one| one.is_ascii_digit() || ",.-".contains(one));
+    if is_step {
+        return Err(format!("steps are selected with --from and --to; a file of this name is ./{text}"));
+    }
+    Ok(text.into())
 }
 
 impl Command for Get {
@@ -83,7 +95,7 @@ impl Command for Get {
         let Context { robot, link, screen, several, .. } = context;
         if let Some(to) = self.to.filter(|to| *to < self.from) {
             return Err(Failure::usage(format!("--to {to} is before --from {}", self.from))
-                .hint("name the lower step with --from"));
+                .hint("type the lower step with --from"));
         }
         if let Some(file) = self.file.as_ref().filter(|_| several) {
             return Err(Failure::usage(format!("{} needs one robot", file.display()))
@@ -119,7 +131,7 @@ impl Command for Get {
                 draft.write(text.as_bytes())?;
                 draft.commit()
             }
-            // A program file must be complete, and must not be replaced by an incomplete one.
+            // A program file must be complete. An incomplete program must not replace it.
             Some(_) => Err(Failure::new(Kind::ConditionNotMet, NOT_WRITTEN)),
             None => Ok(()),
         };
@@ -127,7 +139,8 @@ impl Command for Get {
         let file = target.iter().fold(file, |file, target| file.with_path(target.path()));
         let shown = if is_whole { program::used(&read) } else { read.len() };
         let step = |(step, answer): (u16, Result<Record, Failure>)| {
-            Item::kept("step", step.into(), answer.map(|record| Step::of(step.into(), &record)))
+            let outcome = answer.map(|record| Instruction::of(&record));
+            ReadStep { step, outcome: ItemOutcome::new(format!("step {step}"), outcome) }
         };
         Ok(Got {
             task,
@@ -146,12 +159,12 @@ impl Command for Get {
 }
 
 impl Get {
-    /// Whether options require another text than the one that was written.
+    /// Whether the options require a text other than the stored source text.
     fn changes_text(&self) -> bool {
         self.plain || self.numbers || self.explain
     }
 
-    /// All steps of a task, or of the current task.
+    /// Returns a command that reads all steps of this task, or of the current task.
     pub fn whole(task: Option<u8>) -> Self {
         Self {
             file: None,
@@ -166,7 +179,7 @@ impl Get {
         }
     }
 
-    /// Reads the steps: their task, the number of steps of the task, and each step.
+    /// Reads the steps. Returns their task, the number of steps of this task, and each step.
     pub async fn read(&self, link: &mut Link, screen: &Screen) -> Result<(u8, u16, Answers), Failure> {
         let task = tasks::choose(link, self.task).await?;
         let room = steps::room(link, task, self.to.unwrap_or(self.from)).await?;
@@ -175,7 +188,7 @@ impl Get {
         Ok((task, room, read))
     }
 
-    /// Records the requests of a dry run.
+    /// Records the requests in a dry run.
     pub async fn dry_run(&self, link: &mut Link) -> Result<Got, Failure> {
         tasks::choose(link, self.task).await?;
         link.plan(&steps::rooms_request(), "number of steps of the task");
@@ -185,13 +198,13 @@ impl Get {
     }
 }
 
-/// Note that the program differs from the text that was written last.
+/// Note: the program differs from the text that was last written.
 fn other_program(source: &Source, differences: usize) -> String {
     let Source { file, put_at, .. } = source;
     let steps = if differences == 1 { "1 step differs".to_owned() } else { format!("{differences} steps differ") };
     format!(
-        "note: the program differs from the text of {}, written on {put_at}: {steps}. The output shows its steps without \
-         labels and comments",
+        "note: the program differs from the text of {}, written on {put_at}: {steps}. The output shows the steps of \
+         the controller, without labels and comments",
         escape::line(file)
     )
 }
@@ -202,15 +215,15 @@ const NOT_WRITTEN: &str = "was not written, because the program is incomplete";
 /// Reasons why steps were not read.
 fn unread(answers: &Answers) -> Unread {
     let why = |failure: &Failure| match failure.kind {
-        // One reason for all steps that were not requested.
-        Kind::NoAnswer => in_a_word(failure.kind).to_owned(),
+        // Steps that were not requested have one common reason.
+        Kind::NoAnswer => "no answer".to_owned(),
         _ => escape::line(&failure.message).into_owned(),
     };
     let failed = answers.iter().enumerate().filter_map(|(index, answer)| Some((index, answer.as_ref().err()?)));
     failed.map(|(index, failure)| (index, why(failure))).collect()
 }
 
-/// Table rows that the steps use, without rows that the controller refuses.
+/// Table rows that the steps use. Rows that the controller refuses are omitted.
 async fn rows(link: &mut Link, steps: &[Record]) -> Result<Rows, Failure> {
     let mut rows = Rows::new();
     for (id, row) in program::uses(steps) {
@@ -222,54 +235,81 @@ async fn rows(link: &mut Link, steps: &[Record]) -> Result<Rows, Failure> {
     Ok(rows)
 }
 
-/// The program of a task, or a part of it.
+/// Report of the program of a task, or of a part of it.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Got {
     task: u8,
     /// Number of steps of the task.
     room_steps: u16,
-    /// The first step that was read.
+    /// Number of the first step that was read.
     first_step: u16,
-    /// The last step that was read.
+    /// Number of the last step that was read.
     last_step: usize,
-    /// Steps up to the last one that is not a NOP or was not read.
+    /// Number of steps up to the last step that is not a NOP, or that was not read.
     used_steps: usize,
-    /// Tags with their steps.
+    /// Tags of the program, with their steps.
     tags: Vec<Tag>,
-    /// Each step, without the NOPs at the end of the task.
-    steps: Vec<Item<Step>>,
-    /// Whether the text is the one that was written, with its labels and comments.
+    /// Each step. The NOPs at the end of the task are omitted.
+    steps: Vec<ReadStep>,
+    /// Whether the text is the stored source text, with its labels and comments.
     is_source: bool,
-    /// Text of the file, with `?` for steps that were not read; null if it went to a file.
+    /// Text of the file, with `?` for steps that were not read; null if the text was written to a file.
     text: Option<String>,
-    /// Text, and the file that was written; no file is written if a step was not read.
+    /// Text, and the file that was written. If a step was not read, no file is written.
     files: [FileItem<Plain>; 1],
     #[serde(skip)]
     read_steps: usize,
 }
 
-/// A tag.
+/// A tag and its step.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Tag {
     tag: i32,
     step: usize,
 }
 
+/// A step, or why it was not read.
+#[derive(Debug, Serialize, JsonSchema)]
+struct ReadStep {
+    /// Number of the step, starting with 1.
+    step: u16,
+    #[serde(flatten)]
+    outcome: ItemOutcome<Instruction>,
+}
+
 /// A step.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Step {
     /// From 1.
-    pub step: usize,
+    step: usize,
+    #[serde(flatten)]
+    content: Instruction,
+}
+
+/// Content of a step.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Instruction {
     /// Instruction in the controller.
-    pub instruction: String,
-    /// Whether the manual lists it; other instructions cannot be written.
-    pub in_manual: bool,
+    instruction: String,
+    /// Whether the manual lists the instruction. Other instructions cannot be written.
+    in_manual: bool,
+}
+
+impl Instruction {
+    fn of(record: &Record) -> Self {
+        Self { instruction: record.written(), in_manual: record.is_listed() }
+    }
 }
 
 impl Step {
-    /// A step as read.
+    /// Creates a step from a record that was read.
     pub fn of(step: usize, record: &Record) -> Self {
-        Self { step, instruction: record.written(), in_manual: record.is_listed() }
+        Self { step, content: Instruction::of(record) }
+    }
+
+    /// Number and instruction: `0003  MOVP`.
+    pub fn line(&self) -> String {
+        format!("{:04}  {}", self.step, self.content.instruction)
     }
 }
 
@@ -289,7 +329,7 @@ impl Report for Got {
     }
 
     fn failure(&self) -> Option<Failure> {
-        let failure = items::failure(self.read_steps, self.steps.iter().map(Item::error))?;
+        let failure = verdict(self.read_steps, self.steps.iter().filter_map(|step| step.outcome.error()))?;
         let [FileItem { error: Some(_), path: Some(file), .. }] = &self.files else { return Some(failure) };
         let message = format!("{}; {file} {NOT_WRITTEN}", failure.message);
         Some(Failure { message, ..failure })
@@ -301,7 +341,7 @@ mod tests {
     use crate::testing::{Bench, Fault, all_blocks, blocks, objection};
     use armctl_frame::failure::Kind;
 
-    /// A controller with a fault at step 2 of three.
+    /// Returns a controller with this fault at step 2 of three steps.
     fn with_step_2(fault: Fault) -> Bench {
         let state = "steps = { 1 = [\"SPD V=05\", \"NOP\", \"END\"] }";
         Bench::with_faults(state, move |block, _| if block == "@RSTX 0002" { fault } else { Fault::None }).0
@@ -314,7 +354,7 @@ mod tests {
         let failure = failure.unwrap();
         let why = "the controller refused RSTX 0002 (@NG): the status shows no reason";
         assert_eq!((failure.kind, failure.code.as_deref()), (Kind::Mixed, Some("NG")));
-        assert_eq!(failure.message, format!("1 of 2000 failed: {why}"));
+        assert_eq!(failure.message, format!("1 of 2000 failed: step 2: {why}"));
         let steps = got["steps"].as_array().unwrap();
         assert_eq!(
             steps[0],
@@ -327,7 +367,7 @@ mod tests {
              at the end of the program are omitted\n"
         );
         assert_eq!(got["text"], text);
-        // The text is not accepted as a program.
+        // `program put` does not accept the text as a program.
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("partial.txt");
         std::fs::write(&path, text).unwrap();

@@ -28,14 +28,15 @@ use armctl_frame::output::Screen;
 use armctl_frame::output::view::View;
 use armctl_frame::{Command, Context, Report};
 
-/// Insert a step; this step and later ones move by one.
+/// Insert a step. The number of each later step increases by one.
 #[derive(Debug, Args)]
-#[command(after_help = and_mode("The last step of the task is lost. If it is not a NOP, the command refuses."))]
+#[command(after_help = and_mode("The insertion removes the last step of the task. If the last step is not a NOP, \
+                                 armctl rejects the command."))]
 pub struct Insert {
     /// Number of the new step
     #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
     step: u16,
-    /// Instruction, such as MOVP pick or OUT STN=0 PN1=.......1; quote < and >
+    /// Instruction, for example MOVP pick or OUT STN=0 PN1=.......1; quote < and >
     #[arg(num_args = 0.., default_value = "NOP", add = complete::INSTRUCTION)]
     instruction: Vec<String>,
     /// Task, 1 to 4; default: the current task
@@ -63,13 +64,13 @@ impl Command for Insert {
 }
 
 impl Insert {
-    /// Instruction for the protocol. Its tag can be anywhere in the program.
+    /// Parses the instruction. A tag that it uses is not checked, because the tag can be anywhere in the program.
     fn instruction(&self, names: &Names) -> Result<Record, Failure> {
         let text = self.instruction.join(" ");
         let part = Part { first: self.step.into(), tags: None };
         let checked = check_named(text.as_bytes(), 1, Some(&part), names);
         let wrong = checked.errors().next().map(|finding| {
-            let hint = finding.hint.clone().unwrap_or_else(|| "nothing was sent".to_owned());
+            let hint = finding.hint.clone().unwrap_or_else(|| "correct the instruction; nothing was sent".to_owned());
             Failure::usage(format!("column {} of '{text}': {}", finding.column, finding.message)).hint(hint)
         });
         match (wrong, checked.program.and_then(|program| program.steps.into_iter().next())) {
@@ -99,7 +100,7 @@ impl Insert {
         let before = link.ask(&steps::read_request(step)).await?;
         let last = link.ask(&steps::read_request(room)).await?;
         if last != steps::nop() {
-            let message = format!("step {room}, the last of task {task}, would be lost: {}", last.written());
+            let message = format!("step {room}, the last step of task {task}, would be lost: {}", last.written());
             return Err(Failure::new(Kind::Rejected, message).hint(
                 "delete the step first, or increase the steps of the task with machine parameter E22 (task-steps)",
             ));
@@ -139,7 +140,7 @@ impl Insert {
         steps::plan_open(link).await?;
         link.ask(&self.order()).await?;
         if self.step < 5000 {
-            link.plan_if(&steps::read_request(self.step + 1), "whether it is the last step");
+            link.plan_if(&steps::read_request(self.step + 1), "whether the inserted step is the last step");
         }
         let cell = steps::cell(self.step, instruction)?;
         link.plan(&cell.read, THERE);
@@ -149,14 +150,14 @@ impl Insert {
     }
 }
 
-/// Failure because steps did not move as expected.
+/// Failure: the steps did not move as expected.
 pub fn moved_wrong(step: u16, wanted: &Record, found: &Record) -> Failure {
     let (wanted, found) = (wanted.written(), found.written());
     Failure::new(Kind::Malformed, format!("the controller answered @OK, but step {step} is '{found}', not '{wanted}'"))
-        .hint("`toyo program get` shows the program")
+        .hint("use `toyo program get` to see the program")
 }
 
-/// Result of an insert.
+/// Report of an inserted step.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Inserted {
     task: u8,
@@ -165,7 +166,6 @@ pub struct Inserted {
 
 impl Report for Inserted {
     fn view(&self) -> View {
-        let Step { step, instruction, .. } = &self.inserted;
-        View::text(format!("inserted in task {}: {step:04} {instruction}", self.task))
+        View::text(format!("inserted in task {}: {}", self.task, self.inserted.line()))
     }
 }

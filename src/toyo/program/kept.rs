@@ -1,7 +1,7 @@
-//! Source texts of programs that were written, because a controller stores neither labels nor comments.
+//! Source texts of programs that were written. They are stored because a controller stores neither labels nor comments.
 //!
 //! The state folder of the user has one file per controller and task. A text is valid only for exactly the steps that
-//! it produced. If it cannot be saved or read, only labels and comments are lost.
+//! were made from it. If a text cannot be saved or read, labels and comments are lost, but nothing else.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -18,24 +18,24 @@ use armctl_files as files;
 use armctl_frame::local_names::state_folder;
 use armctl_frame::settings::Robot;
 
-/// Beginning of each file.
+/// First word of each file.
 const FORMAT: &str = "armctl-toyo-source";
-/// Size limit of a file; 5000 steps with long comments need less.
+/// Maximum size of a file. 5000 steps with long comments need less.
 const MOST: u64 = 8 << 20;
-/// Tasks of a controller.
+/// Numbers of the tasks of a controller.
 const TASKS: std::ops::RangeInclusive<u8> = 1..=4;
 
 /// Source texts of a controller.
 #[derive(Debug, Clone, Default)]
 pub struct Sources {
-    /// Path prefix of the files; `None` if nothing is saved.
+    /// Prefix of the paths of the files; `None` if nothing is saved.
     prefix: Option<PathBuf>,
     address: String,
-    /// Whether the steps after the program can have changed.
+    /// Whether the steps after the program may have changed.
     is_doubted: bool,
 }
 
-/// A text that was written, with its steps.
+/// A source text that was written, and the steps that were made from it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Source {
     format: String,
@@ -44,15 +44,15 @@ pub struct Source {
     task: u8,
     /// Name of the file.
     pub file: String,
-    /// Time of the write.
+    /// Time at which the program was written.
     pub put_at: Timestamp,
     /// The text.
     pub text: String,
-    /// Steps in the controller, up to the last one that is not a NOP.
+    /// Steps in the controller, up to the last step that is not a NOP.
     steps: Vec<String>,
     /// Number of steps of the task.
     room: u16,
-    /// Whether all later steps were NOP, and no command of this user has changed them since.
+    /// Whether all later steps were NOP, and no command of this user has changed them since then.
     rest_is_nop: bool,
 }
 
@@ -62,7 +62,7 @@ impl Source {
         self.steps.len()
     }
 
-    /// Whether steps from the first one on equal the steps of the text.
+    /// Whether the steps from the first one on are equal to the steps of the text.
     pub fn is(&self, steps: &[Record]) -> bool {
         self.differences(steps) == 0
     }
@@ -74,9 +74,11 @@ impl Source {
         differing + used.abs_diff(self.steps.len())
     }
 
-    /// Whether the steps after the program need not be read before these steps are written. Its own steps are
-    /// unchanged. An edit on the pendant after them can be missed. It must not matter: the new program defines no tag
-    /// that can exist twice, jumps only to its own tags, and does not run beyond its end.
+    /// Whether the steps after the program need not be read before these steps are written. This is possible if the
+    /// steps of the stored program are unchanged and all later steps were NOP. Someone may have edited the later steps
+    /// on the pendant in the meantime, and this edit is not noticed. For this reason it must not matter for the new
+    /// program. The new program defines no tag that may exist twice, jumps only to its own tags, and does not run
+    /// beyond its end.
     pub fn knows_rest(&self, steps: &[Record], room: u16) -> bool {
         let known: Vec<Record> = self.steps.iter().filter_map(|step| instruction(step).ok()).collect();
         let known = tags(&known, 1);
@@ -85,19 +87,19 @@ impl Source {
     }
 }
 
-/// Whether the program ends before the later steps.
+/// Whether the program ends before the steps after it.
 fn ends(steps: &[Record]) -> bool {
     let layouts = [Op::End, Op::Jmp, Op::Ret].map(|op| op.row().layout);
     steps[..used(steps)].last().is_some_and(|last| layouts.contains(&last.layout()))
 }
 
-/// Whether a step jumps to a tag that is known only at run time.
+/// Whether a step jumps to a tag that is computed at run time.
 fn computes_jump(step: &Record) -> bool {
     [Op::Brac, Op::Psel].iter().any(|op| step.layout() == op.row().layout)
 }
 
 impl Sources {
-    /// Source texts of a robot; nothing is saved for a simulator in this process.
+    /// Source texts of a robot. For a simulator in this process, nothing is saved.
     pub fn of(robot: &Robot) -> Self {
         let Some(address) = robot.target.value.address().key() else { return Self::default() };
         let hash = Sha256::digest(address.as_bytes()).iter().take(8).fold(String::new(), |mut text, byte| {
@@ -115,14 +117,14 @@ impl Sources {
         Some(path.into())
     }
 
-    /// The text that was last written as the whole program of a task; `None` if it does not exist or cannot be read.
+    /// The text that was last written as the whole program of a task; `None` if there is none, or if it cannot be read.
     pub fn get(&self, task: u8) -> Option<Source> {
         let text = files::text(&self.path(task)?, MOST).ok()?;
         let source: Source = serde_json::from_str(&text).ok()?;
         (source.format == FORMAT && source.address == self.address && source.task == task).then_some(source)
     }
 
-    /// Saves a text that was written, with all steps of its task.
+    /// Saves a text that was written, together with all steps of its task.
     pub fn keep(&mut self, task: u8, (file, text): (&str, &str), steps: &[Record], room: u16) -> std::io::Result<()> {
         let steps = steps[..used(steps)].iter().map(Record::written).collect();
         let now = Timestamp::now();
@@ -145,13 +147,13 @@ impl Sources {
         files::replace(&path, &serde_json::to_vec(source)?)
     }
 
-    /// Marks the steps after the programs as unknown, before a command that changes steps.
+    /// Marks the steps after the programs as unknown. This is done before a command changes steps.
     pub fn doubt(&mut self) {
         if std::mem::replace(&mut self.is_doubted, true) {
             return;
         }
         for source in TASKS.filter_map(|task| self.get(task)).filter(|source| source.rest_is_nop) {
-            // The file is deleted if this fails, because a later put would otherwise read too few steps.
+            // If the file cannot be written, it is deleted. Otherwise, a later `put` would read too few steps.
             if self.write(&Source { rest_is_nop: false, ..source.clone() }).is_err()
                 && let Some(path) = self.path(source.task)
             {
@@ -160,7 +162,7 @@ impl Sources {
         }
     }
 
-    /// Marks the steps as known again.
+    /// Marks the steps after the programs as known again.
     pub fn trust(&mut self) {
         self.is_doubted = false;
     }

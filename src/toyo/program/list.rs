@@ -5,7 +5,6 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::steps;
-use crate::items::{self, in_a_word};
 use crate::link::Link;
 use crate::link::Toyo;
 use crate::tasks;
@@ -13,16 +12,16 @@ use armctl_controller::Risk;
 use armctl_controller::toyo::program::{tags, used};
 use armctl_frame::dry_run::unknown;
 use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::items::{ItemError, verdict};
 use armctl_frame::output::Screen;
-use armctl_frame::output::view::{Cell, Table, Tone, View};
+use armctl_frame::output::view::{Cell, Table, View};
 use armctl_frame::{Command, Context, Report};
 
-/// List the tasks with the number of steps of their programs.
+/// List the tasks, with the number of steps of each task.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "--used reads every step of every task, which takes about 35 ms per step at 9600 baud. armctl selects \
-                        each task temporarily. This is a change, which a read-only robot does not \
-                        allow."
+    after_help = "With --used, armctl reads every step of every task, which takes about 35 ms per step at 9600 baud. \
+                  armctl selects each task temporarily. This is a change, which a read-only robot does not allow."
 )]
 pub struct List {
     /// Read the programs to count their steps and list their tags
@@ -45,7 +44,7 @@ impl Command for List {
             tasks::choose(link, None).await?;
             link.plan(&steps::rooms_request(), "number of steps of the tasks");
             if self.used {
-                link.then("every step of every task is read, after the selection of the task");
+                link.then("each task is selected, and all its steps are read");
             }
             return Err(unknown());
         }
@@ -68,7 +67,9 @@ impl List {
                         listed.used_steps = Some(used(&read));
                         listed.tags = Some(tags(&read, 1).into_keys().collect());
                     }
-                    Err(error) if matches!(error.kind, Kind::Refused | Kind::Malformed) => listed.error = Some(error),
+                    Err(failure) if matches!(failure.kind, Kind::Refused | Kind::Malformed) => {
+                        listed.error = Some(ItemError::new(format!("task {task}"), failure));
+                    }
                     Err(failure) => return Err(failure),
                 }
             }
@@ -88,17 +89,18 @@ pub struct Listed {
 #[derive(Debug, Serialize, JsonSchema)]
 struct Task {
     task: u8,
-    /// Whether it is the current task.
+    /// Whether the task is the current task.
     current: bool,
     /// Number of steps of the task (E22).
     room_steps: u16,
-    /// Steps up to the last one that is not a NOP; null if they were not read.
+    /// Number of steps up to the last step that is not a NOP; null if the steps were not read.
     used_steps: Option<usize>,
-    /// Tags of the program; null if it was not read.
+    /// Tags of the program; null if the program was not read.
     tags: Option<Vec<i32>>,
     /// Reason why the program could not be read.
     #[serde(skip_serializing_if = "Option::is_none")]
-    error: Option<Failure>,
+    #[schemars(with = "ItemError")]
+    error: Option<ItemError>,
 }
 
 impl Report for Listed {
@@ -106,10 +108,7 @@ impl Report for Listed {
         let mut table = Table::new(&["task", "current", "steps", "used", "tags"], "no tasks");
         for Task { task, current, room_steps, used_steps, tags, error } in &self.tasks {
             let tags = tags.as_ref().map(|tags| tags.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "));
-            let tags = match error {
-                Some(error) => Cell::from(in_a_word(error.kind)).tone(Tone::Bad),
-                None => Cell::optional(tags),
-            };
+            let tags = error.as_ref().map_or_else(|| Cell::optional(tags), ItemError::cell);
             table.row([
                 (*task).into(),
                 if *current { "yes" } else { "" }.into(),
@@ -122,6 +121,6 @@ impl Report for Listed {
     }
 
     fn failure(&self) -> Option<Failure> {
-        items::failure(self.tasks.len(), self.tasks.iter().map(|task| task.error.as_ref()))
+        verdict(self.tasks.len(), self.tasks.iter().filter_map(|task| task.error.as_ref()))
     }
 }

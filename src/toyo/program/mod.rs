@@ -23,7 +23,7 @@ use armctl_frame::{Offline, commands};
 commands! {
     /// Commands for sequential programs.
     pub enum Program {
-        /// List tasks with the steps used and available
+        /// List the tasks, with their used and available steps
         List(list::List),
         /// Read a program as text
         Get(get::Get),
@@ -48,12 +48,13 @@ commands! {
     }
 }
 
-/// Adds to a help text that commands that write steps select program mode temporarily.
+/// Adds to a help text that a command selects program mode temporarily to write steps.
 fn and_mode(text: &str) -> String {
     format!("{text}\n\n{MODE}")
 }
 
-const MODE: &str = "Steps are written in program mode, as in the sample session of the manual (TO 3-1). A controller \
-                    in automatic or step mode is switched to it for the time of writing, and back; while a program \
-                    runs or is paused, nothing is written. What is stored already is not written again: the EEPROM \
-                    takes about a million rewrites of a step.";
+const MODE: &str = "armctl writes steps in program mode, as in the sample session of the manual (TO 3-1). If the \
+                    controller is in automatic or step mode, armctl selects program mode for the write, and the \
+                    earlier mode afterwards. While a program runs or is paused, armctl writes nothing. armctl does \
+                    not write a step that is already stored, because an EEPROM cell wears out after about a million \
+                    writes.";

@@ -34,7 +34,7 @@ use armctl_frame::robot::file::{FILES, FileItem};
 use armctl_frame::robot::item::Plain;
 use armctl_frame::{Command, Context, Report};
 
-/// Write a program from a text file.
+/// Write a program from a text file to the controller.
 #[derive(Debug, Args)]
 #[command(after_help = and_mode(HELP))]
 pub struct Put {
@@ -43,38 +43,38 @@ pub struct Put {
     /// Task, 1 to 4; default: the current task
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
-    /// Write a part of a program from this step on; other steps stay
+    /// Write the file as a part of a program, from this step on; other steps do not change
     #[arg(long, value_name = "STEP", value_parser = clap::value_parser!(u16).range(1..=5000))]
     at: Option<u16>,
-    /// Keep the steps after the last one of the file
+    /// Keep the steps after the last step of the file
     #[arg(long, conflicts_with = "at")]
     keep_rest: bool,
-    /// Continue an interrupted put; with a step, earlier steps are not compared
+    /// Continue an interrupted put; with a step, do not compare the steps before it
     #[arg(long, value_name = "STEP", num_args = 0..=1, require_equals = true, default_missing_value = "1",
           value_parser = clap::value_parser!(u16).range(1..=5000))]
     resume: Option<u16>,
-    /// Read every step of the task, even if armctl wrote the program and NOPs after it
+    /// Read every step of the task, even if armctl wrote the previous program with NOPs after it
     #[arg(long, conflicts_with_all = ["at", "keep_rest"])]
     read_all: bool,
-    /// Program that the controller must have before the write.
+    /// Program that the controller must still have before the write.
     #[arg(skip)]
     expected: Option<Vec<Record>>,
 }
 
-const HELP: &str = "The whole file is checked before anything is sent. The file is the program of the task: later \
-                    steps become NOP, so that no tag of an older program exists twice. With --at \
-                    it is a part of the program, and other steps stay.\n\nThe steps of the file are read, and \
-                    later steps; only different steps are written. If the controller has the program that armctl \
-                    wrote last, the later steps are NOP and are not read, unless the new program has \
-                    other tags or continues after its last step; --read-all reads them. \
-                    This computer stores the text, so that `program get` shows labels and comments again.\n\nNames \
-                    of points, counters and timers (robots.toml) stand for their numbers: PT=pick.";
+const HELP: &str = "armctl checks the whole file before it sends anything. The file is the whole program of the task: \
+                    later steps of the task become NOP, so that no tag of an older program exists twice. With --at, \
+                    the file is only a part of the program, and the other steps stay.\n\narmctl reads the steps of \
+                    the file and the later steps, and writes only different steps. If the controller has the program \
+                    that armctl wrote last, the later steps are NOP. armctl then does not read them, unless the new \
+                    program has other tags or continues after its last step; --read-all reads them. This computer \
+                    stores the text, so that `program get` shows labels and comments again.\n\nNames of points, \
+                    counters and timers (robots.toml) can replace their numbers: PT=pick.";
 
 /// A step to write.
 struct Edit {
     step: u16,
     instruction: Record,
-    /// Present instruction.
+    /// Instruction that the step has now.
     found: Record,
 }
 
@@ -91,7 +91,7 @@ impl Command for Put {
         let name = self.name();
         let bytes = files::read(&self.file)?;
         let names = names::of_robot(robot, screen);
-        // The tags around a part are known later.
+        // The tags around a part are only known later.
         let around = self.at.map(|at| part(at, None));
         let room = MOST_STEPS + 1 - usize::from(self.at.unwrap_or(1));
         let program = text::program(&name, check_named(&bytes, room, around.as_ref(), names), screen)?;
@@ -111,12 +111,12 @@ impl Command for Put {
 }
 
 impl Put {
-    /// A program that was edited, to replace the program that was read.
+    /// Creates a `put` for an edited program, which replaces the program that was read.
     pub fn edited(file: PathBuf, task: Option<u8>, expected: Vec<Record>) -> Self {
         Self { file, task, at: None, keep_rest: false, resume: None, read_all: true, expected: Some(expected) }
     }
 
-    /// Name of the text in messages.
+    /// Returns the name of the text for messages.
     fn name(&self) -> String {
         if self.expected.is_some() { "edited".to_owned() } else { files::display_path(&self.file) }
     }
@@ -138,7 +138,7 @@ impl Put {
                 let checked = check_named(bytes, room.into(), None, names);
                 text::program(&name, checked, &screen.silenced())?
             }
-            // A part without tags does not depend on the tags around it.
+            // A part that uses no tags does not depend on the tags around it.
             Some(_) if !names_tags(program) => program.clone(),
             Some(at) => {
                 let tags = tags_around(link, screen, first, last, room).await?;
@@ -165,7 +165,8 @@ impl Put {
         if !changes.is_empty() {
             steps::open(link).await?;
             let mut progress = screen.items_progress("writing steps", changes.len() as u64);
-            // The caller also waits for Ctrl-C, but polls this work first. It therefore ends here, with the account.
+            // The caller also waits for Ctrl-C, but polls this work first. The work therefore ends here, so that the
+            // failure can state the number of written steps.
             let outcome = interruptible(async {
                 for Edit { step, instruction, .. } in &changes {
                     link.overwrite(screen, &steps::cell(*step, instruction)?, &mut cells).await?;
@@ -201,9 +202,9 @@ impl Put {
         })
     }
 
-    /// Present steps from the first compared step on. If the controller has the program that was written last with only
-    /// NOPs after it, later steps are not read. The first later step is read, because the pendant can have extended the
-    /// program there.
+    /// Reads the current steps, from the first step that is compared. If the controller still has the program that was
+    /// last written, followed only by NOPs, the later steps are not read. The first later step is read, because someone
+    /// may have extended the program there on the pendant.
     async fn found(
         &self,
         (link, screen): (&mut Link, &Screen),
@@ -225,7 +226,7 @@ impl Put {
         Ok(found)
     }
 
-    /// Saves the text for a later `get`.
+    /// Saves the text for a later `program get`.
     fn keep(&self, link: &mut Link, screen: &Screen, (task, room): (u8, u16), bytes: &[u8], program: &Program) {
         let Ok(text) = std::str::from_utf8(bytes) else { return };
         let steps = records(program);
@@ -253,7 +254,7 @@ impl Put {
         }
         let clears = self.at.is_none() && !self.keep_rest && usize::from(last) < MOST_STEPS;
         if clears {
-            link.plan(&steps::read_request(last + 1), "and so on to the end of the task");
+            link.plan(&steps::read_request(last + 1), "and so on to the last step of the task");
         }
         steps::plan_open(link).await?;
         for cell in &cells {
@@ -269,7 +270,7 @@ impl Put {
     }
 }
 
-/// Change to confirm.
+/// Builds the change that the user must confirm.
 fn replacing(edits: &[Edit], task: u8) -> Change {
     let lost = edits.iter().filter(|edit| edit.found != steps::nop());
     let lost: Vec<[String; 3]> = lost
@@ -278,7 +279,7 @@ fn replacing(edits: &[Edit], task: u8) -> Change {
     steps::overwriting(task, &lost)
 }
 
-/// Whether a step defines or uses a tag.
+/// Whether a step of the program defines or uses a tag.
 fn names_tags(program: &Program) -> bool {
     let is_tag = |name: &str| matches!(name, "tag" | "then" | "else");
     program.steps.iter().any(|step| step.record.pairs().any(|(field, _)| is_tag(field.name)))
@@ -296,7 +297,7 @@ fn part(at: u16, tags: Option<BTreeSet<i32>>) -> Part {
     Part { first: at.into(), tags }
 }
 
-/// Tags of the steps before and after a part.
+/// Reads the tags of the steps before and after a part.
 async fn tags_around(
     link: &mut Link,
     screen: &Screen,
@@ -309,33 +310,34 @@ async fn tags_around(
     Ok(program::tags(&around, 1).into_keys().collect())
 }
 
-/// Failure of the write at a step, with the steps that are written and the hint to continue.
+/// Failure of the write at a step. It states which steps were written, and has a hint how to continue.
 fn account(failure: Failure, name: &str, first: u16, next: u16, left: usize) -> Failure {
     let rest = if left == 1 { "1 step is".to_owned() } else { format!("{left} steps are") };
     let state = match next - first {
-        0 => format!("no step of {name} is known to be written, {rest} still to be written"),
+        0 => format!("it is not known whether a step of {name} was written; {rest} still to be written"),
         1 => format!("step {first} equals {name}; {rest} still to be written"),
         _ => format!("steps {first} to {} equal {name}; {rest} still to be written", next - 1),
     };
-    let again = format!("use --resume={next} to continue there; without it, all steps are compared again");
+    let again =
+        format!("use --resume={next} to continue at that step; without --resume, armctl compares all steps again");
     let hint = failure.hint.as_ref().map_or(again.clone(), |hint| format!("{hint}; then {again}"));
     Failure { message: format!("{}; {state}", failure.message.trim_end_matches('.')), ..failure }.hint(hint)
 }
 
-/// Result of a put.
+/// Report of a program that was written.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Stored {
-    /// The file with the program.
+    /// The program file.
     files: [FileItem<Plain>; 1],
     #[serde(skip)]
     shown: String,
     task: u8,
     first_step: u16,
-    /// Last step of the file.
+    /// Number of the last step of the file.
     last_step: u16,
-    /// Later steps that became NOP.
+    /// Number of later steps that became NOP.
     cleared_steps: usize,
-    /// Later steps that were not read, because armctl wrote the previous program with NOPs after it.
+    /// Number of later steps that were not read, because armctl wrote the previous program and NOPs after it.
     unread_steps: usize,
     /// Labels with their tags.
     labels: Vec<Labelled>,

@@ -22,8 +22,9 @@ use armctl_frame::{Command, Context, Report};
 
 /// Find the step of a tag. The search changes the current step of the program.
 #[derive(Debug, Args)]
-#[command(after_help = "The controller reports only whether the tag exists. armctl then reads the current step, and \
-                        reports its number if it is the tag. `program get` lists all tags and changes nothing.")]
+#[command(after_help = "The controller reports only whether the tag exists. armctl then reads the current step. If \
+                        the current step is the tag, armctl reports the number of the step. `program get` lists all \
+                        tags and changes nothing.")]
 pub struct Search {
     /// Number of the tag
     #[arg(value_name = "TAG", value_parser = clap::value_parser!(u16).range(1..=999))]
@@ -65,14 +66,14 @@ impl Search {
         if status.executing() || status.paused() {
             return Err(Failure::new(
                 Kind::Rejected,
-                "a program runs or is paused; a search would move its current step",
+                "a program runs or is paused, and a search would move its current step",
             )
             .hint("use `toyo program get`, which lists all tags"));
         }
         if link.try_ask(&self.order()).await?.is_err() {
             let (tag, task) = (self.number, task);
             return Err(Failure::new(Kind::Refused, format!("task {task} has no tag {tag:03} (@NG)"))
-                .hint("`toyo program get` lists all tags; `toyo status` shows other reasons for a refusal")
+                .hint("use `toyo program get` to list all tags, or `toyo status` to see other reasons for a refusal")
                 .code("NG"));
         }
         let answer = steps::numbered(link, 0).await?.map_err(|Refusal(request)| refusal::of_question(&request))?;
@@ -91,7 +92,7 @@ impl Search {
 pub struct TagReport {
     task: u8,
     tag: u16,
-    /// Step of the tag; null if the controller did not go there (ambiguity C21).
+    /// Step of the tag; null if the controller did not go to the tag (ambiguity C21).
     step: Option<i32>,
 }
 

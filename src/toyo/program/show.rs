@@ -47,7 +47,7 @@ impl Command for Show {
 #[serde(transparent)]
 pub struct Current(Program<Instruction>);
 
-/// Additional keys of the step.
+/// Fields that toyo adds to the step.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 struct Instruction {
     /// Task of the program.

@@ -1,4 +1,4 @@
-//! Steps of a task: their number, their reads, and the preparation of writes.
+//! Steps of a task: how many there are, how they are read, and how a write is prepared.
 
 use std::ops::RangeInclusive;
 
@@ -16,20 +16,20 @@ use armctl_frame::output::Screen;
 
 const READING: &str = "reading steps";
 
-/// Number of steps of each task (TO 2-4, E22).
+/// Reads the number of steps of each task (TO 2-4, E22).
 pub async fn rooms(link: &mut Link) -> Result<[u16; 4], Failure> {
     let record = link.ask(&rooms_request()).await?;
     let room = |task| record.number(task).and_then(|steps| u16::try_from(steps).ok()).unwrap_or_default();
     Ok(["task1", "task2", "task3", "task4"].map(room))
 }
 
-/// Request for the number of steps of the tasks.
+/// Returns the request that reads the number of steps of the tasks.
 pub fn rooms_request() -> Request {
     let parameter = Parameter::named("E22").expect("the table has E22");
     Request::read_parameter(parameter, None).expect("E22 has no rows")
 }
 
-/// Number of steps of a task; a failure if a command needs a step beyond it, up to `last`.
+/// Number of steps of a task. Fails if a command needs a step beyond it, up to `last`.
 pub async fn room(link: &mut Link, task: u8, last: u16) -> Result<u16, Failure> {
     let room = rooms(link).await?.get(usize::from(task) - 1).copied().unwrap_or_default();
     if last <= room {
@@ -37,15 +37,15 @@ pub async fn room(link: &mut Link, task: u8, last: u16) -> Result<u16, Failure> 
     }
     let has = if room == 0 { "no steps".to_owned() } else { format!("{room} steps") };
     Err(Failure::usage(format!("task {task} has {has}, but the command needs step {last}"))
-        .hint("the machine parameter E22 (task-steps) sets the number of steps of each task"))
+        .hint("check the machine parameter E22 (task-steps), which sets the number of steps of each task"))
 }
 
-/// Request for a step.
+/// Returns the request that reads a step.
 pub fn read_request(step: u16) -> Request {
     Request::read_step(step.into()).expect("steps are at most 5000")
 }
 
-/// Reads a step with its number. A refusal is a valid result. Step 0 is the current step.
+/// Reads a step with its number. Step 0 is the current step. A refusal is a valid result.
 pub async fn numbered(link: &mut Link, step: u16) -> Result<Result<Record, Refusal>, Failure> {
     let request = read_request(step);
     Ok(match link.raw(&request).await? {
@@ -54,7 +54,7 @@ pub async fn numbered(link: &mut Link, step: u16) -> Result<Result<Record, Refus
     })
 }
 
-/// Reads steps up to the first for which `is_last` holds, each with its own result.
+/// Reads steps up to the first step for which `is_last` is true. Each step has its own result.
 pub async fn read_each(
     link: &mut Link,
     screen: &Screen,
@@ -65,7 +65,7 @@ pub async fn read_each(
     read_until(link, screen, READING, &requests, is_last).await
 }
 
-/// Reads all steps of a range before they are overwritten; a missing answer is a failure.
+/// Reads all steps of a range before they are overwritten. A missing answer is a failure.
 pub async fn read_all(link: &mut Link, screen: &Screen, steps: RangeInclusive<u16>) -> Result<Vec<Record>, Failure> {
     let mut read = Vec::with_capacity(steps.len());
     let mut progress = screen.items_progress(READING, steps.len() as u64);
@@ -82,7 +82,7 @@ pub fn cell(step: u16, instruction: &Record) -> Result<Cell, Failure> {
     Ok(Cell { read: read_request(step), write, wanted: instruction.clone() })
 }
 
-/// Change to confirm: replaced steps with old and new text.
+/// Change to confirm: the steps that will be replaced, with old and new text.
 pub fn overwriting(task: u8, replaced: &[[String; 3]]) -> Change {
     let change = match replaced.len() {
         0 => return Change::none(),
@@ -92,7 +92,7 @@ pub fn overwriting(task: u8, replaced: &[[String; 3]]) -> Change {
     replaced.iter().fold(change, |change, [what, old, new]| change.replaces(what, old, new))
 }
 
-/// The instruction without effect.
+/// NOP, the instruction without effect.
 pub fn nop() -> Record {
     Op::Nop.row().layout.record(Vec::new()).expect("NOP has no values")
 }
@@ -101,13 +101,19 @@ pub fn nop() -> Record {
 pub async fn open(link: &mut Link) -> Result<(), Failure> {
     let status = link.status_of(&[0, 2]).await?;
     let busy = |what: &str, hint: &str| {
-        Err(Failure::new(Kind::Rejected, format!("{what}, which prevents the write of steps")).hint(hint))
+        Err(Failure::new(Kind::Rejected, format!("{what}, so armctl cannot write steps")).hint(hint))
     };
     if status.executing() || status.homing() {
-        return busy("the controller executes a program or a command", "wait for the end, or use `toyo stop`");
+        return busy(
+            "the controller executes a program or a command",
+            "wait until the program or command has ended, or use `toyo stop`",
+        );
     }
     if status.paused() {
-        return busy("a program is paused", "continue it with `toyo run sequential`, or reset it with `toyo reset`");
+        return busy(
+            "a program is paused",
+            "continue the program with `toyo run sequential`, or reset it with `toyo reset`",
+        );
     }
     let back = match status.run_mode() {
         Some(RunMode::Automatic) => Command::Maut,
@@ -117,7 +123,7 @@ pub async fn open(link: &mut Link) -> Result<(), Failure> {
     link.borrow(&Request::bare(Command::Mpro), Request::bare(back)).await
 }
 
-/// Records the requests of [`open`] in a dry run.
+/// In a dry run, records the requests of [`open`].
 pub async fn plan_open(link: &mut Link) -> Result<(), Failure> {
     let page = |page| Request::of(Command::Stas, [Value::Number(page)]);
     link.plan(&page(0), "whether a program runs");

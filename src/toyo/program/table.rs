@@ -98,8 +98,8 @@ impl Writable for Steps {
         Err(format!("step {step}: steps are written by `toyo program put`"))
     }
 
-    /// A step that the manual does not list is not written. If the controller has another one, the program would be a
-    /// different one, and nothing of it is written.
+    /// A step that the manual does not list cannot be written. If the controller has another step there, the result
+    /// would be a different program, so nothing of the program is written.
     fn complete_draft(&self, step: u16, wanted: &Record, old: Option<&Record>) -> Result<Record, Failure> {
         let (text, found) = (wanted.written(), old.map(Record::written).unwrap_or_default());
         match old {

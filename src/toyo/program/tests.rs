@@ -6,7 +6,7 @@ use tempfile::TempDir;
 use crate::testing::{Bench, blocks, objection};
 use armctl_frame::failure::{Failure, Kind};
 
-/// The program of the manual's sample session (TO 3-1).
+/// The program in the sample session of the manual (TO 3-1).
 const SAMPLE: &str = "SPD V=5\nMOVP a PT=1 CN=0 S V=0 POST\nOUT STN=0 PN1=.......1\nEND\n";
 
 /// A controller, and a folder for its programs.
@@ -100,7 +100,11 @@ fn a_part_takes_tags_that_are_free() {
     );
     let failure = desk.put("TAG TAG=2\n", &["--at", "2"]).unwrap_err();
     assert_eq!(failure.kind, Kind::Usage);
-    assert!(failure.message.contains("tag 002 already exists in a step before or after these"), "{}", failure.message);
+    assert!(
+        failure.message.contains("tag 002 already exists in a step before or after the steps of this file"),
+        "{}",
+        failure.message
+    );
     assert!(desk.put("JMP TAG=7\n", &["--at", "2"]).is_err(), "there is no such tag around it");
     assert!(desk.put("JMP TAG=2\n", &["--at", "2"]).is_ok());
 }
@@ -149,7 +153,7 @@ fn nothing_falls_out_at_the_end() {
     let mut desk = Desk::with("steps = { 2 = [\"NOP\", \"END\"] }");
     let failure = desk.failure(&["insert", "1", "--task", "2"]);
     assert_eq!(failure.kind, Kind::Rejected);
-    assert_eq!(failure.message, "step 2, the last of task 2, would be lost: END");
+    assert_eq!(failure.message, "step 2, the last step of task 2, would be lost: END");
     assert_eq!(desk.text(&["--task", "2"]), "NOP\nEND\n");
 }
 
@@ -182,14 +186,14 @@ fn while_a_program_runs_nothing_is_written() {
 
 #[test]
 fn what_was_written_before_a_failure_is_told() {
-    // The fourth write of a cell is not kept: three programs are, the fourth fails at its first step.
+    // The fourth write to a cell is lost. Three programs are written, and the fourth fails at its first step.
     let mut desk = Desk::with("eeprom_limit = 1");
     desk.put("SPD V=1\nEND\n", &[]).unwrap();
     let failure = desk.put("SPD V=1\nNOP\nHOME\nEND\n", &[]).unwrap_err();
     assert_eq!(failure.kind, Kind::Malformed);
     assert!(failure.message.contains("; step 1 equals "), "{}", failure.message);
     assert!(failure.message.ends_with("3 steps are still to be written"), "{}", failure.message);
-    assert!(failure.hint.unwrap().contains("use --resume=2 to continue there"));
+    assert!(failure.hint.unwrap().contains("use --resume=2 to continue at that step"));
     assert_eq!(desk.bench.data(&["status"])["mode"], "automatic", "the mode is put back after a failure, too");
     let stored = desk.put("SPD V=1\nNOP\nHOME\nEND\n", &["--resume=3"]).unwrap();
     assert_eq!(stored["cells_written"], 2);

@@ -1,4 +1,4 @@
-//! Findings in program files as text.
+//! Text of the findings in program files.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -12,13 +12,13 @@ use armctl_frame::output::view::{Cell, Tone};
 use armctl_frame::settings::inventory;
 use armctl_frame::settings::target::Family;
 
-/// Parses a name on a command line without a robot: `pick=PT1`.
+/// Parses a name with its address on a command line, for example `pick=PT1`.
 pub fn name(text: &str) -> Result<Name, String> {
     let (name, address) = text.split_once('=').ok_or("type a name with its address, such as pick=PT1")?;
     inventory::named(Family::Toyo, name, address).map_err(|failure| failure.message)
 }
 
-/// Program of a checked text. Warnings go to stderr, errors are a failure.
+/// Program of a text that was checked. Warnings are printed on stderr. If there are errors, fails.
 pub fn program(name: &str, checked: Checked, screen: &Screen) -> Result<Program, Failure> {
     let Some(program) = checked.program else {
         let errors: Vec<Finding> = checked.errors().cloned().collect();
@@ -30,32 +30,32 @@ pub fn program(name: &str, checked: Checked, screen: &Screen) -> Result<Program,
     Ok(program)
 }
 
-/// `pick.txt:3:9: error: there is no label 'pikc' (did you mean pick?)`.
+/// Formats a finding, for example `pick.txt:3:9: error: there is no label 'pikc' (did you mean pick?)`.
 fn in_a_line(name: &str, finding: &Finding) -> String {
     let Finding { severity, line, column, message, hint } = finding;
     let hint = hint.as_ref().map(|hint| format!(" ({hint})")).unwrap_or_default();
     format!("{name}:{line}:{column}: {}: {message}{hint}", severity.name())
 }
 
-/// A finding at a location in a file.
+/// A finding, with its place in a file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Remark {
-    /// `error`, `warning` or `note`. A file with an error is not a program.
+    /// Severity: `error`, `warning` or `note`. A file with an error is not a valid program.
     pub severity: &'static str,
-    /// From 1.
+    /// Line number, from 1.
     pub line: usize,
-    /// In characters, from 1.
+    /// Column in characters, from 1.
     pub column: usize,
-    /// Error, with the expected input.
+    /// What is wrong, and the input that is expected.
     pub message: String,
-    /// Remedy or suggestion.
+    /// Remedy or suggestion, if any.
     pub hint: Option<String>,
     /// Text of the line.
     pub source: String,
 }
 
 impl Remark {
-    /// A finding with its line.
+    /// Creates a finding with the text of its line.
     pub fn new(finding: &Finding, lines: &[&str]) -> Self {
         let Finding { severity, line, column, message, hint } = finding;
         let source = line.checked_sub(1).and_then(|index| lines.get(index)).copied().unwrap_or_default();
@@ -69,7 +69,7 @@ impl Remark {
         }
     }
 
-    /// Lines in the form of a compiler: message, location, source line with a mark.
+    /// Formats the finding as compilers do: message, location, source line with a mark.
     pub fn lines(&self, name: &str) -> Vec<Cell> {
         let Self { severity, line, column, message, hint, source } = self;
         let tone = match *severity {
@@ -79,7 +79,7 @@ impl Remark {
         };
         let number = line.to_string();
         let margin = " ".repeat(number.len());
-        // One blank per tab keeps the mark at its column.
+        // Each tab becomes one blank, so that the mark is below its column.
         let source = source.replace('\t', " ");
         let mut lines = vec![
             Cell::from(format!("{severity}: {message}")).tone(tone),

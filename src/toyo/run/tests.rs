@@ -3,7 +3,7 @@
 use super::*;
 use crate::testing::{Bench, Fault, all_blocks, blocks, intent, objection};
 
-/// Half a second, then 100 mm at 100 mm/s.
+/// A program that waits half a second, and then moves 100 mm at 100 mm/s.
 const PROGRAM: &str = "origin = true\nspeeds = { 1 = 100.0 }\npoints = { 1 = { 1 = [100.0, 0.0, 0.0, 0.0] } }\n\
     steps = { 1 = [\"TIM TM=000.5\", \"MOVP a PT=001 CN=00 S V=01 POST\", \"OUT STN=0 PN01=.......1\", \"END\"] }\n";
 
@@ -54,7 +54,7 @@ fn a_program_that_never_shows_execution_has_an_unknown_outcome() {
     let state = "origin = true\nsteps = { 1 = [\"OUT STN=0 PN01=.......1\", \"END\"] }\n";
     let failure = Bench::with_faults(state, |_, _| Fault::None).0.run(&["run", "sequential", "--wait"]).unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
-    assert!(failure.message.contains("the status never showed execution"), "{}", failure.message);
+    assert!(failure.message.contains("the status never showed that the controller executed it"), "{}", failure.message);
 }
 
 #[test]
@@ -126,7 +126,9 @@ fn after_a_lost_connection_the_outcome_is_unknown() {
     let failure = Bench::with_faults(PROGRAM, lost).0.run(&["run", "sequential", "1", "--wait"]).unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
     assert!(failure.message.starts_with("the start was accepted, but its result is unknown: "), "{}", failure.message);
-    assert!(failure.hint.unwrap().starts_with("do not send the command again: keep clear; `toyo status`"));
+    assert!(
+        failure.hint.unwrap().starts_with("do not send the command again; keep clear of the robot; use `toyo status`")
+    );
 }
 
 #[test]
@@ -163,7 +165,7 @@ fn ctrl_c_stops_what_runs() {
 
 #[test]
 fn a_late_ok_to_the_start_does_not_confirm_the_stop() {
-    // The start is answered after 400 ms; Ctrl-C comes before that, and the first stop is lost.
+    // The start is answered after 400 ms. Ctrl-C comes before the answer, and the first stop is lost.
     let (mut bench, received) = Bench::with_faults(PROGRAM, |block, count| match block {
         "@SPST 0001" => Fault::Late(Duration::from_millis(400)),
         "@STOP" if count == 1 => Fault::Lost,

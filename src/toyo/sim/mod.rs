@@ -11,7 +11,7 @@ pub use self::trace::Stop;
 use armctl_frame::{Offline, commands};
 
 commands! {
-    /// Commands of the offline simulator; `armctl sim toyo` is the server.
+    /// Commands of the offline simulator. The server is `armctl sim toyo`.
     pub enum Sim {
         /// Run a program file offline and print its timeline
         Run(Offline<run::Run>),

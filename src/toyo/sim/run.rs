@@ -25,18 +25,19 @@ use armctl_frame::store::rows_of_file;
 
 /// Run a program in the simulator in virtual time, and print steps, outputs and positions.
 #[derive(Debug, Args)]
-#[command(after_help = "The controller is new, with known origin, position 0 and servo power on; --state, \
-                  --params and --points change its content. Task 1 runs the program.\n\nThe run ends \
-                  at END or a STOP of task 1 (exit code 0), with an error, when every task waits \
-                  without end, or after --for (8). A faulty file is a usage error (2).\n\n  \
-                  armctl toyo sim run pick.txt --points points.csv --input 'at 2s 0/01/3 on'")]
+#[command(after_help = "The simulated controller is new: the origin is known, the position is 0 and servo power is \
+                        on. --state, --params and --points change its content. Task 1 runs the program.\n\nThe run \
+                        ends at END or a STOP of task 1 (exit code 0). The exit code is 8 after an error, if all \
+                        tasks wait without end, or if the program still runs after --for. A faulty file is a usage \
+                        error (exit code 2).\n\n  armctl toyo sim run pick.txt --points points.csv --input 'at 2s \
+                        0/01/3 on'")]
 pub struct Run {
     /// Program of task 1; - is stdin
     file: PathBuf,
-    /// Program of another task, such as 2=gate.txt, which a TSTR starts (repeatable)
+    /// Program file of another task, which a TSTR step starts, for example 2=gate.txt (repeatable)
     #[arg(long, value_name = "TASK=FILE", value_parser = other_task)]
     task: Vec<(usize, PathBuf)>,
-    /// Points (CSV) from `point dump`, for another task than 1 with its number: 2=gate.csv (repeatable)
+    /// Points (CSV) from `point dump`; for a task other than 1, with its number, for example 2=gate.csv (repeatable)
     #[arg(long, value_name = "[TASK=]FILE", value_parser = points_of)]
     points: Vec<(usize, PathBuf)>,
     /// Parameters and tables (CSV) from `param dump`
@@ -45,13 +46,14 @@ pub struct Run {
     /// Start state of the simulator (TOML), as for `armctl sim toyo`
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
-    /// Input event: "at 2s 0/01/3 on" sets one bit of an input port, "at 2s 0/01 00000100" all eight (repeatable)
+    /// Input event: "at 2s 0/01/3 on" sets one bit of an input port, "at 2s 0/01 00000100" sets all eight bits
+    /// (repeatable)
     #[arg(long, value_name = "EVENT", value_parser = input)]
     input: Vec<Input>,
-    /// Name of a point, a counter or a timer, as in robots.toml: pick=PT1 (repeatable)
+    /// Name of a point, a counter or a timer, in the form of robots.toml: pick=PT1 (repeatable)
     #[arg(long, value_name = "NAME=ADDRESS", value_parser = text::name)]
     name: Vec<Name>,
-    /// First step
+    /// Step to start with
     #[arg(long, value_name = "STEP", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=5000))]
     from: u16,
     /// Time limit of the program [default: 10 minutes]
@@ -60,22 +62,22 @@ pub struct Run {
     /// Print the position at this interval as well
     #[arg(long = "trace-every", value_name = "TIME", value_parser = every)]
     every: Option<Duration>,
-    /// Limit of rows; the last ones are printed
+    /// Maximum number of rows; if there are more, only the last rows are printed
     #[arg(long, value_name = "N", default_value_t = 10_000)]
     rows: usize,
 }
 
-/// A change of an input.
+/// A change of inputs during the run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Input {
     at: Duration,
-    /// Text for the console of the simulator: `0/01/3 on`.
+    /// Text for the console of the simulator, such as `0/01/3 on`.
     what: String,
 }
 
-/// Default time limit.
+/// Default time limit of a run.
 const WITHIN: Duration = Duration::from_secs(600);
-/// Time limit of a run for a check.
+/// Time limit of the run that `program check` makes.
 const REHEARSAL: Duration = Duration::from_secs(30);
 /// Minimum interval of printed positions.
 const FINEST: Duration = Duration::from_millis(1);
@@ -109,7 +111,7 @@ fn input(text: &str) -> Result<Input, String> {
         rest => (Duration::ZERO, rest),
     };
     let input = Input { at, what: rest.join(" ") };
-    // A controller with all ports checks the text.
+    // The text is checked on a controller that has all ports.
     let tried = Simulator::new(Start::default()).console(Duration::ZERO, &input.line());
     tried.map(|_| input).map_err(|why| format!("{why}; type an event such as \"at 2s 0/01/3 on\""))
 }
@@ -140,7 +142,8 @@ impl OfflineCommand for Run {
     }
 }
 
-/// Location at which a controller with these points stops the program with an error within some seconds.
+/// Location at which a controller with these points stops the program with an error. The program runs for up to some
+/// seconds.
 pub fn rehearse(file: &str, program: &Program, points: Option<&Path>) -> Result<Option<Stop>, Failure> {
     let run = Run {
         file: PathBuf::new(),
@@ -160,30 +163,30 @@ pub fn rehearse(file: &str, program: &Program, points: Option<&Path>) -> Result<
 }
 
 impl Run {
-    /// Runs the programs.
+    /// Runs the programs and returns the trace.
     fn trace(&self, sources: Vec<Source>) -> Result<Trace, Failure> {
         let start = self.start(&sources)?;
         let mut simulator = Simulator::new(start);
         simulator.record_trace(true);
         simulator.console(Duration::ZERO, &format!("start {}", self.from)).map_err(|why| {
             Failure::usage(format!("the program cannot be started: {why}"))
-                .hint("check the step of --from, and the state of --state")
+                .hint("check the step of --from, and the file of --state")
         })?;
         Ok(self.watch(&mut simulator, Recorder::new(sources, self.rows)))
     }
 
-    /// The controller with the programs.
+    /// Start state with the programs.
     fn start(&self, sources: &[Source]) -> Result<Start, Failure> {
         let state = match &self.state {
             Some(path) => {
                 let bytes = files::read(path)?;
                 let text = String::from_utf8(bytes).map_err(|_| {
-                    Failure::usage(format!("{}: this is not a text in UTF-8", path.display()))
-                        .hint("`armctl help simulator` shows the form of the file")
+                    Failure::usage(format!("{}: the file is not UTF-8 text", path.display()))
+                        .hint("see `armctl help simulator` for the form of the file")
                 })?;
                 Start::parse(&text).map_err(|error| {
                     Failure::usage(format!("{}: {error}", path.display()))
-                        .hint("`armctl help simulator` shows the form of the file")
+                        .hint("see `armctl help simulator` for the form of the file")
                 })?;
                 text
             }
@@ -193,9 +196,9 @@ impl Run {
         if let Some(path) = &self.params {
             written.extend(writes(path)?);
         }
-        // These writes precede the power-on, so that parameter 2 is active.
+        // These writes come before power on, so that parameter 2 is active.
         let mut document: toml::Table = state.parse().map_err(|error| {
-            Failure::usage(format!("{error}")).hint("`armctl help simulator` shows the form of the file")
+            Failure::usage(format!("{error}")).hint("see `armctl help simulator` for the form of the file")
         })?;
         if let toml::Value::Array(list) = document.entry("write").or_insert_with(|| toml::Value::Array(Vec::new())) {
             list.extend(written.into_iter().map(toml::Value::String));
@@ -259,7 +262,7 @@ impl Run {
             while let Some(input) = inputs.next_if(|input| input.at <= now) {
                 let line = input.line();
                 recorder.input(now, simulator.state().position, &line);
-                // The port was checked before.
+                // The port was already checked.
                 if let Err(why) = simulator.console(now, &line) {
                     recorder.input(now, simulator.state().position, &why);
                 }
@@ -268,7 +271,7 @@ impl Run {
     }
 }
 
-/// Commands that write the parameters of a file.
+/// Returns the protocol commands that write the parameters of a file.
 fn writes(path: &Path) -> Result<Vec<String>, Failure> {
     let mut start = Start::default();
     let mut commands = Vec::new();
@@ -284,14 +287,14 @@ fn writes(path: &Path) -> Result<Vec<String>, Failure> {
     Ok(commands)
 }
 
-/// All values of a row of a file.
+/// All values for a row of a file.
 fn whole(path: &Path, row: &str, changes: &Changes) -> Result<Vec<Value>, Failure> {
     changes.whole().ok_or_else(|| in_file(path, &format!("{row}: values are missing")))
 }
 
-/// A row of a file that cannot be used.
+/// Failure: a row of a file cannot be used.
 fn in_file(path: &Path, why: &str) -> Failure {
-    Failure::usage(format!("{}: {why}", files::display_path(path))).hint("`dump` writes a valid file")
+    Failure::usage(format!("{}: {why}", files::display_path(path))).hint("use `dump` to write a valid file")
 }
 
 /// Adds a point to a start state.
@@ -310,7 +313,7 @@ fn place(state: &mut toml::Table, task: usize, point: i32, values: &[Value]) {
     }
 }
 
-/// The program in a file.
+/// Reads the program in a file.
 fn source(screen: &Screen, names: &Names, task: usize, file: &Path) -> Result<Source, Failure> {
     let name = files::display_path(file);
     let bytes = files::read(file)?;

@@ -4,7 +4,7 @@ use tempfile::TempDir;
 use crate::testing::{Bench, objection};
 use armctl_frame::failure::{Failure, Kind};
 
-/// Program of the manual's sample session (TO 3-1), with its point.
+/// The program in the sample session of the manual (TO 3-1), and its point.
 const SAMPLE: &str = "SPD V=5\nMOVP a PT=1 CN=0 S V=0 POST\nOUT STN=0 PN1=.......1\nEND\n";
 const POINTS: &str = "name,x_mm,y_mm,z_mm,r_mm\n1,100,20,0,0\n";
 
@@ -22,7 +22,7 @@ impl Desk {
         Self { folder }
     }
 
-    /// Runs `toyo sim run`. Words that begin with ./ are files of the folder.
+    /// Runs `toyo sim run`. `./` in a word is replaced by the folder.
     fn run(&self, words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
         let folder = format!("{}/", self.folder.path().display());
         let words: Vec<String> = words.iter().map(|word| word.replace("./", &folder)).collect();
@@ -47,7 +47,7 @@ impl Desk {
     }
 }
 
-/// Events as text.
+/// Returns the texts of the events.
 fn words(data: &Value) -> Vec<&str> {
     data["trace"].as_array().unwrap().iter().map(|row| row["what"].as_str().unwrap()).collect()
 }
@@ -100,7 +100,7 @@ fn a_program_that_waits_forever_is_reported_with_its_step() {
     let (message, hint) = (failure.message, failure.hint.unwrap());
     assert!(message.contains("all tasks wait for an input without end: "), "{message}");
     assert!(message.ends_with("a.txt:2, task 1, step 2: IN STN=0 PN01=.....1.. AND"), "{message}");
-    assert_eq!(hint, "set it with --input \"at 2s 0/01/3 on\"");
+    assert_eq!(hint, "set the input with --input \"at 2s 0/01/3 on\"");
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn the_run_ends_at_its_time_limit() {
         (&data["end"], &data["elapsed_s"], &data["rows_left_out"]),
         (&"time_up".into(), &2.0.into(), &1998.into())
     );
-    assert!(failure.unwrap().message.starts_with("after 2.000 s, it still runs: "));
+    assert!(failure.unwrap().message.starts_with("after 2.000 s, the program still runs: "));
 }
 
 #[test]

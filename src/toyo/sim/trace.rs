@@ -1,4 +1,4 @@
-//! Report of the events in the simulator.
+//! Trace of the events in a simulated run.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
@@ -22,7 +22,7 @@ use armctl_frame::robot::alarm::Alarm;
 /// The program of a task, with its file.
 #[derive(Debug)]
 pub struct Source {
-    /// 1 to 4.
+    /// Number of the task, 1 to 4.
     pub task: usize,
     /// Name of the file.
     pub file: String,
@@ -30,22 +30,22 @@ pub struct Source {
     pub program: Program,
 }
 
-/// End of a run.
+/// Why a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
-    /// END of every started task.
+    /// Every started task reached its END.
     Ended,
-    /// A STOP.
+    /// The program stopped at a STOP.
     Stopped,
-    /// An error of the controller.
+    /// An error of the controller stopped the program.
     Error(u8),
-    /// Every task waits without end.
+    /// Every task waits without an end.
     Waits,
-    /// The time limit.
+    /// The time limit was reached.
     TimeUp,
 }
 
-/// Recorder of events.
+/// Records the events of a run.
 #[derive(Debug)]
 pub struct Recorder {
     sources: Vec<Source>,
@@ -57,24 +57,24 @@ pub struct Recorder {
     ports: BTreeMap<(usize, usize), u8>,
 }
 
-/// Events and end of a run.
+/// Report of a run: its events and its end.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Trace {
-    /// `ended`, `stopped`, `error`, `waits` or `time_up`.
+    /// Why the run ended: `ended`, `stopped`, `error`, `waits` or `time_up`.
     end: &'static str,
     /// Alarm at the end; null without an alarm.
     alarm: Option<Alarm>,
-    /// Time of the program at the end.
+    /// Time in the program at the end.
     elapsed_s: f64,
     /// Position at the end.
     position: Coordinates,
-    /// Output ports with a bit that is on at the end.
+    /// Output ports in which a bit is on at the end.
     outputs: Vec<Port>,
     /// Current steps of the tasks that have not ended.
     steps: Vec<TraceStep>,
     /// Events in order.
     trace: VecDeque<Row>,
-    /// Number of omitted earlier rows.
+    /// Number of earlier rows that were omitted.
     rows_left_out: usize,
     #[serde(skip)]
     failure: Option<Failure>,
@@ -83,7 +83,7 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// Location of task 1 when the controller stopped with an error or every task waited.
+    /// Location in task 1 at which the controller stopped with an error, or at which every task waited.
     pub fn stop(&self) -> Option<&Stop> {
         self.stop.as_ref()
     }
@@ -92,21 +92,21 @@ impl Trace {
 /// Location of an error or of an endless wait.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stop {
-    /// Error code; `None` for a wait.
+    /// Error code; `None` for an endless wait.
     pub code: Option<u8>,
-    /// Time of the program.
+    /// Time in the program.
     pub after_s: f64,
-    /// Line of the file, from 1.
+    /// Line number in the file, starting with 1.
     pub line: usize,
 }
 
 /// An output port.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 struct Port {
-    /// 0 to 4.
+    /// Station, 0 to 4.
     station: usize,
     port: usize,
-    /// Bits 8 to 1.
+    /// Bits 8 to 1 of the port.
     bits: String,
 }
 
@@ -116,31 +116,31 @@ struct TraceStep {
     task: usize,
     step: usize,
     file: String,
-    /// Line of the file, from 1.
+    /// Line number in the file, starting with 1.
     line: usize,
-    /// Label of this step, or label that it uses.
+    /// Label that this step defines or uses.
     label: Option<String>,
     instruction: String,
 }
 
-/// An event.
+/// A row of the trace: one event.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 struct Row {
     time_s: f64,
-    /// `step`, `output`, `input`, `position`, `origin`, `stopped`, `error` or `ended`.
+    /// Type of the event: `step`, `output`, `input`, `position`, `origin`, `stopped`, `error` or `ended`.
     event: &'static str,
-    /// Text.
+    /// Text of the event.
     what: String,
-    /// Step that begins or ends.
+    /// Step that begins or ends; null for other events.
     at: Option<TraceStep>,
-    /// Output port that changed.
+    /// Output port that changed; null for other events.
     port: Option<Port>,
     #[serde(flatten)]
     place: Coordinates,
 }
 
 impl Recorder {
-    /// A recorder for these programs, with a limit of rows.
+    /// Creates a recorder for these programs, with a maximum number of rows.
     pub fn new(sources: Vec<Source>, most: usize) -> Self {
         let (rows, at, ports) = (VecDeque::new(), BTreeMap::new(), BTreeMap::new());
         Self { sources, rows, most, left_out: 0, at, ports }
@@ -241,7 +241,7 @@ impl End {
         }
     }
 
-    /// Failure of a run.
+    /// Failure that the end of a run means.
     fn failure(self, at: Duration, steps: &[TraceStep]) -> Option<Failure> {
         let places: Vec<String> = steps.iter().map(TraceStep::in_a_line).collect();
         let places = places.join("; ");
@@ -257,18 +257,21 @@ impl End {
             }
             Self::Waits => {
                 let what = steps.iter().find_map(TraceStep::awaited_condition).unwrap_or("something");
-                let hint = steps.iter().find_map(TraceStep::help).unwrap_or_else(|| "no other task runs".into());
+                let hint = steps
+                    .iter()
+                    .find_map(TraceStep::help)
+                    .unwrap_or_else(|| "check what the tasks wait for; no other task runs".into());
                 failed(format!("after {after:.3} s, all tasks wait for {what} without end: {places}")).hint(hint)
             }
             Self::TimeUp => {
-                failed(format!("after {after:.3} s, it still runs: {places}")).hint("use --for to run longer")
+                failed(format!("after {after:.3} s, the program still runs: {places}")).hint("use --for to run longer")
             }
         })
     }
 }
 
 impl TraceStep {
-    /// `next: TAG TAG=001`, `JMP TAG=001 (next)`.
+    /// Formats the step with its label, for example `next: TAG TAG=001` or `JMP TAG=001 (next)`.
     fn in_words(&self) -> String {
         match &self.label {
             Some(label) if self.instruction.starts_with("TAG ") => format!("{label}: {}", self.instruction),
@@ -277,7 +280,7 @@ impl TraceStep {
         }
     }
 
-    /// `pick.txt:7, task 1, step 5: IN STN=0 PN01=.......1 AND`.
+    /// Formats the step with its location, for example `pick.txt:7, task 1, step 5: IN STN=0 PN01=.......1 AND`.
     fn in_a_line(&self) -> String {
         let Self { task, step, file, line, .. } = self;
         format!("{file}:{line}, task {task}, step {step}: {}", self.in_words())
@@ -298,13 +301,13 @@ impl TraceStep {
         })
     }
 
-    /// Hint to satisfy the condition.
+    /// Hint how to meet the condition.
     fn help(&self) -> Option<String> {
         let record = instruction(&self.instruction).ok().filter(|_| self.op() == Some(Op::In))?;
         let (station, port, mask) = (record.number("station")?, record.number("port")?, record.mask("data")?);
         let bit = (0..8).find(|bit| mask.care >> bit & 1 == 1)?;
         let state = if mask.bits >> bit & 1 == 1 { "on" } else { "off" };
-        Some(format!("set it with --input \"at 2s {station}/{port:02}/{} {state}\"", bit + 1))
+        Some(format!("set the input with --input \"at 2s {station}/{port:02}/{} {state}\"", bit + 1))
     }
 }
 
@@ -326,13 +329,13 @@ impl Row {
 }
 
 impl Trace {
-    /// The end in one line.
+    /// The end of the run in one line.
     pub fn summary(&self) -> String {
         let outputs: Vec<String> = self.outputs.iter().map(Port::in_words).collect();
-        let outputs = if outputs.is_empty() { "no output on".to_owned() } else { outputs.join(", ") };
+        let outputs = if outputs.is_empty() { "no output is on".to_owned() } else { outputs.join(", ") };
         let more = match self.rows_left_out {
             0 => String::new(),
-            rows => format!("; {rows} earlier rows were omitted, --rows prints more"),
+            rows => format!("; {rows} earlier rows were omitted, use --rows to print more"),
         };
         let end = match self.end {
             "ended" | "stopped" => format!("{} after {:.3} s: ", self.end, self.elapsed_s),
@@ -342,13 +345,13 @@ impl Trace {
     }
 }
 
-/// A column with its axis.
+/// A column and its axis.
 type Axis = (&'static str, usize);
 
 impl Report for Trace {
     const ROWS: RowsOf = RowsOf::List("trace");
 
-    /// Axes that stay at 0 have no column. A single task has no column.
+    /// Columns for axes that stay at 0 are omitted. With only one task, the column for the task is omitted.
     fn view(&self) -> View {
         let axes: [Axis; 4] = [("x (mm)", 0), ("y (mm)", 1), ("z (mm)", 2), ("r (mm)", 3)];
         let has_tasks = self.trace.iter().any(|row| row.at.as_ref().is_some_and(|at| at.task > 1));

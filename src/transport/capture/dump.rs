@@ -1,4 +1,4 @@
-//! Reader for dumps of a PROFIBUS line: telegrams in sequence, as raw bytes or in hexadecimal.
+//! Reader for dumps of a PROFIBUS line: consecutive telegrams, as raw bytes or in hexadecimal.
 
 use std::io::{BufRead, Read as _};
 use std::time::Duration;
@@ -7,11 +7,11 @@ use super::{Carrier, Damage, Message, Summary};
 use crate::profibus::wire::{CHECKSUM, Parsed, START, Telegram};
 use crate::tap::LINKTYPE_PROFIBUS_DL;
 
-/// Longest line of a hexadecimal dump.
+/// Maximum length of a line of a hexadecimal dump.
 const MOST_LINE: usize = 16 << 20;
-/// Longer than any telegram. Bytes that are no telegram at this length never become one.
+/// A length greater than that of any telegram. If these many bytes are not a complete telegram, more bytes do not help.
 const MOST_TELEGRAM: usize = 512;
-/// Limit of the noise that is kept.
+/// Maximum number of noise bytes that are kept in memory.
 const MOST_NOISE: usize = 1 << 16;
 
 /// Encoding of a dump.
@@ -30,13 +30,15 @@ impl Form {
         if beginning.iter().all(is_digits) && beginning.iter().any(u8::is_ascii_hexdigit) {
             return Some(Self::Hexadecimal);
         }
-        // Only whole frames identify a dump: tokens and short acknowledgements (one byte) also occur by chance.
+        // Only whole frames identify a dump: tokens and short acknowledgements (one byte) also occur in other files by
+        // chance.
         let begins = |at| matches!(Telegram::parse(&beginning[at..]), Ok(Parsed::Whole(Telegram::Frame(_), _)));
         (0..beginning.len().min(MOST_TELEGRAM)).any(begins).then_some(Self::Bytes)
     }
 }
 
-/// Reads a dump. Telegrams, damaged telegrams and the bytes between them are all numbered from 1. A dump has no times.
+/// Reads a dump. The messages are numbered from 1: telegrams, damaged telegrams and the bytes between them. A dump
+/// contains no times.
 pub fn read(mut file: impl BufRead, form: Form, mut each: impl FnMut(&Message<'_>)) -> Summary {
     let mut pieces = Pieces::default();
     let mut offset = 0;
@@ -73,7 +75,7 @@ pub fn read(mut file: impl BufRead, form: Form, mut each: impl FnMut(&Message<'_
 
 const UNREADABLE: &str = "cannot read more of the file";
 
-/// Reads the next line; empty at the end of the file.
+/// Reads the next line. The line is empty at the end of the file.
 fn line(file: &mut impl BufRead) -> Result<Vec<u8>, &'static str> {
     let mut line = Vec::new();
     let most = u64::try_from(MOST_LINE).unwrap_or(u64::MAX);
@@ -90,13 +92,13 @@ struct Pieces {
     bytes: Vec<u8>,
     /// Number of bytes already delivered.
     start: usize,
-    /// Number of bytes after those that begin no telegram.
+    /// Number of noise bytes after the delivered bytes: no telegram begins with any of them.
     noise: usize,
     summary: Summary,
 }
 
 impl Pieces {
-    /// Delivers the complete telegrams, and at the end the rest.
+    /// Delivers the complete telegrams. At the end of the file, delivers the rest too.
     fn take(&mut self, is_end: bool, each: &mut impl FnMut(&Message<'_>)) {
         loop {
             let rest = &self.bytes[self.start + self.noise..];
@@ -107,8 +109,8 @@ impl Pieces {
                 Ok(Parsed::Whole(_, len)) => len,
                 Ok(Parsed::Part(_)) if !is_end && rest.len() < MOST_TELEGRAM => break,
                 Ok(Parsed::Part(_)) => rest.len(),
-                // Skip the whole damaged telegram. Its content could look like acknowledgements and tokens, which have
-                // no checksum.
+                // Skip the whole damaged telegram. Its content could be mistaken for acknowledgements and tokens, which
+                // have no checksum.
                 Err(error) if error.field == CHECKSUM => error.offset + 2,
                 Err(_) => {
                     self.noise += 1;
@@ -145,14 +147,15 @@ pub fn holds_telegram(bytes: &[u8]) -> bool {
     (0..bytes.len()).any(|at| !matches!(Telegram::parse(&bytes[at..]), Err(error) if error.field == START))
 }
 
-/// Separators allowed between hexadecimal bytes.
+/// Whether the character is a separator between hexadecimal bytes.
 fn is_between(c: char) -> bool {
     c.is_whitespace() || matches!(c, ':' | ',' | '-' | '_')
 }
 
-/// Parses hexadecimal digits as tools print them: together or separated, with `0x`, colons, commas or dashes.
+/// Parses hexadecimal digits in the formats of common tools: without separators, with `0x`, or with colons, commas or
+/// dashes.
 pub fn parse_hex(text: &str) -> Result<Vec<u8>, String> {
-    /// Most digits that an error quotes.
+    /// Maximum number of digits that an error message quotes.
     const MOST: usize = 24;
 
     let mut bytes = Vec::with_capacity(text.len() / 2);
@@ -181,7 +184,7 @@ mod tests {
     fn pieces(file: &[u8]) -> (Vec<Vec<u8>>, Summary) {
         let form = Form::of(file).unwrap();
         let mut all = Vec::new();
-        // Small reads, as from a pipe.
+        // The reader returns a few bytes per read, as a pipe can do.
         let file = std::io::BufReader::with_capacity(5, file);
         let summary = read(file, form, |message| all.push(message.bytes.to_vec()));
         (all, summary)

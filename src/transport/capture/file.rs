@@ -5,20 +5,20 @@ use std::time::Duration;
 
 use thiserror::Error;
 
-/// A packet with its metadata.
+/// A packet of a capture file, with its metadata.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Packet<'a> {
     /// Number of the packet, from 1.
     pub number: u64,
     /// Section of the pcapng file, from 1.
     pub section: usize,
-    /// Time since 1970. A packet without a time has the time of the packet before it.
+    /// Time since 1970. A packet without a time gets the time of the packet before it.
     pub time: Duration,
-    /// `LINKTYPE_…`.
+    /// Link type number (`LINKTYPE_…`).
     pub link_type: u16,
     /// The recorded bytes.
     pub bytes: &'a [u8],
-    /// The packet was longer than the recorded bytes.
+    /// Whether the packet was longer than the recorded bytes.
     pub is_cut: bool,
 }
 
@@ -49,7 +49,7 @@ pub enum OpenError {
 const SECTION_HEADER: u32 = 0x0A0D_0D0A;
 const BYTE_ORDER_MAGIC: u32 = 0x1A2B_3C4D;
 const INTERFACE: u32 = 1;
-/// Obsolete Packet Block, which the Enhanced Packet Block replaced.
+/// Block type of the obsolete Packet Block. The Enhanced Packet Block replaced it.
 const OLD_PACKET: u32 = 2;
 const SIMPLE_PACKET: u32 = 3;
 const ENHANCED_PACKET: u32 = 6;
@@ -57,12 +57,12 @@ const ENHANCED_PACKET: u32 = 6;
 const END_OF_OPTIONS: u16 = 0;
 const TIME_RESOLUTION: u16 = 9;
 const TIME_OFFSET: u16 = 14;
-/// Header lengths of a pcap file and of its packets.
+/// Length of the header of a pcap file, and of the header of each packet.
 const FILE_HEADER: usize = 24;
 const PACKET_HEADER: usize = 16;
 /// Upper limit of a packet length. A larger value means a damaged file.
 const MOST: usize = 16 << 20;
-/// Limit of interfaces per section, because each one is kept in memory.
+/// Maximum number of interfaces per section. Each interface is kept in memory.
 const MOST_INTERFACES: usize = 1 << 16;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -105,7 +105,8 @@ impl Clock {
     const MICROS: Self = Self { ticks: 1_000_000, offset: 0 };
     const NANOS: Self = Self { ticks: 1_000_000_000, offset: 0 };
 
-    /// `resolution` is an exponent of ten, or of two if its highest bit is set. An impossible value means microseconds.
+    /// Creates a clock. `resolution` is an exponent of ten, or of two if its highest bit is set. An impossible value
+    /// counts as microseconds.
     fn new(resolution: u8, offset: u64) -> Self {
         let exponent = u32::from(resolution & 0x7F);
         let base: u128 = if resolution & 0x80 == 0 { 10 } else { 2 };
@@ -117,7 +118,7 @@ impl Clock {
         let seconds = u64::try_from(count / self.ticks).unwrap_or(u64::MAX);
         let nanos = (count % self.ticks).saturating_mul(1_000_000_000) / self.ticks;
         let nanos = u32::try_from(nanos).unwrap_or_default().min(999_999_999);
-        // The offset is signed; in two's complement, the sum is the same.
+        // The offset is signed. In two's complement, the unsigned addition has the same result.
         Duration::new(seconds.wrapping_add(self.offset), nanos)
     }
 }
@@ -125,7 +126,7 @@ impl Clock {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Interface {
     link_type: u16,
-    /// Snapshot length; 0 means no limit.
+    /// Maximum number of recorded bytes per packet (snapshot length); 0 means no limit.
     most: usize,
     clock: Clock,
 }
@@ -142,10 +143,10 @@ pub fn is_capture(beginning: &[u8]) -> bool {
     matches!(Packets::open(beginning), Ok(_) | Err(OpenError::Compressed))
 }
 
-/// Bytes per read.
+/// Number of bytes per read.
 const PIECE: usize = 1 << 16;
 
-/// A file of which only the bytes of one packet are in memory.
+/// A window of a file: only the bytes of one packet are in memory.
 #[derive(Debug)]
 struct Window<R> {
     file: R,
@@ -157,7 +158,7 @@ struct Window<R> {
 }
 
 impl<R: Read> Window<R> {
-    /// Returns the next `len` bytes, or fewer at the end of the file, without consuming them.
+    /// Returns the next `len` bytes without consuming them. Returns fewer bytes at the end of the file.
     fn look(&mut self, len: usize) -> std::io::Result<&[u8]> {
         if self.bytes.len() - self.start < len {
             self.bytes.drain(..self.start);
@@ -193,7 +194,7 @@ pub struct Packets<R> {
     is_over: bool,
 }
 
-/// A packet and the range of its bytes in the record or block.
+/// A packet, with the range of its bytes in the record or block.
 struct PacketSpan {
     interface: Interface,
     time: Option<Duration>,
@@ -211,7 +212,7 @@ impl<R: Read> Packets<R> {
         let magic = head.first_chunk::<4>().map(|bytes| u32::from_be_bytes(*bytes)).ok_or(OpenError::Other)?;
         let classic = |order: ByteOrder, clock| {
             let most = order.size(head, 16)?;
-            // The upper half of this word can contain the length of a frame checksum.
+            // The upper half of this word may contain the length of a frame checksum.
             let link_type = u16::try_from(order.word(head, 20)? & 0xFFFF).ok()?;
             Some((order, Format::Classic(Interface { link_type, most, clock }), FILE_HEADER))
         };
@@ -231,7 +232,7 @@ impl<R: Read> Packets<R> {
 
     /// Returns the next packet; `None` at the end or after damage.
     pub fn next(&mut self) -> Option<Result<Packet<'_>, Damage>> {
-        // `len` is the length of the record or block.
+        // `len` is the length of the record or block that contains the packet.
         let (span, len) = loop {
             if self.is_over {
                 return None;
@@ -256,7 +257,7 @@ impl<R: Read> Packets<R> {
         let (number, section, time) = (self.number, self.section, self.time);
         let before = self.file.start;
         self.file.pass(len);
-        // Consumed bytes stay in the buffer until the next `look`.
+        // The consumed bytes stay in the buffer until the next `look`.
         let bytes = self.file.bytes.get(before + bytes.start..before + bytes.end).unwrap_or_default();
         let is_cut = bytes.len() < original;
         Some(Ok(Packet { number, section, time, link_type: interface.link_type, bytes, is_cut }))
@@ -289,7 +290,8 @@ impl<R: Read> Packets<R> {
         let head = self.file.look(12).map_err(|_| UNREADABLE)?;
         let kind = self.byte_order.word(head, 0).ok_or(short)?;
         if kind == SECTION_HEADER {
-            // The type of this block reads the same in both byte orders. Its magic number decides the order.
+            // The type of this block is the same in both byte orders. The magic number of the block decides the byte
+            // order.
             let magic = ByteOrder::Big.word(head, 8).ok_or(short)?;
             self.byte_order = match magic {
                 BYTE_ORDER_MAGIC => ByteOrder::Big,
@@ -331,7 +333,7 @@ impl<R: Read> Packets<R> {
         Ok((None, len))
     }
 
-    /// Decodes the packet in a block of `len` bytes, which `look` has loaded.
+    /// Decodes the packet in a block of `len` bytes. The caller has loaded the block with `look`.
     fn packet_of(&self, kind: u32, len: usize) -> Result<PacketSpan, &'static str> {
         let body = &self.file.seen()[8..len - 4];
         let order = self.byte_order;
@@ -343,7 +345,7 @@ impl<R: Read> Packets<R> {
         };
         let interface = number.and_then(|number| interfaces.get(number).copied());
         let interface = interface.ok_or("a packet of an undefined interface")?;
-        // Offset of the packet in the body, and its recorded length.
+        // Returns time, offset in the body, recorded length and original length of the packet.
         let parts = || {
             if kind == SIMPLE_PACKET {
                 let original = order.size(body, 0)?;

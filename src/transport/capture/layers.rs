@@ -19,7 +19,7 @@ pub enum PacketContent<'a> {
         to: SocketAddr,
         /// Payload.
         payload: Payload<'a>,
-        /// The headers announce more bytes than were recorded.
+        /// Whether the headers announce more bytes than were recorded.
         is_cut: bool,
     },
     /// Bytes of a serial line.
@@ -29,11 +29,11 @@ pub enum PacketContent<'a> {
         /// The bytes.
         bytes: &'a [u8],
     },
-    /// A frame of a link type with its own frame format, such as CAN.
+    /// A frame whose link type has its own frame format, for example CAN.
     Frame,
     /// A fragment of an IP packet.
     Fragment,
-    /// Anything else.
+    /// Any other packet.
     Other,
 }
 
@@ -49,23 +49,23 @@ pub enum Payload<'a> {
 /// A segment of a TCP stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Segment<'a> {
-    /// Sequence number of its first byte.
+    /// Sequence number of the first byte.
     pub sequence: u32,
-    /// SYN: the segment opens the stream.
+    /// Whether the segment opens the stream (SYN).
     pub opens: bool,
-    /// Its bytes.
+    /// Payload of the segment.
     pub bytes: &'a [u8],
 }
 
 /// Decodes a packet of a link type.
 pub fn content_of(link_type: u16, packet: &[u8]) -> PacketContent<'_> {
     let content = match link_type {
-        // BSD loopback: 4 bytes of address family in the byte order of the host. The IP header has the version, so skip
-        // them.
+        // BSD loopback: 4 bytes of address family in the byte order of the host. They are skipped, because the IP
+        // header contains the version.
         0 | 108 => packet.get(4..).and_then(ip),
         super::LINKTYPE_ETHERNET if Frame::parse(packet).is_ok() => Some(PacketContent::Frame),
         super::LINKTYPE_ETHERNET => ethernet(packet, 12..14),
-        // Raw IP. Systems use different numbers.
+        // Raw IP. Operating systems use different numbers for it.
         12 | 14 | 101 | 228 | 229 => ip(packet),
         // Linux cooked capture, versions 1 and 2.
         113 => ethernet(packet, 14..16),
@@ -88,12 +88,12 @@ fn serial(packet: &[u8]) -> Option<PacketContent<'_>> {
     Some(PacketContent::Serial { direction, bytes })
 }
 
-/// A frame with its EtherType at `kind`.
+/// Decodes a frame whose EtherType is at `kind`.
 fn ethernet(frame: &[u8], kind: Range<usize>) -> Option<PacketContent<'_>> {
     of_type(frame.get(kind.clone()), frame.get(kind.end..))
 }
 
-/// Content after an EtherType, with or without VLAN tags.
+/// Decodes the content after an EtherType, with or without VLAN tags.
 fn of_type<'a>(kind: Option<&[u8]>, content: Option<&'a [u8]>) -> Option<PacketContent<'a>> {
     let kind = u16::from_be_bytes(*kind?.first_chunk()?);
     transport(&LaxSlicedPacket::from_ether_type(EtherType(kind), bounded(content?)))
@@ -103,7 +103,8 @@ fn ip(packet: &[u8]) -> Option<PacketContent<'_>> {
     transport(&LaxSlicedPacket::from_ip(bounded(packet)).ok()?)
 }
 
-/// Limits the length. An IP length of 0 is valid in a capture (the network card fills it in) and would set no limit.
+/// Cuts the packet to its IP length. An IP length of 0 sets no limit: it is valid in a capture, because the network
+/// card fills the length in later.
 fn bounded(packet: &[u8]) -> &[u8] {
     const LONGEST: usize = 40 + 0xFFFF;
 
@@ -139,7 +140,7 @@ fn transport<'a>(packet: &LaxSlicedPacket<'a>) -> Option<PacketContent<'a>> {
 mod tests {
     use super::*;
 
-    /// UDP from 10.0.0.1:1000 to 10.0.0.2:10040 with "hi", and two bytes of padding.
+    /// An IP packet with UDP from 10.0.0.1:1000 to 10.0.0.2:10040: "hi", and two bytes of padding.
     const IP: [u8; 32] = [
         0x45, 0, 0, 30, 0, 0, 0x40, 0, 64, 17, 0, 0, 10, 0, 0, 1, 10, 0, 0, 2, 0x03, 0xE8, 0x27, 0x38, 0, 10, 0, 0,
         b'h', b'i', 0, 0,

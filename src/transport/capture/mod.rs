@@ -2,9 +2,11 @@
 //! dumps.
 //!
 //! `file` reads packets, `layers` decodes them (with `etherparse`), `stream` reassembles TCP, `dump` finds PROFIBUS
-//! telegrams. No input causes a panic. The packet reader is our own, because `pcap-file` has two faults. It stops at
-//! harmless packets: a comment that is not UTF-8, or an original length of 0. And it takes an impossible block length
-//! for the end of the file.
+//! telegrams. No input causes a panic.
+//!
+//! armctl has its own packet reader, because the crate `pcap-file` has two faults. It stops at harmless packets:
+//! packets with a comment that is not UTF-8, or with an original length of 0. It also interprets an impossible block
+//! length as the end of the file.
 
 mod dump;
 mod file;
@@ -36,7 +38,7 @@ pub struct Message<'a> {
     pub carrier: Carrier,
     /// Bytes of the message; never empty.
     pub bytes: &'a [u8],
-    /// The packet was longer than the recorded bytes.
+    /// Whether the packet was longer than the recorded bytes.
     pub is_cut: bool,
 }
 
@@ -56,19 +58,19 @@ pub enum Carrier {
         from: SocketAddr,
         /// Receiver.
         to: SocketAddr,
-        /// The first bytes of a connection that was opened in the file.
+        /// Whether these are the first bytes of a connection that was opened in the file.
         begins: bool,
-        /// Number of bytes missing before these.
+        /// Number of bytes that are missing before these bytes.
         lost: u32,
     },
-    /// A serial line or in-process simulator that armctl recorded.
+    /// A serial line or in-process simulator, recorded by armctl.
     Line {
         /// Direction of the bytes.
         direction: Direction,
         /// Section of the file; each recorded command has one.
         section: usize,
     },
-    /// A whole frame of a link type with its own frame format.
+    /// A whole frame whose link type has its own frame format.
     Frame {
         /// Link type, such as [`LINKTYPE_CAN`].
         link_type: u16,
@@ -78,7 +80,7 @@ pub enum Carrier {
 /// `LINKTYPE_CAN_SOCKETCAN`: CAN frames.
 pub const LINKTYPE_CAN: u16 = 227;
 
-/// `LINKTYPE_ETHERNET`: Ethernet frames. Only PROFINET frames are delivered whole.
+/// `LINKTYPE_ETHERNET`: Ethernet frames. Only PROFINET frames are delivered as whole frames.
 pub const LINKTYPE_ETHERNET: u16 = 1;
 
 impl Carrier {
@@ -91,23 +93,23 @@ impl Carrier {
     }
 }
 
-/// Totals of a file.
+/// Summary of a file.
 #[derive(Debug, Default, Clone, PartialEq, Eq)]
 pub struct Summary {
     /// Number of packets.
     pub packets: u64,
     /// Time of the first packet since 1970.
     pub first: Duration,
-    /// Number of IP fragments, which are skipped.
+    /// Number of IP fragments. The reader skips them.
     pub fragments: u64,
     /// Number of repeated TCP segments.
     pub repeated: u64,
-    /// Position of the damage. Everything before it was read.
+    /// Position of the damage, if the file is damaged. The reader has read everything before it.
     pub damage: Option<Damage>,
 }
 
-/// Reads a file in pieces and delivers its messages. A TCP stream is delivered in order. Segments that arrived out of
-/// order can therefore follow later messages of other streams.
+/// Reads a file in pieces and delivers its messages. The bytes of a TCP stream are delivered in order. Bytes of
+/// segments that arrived out of order can therefore be delivered after later messages of other streams.
 pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summary, OpenError> {
     let mut summary = Summary::default();
     let mut streams = Streams::default();
@@ -116,7 +118,7 @@ pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summa
     if beginning.starts_with(b"(") {
         return Ok(candump(file, each));
     }
-    // A packet capture can contain telegrams, so its own format is checked first.
+    // A packet capture can contain PROFIBUS telegrams, so the capture formats are checked first.
     if let Some(form) = Form::of(beginning).filter(|_| !is_capture(beginning)) {
         return Ok(dump::read(file, form, each));
     }
@@ -181,7 +183,7 @@ fn candump(mut file: impl BufRead, mut each: impl FnMut(&Message<'_>)) -> Summar
         };
         offset += len;
         summary.packets += 1;
-        // Extended and remote frames are valid but not used here.
+        // Extended and remote frames are valid, but not decoded here.
         let Some((time, frame)) = Frame::from_candump(&String::from_utf8_lossy(&line)) else { continue };
         let time = time.unwrap_or_default();
         if summary.first.is_zero() {
@@ -207,7 +209,7 @@ mod tests {
         ("10.0.0.1:40000".parse().unwrap(), "[fe80::2]:10040".parse().unwrap())
     }
 
-    /// A file from our tap with every record type.
+    /// Returns a file that `tap` wrote, with every record type.
     fn recorded() -> Vec<u8> {
         let mut file = Vec::new();
         let (from, to) = ends();

@@ -1,4 +1,4 @@
-//! TCP reassembly per direction: bytes in order, without duplicates, and with the length of gaps.
+//! TCP reassembly per direction: returns the bytes in order, without duplicates, and the length of each gap.
 
 use std::collections::{BTreeMap, HashMap};
 use std::net::SocketAddr;
@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use super::layers::Segment;
 
-/// Key of one direction of a stream: section of the file, sender, receiver. Sequence numbers are per section, because
-/// each section is a separate recording.
+/// Key of one direction of a stream: section of the file, sender, receiver. The section is part of the key, because
+/// each section is a separate recording with its own sequence numbers.
 pub type StreamKey = (usize, SocketAddr, SocketAddr);
 /// Packet that delivered the bytes: its number, its time, and whether it was cut.
 pub type Origin = (u64, Duration, bool);
@@ -19,18 +19,19 @@ pub struct Piece<'a> {
     pub key: StreamKey,
     /// Packet that delivered the bytes.
     pub origin: Origin,
-    /// The first bytes of a stream that was opened in the file.
+    /// Whether these are the first bytes of a stream that was opened in the file.
     pub begins: bool,
-    /// Number of bytes missing before these.
+    /// Number of bytes that are missing before these bytes.
     pub lost: u32,
     /// The bytes.
     pub bytes: &'a [u8],
 }
 
-/// Limit of waiting segments per direction. Above it, the gap before them counts as lost.
+/// Maximum number of waiting segments per direction. Above it, the missing bytes before them count as lost.
 const MOST_WAITING: usize = 64;
 
-/// Limits of streams and of waiting bytes. Above them, all gaps count as lost, and each stream starts again.
+/// Maximum number of streams, and of waiting bytes. Above them, all missing bytes count as lost, and each stream starts
+/// again.
 const MOST_STREAMS: usize = 1 << 16;
 const MOST_HELD: usize = 32 << 20;
 
@@ -39,7 +40,7 @@ const MOST_HELD: usize = 32 << 20;
 pub struct Streams {
     streams: HashMap<StreamKey, Stream>,
     repeated: u64,
-    /// Waiting bytes of all streams.
+    /// Number of waiting bytes of all streams.
     held: usize,
 }
 
@@ -49,9 +50,9 @@ struct Stream {
     /// Next expected sequence number.
     next: Option<u32>,
     begins: bool,
-    /// Early segments by their position in the stream.
+    /// Early segments, by their position in the stream.
     waiting: BTreeMap<u64, (Origin, Vec<u8>)>,
-    /// Number of bytes delivered or lost. Positions count from it, because sequence numbers wrap.
+    /// Number of bytes delivered or lost. Positions count from the start of the stream, because sequence numbers wrap.
     passed: u64,
     /// Number of waiting bytes.
     held: usize,
@@ -167,7 +168,7 @@ mod tests {
         (0, "10.0.0.1:1".parse().unwrap(), "10.0.0.2:2".parse().unwrap())
     }
 
-    /// Reassembled pieces with the number of lost bytes before each.
+    /// Returns the reassembled pieces with the number of lost bytes before each piece.
     fn arrived(segments: &[(u32, &[u8])]) -> (Vec<(u64, u32, String)>, u64) {
         let mut streams = Streams::default();
         let mut all = Vec::new();
@@ -202,7 +203,7 @@ mod tests {
         let bytes = vec![0; 60_000];
         for number in 0..3000u32 {
             let key = (usize::try_from(number).unwrap(), key().1, key().2);
-            // The first segment opens the stream. The second waits behind a gap.
+            // The first segment opens the stream. The second segment waits, because bytes before it are missing.
             for (sequence, bytes) in [(1, &bytes[..1]), (9, &bytes[..])] {
                 let segment = Segment { sequence, opens: false, bytes };
                 let origin = (number.into(), Duration::ZERO, false);

@@ -11,10 +11,10 @@ use crate::image::view::BusError;
 /// An error that prevented or ended a connection.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Error {
-    /// Another node has the MAC of this master.
+    /// Another node on the bus has the MAC of this master.
     #[error("another node has MAC {mac} of this master: vendor {vendor}, serial {serial:08X}")]
     Duplicate {
-        /// The MAC.
+        /// MAC that both nodes have.
         mac: Mac,
         /// Vendor id of the other node.
         vendor: u16,
@@ -27,7 +27,7 @@ pub enum Error {
         /// The slave.
         mac: Mac,
     },
-    /// The image sizes of the slave do not match any profile.
+    /// The image sizes of the slave do not match any of the expected profiles.
     #[error("MAC {mac} receives {consumed} bytes and sends {produced}; armctl supports {known}")]
     Size {
         /// The slave.
@@ -36,7 +36,7 @@ pub enum Error {
         produced: u16,
         /// Size of the image to the slave, in bytes.
         consumed: u16,
-        /// The sizes of the profiles, as text.
+        /// Sizes of the expected profiles, as text.
         known: String,
     },
     /// The slave refused a request.
@@ -69,7 +69,7 @@ pub enum Error {
     Lost {
         /// The slave.
         mac: Mac,
-        /// Duration of the silence.
+        /// Time without an answer.
         after: Duration,
         /// Whether frames of the slave arrived, but no complete image.
         is_heard: bool,
@@ -88,7 +88,7 @@ pub enum Error {
         /// What is wrong with the answer.
         why: &'static str,
     },
-    /// The adapter is bus-off.
+    /// The adapter is in the state bus-off.
     #[error("the adapter is bus-off: too many errors on the bus")]
     BusOff,
     /// The adapter failed.
@@ -97,7 +97,7 @@ pub enum Error {
     /// The settings are invalid or contradict each other.
     #[error("{0}")]
     Settings(String),
-    /// The link was lost after the caller last looked at it (an older generation).
+    /// The link was lost, and the caller has not seen the loss yet: its image belongs to an older generation.
     #[error("the connection was lost")]
     Outdated,
     /// The connection is closed.
@@ -110,7 +110,7 @@ impl BusError for Error {
     const ENDED: Self = Self::Ended;
 }
 
-/// Explanation of a missing answer.
+/// Returns the explanation of a missing answer.
 const fn silence(is_bus_alive: bool, state: BusState) -> &'static str {
     match (is_bus_alive, state) {
         (_, BusState::Off) => "the adapter is bus-off",

@@ -1,5 +1,5 @@
-//! Virtual CAN bus behind SLCAN adapters, for tests and simulators. Each client (TCP or pseudo-terminal) is an adapter,
-//! and a frame from one client goes to all others. A simulated slave can be on the bus.
+//! Virtual CAN bus behind SLCAN adapters, for tests and simulators. Each client (TCP or pseudo-terminal) gets its own
+//! adapter. A frame of one client goes to all other clients. A simulated slave can also be on the bus.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -22,11 +22,11 @@ use super::device::{Application, Device, DeviceFault};
 use crate::fault::Faults;
 use crate::pty::Pty;
 
-/// Limit of bytes that wait for a client. Frames above it are lost, as in the queue of a real adapter.
+/// Maximum number of bytes that wait for a client. Further frames are lost, as in the full queue of a real adapter.
 const MOST_WAITING: usize = 64 * 1024;
-/// Client limit. Further clients are disconnected at once.
+/// Maximum number of clients. Further clients are disconnected at once.
 const MOST_CLIENTS: usize = 64;
-/// Limit of frames that fault injection delays.
+/// Maximum number of frames that fault injection delays at the same time.
 const MOST_DELAYED: usize = 1024;
 /// Pause after a failed accept.
 const PAUSE: Duration = Duration::from_millis(50);
@@ -35,7 +35,7 @@ const BUFFER: usize = 4096;
 /// Endpoint of a hub.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Listen {
-    /// TCP; port 0 lets the system choose.
+    /// TCP. With port 0, the system selects a port.
     Tcp(SocketAddr),
     /// A pseudo-terminal.
     Pty,
@@ -68,7 +68,7 @@ struct Inside<A> {
     last: u64,
     /// Fault injection for frames: to the slave, from the slave.
     faults: Option<(Faults, Faults)>,
-    /// Delayed frames, and whether they go to the slave.
+    /// Delayed frames: due time, whether the frame goes to the slave, frame.
     delayed: Vec<(Now, bool, Frame)>,
 }
 
@@ -90,7 +90,7 @@ enum Mode {
 }
 
 impl<A: Application + 'static> Hub<A> {
-    /// Starts a hub, with or without a slave. `faults` are for frames to and from the slave.
+    /// Starts a hub, with or without a slave. `faults` apply to frames to and from the slave.
     pub fn start(
         bitrate: Bitrate,
         device: Option<Device<A>>,
@@ -110,7 +110,7 @@ impl<A: Application + 'static> Hub<A> {
             runtime.block_on(async {
                 tokio::select! {
                     () = turn(&shared) => {}
-                    // An error means that the hub is dropped, which is also a reason to stop.
+                    // An error means that the hub was dropped, so the thread must also end.
                     _ = quits => {}
                 }
             });
@@ -119,17 +119,17 @@ impl<A: Application + 'static> Hub<A> {
         Ok(Self { inner, places, quit: Some(quit), thread: Some(thread) })
     }
 
-    /// Addresses of the endpoints in the order of `listen`: `127.0.0.1:40000`, `/dev/pts/4`.
+    /// Addresses of the endpoints in the order of `listen`, for example `127.0.0.1:40000` or `/dev/pts/4`.
     pub fn places(&self) -> &[String] {
         &self.places
     }
 
-    /// Changes the faults of frames: to the slave, from the slave.
+    /// Changes the faults for frames to the slave and from the slave.
     pub fn set_faults(&self, faults: Option<(Faults, Faults)>) {
         self.inner.lock().faults = faults;
     }
 
-    /// Calls `look` with the slave.
+    /// Calls `look` with the slave and the current time. Returns `None` without a slave.
     pub fn with<T>(&self, look: impl FnOnce(&mut Device<A>, Now) -> T) -> Option<T> {
         let now = self.inner.start.elapsed();
         let result = self.inner.lock().device.as_mut().map(|device| look(device, now));
@@ -142,7 +142,7 @@ impl<A: Application + 'static> Drop for Hub<A> {
     fn drop(&mut self) {
         self.quit = None;
         if let Some(thread) = self.thread.take() {
-            // A panic of the thread was already printed.
+            // If the thread panicked, the panic was already printed.
             let _ = thread.join();
         }
     }
@@ -186,7 +186,7 @@ async fn accept<A: Application + 'static>(inner: Arc<Inner<A>>, listener: TcpLis
         if inner.lock().clients.len() >= MOST_CLIENTS {
             continue;
         }
-        // The client can be disconnected already.
+        // The client may already be disconnected.
         let Ok(mut pipe) = Pipe::tcp(stream) else { continue };
         let inner = Arc::clone(&inner);
         tokio::spawn(async move {
@@ -225,7 +225,7 @@ async fn terminal<A: Application + 'static>(inner: Arc<Inner<A>>, mut pty: Pty) 
     inner.lock().clients.remove(&number);
 }
 
-/// Drives the slave.
+/// Runs the slave until its next event.
 async fn turn<A: Application>(inner: &Inner<A>) {
     loop {
         let wake = inner.lock().advance(inner.start.elapsed());
@@ -299,7 +299,7 @@ impl<A: Application> Inside<A> {
             Command::Flags if client.mode != Mode::Closed => {
                 let flags = match (is_off, is_right && !is_alone) {
                     (true, _) => flag::BUS_ERROR | flag::PASSIVE | flag::WARNING,
-                    // No other node acknowledges its frames.
+                    // No other node acknowledges the frames of this client.
                     (_, false) if client.mode == Mode::Open => flag::BUS_ERROR | flag::PASSIVE,
                     _ => 0,
                 };
@@ -325,7 +325,7 @@ impl<A: Application> Inside<A> {
         }
     }
 
-    /// Sends a frame to all clients with an open channel, except its sender.
+    /// Sends a frame to all clients with an open channel, except the sender of the frame.
     fn spread(&mut self, from: Option<u64>, frame: &Frame, bitrate: Bitrate) {
         for (number, client) in &mut self.clients {
             if Some(*number) == from || client.mode == Mode::Closed || client.bitrate != Some(digit(bitrate)) {
@@ -360,7 +360,7 @@ impl<A: Application> Inside<A> {
         }
     }
 
-    /// Does what is due. Returns the time of the next call.
+    /// Executes the work that is due. Returns the time of the next call.
     fn advance(&mut self, now: Now) -> Option<Now> {
         let due: Vec<(Now, bool, Frame)> = self.delayed.extract_if(.., |(at, ..)| *at <= now).collect();
         let is_off = self.device.as_ref().is_some_and(|device| device.fault() == Some(DeviceFault::BusOff));

@@ -1,5 +1,5 @@
-//! DeviceNet as a fieldbus of images: a polled slave, traffic of another master, or a slave read with explicit
-//! messages.
+//! DeviceNet as a fieldbus of images. There are three kinds of connection: a polled slave, the observed traffic of
+//! another master, and a slave that is read with explicit messages.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -17,7 +17,7 @@ use super::wire::{Answer, Mac, Request, class, connection};
 use crate::image::cyclic::{Bus, Cyclic};
 use crate::image::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
 
-/// Number of packet rates after which a slave clears its outputs.
+/// Multiple of the packet rate after which a slave without polls clears its outputs.
 const WATCHDOG: u32 = 4;
 
 /// A polled slave.
@@ -31,7 +31,7 @@ impl Polled {
     pub async fn open(network: &Network, settings: Settings) -> Result<Self, Error> {
         let connection = network.connect(settings).await?;
         let size = connection.view().details.size;
-        let size = size.ok_or_else(|| Error::Settings("the connection is only for messages".to_owned()))?;
+        let size = size.ok_or_else(|| Error::Settings("the connection carries only messages, no images".to_owned()))?;
         Ok(Self::over(connection, Sizes { output: size, input: size }))
     }
 }
@@ -76,7 +76,7 @@ impl Bus for Connection {
     }
 }
 
-/// Images between another master and a slave. Nothing is sent, not even an acknowledgement.
+/// Images that another master and a slave exchange. This node sends nothing, not even acknowledgements.
 #[derive(Debug)]
 pub struct Listened {
     network: Network,
@@ -88,7 +88,7 @@ pub struct Listened {
 }
 
 impl Listened {
-    /// Listens for at most `longest`; `None` if no image passes.
+    /// Listens for at most `longest`. Returns `None` if no image of the slave was received.
     pub async fn open(network: Network, slave: Mac, longest: Duration, patience: Duration) -> Option<Self> {
         let input = network.listen(slave, longest).await.input?;
         Some(Self { network, slave, size: input.image.len(), patience, seen: 0 })
@@ -135,8 +135,8 @@ impl ImageConnection for Listened {
     }
 }
 
-/// Image of a slave, read with explicit messages at an interval. No poll connection starts, so its end cannot stop a
-/// robot.
+/// Image of a slave, read with explicit messages at an interval. The poll connection is not established, so its end
+/// cannot stop a robot.
 #[derive(Debug)]
 pub struct Reading {
     connection: Connection,
@@ -180,7 +180,7 @@ impl Reading {
                 return Event::Image(Arc::clone(&self.image));
             }
             sleep_until(self.due).await;
-            // If this future is dropped before the answer arrives, the next call asks again.
+            // If this future is dropped before the answer arrives, the next call sends the request again.
             match read(&self.connection, self.slave, &self.request).await {
                 Ok(image) if *image != *self.image => self.image = image.into(),
                 Ok(_) => {}
@@ -211,15 +211,16 @@ const IMAGE: &str = "the read of its signals";
 /// Attribute 14 of a connection object: path of the produced data.
 const PRODUCED_PATH: u8 = 14;
 
-/// Finds the request that reads the image which the slave would produce. Its poll connection object has the path.
+/// Returns the request that reads the image that the slave produces. The poll connection object of the slave contains
+/// the path of this image.
 pub async fn produced(connection: &Connection, mac: Mac) -> Result<Request, Error> {
     let instance = u16::from(connection::POLL_INSTANCE);
     let path = read(connection, mac, &Request::get(class::CONNECTION, instance, PRODUCED_PATH)).await?;
     match path.as_slice() {
-        // Class, instance and attribute, each in one byte.
+        // The path has a class, an instance and an attribute, each in one byte.
         [0x20, class, 0x24, instance, 0x30, attribute] => Ok(Request::get(*class, (*instance).into(), *attribute)),
         [0x20, class, 0x24, instance] => Ok(Request::get(*class, (*instance).into(), 3)),
-        _ => Err(Error::Senseless { mac, what: IMAGE, why: "the path is not that of an attribute" }),
+        _ => Err(Error::Senseless { mac, what: IMAGE, why: "the path does not lead to an attribute" }),
     }
 }
 
@@ -231,7 +232,7 @@ pub async fn read(connection: &Connection, mac: Mac, request: &Request) -> Resul
     }
 }
 
-/// Advice for errors that need more than their kind gives.
+/// Returns the advice for an error, if the advice for the kind of the error is not enough.
 fn advice(error: &Error) -> Option<std::borrow::Cow<'static, str>> {
     Some(match error {
         Error::Duplicate { .. } => {

@@ -1,7 +1,7 @@
-//! DeviceNet master and simulated slave: images to and from a slave of the predefined master/slave set, over a CAN
-//! adapter.
+//! DeviceNet master and simulated slave: images to and from a slave of the predefined master/slave connection set, over
+//! a CAN adapter.
 //!
-//! This module knows connections and bytes, but no robots.
+//! This module handles connections and bytes, and nothing specific to robots.
 
 use std::time::Duration;
 
@@ -16,7 +16,7 @@ pub mod scanner;
 pub mod settings;
 pub mod wire;
 
-/// A moment, as time since an origin that the driver chooses. It never runs backwards.
+/// A moment, as the time since an origin that the driver selects. The time never decreases.
 pub type Now = Duration;
 
 #[cfg(test)]

@@ -6,21 +6,21 @@ use super::Now;
 use super::can::Frame;
 use super::wire::{Assembler, Fragment, Id, Kind, Mac, Piece};
 
-/// Size of a fragmented image. Other images are single frames.
+/// Size in bytes of an image that is sent in fragments. Other images are sent in a single frame.
 const WHOLE: usize = 48;
-/// Size of an image in a single frame.
+/// Size in bytes of an image in a single frame.
 const BARE: usize = 4;
 
 /// An image seen on the bus.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Seen {
-    /// Time of its last frame.
+    /// Time of the last frame of the image.
     pub at: Now,
     /// Bytes of the image.
     pub image: Vec<u8>,
 }
 
-/// What was seen of a slave.
+/// Traffic of a slave and its master, as seen on the bus.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Sight {
     /// The newest image to the slave.
@@ -29,7 +29,7 @@ pub struct Sight {
     pub input: Option<Seen>,
     /// Time of the last frame from the slave.
     pub heard: Option<Now>,
-    /// Time of the last frame from its master.
+    /// Time of the last frame from the master of the slave.
     pub asked: Option<Now>,
 }
 
@@ -40,7 +40,7 @@ impl Sight {
     }
 }
 
-/// The monitor.
+/// Passive monitor of a bus.
 #[derive(Debug, Default)]
 pub struct Monitor {
     slaves: BTreeMap<Mac, Slave>,
@@ -60,7 +60,8 @@ impl Default for Slave {
 }
 
 impl Monitor {
-    /// Handles a frame. Returns the image that it completes, and whether the image comes from the slave.
+    /// Handles a frame. If the frame completes an image, returns the slave, whether the image comes from the slave, and
+    /// the image.
     pub fn hear(&mut self, now: Now, frame: &Frame) -> Option<(Mac, bool, Vec<u8>)> {
         let (mac, is_input) = match Id::parse(frame.id())? {
             Id::Poll(mac) => (mac, false),
@@ -79,7 +80,8 @@ impl Monitor {
         *(if is_input { &mut slave.sight.heard } else { &mut slave.sight.asked }) = Some(now);
         let assembler = if is_input { &mut slave.input } else { &mut slave.output };
         let image = match frame.data() {
-            // As a fragment, this length would end a 45-byte image, which does not exist. So it is a 4-byte image.
+            // A fragment of this length would be the last one of a 45-byte image. No image has 45 bytes, so this is a
+            // 4-byte image.
             data @ [_, _, _, _] if data.len() == BARE && !assembler.is_partial() => data.to_vec(),
             data => match assembler.take(data) {
                 Piece::Whole(image) => image,
@@ -91,7 +93,7 @@ impl Monitor {
         Some((mac, is_input, image))
     }
 
-    /// What was seen of a slave.
+    /// Returns the last traffic of a slave and its master.
     pub fn sight(&self, slave: Mac) -> Sight {
         self.slaves.get(&slave).map(|slave| slave.sight.clone()).unwrap_or_default()
     }
@@ -102,7 +104,7 @@ impl Monitor {
     }
 }
 
-/// Text of a frame for traces: `MAC 5: poll by the master, fragment 0 (first)`.
+/// Describes a frame for traces, for example `MAC 5: poll by the master, fragment 0 (first)`.
 pub fn describe(frame: &Frame) -> String {
     let Some(id) = Id::parse(frame.id()) else { return format!("{:03X}: not a DeviceNet identifier", frame.id()) };
     let mut text = id.to_string();

@@ -1,5 +1,5 @@
-//! Shared CAN adapters, each with a thread that runs the master. The polls do not depend on the rest of the program, so
-//! a prompt that waits for input does not stop a robot.
+//! Shared CAN adapters. A thread per adapter runs the master, so that polls do not depend on the rest of the program. A
+//! prompt that waits for input must not stop a robot.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
@@ -26,11 +26,11 @@ use crate::image::tap::Passage;
 pub use crate::image::tap::Tap;
 use crate::serial::{self, Line};
 
-/// Pause between attempts to open an adapter again.
+/// Pause between attempts to reopen an adapter.
 const REOPEN: Duration = Duration::from_secs(1);
 /// Time limit for a connection to an SLCAN server.
 const CONNECT: Duration = Duration::from_secs(5);
-/// Time that an adapter gets for the last command.
+/// Time for the adapter to process the last command before it is closed.
 const FAREWELL: Duration = Duration::from_millis(20);
 /// Interval of the checks for traffic in [`Network::listen`].
 const LISTENED: Duration = Duration::from_millis(50);
@@ -40,7 +40,7 @@ const LISTENED: Duration = Duration::from_millis(50);
 pub enum Place {
     /// SLCAN on a serial port. USB adapters ignore the baud rate.
     Serial {
-        /// `/dev/ttyACM0`, `COM3`.
+        /// Name of the port, for example `/dev/ttyACM0` or `COM3`.
         path: String,
         /// Baud rate of the port.
         baud: u32,
@@ -76,11 +76,12 @@ pub struct Adapter {
     pub place: Place,
     /// The bit rate of the bus.
     pub bitrate: Bitrate,
-    /// Identity of the master. `None` means listen-only: nothing is sent, not even an acknowledgement.
+    /// Identity of the master. `None` means listen-only: this node sends nothing, not even acknowledgements.
     pub identity: Option<Identity>,
 }
 
-/// An open adapter. Clones are cheap. The adapter closes with the last clone and the last connection.
+/// An open adapter. Clones are cheap and share the adapter. The adapter closes with the last clone and the last
+/// connection.
 #[derive(Debug, Clone)]
 pub struct Network {
     owner: Arc<Owner>,
@@ -99,7 +100,7 @@ struct Inner {
     wake: Notify,
     last: AtomicU64,
     state: Mutex<Inside>,
-    /// Event counter of the bus, to wake the tasks that wait.
+    /// Counter of bus events. A change wakes the waiting tasks.
     news: watch::Sender<u64>,
 }
 
@@ -121,13 +122,13 @@ struct Inside {
 }
 
 impl Network {
-    /// Opens an adapter, or shares one that is already open in this process. Frames also go to `tap` while the adapter
-    /// is open.
+    /// Opens an adapter, or shares one that is already open in this process. While the adapter is open, frames are also
+    /// passed to `tap`.
     ///
     /// # Errors
-    /// The adapter cannot be opened, or is open with other settings.
+    /// The adapter cannot be opened, or is already open with other settings.
     pub async fn open(adapter: &Adapter, tap: Tap) -> Result<Self, Error> {
-        // Locked while an adapter opens, so that a concurrent caller shares it.
+        // The lock is held while an adapter opens, so that a concurrent caller waits and shares the adapter.
         static SHARED: tokio::sync::Mutex<Vec<Weak<Owner>>> = tokio::sync::Mutex::const_new(Vec::new());
         let mut shared = SHARED.lock().await;
         {
@@ -135,12 +136,13 @@ impl Network {
             let same = |owner: &Arc<Owner>| owner.inner.adapter.place == adapter.place;
             if let Some(owner) = shared.iter().filter_map(Weak::upgrade).find(same) {
                 let other = &owner.inner.adapter;
-                // A listener can share the adapter of a master.
+                // A listen-only user can share the adapter of a master.
                 let fits = adapter.identity.is_none() || adapter.identity == other.identity;
                 if !fits || adapter.bitrate != other.bitrate {
                     let place = &adapter.place;
                     return Err(Error::Settings(format!(
-                        "{place} is in use with another bit rate or master MAC; an adapter has only one of each"
+                        "{place} is in use with another bit rate or master MAC; an adapter can have only one bit rate \
+                         and one master MAC"
                     )));
                 }
                 if tap.is_open() {
@@ -154,7 +156,7 @@ impl Network {
         Ok(network)
     }
 
-    /// Opens an adapter that is not shared.
+    /// Opens an adapter without sharing it.
     async fn start(adapter: Adapter, tap: Tap) -> Result<Self, Error> {
         let inside = Inside {
             scanner: adapter.identity.map(Scanner::new),
@@ -177,7 +179,8 @@ impl Network {
             news: watch::channel(0).0,
         });
         let (opened, is_open) = oneshot::channel();
-        let failed = |error: &std::io::Error| Error::Settings(format!("a thread for the adapter: {error}"));
+        let failed =
+            |error: &std::io::Error| Error::Settings(format!("cannot start a thread for the adapter: {error}"));
         let runtime = Builder::new_current_thread().enable_all().build().map_err(|error| failed(&error))?;
         let shared = Arc::clone(&inner);
         let work = move || runtime.block_on(run(shared, opened));
@@ -187,11 +190,11 @@ impl Network {
         Ok(Self { owner })
     }
 
-    /// Opens a connection to a slave. It stays open until it is closed or dropped.
+    /// Opens a connection to a slave. The connection stays open until it is closed or dropped.
     ///
     /// # Errors
-    /// The slave does not answer or refuses; there is no second attempt. A later loss is not an error but a state of
-    /// the view.
+    /// The slave does not answer, or refuses. The first opening is not repeated. If the connection is lost later, this
+    /// is not an error but a state of the view.
     pub async fn connect(&self, settings: Settings) -> Result<Connection, Error> {
         let inner = &self.owner.inner;
         let number = inner.last.fetch_add(1, Ordering::Relaxed);
@@ -255,10 +258,10 @@ impl Network {
         self.owner.inner.now()
     }
 
-    /// Waits for bus activity after `seen`, and updates `seen`. Returns at once if there was some already.
+    /// Waits for bus activity after `seen`, and updates `seen`. Returns at once if there was activity in the meantime.
     pub async fn changed(&self, seen: &mut u64) {
         let mut news = self.owner.inner.news.subscribe();
-        // `self` keeps the sender alive, so this cannot fail.
+        // `self` keeps the sender alive, so this wait cannot fail.
         let now = news.wait_for(|count| count != seen).await.map_or(*seen, |count| *count);
         *seen = now;
     }
@@ -277,7 +280,7 @@ impl Network {
 
 const ONLY_LISTENS: &str = "the adapter only listens";
 
-/// An open connection. Dropping it closes it, if the process lives long enough.
+/// An open connection. A dropped connection is closed, unless the process ends before that.
 #[derive(Debug)]
 pub struct Connection {
     network: Network,
@@ -296,7 +299,7 @@ impl Connection {
         self.views.until(condition).await
     }
 
-    /// Sends this image from the next poll on; see [`Scanner::set_image`].
+    /// Sends this image, starting with the next poll; see [`Scanner::set_image`].
     ///
     /// # Errors
     /// The connection is not open in this generation, or the image has another size.
@@ -305,7 +308,7 @@ impl Connection {
         changed.unwrap_or(Err(Error::Ended))
     }
 
-    /// Sends an explicit request. A refusal is an answer.
+    /// Sends an explicit request. A refusal is returned as an answer.
     pub async fn ask(&self, request: Request) -> Result<Answer, Error> {
         let inner = &self.network.owner.inner;
         let token = Token(inner.last.fetch_add(1, Ordering::Relaxed));
@@ -315,7 +318,7 @@ impl Connection {
         answer.await.unwrap_or(Err(Error::Ended))
     }
 
-    /// Closes the connection: releases the connections of the slave.
+    /// Closes the connection, and releases the connections of the slave.
     ///
     /// # Errors
     /// The slave did not confirm the release.
@@ -325,7 +328,7 @@ impl Connection {
         self.views.closed(before.as_ref()).await
     }
 
-    /// The adapter of the connection.
+    /// The adapter that the connection uses.
     pub const fn network(&self) -> &Network {
         &self.network
     }
@@ -349,7 +352,8 @@ impl Drop for Owner {
     fn drop(&mut self) {
         self.inner.lock().is_over = true;
         self.inner.wake.notify_one();
-        // The thread first releases open connections. If this drop runs on that thread, it must not wait for itself.
+        // Wait for the thread, which first releases open connections. If this drop runs on that thread, it must not
+        // wait for itself.
         if let Some(thread) = self.thread.take().filter(|thread| thread.thread().id() != thread::current().id()) {
             let _ = thread.join();
         }
@@ -377,7 +381,7 @@ impl Inside {
         }
         while let Some(Reply { token, result, .. }) = scanner.reply() {
             if let Some(answer) = self.asked.remove(&token) {
-                // The caller can be gone already.
+                // The caller may already be gone.
                 let _ = answer.send(result);
             }
         }
@@ -400,20 +404,20 @@ impl Inside {
     }
 }
 
-/// Records a frame.
+/// Passes a frame to all taps.
 fn pass(taps: &[Tap], frame: &Frame) {
     for tap in taps {
         tap.pass(|| Passage::Frame(frame.to_capture()));
     }
 }
 
-/// Thread body: opens the adapter, and opens it again after a loss while connections wait for it.
+/// Body of the thread. Opens the adapter. After a loss, opens the adapter again if connections wait for it.
 async fn run(inner: Arc<Inner>, opened: oneshot::Sender<Result<(), Error>>) {
     let tap = inner.lock().taps.first().cloned().unwrap_or_default();
     let mut port = match open(&inner.adapter, tap).await {
         Ok(port) => port,
         Err(error) => {
-            // The caller can be gone already.
+            // The caller may already be gone.
             let _ = opened.send(Err(Error::Port(error)));
             return;
         }
@@ -456,7 +460,7 @@ async fn run(inner: Arc<Inner>, opened: oneshot::Sender<Result<(), Error>>) {
     }
 }
 
-/// Moves frames until the network is closed or the adapter fails.
+/// Transfers frames between master and adapter until the network is closed or the adapter fails.
 async fn exchange(inner: &Inner, port: &mut dyn CanPort) -> Result<(), PortError> {
     loop {
         let wake = {
@@ -467,7 +471,7 @@ async fn exchange(inner: &Inner, port: &mut dyn CanPort) -> Result<(), PortError
             if let Some(scanner) = scanner {
                 scanner.handle_health(now, port.health());
                 while let Some(frame) = scanner.poll(now) {
-                    // Before the send, so that a trace never has an answer before its request.
+                    // The frame is recorded before it is sent, so that a trace never has an answer before its request.
                     pass(taps, &frame);
                     port.send(&frame)?;
                 }
@@ -503,7 +507,7 @@ async fn exchange(inner: &Inner, port: &mut dyn CanPort) -> Result<(), PortError
                         scanner.handle(now, &frame);
                     }
                 }
-                // The loop reads the health first on every pass.
+                // Nothing to do here: every pass of the loop reads the health first.
                 Heard::Health(_) => {}
             }
         }
@@ -511,7 +515,7 @@ async fn exchange(inner: &Inner, port: &mut dyn CanPort) -> Result<(), PortError
     }
 }
 
-/// Opens an adapter; `tap` records how it is set up.
+/// Opens an adapter. `tap` records the setup of the adapter.
 async fn open(adapter: &Adapter, tap: Tap) -> Result<Box<dyn CanPort>, PortError> {
     let listens = adapter.identity.is_none();
     let name = adapter.place.to_string();

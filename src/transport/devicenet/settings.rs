@@ -1,4 +1,4 @@
-//! Connection settings.
+//! Settings of a connection to a slave.
 
 use std::time::Duration;
 
@@ -8,9 +8,10 @@ use super::wire::Mac;
 
 /// Valid poll intervals.
 pub const CYCLES: std::ops::RangeInclusive<Duration> = Duration::from_millis(1)..=Duration::from_secs(10);
-/// Valid packet rates. Attribute 9 has 16 bits of milliseconds, and 0 would switch the watchdog off.
+/// Valid packet rates. The rate is in attribute 9 with 16 bits of milliseconds; 0 would switch the watchdog off.
 pub const RATES: std::ops::RangeInclusive<Duration> = Duration::from_millis(1)..=Duration::from_millis(65_535);
-/// Lower limit of the default packet rate. A shorter one could stop a robot when this computer is briefly busy.
+/// Minimum of the default packet rate. With a shorter packet rate, the robot could stop when this computer is busy for
+/// a short time.
 const LEAST_RATE: Duration = Duration::from_millis(100);
 
 /// Settings of a connection to a slave.
@@ -20,7 +21,7 @@ pub struct Settings {
     pub slave: Mac,
     /// Purpose of the connection.
     pub purpose: Purpose,
-    /// Time limit for an answer. Then the request is repeated once.
+    /// Time limit for an answer. After it, the request is repeated once.
     pub timeout: Duration,
 }
 
@@ -29,9 +30,9 @@ pub struct Settings {
 pub enum Purpose {
     /// Control: images in both directions.
     Images(Images),
-    /// Explicit messages only. The poll connection can be allocated, but is not established.
+    /// Explicit messages only. The poll connection can be allocated, but it is not established.
     Messages {
-        /// Allocate the poll connection, so that its sizes can be read.
+        /// Whether to allocate the poll connection, so that its image sizes can be read.
         with_poll: bool,
     },
 }
@@ -43,7 +44,7 @@ pub struct Images {
     pub profiles: Vec<Profile>,
     /// Interval of polls.
     pub cycle: Duration,
-    /// Expected packet rate. The slave closes the connection after four times this.
+    /// Expected packet rate. The slave closes the connection after four times this time without a poll.
     pub rate: Duration,
 }
 
@@ -52,7 +53,7 @@ pub struct Images {
 pub struct Profile {
     /// Name of the profile.
     pub name: &'static str,
-    /// First image after every opening. Its length is the size.
+    /// First image after every opening of the connection. Its length is the image size.
     pub resting: Vec<u8>,
 }
 
@@ -87,7 +88,7 @@ impl Settings {
             ));
         }
         if images.profiles.iter().any(|profile| profile.resting.is_empty()) {
-            return wrong("an image has at least one byte".to_owned());
+            return wrong("an image must have at least one byte".to_owned());
         }
         Ok(())
     }

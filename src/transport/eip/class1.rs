@@ -15,7 +15,7 @@ pub(super) struct Producer {
     sequence: u32,
     count: u16,
     pub(super) sent: u64,
-    /// Send times omitted because a whole interval was missed.
+    /// Number of send times that were omitted, because a whole interval was missed.
     pub(super) skipped: u64,
 }
 
@@ -29,8 +29,8 @@ impl Producer {
         self.due
     }
 
-    /// Returns the datagram due at `now`. The next one is due one interval after this due time, so there is no drift.
-    /// Missed intervals are omitted, so there is no burst.
+    /// Returns the datagram due at `now`. The next datagram is due one interval after the due time of this one, so
+    /// there is no drift. Missed intervals are omitted, so there is no burst.
     pub(super) fn produce(&mut self, now: Now, header: Option<u32>, image: &[u8]) -> Vec<u8> {
         self.sequence = self.sequence.wrapping_add(1);
         self.count = self.count.wrapping_add(1);
@@ -49,15 +49,15 @@ impl Producer {
 pub(super) enum Verdict<'a> {
     /// A new image.
     Image {
-        /// Run bit; `true` for streams without a run/idle header.
+        /// Run bit. It is `true` for streams without a run/idle header.
         run: bool,
         image: &'a [u8],
     },
-    /// No image: a heartbeat, or a sender without data. It restarts the timeout.
+    /// A datagram without an image: a heartbeat, or a sender that has no data. It restarts the timeout.
     Alive,
-    /// Old or duplicate.
+    /// An old or duplicate datagram.
     Stale,
-    /// Not the agreed size.
+    /// A datagram whose size is not the agreed size.
     WrongSize,
 }
 
@@ -71,20 +71,21 @@ pub(super) struct Consumer {
     timeout: Duration,
     until: Now,
     last: Option<(u32, Now)>,
-    /// Valid datagrams.
+    /// Number of valid datagrams.
     pub(super) received: u64,
-    /// Missing sequence numbers.
+    /// Number of missing sequence numbers.
     pub(super) lost: u64,
-    /// Datagrams more than half an interval late.
+    /// Number of datagrams that arrived more than half an interval late.
     pub(super) late: u64,
-    /// Old and duplicate datagrams.
+    /// Number of old and duplicate datagrams.
     pub(super) stale: u64,
-    /// Datagrams of a wrong size.
+    /// Number of datagrams of a wrong size.
     pub(super) misfit: u64,
 }
 
 impl Consumer {
-    /// Starts at `now`. The timeout of the first datagram is [`FIRST_PACKET`], or the normal one if that is longer.
+    /// Creates a receiver that starts at `now`. The timeout of the first datagram is [`FIRST_PACKET`], or the normal
+    /// timeout if that is longer.
     pub(super) fn new(id: u32, size: usize, header: bool, interval: Duration, intervals: u32, now: Now) -> Self {
         let timeout = interval.saturating_mul(intervals);
         Self {
@@ -149,7 +150,7 @@ impl Consumer {
     }
 }
 
-/// Serial number arithmetic: whether `one` comes after `other`, with wrap-around.
+/// Whether `one` comes after `other` in serial number arithmetic, which wraps around.
 const fn is_after(one: u32, other: u32) -> bool {
     let ahead = one.wrapping_sub(other);
     ahead != 0 && ahead < 1 << 31

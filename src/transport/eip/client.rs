@@ -14,12 +14,12 @@ use super::wire::{Command, Identity, Services};
 
 /// Token of the one request in progress.
 const TOKEN: Token = Token(0);
-/// Time limit for a busy device to free a session, in multiples of the timeout.
+/// Time for a busy device to free a session, in multiples of the timeout.
 pub const PATIENCE: u32 = 4;
 /// Bytes per read.
 const BUFFER: usize = 4096;
 
-/// A session with a device. It opens at the first request.
+/// A session with a device. The session opens at the first request.
 #[derive(Debug)]
 pub struct Client {
     target: SocketAddrV4,
@@ -31,8 +31,8 @@ pub struct Client {
 }
 
 impl Client {
-    /// Creates a client for the device at this TCP address. `timeout` limits the connection and each answer. If the
-    /// device has no free session, the client retries for [`PATIENCE`] times as long.
+    /// Creates a client for the device at this TCP address. `timeout` is the time limit of the TCP connection and of
+    /// each answer. If the device has no free session, the client retries for [`PATIENCE`] times the timeout.
     pub fn new(target: SocketAddrV4, timeout: Duration, tap: Tap) -> Self {
         let session = Session::new(timeout).patient(timeout.saturating_mul(PATIENCE));
         Self { target, session, stream: None, start: Instant::now(), timeout, tap }
@@ -43,7 +43,7 @@ impl Client {
         self.target
     }
 
-    /// Sends a request to an object. A refusal is an answer.
+    /// Sends a request to an object. A refusal is returned as an answer.
     pub async fn ask(&mut self, what: &'static str, message: &Message) -> Result<Answer, EipError> {
         Answer::parse(what, &self.send(what, Command::SEND_RR_DATA, message.emit()?).await?)
     }
@@ -67,7 +67,7 @@ impl Client {
         self.session.end();
         while let Some(step) = self.session.poll(self.start.elapsed()) {
             if let Step::Send(bytes) = step {
-                // A failure does not matter: the device also notices the closed connection.
+                // An error is ignored: the device also detects the closed TCP connection.
                 let _ = self.write(&bytes).await;
             }
         }
@@ -100,7 +100,8 @@ impl Client {
         let until = Instant::now() + self.timeout;
         match timeout_at(until, TcpStream::connect(self.target)).await {
             Ok(Ok(stream)) => {
-                // Optional: without it, a request can wait for the acknowledgement of the previous one.
+                // An error is ignored. Without this option, a request may wait for the acknowledgement of the previous
+                // request.
                 let _ = stream.set_nodelay(true);
                 self.stream = Some(stream);
                 self.session.connected(self.start.elapsed());
@@ -120,7 +121,7 @@ impl Client {
         stream.write_all(bytes).await
     }
 
-    /// Reads once, or waits until the session is due.
+    /// Reads once from the TCP connection, or waits until the session has work to do.
     async fn read(&mut self, what: &'static str) {
         let until = self.session.wake().map_or_else(|| Instant::now() + self.timeout, |wake| self.start + wake);
         let Some(stream) = &mut self.stream else { return sleep_until(until).await };

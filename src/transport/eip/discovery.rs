@@ -1,4 +1,4 @@
-//! Device discovery: ListIdentity by UDP, to one device or a broadcast address.
+//! Device discovery: sends ListIdentity by UDP to one device or to a broadcast address.
 
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
@@ -10,10 +10,10 @@ use tokio::time::{Instant, timeout_at};
 use super::tap::Tap;
 use super::wire::{Command, Frame, Identity};
 
-/// Time over which devices spread their answers to a broadcast (volume 2, 2-4.2.2).
+/// Time within which devices answer a broadcast, each after its own delay (volume 2, 2-4.2.2).
 const SPREAD: Duration = Duration::from_millis(500);
 const BUFFER: usize = 2048;
-/// Limit of reported devices.
+/// Maximum number of reported devices.
 const MOST: usize = 1024;
 
 /// A device that answered.
@@ -25,9 +25,9 @@ pub struct Found {
     pub identity: Identity,
 }
 
-/// Sends ListIdentity from a local address (0.0.0.0 for any) to devices and broadcast addresses. Collects answers until
-/// `wait` is over, or until every single device has answered. Devices answer a broadcast within half a second; `wait`
-/// should be 2 s or more.
+/// Sends ListIdentity from a local address (0.0.0.0 means any) to devices and broadcast addresses. Collects answers
+/// until `wait` has passed, or until all targets that are single devices have answered. Devices answer a broadcast
+/// within half a second; `wait` should be 2 s or more.
 ///
 /// # Errors
 /// No socket can be opened, or nothing can be sent to any target.
@@ -45,7 +45,8 @@ pub async fn list_identity(
     let request = request.emit();
     let start = Instant::now();
     let mut found: Vec<Found> = Vec::new();
-    // Datagrams can be lost, so at half-time the request is repeated to targets that have not answered.
+    // Datagrams can be lost. Therefore the request is sent again after half of the time to targets that have not
+    // answered.
     for until in [start + wait / 2, start + wait] {
         let mut failure = None;
         let mut sent = false;
@@ -66,7 +67,8 @@ pub async fn list_identity(
     Ok(found)
 }
 
-/// Broadcast addresses of the local networks. Without a default route, only these reach all devices.
+/// Returns the broadcast addresses of the local networks. Without a default route, only these addresses reach all
+/// devices.
 #[cfg(target_os = "linux")]
 pub fn broadcasts() -> io::Result<Vec<Ipv4Addr>> {
     use nix::net::if_::InterfaceFlags;
@@ -76,7 +78,7 @@ pub fn broadcasts() -> io::Result<Vec<Ipv4Addr>> {
     Ok(ready.filter_map(|entry| Some(entry.broadcast?.as_sockaddr_in()?.ip())).collect())
 }
 
-/// Not supported on this system; returns no addresses.
+/// Returns no addresses: this function is not supported on this system.
 #[cfg(not(target_os = "linux"))]
 pub fn broadcasts() -> io::Result<Vec<Ipv4Addr>> {
     Ok(Vec::new())
@@ -94,7 +96,7 @@ async fn gather(
     while found.len() < MOST && !targets.iter().all(|target| found.iter().any(|found| found.address == *target)) {
         let (len, address) = match timeout_at(until, socket.recv_from(&mut buffer)).await {
             Ok(Ok((len, SocketAddr::V4(address)))) => (len, address),
-            // On Windows, "port unreachable" from one device. Others can still answer.
+            // On Windows, this is "port unreachable" from one device. Other devices may still answer.
             Ok(_) => continue,
             Err(_) => return,
         };

@@ -1,7 +1,8 @@
-//! Two threads behind a scanner or server: one for sockets, one for timing.
+//! Two threads that run a scanner or server: one thread for sockets and one for timing.
 //!
-//! Image exchange does not depend on the rest of the program: a prompt that waits for input must not stop a robot.
-//! Timing has its own thread, because tokio timers have a resolution of 1 ms. A parked thread wakes within 0.1 ms.
+//! The exchange of images does not depend on the rest of the program: a prompt that waits for input must not stop a
+//! robot. The timing has its own thread, because tokio timers have a resolution of 1 ms. A parked thread wakes within
+//! 0.1 ms.
 
 use std::future::Future;
 use std::io;
@@ -18,14 +19,15 @@ use super::Now;
 /// Wakes the timing thread earlier than planned.
 #[derive(Debug, Default)]
 pub(super) struct Alarm {
-    /// Planned wake-up time in nanoseconds. It is the maximum while the thread runs, so that no alarm is missed.
+    /// Planned wake-up time in nanoseconds. While the thread runs, this is the maximum, so that every alarm wakes the
+    /// thread.
     planned: AtomicU64,
     thread: OnceLock<Thread>,
     is_over: AtomicBool,
 }
 
 impl Alarm {
-    /// Requests a wake-up at `at`.
+    /// Wakes the thread if it would otherwise wake later than `at`.
     pub(super) fn set(&self, at: Option<Now>) {
         let Some(at) = at else { return };
         if nanos(at) < self.planned.load(Ordering::SeqCst)
@@ -35,9 +37,9 @@ impl Alarm {
         }
     }
 
-    /// Calls `turn` at the time that it last returned, or after an alarm.
+    /// Calls `turn` in a loop, each time at the time that the last call returned, or after an alarm.
     fn run(&self, start: Instant, mut turn: impl FnMut() -> Option<Now>) {
-        // This is the only place that sets the thread.
+        // The thread is set only here, so this cannot fail.
         let _ = self.thread.set(thread::current());
         while !self.is_over.load(Ordering::SeqCst) {
             self.planned.store(u64::MAX, Ordering::SeqCst);
@@ -63,7 +65,7 @@ fn nanos(at: Now) -> u64 {
     u64::try_from(at.as_nanos()).unwrap_or(u64::MAX)
 }
 
-/// The running threads. They stop when it is dropped.
+/// The running threads. They stop when the engine is dropped.
 #[derive(Debug)]
 pub(super) struct Engine {
     alarm: Arc<Alarm>,
@@ -71,7 +73,7 @@ pub(super) struct Engine {
     threads: Vec<JoinHandle<()>>,
 }
 
-/// The socket thread before it starts, so that sockets can be opened on its runtime.
+/// The runtime of the socket thread, before the thread starts. Sockets can be opened on this runtime.
 #[derive(Debug)]
 pub(super) struct Prepared {
     /// `None` after the thread has started.
@@ -79,7 +81,7 @@ pub(super) struct Prepared {
     handle: Handle,
 }
 
-/// If it was never started, this drop can run inside another runtime, which must not block.
+/// Without a start, this drop may run inside another runtime. It must not block there.
 impl Drop for Prepared {
     fn drop(&mut self) {
         if let Some(runtime) = self.runtime.take() {
@@ -98,7 +100,7 @@ impl Prepared {
         &self.handle
     }
 
-    /// Starts both threads. `turn` does what is due, and returns the time of its next call.
+    /// Starts both threads. `turn` executes the work that is due, and returns the time of its next call.
     pub(super) fn start(
         mut self,
         name: &str,
@@ -111,7 +113,7 @@ impl Prepared {
         let runtime = self.runtime.take();
         let sockets = thread::Builder::new().name(format!("{name}-io"));
         engine.threads.push(sockets.spawn(move || {
-            // An error means that the engine is dropped, which is also a reason to stop.
+            // An error means that the engine was dropped, so the thread must also end.
             let _ = runtime.map(|runtime| runtime.block_on(quits));
         })?);
         let clock = thread::Builder::new().name(format!("{name}-clock"));
@@ -125,7 +127,7 @@ impl Drop for Engine {
         self.alarm.stop();
         self.quit = None;
         for thread in self.threads.drain(..) {
-            // A panic of the thread was already printed.
+            // If the thread panicked, the panic was already printed.
             let _ = thread.join();
         }
     }
@@ -133,6 +135,6 @@ impl Drop for Engine {
 
 /// Starts a task on the socket thread.
 pub(super) fn spawn(handle: &Handle, task: impl Future<Output = ()> + Send + 'static) {
-    // Tasks end with the runtime.
+    // The task needs no handle: it ends with the runtime.
     drop(handle.spawn(task));
 }

@@ -40,7 +40,7 @@ pub enum EipError {
         /// The request.
         what: &'static str,
     },
-    /// No answer in time.
+    /// The device did not answer in time.
     #[error("no answer to {what} within {} ms", after.as_millis())]
     NoAnswer {
         /// The request.
@@ -80,13 +80,13 @@ pub enum EipError {
         /// What is wrong with the answer.
         why: &'static str,
     },
-    /// Timeout: the device stopped sending its image.
+    /// The device stopped sending its image, and the connection timed out.
     #[error("no image received for {} ms", after.as_millis())]
     Silent {
         /// Time waited.
         after: Duration,
     },
-    /// The connection was lost after the caller last looked at it (an older generation).
+    /// The connection was lost, and the caller has not seen the loss yet: its image belongs to an older generation.
     #[error("the connection was lost")]
     Outdated,
     /// An assembly does not have the expected size.
@@ -103,7 +103,7 @@ pub enum EipError {
     /// A local socket failed.
     #[error(transparent)]
     Local(#[from] LocalError),
-    /// Invalid settings or request; nothing was sent.
+    /// The settings or the request are invalid; nothing was sent.
     #[error("{0}")]
     Impossible(
         /// The reason.
@@ -121,7 +121,7 @@ impl EipError {
         Self::Unreachable { kind: error.kind(), text: plain(error).to_lowercase() }
     }
 
-    /// Meaning and remedy of the status code in the error.
+    /// Meaning and remedy of the status code in the error, if there is a code.
     pub fn code(&self) -> Option<&'static status::Code> {
         match self {
             Self::Encapsulation { status, .. } => status::encapsulation(*status),

@@ -3,9 +3,9 @@
 use super::error::EipError;
 use super::wire::{Path, Reply, Request, RrData, Status, service};
 
-/// Limit of request data, so that the message fits a frame. Devices accept less.
+/// Maximum length of the request data, so that the message fits into a frame. Devices accept less.
 const MOST_DATA: usize = 60_000;
-/// Limit of a path in bytes: its length field is one byte and counts words.
+/// Maximum length of a path in bytes: the length field of a path is one byte and counts words.
 const MOST_PATH: usize = 510;
 
 /// A request to an object.
@@ -20,18 +20,18 @@ pub struct Message {
 }
 
 impl Message {
-    /// Get_Attribute_Single.
+    /// Creates a message Get_Attribute_Single.
     pub fn get(class: u32, instance: u32, attribute: u32) -> Self {
         let path = Path::attribute(class, instance, attribute);
         Self { service: service::ATTRIBUTE_SINGLE, path, data: Vec::new() }
     }
 
-    /// Get_Attributes_All.
+    /// Creates a message Get_Attributes_All.
     pub fn get_all(class: u32, instance: u32) -> Self {
         Self { service: service::ATTRIBUTES_ALL, path: Path::object(class, instance), data: Vec::new() }
     }
 
-    /// Set_Attribute_Single.
+    /// Creates a message Set_Attribute_Single.
     pub fn set(class: u32, instance: u32, attribute: u32, value: &[u8]) -> Self {
         let path = Path::attribute(class, instance, attribute);
         Self { service: service::SET_ATTRIBUTE_SINGLE, path, data: value.to_vec() }
@@ -40,7 +40,7 @@ impl Message {
     /// Encodes the frame data.
     pub fn emit(&self) -> Result<Vec<u8>, EipError> {
         if self.data.len() > MOST_DATA || self.path.emit().len() > MOST_PATH {
-            let text = format!("a message has at most {MOST_DATA} bytes of data and {MOST_PATH} of path");
+            let text = format!("a message can have at most {MOST_DATA} bytes of data and {MOST_PATH} bytes of path");
             return Err(EipError::Impossible(text));
         }
         Ok(RrData::new(&self.request()).emit())
@@ -52,7 +52,7 @@ impl Message {
     }
 }
 
-/// Answer of a device, including a refusal.
+/// Answer of a device. It may be a refusal.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Answer {
     /// CIP status.
@@ -62,7 +62,7 @@ pub struct Answer {
 }
 
 impl Answer {
-    /// Decodes the frame data of the answer to `what`.
+    /// Decodes the answer to `what` from the data of a frame.
     pub fn parse(what: &'static str, data: &[u8]) -> Result<Self, EipError> {
         let malformed = |error| EipError::Malformed { what, error };
         let message = RrData::parse_answer(data).map_err(malformed)?.message;
@@ -70,7 +70,7 @@ impl Answer {
         Ok(Self { status: reply.status, data: reply.data.to_vec() })
     }
 
-    /// Returns the data. A refusal becomes an error.
+    /// Returns the data. A refusal is returned as an error.
     pub fn done(self, what: &'static str) -> Result<Vec<u8>, EipError> {
         if self.status.is_ok() { Ok(self.data) } else { Err(EipError::Refused { what, status: self.status }) }
     }

@@ -1,4 +1,5 @@
-//! EtherNet/IP as a fieldbus of images: a class 1 connection, or an assembly read with messages.
+//! EtherNet/IP as a fieldbus of images. There are two kinds of connection: a class 1 connection, and an assembly that
+//! is read with messages.
 
 use std::net::{SocketAddr, SocketAddrV4};
 use std::sync::Arc;
@@ -55,7 +56,7 @@ impl Bus for Device {
 
     fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, EipError> {
         let change = self.connection.set_image(generation, image)?;
-        // With the first image after an opening, set the device to run.
+        // After every opening, the first image also sets the device to run.
         let runs = self.connection.view().details.run;
         if runs { Ok(change) } else { self.connection.set_run(generation, true) }
     }
@@ -82,7 +83,7 @@ impl Bus for Device {
     }
 }
 
-/// An assembly read with messages at an interval. It has no outputs.
+/// An assembly that is read with messages at an interval. It has no outputs.
 #[derive(Debug)]
 pub struct Reading {
     reader: Reader,
@@ -142,7 +143,7 @@ pub async fn resolve(host: &str, port: u16) -> Result<SocketAddrV4, EipError> {
 
 /// Extended status: another originator owns the outputs.
 const OWNED: u32 = 0x0106;
-/// URL options that a refusal can be about.
+/// URL options that can be the cause of a refusal.
 const CONNECTION: &[&str] = &["in", "out", "config", "in_size", "out_size"];
 
 impl From<EipError> for LinkError {
@@ -157,9 +158,9 @@ impl From<EipError> for LinkError {
             EipError::Unreachable { .. }
             | EipError::NoAnswer { .. }
             | EipError::Hangup { .. }
-            | EipError::Silent { .. } => Self::Silent(
-                cause.advice("check the address; check that the controller is on and its EtherNet/IP board enabled"),
-            ),
+            | EipError::Silent { .. } => Self::Silent(cause.advice(
+                "check the address; check that the controller is on, and that its EtherNet/IP board is enabled",
+            )),
             EipError::Encapsulation { .. } | EipError::Refused { .. } => match known {
                 Some(code) if code.code == OWNED => Self::Owned(cause),
                 Some(code) => Self::Refused(cause.advice(as_advice(code.remedy))),
@@ -177,7 +178,7 @@ impl From<EipError> for LinkError {
     }
 }
 
-/// Converts a remedy to the form of an advice: lower case, no full stop.
+/// Converts a remedy to the format of an advice: lower case, no period at the end.
 pub fn as_advice(remedy: &str) -> String {
     let mut chars = remedy.trim_end_matches('.').chars();
     chars.next().map(|first| first.to_lowercase().chain(chars).collect()).unwrap_or_default()

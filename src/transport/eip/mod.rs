@@ -1,6 +1,6 @@
 //! EtherNet/IP originator and simulated adapter: cyclic images over UDP, explicit messages over TCP.
 //!
-//! This module knows assemblies and bytes, but no robots.
+//! This module handles assemblies and bytes, and nothing specific to robots.
 
 use std::time::Duration;
 
@@ -22,7 +22,7 @@ pub mod status;
 pub mod tap;
 pub mod wire;
 
-/// A moment, as time since an origin that the driver chooses. It never runs backwards.
+/// A moment, as the time since an origin that the driver selects. The time never decreases.
 pub type Now = Duration;
 
 /// TCP port of sessions, and UDP port of ListIdentity.
@@ -31,5 +31,5 @@ pub const PORT: u16 = 44818;
 pub const IO_PORT: u16 = 2222;
 /// Class code of the assembly object.
 pub const ASSEMBLY: u32 = 4;
-/// Vendor id of this program. ODVA has not assigned one; targets use it only to identify originators.
+/// Vendor id of this program. ODVA has not assigned a vendor id to it; targets use it only to identify originators.
 pub const UNREGISTERED_VENDOR: u16 = 0xFFFF;

@@ -1,9 +1,9 @@
-//! Originator of a connection: opens it, exchanges images, detects its loss, opens it again. It has no sockets and no
-//! clock.
+//! Originator of a connection: opens the connection, exchanges images, detects a loss, and opens the connection again.
+//! The originator has no sockets and no clock.
 //!
-//! Each opening starts a new generation, and every image to send names its generation. After a loss, the device gets
-//! the resting image in idle mode until a caller that has seen the loss sets another. Therefore no image from before a
-//! loss is sent again.
+//! Each opening starts a new generation. The caller must name the generation with every image. After a loss, the
+//! originator sends the resting image in idle mode until a caller that has seen the loss sets another image. Therefore
+//! it never sends an image from before the loss again.
 
 use std::collections::VecDeque;
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -32,7 +32,7 @@ const FORWARD_CLOSE: &str = "ForwardClose";
 const TRANSPORT: u8 = 1;
 /// Extended status of a ForwardClose: no such connection.
 const NOT_FOUND: u16 = 0x0107;
-/// Pauses before another attempt. The last one repeats.
+/// Pauses before attempts to reopen the connection. The last pause repeats.
 const BACKOFF: [Duration; 5] = [
     Duration::from_millis(250),
     Duration::from_millis(500),
@@ -41,7 +41,7 @@ const BACKOFF: [Duration; 5] = [
     Duration::from_secs(5),
 ];
 
-/// An action for the driver.
+/// An action that the driver must execute.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Action {
     /// Open the TCP connection; then call [`Originator::connected`] or [`Originator::hung_up`].
@@ -76,9 +76,9 @@ enum Phase {
     /// ForwardOpen was sent.
     Opening,
     Open,
-    /// Sending one last image in idle mode before the close. The number is that of the datagrams sent before.
+    /// Sending one last image in idle mode before the close. The number is the number of datagrams sent before.
     Parting(u64),
-    /// ForwardClose was sent. Then the connection ends, or opens again.
+    /// ForwardClose was sent. After that, the connection ends, or opens again if `again`.
     Closing {
         again: bool,
     },
@@ -101,7 +101,7 @@ pub struct Originator {
     io: Option<Io>,
     image: Vec<u8>,
     revision: u64,
-    /// The caller has closed the connection.
+    /// Whether the caller has closed the connection.
     is_over: bool,
     tries: usize,
     /// Counters of earlier generations.
@@ -112,7 +112,7 @@ pub struct Originator {
 }
 
 impl Originator {
-    /// Creates a connection to the device at this TCP address. Images arrive on UDP port `port`.
+    /// Creates a connection to the device at this TCP address. `port` is the UDP port on which images arrive.
     pub fn new(target: SocketAddrV4, port: u16, settings: Settings, numbers: Arc<Numbers>) -> Result<Self, EipError> {
         settings.check()?;
         Ok(Self {
@@ -161,8 +161,8 @@ impl Originator {
         self.phase == Phase::Ended && self.actions.is_empty()
     }
 
-    /// Sends this image from the next interval on. Returns the number of the change. It was sent when `sent` of the
-    /// view has reached that number.
+    /// Sends this image, starting with the next interval. Returns the number of the change. The image was sent when
+    /// `sent` of the view has reached this number.
     ///
     /// # Errors
     /// The connection is not open in this generation, or the image has another size.
@@ -177,7 +177,7 @@ impl Originator {
         Ok(self.revision)
     }
 
-    /// Sets the run/idle bit. Returns the number of the change, as [`set_image`](Self::set_image) does.
+    /// Sets the run/idle bit. Returns the number of the change, like [`set_image`](Self::set_image).
     ///
     /// # Errors
     /// The connection is not open in this generation.
@@ -188,7 +188,7 @@ impl Originator {
         Ok(self.revision)
     }
 
-    /// Sends a message on the same session. Tokens 0 and 1 are reserved.
+    /// Sends a message in the session of this connection. Tokens 0 and 1 are reserved.
     pub fn ask(&mut self, ask: Ask) {
         if self.phase == Phase::Ended {
             self.actions.push_back(Action::Answer(ask.token, Err(EipError::Ended)));
@@ -197,7 +197,7 @@ impl Originator {
         }
     }
 
-    /// Closes the connection: one image in idle mode, then ForwardClose.
+    /// Closes the connection: sends one image in idle mode, then ForwardClose.
     pub fn close(&mut self) {
         if self.is_over {
             return;
@@ -210,18 +210,18 @@ impl Originator {
                 self.show(State::Closing);
             }
             Phase::New | Phase::Waiting(_) => self.finish(None),
-            // The pending answer comes first.
+            // Wait for the pending answer first.
             Phase::Opening | Phase::Closing { .. } => self.show(State::Closing),
             Phase::Parting(_) | Phase::Ended => {}
         }
     }
 
-    /// The TCP connection is open.
+    /// Handles the opening of the TCP connection.
     pub fn connected(&mut self, now: Now) {
         self.session.connected(now);
     }
 
-    /// The TCP connection failed or was closed. The image exchange does not need it.
+    /// Handles the failure or the end of the TCP connection. The image exchange continues without the TCP connection.
     pub fn hung_up(&mut self, why: &EipError) {
         self.session.lost(why);
     }
@@ -231,7 +231,7 @@ impl Originator {
         self.session.received(now, bytes);
     }
 
-    /// An action on a local socket failed. The connection continues until it times out.
+    /// Handles a failed action on a local socket. The connection continues until it times out.
     pub fn failed(&mut self, trouble: EipError) {
         self.view.trouble = Some(trouble);
         self.has_changed = true;
@@ -262,7 +262,7 @@ impl Originator {
         }
     }
 
-    /// Returns the next action at `now`. Call it until it returns `None`.
+    /// Returns the next action at `now`. The caller repeats the call until it returns `None`.
     pub fn poll(&mut self, now: Now) -> Option<Action> {
         loop {
             if let Some(action) = self.actions.pop_front() {
@@ -281,7 +281,7 @@ impl Originator {
         }
     }
 
-    /// Latest time of the next call.
+    /// Latest time of the next call of [`poll`](Self::poll).
     pub fn wake(&self) -> Option<Now> {
         let own = match self.phase {
             Phase::New => Some(Now::ZERO),
@@ -292,7 +292,7 @@ impl Originator {
         [own, io, self.session.wake()].into_iter().flatten().min()
     }
 
-    /// Does what is due. Returns whether anything was due.
+    /// Executes the work that is due. Returns whether any work was due.
     fn advance(&mut self, now: Now) -> bool {
         match self.phase {
             Phase::New => self.open(),
@@ -305,7 +305,7 @@ impl Originator {
         true
     }
 
-    /// Sends a due image, and checks whether the device has timed out.
+    /// Sends an image if one is due, and checks whether the device has timed out.
     fn exchange(&mut self, now: Now) -> bool {
         let Some(io) = &mut self.io else { return false };
         if now >= io.consumer.until() {
@@ -339,7 +339,7 @@ impl Originator {
             transport: TRANSPORT,
             path: self.settings.opening_path(),
         };
-        // The device chooses the port of a group. Otherwise, name our own port.
+        // For multicast, the device selects the port of the group. Otherwise, the request contains our own port.
         let own = (open.t_o.net == Net::PointToPoint).then(|| SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, self.port));
         let data = RrData { t_o: own, ..RrData::new(&open.emit()) }.emit();
         self.session.ask(Ask { token: OPEN, what: FORWARD_OPEN, command: Command::SEND_RR_DATA, data });
@@ -352,7 +352,7 @@ impl Originator {
             Ok(()) => return,
             Err(trouble) => trouble,
         };
-        // Without a refusal, the device may have opened the connection.
+        // If the device did not refuse, it may have opened the connection.
         let is_refusal = matches!(trouble, EipError::Refused { .. } | EipError::Encapsulation { .. });
         let again = self.view.generation > 0 && !self.is_over;
         self.view.trouble = Some(trouble);
@@ -399,8 +399,8 @@ impl Originator {
         let intervals = self.settings.multiplier.intervals();
         let size = usize::from(self.settings.input_size);
         self.io = Some(Io {
-            // Devices start to send with their answer. A start half an interval later means that their reaction to our
-            // image is in their next one.
+            // A device starts to send when it answers. We start half an interval later, so that the next image of the
+            // device already contains the reaction to our image.
             producer: Producer::new(opened.o_t_id, to, now.saturating_add(to / 2)),
             consumer: Consumer::new(opened.t_o_id, size, false, from, intervals, now),
             destination,
@@ -414,7 +414,7 @@ impl Originator {
         Ok(())
     }
 
-    /// The device has timed out.
+    /// Handles a timeout of the device.
     fn lose(&mut self, trouble: EipError) {
         self.stop();
         self.view.trouble = Some(trouble);
@@ -423,8 +423,8 @@ impl Originator {
                 self.image.clone_from(&self.settings.resting);
                 self.view.details.run = false;
                 self.show(State::Lost);
-                // Possibly only the path from the device to us is broken. ForwardClose frees the connection for the
-                // next opening.
+                // Perhaps only the path from the device to us is broken. ForwardClose closes the old connection in the
+                // device, so that the next opening succeeds.
                 self.ask_close(true);
             }
             Phase::Parting(_) => self.ask_close(false),
@@ -449,7 +449,7 @@ impl Originator {
         let outcome = result.and_then(|data| Answer::parse(FORWARD_CLOSE, &data)).and_then(|answer| {
             if answer.status.extended.first() == Some(&NOT_FOUND) { Ok(Vec::new()) } else { answer.done(FORWARD_CLOSE) }
         });
-        // A failed close is reported, unless there was an earlier error.
+        // The error of a failed close is reported, unless there was an earlier error.
         self.finish(outcome.err());
     }
 

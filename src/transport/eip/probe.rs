@@ -1,8 +1,8 @@
-//! Search for the assemblies of a device, their sizes, and a combination that makes a connection.
+//! Search for the assemblies of a device, their sizes, and a combination of assemblies for a connection.
 //!
 //! A survey only reads assemblies. A probe also requests connections with a size that no assembly has. The device
-//! refuses, and the reason names missing instances and correct sizes. A device that accepts such a connection has this
-//! program as its master until the connection is closed. A probe can therefore take control.
+//! refuses them, and the reason of the refusal names missing instances and correct sizes. If a device accepts such a
+//! connection, this program is its master until the connection is closed. A probe can therefore take control.
 
 use std::fmt;
 use std::time::Duration;
@@ -17,9 +17,9 @@ use super::{ASSEMBLY, UNREGISTERED_VENDOR};
 /// Attributes of an assembly.
 const DATA: u32 = 3;
 const SIZE: u32 = 4;
-/// Instances that are searched: the 8-bit numbers.
+/// Instances that the survey reads: all 8-bit numbers.
 pub const INSTANCES: std::ops::RangeInclusive<u32> = 1..=255;
-/// Configuration instances that are tried; `None` means no configuration.
+/// Configuration instances that the probe tries; `None` means no configuration.
 const CONFIGURATIONS: [Option<u32>; 5] = [Some(1), Some(5), Some(151), Some(199), None];
 /// Status codes of refusals.
 const NO_SUCH_OBJECT: [u8; 2] = [0x05, 0x16];
@@ -27,9 +27,10 @@ const SIZES: u16 = 0x0109;
 const O_T_SIZE: u16 = 0x0127;
 const T_O_SIZE: u16 = 0x0128;
 const OWNED: u16 = 0x0106;
-/// Requested interval; all devices support it.
+/// Requested packet interval. All devices support it.
 const RPI: Duration = Duration::from_millis(100);
-/// Overhead before the image. To the device: sequence count and header. From the device: sequence count.
+/// Number of bytes before the image. To the device: sequence count and run/idle header. From the device: sequence
+/// count.
 const O_T_EXTRA: u16 = 6;
 const T_O_EXTRA: u16 = 2;
 /// A size that no assembly has.
@@ -101,8 +102,8 @@ pub struct Findings {
     pub connectable: Option<Connectable>,
 }
 
-/// Reads every assembly of [`INSTANCES`], without a connection. `thought` are candidates, likeliest first. The first
-/// candidate whose assemblies can all be read is reported as connectable.
+/// Reads every assembly of [`INSTANCES`], without a connection. `thought` contains likely instances, the likeliest
+/// first. The first of them whose assemblies can all be read is reported as connectable.
 ///
 /// # Errors
 /// The device does not answer, or its answer is invalid. A refusal is a result.
@@ -125,11 +126,12 @@ pub async fn survey(client: &mut Client, thought: &[Instances]) -> Result<Findin
     Ok(Findings { identity, assemblies, attempts: Vec::new(), connectable })
 }
 
-/// Makes a survey, then requests connections of likely instances, `thought` first, until one would be accepted with
-/// correct sizes. A device that accepts wrong sizes is controlled by this program until the connection is closed.
+/// Makes a survey, then requests connections of likely instances, beginning with `thought`. Stops when the device would
+/// accept a connection with correct sizes. If a device accepts wrong sizes, this program controls the device until the
+/// connection is closed.
 ///
 /// # Errors
-/// As in [`survey`].
+/// The errors of [`survey`].
 pub async fn probe(client: &mut Client, thought: Instances) -> Result<Findings, EipError> {
     let Findings { identity, assemblies, mut attempts, .. } = survey(client, &[]).await?;
     for instances in likely(thought, &assemblies) {
@@ -154,7 +156,7 @@ pub enum Presence {
 /// Reads one assembly.
 ///
 /// # Errors
-/// As in [`survey`].
+/// The errors of [`survey`].
 pub async fn assembly(client: &mut Client, instance: u32) -> Result<Presence, EipError> {
     let what = "Get_Attribute_Single of an assembly";
     let answer = client.ask(what, &Message::get(ASSEMBLY, instance, DATA)).await?;
@@ -164,15 +166,15 @@ pub async fn assembly(client: &mut Client, instance: u32) -> Result<Presence, Ei
     if NO_SUCH_OBJECT.contains(&answer.status.general) {
         return Ok(Presence::Absent);
     }
-    // The assembly exists, but its data cannot be read. Its size may be readable.
+    // The assembly exists, but its data cannot be read. Perhaps its size can be read.
     let answer = client.ask(what, &Message::get(ASSEMBLY, instance, SIZE)).await?;
     let size = answer.data.first_chunk().filter(|_| answer.status.is_ok()).map(|bytes| u16::from_le_bytes(*bytes));
     // If the device refuses both requests, nothing is known.
     Ok(size.map_or(Presence::Unknown, |size| Presence::Readable(Assembly { instance, size: Some(size) })))
 }
 
-/// Candidates: the given instances, the same with input and output exchanged, then pairs that were found. Each is tried
-/// with likely configurations.
+/// Returns the candidates: the instances `thought`, the same instances with input and output exchanged, then pairs of
+/// the assemblies found. Each pair is combined with likely configurations.
 fn likely(thought: Instances, assemblies: &[Assembly]) -> Vec<Instances> {
     let exchanged = (thought.input, thought.output);
     let mut pairs = vec![(thought.output, thought.input), exchanged];
@@ -193,10 +195,11 @@ fn likely(thought: Instances, assemblies: &[Assembly]) -> Vec<Instances> {
     all
 }
 
-/// Limit of assemblies of which all pairs are tried.
+/// Maximum number of assemblies that are combined to pairs.
 const MOST_PAIRED: usize = 6;
 
-/// Requests a connection of these instances until the sizes are known, or the instances are wrong.
+/// Requests connections of these instances until the sizes are known, or the device reports that the instances are
+/// wrong.
 async fn attempt(
     client: &mut Client,
     instances: Instances,
@@ -222,12 +225,12 @@ async fn attempt(
     }))
 }
 
-/// What is known of the two sizes.
+/// Known sizes of the two assemblies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 struct Guess {
     output: Option<u16>,
     input: Option<u16>,
-    /// A size that the device named without a direction, and the direction that is tried now.
+    /// A size that the device reported without a direction, and the direction that is tried with this size.
     unclear: Option<(u16, Way)>,
     tries: u8,
 }
@@ -240,16 +243,17 @@ enum Way {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Progress {
-    /// Ask again with the next sizes.
+    /// Send another request with the next sizes.
     Again,
-    /// These instances make no connection.
+    /// The device reports that a connection with these instances is not possible.
     Wrong,
-    /// The device has reported all it can.
+    /// The device has reported everything that it can report.
     Known,
 }
 
 impl Guess {
-    /// Sizes of the next request. One of them is always wrong.
+    /// Returns the sizes of the next request. At least one of them is [`NEVER`], so that the device refuses the
+    /// connection.
     fn next(&mut self) -> (u16, u16) {
         self.tries += 1;
         match self.unclear {
@@ -263,7 +267,8 @@ impl Guess {
 
     fn take(&mut self, status: &Status) -> Progress {
         let (code, right) = match status.extended[..] {
-            // Accepted, or another originator has it open. The instances are correct.
+            // The device accepts the connection, or another originator already has a connection with these instances.
+            // Both mean that the instances are correct.
             _ if status.is_ok() => return Progress::Known,
             [OWNED, ..] if status.general == 1 => return Progress::Known,
             [code @ (SIZES | O_T_SIZE | T_O_SIZE), ref more @ ..] if status.general == 1 => {
@@ -276,12 +281,13 @@ impl Guess {
             (O_T_SIZE, _) => self.output = Some(right.saturating_sub(O_T_EXTRA)),
             (T_O_SIZE, _) => self.input = Some(right.saturating_sub(T_O_EXTRA)),
             (_, None) => self.unclear = Some((right, Way::Out)),
-            // The size was correct for the direction to the device. Now the device names the other one.
+            // The size was correct for the direction to the device. The device now reports the size of the other
+            // direction.
             (_, Some((size, Way::Out))) if size != right => {
                 self.output = Some(size.saturating_sub(O_T_EXTRA));
                 self.input = Some(right.saturating_sub(T_O_EXTRA));
             }
-            // The device named the same size again, so it belongs to the other direction.
+            // The device reported the same size again, so this size belongs to the other direction.
             (_, Some((size, Way::Out))) => self.unclear = Some((size, Way::In)),
             (_, Some((size, Way::In))) if size != right => {
                 self.input = Some(size.saturating_sub(T_O_EXTRA));
@@ -298,10 +304,10 @@ impl Guess {
     }
 }
 
-/// Limit of requests per pair of instances.
+/// Maximum number of requests per pair of instances.
 const MOST_TRIES: u8 = 5;
 
-/// Requests a connection. If the device accepts it, closes it.
+/// Requests a connection. If the device accepts the connection, closes it.
 async fn open(
     client: &mut Client,
     instances: Instances,
@@ -343,7 +349,8 @@ async fn open(
 mod tests {
     use super::*;
 
-    /// A device with 48 bytes of output and `input` bytes of input, which checks the direction `first` first.
+    /// Simulates a device with 48 bytes of output and `input` bytes of input. The device checks the direction `first`
+    /// first.
     fn sizes(first: Way, input: u16, codes: (u16, u16)) -> (Guess, u8) {
         let mut guess = Guess::default();
         loop {

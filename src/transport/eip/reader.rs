@@ -1,7 +1,7 @@
 //! Image of a device, read with explicit messages at an interval.
 //!
-//! No I/O connection is opened, so the end of the program has no effect on the device. A device with an owner can be
-//! read.
+//! No I/O connection is opened, so the end of the program has no effect on the device. The reads also work if another
+//! originator owns the outputs of the device.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -31,7 +31,7 @@ pub struct Assembly {
 /// The newest image, or the error of the last read.
 pub type Reading = Result<Arc<[u8]>, EipError>;
 
-/// Reads an assembly until it is closed or dropped.
+/// Reader of an assembly. It reads until it is closed or dropped.
 #[derive(Debug)]
 pub struct Reader {
     readings: watch::Receiver<Reading>,
@@ -42,7 +42,7 @@ impl Reader {
     /// Reads the assembly once, then again after each pause.
     ///
     /// # Errors
-    /// The first read failed. Later failures are readings.
+    /// The first read failed. The error of a later read is returned as a reading.
     pub async fn open(mut client: Client, assembly: Assembly, pause: Duration) -> Result<Self, EipError> {
         let first = read(&mut client, assembly).await?;
         let (sender, readings) = watch::channel(Ok(first));
@@ -58,15 +58,15 @@ impl Reader {
     /// Waits for the next reading.
     pub async fn changed(&mut self) {
         if self.readings.changed().await.is_err() {
-            // The task has ended, so nothing changes any more.
+            // The task has ended, so there are no further readings.
             std::future::pending::<()>().await;
         }
     }
 
-    /// Stops, and closes the session.
+    /// Stops the reads, and closes the session.
     pub async fn close(self) {
         drop(self.readings);
-        // A panic of the task also ends it.
+        // An error means that the task panicked. The task has ended in this case too.
         let _ = self.task.await;
     }
 }

@@ -1,4 +1,4 @@
-//! Driver for any number of connections on one UDP socket.
+//! Driver for any number of connections. All of them use one UDP socket.
 
 use std::collections::{BTreeMap, HashMap};
 use std::io;
@@ -25,14 +25,15 @@ mod tcp;
 
 use tcp::Line;
 
-/// First token for messages of callers. The originator uses the lower ones.
+/// First token for messages of callers. The originator uses the lower tokens.
 const FIRST_TOKEN: u64 = 2;
-/// Limit of datagrams handled before other tasks run.
+/// Maximum number of datagrams that are handled before other tasks can run.
 const AT_ONCE: usize = 64;
-/// Receive buffer for the largest datagram.
+/// Size of the receive buffer: the size of the largest datagram.
 const BUFFER: usize = 65_536;
 
-/// Owner of connections. Clones are cheap. Its threads stop with the last clone and the last connection.
+/// Scanner with its connections. Clones are cheap and share the connections. The threads of the scanner stop with the
+/// last clone and the last connection.
 #[derive(Debug, Clone)]
 pub struct Scanner {
     owner: Arc<Owner>,
@@ -41,7 +42,7 @@ pub struct Scanner {
 #[derive(Debug)]
 struct Owner {
     inner: Arc<Inner>,
-    /// Stops the threads, which also hold `inner`.
+    /// Stops the threads when it is dropped. The threads also have a reference to `inner`.
     _engine: Engine,
 }
 
@@ -55,7 +56,7 @@ struct Inner {
     numbers: Arc<Numbers>,
     slots: Mutex<BTreeMap<u64, Slot>>,
     last: AtomicU64,
-    /// Multicast memberships: group and interface, with the number of connections.
+    /// Multicast memberships: number of connections, by group and interface.
     groups: Mutex<HashMap<(Ipv4Addr, Ipv4Addr), usize>>,
 }
 
@@ -65,14 +66,14 @@ struct Slot {
     core: Originator,
     tap: Tap,
     line: Option<Line>,
-    /// Local address of the path to the device, once known.
+    /// Local address of the path to the device. It is unspecified until it is known.
     here: Ipv4Addr,
     view: watch::Sender<View>,
     answers: HashMap<Token, oneshot::Sender<Result<Vec<u8>, EipError>>>,
 }
 
 impl Scanner {
-    /// The scanner of this process, on all local addresses. All connections share its socket.
+    /// Returns the scanner of this process, bound to all local addresses. All connections share its socket.
     pub fn shared() -> Result<Self, EipError> {
         static SHARED: Mutex<Weak<Owner>> = Mutex::new(Weak::new());
         let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -84,9 +85,9 @@ impl Scanner {
         Ok(scanner)
     }
 
-    /// Binds UDP port 2222, or any port if another program uses that one.
+    /// Starts a scanner on UDP port 2222, or on any port if another program uses port 2222.
     pub fn start(address: Ipv4Addr) -> Result<Self, EipError> {
-        let failed = |error: io::Error| LocalError::new("UDP socket for images", &error);
+        let failed = |error: io::Error| LocalError::new("cannot open a UDP socket for images", &error);
         let socket = match UdpSocket::bind((address, IO_PORT)) {
             Err(error) if error.kind() == io::ErrorKind::AddrInUse => UdpSocket::bind((address, 0)),
             bound => bound,
@@ -126,15 +127,15 @@ impl Scanner {
         self.owner.inner.local.port()
     }
 
-    /// Opens a connection to the device at this TCP address. It stays open until it is closed or dropped.
+    /// Opens a connection to the device at this TCP address. The connection stays open until it is closed or dropped.
     ///
     /// # Errors
-    /// The device does not answer or refuses; there is no second attempt. A later loss is not an error but a state of
-    /// the view.
+    /// The device does not answer, or refuses. The first opening is not repeated. If the connection is lost later, this
+    /// is not an error but a state of the view.
     pub async fn open(&self, target: SocketAddrV4, settings: Settings, tap: Tap) -> Result<Connection, EipError> {
         let inner = &self.owner.inner;
         if settings.multicast && self.port() != IO_PORT {
-            let text = format!("multicast images use UDP port {IO_PORT}, but another program on this computer has it");
+            let text = format!("multicast images use UDP port {IO_PORT}, but another program on this computer uses it");
             return Err(EipError::Impossible(text));
         }
         let core = Originator::new(target, self.port(), settings, Arc::clone(&inner.numbers))?;
@@ -149,7 +150,7 @@ impl Scanner {
     }
 }
 
-/// An open connection. Dropping it closes it, if the process lives long enough.
+/// An open connection. A dropped connection is closed, unless the process ends before that.
 #[derive(Debug)]
 pub struct Connection {
     owner: Arc<Owner>,
@@ -164,7 +165,7 @@ impl Connection {
         self.views.now()
     }
 
-    /// Current time on the clock of the view's images.
+    /// Current time on the clock that the view uses for its images.
     pub fn now(&self) -> Now {
         self.owner.inner.now()
     }
@@ -174,7 +175,7 @@ impl Connection {
         self.views.until(condition).await
     }
 
-    /// Sends this image from the next interval on; see [`Originator::set_image`].
+    /// Sends this image, starting with the next interval; see [`Originator::set_image`].
     pub fn set_image(&self, generation: u32, image: &[u8]) -> Result<u64, EipError> {
         self.with(|core| core.set_image(generation, image))
     }
@@ -184,7 +185,8 @@ impl Connection {
         self.with(|core| core.set_run(generation, run))
     }
 
-    /// Sends a request to an object of the device on the same session. A refusal is an answer.
+    /// Sends a request to an object of the device in the session of this connection. A refusal is returned as an
+    /// answer.
     pub async fn ask(&mut self, what: &'static str, message: &Message) -> Result<Answer, EipError> {
         let token = Token(self.tokens);
         self.tokens += 1;
@@ -198,7 +200,8 @@ impl Connection {
         Answer::parse(what, &data)
     }
 
-    /// Closes the connection: one image in idle mode, then ForwardClose. Fails if the device did not confirm.
+    /// Closes the connection: sends one image in idle mode, then ForwardClose. Fails if the device did not confirm the
+    /// close.
     pub async fn close(mut self) -> Result<(), EipError> {
         let before = self.view().trouble;
         self.with(|core| {
@@ -229,7 +232,8 @@ impl Inner {
         self.slots.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Calls `change` with a connection, then executes the resulting actions; `None` if it is closed.
+    /// Calls `change` with a connection, then executes the resulting actions. Returns `None` if the connection is
+    /// closed.
     fn with<T>(self: &Arc<Self>, id: u64, change: impl FnOnce(&mut Slot, Now) -> T) -> Option<T> {
         let mut slots = self.slots();
         let slot = slots.get_mut(&id)?;
@@ -243,7 +247,7 @@ impl Inner {
         Some(result)
     }
 
-    /// Does what is due. Returns the time of the next call.
+    /// Executes the work that is due. Returns the time of the next call.
     fn turn(self: &Arc<Self>) -> Option<Now> {
         let mut slots = self.slots();
         let now = self.now();
@@ -275,21 +279,22 @@ impl Inner {
                 }
                 Action::Disconnect => slot.line = None,
                 Action::Datagram(to, bytes) => {
-                    // Before the send, so that a trace never has an answer before its request.
+                    // The datagram is recorded before it is sent, so that a trace never has an answer before its
+                    // request.
                     slot.tap.pass(false, SocketAddrV4::new(slot.here, self.local.port()), to, &bytes);
                     if let Err(error) = self.socket.send_to(&bytes, to) {
-                        slot.core.failed(LocalError::new("sending an image", &error).into());
+                        slot.core.failed(LocalError::new("cannot send an image", &error).into());
                     }
                 }
                 Action::Join(group) => {
                     if let Err(error) = self.join(group, slot.here) {
-                        slot.core.failed(LocalError::new("joining the group", &error).into());
+                        slot.core.failed(LocalError::new("cannot join the multicast group", &error).into());
                     }
                 }
                 Action::Leave(group) => self.leave(group, slot.here),
                 Action::Answer(token, result) => {
                     if let Some(answer) = slot.answers.remove(&token) {
-                        // The caller can be gone already.
+                        // The caller may already be gone.
                         let _ = answer.send(result);
                     }
                 }
@@ -304,7 +309,7 @@ impl Inner {
         let Ok(datagram) = Cyclic::parse(bytes) else { return };
         let now = self.now();
         let mut slots = self.slots();
-        // Connections to one device can share a multicast group.
+        // Several connections to one device can share a multicast group.
         for slot in slots.values_mut().filter(|slot| slot.core.expects(*from.ip(), datagram.id)) {
             slot.tap.pass(false, from, SocketAddrV4::new(slot.here, self.local.port()), bytes);
             slot.core.hear(now, &datagram);
@@ -333,7 +338,7 @@ impl Inner {
         let Some(members) = groups.get_mut(&(group, here)).filter(|members| **members > 0) else { return };
         *members -= 1;
         if *members == 0 {
-            // If this fails, the interface is gone, and the membership with it.
+            // An error is ignored: the interface is gone, and its membership has ended with it.
             let _ = self.socket.leave_multicast_v4(&group, &here);
         }
     }
@@ -350,7 +355,7 @@ async fn hear(inner: Arc<Inner>, socket: tokio::net::UdpSocket) {
             match socket.try_recv_from(&mut buffer) {
                 Ok((len, SocketAddr::V4(from))) => inner.heard(from, &buffer[..len]),
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => break,
-                // The error concerns one device (Windows: port unreachable). The others are not affected.
+                // An error concerns one device (Windows: port unreachable). The other devices are not affected.
                 Ok(_) | Err(_) => {}
             }
         }

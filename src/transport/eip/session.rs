@@ -1,4 +1,4 @@
-//! Encapsulation session on a TCP connection: one request at a time. It has no sockets and no clock.
+//! Encapsulation session on a TCP connection, with one request at a time. The session has no sockets and no clock.
 //!
 //! The TCP connection opens with the first request, and opens again after a loss. A request is never sent twice.
 
@@ -9,18 +9,18 @@ use super::Now;
 use super::error::EipError;
 use super::wire::{Command, Frame, Frames};
 
-/// Limit of queued requests.
+/// Maximum number of queued requests.
 const MOST_WAITING: usize = 64;
 /// Status of RegisterSession: the device has no free session.
 const NO_ROOM: u32 = 0x02;
-/// Longest pause before another attempt to register; the first is a sixteenth of it. A random factor shortens each, so
-/// that clients refused together do not retry together.
+/// Longest pause before another attempt to register; the first pause is a sixteenth of it. A random factor shortens
+/// every pause, so that clients that were refused at the same time do not retry at the same time.
 const MOST_PAUSE: Duration = Duration::from_millis(800);
 
-/// Identifies an answer.
+/// Identifies the request to which an answer belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Token(
-    /// A number that the caller chooses.
+    /// A number that the caller selects.
     pub u64,
 );
 
@@ -37,14 +37,14 @@ pub struct Ask {
     pub data: Vec<u8>,
 }
 
-/// An action for the driver.
+/// An action that the driver must execute.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Step {
     /// Open the TCP connection; then call [`Session::connected`] or [`Session::lost`].
     Connect,
     /// Send these bytes.
     Send(Vec<u8>),
-    /// Close the TCP connection. Bytes that still arrive from it must be dropped.
+    /// Close the TCP connection. The driver must drop bytes that still arrive from this connection.
     Disconnect,
     /// A request is complete.
     Answer {
@@ -52,7 +52,7 @@ pub enum Step {
         token: Token,
         /// Whether the request was sent, so that the device may have executed it.
         sent: bool,
-        /// Data of the answer.
+        /// Data of the answer, or the error.
         result: Result<Vec<u8>, EipError>,
     },
 }
@@ -66,7 +66,7 @@ enum Phase {
     Registering {
         until: Now,
     },
-    /// The device has no free session. Waiting until the next attempt.
+    /// The device has no free session. The session waits until the next attempt.
     Full {
         until: Now,
     },
@@ -81,18 +81,19 @@ pub struct Session {
     frames: Frames,
     waiting: VecDeque<Ask>,
     pending: Option<(Ask, Now)>,
-    /// Number of the current request. It is the sender context, so a late answer is recognized.
+    /// Number of the current request. The number is the sender context of the request, so that a late answer is
+    /// detected.
     number: u64,
     timeout: Duration,
-    /// How long to retry if the device has no free session.
+    /// Time for retries if the device has no free session.
     patience: Duration,
-    /// Time of the first refusal for lack of sessions, and the number of attempts.
+    /// Time of the first refusal because the device has no free session, and the number of attempts since then.
     full: Option<(Now, u32)>,
     steps: VecDeque<Step>,
 }
 
 impl Session {
-    /// Creates a session. `timeout` limits the connection and each answer.
+    /// Creates a session. `timeout` is the time limit of the TCP connection and of each answer.
     pub fn new(timeout: Duration) -> Self {
         Self {
             phase: Phase::Down,
@@ -108,7 +109,8 @@ impl Session {
         }
     }
 
-    /// Sets how long to retry if the device has no free session. No request was sent in that case.
+    /// Sets the time for retries if the device has no free session. The device has not executed any request in this
+    /// case.
     #[must_use]
     pub fn patient(self, patience: Duration) -> Self {
         Self { patience, ..self }
@@ -124,7 +126,7 @@ impl Session {
         }
     }
 
-    /// Returns the next action at `now`. Call it until it returns `None`.
+    /// Returns the next action at `now`. The caller repeats the call until it returns `None`.
     pub fn poll(&mut self, now: Now) -> Option<Step> {
         if self.steps.is_empty() {
             self.advance(now);
@@ -132,7 +134,7 @@ impl Session {
         self.steps.pop_front()
     }
 
-    /// Latest time of the next call.
+    /// Latest time of the next call of [`poll`](Self::poll).
     pub fn wake(&self) -> Option<Now> {
         match self.phase {
             Phase::Connecting { until } | Phase::Registering { until } | Phase::Full { until } => Some(until),
@@ -140,7 +142,7 @@ impl Session {
         }
     }
 
-    /// The TCP connection is open.
+    /// Handles the opening of the TCP connection.
     pub fn connected(&mut self, now: Now) {
         if matches!(self.phase, Phase::Connecting { .. }) {
             self.frames.clear();
@@ -163,14 +165,14 @@ impl Session {
         }
     }
 
-    /// The TCP connection failed or was closed. `why` is the error for queued requests.
+    /// Handles the failure or the end of the TCP connection. `why` is the error for queued requests.
     pub fn lost(&mut self, why: &EipError) {
         let was_up = self.phase == Phase::Up;
         self.phase = Phase::Down;
         if let Some((ask, _)) = self.pending.take() {
             self.answer(ask.token, true, Err(EipError::Hangup { what: ask.what }));
         }
-        // If there was no session, queued requests fail at once. After a closed session they use a new connection.
+        // Without a session, queued requests fail at once. After the end of a session, they use a new TCP connection.
         if !was_up {
             self.fail_waiting(why);
         }
@@ -198,7 +200,7 @@ impl Session {
                 Some((ask, until)) if now >= *until => {
                     let (token, what) = (ask.token, ask.what);
                     self.pending = None;
-                    // A late answer must be ignored, so use a new connection.
+                    // A late answer must be ignored, so the next request uses a new connection.
                     self.disconnect();
                     self.answer(token, true, Err(EipError::NoAnswer { what, after: self.timeout }));
                 }
@@ -214,7 +216,7 @@ impl Session {
         self.phase = Phase::Connecting { until: now.saturating_add(self.timeout) };
     }
 
-    /// RegisterSession was refused: waits for a free session, or gives up.
+    /// Handles the refusal of RegisterSession: waits for a free session, or gives up.
     fn refused(&mut self, now: Now, status: u32) {
         self.disconnect();
         let (since, tries) = self.full.unwrap_or((now, 0));
@@ -258,7 +260,7 @@ impl Session {
                 let result = if frame.status == 0 {
                     Ok(frame.data.to_vec())
                 } else {
-                    // The session itself can be invalid, so the next request opens a new one.
+                    // Perhaps the session itself is invalid, so the next request opens a new session.
                     self.disconnect();
                     Err(EipError::Encapsulation { what: ask.what, status: frame.status })
                 };
@@ -311,12 +313,12 @@ mod tests {
         }
     }
 
-    /// Answers a sent frame, with session 7.
+    /// Returns the answer to a frame that was sent, with session handle 7.
     fn answer(bytes: &[u8], status: u32, data: &[u8]) -> Vec<u8> {
         Frame { session: 7, status, data, ..Frame::parse(bytes).unwrap() }.emit()
     }
 
-    /// A session with a request in progress.
+    /// Returns a session with a request in progress, and the bytes of the request.
     fn asking() -> (Session, Vec<u8>) {
         let mut session = Session::new(TIMEOUT);
         session.ask(ask(1));
@@ -406,7 +408,7 @@ mod tests {
         assert!(now < NOW + TIMEOUT, "not longer than its timeout");
         let trouble = EipError::Encapsulation { what: "RegisterSession", status: NO_ROOM };
         assert_eq!(result, (false, Err(trouble)));
-        // Any other refusal, and one without retries, is reported at once.
+        // A refusal with another status is reported at once, and so is every refusal without time for retries.
         for (patience, status) in [(TIMEOUT, 0x69), (Duration::ZERO, NO_ROOM)] {
             let mut session = Session::new(TIMEOUT).patient(patience);
             session.ask(ask(1));

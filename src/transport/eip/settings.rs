@@ -1,17 +1,17 @@
-//! Connection settings.
+//! Settings of a connection.
 
 use std::time::Duration;
 
 use super::error::EipError;
 use super::wire::{Flow, Key, Net, Path, Segment};
 
-/// Size of the sequence count before the data.
+/// Size of the sequence count before the data, in bytes.
 const COUNT: u16 = 2;
-/// Size of the run/idle header to the target.
+/// Size of the run/idle header before data to the target, in bytes.
 const HEADER: u16 = 4;
-/// Limit of an image in bytes, so that it fits a datagram.
+/// Maximum size of an image in bytes, so that the image fits into a datagram.
 pub const MOST_IMAGE: u16 = 65_000;
-/// Limit of configuration data in bytes, so that the path fits 255 words.
+/// Maximum length of the configuration data in bytes, so that the path fits into 255 words.
 const MOST_CONFIGURATION: usize = 400;
 /// Shortest interval.
 pub const SHORTEST: Duration = Duration::from_millis(1);
@@ -22,23 +22,24 @@ pub const FIRST_PACKET: Duration = Duration::from_secs(10);
 /// Priority "scheduled" for cyclic data.
 const SCHEDULED: u8 = 2;
 
-/// Connection type.
+/// Type of a connection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Role {
-    /// Sets the outputs, as the only originator, and receives the inputs.
+    /// The originator receives the inputs and is the only one that sets the outputs.
     ExclusiveOwner,
-    /// Receives the inputs. The output instance is the heartbeat.
+    /// The originator receives the inputs. The output instance is the heartbeat.
     InputOnly,
-    /// Receives the inputs while another connection exists. The output instance is the heartbeat.
+    /// The originator receives the inputs while another connection to the device exists. The output instance is the
+    /// heartbeat.
     ListenOnly,
 }
 
-/// Connection timeout multiplier: intervals without a packet before a timeout.
+/// Connection timeout multiplier: number of intervals without a packet after which the connection times out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Multiplier(u8);
 
 impl Multiplier {
-    /// From a number of intervals: 4, 8, 16, 32, 64, 128, 256 or 512.
+    /// Creates a multiplier from a number of intervals: 4, 8, 16, 32, 64, 128, 256 or 512.
     pub fn of(intervals: u32) -> Option<Self> {
         (0..8).map(Self).find(|multiplier| multiplier.intervals() == intervals)
     }
@@ -62,11 +63,11 @@ impl Multiplier {
 /// Settings of a connection.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Settings {
-    /// Connection type.
+    /// Type of a connection.
     pub role: Role,
-    /// Consumed assembly of the device, or its heartbeat instance.
+    /// Assembly that the device consumes, or its heartbeat instance.
     pub output: u32,
-    /// Produced assembly of the device.
+    /// Assembly that the device produces.
     pub input: u32,
     /// Configuration assembly, for devices that need one.
     pub configuration: Option<u32>,
@@ -76,22 +77,22 @@ pub struct Settings {
     pub output_size: u16,
     /// Size of the image from the device in bytes.
     pub input_size: u16,
-    /// Requested interval in both directions. The device answers with the actual ones.
+    /// Requested packet interval in both directions. The device answers with the actual intervals.
     pub rpi: Duration,
     /// Timeout multiplier in both directions.
     pub multiplier: Multiplier,
-    /// Whether the device sends to a multicast group.
+    /// Whether the device sends its images to a multicast group.
     pub multicast: bool,
     /// Electronic key, if the device checks it.
     pub key: Option<Key>,
-    /// First image after every opening, sent in idle mode.
+    /// First image after every opening. It is sent in idle mode.
     pub resting: Vec<u8>,
     /// Time limit for the TCP connection and for each answer.
     pub timeout: Duration,
 }
 
 impl Default for Settings {
-    /// Exclusive owner with empty images: instances 150, 100 and 1, 20 ms, 16 intervals.
+    /// Exclusive owner with empty images: output 150, input 100, configuration 1, 20 ms, 16 intervals.
     fn default() -> Self {
         Self {
             role: Role::ExclusiveOwner,
@@ -116,14 +117,14 @@ impl Settings {
     pub fn check(&self) -> Result<(), EipError> {
         let wrong = |text: String| Err(EipError::Impossible(text));
         if self.output_size.max(self.input_size) > MOST_IMAGE {
-            return wrong(format!("an image has at most {MOST_IMAGE} bytes"));
+            return wrong(format!("an image can have at most {MOST_IMAGE} bytes"));
         }
         if self.role != Role::ExclusiveOwner && self.output_size != 0 {
             return wrong("a listen-only connection has no output image".to_owned());
         }
         if self.resting.len() != usize::from(self.output_size) {
             let (len, size) = (self.resting.len(), self.output_size);
-            return wrong(format!("the resting image has {len} bytes, the output image {size}"));
+            return wrong(format!("the resting image has {len} bytes, but the output image has {size}"));
         }
         if !(SHORTEST..=LONGEST).contains(&self.rpi) {
             return wrong(format!("the rpi must be {SHORTEST:?} to {LONGEST:?}, not {:?}", self.rpi));
@@ -154,7 +155,8 @@ impl Settings {
         path
     }
 
-    /// Parameters to the device: sequence count, and for an owner header and image.
+    /// Parameters of the direction to the device. The size includes the sequence count. For an owner, it also includes
+    /// the run/idle header and the image.
     pub fn o_t(&self) -> Flow {
         let size = match self.role {
             Role::ExclusiveOwner => COUNT + HEADER + self.output_size.min(MOST_IMAGE),
@@ -163,7 +165,7 @@ impl Settings {
         self.flow(Net::PointToPoint, size)
     }
 
-    /// Parameters from the device: sequence count and image.
+    /// Parameters of the direction from the device. The size includes the sequence count and the image.
     pub fn t_o(&self) -> Flow {
         let net = if self.multicast { Net::Multicast } else { Net::PointToPoint };
         self.flow(net, COUNT + self.input_size.min(MOST_IMAGE))

@@ -9,7 +9,7 @@ use crate::image::tap;
 /// A datagram, or a piece of a TCP stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Passed<'a> {
-    /// Whether it is a piece of a TCP stream.
+    /// Whether these bytes are a piece of a TCP stream.
     pub is_tcp: bool,
     /// Sender.
     pub from: SocketAddrV4,
@@ -21,7 +21,7 @@ pub struct Passed<'a> {
 
 type Look = dyn Fn(&Passed<'_>) + Send + Sync;
 
-/// Called with all traffic, on the threads that move it. It must not block.
+/// Function that is called with all traffic, on the threads that send and receive it. The function must not block.
 #[derive(Clone, Default)]
 pub struct Tap(Option<Arc<Look>>);
 

@@ -1,9 +1,9 @@
 //! Fault injection for datagrams.
 //!
-//! `corrupt` is limited on purpose. UDP's checksum detects nearly all damage on the network. What remains comes from
-//! broken stacks, wrong senders and wrong ports. A corrupt datagram is therefore cut, extended, zeroed, changed in its
-//! first eight bytes (where protocols keep identifiers and sizes) or replaced by noise. A changed payload is not
-//! simulated, because a protocol without a checksum cannot detect it.
+//! The fault `corrupt` is limited on purpose. UDP's checksum detects nearly all damage on the network. Damage that
+//! remains comes from faulty network stacks, wrong senders and wrong ports. Therefore a corrupt datagram is cut,
+//! extended, zeroed, changed in its first eight bytes (where protocols have identifiers and sizes) or replaced by
+//! noise. A changed payload is not simulated, because a protocol without a checksum cannot detect it.
 
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -17,30 +17,31 @@ use super::{
     write_delay, write_shares,
 };
 
-/// Limit of noise bytes in place of a datagram.
+/// Maximum number of noise bytes that replace a datagram.
 const MOST_NOISE: usize = 600;
-/// Limit of bytes added to a datagram.
+/// Maximum number of bytes added to a datagram.
 const MOST_EXTRA: usize = 32;
-/// Number of bytes at the start of a datagram that can be changed.
+/// Number of bytes at the start of a datagram that may be changed.
 const HEAD: usize = 8;
-/// Extra delay of a reordered datagram. It is longer than a fast answer takes, and can exceed the usual retry time. The
-/// datagram therefore meets the next exchange or its own repetition.
+/// Extra delay of a reordered datagram. It is longer than a fast answer takes, and may exceed the usual retry time. The
+/// datagram therefore arrives during the next exchange, or after its own retransmission.
 const HOLD: RangeInclusive<Duration> = Duration::from_millis(20)..=Duration::from_millis(400);
 
 /// Fault rates. Text form: `drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,busy=4%,seed=7`; every part is optional.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FaultSpec {
-    /// Lost datagrams.
+    /// Share of datagrams that are lost.
     pub drop: Share,
-    /// Doubled datagrams. The copy has its own delay.
+    /// Share of datagrams that are doubled. The copy has its own delay.
     pub dup: Share,
-    /// Transmission time. A delay alone keeps the order.
+    /// Transmission time. A delay without `reorder` keeps the order of the datagrams.
     pub delay: RangeInclusive<Duration>,
-    /// Datagrams that are delayed beyond later ones.
+    /// Share of datagrams that arrive after later datagrams.
     pub reorder: Share,
-    /// Damaged datagrams.
+    /// Share of datagrams that are damaged.
     pub corrupt: Share,
-    /// Requests that a simulated controller refuses as busy. The simulator applies it, not this module.
+    /// Share of requests that a simulated controller refuses as busy. The simulator applies this fault, not this
+    /// module.
     pub busy: Share,
     /// Seed of the random sequence.
     pub seed: u64,
@@ -82,7 +83,7 @@ impl FromStr for FaultSpec {
 }
 
 impl fmt::Display for FaultSpec {
-    /// Writes the parts that are not 0, and always the seed. Parsing the text gives the same value.
+    /// Writes the seed and all rates that are not 0. Parsing the text gives the same specification.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write_shares(f, &[("drop", self.drop), ("dup", self.dup)])?;
         write_delay(f, &self.delay)?;
@@ -96,7 +97,7 @@ impl fmt::Display for FaultSpec {
 pub struct Faults {
     spec: FaultSpec,
     rng: Rng,
-    /// Arrival of the last datagram that was not reordered.
+    /// Arrival time of the last datagram that was not reordered.
     last: Duration,
 }
 
@@ -115,8 +116,8 @@ impl Faults {
         (there, back)
     }
 
-    /// Applies the faults to a datagram that is sent at `now`. Returns the arrival time and bytes of each copy, in no
-    /// particular order. Times have the same origin as `now`.
+    /// Applies the faults to a datagram that is sent at `now`. Returns the arrival time and the bytes of each copy, in
+    /// any order. The arrival times have the same origin as `now`.
     pub fn pass(&mut self, now: Duration, bytes: &[u8]) -> Vec<(Duration, Vec<u8>)> {
         if self.spec.drop.hits(&mut self.rng) {
             return Vec::new();
@@ -148,7 +149,7 @@ impl Faults {
 
 type Damage = fn(&mut Rng, Vec<u8>) -> Vec<u8>;
 
-/// Each of these changes the length or the first bytes.
+/// Kinds of damage. Each kind changes the length or the first bytes of a datagram.
 const DAMAGES: [Damage; 5] = [
     |rng, mut bytes| {
         bytes.truncate(rng.usize(..bytes.len().max(1)));
@@ -232,8 +233,8 @@ mod tests {
 
     #[test]
     fn errors_name_the_key_and_the_form() {
-        let share = "a percentage from 0% to 100% with at most two decimals, as in 2.5%";
-        let time = "a time or range of up to 60s in us, ms or s, as in 20ms or 0..50ms";
+        let share = "a percentage from 0% to 100% with at most two decimals, for example 2.5%";
+        let time = "a time or range of up to 60s in us, ms or s, for example 20ms or 0..50ms";
         let names = "the faults are drop, dup, delay, reorder, corrupt, busy, seed";
         let cases: [(&str, &str); 15] = [
             ("", &format!("unknown fault ''; {names}")),

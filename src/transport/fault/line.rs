@@ -17,19 +17,21 @@ use super::{
 /// optional. Rates are per character.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LineFaultSpec {
-    /// Changed characters, and characters with a random one before them.
+    /// Share of characters that are changed, or that have a random character inserted before them.
     pub noise: Share,
-    /// Characters with a parity error, which the receiver detects.
+    /// Share of characters with a parity error. The receiver detects the error.
     pub parity: Share,
-    /// Lost characters.
+    /// Share of characters that are lost.
     pub drop: Share,
-    /// Doubled characters.
+    /// Share of characters that are doubled.
     pub dup: Share,
-    /// Delay per write. The order is kept.
+    /// Delay of each write. The writes keep their order.
     pub delay: RangeInclusive<Duration>,
-    /// Requests that a simulated controller refuses as busy. The simulator applies it, not this module.
+    /// Share of requests that a simulated controller refuses as busy. The simulator applies this fault, not this
+    /// module.
     pub busy: Share,
-    /// Whether the host receives an echo of what it sends, as from some RS-485 adapters and a loop-back plug.
+    /// Whether the host receives an echo of the bytes that it sends. Some RS-485 adapters and a loop-back plug cause
+    /// such an echo.
     pub echo: bool,
     /// Seed of the random sequence.
     pub seed: u64,
@@ -73,7 +75,7 @@ impl FromStr for LineFaultSpec {
 }
 
 impl fmt::Display for LineFaultSpec {
-    /// Writes the parts that are not 0, and always the seed. Parsing the text gives the same value.
+    /// Writes the seed and all rates that are not 0. Parsing the text gives the same specification.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let shares = [("noise", self.noise), ("parity", self.parity), ("drop", self.drop), ("dup", self.dup)];
         write_shares(f, &shares)?;
@@ -100,7 +102,7 @@ pub struct Passed {
     pub delay: Duration,
     /// Characters that arrive.
     pub bytes: Vec<u8>,
-    /// Positions of characters with a parity error, in rising order.
+    /// Positions of the characters with a parity error, in ascending order.
     pub damaged: VecDeque<usize>,
 }
 
@@ -140,7 +142,7 @@ impl LineFaults {
         if is_noisy {
             passed.bytes.push(self.rng.u8(..));
         }
-        // Half of the noise replaces the character.
+        // Half of the noise replaces the character; the other half is inserted before the character.
         if is_noisy && self.rng.bool() {
             return;
         }
@@ -150,7 +152,8 @@ impl LineFaults {
         passed.bytes.push(byte);
     }
 
-    /// A rate of 0 draws no random number, so a line without faults costs nothing.
+    /// Whether a fault with this rate occurs. A rate of 0 needs no random number, so a line without faults costs
+    /// nothing.
     fn hits(&mut self, share: Share) -> bool {
         share != Share::NONE && share.hits(&mut self.rng)
     }
@@ -189,11 +192,11 @@ mod tests {
     #[test]
     fn errors_name_the_key_and_the_form() {
         for (text, message) in [
-            ("echo=on", "echo has no value, but got 'on'"),
+            ("echo=on", "echo takes no value, but has the value 'on'"),
             ("echo,echo", "echo appears twice"),
-            ("noise", "noise needs a value: a percentage from 0% to 100% with at most two decimals, as in 2.5%"),
+            ("noise", "noise needs a value: a percentage from 0% to 100% with at most two decimals, for example 2.5%"),
             ("reorder=1%", "unknown fault 'reorder'; the faults are noise, parity, drop, dup, delay, busy, echo, seed"),
-            ("noise=1", "noise: '1' is not a percentage from 0% to 100% with at most two decimals, as in 2.5%"),
+            ("noise=1", "noise: '1' is not a percentage from 0% to 100% with at most two decimals, for example 2.5%"),
         ] {
             assert_eq!(text.parse::<LineFaultSpec>().unwrap_err().to_string(), message, "{text}");
         }

@@ -1,8 +1,8 @@
 //! Fault injection with a seed, without sockets and clock: [`Faults`] for datagrams, [`LineFaults`] for a serial line.
 //! [`SimulatorFaults`] adds the faults of the simulated device itself.
 //!
-//! The input is what is sent, the output is what arrives. The same seed and the same traffic give the same faults on
-//! every computer.
+//! The input is the traffic that is sent, the output is the traffic that arrives. The same seed and the same traffic
+//! give the same faults on every computer.
 
 mod datagram;
 mod line;
@@ -87,8 +87,8 @@ pub enum FaultSpecError {
         /// The valid names.
         known: String,
     },
-    /// Two faults of the device, which has one at a time.
-    #[error("{first} and {second} exclude each other")]
+    /// Two faults of the device. A device can have only one fault at a time.
+    #[error("{first} and {second} cannot be used together")]
     TwoOfDevice {
         /// The first fault.
         first: &'static str,
@@ -101,7 +101,7 @@ pub enum FaultSpecError {
         /// The key.
         key: &'static str,
     },
-    /// A value that does not fit its key.
+    /// A value that is not valid for its key.
     #[error("{key}: '{value}' is not {form}")]
     Value {
         /// The key.
@@ -111,8 +111,8 @@ pub enum FaultSpecError {
         /// Valid form of the value.
         form: &'static str,
     },
-    /// A value for a key that takes none.
-    #[error("{key} has no value, but got '{value}'")]
+    /// A value for a key that has no value.
+    #[error("{key} takes no value, but has the value '{value}'")]
     NeedlessValue {
         /// The key.
         key: &'static str,
@@ -121,13 +121,13 @@ pub enum FaultSpecError {
     },
 }
 
-const SHARE_FORM: &str = "a percentage from 0% to 100% with at most two decimals, as in 2.5%";
-const DELAY_FORM: &str = "a time or range of up to 60s in us, ms or s, as in 20ms or 0..50ms";
+const SHARE_FORM: &str = "a percentage from 0% to 100% with at most two decimals, for example 2.5%";
+const DELAY_FORM: &str = "a time or range of up to 60s in us, ms or s, for example 20ms or 0..50ms";
 const SEED_FORM: &str = "a whole number from 0 to 18446744073709551615";
 
-/// Faults of a link in text form.
+/// Faults of a link that have a text form.
 pub trait FaultText: Default + 'static {
-    /// Names with the functions that set their values.
+    /// Names of the faults, each with the function that sets its value.
     const KEYS: &'static [Key<Self>];
 }
 
@@ -137,16 +137,17 @@ pub type Key<S> = (&'static str, Setter<S>);
 /// Function that sets one value of `S`.
 #[derive(Debug)]
 pub enum Setter<S> {
-    /// Form of the value, and the function that parses and sets it; `None` for a value of another form.
+    /// Description of the valid values, and the function that parses and sets a value. The function returns `None` for
+    /// an invalid value.
     Value(&'static str, fn(&mut S, &str) -> Option<()>),
     /// A key without a value.
     Flag(fn(&mut S)),
 }
 
-/// Faults of a simulator: of its link, and at most one of the device.
+/// Faults of a simulator: faults of its link, and at most one fault of the device.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SimulatorFaults<S, D> {
-    /// Faults of the link; `None` if the text names none.
+    /// Faults of the link; `None` if the text contains none.
     pub link: Option<S>,
     /// Fault of the device.
     pub device: Option<D>,
@@ -158,20 +159,21 @@ impl<S, D> Default for SimulatorFaults<S, D> {
     }
 }
 
-/// Faults that a simulator has.
+/// Names of the faults that a simulator supports.
 #[derive(Debug, Clone, Copy)]
 pub struct FaultNames<D: 'static> {
-    /// Names of the faults of its link, of the [`FaultText::KEYS`].
+    /// Names of the faults of the link. They are a subset of [`FaultText::KEYS`].
     pub link: &'static [&'static str],
     /// Faults of the device, by name.
     pub device: &'static [(&'static str, D)],
 }
 
 impl<D: Copy> FaultNames<D> {
-    /// Parses `drop=5%,stall,seed=7`.
+    /// Parses a text such as `drop=5%,stall,seed=7`.
     ///
     /// # Errors
-    /// [`FaultSpecError`] for an unknown name, which lists the known ones, a repeated name or a wrong value.
+    /// [`FaultSpecError`] for an unknown name, a repeated name or an invalid value. The error for an unknown name
+    /// contains the known names.
     pub fn parse<S: FaultText>(&self, text: &str) -> Result<SimulatorFaults<S, D>, FaultSpecError> {
         let of_device = |part: &str| self.device.iter().find(|(name, _)| *name == part);
         let (device, link): (Vec<&str>, Vec<&str>) =
@@ -194,13 +196,13 @@ impl<D: Copy> FaultNames<D> {
     }
 }
 
-/// Parses the faults of a link with all its names.
+/// Parses the faults of a link. All names of the link are valid.
 fn parse_link<S: FaultText>(text: &str) -> Result<S, FaultSpecError> {
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
     parse(&parts, &S::KEYS.iter().collect::<Vec<_>>(), [])
 }
 
-/// Parses parts, each name at most once. `others` are valid names besides `keys`, for the error.
+/// Parses the parts of a text. Each name may occur once. `others` are further valid names; they are only for the error.
 fn parse<S: Default>(
     parts: &[&str],
     keys: &[&'static Key<S>],
@@ -248,7 +250,7 @@ fn write_delay(f: &mut fmt::Formatter<'_>, delay: &RangeInclusive<Duration>) -> 
     }
 }
 
-/// A time in the largest unit that shows it exactly. The resolution is 1 µs.
+/// A time, shown in the largest unit that represents it exactly. The resolution is 1 µs.
 struct Time(Duration);
 
 impl fmt::Display for Time {
@@ -263,7 +265,8 @@ impl fmt::Display for Time {
 
 const UNITS: [(&str, u64); 3] = [("us", 1), ("ms", 1_000), ("s", 1_000_000)];
 
-/// Parses "20ms", "0..50ms" or "500us..2ms". A lower limit without a unit has the unit of the upper limit.
+/// Parses a delay such as "20ms", "0..50ms" or "500us..2ms". A lower limit without a unit has the unit of the upper
+/// limit.
 fn delay(text: &str) -> Option<RangeInclusive<Duration>> {
     let Some((least, most)) = text.split_once("..") else {
         let (number, unit) = number_and_unit(text);
@@ -290,7 +293,7 @@ fn time(number: &str, unit: &str) -> Option<Duration> {
 fn between(rng: &mut Rng, range: &RangeInclusive<Duration>) -> Duration {
     let micros = |time: &Duration| u64::try_from(time.as_micros()).unwrap_or(u64::MAX);
     let (least, most) = (micros(range.start()), micros(range.end()));
-    // A specification made in code can have its limits in the wrong order.
+    // A specification that was not parsed from text can have its limits in the wrong order.
     Duration::from_micros(if least < most { rng.u64(least..=most) } else { least })
 }
 
@@ -321,7 +324,7 @@ mod tests {
             ("loud", format!("unknown fault 'loud'; {names}")),
             ("stall=1", format!("unknown fault 'stall'; {names}")),
             ("busy=5%", format!("unknown fault 'busy'; {names}")),
-            ("stall,mute", "stall and mute exclude each other".to_owned()),
+            ("stall,mute", "stall and mute cannot be used together".to_owned()),
             ("mute,mute", "mute appears twice".to_owned()),
         ] {
             assert_eq!(parsed(text), Err(message), "{text}");

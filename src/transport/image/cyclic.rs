@@ -21,19 +21,19 @@ pub trait Bus: fmt::Debug + 'static {
     /// State of the connection.
     fn views(&mut self) -> &mut Views<Self::Error, Self::Statistics, Self::Details>;
 
-    /// Sends this image to the device in this generation. Returns the number of the change. It was sent when `sent` of
-    /// the view has reached that number.
+    /// Sends this image to the device in this generation. Returns the number of the change. The image was sent when
+    /// `sent` of the view has reached this number.
     ///
     /// # Errors
     /// The connection is not open in this generation, or the image has another size.
     fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, Self::Error>;
 
-    /// Corrects the byte order of an image if the bus has another one.
+    /// Converts an image to the byte order of the controller, if the fieldbus uses another byte order.
     fn native_order(&self, image: Arc<[u8]>) -> Arc<[u8]> {
         image
     }
 
-    /// Cause of a loss, and the state of the outputs after it.
+    /// Returns the cause of a loss, and the state of the outputs after the loss.
     fn loss(&self, view: View<Self::Error, Self::Statistics, Self::Details>) -> (Cause, Outputs);
 
     /// Counters of the connection.
@@ -49,7 +49,7 @@ pub struct Cyclic<B> {
     bus: B,
     sizes: Sizes,
     generation: u32,
-    /// Number of the change that is not sent yet.
+    /// Number of the change that was not sent yet.
     pending: Option<u64>,
 }
 
@@ -94,14 +94,14 @@ impl<B: Bus> ImageConnection for Cyclic<B> {
     }
 
     fn set_output(&mut self, image: &[u8]) -> Result<(), LinkError> {
-        // The previous image is replaced, even if this one fails.
+        // The previous image is no longer reported as sent, even if this call fails.
         self.pending = None;
         match self.bus.set_image(self.generation, image) {
             Ok(change) => {
                 self.pending = Some(change);
                 Ok(())
             }
-            // `next` reports the loss.
+            // This error means that the connection was lost; `next` reports the loss.
             Err(error) if error == B::Error::OUTDATED || error == B::Error::ENDED => Ok(()),
             Err(error) => Err(error.into()),
         }

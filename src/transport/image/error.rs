@@ -1,4 +1,5 @@
-//! Errors of image links: the same cases on every fieldbus. The device's own code and the options to check are data.
+//! Errors of image links. The kinds of error are the same on every fieldbus. The code of the device and the options to
+//! check are data in the error.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -9,7 +10,7 @@ use thiserror::Error;
 /// An error that prevented or ended a link.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum LinkError {
-    /// Another master controls the device, which accepts only one.
+    /// Another master controls the device. The device accepts only one master.
     #[error("{0}")]
     Owned(Cause),
     /// The device has images of another size.
@@ -21,15 +22,15 @@ pub enum LinkError {
     /// The device does not answer.
     #[error("{0}")]
     Silent(Cause),
-    /// The answer is not that of such a device.
+    /// The answer is not the answer of such a device.
     #[error("{0}")]
     Malformed(Cause),
-    /// The link was open and is lost. It opens again by itself.
+    /// The link was open, and was lost. It opens again automatically.
     #[error("{cause}")]
     Lost {
         /// Cause of the loss.
         cause: Cause,
-        /// State of the outputs.
+        /// State of the outputs after the loss.
         outputs: Outputs,
     },
     /// Invalid settings; nothing was sent.
@@ -43,34 +44,34 @@ pub enum LinkError {
 /// Cause of an error, as text and data.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Cause {
-    /// The request and the answer, or what was missing.
+    /// The request and its answer, or the missing answer.
     pub text: String,
-    /// Code of the device, such as `0x0106`.
+    /// Error code of the device, for example `0x0106`.
     pub code: Option<String>,
-    /// Names of URL options that can be wrong.
+    /// Names of the URL options that may be wrong.
     pub options: &'static [&'static str],
-    /// Further advice: lower case, no full stop.
+    /// Further advice: in lower case, without a period at the end.
     pub advice: Option<Cow<'static, str>>,
 }
 
-/// State of the device's outputs after the link is lost.
+/// State of the outputs of the device after the link was lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outputs {
-    /// This link never controlled them.
+    /// This link never controlled the outputs.
     Never,
-    /// The device has cleared them.
+    /// The device has cleared the outputs.
     Released,
-    /// The device keeps them, and clears them after this time without contact.
+    /// The device keeps the outputs, and clears them after this time without contact.
     ReleasedWithin(Duration),
 }
 
 impl Cause {
-    /// A cause with text only.
+    /// Creates a cause with text only.
     pub fn new(text: impl fmt::Display) -> Self {
         Self { text: text.to_string(), ..Self::default() }
     }
 
-    /// Cause of a loss; without an error, the connection was opened again in the meantime.
+    /// Creates the cause of a loss. If there is no error, the connection was reopened in the meantime.
     pub fn of_loss(trouble: Option<impl fmt::Display>) -> Self {
         trouble.map_or_else(|| Self::new("armctl opened the connection again"), Self::new)
     }
@@ -81,7 +82,7 @@ impl Cause {
         Self { advice: Some(advice.into()), ..self }
     }
 
-    /// Adds URL options that can be wrong.
+    /// Adds the URL options that may be wrong.
     #[must_use]
     pub fn options(self, options: &'static [&'static str]) -> Self {
         Self { options, ..self }

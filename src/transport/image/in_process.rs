@@ -1,4 +1,4 @@
-//! Image connection to a peer in this process. It uses tokio's clock, which tests can pause and advance.
+//! Image connection to a peer in this process. The connection uses tokio's clock, which tests can pause and advance.
 
 use std::fmt;
 use std::time::Duration;
@@ -9,13 +9,13 @@ use tokio::time::{Instant, sleep_until};
 
 use super::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes};
 
-/// Peer of an in-process connection, such as a simulated controller.
+/// Peer of an in-process connection, for example a simulated controller.
 pub trait ImagePeer: fmt::Debug {
-    /// Receives an image at `now`; `None` means that the master is gone.
+    /// Handles an image that arrives at `now`. `None` means that the master is gone.
     fn input(&mut self, now: Duration, image: Option<&[u8]>);
-    /// Image of the peer at `now`; `None` while the link is down.
+    /// Returns the image of the peer at `now`; `None` while the link is down.
     fn output(&mut self, now: Duration) -> Option<Vec<u8>>;
-    /// Time of the next change that the peer makes by itself.
+    /// Time when the output of the peer next changes without an input.
     fn wake(&self) -> Option<Duration>;
 }
 
@@ -29,14 +29,15 @@ pub struct InProcess {
     start: Instant,
     /// Size of the images in both directions.
     size: usize,
-    /// Image that is not sent yet.
+    /// Image that was not sent yet.
     pending: Option<Vec<u8>>,
     /// Earliest time to send the next image.
     due: Duration,
 }
 
 impl InProcess {
-    /// Creates a connection that has not sent an image yet. The peer's first image sets the size of both directions.
+    /// Creates a connection that has not sent an image yet. The first image of the peer sets the image size of both
+    /// directions.
     pub fn new(mut peer: Box<dyn ImagePeer>) -> Self {
         let size = peer.output(Duration::ZERO).map_or(0, |image| image.len());
         Self { peer, start: Instant::now(), size, pending: None, due: Duration::ZERO }
@@ -49,7 +50,7 @@ impl InProcess {
             match (&last_output, known.is_up) {
                 (None, true) => {
                     self.pending = None;
-                    let cause = Cause::new("the other side has ended");
+                    let cause = Cause::new("the other side of the connection has ended");
                     return Event::Lost(LinkError::Lost { cause, outputs: Outputs::Released });
                 }
                 (Some(_), false) => return Event::Reopened,

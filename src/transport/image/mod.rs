@@ -1,15 +1,15 @@
-//! Image links: the interface that all fieldbuses implement. Both sides of a link exchange a complete image again and
-//! again, instead of bytes that pass once.
+//! Image links: the interface that all fieldbuses implement. Both sides of a link repeatedly exchange a complete image.
+//! They do not exchange a stream of bytes.
 //!
-//! A fieldbus sends the newest image in its own cycle. An image that is replaced before its cycle is never sent. To be
-//! sure that an image was sent, show it and wait for [`Event::Sent`]. After a loss, the peer gets the resting image
-//! until a new one is shown. Therefore no image from before a loss is sent again.
+//! A fieldbus sends the newest image in its own cycle. An image that is replaced before the next cycle is never sent.
+//! To be sure that an image was sent, call [`ImageLink::set_output`] and wait for [`Event::Sent`]. After a loss, the
+//! peer gets the resting image until a new image is set. Therefore no image from before a loss is sent again.
 //!
-//! A fieldbus implements [`cyclic::Bus`] for a connection that controls the device, and [`ImageConnection`] for one
-//! that only reads. Errors of devices become [`LinkError`]. [`InProcess`] is a connection to a peer in this process,
-//! such as a simulated controller.
+//! A fieldbus implements [`cyclic::Bus`] for a connection that controls the device, and [`ImageConnection`] for a
+//! connection that only reads. Errors of devices are converted to [`LinkError`]. [`InProcess`] is a connection to a
+//! peer in this process, for example a simulated controller.
 //!
-//! A link can belong to another process that shares it; see [`session`](super::session).
+//! The connection can belong to another process, which shares it; see [`session`](super::session).
 
 pub mod cyclic;
 mod error;
@@ -35,9 +35,9 @@ use super::session::wire::Change;
 /// Event of a link.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Event {
-    /// The last shown image was sent.
+    /// The last image of [`ImageLink::set_output`] was sent.
     Sent,
-    /// A new image of the peer, or its first one after the link opened.
+    /// A new image of the peer, or its first image after the link opened.
     Image(Arc<[u8]>),
     /// The link was lost.
     Lost(LinkError),
@@ -47,17 +47,18 @@ pub enum Event {
     OutputChanged(Change),
     /// The session refuses all images of this process, because the robot is read-only.
     Denied,
-    /// No event before the deadline.
+    /// There was no event before the deadline.
     Timeout,
 }
 
-/// A connection over a fieldbus. It is open from the start. After a loss it opens again by itself until it is closed.
+/// A connection over a fieldbus. The connection is already open when it is created. After a loss, it reopens
+/// automatically until it is closed.
 pub trait ImageConnection: fmt::Debug {
     /// Image sizes of the device in bytes.
     fn sizes(&self) -> Sizes;
 
-    /// Sends this image from the next cycle on; `next` reports when it was sent. While the connection is down, the
-    /// image is dropped.
+    /// Sends this image, starting with the next cycle; `next` reports when it was sent. While the connection is down,
+    /// the image is dropped.
     ///
     /// # Errors
     /// The image has another size, or the connection is read-only. A loss is not an error here; `next` reports it.
@@ -65,8 +66,8 @@ pub trait ImageConnection: fmt::Debug {
         Err(LinkError::Settings(Cause::new("a read-only connection sends no outputs")))
     }
 
-    /// Waits for news beyond `known`: [`Event::Sent`], [`Event::Image`], [`Event::Lost`] or [`Event::Reopened`]. Cancel
-    /// safe.
+    /// Waits for an event that the caller does not know yet: [`Event::Sent`], [`Event::Image`], [`Event::Lost`] or
+    /// [`Event::Reopened`]. Cancel safe.
     fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event>;
 
     /// Counters; `None` for a connection without a cycle.
@@ -89,7 +90,7 @@ pub struct Sizes {
     pub input: usize,
 }
 
-/// What the caller of [`ImageConnection::next`] already knows.
+/// State that the caller of [`ImageConnection::next`] already knows.
 #[derive(Debug, Clone, Copy)]
 pub struct Known<'a> {
     /// Whether the link is up.
@@ -99,7 +100,7 @@ pub struct Known<'a> {
 }
 
 impl Known<'_> {
-    /// Whether this image is new to the caller.
+    /// Whether this image differs from the last image.
     pub fn is_new(&self, image: &[u8]) -> bool {
         self.is_up && self.image.is_none_or(|known| **known != *image)
     }
@@ -112,20 +113,20 @@ pub struct Traffic {
     pub sent: u64,
     /// Images received.
     pub received: u64,
-    /// Intervals of images to and from the device, if they are agreed.
+    /// Intervals of the images to and from the device, if the fieldbus agrees on intervals.
     pub intervals: Option<(Duration, Duration)>,
-    /// Irregular events with their names: `(2, "late")`.
+    /// Numbers of irregular events with their names, for example `(2, "late")`.
     pub irregular: Vec<(u64, &'static str)>,
 }
 
-/// A link to one peer, over a connection of this process or of another one.
+/// A link to one peer, over a connection of this process or of another process.
 #[derive(Debug)]
 pub struct ImageLink {
     end: End,
-    /// Last image from the peer, to detect changes.
+    /// Last image from the peer, for the detection of changes.
     last_input: Option<Arc<[u8]>>,
     is_up: bool,
-    /// Value that must live as long as the link, such as an in-process peer.
+    /// Value that must stay alive as long as the link, for example an in-process peer.
     keep_alive: Option<Box<dyn fmt::Debug>>,
 }
 
@@ -146,7 +147,7 @@ impl ImageLink {
         Self::over(InProcess::new(peer))
     }
 
-    /// Creates a link over a session, which another process holds.
+    /// Creates a link over a session. Another process owns the connection of the session.
     pub fn in_session(attached: Box<Attached>) -> Self {
         let is_up = attached.welcome.down.is_none();
         Self { end: End::Session(attached), last_input: None, is_up, keep_alive: None }
@@ -171,7 +172,7 @@ impl ImageLink {
         }
     }
 
-    /// In a session, the image that is sent to the peer now.
+    /// Returns the image that the session sends to the peer at the moment; `None` without a session.
     pub fn output(&self) -> Option<&[u8]> {
         match &self.end {
             End::Session(attached) => attached.output(),
@@ -179,7 +180,7 @@ impl ImageLink {
         }
     }
 
-    /// Waits until this process has exclusive control of the shared outputs, at most until `until`.
+    /// Waits until `until` for exclusive control of the shared outputs by this process.
     pub async fn acquire(&mut self, until: Instant) -> Result<(), SessionBusy> {
         match &mut self.end {
             End::Session(attached) => attached.acquire(until).await,
@@ -187,22 +188,22 @@ impl ImageLink {
         }
     }
 
-    /// Gives up exclusive control.
+    /// Ends the exclusive control.
     pub fn release(&mut self) {
         if let End::Session(attached) = &mut self.end {
             attached.release();
         }
     }
 
-    /// Sets the bits (mask and value) that the session sends if this process dies, or none. Without a session, the link
-    /// dies with the process.
+    /// Sets the last will: the bits (mask and value) that the session sends if this process is killed. `None` clears
+    /// the last will. Without a session, the link ends with the process.
     pub fn set_last_will(&mut self, bits: Option<(&[u8], &[u8])>) {
         if let End::Session(attached) = &mut self.end {
             attached.set_last_will(bits);
         }
     }
 
-    /// Claims the right to move the robot for this process alone.
+    /// Claims motion for this process: no other process of the session may then move the robot.
     pub async fn claim_motion(&mut self) -> Result<(), SessionBusy> {
         match &mut self.end {
             End::Session(attached) => attached.claim_motion().await,
@@ -210,7 +211,7 @@ impl ImageLink {
         }
     }
 
-    /// Reason why the session has ended, if it has.
+    /// Reason why the session has ended; `None` if it has not ended.
     pub fn ended(&self) -> Option<&str> {
         match &self.end {
             End::Session(attached) => attached.ended(),
@@ -218,14 +219,14 @@ impl ImageLink {
         }
     }
 
-    /// Sends this image from the next cycle on; [`Event::Sent`] reports when it was sent. While the link is down, the
-    /// image is dropped.
+    /// Sends this image, starting with the next cycle; [`Event::Sent`] reports when it was sent. While the link is
+    /// down, the image is dropped.
     ///
     /// # Errors
     /// The image has another size.
     pub fn set_output(&mut self, image: &[u8]) -> Result<(), LinkError> {
         match &mut self.end {
-            // An image from before a loss must not be sent after it.
+            // The image may be from before a loss, and must not be sent after the loss.
             End::Local(_) if !self.is_up => Ok(()),
             End::Local(connection) => connection.set_output(image),
             End::Session(attached) => {
@@ -235,7 +236,7 @@ impl ImageLink {
         }
     }
 
-    /// Waits for the next event, at most until `until`. Cancel safe.
+    /// Waits until `until` for the next event. Cancel safe.
     pub async fn next(&mut self, until: Instant) -> Event {
         let event = match &mut self.end {
             End::Local(connection) => {
@@ -257,7 +258,7 @@ impl ImageLink {
         event
     }
 
-    /// Counters; `None` for a link without its own network.
+    /// Counters; `None` for a link without its own network connection.
     pub fn traffic(&self) -> Option<Traffic> {
         match &self.end {
             End::Local(connection) => connection.traffic(),
@@ -275,7 +276,7 @@ impl ImageLink {
                 Ok(())
             }
         };
-        // The peer must live until the close is complete.
+        // The peer must stay alive until the close is complete.
         drop(keep_alive);
         closed
     }
@@ -288,7 +289,7 @@ impl From<client::Event> for Event {
             client::Event::Image(image) => Self::Image(image.into()),
             client::Event::OutputChanged(change) => Self::OutputChanged(change),
             client::Event::Denied => Self::Denied,
-            // The session host has already reported the state of the outputs, if it could.
+            // The session host has already reported the state of the outputs, if it was able to do so.
             client::Event::Lost(why) => Self::Lost(LinkError::Silent(Cause::new(why))),
             client::Event::Reopened => Self::Reopened,
             client::Event::Timeout => Self::Timeout,

@@ -27,20 +27,20 @@ pub enum Passage {
         /// Bytes of the piece.
         bytes: Vec<u8>,
     },
-    /// Bytes to or from an adapter on this computer, while it is set up. They are not part of a recording.
+    /// Bytes to or from an adapter on this computer during its setup. They are not part of a recording.
     Adapter {
-        /// To the adapter, or from it.
+        /// Direction: to the adapter, or from the adapter.
         direction: Direction,
         /// The bytes.
         bytes: Vec<u8>,
     },
-    /// A whole frame of a link with its own frame format. The link type of the recording identifies it.
+    /// A whole frame of a link with its own frame format. The link type of the recording says which format this is.
     Frame(Vec<u8>),
 }
 
 type Look = dyn Fn(Passage) + Send + Sync;
 
-/// Called with all traffic, on the threads that move it. It must not block.
+/// Function that is called with all traffic, on the threads that send and receive it. The function must not block.
 #[derive(Clone, Default)]
 pub struct Tap(Option<Arc<Look>>);
 
@@ -55,7 +55,7 @@ impl Tap {
         self.0.is_some()
     }
 
-    /// Records an item. `passed` is only called if the tap is open.
+    /// Records an item. Calls `passed` only if the tap is open.
     pub fn pass(&self, passed: impl FnOnce() -> Passage) {
         if let Some(tap) = &self.0 {
             tap(passed());

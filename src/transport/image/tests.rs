@@ -5,10 +5,10 @@ use std::sync::Mutex;
 
 use super::*;
 
-/// Received images with their times.
+/// Received images with their times; `None` means that the master is gone.
 type Heard = Vec<(Duration, Option<Vec<u8>>)>;
 
-/// Echo peer: returns each image 3 ms later. Between two times it is gone.
+/// Echo peer: returns each image 3 ms later. The peer is not reachable between the two times in `gone`.
 #[derive(Debug, Default)]
 struct Echo {
     coming: VecDeque<(Duration, Vec<u8>)>,
@@ -83,7 +83,8 @@ async fn what_was_to_be_sent_before_a_loss_is_not_sent_after_it() {
     assert_eq!(later(&mut link, 1).await, Event::Sent);
     link.set_output(b"b").unwrap();
     assert_eq!(later(&mut link, 100).await, image(b"a"));
-    let lost = LinkError::Lost { cause: Cause::new("the other side has ended"), outputs: Outputs::Released };
+    let lost =
+        LinkError::Lost { cause: Cause::new("the other side of the connection has ended"), outputs: Outputs::Released };
     assert_eq!(later(&mut link, 100).await, Event::Lost(lost));
     assert_eq!(later(&mut link, 10).await, Event::Timeout);
     assert_eq!(later(&mut link, 100).await, Event::Reopened);

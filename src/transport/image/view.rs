@@ -10,15 +10,15 @@ use super::LinkError;
 /// State of a connection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum State {
-    /// Opening for the first time.
+    /// The connection opens for the first time.
     Opening,
-    /// Open: images are exchanged, or requests are possible.
+    /// The connection is open: images are exchanged, or requests are possible.
     Open,
-    /// Lost, or its data is invalid. It is being opened again.
+    /// The connection was lost, or its data is invalid. It is being reopened.
     Lost,
-    /// Closing.
+    /// The connection is being closed.
     Closing,
-    /// Closed, or opening failed.
+    /// The connection is closed, or it could not be opened.
     Closed,
 }
 
@@ -35,7 +35,7 @@ pub struct Input {
 
 /// Errors that every fieldbus has.
 pub trait BusError: Clone + PartialEq + Into<LinkError> {
-    /// The request names an older generation.
+    /// The request is for an older generation.
     const OUTDATED: Self;
     /// The connection is closed.
     const ENDED: Self;
@@ -46,13 +46,13 @@ pub trait BusError: Clone + PartialEq + Into<LinkError> {
 pub struct View<E, S, D> {
     /// State of the connection.
     pub state: State,
-    /// Number of openings; 0 before the first.
+    /// Number of times that the connection was opened; 0 before the first opening.
     pub generation: u32,
-    /// Newest image of the device. It can be older than a loss: compare the generation.
+    /// Newest image of the device. It may be from before the last loss: compare the generation.
     pub input: Option<Input>,
-    /// Number of the newest change that was sent, or confirmed if the bus has confirmations.
+    /// Number of the newest change that was sent. If the bus has confirmations, number of the newest confirmed change.
     pub sent: u64,
-    /// Reason of the last loss or failed opening. While the connection is open, the last local error.
+    /// Cause of the last loss or failed opening. While the connection is open, this is the last local error.
     pub trouble: Option<E>,
     /// Counters over all generations.
     pub statistics: S,
@@ -61,7 +61,7 @@ pub struct View<E, S, D> {
 }
 
 impl<E: BusError, S: Default, D> View<E, S, D> {
-    /// View of a connection that starts to open.
+    /// Creates the view of a connection that starts to open.
     pub fn new(details: D) -> Self {
         Self {
             state: State::Opening,
@@ -77,7 +77,7 @@ impl<E: BusError, S: Default, D> View<E, S, D> {
     /// Checks that an image for this generation can be sent.
     ///
     /// # Errors
-    /// The connection is lost, was opened again, or is closed.
+    /// The connection is lost, was reopened, or is closed.
     pub fn check(&self, generation: u32) -> Result<(), E> {
         match self.state {
             State::Open if generation == self.generation => Ok(()),
@@ -103,9 +103,9 @@ impl<E: BusError, S: Clone, D: Clone> Views<E, S, D> {
         self.0.borrow().clone()
     }
 
-    /// Waits for a change: an image or a state. Never returns after the connection is closed.
+    /// Waits for a change of the image or the state. After the connection is closed, this function never returns.
     pub async fn changed(&mut self) {
-        // The sender ends with the connection, so nothing changes any more.
+        // The sender ends with the connection, so there are no further changes.
         if self.0.changed().await.is_err() {
             std::future::pending::<()>().await;
         }
@@ -124,10 +124,10 @@ impl<E: BusError, S: Clone, D: Clone> Views<E, S, D> {
         }
     }
 
-    /// Waits until the connection is open. After a failure, it first waits for the close.
+    /// Waits until the connection is open. After a failed opening, waits until the connection is closed.
     ///
     /// # Errors
-    /// Opening failed.
+    /// The connection could not be opened.
     pub async fn opened(&mut self) -> Result<(), E> {
         let view = self.until(|view| !matches!(view.state, State::Opening | State::Closing)).await;
         match view.state {
@@ -136,7 +136,7 @@ impl<E: BusError, S: Clone, D: Clone> Views<E, S, D> {
         }
     }
 
-    /// Waits until the connection is closed.
+    /// Waits until the connection is closed. `before` is the error that was known before the close.
     ///
     /// # Errors
     /// A new error during the close.

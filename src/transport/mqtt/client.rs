@@ -1,4 +1,4 @@
-//! MQTT driver: moves the bytes of a session over TCP or TLS.
+//! MQTT driver: transfers the bytes of a session over TCP or TLS.
 
 use std::future::poll_fn;
 use std::io;
@@ -16,7 +16,7 @@ use super::{Event, Hello, Loss, Message, SendError, Session};
 
 /// Bytes per read.
 const CHUNK: usize = 16 * 1024;
-/// Time after which a broker that reads nothing counts as stuck.
+/// Time after which a broker that reads no bytes counts as blocked.
 const UNREAD: Duration = Duration::from_secs(30);
 
 /// Address of a broker.
@@ -40,12 +40,13 @@ pub struct Client {
     session: Session,
     buffer: Vec<u8>,
     is_flushed: bool,
-    /// Time since when the connection accepts no bytes.
+    /// Time since which the connection has accepted no bytes; `None` if it accepts bytes.
     stuck_since: Option<Instant>,
 }
 
 impl Client {
-    /// Connects and sends CONNECT. The first event is the broker's answer. `within` limits the whole procedure.
+    /// Connects and sends CONNECT. The first event is the answer of the broker. `within` is the time limit for
+    /// connecting and for this answer.
     pub async fn open(endpoint: &Endpoint, hello: &Hello, within: Duration) -> Result<Self, Loss> {
         let by = Instant::now() + within;
         let opened = timeout_at(by, stream(endpoint)).await.unwrap_or(Err(ConnectError::TimedOut.into()))?;
@@ -54,7 +55,7 @@ impl Client {
         Ok(Self { stream: opened, session, buffer: vec![0; CHUNK], is_flushed: true, stuck_since: None })
     }
 
-    /// Waits for the next event. Cancel safe. After [`Event::Lost`] there are no more events.
+    /// Waits for the next event. Cancel safe. There are no more events after [`Event::Lost`].
     pub async fn next(&mut self) -> Event {
         loop {
             if let Some(event) = self.session.next_event() {
@@ -76,36 +77,36 @@ impl Client {
         }
     }
 
-    /// See [`Session::publish`].
+    /// Publishes a message: see [`Session::publish`].
     pub fn publish(&mut self, message: &Message) -> Result<Option<u64>, SendError> {
         self.session.publish(Instant::now(), message)
     }
 
-    /// See [`Session::subscribe`].
+    /// Subscribes to topics: see [`Session::subscribe`].
     pub fn subscribe(&mut self, topics: &[String]) -> Result<(), SendError> {
         self.session.subscribe(Instant::now(), topics)
     }
 
-    /// See [`Session::ping`].
+    /// Sends a ping: see [`Session::ping`].
     pub fn ping(&mut self) -> u64 {
         self.session.ping(Instant::now())
     }
 
-    /// See [`Session::room`].
+    /// Returns how many messages can be sent now: see [`Session::room`].
     pub fn room(&self) -> Option<u16> {
         self.session.room()
     }
 
-    /// Number of bytes not accepted by the connection yet.
+    /// Number of bytes that the connection has not accepted yet.
     pub fn unsent(&mut self) -> usize {
         self.session.outgoing().len()
     }
 
-    /// Sends DISCONNECT, so that the broker does not publish the will, and closes the connection. The caller sets the
-    /// time limit.
+    /// Sends DISCONNECT, so that the broker does not publish the last will, and closes the connection. The caller sets
+    /// the time limit.
     pub async fn close(mut self) {
         self.session.disconnect(Instant::now());
-        // If the broker is already gone, DISCONNECT is not needed.
+        // An error is ignored: if the broker is already gone, DISCONNECT is not needed.
         let _closed: io::Result<()> = poll_fn(|cx| {
             ready!(self.flush(cx))?;
             Pin::new(&mut *self.stream).poll_shutdown(cx)
@@ -116,7 +117,7 @@ impl Client {
     /// Writes pending bytes, then reads.
     fn turn(&mut self, cx: &mut Context<'_>) -> Poll<Result<usize, Loss>> {
         if let Poll::Ready(Err(error)) = self.flush(cx) {
-            // A last message of the broker explains more than the write error.
+            // If the broker has sent a last message, this message explains more than the write error.
             return match self.read(cx) {
                 Poll::Ready(Ok(len)) => Poll::Ready(Ok(len)),
                 _ => Poll::Ready(Err(loss(&error))),
@@ -194,7 +195,7 @@ mod tests {
         };
         let now = Instant::now();
         let session = Session::new(&hello, now, now + Duration::from_secs(10)).unwrap();
-        // Smaller than CONNECT.
+        // The buffer is smaller than CONNECT.
         let (stream, mut broker) = tokio::io::duplex(8);
         let mut client =
             Client { stream: Box::new(stream), session, buffer: vec![0; CHUNK], is_flushed: true, stuck_since: None };

@@ -17,16 +17,16 @@ pub enum Version {
     V5,
 }
 
-/// A message.
+/// A message that a client publishes.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Message {
     /// Topic.
     pub topic: String,
     /// Payload.
     pub payload: Vec<u8>,
-    /// Whether the broker keeps it for later subscribers.
+    /// Whether the broker keeps the message for later subscribers.
     pub retain: bool,
-    /// Whether the broker acknowledges it (`QoS` 1) or not (`QoS` 0).
+    /// Whether the broker acknowledges the message (`QoS` 1) or not (`QoS` 0).
     pub acknowledged: bool,
 }
 
@@ -37,7 +37,7 @@ impl fmt::Debug for Message {
     }
 }
 
-/// Message that the broker publishes when the client is gone (`QoS` 1).
+/// Last will: the message that the broker publishes when the client is gone (`QoS` 1).
 pub type Will = Message;
 
 /// Contents of CONNECT.
@@ -57,7 +57,7 @@ pub struct Hello {
     pub will: Option<Will>,
 }
 
-/// The password is omitted.
+/// The debug output omits the password.
 impl fmt::Debug for Hello {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { version, client_id, user, keep_alive, will, .. } = self;
@@ -65,16 +65,16 @@ impl fmt::Debug for Hello {
     }
 }
 
-/// Refusal of a connection.
+/// Refusal of a connection by the broker.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refusal {
-    /// MQTT version, which decides the meaning of the code.
+    /// MQTT version. The meaning of the code depends on it.
     pub version: Version,
     /// The return code (3.1.1, section 3.2.2.3) or reason code (5, section 3.2.2.2).
     pub code: u8,
     /// Reason text of the broker.
     pub reason: Option<String>,
-    /// Other server that the broker names.
+    /// Other server that the broker recommends.
     pub server: Option<String>,
 }
 
@@ -89,7 +89,8 @@ pub enum Event {
     Acknowledged(u64, Option<u8>),
     /// A subscription was accepted or refused.
     Subscribed(bool),
-    /// The broker answered the ping with this number. Everything sent before it has arrived.
+    /// The broker answered the ping with this number. The broker has received everything that was sent before this
+    /// ping.
     Pong(u64),
     /// A message arrived.
     Message(Message),
@@ -103,7 +104,7 @@ pub enum SendError {
     /// The broker does not accept packets of this size.
     #[error("the broker accepts no message of this size")]
     TooLarge,
-    /// Not valid in MQTT, such as a wrong topic.
+    /// The message is not valid in MQTT, for example because of its topic.
     #[error("MQTT cannot encode the message")]
     Invalid,
 }

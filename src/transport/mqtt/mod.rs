@@ -1,4 +1,5 @@
-//! MQTT client for versions 3.1.1 and 5: acknowledged messages out, limited messages in. Payloads have no meaning here.
+//! MQTT client for versions 3.1.1 and 5: acknowledged messages out, limited messages in. This module does not interpret
+//! payloads.
 //!
 //! | file | contents |
 //! |---|---|
@@ -20,23 +21,24 @@ pub use self::session::{LARGEST, Session};
 pub use self::tls::{Identity, Tls, TlsError, Trust};
 use super::tcp::ConnectError;
 
-/// Flood limit: packets, bytes, and seconds. Answers to our own packets do not count.
+/// Flood limit: number of packets and number of bytes, within this number of seconds. Answers to our own packets do not
+/// count.
 const FLOOD: (u32, u32, u64) = (1000, 4 << 20, 10);
 
 /// Reason why there is no connection to the broker.
 #[derive(Debug, Error)]
 pub enum Loss {
-    /// No TCP connection.
+    /// The TCP connection could not be opened.
     #[error("{0}")]
     Connect(#[from] ConnectError),
-    /// The certificate check failed on one of the sides.
+    /// The certificate check failed at the client or at the broker.
     #[error("{0}")]
     Tls(TlsError),
     /// The broker accepted the connection but did not answer.
     #[error("it accepts the connection, but does not answer")]
     Unanswered,
     /// The broker stopped answering.
-    #[error("it does not answer any more")]
+    #[error("it does not answer any longer")]
     Silent,
     /// The broker closed the connection.
     #[error("it closed the connection")]
@@ -49,20 +51,20 @@ pub enum Loss {
         /// Reason text.
         reason: Option<String>,
     },
-    /// Not MQTT, or not valid.
+    /// The received bytes are not MQTT, or not valid.
     #[error("it does not send MQTT ({0})")]
     Garbage(String),
-    /// Violation of the MQTT protocol.
-    #[error("it breaks the MQTT protocol: {0}")]
+    /// The broker violated the MQTT protocol.
+    #[error("it does not follow the MQTT protocol: {0}")]
     Protocol(&'static str),
-    /// The broker sends too much; see the flood limit.
+    /// The broker sends too much data; see the flood limit.
     #[error("it sends too much: more than {} packets or {} bytes in {} s without a request", FLOOD.0, FLOOD.1, FLOOD.2)]
     Flood,
-    /// The broker does not read what is sent to it.
+    /// The broker does not read the bytes that are sent to it.
     #[error("it does not read the sent data")]
     Unread,
     /// The broker sent a packet above the size limit.
-    #[error("it sends a packet of more than {LARGEST} bytes")]
+    #[error("it sends a packet that is longer than {LARGEST} bytes")]
     TooLarge,
     /// Error of the connection.
     #[error("{0}")]
@@ -70,7 +72,7 @@ pub enum Loss {
 }
 
 impl Loss {
-    /// Whether another client with the same identifier took over.
+    /// Whether another client with the same client identifier took over the connection.
     pub fn is_takeover(&self) -> bool {
         matches!(self, Self::Goodbye { code: 0x8e, .. })
     }
@@ -83,9 +85,9 @@ fn goodbye(code: u8, reason: Option<&str>) -> String {
         (0x82, "protocol error"),
         (0x87, "not authorized"),
         (0x89, "it is busy"),
-        (0x8b, "it shuts down"),
+        (0x8b, "it is shutting down"),
         (0x8d, "keep-alive timeout"),
-        (0x8e, "another client has taken over this name"),
+        (0x8e, "another client connected with the same name"),
         (0x90, "invalid topic"),
         (0x93, "receive maximum exceeded"),
         (0x95, "packet too large"),

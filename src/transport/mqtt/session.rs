@@ -14,30 +14,30 @@ use tokio::time::Instant;
 use super::message::{Event, Hello, Message, Refusal, SendError, Version};
 use super::{FLOOD, Loss};
 
-/// Largest packet accepted from a broker, in bytes. Commands and states need a few hundred.
+/// Maximum size of a packet from a broker, in bytes. Commands and states need a few hundred bytes.
 pub const LARGEST: u32 = 256 * 1024;
-/// Receive maximum: unacknowledged messages that a broker can send at a time.
+/// Receive maximum: number of unacknowledged messages that a broker may send at a time.
 const RECEIVE_MAXIMUM: u16 = 16;
 /// Time limit for the answer to a ping.
 const PONG_WITHIN: Duration = Duration::from_secs(10);
-/// First byte from a broker (3.1.1, section 3.2.1; the same in 5).
+/// First byte from a broker (3.1.1, section 3.2.1; version 5 has the same byte).
 const CONNACK: u8 = 0x20;
-/// Usual size limit of a broker's answer. Smaller answers do not count as flood.
+/// Size limit of a usual answer of a broker. An answer up to this size does not count as flood.
 const ANSWER: u32 = 256;
-/// Limit of acknowledgements, in bytes, that wait for a broker that does not read.
+/// Maximum number of bytes of acknowledgements that wait for a broker that reads nothing.
 const REPLIES: usize = 64 * 1024;
-/// Longest broker text that is reported, in characters.
+/// Maximum number of characters of a broker's text in a report.
 const LONGEST_TEXT: usize = 200;
 
-/// A session, from CONNECT to its end. It cannot be used again.
+/// A session, from CONNECT to its end. A session cannot be used again.
 pub struct Session {
     inner: Connection<role::Client>,
     version: Version,
     outgoing: Vec<u8>,
     events: VecDeque<Event>,
     timers: Vec<(TimerKind, Instant)>,
-    /// Messages in progress: packet identifier to our own number. An identifier is free again after the
-    /// acknowledgement, but its event can still be in the queue.
+    /// Messages in progress: their packet identifiers, with our own numbers. An identifier is free again after the
+    /// acknowledgement, even if the event of the acknowledgement is still in the queue.
     under_way: HashMap<u16, u64>,
     published: u64,
     answer_by: Option<Instant>,
@@ -46,12 +46,12 @@ pub struct Session {
     pongs: u64,
     has_heard: bool,
     flood: Flood,
-    /// Bytes of replies since the connection last accepted all output.
+    /// Number of bytes of replies since the connection last accepted all output.
     replies: usize,
     is_over: bool,
 }
 
-/// Counters of unsolicited traffic since a point in time.
+/// Counters of unsolicited traffic since the time `since`.
 #[derive(Debug)]
 struct Flood {
     since: Instant,
@@ -85,10 +85,10 @@ impl Flood {
 }
 
 impl Session {
-    /// Queues CONNECT. The broker must answer before `answer_by`.
+    /// Creates a session and queues CONNECT. The broker must answer before `answer_by`.
     ///
     /// # Errors
-    /// A text is not valid in MQTT: longer than 65,535 bytes, or with NUL.
+    /// A text is not valid in MQTT: it is longer than 65,535 bytes, or contains NUL.
     pub fn new(hello: &Hello, now: Instant, answer_by: Instant) -> Result<Self, SendError> {
         let spoken = match hello.version {
             Version::V3 => Spoken::V3_1_1,
@@ -123,7 +123,7 @@ impl Session {
         self.events.pop_front()
     }
 
-    /// Bytes to send. The caller removes what it has sent.
+    /// Bytes to send. The caller removes the bytes that it has sent.
     pub fn outgoing(&mut self) -> &mut Vec<u8> {
         &mut self.outgoing
     }
@@ -133,7 +133,7 @@ impl Session {
         self.timers.iter().map(|(_, at)| *at).chain(self.answer_by).min()
     }
 
-    /// Does what is due.
+    /// Executes the work that is due.
     pub fn poll(&mut self, now: Instant) {
         if self.answer_by.is_some_and(|by| by <= now) {
             self.lose(Loss::Unanswered);
@@ -151,11 +151,11 @@ impl Session {
 
     /// Handles bytes from the broker.
     pub fn handle(&mut self, now: Instant, bytes: &[u8]) {
-        // A server of another protocol would never send a CONNACK, so report it now.
+        // A server of another protocol would never send a CONNACK, so the error is reported now.
         if let (Some(first), false) = (bytes.first(), std::mem::replace(&mut self.has_heard, true))
             && *first != CONNACK
         {
-            return self.lose(Loss::Garbage(format!("it begins with 0x{first:02X}")));
+            return self.lose(Loss::Garbage(format!("the data begins with 0x{first:02X}")));
         }
         self.flood.bytes(now, bytes.len());
         if self.outgoing.is_empty() {
@@ -181,7 +181,7 @@ impl Session {
         }
     }
 
-    /// The connection is closed.
+    /// Handles the end of the connection.
     pub fn lose(&mut self, loss: Loss) {
         if !std::mem::replace(&mut self.is_over, true) {
             self.timers.clear();
@@ -190,18 +190,19 @@ impl Session {
         }
     }
 
-    /// How many more unacknowledged messages the broker accepts now, if it has set a limit.
+    /// Number of further unacknowledged messages that the broker accepts now; `None` if the broker has set no limit.
     pub fn room(&self) -> Option<u16> {
         self.inner.get_receive_maximum_vacancy_for_send()
     }
 
-    /// Queues a message. Returns the number of its acknowledgement, if it gets one.
+    /// Queues a message. Returns the number that its acknowledgement will have; `None` for a message without
+    /// acknowledgement.
     ///
     /// # Errors
-    /// Nothing was sent.
+    /// The message is not valid or too large. Nothing was sent.
     pub fn publish(&mut self, now: Instant, message: &Message) -> Result<Option<u64>, SendError> {
         let Message { topic, payload, retain, acknowledged } = message;
-        // The standard forbids it (section 1.5.4), and some brokers close the connection.
+        // The standard forbids NUL (section 1.5.4), and some brokers close the connection.
         if topic.is_empty() || topic.contains('\0') {
             return Err(SendError::Invalid);
         }
@@ -244,24 +245,24 @@ impl Session {
         self.send(now, packet)
     }
 
-    /// Queues a ping, to learn when everything before it has arrived. Returns its number.
+    /// Queues a ping and returns its number. The answer shows that everything before the ping has arrived.
     pub fn ping(&mut self, now: Instant) -> u64 {
         let packet: Result<Packet, MqttError> = match self.version {
             Version::V3 => v3_1_1::Pingreq::builder().build().map(Into::into),
             Version::V5 => v5_0::Pingreq::builder().build().map(Into::into),
         };
-        // A ping has no variable content. If it does not fit, it is not counted.
+        // A ping has no variable content. If it does not fit into the output, it is not counted.
         let _sent = packet.map_err(SendError::from).and_then(|packet| self.send(now, packet));
         self.pings
     }
 
-    /// Queues DISCONNECT, so that the broker does not publish the will.
+    /// Queues DISCONNECT, so that the broker does not publish the last will.
     pub fn disconnect(&mut self, now: Instant) {
         let packet: Result<Packet, MqttError> = match self.version {
             Version::V3 => v3_1_1::Disconnect::builder().build().map(Into::into),
             Version::V5 => v5_0::Disconnect::builder().build().map(Into::into),
         };
-        // An error does not matter: the connection is closed next in any case.
+        // An error is ignored: the caller closes the connection next.
         let _sent = packet.map_err(SendError::from).and_then(|packet| self.send(now, packet));
         self.timers.clear();
     }
@@ -299,9 +300,9 @@ impl Session {
                 connection::Event::NotifyPacketIdReleased(_) => {}
             }
         }
-        // The reason follows as a separate event, if there is one.
+        // If there was no error with a reason before, the session ends with this general reason.
         if closes {
-            self.lose(Loss::Garbage("it breaks the protocol".to_owned()));
+            self.lose(Loss::Garbage("it does not follow the protocol".to_owned()));
         }
     }
 
@@ -314,7 +315,7 @@ impl Session {
             Packet::V3_1_1Puback(puback) => self.under_way.contains_key(&puback.packet_id()),
             Packet::V5_0Puback(puback) => self.under_way.contains_key(&puback.packet_id()),
             Packet::V3_1_1Pingresp(_) | Packet::V5_0Pingresp(_) => self.pongs < self.pings,
-            // The codec only accepts it for a pending subscription.
+            // The codec accepts this packet only for a pending subscription.
             Packet::V3_1_1Suback(_) | Packet::V5_0Suback(_) => true,
             _ => is_connack,
         });
@@ -360,7 +361,7 @@ impl Session {
                 acknowledged: publish.qos() != Qos::AtMostOnce,
             }),
             Packet::V3_1_1Pingresp(_) | Packet::V5_0Pingresp(_) => {
-                // Ignore an answer without a ping.
+                // An answer without a ping is ignored.
                 self.pongs = self.pings.min(self.pongs + 1);
                 Event::Pong(self.pongs)
             }
@@ -369,7 +370,7 @@ impl Session {
                 let reason = disconnect.props().as_ref().and_then(|props| texts(props).0);
                 return self.lose(Loss::Goodbye { code, reason });
             }
-            // Answers to packets that this client never sends.
+            // These packets are answers to packets that this client never sends.
             _ => return,
         };
         self.events.push_back(event);
@@ -402,7 +403,7 @@ fn connect(hello: &Hello) -> Result<Packet, MqttError> {
     })
 }
 
-/// Reason text and other server of the broker.
+/// Returns the reason text of the broker, and the other server that it recommends.
 fn texts(properties: &Properties) -> (Option<String>, Option<String>) {
     let mut found = (None, None);
     for property in properties {
@@ -460,7 +461,8 @@ mod tests {
 
     #[test]
     fn hello_is_as_the_standard_has_it() {
-        // MQTT 3.1.1, sections 3.1.1 to 3.1.3: clean session, will with QoS 1 and retain, user name and password.
+        // Expected bytes from MQTT 3.1.1, sections 3.1.1 to 3.1.3: clean session, will with QoS 1 and retain, user name
+        // and password.
         let (mut session, _) = started(Version::V3);
         let fields = [&b"cell7"[..], b"armctl/cell7/state", b"offline", b"plant", b"secret"];
         let mut expected = vec![0x10, 0, 0, 4];
@@ -482,7 +484,8 @@ mod tests {
             let (mut session, now) = connected(version);
             let numbers = [(); 2].map(|()| session.publish(now, &message(true)).unwrap().unwrap());
             assert_eq!(session.outgoing()[0], 0x33, "PUBLISH with QoS 1, kept");
-            // Two acknowledgements at once. The identifiers are free before the events are taken.
+            // Two acknowledgements arrive at once. Their identifiers are free before the events are taken from the
+            // queue.
             session.handle(now, &[0x40, 2, 0, 1, 0x40, 2, 0, 2]);
             let third = session.publish(now, &message(true)).unwrap().unwrap();
             let mut acknowledged = Vec::new();
@@ -493,7 +496,7 @@ mod tests {
             assert!(!numbers.contains(&third));
             assert_eq!(session.publish(now, &message(false)), Ok(None));
         }
-        // MQTT 5 can reject: not authorized. "No subscribers" is not a rejection.
+        // In MQTT 5, a broker can reject a message: "not authorized". "No subscribers" is not a rejection.
         let (mut session, now) = connected(Version::V5);
         session.publish(now, &message(true)).unwrap();
         session.handle(now, &[0x40, 3, 0, 1, 0x87]);
@@ -532,7 +535,7 @@ mod tests {
     #[test]
     fn what_is_too_large_or_makes_no_sense_ends_it() {
         let (mut session, now) = connected(Version::V3);
-        // A PUBLISH that announces 256 MB.
+        // A PUBLISH with a length of 256 MB.
         session.handle(now, &[0x30, 0xff, 0xff, 0xff, 0x7f, 1, 2, 3]);
         assert!(matches!(session.next_event(), Some(Event::Lost(Loss::TooLarge))));
         let (mut session, now) = started(Version::V5);
@@ -550,12 +553,13 @@ mod tests {
             let (mut session, now) = connected(version);
             session.handle(now, &connack.repeat(4096));
             let Some(Event::Lost(loss)) = session.next_event() else { panic!("it goes on") };
-            assert_eq!(loss.to_string(), "it breaks the MQTT protocol: a second CONNACK");
+            assert_eq!(loss.to_string(), "it does not follow the MQTT protocol: a second CONNACK");
             assert!(session.next_event().is_none());
         }
     }
 
-    /// Number of packets accepted, one every `apart`, before the session ends.
+    /// Sends the same packet every `apart`. Returns the number of packets that the session accepted, and the reason of
+    /// its end.
     fn taken(packet: &[u8], apart: Duration, most: usize) -> (usize, Option<String>) {
         let (mut session, now) = connected(Version::V3);
         let mut at = now;
@@ -586,7 +590,7 @@ mod tests {
     #[test]
     fn answers_are_no_flood() {
         let (mut session, now) = connected(Version::V5);
-        // Each with a reason of 100 letters.
+        // Each acknowledgement has a reason of 100 letters.
         let mut puback = vec![0x40, 107, 0, 0, 0, 103, 0x1f, 0, 100];
         puback.extend([b'x'; 100]);
         for _ in 0..100_000 {
@@ -605,7 +609,7 @@ mod tests {
     fn replies_that_are_not_read_are_bounded() {
         let (mut session, now) = connected(Version::V3);
         session.outgoing().clear();
-        // One every 100 ms is no flood. The connection accepts no output.
+        // One packet every 100 ms does not count as flood. The connection accepts no output.
         for number in 1..u16::MAX {
             let [high, low] = number.to_be_bytes();
             session.handle(now + Duration::from_millis(100) * number.into(), &[0x32, 5, 0, 1, b'a', high, low]);

@@ -1,5 +1,5 @@
 //! TLS with rustls: trusted roots, client certificates, explanation of certificate errors. Without the feature
-//! `plant-tls`, TLS is not available, and a request for it is an error.
+//! `plant-tls`, TLS is not available, and settings with TLS are an error.
 
 use thiserror::Error;
 
@@ -8,7 +8,7 @@ use thiserror::Error;
 pub enum Trust {
     /// The roots of the operating system.
     System,
-    /// Only these roots, in PEM format.
+    /// Only these root certificates, in PEM format.
     Roots(Vec<u8>),
 }
 
@@ -45,7 +45,7 @@ pub enum TlsError {
     /// The port does not use TLS.
     #[error("it does not use TLS on this port")]
     NoTls,
-    /// The broker rejects this client's certificate, or requires one.
+    /// The broker rejects the certificate of this client, or requires a certificate.
     #[error("it does not accept this client's certificate ({0})")]
     Rejected(String),
     /// The two sides have no common TLS version or cipher.
@@ -89,10 +89,10 @@ mod rustls_link {
     }
 
     impl Tls {
-        /// Creates the settings for this host name or address.
+        /// Creates the settings for a broker with this host name or address.
         ///
         /// # Errors
-        /// A certificate or key is not valid, or the system has no roots.
+        /// A certificate or key is not valid, or the system has no root certificates.
         pub fn new(host: &str, trust: &Trust, identity: Option<&Identity>) -> Result<Self, TlsError> {
             let name = ServerName::try_from(host.to_owned())
                 .map_err(|_| TlsError::Setup(format!("'{host}' is not a valid server name")))?;
@@ -133,14 +133,14 @@ mod rustls_link {
                 let found = rustls_native_certs::load_native_certs();
                 let (_, _) = store.add_parsable_certificates(found.certs);
                 if store.is_empty() {
-                    return Err(TlsError::Setup("this computer has no certificates of authorities".to_owned()));
+                    return Err(TlsError::Setup("this computer has no CA certificates".to_owned()));
                 }
             }
             Trust::Roots(pem) => {
-                for certificate in certificates_of(pem, "the certificate of the authority")? {
-                    store.add(certificate).map_err(|error| {
-                        TlsError::Setup(format!("the certificate of the authority is not valid: {error}"))
-                    })?;
+                for certificate in certificates_of(pem, "the CA certificate")? {
+                    store
+                        .add(certificate)
+                        .map_err(|error| TlsError::Setup(format!("the CA certificate is not valid: {error}")))?;
                 }
             }
         }
@@ -197,7 +197,7 @@ mod rustls_link {
     pub enum Tls {}
 
     impl Tls {
-        /// Reports that TLS is not available.
+        /// Returns the error that TLS is not available.
         pub fn new(_: &str, _: &Trust, _: Option<&Identity>) -> Result<Self, TlsError> {
             Err(TlsError::Setup("this armctl was built without TLS (feature plant-tls)".to_owned()))
         }

@@ -16,17 +16,17 @@ use super::survey::{Found, Survey};
 use super::wire::{Piece, Stream};
 use crate::plain;
 
-/// Longest wait at the port, so that a close is noticed.
+/// Longest wait at the port. After each wait, the thread checks whether the link was closed.
 const SLICE: Duration = Duration::from_millis(10);
-/// Pause before the port is opened again after a loss.
+/// Pause before the port is reopened after a loss.
 const AGAIN: Duration = Duration::from_secs(1);
 
-/// Opens the port, the first time and after a loss.
+/// Function that opens the port, for the first time and after a loss.
 pub type Opener = Box<dyn FnMut() -> Result<Box<dyn Port>, ProfibusError> + Send>;
-/// Records each telegram.
+/// Function that records each telegram.
 pub type Tap = Box<dyn Fn(&[u8]) + Send>;
 
-/// An open link. Dropping it releases the slave.
+/// An open link. When the link is dropped, the slave is released.
 #[derive(Debug)]
 pub struct Connection {
     shared: Arc<Shared>,
@@ -46,8 +46,8 @@ impl Connection {
     /// Opens the port and the link.
     ///
     /// # Errors
-    /// The port or the link cannot be opened; there is no second attempt. A later loss is not an error but a state of
-    /// the view.
+    /// The port or the link cannot be opened. The first opening is not repeated. If the link is lost later, this is not
+    /// an error but a state of the view.
     pub async fn open(settings: Settings, mut opener: Opener, tap: Option<Tap>) -> Result<Self, ProfibusError> {
         let master = Master::new(Duration::ZERO, settings)?;
         let port = opener()?;
@@ -74,7 +74,7 @@ impl Connection {
         self.shared.master().view()
     }
 
-    /// Sends this image from the next cycle on; see [`Master::set_image`].
+    /// Sends this image, starting with the next cycle; see [`Master::set_image`].
     pub fn set_image(&self, generation: u32, image: &[u8]) -> Result<u64, ProfibusError> {
         self.shared.master().set_image(generation, image)
     }
@@ -82,7 +82,7 @@ impl Connection {
     /// Releases the slave and closes the link.
     ///
     /// # Errors
-    /// The slave did not confirm the release. It is free after its watchdog time.
+    /// The slave did not confirm the release. The slave then releases itself after its watchdog time.
     pub async fn close(mut self) -> Result<(), ProfibusError> {
         let now = self.shared.start.elapsed();
         self.shared.master().close(now);
@@ -96,7 +96,7 @@ impl Drop for Connection {
         self.shared.master().close(now);
         self.shared.is_over.store(true, Ordering::SeqCst);
         if let Some(thread) = self.thread.take() {
-            // A panic of the thread was already printed.
+            // If the thread panicked, the panic was already printed.
             let _ = thread.join();
         }
     }
@@ -108,7 +108,7 @@ impl Shared {
     }
 }
 
-/// Moves characters between the master and its port.
+/// Transfers characters between the master and its port.
 struct Driver {
     shared: Arc<Shared>,
     port: Option<Box<dyn Port>>,
@@ -141,7 +141,7 @@ impl Driver {
         }
     }
 
-    /// Sends what is due, or waits for characters.
+    /// Sends the characters that are due, or waits for characters.
     fn turn(&mut self, port: &mut dyn Port) -> io::Result<()> {
         let (bytes, due) = {
             let mut master = self.shared.master();
@@ -161,7 +161,7 @@ impl Driver {
         Ok(())
     }
 
-    /// Opens the port again after a pause.
+    /// Reopens the port after a pause.
     fn reopen(&mut self) {
         let until = Instant::now() + AGAIN;
         while Instant::now() < until {
@@ -172,7 +172,7 @@ impl Driver {
         }
         let now = self.shared.start.elapsed();
         if self.shared.master().view().state != State::Lost {
-            // Closing. Without a port, the slave cannot be released.
+            // The link is being closed. Without a port, the slave cannot be released.
             self.shared.master().port_failed(now, ProfibusError::Ended);
             return;
         }
@@ -189,7 +189,7 @@ impl Driver {
     }
 }
 
-/// Splits the traffic into telegrams for a tap.
+/// Splits the traffic into telegrams and passes them to a tap.
 pub(super) struct Record {
     tap: Tap,
     stream: Stream,
@@ -215,7 +215,7 @@ impl Record {
     }
 }
 
-/// Runs a survey; blocks the thread.
+/// Runs a survey. The call blocks the thread.
 pub fn survey(survey: &mut Survey, port: &mut dyn Port, tap: Option<Tap>) -> Result<Vec<Found>, ProfibusError> {
     let start = Instant::now();
     let mut record = tap.map(Record::new);

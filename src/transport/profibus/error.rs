@@ -30,12 +30,12 @@ pub enum ProfibusError {
         /// Reason of the system.
         text: String,
     },
-    /// Another master is on the bus. Nothing was sent after it was heard.
+    /// Another master is on the bus. After its traffic was received, this master sent nothing.
     #[error("another master is on the bus: station {master} ({heard})")]
     OtherMaster {
         /// Address of the master.
         master: u8,
-        /// The traffic that revealed it.
+        /// The received traffic that shows the other master.
         heard: &'static str,
     },
     /// Unreadable traffic is on the bus. Nothing was sent.
@@ -53,7 +53,7 @@ pub enum ProfibusError {
         asked: &'static str,
         /// Number of attempts.
         attempts: u8,
-        /// Time waited per attempt.
+        /// Waiting time per attempt.
         slot: Duration,
         /// What was received instead.
         heard: Heard,
@@ -94,7 +94,7 @@ pub enum ProfibusError {
         /// Ident number in the settings.
         expected: u16,
     },
-    /// The configuration has other image sizes.
+    /// The image sizes of the configuration differ from the expected sizes.
     #[error(
         "the configuration {} has {input} input bytes from station {station} and {output} output bytes, not \
          {expected_input} and {expected_output}",
@@ -114,7 +114,7 @@ pub enum ProfibusError {
         /// Expected bytes to the slave.
         expected_output: usize,
     },
-    /// A data exchange had a wrong length.
+    /// The data of an exchange had a wrong length.
     #[error("station {station} sent {found} bytes of data, not {expected}")]
     Length {
         /// Address of the station.
@@ -142,12 +142,12 @@ pub enum ProfibusError {
         /// Configuration that the slave reports (Get_Cfg).
         wanted: Option<Vec<u8>>,
     },
-    /// The slave is locked by another master.
+    /// Another master has locked the slave.
     #[error("master {} owns station {station}", master.map_or_else(|| "?".to_owned(), |master| master.to_string()))]
     Locked {
         /// Address of the station.
         station: u8,
-        /// Address of that master, if the slave reports it.
+        /// Address of the other master, if the slave reports it.
         master: Option<u8>,
     },
     /// The slave does not become ready.
@@ -155,7 +155,7 @@ pub enum ProfibusError {
     NotReady {
         /// Address of the station.
         station: u8,
-        /// Time waited.
+        /// Total waiting time.
         after: Duration,
         /// Last diagnosis of the slave.
         diagnosis: Box<Diagnosis>,
@@ -168,7 +168,7 @@ pub enum ProfibusError {
         /// Reason, as text.
         why: String,
     },
-    /// No data exchange of the station with a master was heard. Nothing was sent.
+    /// No data exchange between the station and a master was received. Nothing was sent.
     #[error("no data exchange between station {station} and a master within {} ms ({telegrams} telegrams, {noise} \
              bytes of noise)", after.as_millis())]
     NotHeard {
@@ -176,12 +176,12 @@ pub enum ProfibusError {
         station: u8,
         /// Time spent listening.
         after: Duration,
-        /// Telegrams of other stations.
+        /// Number of telegrams of other stations.
         telegrams: u64,
-        /// Bytes that are no telegram.
+        /// Number of bytes that are not part of a telegram.
         noise: u64,
     },
-    /// The link was lost after the caller last looked at it (an older generation).
+    /// The link was lost, and the caller has not seen the loss yet: its image belongs to an older generation.
     #[error("the connection was lost")]
     Outdated,
     /// The link was closed by this program.
@@ -194,12 +194,12 @@ impl BusError for ProfibusError {
     const ENDED: Self = Self::Ended;
 }
 
-/// What was received instead of an answer.
+/// Bytes that were received instead of an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Heard {
-    /// Noise or a damaged telegram.
+    /// Whether noise or a damaged telegram was received.
     pub noise: bool,
-    /// The adapter echoes what is sent.
+    /// Whether the adapter echoed the bytes that were sent.
     pub echo: bool,
 }
 
@@ -214,7 +214,7 @@ impl std::fmt::Display for Heard {
     }
 }
 
-/// Bytes in the form of URLs.
+/// Formats bytes as in the options of a URL.
 pub fn hex(bytes: &[u8]) -> String {
     if bytes.is_empty() { "(empty)".to_owned() } else { bytes.iter().map(|byte| format!("{byte:02X}")).collect() }
 }

@@ -1,14 +1,14 @@
-//! Parser for GSD files, the device description of a slave: ident number, bit rates, modules, user parameters.
+//! Parser for GSD files. A GSD file describes a slave: ident number, bit rates, modules, user parameters.
 //!
-//! Lines have the form `Keyword = value`. A `\` at the end continues the line, a `;` starts a comment, `Module` to
-//! `EndModule` is a block. Keywords ignore case. Unknown keywords are skipped.
+//! Lines have the form `Keyword = value`. A `\` at the end of a line continues the line, a `;` starts a comment,
+//! `Module` to `EndModule` is a block. Keywords are not case-sensitive. Unknown keywords are skipped.
 
 use thiserror::Error;
 
 use super::rates::{RATES, Rate};
 use super::wire::{Configuration, MAX_DATA, Parameters};
 
-/// File size limit. Files of manufacturers have a few hundred thousand bytes.
+/// Maximum size of a file. Files of manufacturers have a few hundred thousand bytes.
 pub const MAX_FILE: u64 = 4 << 20;
 
 /// Contents of a GSD file.
@@ -22,9 +22,9 @@ pub struct Gsd {
     pub ident: u16,
     /// Slave family; 0 is general.
     pub family: Option<u8>,
-    /// Supported bit rates that this program also supports.
+    /// Bit rates that both the slave and this program support.
     pub rates: Vec<Rate>,
-    /// Whether the slave is modular. If not, it has one set of modules.
+    /// Whether the slave is modular. A slave that is not modular has one fixed set of modules.
     pub is_modular: bool,
     /// User parameters of the slave itself.
     pub parameters: Vec<u8>,
@@ -32,7 +32,7 @@ pub struct Gsd {
     pub modules: Vec<Module>,
 }
 
-/// A module.
+/// A module of a slave.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Module {
     /// Name of the module.
@@ -55,7 +55,7 @@ pub struct GsdError {
     pub problem: String,
 }
 
-/// A logical line.
+/// A logical line: a keyword with its value.
 struct Entry<'a> {
     line: usize,
     keyword: &'a str,
@@ -80,7 +80,7 @@ impl Entry<'_> {
     }
 
     fn byte(&self, text: &str) -> Result<u8, GsdError> {
-        u8::try_from(self.number(text)?).map_err(|_| self.error(format!("'{}' is more than a byte", text.trim())))
+        u8::try_from(self.number(text)?).map_err(|_| self.error(format!("'{}' does not fit in one byte", text.trim())))
     }
 
     fn bytes(&self, text: &str) -> Result<Vec<u8>, GsdError> {
@@ -89,17 +89,17 @@ impl Entry<'_> {
             .filter(|part| !part.trim().is_empty())
             .map(|part| self.byte(part))
             .collect::<Result<_, _>>()?;
-        if bytes.len() > MAX_DATA { Err(self.error(format!("{} bytes: too many", bytes.len()))) } else { Ok(bytes) }
+        if bytes.len() > MAX_DATA { Err(self.error(format!("{} bytes are too many", bytes.len()))) } else { Ok(bytes) }
     }
 
     /// Splits the value into the quoted text and the rest.
     fn quoted(&self) -> Result<(&str, &str), GsdError> {
-        let wrong = || self.error("a name in quotation marks is expected");
+        let wrong = || self.error("a name in quotation marks is missing");
         let rest = self.value.trim().strip_prefix('"').ok_or_else(wrong)?;
         rest.split_once('"').ok_or_else(wrong)
     }
 
-    /// Parses user parameter bytes. The number after the keyword, such as `(3)`, is their offset.
+    /// Parses bytes of user parameters. The number after the keyword, for example `(3)`, is their offset.
     fn place(&self, parameters: &mut Vec<u8>) -> Result<bool, GsdError> {
         let Some((keyword, rest)) = self.keyword.split_once('(') else { return Ok(false) };
         if !keyword.trim().eq_ignore_ascii_case("Ext_User_Prm_Data_Const") {
@@ -131,10 +131,10 @@ impl Entry<'_> {
 }
 
 impl Gsd {
-    /// Parses a file. Bytes beyond ASCII are read as Latin-1.
+    /// Parses a file. Bytes above 127 are decoded as Latin-1.
     ///
     /// # Errors
-    /// [`GsdError`] names the line and the keyword.
+    /// [`GsdError`] contains the line and the keyword.
     pub fn parse(bytes: &[u8]) -> Result<Self, GsdError> {
         let text: String = bytes.iter().map(|byte| char::from(*byte)).collect();
         let mut gsd = Self::default();
@@ -157,7 +157,7 @@ impl Gsd {
                 if entry.is("EndModule") {
                     gsd.modules.extend(module.take().map(|(_, module)| module));
                 } else if entry.is("Module") {
-                    return Err(entry.error("the module before it has no EndModule"));
+                    return Err(entry.error("EndModule is missing in the module before this line"));
                 } else if entry.is("Ext_Module_Prm_Data_Len") {
                     entry.length(&mut inside.parameters)?;
                 } else {
@@ -169,7 +169,7 @@ impl Gsd {
                 Configuration::parse(&configuration).map_err(|error| entry.error(error.to_string()))?;
                 module = Some((line, Module { name: name.trim().to_owned(), configuration, parameters: Vec::new() }));
             } else if entry.is("EndModule") {
-                return Err(entry.error("no Module is before it"));
+                return Err(entry.error("Module is missing before this line"));
             } else if entry.is("Ident_Number") {
                 let number = entry.number(entry.value)?;
                 ident = Some(u16::try_from(number).map_err(|_| entry.error("it must have two bytes"))?);
@@ -197,7 +197,7 @@ impl Gsd {
         } else if entry.is("Modular_Station") {
             self.is_modular = entry.number(entry.value)? != 0;
         } else if entry.is("Slave_Family") {
-            // A sub-family follows after an `@`.
+            // A sub-family may follow after an `@`.
             self.family = Some(entry.byte(entry.value.split('@').next().unwrap_or_default())?);
         } else if entry.is("User_Prm_Data_Len") || entry.is("Max_User_Prm_Data_Len") && !self.is_modular {
             entry.length(&mut self.parameters)?;
@@ -220,7 +220,7 @@ impl Gsd {
     /// Combines modules by name. Returns identifier bytes and user parameters.
     ///
     /// # Errors
-    /// A text: an unknown name, or too many modules.
+    /// A description of the problem: an unknown name, or too many modules.
     pub fn assemble(&self, names: &[&str]) -> Result<(Vec<u8>, Vec<u8>), String> {
         let (mut configuration, mut parameters) = (Vec::new(), self.parameters.clone());
         for name in names {
@@ -238,7 +238,7 @@ impl Gsd {
         Ok((configuration, parameters))
     }
 
-    /// The module (or set) with these sizes, if there is exactly one.
+    /// Returns the module (or set of modules) with these sizes. `None` if there is no such module, or more than one.
     pub fn fitting(&self, input: usize, output: usize) -> Option<&Module> {
         let mut fitting = self.modules.iter().filter(|module| {
             Configuration::parse(&module.configuration)
@@ -249,7 +249,7 @@ impl Gsd {
     }
 }
 
-/// Bit rate of a keyword such as `45.45_supp`.
+/// Bit rate of a keyword, for example `45.45_supp`.
 fn rate(keyword: &str) -> Option<Rate> {
     let name = keyword.to_ascii_lowercase();
     let name = name.strip_suffix("_supp")?;
@@ -259,7 +259,7 @@ fn rate(keyword: &str) -> Option<Rate> {
     })
 }
 
-/// Logical lines without comments, each with the number of its first line.
+/// Returns the logical lines without comments, each with the number of its first line in the file.
 fn logical_lines(text: &str) -> Vec<(usize, String)> {
     let mut lines = Vec::new();
     let mut open: Option<(usize, String)> = None;
@@ -345,7 +345,7 @@ EndModule
         for (from, to, message) in [
             ("0x1234", "0x12345", "line 6: Ident_Number: it must have two bytes"),
             ("Ident_Number = 0x1234", "", "line 1: Ident_Number: it is missing"),
-            ("0x10, 0x20", "0x10, 0x200", "line 18: Ext_User_Prm_Data_Const(3): '0x200' is more than a byte"),
+            ("0x10, 0x20", "0x10, 0x200", "line 18: Ext_User_Prm_Data_Const(3): '0x200' does not fit in one byte"),
             (
                 "Const(3)",
                 "Const(300)",
@@ -356,7 +356,7 @@ EndModule
                 "0xC0",
                 "line 19: Module: length of an identifier at offset 1: needs 1 bytes, but only 0 are present",
             ),
-            ("\"2 words\"", "2 words", "line 25: Module: a name in quotation marks is expected"),
+            ("\"2 words\"", "2 words", "line 25: Module: a name in quotation marks is missing"),
             ("0x71\nEndModule", "0x71", "line 25: Module: it has no EndModule"),
             (
                 "#Profibus_DP",

@@ -13,10 +13,10 @@ use super::error::ProfibusError;
 use super::listener::{Heard, Listener};
 use crate::plain;
 
-/// Longest wait at the port, so that a close is noticed.
+/// Longest wait at the port. After each wait, the thread checks whether the listener was dropped.
 const SLICE: Duration = Duration::from_millis(10);
 
-/// Listens to one station until it is dropped.
+/// A listener for one station. It listens until it is dropped.
 #[derive(Debug)]
 pub struct Hearing {
     news: watch::Receiver<Result<Heard, ProfibusError>>,
@@ -27,7 +27,7 @@ pub struct Hearing {
 }
 
 impl Hearing {
-    /// Opens the port.
+    /// Opens the port and starts to listen.
     pub fn start(station: u8, mut opener: Opener, tap: Option<Tap>) -> Result<Self, ProfibusError> {
         let mut port = opener()?;
         let (tell, news) = watch::channel(Ok(Heard::default()));
@@ -60,7 +60,7 @@ impl Hearing {
         Ok(Self { news, last: Heard::default(), station, is_over, thread: Some(thread) })
     }
 
-    /// What was received so far.
+    /// Traffic that was received so far.
     pub const fn heard(&self) -> &Heard {
         &self.last
     }
@@ -68,7 +68,7 @@ impl Hearing {
     /// Waits until `condition` is true, at most for `longest`.
     ///
     /// # Errors
-    /// The condition did not become true, or the port is gone.
+    /// The condition did not become true in time, or the port is gone.
     pub async fn until(
         &mut self,
         longest: Duration,
@@ -99,7 +99,7 @@ impl Drop for Hearing {
     fn drop(&mut self) {
         self.is_over.store(true, Ordering::SeqCst);
         if let Some(thread) = self.thread.take() {
-            // A panic of the thread was already printed.
+            // If the thread panicked, the panic was already printed.
             let _ = thread.join();
         }
     }

@@ -1,4 +1,5 @@
-//! PROFIBUS as a fieldbus of images: a link that controls the slave, or one that listens to the exchange of a PLC.
+//! PROFIBUS as a fieldbus of images. There are two kinds of link: one controls the slave, the other listens to the data
+//! exchange of a PLC.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,10 +16,10 @@ use crate::image::cyclic::{Bus, Cyclic};
 use crate::image::tap::{Passage, Tap};
 use crate::image::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
 
-/// Byte swapping of an image: the words that a board sends with exchanged bytes.
+/// Byte order of an image: some boards send a part of the words with exchanged bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Swapped {
-    /// Number of bytes, from the start, that are swapped in pairs.
+    /// Number of bytes, from the start of the image, whose pairs are swapped.
     pub bytes: usize,
 }
 
@@ -106,7 +107,7 @@ impl Bus for Slave {
     }
 }
 
-/// Images that a slave exchanges with another master. Nothing is sent.
+/// Images that a slave exchanges with another master. This link sends nothing.
 #[derive(Debug)]
 pub struct Listening {
     hearing: Hearing,
@@ -116,7 +117,7 @@ pub struct Listening {
 }
 
 impl Listening {
-    /// Waits for the first exchange of this slave, at most `longest`.
+    /// Waits for the first data exchange of this slave, at most for `silence`.
     pub async fn open(
         station: u8,
         size: usize,
@@ -149,7 +150,7 @@ impl Listening {
                     let cause = LinkError::from(error).cause().clone();
                     return Event::Lost(LinkError::Lost { cause, outputs: Outputs::Never });
                 }
-                // Without a port, nothing more can arrive.
+                // Without a port, no more data can arrive.
                 Err(ProfibusError::Gone { .. }) => std::future::pending().await,
                 Ok(_) | Err(_) => {}
             }
@@ -167,7 +168,7 @@ impl ImageConnection for Listening {
     }
 }
 
-/// Converts a tap for telegrams.
+/// Converts a fieldbus tap to a tap for telegrams.
 pub fn record(tap: Tap) -> Option<super::driver::Tap> {
     let record = move |bytes: &[u8]| tap.pass(|| Passage::Frame(bytes.to_vec()));
     Some(Box::new(record) as super::driver::Tap)
@@ -179,26 +180,26 @@ impl From<ProfibusError> for LinkError {
         match error {
             ProfibusError::Settings(_) => Self::Settings(cause),
             ProfibusError::Port { .. } => Self::Silent(cause.advice(
-                "check the name of the port (`armctl robots discover` lists the ports) and the abilities of the \
-                 adapter; close every session and program that uses the port",
+                "check the name of the port (`armctl robots discover` lists the ports); check that the adapter \
+                 supports the settings; close every session and program that uses the port",
             )),
             ProfibusError::Gone { .. } => {
                 Self::Silent(cause.advice("check the plug and the power supply of the adapter"))
             }
             ProfibusError::OtherMaster { .. } => Self::Owned(cause.advice(
-                "disconnect the other master, because armctl must be the only one; or add role=listen to the URL to \
-                 only read",
+                "disconnect the other master, because armctl must be the only master; or add role=listen to the URL \
+                 to only read",
             )),
             ProfibusError::Unreadable { .. } => Self::Owned(cause.advice(
-                "set baud in the URL to that of the bus; check for another master, missing terminators, and crossed \
-                 A and B wires",
+                "set baud in the URL to the bit rate of the bus; check for another master, missing terminators, and \
+                 crossed A and B wires",
             )),
             ProfibusError::NoAnswer { .. } => Self::Silent(cause.advice(
                 "check station and baud in the URL, the A and B wires, and both terminators with their supply; check \
                  that the controller is on. With a slow adapter, set slot=50ms",
             )),
             ProfibusError::IsMaster { .. } => {
-                Self::Malformed(cause.advice("check station in the URL: `yrcx profibus scan`"))
+                Self::Malformed(cause.advice("check station in the URL; `yrcx profibus scan` lists the stations"))
             }
             ProfibusError::Refused { .. } => Self::Refused(
                 cause
@@ -236,8 +237,8 @@ impl From<ProfibusError> for LinkError {
                  diagnosis",
             )),
             ProfibusError::NotHeard { .. } => Self::Silent(cause.advice(
-                "a controller sends its images only to its master. Open a session, which takes control (`armctl \
-                 session open`), or listen on the bus of its PLC; set station and baud to those of the bus",
+                "open a session, which takes control (`armctl session open`), or listen on the bus of the PLC (set \
+                 station and baud to the values of that bus). A controller sends its images only to its master",
             )),
             ProfibusError::Outdated | ProfibusError::Ended => Self::Local(cause),
         }

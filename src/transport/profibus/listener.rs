@@ -1,10 +1,11 @@
-//! Passive listener: reads the exchange of a PLC and its slave without sending. It can run next to a master.
+//! Passive listener: receives the data exchange of a PLC and its slave, and sends nothing. It can be used while another
+//! master is on the line.
 
 use std::sync::Arc;
 
 use super::wire::{Control, Frame, Piece, Service, Status, Stream, Telegram};
 
-/// What was received so far.
+/// Traffic that was received so far.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Heard {
     /// Last input image of the slave.
@@ -17,7 +18,7 @@ pub struct Heard {
     pub telegrams: u64,
     /// Number of data exchanges of the slave.
     pub exchanges: u64,
-    /// Bytes that are no telegram.
+    /// Number of bytes that are not part of a telegram.
     pub noise: u64,
 }
 
@@ -37,12 +38,12 @@ impl Listener {
         Self { station, stream: Stream::default(), asked: None, heard: Heard::default() }
     }
 
-    /// What was received so far.
+    /// Traffic that was received so far.
     pub const fn heard(&self) -> &Heard {
         &self.heard
     }
 
-    /// Handles received bytes. Returns whether they contain a new exchange.
+    /// Handles received bytes. Returns whether they complete a new data exchange.
     pub fn handle(&mut self, bytes: &[u8]) -> bool {
         let before = self.heard.exchanges;
         self.stream.push(bytes);
@@ -66,8 +67,8 @@ impl Listener {
             {
                 self.asked = Some((from, data));
             }
-            // Only the answer to the last request makes an exchange. Before it, the slave may not have accepted the
-            // image.
+            // A data exchange is complete only when the answer to the last request arrives. Before that, the slave may
+            // not have accepted the image.
             Frame {
                 to,
                 from,
@@ -102,7 +103,7 @@ mod tests {
             "68 05 05 68 02 07 08 01 02 14 16",
         ));
         let mut listener = Listener::new(5);
-        // One byte at a time.
+        // The bytes arrive one at a time.
         let news = line.iter().filter(|byte| listener.handle(&[**byte])).count();
         let heard = listener.heard();
         assert_eq!((news, heard.exchanges, heard.telegrams, heard.noise), (1, 1, 6, 1));
@@ -115,7 +116,7 @@ mod tests {
     #[test]
     fn an_answer_to_something_else_is_no_image() {
         let mut listener = Listener::new(5);
-        // Its request was not heard, or another station answered.
+        // The request to this answer was not received, or another station answered.
         assert!(!listener.handle(&hex("68 05 05 68 02 05 08 AA BB 74 16")));
         assert!(!listener.handle(&hex("68 05 05 68 05 02 7D 01 02 87 16 10 05 02 49 50 16")));
         assert!(!listener.handle(&hex("68 05 05 68 02 05 08 AA BB 74 16")));

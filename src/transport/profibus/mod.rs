@@ -1,6 +1,6 @@
 //! PROFIBUS DP master of one slave, as the only master on an RS-485 line, and a simulated slave.
 //!
-//! This module knows image bytes, but no robots.
+//! This module handles the bytes of images, and nothing specific to robots.
 
 use std::time::Duration;
 
@@ -22,5 +22,5 @@ pub mod survey;
 mod tests;
 pub mod wire;
 
-/// A moment, as time since an origin that the driver chooses. It never runs backwards.
+/// A moment, as the time since an origin that the driver selects. The time never decreases.
 pub type Now = Duration;

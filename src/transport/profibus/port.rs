@@ -18,9 +18,9 @@ use crate::serial::{self, Line, OpenError};
 use crate::sim::Peer;
 use crate::vanished;
 
-/// Largest deviation of the bit rate in 1/1000 that the bus allows.
+/// Maximum deviation of the bit rate that the bus allows, in thousandths.
 const MOST_OFF: u32 = 3;
-/// Largest latency timer in ms that does not exceed the slot time.
+/// Longest latency timer, in ms, that is not longer than the slot time.
 const LATENCY: u32 = 1;
 
 /// Size limit of the file with the latency timer.
@@ -28,13 +28,13 @@ const LONGEST_TIME: u64 = 64;
 
 /// A port with blocking reads.
 pub trait Port: fmt::Debug + Send {
-    /// Sends characters. They can still be in transit when this returns.
+    /// Sends characters. The characters may still be in transit when this function returns.
     ///
     /// # Errors
     /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone.
     fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
 
-    /// Waits for characters, at most for `wait`; 0 after a timeout.
+    /// Waits for characters, at most for `wait`. Returns 0 after a timeout.
     ///
     /// # Errors
     /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone.
@@ -59,7 +59,9 @@ impl Serial {
         };
         let port = serial::open(&line, MOST_OFF).map_err(|error| {
             let text = match error {
-                OpenError::Unsupported(what) => format!("the adapter cannot do {} with even parity: {what}", rate.name),
+                OpenError::Unsupported(what) => {
+                    format!("the adapter does not support {} with even parity: {what}", rate.name)
+                }
                 other => other.to_string(),
             };
             ProfibusError::Port { port: path.to_owned(), text }
@@ -74,10 +76,10 @@ impl Port for Serial {
     }
 
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
-        // For some drivers, a timeout of 0 means no timeout.
+        // With some drivers, a timeout of 0 means no timeout.
         self.port.set_timeout(wait.max(Duration::from_micros(50))).map_err(vanished)?;
         match io::Read::read(&mut self.port, buffer) {
-            Ok(0) => Err(vanished("its end was reached")),
+            Ok(0) => Err(vanished("the port was closed")),
             Ok(len) => Ok(len),
             Err(error)
                 if matches!(
@@ -92,7 +94,7 @@ impl Port for Serial {
     }
 }
 
-/// Latency timer of a USB adapter in ms, if it is long and can be changed.
+/// Latency timer of a USB adapter in ms. `None` if it is short enough, or if the adapter has none that can be changed.
 pub fn latency_timer(path: &str) -> Option<u32> {
     let path = std::fs::canonicalize(path).ok()?;
     let name = path.file_name()?;
@@ -110,7 +112,7 @@ pub struct InProcess<P> {
 }
 
 impl<P: Peer> InProcess<P> {
-    /// Creates a peer on a line of the bit rate in the settings.
+    /// Creates a peer on a line. The bit rate of the line is in the settings.
     pub fn new(peer: P, settings: &Settings, faults: Option<LineFaultSpec>) -> Self {
         Self { peer, wire: Wire::new(Some(settings.rate.pace()), faults), start: Instant::now() }
     }

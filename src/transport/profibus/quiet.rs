@@ -1,27 +1,27 @@
-//! Check for other traffic before the first telegram. On a line with a master, our telegrams would disturb its control
-//! of the slaves.
+//! Check for other traffic before the first telegram. If another master is on the line, our telegrams would disturb its
+//! control of the slaves.
 
 use super::Now;
 use super::error::ProfibusError;
 use super::wire::{Control, Piece, Stream, Telegram};
 
-/// Number of noise characters that are tolerated, for example when a port is opened.
+/// Number of noise characters that are accepted. Opening a port, for example, can cause noise.
 const GLITCH: usize = 2;
-/// Length of a token.
+/// Length of a token in bytes.
 const TOKEN: usize = 3;
 
-/// The check.
+/// Check for other traffic on a line.
 #[derive(Debug, Default)]
 pub struct Quiet {
     until: Now,
     stream: Stream,
     unreadable: usize,
-    /// Senders of tokens.
+    /// Addresses that sent a token.
     tokens: Vec<u8>,
 }
 
 impl Quiet {
-    /// Listens until this time.
+    /// Creates a check that listens until this time.
     pub fn until(until: Now) -> Self {
         Self { until, ..Self::default() }
     }
@@ -39,7 +39,7 @@ impl Quiet {
         self.stream.push(bytes);
         while let Some(piece) = self.stream.next_piece() {
             let (master, heard) = match piece {
-                // Three bytes without a checksum: noise can look the same.
+                // A token has three bytes and no checksum, so noise can look like a token.
                 Piece::Telegram(Telegram::Token { from, .. }, _) => {
                     self.tokens.push(from);
                     continue;
@@ -48,7 +48,7 @@ impl Quiet {
                     Control::Request(..) => (frame.from, "it sent a request"),
                     Control::Answer(..) => (frame.to, "a station answered it"),
                 },
-                // One byte, which can be noise.
+                // A short acknowledgement is one byte, which can be noise.
                 Piece::Telegram(Telegram::ShortAcknowledge, _) | Piece::Noise(..) => {
                     self.unreadable = self.unreadable.saturating_add(1);
                     continue;
@@ -59,7 +59,7 @@ impl Quiet {
         Ok(())
     }
 
-    /// Result of the check, once it is complete.
+    /// Result of the check; `None` until the check is complete.
     ///
     /// # Errors
     /// [`ProfibusError::OtherMaster`], or [`ProfibusError::Unreadable`] if only noise was received.

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::super::line::Pace;
 
-/// Bits per character: start, 8 data, even parity, stop.
+/// Bits per character: 1 start bit, 8 data bits, 1 even parity bit, 1 stop bit.
 pub const CHARACTER: u32 = 11;
 /// Idle bits before a request (TSYN).
 pub const SYNC: u32 = 33;
@@ -14,7 +14,7 @@ pub const IDLE: u32 = 37;
 /// A bit rate with its bus parameters in bit times.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rate {
-    /// Name in URLs: `500k`.
+    /// Name in URLs, for example `500k`.
     pub name: &'static str,
     /// Bits per second.
     pub baud: u32,
@@ -22,9 +22,10 @@ pub struct Rate {
     pub max_tsdr: u32,
     /// Time limit for the start of an answer (slot time, TSL).
     pub slot: u32,
-    /// Minimum slot time with an adapter, in ms, because drivers and converters delay characters.
+    /// Minimum slot time with an adapter, in ms. It is longer than the slot time, because drivers and converters delay
+    /// characters.
     pub adapter_ms: u64,
-    /// Default time between two exchanges, in ms.
+    /// Default time between two data exchanges, in ms.
     pub cycle_ms: u64,
 }
 
@@ -32,7 +33,7 @@ const fn rate(name: &'static str, baud: u32, max_tsdr: u32, slot: u32, adapter_m
     Rate { name, baud, max_tsdr, slot, adapter_ms, cycle_ms }
 }
 
-/// Bit rates that a PC adapter can have. The bus has three more, up to 12 Mbit/s.
+/// Bit rates that PC adapters support. The bus has three more bit rates, up to 12 Mbit/s.
 pub const RATES: [Rate; 7] = [
     rate("9.6k", 9_600, 60, 100, 60, 200),
     rate("19.2k", 19_200, 60, 100, 30, 100),
@@ -49,7 +50,7 @@ impl Rate {
         RATES.into_iter().find(|rate| rate.baud == baud)
     }
 
-    /// Finds a rate by name: `500k`, `1.5M`.
+    /// Finds a rate by name, for example `500k` or `1.5M`.
     pub fn from_name(name: &str) -> Option<Self> {
         RATES.into_iter().find(|rate| rate.name == name)
     }
@@ -64,7 +65,7 @@ impl Rate {
         Duration::from_nanos((u64::from(bits) * 1_000_000_000).div_ceil(u64::from(self.baud.max(1))))
     }
 
-    /// Longest duration of an exchange: both telegrams, the pause before them, and the delay of the answer.
+    /// Longest duration of a data exchange: both telegrams, the pause before them, and the delay of the answer.
     pub fn exchange(self, output: usize, input: usize) -> Duration {
         // Start, lengths, addresses, function code, checksum, end.
         const FRAME: usize = 9;

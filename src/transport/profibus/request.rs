@@ -1,7 +1,8 @@
-//! Requests of a master that is alone on its line: one at a time, repeated until answered.
+//! Requests of a master that is alone on its line. The master sends one request at a time, and repeats it until it is
+//! answered.
 //!
-//! Per station, the frame count bit identifies a repeated request. It is reset after a loss. Otherwise the station
-//! could answer a new request with an old answer.
+//! For each station, the frame count bit distinguishes a repeated request from a new one. The frame count is reset
+//! after a loss. Otherwise the station could answer a new request with an old answer.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
@@ -11,12 +12,12 @@ use super::error::Heard;
 use super::rates::{IDLE, Rate, SYNC};
 use super::wire::{Control, Frame, FrameCount, Piece, Service, Status, Stream, Telegram};
 
-/// Number of sent telegrams kept, to recognize the echo of an adapter.
+/// Number of sent telegrams that are kept to detect the echo of an adapter.
 const REMEMBERED: usize = 4;
-/// Longest answer in characters.
+/// Maximum length of an answer in characters.
 const LONGEST: usize = 255;
 
-/// Outcome of a request, or other traffic.
+/// Outcome of a request, or traffic of another master.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outcome {
     /// The station answered.
@@ -28,7 +29,7 @@ pub enum Outcome {
         /// What was received instead.
         heard: Heard,
     },
-    /// Another master is active: its address, and the traffic that revealed it.
+    /// Another master is active: its address, and the traffic that shows this.
     Foreign(u8, &'static str),
 }
 
@@ -41,14 +42,14 @@ pub enum Answer {
     Frame(Frame),
 }
 
-/// Counters.
+/// Counters of the requests and answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counted {
     /// Repeated requests.
     pub repeated: u64,
-    /// Bytes that are no telegram.
+    /// Number of bytes that are not part of a telegram.
     pub noise: u64,
-    /// Answers without a request, for example late ones.
+    /// Answers without a pending request, for example late answers.
     pub unexpected: u64,
 }
 
@@ -62,10 +63,10 @@ pub struct Requester {
     stream: Stream,
     counts: BTreeMap<u8, FrameCount>,
     pending: Option<Pending>,
-    /// The last telegrams sent.
+    /// The last telegrams that were sent.
     sent: VecDeque<Vec<u8>>,
     echoes: bool,
-    /// Noise was received since the last send. What follows can be the inside of a damaged telegram.
+    /// Whether noise was received since the last send. The next bytes may be the inside of a damaged telegram.
     is_spoilt: bool,
     /// Sender and time of the last token.
     token: Option<(u8, Now)>,
@@ -80,7 +81,7 @@ struct Pending {
     bytes: Vec<u8>,
     attempts: u8,
     deadline: Now,
-    /// Limit to which received characters can move the deadline.
+    /// Latest time of the deadline. Received characters can extend the deadline up to this time.
     latest: Now,
     heard: Heard,
 }
@@ -105,12 +106,12 @@ impl Requester {
         }
     }
 
-    /// Counters.
+    /// Counters of the requests and answers.
     pub const fn counted(&self) -> Counted {
         self.counted
     }
 
-    /// Whether the adapter echoes what is sent.
+    /// Whether the adapter echoes the bytes that are sent.
     pub const fn echoes(&self) -> bool {
         self.echoes
     }
@@ -125,7 +126,7 @@ impl Requester {
         self.pending.as_ref().map_or(self.free, |pending| pending.deadline)
     }
 
-    /// Builds a request with data, to a service access point (SAP) of a station or without one.
+    /// Creates a request with data. The request is for a service access point (SAP) of a station, or has no SAP.
     pub fn request(&self, service: Service, station: u8, sap: Option<u8>, data: Vec<u8>) -> Frame {
         Frame {
             to: station,
@@ -137,7 +138,7 @@ impl Requester {
         }
     }
 
-    /// Starts a request. The returned bytes must be sent at once.
+    /// Starts a request. The caller must send the returned bytes at once.
     ///
     /// # Panics
     /// If another request waits for its answer.
@@ -148,7 +149,7 @@ impl Requester {
         {
             *count = *self.counts.entry(frame.to).or_insert(FrameCount::First);
         }
-        // Earlier bytes belong to no request.
+        // Bytes that arrived before do not belong to this request.
         self.stream.clear();
         let bytes = frame.emit();
         let (deadline, latest) = self.deadlines(now, bytes.len());
@@ -177,7 +178,7 @@ impl Requester {
         self.free = self.free.max(until);
     }
 
-    /// Handles received bytes. Call it again without bytes until it returns `None`.
+    /// Handles received bytes. The caller repeats the call without bytes until it returns `None`.
     pub fn handle(&mut self, now: Now, bytes: &[u8]) -> Option<Outcome> {
         self.stream.push(bytes);
         if !bytes.is_empty() {
@@ -190,14 +191,14 @@ impl Requester {
             outcome = self.take(now, piece);
         }
         if let Some(pending) = self.pending.as_mut().filter(|_| !bytes.is_empty()) {
-            // The rest arrives at the speed of the line, with the delay of the adapter.
+            // The missing characters arrive at the bit rate of the line, plus the delay of the adapter.
             let rest = self.rate.pace().time(self.stream.missing()) + self.slot;
             pending.deadline = (now + rest).max(pending.deadline).min(pending.latest);
         }
         outcome
     }
 
-    /// Returns the request to repeat, or the failure of the last attempt.
+    /// Returns the bytes of a request that must be repeated. After the last attempt, returns the failure.
     pub fn poll(&mut self, now: Now) -> Option<Result<Vec<u8>, Outcome>> {
         let pending = self.pending.as_mut().filter(|pending| now >= pending.deadline)?;
         pending.heard.noise |= !self.stream.is_empty();
@@ -221,7 +222,7 @@ impl Requester {
         Some(Ok(bytes))
     }
 
-    /// Deadlines for the start and for the end of an answer.
+    /// Deadline for the start of an answer, and latest time for its end.
     fn deadlines(&self, now: Now, len: usize) -> (Now, Now) {
         let begun = now + self.rate.pace().time(len) + self.slot;
         (begun, begun + self.rate.pace().time(LONGEST) + self.slot)
@@ -252,7 +253,7 @@ impl Requester {
             return None;
         }
         let answer = match telegram {
-            // These two have no checksum.
+            // These two telegrams have no checksum, so they may be a part of a damaged telegram.
             Telegram::Token { .. } | Telegram::ShortAcknowledge if self.is_spoilt => return None,
             Telegram::Token { from, .. } => return self.heard_token(now, from),
             Telegram::Frame(frame) => match frame.control {
@@ -270,8 +271,8 @@ impl Requester {
         {
             self.counts.insert(pending.frame.to, count.next());
         }
-        // After a repetition, the answer to the earlier attempt can still arrive. It must not be taken for the next
-        // answer.
+        // After a repetition, the answer to the earlier attempt may still arrive. It must not be mistaken for the
+        // answer to the next request.
         let pause = if pending.attempts > 1 { self.slot } else { self.rate.bits(IDLE) };
         self.free = now + pause;
         Some(Outcome::Answer(answer))
@@ -284,10 +285,10 @@ impl Requester {
     }
 }
 
-/// Two tokens of one master within this time are not noise.
+/// Two tokens of the same master within this time cannot be noise.
 const CHANCE: Duration = Duration::from_secs(1);
 
-/// Whether an answer fits its request.
+/// Whether this is a possible answer to the request.
 fn answers(asked: &Frame, answer: &Answer) -> bool {
     match answer {
         // A short acknowledgement has no sender. It is not valid for an FDL status request.

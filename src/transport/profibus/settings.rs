@@ -1,4 +1,4 @@
-//! Link settings.
+//! Settings of a link.
 
 use std::time::Duration;
 
@@ -6,15 +6,15 @@ use super::error::ProfibusError;
 use super::rates::Rate;
 use super::wire::{Configuration, MAX_DATA, MAX_STATION, Parameters, Watchdog};
 
-/// Default address of this master. PLCs usually have 2 as well, but no PLC is on this line.
+/// Default address of this master. PLCs usually have address 2 too, but there is no PLC on this line.
 pub const MASTER: u8 = 2;
 /// Minimum of the default watchdog time.
 const WATCHDOG: Duration = Duration::from_millis(500);
-/// Number of repetitions of a request, because USB converters lose some characters.
+/// Default number of repetitions of a request. USB converters lose some characters.
 const RETRIES: u8 = 3;
 /// Minimum watchdog time in cycles.
 const CYCLES: u32 = 5;
-/// Longest cycle and slot time.
+/// Longest valid cycle and slot time.
 const LONGEST: Duration = Duration::from_secs(10);
 
 /// Settings of a link. `None` means a default value or automatic detection.
@@ -48,7 +48,7 @@ pub struct Settings {
     pub resting: Vec<u8>,
 }
 
-/// Times that result from the settings.
+/// Times that are computed from the settings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Timing {
     /// Time limit for the start of an answer.
@@ -62,7 +62,7 @@ pub struct Timing {
 }
 
 impl Settings {
-    /// Default settings for a slave at this address and bit rate, with this resting image.
+    /// Creates default settings for a slave with this address, this bit rate and this resting image.
     pub fn new(station: u8, rate: Rate, resting: Vec<u8>) -> Self {
         Self {
             station,
@@ -84,7 +84,7 @@ impl Settings {
     /// Checks the settings, and computes the times.
     ///
     /// # Errors
-    /// [`ProfibusError::Settings`] names the problem.
+    /// [`ProfibusError::Settings`] describes the problem.
     pub fn timing(&self) -> Result<Timing, ProfibusError> {
         let wrong = |text: String| Err(ProfibusError::Settings(text));
         if self.station > MAX_STATION || self.master > MAX_STATION {
@@ -94,7 +94,9 @@ impl Settings {
             return wrong(format!("station and master cannot both be {}", self.station));
         }
         if self.output_size.max(self.input_size) > MAX_DATA || self.resting.len() != self.output_size {
-            return wrong(format!("an image has at most {MAX_DATA} bytes, and its resting image has the same size"));
+            return wrong(format!(
+                "an image can have at most {MAX_DATA} bytes, and its resting image must have the same size"
+            ));
         }
         if self.parameters.as_ref().is_some_and(|user| user.len() > Parameters::MAX_USER) {
             return wrong(format!("at most {} bytes of user parameters are possible", Parameters::MAX_USER));
@@ -128,7 +130,7 @@ impl Settings {
         let Some(watchdog) = Watchdog::at_least(wanted) else {
             return wrong("the watchdog must be at most 650 s".to_owned());
         };
-        // The token timeout rises with the address: 6 + 2 x address slot times.
+        // The token timeout increases with the address of the master: 6 + 2 x address slot times.
         let listen = self.rate.bits(self.rate.slot * (6 + 2 * u32::from(self.master))).max(Duration::from_millis(100));
         Ok(Timing { slot, cycle, watchdog, listen })
     }

@@ -1,5 +1,6 @@
-//! Survey of the stations on a line: type, diagnosis, configuration. It locks no slave and changes nothing, even for a
-//! slave that has a master. But it sends, so it is only for lines without a master.
+//! Survey of the stations on a line: type, diagnosis, configuration. The survey locks no slave and changes nothing,
+//! even in a slave that has a master. But the survey sends telegrams, so it must only be used on a line without a
+//! master.
 
 use super::Now;
 use super::error::ProfibusError;
@@ -11,7 +12,7 @@ use super::wire::{Control, Diagnosis, MAX_STATION, Service, Station, Status, sap
 /// Result for one station.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Found {
-    /// Address.
+    /// Address of the station.
     pub station: u8,
     /// Station type.
     pub kind: Station,
@@ -19,18 +20,18 @@ pub struct Found {
     pub diagnosis: Result<Diagnosis, Unknown>,
     /// Configuration that the slave reports (identifier bytes).
     pub configuration: Result<Vec<u8>, Unknown>,
-    /// Input image, if the slave exchanges data.
+    /// Input image, if the slave is in data exchange.
     pub inputs: Result<Vec<u8>, Unknown>,
-    /// Output image, if the slave exchanges data.
+    /// Output image, if the slave is in data exchange.
     pub outputs: Result<Vec<u8>, Unknown>,
 }
 
 /// Reason for a missing value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Unknown {
-    /// Not requested.
+    /// The value was not requested.
     NotAsked,
-    /// No answer.
+    /// The station did not answer.
     NoAnswer,
     /// The station refused.
     Refused(Status),
@@ -38,7 +39,7 @@ pub enum Unknown {
     Malformed(String),
 }
 
-/// Requests to a station, in this order.
+/// Requests to a station, in the order in which they are sent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Question {
     Kind,
@@ -75,7 +76,7 @@ impl Question {
 pub struct Survey {
     requester: Requester,
     quiet: Option<Quiet>,
-    /// Remaining stations in reverse order.
+    /// Stations that are still to be checked, in reverse order.
     stations: Vec<u8>,
     question: Question,
     found: Vec<Found>,
@@ -84,7 +85,7 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// Creates a survey of these stations. It listens first.
+    /// Creates a survey of these stations. The survey listens before it sends.
     pub fn new(now: Now, stations: impl IntoIterator<Item = u8>, requester: Requester, timing: Timing) -> Self {
         let mut stations: Vec<u8> = stations.into_iter().filter(|station| *station <= MAX_STATION).collect();
         stations.reverse();
@@ -92,7 +93,7 @@ impl Survey {
         Self { requester, quiet, stations, question: Question::Kind, found: Vec::new(), error: None, timing }
     }
 
-    /// Result: the stations found, or the reason for a failure. `None` until it is complete.
+    /// Result of the survey: the stations found, or the reason for a failure. `None` until the survey is complete.
     pub fn result(&self) -> Option<Result<&[Found], ProfibusError>> {
         if let Some(error) = &self.error {
             return Some(Err(error.clone()));

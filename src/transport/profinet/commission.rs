@@ -1,6 +1,6 @@
-//! Station services without a connection: discovery, names, addresses, records.
+//! Services of a station that need no connection: discovery, names, addresses, records.
 //!
-//! All calls block for the time that they state.
+//! All calls block the thread until their time limit.
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
@@ -18,29 +18,29 @@ use super::wire::record::{self, Im0, RealModule, Record, index};
 use super::wire::rpc::{self, Datagram, operation};
 use super::wire::{Mac, Uuid, arp};
 
-/// Spread of the answers to a broadcast, in steps of 10 ms.
+/// Time within which stations answer a broadcast, each after its own delay, in steps of 10 ms.
 const SPREAD: u16 = 128;
-/// Time limit per attempt for a single station, and the number of attempts.
+/// Time limit per attempt to reach a single station, and the number of attempts.
 const PATIENCE: Duration = Duration::from_secs(1);
 const TRIES: u32 = 3;
-/// Wait after the first answer, to find a second station with the same name.
+/// Waiting time after the first answer. A second station with the same name can answer within this time.
 const TWIN: Duration = Duration::from_millis(250);
 /// Time limit of each ARP attempt.
 const ARP: Duration = Duration::from_millis(300);
-/// Interval and time limit of the check that a setting was applied.
+/// Interval and time limit of the checks that a setting is active.
 const LOOK: Duration = Duration::from_millis(200);
 const SETTLE: Duration = Duration::from_secs(5);
-/// Limit of reported stations; a network has a few hundred.
+/// Maximum number of reported stations. A network has a few hundred.
 const MOST: usize = 4096;
 /// Buffer size for a record.
 const ROOM: u32 = 4000;
 
-/// A station that answered. Its texts are untrusted.
+/// A station that answered. The texts from the station are untrusted.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Found {
     /// MAC address.
     pub mac: Mac,
-    /// Reported data.
+    /// Data that the station reports.
     pub station: Station,
 }
 
@@ -63,7 +63,7 @@ pub fn stations(interface: &Interface, wait: Duration) -> Result<Vec<Found>, Pro
 /// Finds one station by name or MAC address.
 ///
 /// # Errors
-/// The interface cannot be used, the station does not answer, or two stations have the name.
+/// The interface cannot be used, the station does not answer, or two stations have the same name.
 pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<Found, ProfinetError> {
     let frames = Frames::open(interface)?;
     for _ in 0..TRIES {
@@ -78,7 +78,7 @@ pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<Found, 
             };
             match &first {
                 _ if !is_it => {}
-                // A MAC address is unique.
+                // A MAC address is unique, so no second station is searched.
                 None if matches!(wanted, settings::Station::Mac(_)) => return Ok(found),
                 None => {
                     until = until.min(frames.now() + TWIN);
@@ -98,7 +98,7 @@ pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<Found, 
     Err(ProfinetError::NotFound { station: wanted.to_string(), after: PATIENCE * TRIES })
 }
 
-/// Finds another station with the same name, and returns its MAC address.
+/// Searches for another station with the same name, and returns its MAC address.
 pub fn other(interface: &Interface, named: &settings::Station, than: Mac) -> Result<Option<Mac>, ProfinetError> {
     let frames = Frames::open(interface)?;
     for _ in 0..TRIES {
@@ -114,7 +114,8 @@ pub fn other(interface: &Interface, named: &settings::Station, than: Mac) -> Res
     Ok(None)
 }
 
-/// DCP request for a station. For a MAC address, it asks all stations, because not every station supports Get.
+/// Returns the DCP request that searches for a station. The request for a MAC address goes to all stations, because not
+/// every station supports Get.
 pub fn looking_for(wanted: &settings::Station, xid: u32) -> Dcp {
     match wanted {
         settings::Station::Name(name) => Dcp::identify(xid, name),
@@ -122,19 +123,20 @@ pub fn looking_for(wanted: &settings::Station, xid: u32) -> Dcp {
     }
 }
 
-/// Frame of a DCP Identify request.
+/// Returns the frame of a DCP Identify request.
 pub fn identify(source: Mac, question: &Dcp) -> Vec<u8> {
     let payload = question.emit();
     Frame { destination: Mac::DCP_IDENTIFY, source, tag: None, id: id::DCP_IDENTIFY, payload: &payload }.emit()
 }
 
-/// Frame of a DCP Set request.
+/// Returns the frame of a DCP Set request.
 pub fn set(source: Mac, destination: Mac, xid: u32, block: &Block) -> Vec<u8> {
     let payload = Dcp::change(xid, vec![block.clone()]).emit();
     Frame { destination, source, tag: None, id: id::DCP_GET_SET, payload: &payload }.emit()
 }
 
-/// Sets a value at a station: name, address, blinking. The request is sent up to three times, which is harmless.
+/// Sets a value of a station: the name, the address, or blinking. Without an answer, the request is sent up to three
+/// times. Repeating it is harmless.
 pub fn change(interface: &Interface, mac: Mac, what: &'static str, block: &Block) -> Result<(), ProfinetError> {
     let frames = Frames::open(interface)?;
     let request = set(interface.mac, mac, fastrand::u32(1..), block);
@@ -142,7 +144,7 @@ pub fn change(interface: &Interface, mac: Mac, what: &'static str, block: &Block
         frames.send(&request)?;
         let answer = frames.hear(frames.now() + PATIENCE, |frame| {
             let is_its = frame.source == mac && frame.destination == interface.mac && frame.id == id::DCP_GET_SET;
-            // Some stations do not copy the Xid.
+            // The Xid is not checked, because some stations do not copy it.
             let dcp = Dcp::parse(frame.payload).ok().filter(|dcp| is_its && dcp.service == Service::Set)?;
             match dcp.kind {
                 Kind::Request => None,
@@ -164,7 +166,7 @@ pub fn change(interface: &Interface, mac: Mac, what: &'static str, block: &Block
 /// Waits until the station reports the new value.
 ///
 /// # Errors
-/// The station does not report it within some seconds, or the interface cannot be used.
+/// The station does not report the new value within some seconds, or the interface cannot be used.
 pub fn settled(
     interface: &Interface,
     mac: Mac,
@@ -186,9 +188,9 @@ pub fn settled(
     Err(ProfinetError::NoAnswer { what, after: SETTLE })
 }
 
-/// MAC address that answers ARP for an IP address, other than `except`.
+/// Returns the MAC address of a station, other than `except`, that answers an ARP request for this IP address.
 pub fn holder(interface: &Interface, address: Ipv4Addr, except: Mac) -> Result<Option<Mac>, ProfinetError> {
-    // The system does not answer its own ARP request.
+    // The operating system of this computer does not answer this ARP request.
     if interface.ip.is_some_and(|own| own.address == address) {
         return Ok(Some(interface.mac));
     }
@@ -205,7 +207,7 @@ pub fn holder(interface: &Interface, address: Ipv4Addr, except: Mac) -> Result<O
     Ok(None)
 }
 
-/// The next station that answers.
+/// Returns the next station that answers.
 fn identified(
     interface: &Interface,
     frames: &Frames,
@@ -220,19 +222,19 @@ fn identified(
     })
 }
 
-/// Records of a device, each with its own result.
+/// Identity records of a device. Each record has its own result.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Identity {
     /// I&M0.
     pub im0: Result<Im0, ProfinetError>,
-    /// Real modules.
+    /// Modules that are really plugged in the device.
     pub modules: Result<Vec<RealModule>, ProfinetError>,
 }
 
 /// Reads the identity and module records of a device without a connection.
 ///
 /// # Errors
-/// No socket. A record that is refused or not answered is an error in its own field.
+/// No socket can be opened. If a record is refused or not answered, the error is in the field of the record.
 pub fn identity(interface: &Interface, found: &Found) -> Result<Identity, ProfinetError> {
     let station = || format!("station '{}'", found.station.name);
     let address = found.station.address().ok_or_else(|| ProfinetError::NoAddress { station: station() })?;

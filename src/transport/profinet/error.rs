@@ -20,7 +20,7 @@ pub enum ProfinetError {
     NotFound {
         /// The station.
         station: String,
-        /// Time waited.
+        /// Total waiting time.
         after: Duration,
     },
     /// Two stations have the same name.
@@ -28,16 +28,16 @@ pub enum ProfinetError {
     Duplicate {
         /// The station.
         station: String,
-        /// MAC addresses of two of them.
+        /// MAC addresses of two of these stations.
         cards: (Mac, Mac),
     },
-    /// The device has no IP address, and the settings set none.
+    /// The device has no IP address, and the settings contain none.
     #[error("{station} has no IP address")]
     NoAddress {
         /// The station.
         station: String,
     },
-    /// The device is in another IP network than this computer.
+    /// This computer and the device are in different IP networks.
     #[error("{station} has the address {device}, but this computer has {here} in another network")]
     OtherNetwork {
         /// The station.
@@ -48,14 +48,14 @@ pub enum ProfinetError {
         here: Ipv4Addr,
     },
     /// Another station has the same IP address.
-    #[error("{station} reports that another station also has its address {address}")]
+    #[error("{station} reports that another station has the same address {address}")]
     AddressConflict {
         /// The station.
         station: String,
-        /// The address.
+        /// The IP address that both stations have.
         address: Ipv4Addr,
     },
-    /// DCP refused a setting.
+    /// The station refused a DCP setting.
     #[error("{what} was refused: {}", dcp::describe_error(*error))]
     Dcp {
         /// The setting.
@@ -63,12 +63,12 @@ pub enum ProfinetError {
         /// DCP error code.
         error: u8,
     },
-    /// No answer in time.
+    /// The device did not answer in time.
     #[error("no answer to {what} within {} s", after.as_secs())]
     NoAnswer {
         /// The request.
         what: &'static str,
-        /// Time waited.
+        /// Total waiting time.
         after: Duration,
     },
     /// The device refused.
@@ -106,33 +106,33 @@ pub enum ProfinetError {
     /// The modules of the device do not match the layout.
     #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
     Modules(
-        /// The differences; at least one.
+        /// The differences. There is at least one.
         Vec<ModuleMismatch>,
     ),
-    /// The device accepted everything but never called ApplicationReady.
+    /// The device accepted all calls, but never called ApplicationReady.
     #[error("the device was not ready within {} s", after.as_secs())]
     NeverReady {
-        /// Time waited.
+        /// Waiting time for ApplicationReady.
         after: Duration,
     },
     /// The device is ready, but sends no usable data.
     #[error("no usable data within {} s: {missing}", after.as_secs())]
     NoData {
-        /// Time waited.
+        /// Waiting time for usable data.
         after: Duration,
         /// Reason why the data is not usable.
         missing: Unusable,
     },
-    /// The device is running, but its data is not usable now.
+    /// The device is running, but its data is not usable at the moment.
     #[error("the data of the device is not usable: {0}")]
     Unusable(
         /// The reason.
         Unusable,
     ),
-    /// Watchdog: the device stopped sending.
+    /// The device stopped sending, and the watchdog expired.
     #[error("no cyclic frame received for {} ms", after.as_millis())]
     Silent {
-        /// Time waited.
+        /// Time without a frame.
         after: Duration,
     },
     /// The device aborted the connection.
@@ -141,7 +141,7 @@ pub enum ProfinetError {
         /// The reason.
         Status,
     ),
-    /// A module was plugged, and the device needs its parameters again.
+    /// A module was plugged in. The device needs its parameters again.
     #[error("a module was plugged in slot {slot}")]
     Plugged {
         /// The slot.
@@ -150,21 +150,21 @@ pub enum ProfinetError {
     /// The device did not accept the acknowledgement of an alarm.
     #[error("the device did not accept the acknowledgement of an alarm")]
     AlarmUnanswered,
-    /// The connection was lost after the caller last looked at it (an older generation).
+    /// The connection was lost, and the caller has not seen the loss yet: its image belongs to an older generation.
     #[error("the connection was lost")]
     Outdated,
     /// The connection was closed by this program.
     #[error("the connection is closed")]
     Ended,
-    /// No permission for raw Ethernet.
-    #[error("PROFINET needs raw Ethernet, but armctl has no right to open it (CAP_NET_RAW)")]
+    /// The user has no permission for raw Ethernet.
+    #[error("PROFINET needs raw Ethernet, but armctl has no permission for it (CAP_NET_RAW)")]
     Privilege,
     /// The network interface does not exist.
     #[error("this computer has no network interface '{name}'")]
     NoInterface {
         /// Name of the interface.
         name: String,
-        /// Existing interfaces.
+        /// Names of the existing interfaces.
         present: Vec<String>,
     },
     /// The network interface exists, but cannot be used.
@@ -172,7 +172,7 @@ pub enum ProfinetError {
     Interface {
         /// Name of the interface.
         name: String,
-        /// The problem.
+        /// Why the interface cannot be used.
         problem: &'static str,
     },
     /// Another program uses UDP port 34964.
@@ -184,7 +184,7 @@ pub enum ProfinetError {
     /// A local socket failed.
     #[error(transparent)]
     Local(#[from] LocalError),
-    /// Invalid settings or request; nothing was sent.
+    /// The settings or the request are invalid; nothing was sent.
     #[error("{0}")]
     Impossible(
         /// The reason.
@@ -212,11 +212,11 @@ impl ProfinetError {
 pub struct ModuleMismatch {
     /// Slot.
     pub slot: u16,
-    /// Subslot, if the submodule is different.
+    /// Subslot, if the difference is in a submodule.
     pub subslot: Option<u16>,
-    /// Ident number in the device; `None` if empty.
+    /// Ident number in the device; `None` if the slot or subslot is empty.
     pub found: Option<u32>,
-    /// Ident number in the layout; `None` if empty.
+    /// Ident number in the layout; `None` if the slot or subslot is empty.
     pub expected: Option<u32>,
 }
 
@@ -229,8 +229,8 @@ impl fmt::Display for ModuleMismatch {
             what = "submodule";
         }
         match self.found {
-            Some(found) => write!(f, " holds {what} {found:#x}")?,
-            None => write!(f, " holds no {what}")?,
+            Some(found) => write!(f, " has {what} {found:#x}")?,
+            None => write!(f, " has no {what}")?,
         }
         match self.expected {
             Some(expected) if self.found == Some(expected) => write!(f, ", which is not usable now"),
@@ -243,13 +243,13 @@ impl fmt::Display for ModuleMismatch {
 /// Reason why received data is not usable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unusable {
-    /// No data received.
+    /// No data was received.
     Missing,
-    /// Data status and transfer status of the whole frame.
+    /// The data status or transfer status of the whole frame is bad. The values are both statuses.
     Status(u8, u8),
-    /// Bad provider status of this slot and subslot.
+    /// The provider status of this slot and subslot is bad.
     Provider(u16, u16),
-    /// Bad consumer status of this slot and subslot.
+    /// The consumer status of this slot and subslot is bad.
     Consumer(u16, u16),
 }
 

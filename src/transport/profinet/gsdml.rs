@@ -1,6 +1,8 @@
-//! Parser for GSDML files, the device description of a manufacturer: access points, modules, data, parameters.
+//! Parser for GSDML files. A GSDML file is the manufacturer's description of a device: access points, modules, data,
+//! parameters.
 //!
-//! The content is untrusted: sizes are limited, entities are not expanded, and an error names its line and element.
+//! The content is untrusted: sizes are limited, and entities are not expanded. An error contains the line and the
+//! element.
 
 use std::borrow::Cow;
 
@@ -10,28 +12,28 @@ use thiserror::Error;
 use super::layout::{Direction, Layout, Submodule};
 use super::wire::record::Parameter;
 
-/// File size limit.
+/// Maximum size of a file in bytes.
 pub const MOST_BYTES: u64 = 16 * 1024 * 1024;
-/// Limit of elements and attributes.
+/// Maximum number of elements and attributes.
 const MOST_NODES: u32 = 2_000_000;
-/// Limit of modules per access point, and of submodules per module.
+/// Maximum number of modules per access point, and of submodules per module.
 const MOST_MODULES: usize = 512;
-/// Limit of access points.
+/// Maximum number of access points.
 const MOST_HEADS: usize = 64;
-/// Limit of slots in a list.
+/// Maximum number of slots in a list.
 const MOST_SLOTS: usize = 4096;
-/// Size limit of a parameter record.
+/// Maximum size of a parameter record in bytes.
 const LONGEST_RECORD: usize = 4096;
 
 /// Error in a GSDML file.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("line {line}, {element}: {problem}")]
 pub struct GsdmlError {
-    /// The line.
+    /// Line number in the file.
     pub line: u32,
-    /// The element.
+    /// Name of the element.
     pub element: String,
-    /// What is wrong with it.
+    /// What is wrong with the element.
     pub problem: String,
 }
 
@@ -42,7 +44,7 @@ pub struct Gsdml {
     pub vendor: u16,
     /// Device id.
     pub device: u16,
-    /// Device access points. A device uses one of them.
+    /// Device access points in the file. A device uses one of them.
     pub heads: Vec<Head>,
 }
 
@@ -59,22 +61,22 @@ pub struct Head {
     pub ident: u32,
     /// Instance in the object UUID.
     pub instance: u16,
-    /// Shortest cycle, in units of 31.25 us.
+    /// Shortest cycle that the device supports, in units of 31.25 us.
     pub shortest: u16,
-    /// Supported startup modes: advanced, legacy.
+    /// Whether the device supports the startup modes: advanced, legacy.
     pub startup: (bool, bool),
     /// Submodules of the access point.
     pub submodules: Vec<Item>,
-    /// Modules that can be used with it.
+    /// Modules that can be used with this access point.
     pub modules: Vec<Fitting>,
 }
 
 /// A module with its valid slots.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fitting {
-    /// Slots where it can be used.
+    /// Slots in which the module can be used.
     pub slots: Vec<u16>,
-    /// Slots where it is always plugged.
+    /// Slots in which the module is always plugged.
     pub fixed: Vec<u16>,
     /// The module.
     pub module: Module,
@@ -104,7 +106,7 @@ pub struct Item {
     pub input: u16,
     /// Bytes of output data.
     pub output: u16,
-    /// Parameter records to write at the start: index and data.
+    /// Parameter records that the controller writes at the start: index and data.
     pub parameters: Vec<(u16, Vec<u8>)>,
 }
 
@@ -122,7 +124,7 @@ impl Gsdml {
         };
         let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
         let document = Document::parse_with_options(&text, options).map_err(|error| {
-            // The error of a truncated file has no position.
+            // The error of a truncated file contains no position, so the last line is used.
             let end = u32::try_from(text.lines().count()).unwrap_or(u32::MAX);
             let line = if matches!(error, Error::UnexpectedEndOfStream) { end } else { error.pos().row };
             GsdmlError { line, element: "file".to_owned(), problem: format!("it is not XML: {error}") }
@@ -132,15 +134,15 @@ impl Gsdml {
 }
 
 impl Head {
-    /// Layout with these modules in these slots. Fixed modules are added automatically.
+    /// Returns the layout with these modules in these slots. Fixed modules are added automatically.
     ///
     /// # Errors
-    /// A module does not fit its slot, or the data does not fit a frame.
+    /// A module does not fit into its slot, or the data does not fit into a frame.
     pub fn layout(&self, chosen: &[(u16, &Fitting)]) -> Result<Layout, String> {
         Layout::new(self.placed(chosen)?.into_iter().map(|(submodule, _)| submodule).collect())
     }
 
-    /// Parameter records for that layout.
+    /// Returns the parameter records for the layout of these modules.
     pub fn parameters(&self, chosen: &[(u16, &Fitting)]) -> Result<Vec<Parameter>, String> {
         let placed = self.placed(chosen)?;
         let parameters = placed.iter().flat_map(|(submodule, item)| {
@@ -182,8 +184,8 @@ impl Head {
         Ok(head.chain(modules).collect())
     }
 
-    /// Selects modules with these image sizes: only the fixed ones, one more, or one per direction. `None` if there is
-    /// no unique selection.
+    /// Selects modules for these image sizes. The possible selections are: only the fixed modules, one more module, or
+    /// one more module per direction. `None` if there is no unique selection.
     pub fn choose(&self, input: usize, output: usize) -> Option<Vec<(u16, &Fitting)>> {
         let fits = |chosen: &[(u16, &Fitting)]| {
             self.layout(chosen)
@@ -216,7 +218,7 @@ impl Head {
 }
 
 impl Module {
-    /// Bytes of data in a direction.
+    /// Number of data bytes in a direction.
     pub fn size(&self, direction: Direction) -> usize {
         let length = |item: &Item| if direction == Direction::Input { item.input } else { item.output };
         self.submodules.iter().map(|item| usize::from(length(item))).sum()
@@ -274,10 +276,8 @@ impl<'a, 'input> Reader<'a, 'input> {
         let slots = self.slots(node, "PhysicalSlots")?;
         let references: Vec<_> = node.descendants().filter(|item| item.has_tag_name_local("ModuleItemRef")).collect();
         if references.len() > MOST_MODULES {
-            return Err(self.wrong(
-                node,
-                format!("{} modules are usable in it; at most {MOST_MODULES} are possible", references.len()),
-            ));
+            return Err(self
+                .wrong(node, format!("it can use {} modules; at most {MOST_MODULES} are possible", references.len())));
         }
         let modules =
             references.into_iter().map(|reference| self.fitting(reference, &slots)).collect::<Result<_, _>>()?;
@@ -313,7 +313,8 @@ impl<'a, 'input> Reader<'a, 'input> {
         Ok(Fitting { slots: allowed, fixed, module })
     }
 
-    /// Submodules of a module or access point. Of the referenced submodules, only those fixed in a subslot are used.
+    /// Returns the submodules of a module or access point. A referenced submodule is included only if it is fixed in a
+    /// subslot.
     fn items(&self, node: Node<'a, 'input>) -> GsdmlResult<Vec<Item>> {
         let mut items = Vec::new();
         let add = |items: &mut Vec<Item>, node, subslot| {
@@ -351,7 +352,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         })
     }
 
-    /// Bytes of data in a direction.
+    /// Number of data bytes in a direction.
     fn length(&self, node: Node<'a, 'input>, direction: &str) -> GsdmlResult<u16> {
         let Some(data) = node.descendants().find(|item| item.has_tag_name_local(direction)) else { return Ok(0) };
         let mut bytes = 0u16;
@@ -362,7 +363,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         Ok(bytes)
     }
 
-    /// Bytes of a value.
+    /// Number of bytes of a value.
     fn size(&self, node: Node<'a, 'input>) -> GsdmlResult<u16> {
         let kind = self.text(node, "DataType")?;
         Ok(match kind {
@@ -376,12 +377,12 @@ impl<'a, 'input> Reader<'a, 'input> {
         })
     }
 
-    /// A parameter record with its default values.
+    /// Returns a parameter record with its default values.
     fn record(&self, node: Node<'a, 'input>) -> GsdmlResult<(u16, Vec<u8>)> {
         let index = self.number(node, "Index")?;
         let length = usize::from(self.number(node, "Length")?);
         if length > LONGEST_RECORD {
-            return Err(self.wrong(node, format!("a record has at most {LONGEST_RECORD} bytes")));
+            return Err(self.wrong(node, format!("a record can have at most {LONGEST_RECORD} bytes")));
         }
         let mut data = vec![0; length];
         for part in node.children().filter(Node::is_element) {
@@ -395,7 +396,7 @@ impl<'a, 'input> Reader<'a, 'input> {
                 _ => continue,
             };
             let place = data.get_mut(at..at + bytes.len());
-            place.ok_or_else(|| self.wrong(part, "it is too long for its record"))?.copy_from_slice(&bytes);
+            place.ok_or_else(|| self.wrong(part, "the value does not fit in the record"))?.copy_from_slice(&bytes);
         }
         Ok((index, data))
     }
@@ -407,11 +408,11 @@ impl<'a, 'input> Reader<'a, 'input> {
         bytes.ok_or_else(|| self.wrong(node, format!("'{text}' is not a list of bytes")))
     }
 
-    /// Default value. Bits are combined with the existing byte.
+    /// Returns the default value. A value of single bits is combined with the existing byte.
     fn value(&self, node: Node<'a, 'input>, byte: u8) -> GsdmlResult<Option<Vec<u8>>> {
         let Some(text) = node.attribute("DefaultValue") else { return Ok(None) };
         let kind = self.text(node, "DataType")?;
-        let wrong = || self.wrong(node, format!("'{text}' is no {kind}"));
+        let wrong = || self.wrong(node, format!("'{text}' is not a valid {kind}"));
         let bits = match kind {
             "Bit" => 1,
             "BitArea" => self.number(node, "BitLength")?,
@@ -435,12 +436,12 @@ impl<'a, 'input> Reader<'a, 'input> {
         let value = text.parse::<i64>().ok().or_else(|| parse(text).map(i64::from)).ok_or_else(wrong)?;
         let bytes = value.to_be_bytes();
         let (upper, lower) = bytes.split_at(bytes.len().saturating_sub(size));
-        // The upper bytes can only be the sign.
+        // The upper bytes may only contain the sign.
         let fits = upper.iter().all(|byte| *byte == 0) || upper.iter().all(|byte| *byte == 0xFF);
         if fits { Ok(Some(lower.to_vec())) } else { Err(wrong()) }
     }
 
-    /// Display name, looked up in the text list.
+    /// Returns the display name. The name is in the text list of the file.
     fn name(&self, node: Node<'a, 'input>) -> String {
         let name = node.children().find(|item| item.has_tag_name_local("ModuleInfo"));
         let name = name.and_then(|info| info.children().find(|item| item.has_tag_name_local("Name")));
@@ -488,7 +489,7 @@ impl<'a, 'input> Reader<'a, 'input> {
     }
 }
 
-/// Elements by local name, because the namespace depends on the version.
+/// Access to elements by their local name, because the namespace depends on the version of the file.
 trait LocalName {
     fn has_tag_name_local(&self, name: &str) -> bool;
 }
@@ -499,7 +500,7 @@ impl LocalName for Node<'_, '_> {
     }
 }
 
-/// A number, decimal or with `0x`.
+/// Parses a decimal number, or a hexadecimal number with `0x`.
 fn parse(text: &str) -> Option<u32> {
     let text = text.trim();
     match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {

@@ -4,11 +4,11 @@ use super::error::ModuleMismatch;
 use super::layout::{Layout, Submodule};
 use super::wire::record::RealModule;
 
-/// Limit of candidates.
+/// Maximum number of candidates.
 const MOST: usize = 8;
 
-/// Candidate layouts for images of `size` bytes, from the real modules of a device. The real modules show neither
-/// direction nor size of the data. The likeliest candidates are first.
+/// Returns candidate layouts for images of `size` bytes, the likeliest first. The candidates are combinations of the
+/// real modules of a device, because the real modules show neither the direction nor the size of the data.
 pub fn layouts(real: &[RealModule], size: u16) -> Vec<Layout> {
     let all = real.iter().flat_map(|module| module.submodules.iter().map(move |submodule| (module, *submodule)));
     let bare: Vec<Submodule> = all
@@ -46,8 +46,8 @@ pub fn layouts(real: &[RealModule], size: u16) -> Vec<Layout> {
 /// First subslot of interfaces and ports.
 const FIRST_PORT: u16 = 0x8000;
 
-/// Corrects a layout with the reported differences. Modules that the device does not have are removed. `None` if the
-/// device did not report what it has.
+/// Corrects a layout with the differences that the device reported. Modules that the device does not have are removed.
+/// `None` if this does not change the layout.
 pub fn adjusted(layout: &Layout, mismatches: &[ModuleMismatch]) -> Option<Layout> {
     let fitted = layout.submodules().iter().filter_map(|submodule| {
         let mut submodule = *submodule;

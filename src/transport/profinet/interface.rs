@@ -23,11 +23,11 @@ pub struct Interface {
     pub name: String,
     /// MAC address.
     pub mac: Mac,
-    /// First IPv4 address and network.
+    /// First IPv4 address of the interface, with its network.
     pub ip: Option<IpSuite>,
-    /// Whether it is up.
+    /// Whether the interface is up.
     pub is_up: bool,
-    /// Whether it has a carrier (cable and peer).
+    /// Whether the interface has a carrier (a cable and a peer).
     pub has_carrier: bool,
     /// Recorder of traffic outside of connections.
     pub tap: Tap,
@@ -76,12 +76,12 @@ impl Interface {
     /// Finds an interface by name.
     ///
     /// # Errors
-    /// It does not exist. The error lists the existing ones.
+    /// The interface does not exist. The error lists the existing interfaces.
     pub fn find(name: &str) -> Result<Self, ProfinetError> {
         if let Some(network) = simulated::Network::find(name) {
             return Ok(network.interface());
         }
-        let all = all().map_err(|error| LocalError::new("list of network interfaces", &error))?;
+        let all = all().map_err(|error| LocalError::new("cannot list the network interfaces", &error))?;
         let present = all.iter().map(|interface| interface.name.clone()).collect();
         let found = all.into_iter().find(|interface| interface.name == name);
         found.ok_or(ProfinetError::NoInterface { name: name.to_owned(), present })
@@ -92,7 +92,7 @@ impl Interface {
         Self { name, mac, ip, is_up: true, has_carrier: true, tap: Tap::default(), card }
     }
 
-    /// The in-process network behind it, if it has no network card.
+    /// The in-process network behind this interface; `None` for a network card.
     pub const fn network(&self) -> Option<&simulated::Network> {
         match &self.card {
             Card::Real(_) => None,
@@ -100,7 +100,7 @@ impl Interface {
         }
     }
 
-    /// Checks that frames can pass.
+    /// Checks that the interface can transmit frames.
     pub fn check(&self) -> Result<(), ProfinetError> {
         let problem = match (self.is_up, self.has_carrier) {
             (false, _) => "is switched off",
@@ -110,17 +110,17 @@ impl Interface {
         Err(ProfinetError::Interface { name: self.name.clone(), problem })
     }
 
-    /// IP address, which RPC calls need.
+    /// Returns the IP address of the interface. RPC calls need it.
     pub fn address(&self) -> Result<IpSuite, ProfinetError> {
         let problem = "has no IPv4 address, but PROFINET needs one";
         self.ip.ok_or_else(|| ProfinetError::Interface { name: self.name.clone(), problem })
     }
 
-    /// Non-blocking socket for frames of one EtherType.
+    /// Opens a non-blocking socket for frames of one EtherType.
     pub fn raw_socket(&self, ether_type: u16) -> Result<Socket, ProfinetError> {
         let failed = |error: &io::Error| match error.kind() {
             ErrorKind::PermissionDenied => ProfinetError::Privilege,
-            _ => LocalError::new("raw Ethernet socket", error).into(),
+            _ => LocalError::new("cannot open a raw Ethernet socket", error).into(),
         };
         let Card::Real(link) = &self.card else { return Err(ProfinetError::Ended) };
         let protocol = Protocol::from(i32::from(ether_type.to_be()));

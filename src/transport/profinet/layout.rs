@@ -1,4 +1,4 @@
-//! Module layout of a device, and the position of its data in cyclic frames.
+//! Module layout of a device, and the positions of its data in cyclic frames.
 
 use std::fmt;
 use std::str::FromStr;
@@ -10,7 +10,7 @@ use super::wire::connect::{DataDescription, ExpectedModule, ExpectedSubmodule, M
 const SHORTEST: u16 = 40;
 /// Maximum data length of a frame.
 const LONGEST: u16 = 1440;
-/// Limit of submodules, which limits the size of Connect.
+/// Maximum number of submodules, because they increase the size of Connect.
 const MOST: usize = 64;
 
 /// A submodule and its data.
@@ -32,8 +32,8 @@ pub struct Submodule {
 
 /// Submodules of a device, sorted by slot and subslot.
 ///
-/// Text form: comma-separated `SLOT[.SUBSLOT]:MODULE[/SUBMODULE][:iBYTES][oBYTES]`, such as
-/// `0:1,0.0x8000:1/0x8000,1:0x101:i48,2:0x102:o48`. The default for subslot and submodule is 1.
+/// The text form is a comma-separated list of `SLOT[.SUBSLOT]:MODULE[/SUBMODULE][:iBYTES][oBYTES]`, for example
+/// `0:1,0.0x8000:1/0x8000,1:0x101:i48,2:0x102:o48`. The default of subslot and submodule is 1.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct Layout(Vec<Submodule>);
 
@@ -46,25 +46,25 @@ pub enum Direction {
     Output,
 }
 
-/// Positions in the frames of one direction.
+/// Positions of the data in the frames of one direction.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct FrameLayout {
-    /// Data objects with their lengths. Each is followed by its provider status.
+    /// Data objects with their lengths. A provider status follows each data object.
     pub objects: Vec<(Offset, u16)>,
-    /// Consumer statuses.
+    /// Positions of the consumer statuses.
     pub consumers: Vec<Offset>,
     /// Total length with padding.
     pub length: u16,
 }
 
 impl Layout {
-    /// Creates a layout; sorts the submodules.
+    /// Creates a layout, and sorts the submodules.
     ///
     /// # Errors
-    /// Two submodules have the same place, a slot has two modules, or the data does not fit a frame.
+    /// Two submodules have the same slot and subslot, a slot has two modules, or the data does not fit into a frame.
     pub fn new(mut submodules: Vec<Submodule>) -> Result<Self, String> {
         if submodules.is_empty() || submodules.len() > MOST {
-            return Err(format!("a layout has 1 to {MOST} submodules, not {}", submodules.len()));
+            return Err(format!("a layout must have 1 to {MOST} submodules, not {}", submodules.len()));
         }
         submodules.sort_by_key(|submodule| (submodule.slot, submodule.subslot));
         for pair in submodules.windows(2) {
@@ -85,7 +85,8 @@ impl Layout {
         Ok(layout)
     }
 
-    /// Usual layout: an access point without data, 48 bytes of input in slot 1, 48 bytes of output in slot 2.
+    /// Returns the usual layout: an access point without data, 48 bytes of input in slot 1, 48 bytes of output in slot
+    /// 2.
     pub fn two_modules(input: u32, output: u32) -> Self {
         let head = |subslot, ident| Submodule { slot: 0, subslot, module: 1, ident, input: 0, output: 0 };
         Self(vec![
@@ -97,7 +98,7 @@ impl Layout {
         ])
     }
 
-    /// Submodules in order.
+    /// Submodules in the order of slot and subslot.
     pub fn submodules(&self) -> &[Submodule] {
         &self.0
     }
@@ -107,7 +108,8 @@ impl Layout {
         self.0.iter().map(|submodule| usize::from(submodule.length(direction))).sum()
     }
 
-    /// Positions in frames of a direction: all data objects with their provider status, then all consumer statuses.
+    /// Returns the positions in the frames of a direction. All data objects with their provider statuses come first,
+    /// then all consumer statuses.
     pub fn frame(&self, direction: Direction) -> FrameLayout {
         let (mut frame, end) = self.place(direction);
         frame.length = u16::try_from(end).unwrap_or(LONGEST).max(SHORTEST);
@@ -117,7 +119,7 @@ impl Layout {
     fn place(&self, direction: Direction) -> (FrameLayout, usize) {
         let mut frame = FrameLayout::default();
         let mut at = 0;
-        // Cannot overflow: `new` has checked the size.
+        // This cannot overflow, because `new` has checked the size.
         let offset = |submodule: &Submodule, at: usize| Offset {
             slot: submodule.slot,
             subslot: submodule.subslot,
@@ -135,7 +137,7 @@ impl Layout {
         (frame, at)
     }
 
-    /// Expected modules of Connect, one block per slot.
+    /// Returns the expected modules for Connect, one block per slot.
     pub fn expected(&self) -> Vec<ExpectedModule> {
         let mut modules: Vec<ExpectedModule> = Vec::new();
         for submodule in &self.0 {
@@ -150,13 +152,14 @@ impl Layout {
         modules
     }
 
-    /// Differences between this layout and the answer of a device. Modules without data can differ.
+    /// Returns the differences between this layout and the answer of a device. They may also concern modules without
+    /// data.
     pub fn mismatches(&self, modules: &[ModuleDiff]) -> Vec<ModuleMismatch> {
         let mut mismatches = Vec::new();
         for module in modules {
             let expected = self.0.iter().find(|submodule| submodule.slot == module.slot);
             let expected = expected.map(|submodule| submodule.module);
-            // A substitute works like the expected module. A correct module can still have wrong submodules.
+            // A substitute module works like the expected module. A correct module may still have wrong submodules.
             if module.state < 2 {
                 let found = (module.state == 1).then_some(module.ident);
                 mismatches.push(ModuleMismatch { slot: module.slot, subslot: None, found, expected });
@@ -172,7 +175,7 @@ impl Layout {
         mismatches
     }
 
-    /// The submodule at a place.
+    /// The submodule in this slot and subslot.
     pub fn find(&self, slot: u16, subslot: u16) -> Option<&Submodule> {
         self.0.iter().find(|submodule| (submodule.slot, submodule.subslot) == (slot, subslot))
     }
@@ -190,7 +193,7 @@ impl Direction {
 }
 
 impl Submodule {
-    /// Bytes of data in a direction.
+    /// Number of data bytes in a direction.
     pub const fn length(&self, direction: Direction) -> u16 {
         match direction {
             Direction::Input => self.input,
@@ -198,7 +201,8 @@ impl Submodule {
         }
     }
 
-    /// Whether frames of this direction contain its data, or its status if it has no data.
+    /// Whether frames of this direction contain the data of this submodule. A submodule without data has its status in
+    /// the input frames.
     pub const fn provides(&self, direction: Direction) -> bool {
         match direction {
             Direction::Input => self.input > 0 || self.output == 0,
@@ -218,7 +222,7 @@ impl Submodule {
     }
 }
 
-/// A number, decimal or with `0x`.
+/// Parses a decimal number, or a hexadecimal number with `0x`.
 fn number(text: &str) -> Option<u32> {
     match text.strip_prefix("0x") {
         Some(digits) if !digits.starts_with('+') => u32::from_str_radix(digits, 16).ok(),
@@ -311,7 +315,7 @@ impl fmt::Display for Submodule {
 mod tests {
     use super::*;
 
-    /// notes, worked example: positions in both data blocks.
+    /// Expected positions in both data blocks, from the worked example in the notes.
     #[test]
     fn places_in_frames_are_those_of_the_example() {
         let layout = Layout::two_modules(0x101, 0x102);

@@ -1,4 +1,4 @@
-//! PROFINET as a fieldbus of images: a connection as the IO controller of a device.
+//! PROFINET as a fieldbus of images: a connection in which armctl is the IO controller of a device.
 
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
@@ -12,7 +12,7 @@ use crate::image::cyclic::{Bus, Cyclic};
 use crate::image::tap::Tap;
 use crate::image::{Cause, Outputs, Sizes, Traffic};
 
-/// A connection as the IO controller of a device.
+/// A connection in which armctl is the IO controller of a device.
 pub type Link = Cyclic<Device>;
 
 /// The device of a [`Link`].
@@ -23,7 +23,7 @@ pub struct Device {
 }
 
 impl Link {
-    /// Connects over an interface. All connections of a process share its sockets.
+    /// Connects over an interface. All connections of a process share the sockets of the interface.
     pub async fn open(interface: &str, settings: Settings, tap: Tap) -> Result<Self, ProfinetError> {
         let size = |direction| settings.layout.size(direction);
         let sizes = Sizes { output: size(Direction::Output), input: size(Direction::Input) };
@@ -47,7 +47,7 @@ impl Bus for Device {
 
     fn loss(&self, view: View) -> (Cause, Outputs) {
         let outputs = match view.trouble {
-            // The device receives the resting image instead.
+            // In these cases, the device no longer uses the last image.
             Some(ProfinetError::Unusable(_) | ProfinetError::Aborted(_)) => Outputs::Released,
             _ => Outputs::ReleasedWithin(self.settings.watchdog_time()),
         };

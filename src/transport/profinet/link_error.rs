@@ -1,9 +1,9 @@
-//! Conversion of PROFINET errors to [`LinkError`]: cause, advice, and URL options that can be wrong.
+//! Conversion of PROFINET errors to [`LinkError`]: cause, advice, and URL options that may be wrong.
 
 use super::error::ProfinetError;
 use crate::image::{Cause, LinkError};
 
-/// Advice for the Linux capability that raw Ethernet needs.
+/// Advice to get the Linux capability that raw Ethernet needs.
 const PRIVILEGE: &str = "run `sudo setcap cap_net_raw+ep $(command -v armctl)`, or run armctl as root";
 /// URL options for the modules of a device.
 const MODULES: &[&str] = &["layout", "gsdml"];
@@ -17,7 +17,7 @@ impl From<ProfinetError> for LinkError {
         let cause = Cause { code, ..Cause::new(&error) };
         match error {
             E::NotFound { .. } => Self::Silent(cause.advice(
-                "check the name with `armctl robots discover`; check the cable, and that the unit of the controller \
+                "check the name with `armctl robots discover`; check the cable; check that the unit of the controller \
                  is on",
             )),
             E::Duplicate { .. } => Self::Silent(cause.advice("set another name on one of the two stations")),
@@ -35,8 +35,8 @@ impl From<ProfinetError> for LinkError {
                 ))
             }
             E::Refused { status, .. } if status.is_owned() => Self::Owned(cause.advice(
-                "a device sends its signals only to its controller. Stop that controller first: remove the device \
-                 from the PLC's project, or close the session of the device",
+                "stop that controller first: remove the device from the PLC's project, or close the session of the \
+                 device. A device sends its signals only to its controller",
             )),
             E::Refused { .. } => Self::Refused(cause.options(MODULES)),
             E::Rejected { .. } => Self::Refused(cause),
@@ -47,7 +47,7 @@ impl From<ProfinetError> for LinkError {
             E::NeverReady { .. } => Self::Refused(
                 cause
                     .options(MODULES)
-                    .advice("check the data lengths and the parameters: a wrong one usually causes this"),
+                    .advice("check the data lengths and the parameters: a wrong value usually causes this error"),
             ),
             E::NoData { .. } | E::Unusable(_) => Self::Refused(cause.advice("check the state of the controller")),
             E::Silent { .. } | E::Aborted(_) | E::Plugged { .. } | E::AlarmUnanswered => {
@@ -55,7 +55,7 @@ impl From<ProfinetError> for LinkError {
             }
             E::Impossible(_) => Self::Settings(cause),
             E::NoInterface { present, .. } if present.is_empty() => {
-                Self::Settings(cause.advice("this computer has no Ethernet interface"))
+                Self::Settings(cause.advice("add an Ethernet interface: this computer has none"))
             }
             E::NoInterface { present, .. } => {
                 Self::Settings(cause.advice(format!("use one of {}", present.join(", "))))

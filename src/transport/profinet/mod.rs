@@ -1,6 +1,6 @@
 //! PROFINET IO controller and simulated device: cyclic images in Ethernet frames, RPC calls over UDP.
 //!
-//! This module knows submodules and bytes, but no robots.
+//! This module handles submodules and bytes, and nothing specific to robots.
 
 use std::time::Duration;
 
@@ -30,5 +30,5 @@ mod sockets;
 mod tests;
 pub mod wire;
 
-/// A moment, as time since an origin that the driver chooses. It never runs backwards.
+/// A moment, as the time since an origin that the driver selects. The time never decreases.
 pub type Now = Duration;

@@ -1,7 +1,7 @@
 //! Driver for any number of connections on one interface: one raw socket, one UDP socket, one thread.
 //!
-//! Image exchange does not depend on the rest of the program: a prompt that waits for input must not stop a robot. The
-//! thread waits for sockets and clock at once, with a resolution below 1 ms.
+//! The exchange of images does not depend on the rest of the program: a prompt that waits for input must not stop a
+//! robot. The thread waits for sockets and clock at the same time, with a resolution below 1 ms.
 
 use std::collections::BTreeMap;
 use std::net::SocketAddrV4;
@@ -27,8 +27,8 @@ use super::wire::rpc;
 use crate::image::tap::{Passage, Tap};
 use crate::local::LocalError;
 
-/// Owner of connections on one interface. Clones are cheap. Its thread stops with the last clone and the last
-/// connection.
+/// Network interface with its connections. Clones are cheap and share the connections. The thread of the interface
+/// stops with the last clone and the last connection.
 #[derive(Debug, Clone)]
 pub struct Network {
     owner: Arc<Owner>,
@@ -61,7 +61,7 @@ struct Slot {
 }
 
 impl Network {
-    /// The shared network of this process on an interface.
+    /// Returns the network of this process on an interface. All callers share it.
     pub fn shared(interface: &str) -> Result<Self, ProfinetError> {
         static SHARED: Mutex<Vec<Weak<Owner>>> = Mutex::new(Vec::new());
         let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -87,15 +87,17 @@ impl Network {
         });
         let runs = Arc::clone(&inner);
         let thread = std::thread::Builder::new().name("profinet".to_owned());
-        let thread =
-            thread.spawn(move || runs.run()).map_err(|error| LocalError::new("thread of the connections", &error))?;
+        let thread = thread
+            .spawn(move || runs.run())
+            .map_err(|error| LocalError::new("cannot start the thread of the connections", &error))?;
         Ok(Self { owner: Arc::new(Owner { name: interface.name.clone(), inner, thread: Some(thread) }) })
     }
 
-    /// Opens a connection. It stays open until it is closed or dropped.
+    /// Opens a connection. The connection stays open until it is closed or dropped.
     ///
     /// # Errors
-    /// The device is not found, does not answer or refuses. A later loss is not an error but a state of the view.
+    /// The device is not found, does not answer or refuses. If the connection is lost later, this is not an error but a
+    /// state of the view.
     pub async fn open(&self, settings: Settings, tap: Tap) -> Result<Connection, ProfinetError> {
         let inner = &self.owner.inner;
         let core = Controller::new(inner.here, settings, Arc::clone(&inner.numbers))?;
@@ -114,13 +116,13 @@ impl Drop for Owner {
         self.inner.is_over.store(true, Ordering::SeqCst);
         self.inner.sockets.ring();
         if let Some(thread) = self.thread.take() {
-            // A panic of the thread was already printed.
+            // If the thread panicked, the panic was already printed.
             let _ = thread.join();
         }
     }
 }
 
-/// An open connection. Dropping it closes it, if the process lives long enough.
+/// An open connection. A dropped connection is closed, unless the process ends before that.
 #[derive(Debug)]
 pub struct Connection {
     owner: Arc<Owner>,
@@ -134,7 +136,7 @@ impl Connection {
         self.views.now()
     }
 
-    /// Current counters. The view has those of its last change.
+    /// Current counters. The counters in the view are those of its last change.
     pub fn statistics(&self) -> Statistics {
         self.with(|core, _| core.statistics()).unwrap_or_else(|| self.view().statistics)
     }
@@ -144,7 +146,7 @@ impl Connection {
         self.views.until(condition).await
     }
 
-    /// Sends this image from the next cycle on; see [`Controller::set_image`].
+    /// Sends this image, starting with the next cycle; see [`Controller::set_image`].
     pub fn set_image(&self, generation: u32, image: &[u8]) -> Result<u64, ProfinetError> {
         self.with(|core, _| core.set_image(generation, image)).unwrap_or(Err(ProfinetError::Ended))
     }
@@ -154,7 +156,8 @@ impl Connection {
         self.with(|core, _| core.take_alarm()).flatten()
     }
 
-    /// Closes the connection. Frames continue until the device answers the release. Fails without an answer.
+    /// Closes the connection. Cyclic frames continue until the device answers the release. Fails if the device does not
+    /// answer.
     pub async fn close(mut self) -> Result<(), ProfinetError> {
         let before = self.view().trouble;
         self.with(Controller::close);
@@ -186,7 +189,7 @@ impl Inner {
         self.slots.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Thread body: does what is due, then waits for the next time, frame or datagram.
+    /// Body of the thread. Executes the work that is due, then waits for the next deadline, frame or datagram.
     fn run(&self) {
         let mut buffer = vec![0; BUFFER];
         loop {
@@ -199,7 +202,7 @@ impl Inner {
         }
     }
 
-    /// Does what is due. Returns the time of the next call.
+    /// Executes the work that is due. Returns the time of the next call.
     fn turn(&self) -> Option<Now> {
         let mut slots = self.slots();
         let now = self.now();
@@ -217,7 +220,7 @@ impl Inner {
                 Action::Frame(bytes) => {
                     slot.tap.pass(|| Passage::Frame(bytes.clone()));
                     if let Err(error) = self.sockets.send_frame(&bytes) {
-                        slot.core.failed(LocalError::new("sending a frame", &error).into());
+                        slot.core.failed(LocalError::new("cannot send a frame", &error).into());
                     }
                 }
                 Action::Datagram(to, bytes) => {
@@ -225,7 +228,7 @@ impl Inner {
                     let card = slot.core.card().unwrap_or_default();
                     slot.tap.pass(|| Passage::Frame(in_frame(self.here.mac, card, from, to, &bytes)));
                     if let Err(error) = self.sockets.send_datagram(to, &bytes) {
-                        slot.core.failed(LocalError::new("sending a call", &error).into());
+                        slot.core.failed(LocalError::new("cannot send a call", &error).into());
                     }
                 }
             }
@@ -258,14 +261,15 @@ impl Inner {
     }
 }
 
-/// Wraps a datagram into its Ethernet frame for a recording. The reader identifies connections by MAC address.
+/// Wraps a datagram into its Ethernet frame for a recording. The reader of the recording identifies connections by MAC
+/// address.
 pub(super) fn in_frame(source: Mac, destination: Mac, from: SocketAddrV4, to: SocketAddrV4, bytes: &[u8]) -> Vec<u8> {
     const HOPS: u8 = 64;
     let headers = PacketBuilder::ethernet2(source.0, destination.0)
         .ipv4(from.ip().octets(), to.ip().octets(), HOPS)
         .udp(from.port(), to.port());
     let mut frame = Vec::with_capacity(headers.size(bytes.len()));
-    // A datagram always fits a packet.
+    // An error is not possible: a datagram always fits into a packet.
     let _ = headers.write(&mut frame, bytes);
     frame
 }

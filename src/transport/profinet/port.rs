@@ -1,4 +1,4 @@
-//! Frames and RPC calls outside of connections: through a network card, or to a simulated device.
+//! Frames and RPC calls outside of connections. They go through a network card, or to a simulated device.
 
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::net::{SocketAddr, SocketAddrV4, UdpSocket};
@@ -20,14 +20,14 @@ use crate::local::LocalError;
 /// Buffer for a frame or datagram.
 const BUFFER: usize = 65_536;
 
-/// Sends and receives frames.
+/// Sender and receiver of Ethernet frames.
 #[derive(Debug)]
 pub(super) struct Frames {
     end: End<Socket>,
     tap: Tap,
 }
 
-/// Exchanges datagrams with one device.
+/// Sender and receiver of datagrams of one device.
 #[derive(Debug)]
 pub(super) struct Calls {
     end: End<UdpSocket>,
@@ -80,7 +80,7 @@ impl Frames {
             End::Simulated(network) => network.send_frame(frame),
             End::Socket(socket, _) => {
                 let mut socket = socket;
-                socket.write_all(frame).map_err(|error| LocalError::new("sending a frame", &error))?;
+                socket.write_all(frame).map_err(|error| LocalError::new("cannot send a frame", &error))?;
             }
         }
         Ok(())
@@ -100,7 +100,7 @@ impl Frames {
         Ok(None)
     }
 
-    /// Returns the next frame before `until`.
+    /// Returns the next frame that arrives before `until`.
     pub(super) fn next(&self, until: Now) -> Result<Option<Vec<u8>>, ProfinetError> {
         let came = self.take(until)?;
         if let Some(bytes) = &came {
@@ -121,7 +121,7 @@ impl Frames {
                 return Ok(None);
             }
             let wait = Timespec::try_from(left).ok();
-            // A signal ends the wait early, like a shorter timeout.
+            // A signal ends the wait early, as a shorter timeout would.
             let _ = poll(&mut [PollFd::new(source, PollFlags::IN)], wait.as_ref());
             match source.read(&mut buffer) {
                 Ok(length) => {
@@ -129,7 +129,7 @@ impl Frames {
                     return Ok(Some(buffer));
                 }
                 Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {}
-                Err(error) => return Err(LocalError::new("hearing frames", &error).into()),
+                Err(error) => return Err(LocalError::new("cannot receive frames", &error).into()),
             }
         }
     }
@@ -142,7 +142,7 @@ impl Calls {
             End::Simulated(network.clone())
         } else {
             let socket = UdpSocket::bind((interface.address()?.address, 0));
-            let socket = socket.map_err(|error| LocalError::new("UDP socket for calls", &error))?;
+            let socket = socket.map_err(|error| LocalError::new("cannot open a UDP socket for calls", &error))?;
             End::Socket(socket, Instant::now())
         };
         Ok(Self { end, tap: interface.tap.clone(), cards: (interface.mac, mac), target })
@@ -158,13 +158,13 @@ impl Calls {
             End::Simulated(network) => network.send_datagram(self.target, bytes),
             End::Socket(socket, _) => {
                 let sent = socket.send_to(bytes, self.target);
-                sent.map_err(|error| LocalError::new("calling the device", &error))?;
+                sent.map_err(|error| LocalError::new("cannot call the device", &error))?;
             }
         }
         Ok(())
     }
 
-    /// Returns the next datagram of the device before `until`.
+    /// Returns the next datagram of the device that arrives before `until`.
     pub(super) fn hear(&self, until: Now) -> Result<Option<Vec<u8>>, ProfinetError> {
         let (bytes, from) = match &self.end {
             End::Simulated(network) => match network.hear_datagram(until) {
@@ -174,9 +174,9 @@ impl Calls {
             End::Socket(socket, start) => {
                 let wait = until.saturating_sub(start.elapsed()).max(Duration::from_millis(1));
                 let timed = socket.set_read_timeout(Some(wait));
-                timed.map_err(|error| LocalError::new("calling the device", &error))?;
+                timed.map_err(|error| LocalError::new("cannot call the device", &error))?;
                 let mut buffer = vec![0; BUFFER];
-                // A timeout or a signal; the caller checks the time.
+                // This is a timeout or a signal; the caller checks the time.
                 let Ok((length, SocketAddr::V4(from))) = socket.recv_from(&mut buffer) else { return Ok(None) };
                 buffer.truncate(length);
                 (buffer, from)

@@ -1,4 +1,4 @@
-//! Connection settings.
+//! Settings of a connection.
 
 use std::fmt;
 use std::time::Duration;
@@ -9,11 +9,11 @@ use super::wire::Mac;
 use super::wire::dcp::{self, IpSuite};
 use super::wire::record::Parameter;
 
-/// Send clock of 1 ms in units of 31.25 us; every device supports it.
+/// Send clock of 1 ms, in units of 31.25 us. Every device supports this send clock.
 pub const SEND_CLOCK: u16 = 32;
 /// Longest watchdog time.
 pub const LONGEST_WATCHDOG: Duration = Duration::from_millis(1920);
-/// Minimum watchdog in cycles: a single lost frame must not end a connection.
+/// Minimum watchdog time in cycles. A single lost frame must not end a connection.
 const FEWEST_CYCLES: u128 = 3;
 
 /// Identification of a device.
@@ -37,10 +37,10 @@ impl fmt::Display for Station {
 /// Startup mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Startup {
-    /// Advanced, in devices since 2010.
+    /// Advanced startup. Devices built since 2010 support it.
     #[default]
     Advanced,
-    /// Legacy, in older devices.
+    /// Legacy startup, for older devices.
     Legacy,
 }
 
@@ -49,7 +49,7 @@ pub enum Startup {
 pub struct Settings {
     /// The device.
     pub station: Station,
-    /// IP address to assign, if the device has another one.
+    /// IP address to assign to the device, if the device has another address.
     pub ip: Option<IpSuite>,
     /// Module layout.
     pub layout: Layout,
@@ -59,18 +59,18 @@ pub struct Settings {
     pub cycle: Duration,
     /// Time without a frame after which the connection is lost, in both directions.
     pub watchdog: Duration,
-    /// Parameter records to write at the start.
+    /// Parameter records that the controller writes at the start.
     pub parameters: Vec<Parameter>,
     /// First image after every opening.
     pub resting: Vec<u8>,
-    /// Number of bytes at the start of both images that have swapped byte pairs on the network.
+    /// Number of bytes, from the start of both images, whose pairs are swapped on the network.
     pub swapped: usize,
     /// Name of this controller.
     pub name: String,
 }
 
 impl Settings {
-    /// Default settings: resting image of zeros, 16 ms cycle, 320 ms watchdog.
+    /// Creates default settings: resting image of zeros, 16 ms cycle, 320 ms watchdog.
     pub fn new(station: Station, layout: Layout) -> Self {
         let resting = vec![0; layout.size(Direction::Output)];
         Self {
@@ -119,7 +119,10 @@ impl Settings {
         }
         let size = self.layout.size(Direction::Output);
         if self.resting.len() != size {
-            return wrong(format!("the resting image has {} bytes, the output image {size}", self.resting.len()));
+            return wrong(format!(
+                "the resting image has {} bytes, but the output image has {size}",
+                self.resting.len()
+            ));
         }
         if self.swapped % 2 == 1 {
             return wrong("the number of bytes must be even".to_owned());
@@ -130,14 +133,14 @@ impl Settings {
         Ok(())
     }
 
-    /// Cycle time in send clocks (reduction ratio).
+    /// Cycle time as a number of send clocks (reduction ratio).
     pub fn ratio(&self) -> Option<u16> {
         let millis = u16::try_from(self.cycle.as_millis()).ok()?;
         let is_whole = self.cycle == Duration::from_millis(millis.into());
         (is_whole && millis.is_power_of_two() && millis <= 512).then_some(millis)
     }
 
-    /// Watchdog in cycles, rounded up within the limit.
+    /// Watchdog time in cycles. It is rounded up, but not above the limit.
     pub fn watchdog_factor(&self) -> u16 {
         let cycle = self.cycle.as_nanos().max(1);
         let up = self.watchdog.as_nanos().div_ceil(cycle);
@@ -145,13 +148,13 @@ impl Settings {
         u16::try_from(up.min(most)).unwrap_or(u16::MAX)
     }
 
-    /// Actual watchdog time.
+    /// Watchdog time that results from the rounding.
     pub fn watchdog_time(&self) -> Duration {
         self.cycle * u32::from(self.watchdog_factor())
     }
 }
 
-/// Swaps byte pairs at the start of an image.
+/// Swaps the byte pairs in the first `count` bytes of an image.
 pub fn swap(image: &mut [u8], count: usize) {
     let count = count.min(image.len());
     for pair in image[..count].chunks_exact_mut(2) {

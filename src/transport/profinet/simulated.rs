@@ -1,5 +1,5 @@
-//! In-process network with one device, this computer, and its own virtual clock. Requests to the device are answered at
-//! once. An open connection follows the clock of the program.
+//! In-process network with one device, this computer, and a virtual clock. Requests to the device are answered at once.
+//! An open connection follows the clock of the program.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt;
@@ -27,22 +27,22 @@ use crate::image::view::State;
 pub(super) const HERE: Here = Here { mac: Mac([2, 0, 0, 0, 0, 1]), ip: suite(1) };
 /// Addresses of the device.
 const THERE: (Mac, IpSuite) = (Mac([2, 0, 0, 0, 0, 2]), suite(2));
-/// Limit of virtual time for opening or closing.
+/// Maximum virtual time for opening or closing a connection.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Documentation addresses, which no real network has (RFC 5737).
+/// Returns a documentation address. No real network has such addresses (RFC 5737).
 const fn suite(host: u8) -> IpSuite {
     let address = Ipv4Addr::new(192, 0, 2, host);
     IpSuite { address, mask: Ipv4Addr::new(255, 255, 255, 0), gateway: Ipv4Addr::UNSPECIFIED }
 }
 
-/// The device at the other end of the cable.
+/// The device on the network.
 trait Station: Send {
     fn frame(&mut self, now: Now, bytes: &[u8]);
     fn datagram(&mut self, now: Now, from: SocketAddrV4, bytes: &[u8]);
     fn poll(&mut self, now: Now) -> Option<Action>;
     fn wake(&self) -> Option<Now>;
-    /// Sender address of its answers, if different.
+    /// Sender address of the answers of the device, if they have another address.
     fn answers_from(&self) -> Option<Ipv4Addr>;
 }
 
@@ -68,7 +68,7 @@ impl<A: Application + Send> Station for Device<A> {
     }
 }
 
-/// An in-process network. It exists while a clone exists.
+/// An in-process network. It exists as long as a clone exists.
 #[derive(Debug, Clone)]
 pub struct Network {
     name: String,
@@ -78,20 +78,20 @@ pub struct Network {
 struct Inner {
     now: Now,
     station: Box<dyn Station>,
-    /// Frames from the station that were not read yet.
+    /// Frames from the device that were not read yet.
     frames: VecDeque<Vec<u8>>,
     datagrams: VecDeque<(SocketAddrV4, Vec<u8>)>,
-    /// Fault injection: to the station, from the station.
+    /// Fault injection for traffic to the device and from the device.
     faults: Option<(Faults, Faults)>,
-    /// Items in transit, by arrival time and sequence.
+    /// Frames and datagrams in transit, by arrival time and sequence number.
     on_the_way: BTreeMap<(Now, u64), (Way, Vec<u8>)>,
     sent: u64,
 }
 
-/// Limit of items in transit.
+/// Maximum number of frames and datagrams in transit.
 const MOST_ON_THE_WAY: usize = 10_000;
 
-/// Type and direction of an item.
+/// Type and direction of a frame or datagram.
 #[derive(Debug, Clone, Copy)]
 enum Way {
     FrameThere,
@@ -114,13 +114,14 @@ fn all() -> MutexGuard<'static, Vec<(String, Weak<Mutex<Inner>>)>> {
 }
 
 impl Network {
-    /// Creates a network with a device, which gets its MAC and IP address, and with faults in both directions.
+    /// Creates a network with a device. The device gets its MAC and IP address, and the faults apply to both
+    /// directions.
     pub fn new<A: Application + Send + 'static>(
         device: impl FnOnce(Mac, IpSuite) -> Device<A>,
         faults: Option<FaultSpec>,
     ) -> Self {
         static COUNT: AtomicU32 = AtomicU32::new(1);
-        // Linux interface names contain no colon.
+        // A Linux interface cannot have this name, because its name cannot contain a colon.
         let name = format!("sim:{}", COUNT.fetch_add(1, Ordering::Relaxed));
         let station = Box::new(device(THERE.0, THERE.1));
         let inner = Inner {
@@ -184,19 +185,19 @@ impl Network {
         }
     }
 
-    /// Returns the next frame before `until`.
+    /// Returns the next frame that arrives before `until`.
     pub(super) fn hear_frame(&self, until: Now) -> Option<Vec<u8>> {
         self.inner().hear(until, |inner| inner.frames.pop_front())
     }
 
-    /// Returns the next datagram before `until`.
+    /// Returns the next datagram that arrives before `until`.
     pub(super) fn hear_datagram(&self, until: Now) -> Option<(SocketAddrV4, Vec<u8>)> {
         self.inner().hear(until, |inner| inner.datagrams.pop_front())
     }
 }
 
 impl Inner {
-    /// Sends an item with fault injection.
+    /// Sends a frame or datagram, with fault injection.
     fn send(&mut self, way: Way, bytes: &[u8]) {
         let Some((there, back)) = &mut self.faults else { return self.arrive(way, bytes) };
         let faults = if matches!(way, Way::FrameThere | Way::DatagramThere) { there } else { back };
@@ -217,7 +218,7 @@ impl Inner {
         }
     }
 
-    /// Delivers all due items, and lets the station do its work.
+    /// Delivers all frames and datagrams that are due, and lets the device do its work.
     fn settle(&mut self) {
         loop {
             if let Some(first) = self.on_the_way.first_entry().filter(|first| first.key().0 <= self.now) {
@@ -263,12 +264,12 @@ impl Inner {
 pub struct Link {
     controller: Controller,
     network: Network,
-    /// Virtual time at the start of the program's clock.
+    /// Virtual time at which the clock of the program started.
     start: Now,
 }
 
 impl Link {
-    /// Does what is due. Returns the time of the next call.
+    /// Executes the work that is due. Returns the time of the next call.
     fn settle(&mut self, inner: &mut Inner) -> Option<Now> {
         let controller = &mut self.controller;
         loop {
@@ -291,7 +292,7 @@ impl Link {
         }
     }
 
-    /// Runs until `until`, or until the condition is true.
+    /// Runs the connection until `until`, or until the condition is true.
     fn run(&mut self, until: Now, is_enough: impl Fn(&Controller) -> bool) {
         let network = self.network.clone();
         let mut inner = network.inner();
@@ -323,9 +324,10 @@ impl ImagePeer for Link {
         };
         self.run(self.start + now, |_| false);
         let generation = self.controller.view().generation;
-        // An image from before a loss is not sent.
+        // After a loss, the image is too old and is not sent.
         if let Ok(change) = self.controller.set_image(generation, image) {
-            // The image was sent when this returns, so the virtual clock can be a cycle ahead.
+            // This function must return only after the image was sent. The virtual clock may therefore advance by a
+            // cycle.
             let (before, until) = (self.network.now(), self.network.now() + self.controller.settings().watchdog);
             self.run(until, |controller| controller.view().sent >= change || controller.view().state != State::Open);
             self.start += self.network.now().saturating_sub(before);

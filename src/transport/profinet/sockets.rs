@@ -1,4 +1,4 @@
-//! Sockets of one interface, for a thread that waits for frames, datagrams and a timeout.
+//! Sockets of one interface, for a thread that waits for frames, datagrams and a timeout at the same time.
 
 use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::net::{SocketAddr, SocketAddrV4, UdpSocket};
@@ -15,27 +15,28 @@ use super::wire::frame::ETHER_TYPE;
 use super::wire::rpc;
 use crate::local::LocalError;
 
-/// Limit of frames or datagrams handled before the clock is checked.
+/// Maximum number of frames or datagrams that are handled before the clock is checked.
 const AT_ONCE: usize = 64;
-/// Required buffer size for the longest datagram.
+/// Buffer size that the longest datagram requires.
 pub(super) const BUFFER: usize = 65_536;
 
 #[derive(Debug)]
 pub(super) struct Sockets {
     raw: Socket,
     udp: UdpSocket,
-    /// A byte written here wakes the thread.
+    /// Write end of a socket pair: a byte written here wakes the thread.
     bell: UnixStream,
     heard: UnixStream,
 }
 
 impl Sockets {
-    /// Opens the sockets of an interface. Also returns its IP address.
+    /// Opens the sockets of an interface. Returns them with the IP address of the interface.
     pub fn open(interface: &Interface) -> Result<(Self, IpSuite), ProfinetError> {
         let raw = interface.raw_socket(ETHER_TYPE)?;
         interface.check()?;
         let ip = interface.address()?;
-        let failed = |error: &io::Error| ProfinetError::from(LocalError::new("UDP socket for calls", error));
+        let failed =
+            |error: &io::Error| ProfinetError::from(LocalError::new("cannot open a UDP socket for calls", error));
         let udp = UdpSocket::bind((ip.address, rpc::PORT)).map_err(|error| match error.kind() {
             ErrorKind::AddrInUse => ProfinetError::PortTaken { address: ip.address },
             _ => failed(&error),
@@ -58,7 +59,7 @@ impl Sockets {
 
     /// Wakes the thread.
     pub fn ring(&self) {
-        // If the buffer is full, the thread is awake already.
+        // If the buffer is full, an earlier byte already wakes the thread.
         let _ = (&self.bell).write(&[0]);
     }
 
@@ -71,7 +72,7 @@ impl Sockets {
             PollFd::new(&self.heard, PollFlags::IN),
         ];
         if poll(&mut sources, most.as_ref()).is_err_and(|error| error != rustix::io::Errno::INTR) {
-            // Avoids a busy loop.
+            // After an error, this pause avoids a busy loop.
             std::thread::park_timeout(Duration::from_millis(1));
         }
         let mut rings = [0; 64];
@@ -88,7 +89,8 @@ impl Sockets {
             match self.udp.recv_from(buffer) {
                 Ok((length, SocketAddr::V4(from))) => datagram(from, &buffer[..length]),
                 Ok(_) => {}
-                // The error concerns one host ("port unreachable" after an earlier call). The others are not affected.
+                // This error concerns one host ("port unreachable" after an earlier call). The other hosts are not
+                // affected.
                 Err(error) if error.kind() == ErrorKind::ConnectionRefused => {}
                 Err(_) => break,
             }

@@ -1,4 +1,4 @@
-//! Session client: finds the session of a device, and uses its connection.
+//! Session client: finds the session of a device, and uses the connection of the session.
 
 use std::collections::VecDeque;
 use std::io;
@@ -15,16 +15,16 @@ use super::wire::{
     Change, Control, Frame, Hello, Images, Peer, Purpose, Reader, Status, VERSION, Welcome, WireError, shorten,
 };
 
-/// Reason for the end of a session without a message: its process was killed or crashed.
+/// Reason for the end of a session without a message: the process of the session was killed or crashed.
 const HOST_ENDED: &str = "the process of the session has ended";
 
-/// Time limit for answers that the host gives without asking the device.
+/// Time limit for answers that the host gives without a request to the device.
 const ANSWERS_WITHIN: Duration = Duration::from_secs(3);
 
 /// Reason why an existing session cannot be used.
 #[derive(Debug, Error)]
 pub enum AttachError {
-    /// Its folder or socket is not safe, or cannot be read.
+    /// The folder or socket of the session is not safe, or cannot be read.
     #[error("{0}")]
     Location(#[from] LocationError),
     /// The session does not answer.
@@ -33,7 +33,7 @@ pub enum AttachError {
     /// The session refuses this client.
     #[error("{0}")]
     Refused(String),
-    /// The answer is not that of a session of this version.
+    /// The answer does not come from a session of this version.
     #[error("the answer is not from a session of this version of armctl")]
     WrongVersion,
     /// The socket failed.
@@ -50,30 +50,30 @@ impl From<WireError> for AttachError {
     }
 }
 
-/// Result of looking for a session.
+/// Result of an attempt to attach to a session.
 #[derive(Debug)]
 pub enum AttachResult {
-    /// No session.
+    /// There is no session.
     Nothing,
-    /// The socket of a dead session.
+    /// There is a socket, but its session has ended.
     Dead,
-    /// A session, which this client is now attached to.
+    /// There is a session, and this client is now attached to it.
     Session(Box<Attached>),
 }
 
-/// Reason why something is not possible now.
+/// Reason why a client cannot use the session at the moment.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum SessionBusy {
-    /// The session has ended, with the reason.
+    /// The session has ended for this reason.
     #[error("{0}")]
     Ended(String),
-    /// Another client has the line, and did not release it in time.
+    /// Another client owns the line, and did not release it in time.
     #[error("another client uses the connection")]
     Busy(Option<Peer>),
     /// Another client moves the robot.
     #[error("another client moves the robot; nothing was sent")]
     Moved(Peer),
-    /// The robot is read-only, so the session passes only reads and stops.
+    /// The robot is read-only. The session passes on only reads and stops.
     #[error("the robot is read-only, so its session sent nothing")]
     ReadOnly,
 }
@@ -82,13 +82,13 @@ impl SessionBusy {
     /// Error kind that marks a refusal by the host. No socket or port uses it.
     pub(super) const DENIED: io::ErrorKind = io::ErrorKind::ReadOnlyFilesystem;
 
-    /// Converts an I/O error of a session link; `None` if it is not a refusal by the host.
+    /// Converts an I/O error of a session link. `None` if the error is not a refusal by the host.
     pub fn of(error: &io::Error) -> Option<Self> {
         (error.kind() == Self::DENIED).then_some(Self::ReadOnly)
     }
 }
 
-/// Finds the session of this key, and attaches to it.
+/// Finds the session with this key, and attaches to it.
 pub async fn attach(key: &str, command: &str, purpose: Purpose) -> Result<AttachResult, AttachError> {
     match SessionFolder::find()? {
         Some(folder) => attach_at(&folder.location(key), key, command, purpose).await,
@@ -115,7 +115,8 @@ pub async fn attach_at(
         }
         Control::Refused(why) => Err(AttachError::Refused(why)),
         Control::Ended(_) => {
-            // The session closes its socket after the link. Wait for it, so that the link is free for the next one.
+            // The session closes this socket only after it has closed the link. After this wait, the link is free for
+            // another session.
             let closed = async { while let Ok(Some(_)) = connection.reader.next().await {} };
             timeout_at(Instant::now() + ANSWERS_WITHIN, closed).await.map_err(|_| AttachError::Silent)?;
             Ok(AttachResult::Nothing)
@@ -124,7 +125,7 @@ pub async fn attach_at(
     }
 }
 
-/// Status of the session at a location; `None` if there is none.
+/// Returns the status of the session at a location; `None` if there is no session.
 pub async fn status(location: &SessionPath) -> Result<Option<Status>, AttachError> {
     let Some(mut connection) = Connection::connect(location).await? else { return Ok(None) };
     connection.send_control(Control::Ask);
@@ -136,7 +137,7 @@ pub async fn status(location: &SessionPath) -> Result<Option<Status>, AttachErro
     }
 }
 
-/// Closes the session at a location, and waits for it; `false` if there is none.
+/// Closes the session at a location, and waits until it has ended. Returns `false` if there is no session.
 ///
 /// # Errors
 /// [`AttachError::Refused`] during a motion, unless `force`.
@@ -148,7 +149,7 @@ pub async fn close(location: &SessionPath, force: bool) -> Result<bool, AttachEr
         Control::Refused(why) => return Err(AttachError::Refused(why)),
         _ => return Err(AttachError::WrongVersion),
     }
-    // The host closes the connection last. Earlier frames do not matter.
+    // The host closes the connection when the session has ended. Frames before that are ignored.
     while let Ok(Some(_)) = connection.reader.next().await {}
     Ok(true)
 }
@@ -170,14 +171,14 @@ impl Connection {
         Ok(ends.map(|(read, write)| Self { reader: Reader::new(read), writer: write, unsent: Vec::new() }))
     }
 
-    /// Queues a frame, and sends as much as the socket accepts now.
+    /// Queues a frame, and sends as many bytes as the socket accepts now.
     fn send_control(&mut self, control: Control) {
         self.send_frame(&Frame::Control(control));
     }
 
     fn send_frame(&mut self, frame: &Frame) {
         frame.emit(&mut self.unsent);
-        // The next read reports a failed socket.
+        // An error is ignored here: the next read reports it.
         if let Ok(sent) = self.writer.try_write(&self.unsent) {
             self.unsent.drain(..sent);
         }
@@ -195,13 +196,13 @@ impl Connection {
         Ok(())
     }
 
-    /// Waits for the next frame; `None` after the host has closed. Cancel safe.
+    /// Waits for the next frame. Returns `None` after the host has closed the connection. Cancel safe.
     async fn next(&mut self) -> Result<Option<Frame>, WireError> {
         self.flush().await?;
         self.reader.next().await
     }
 
-    /// Waits for the immediate answer of the host.
+    /// Waits for the answer of the host. The host answers at once.
     async fn answer(&mut self) -> Result<Control, AttachError> {
         match timeout_at(Instant::now() + ANSWERS_WITHIN, self.next()).await {
             Err(_) => Err(AttachError::Silent),
@@ -226,9 +227,9 @@ fn is_gone(error: &WireError) -> bool {
 #[derive(Debug)]
 pub struct Attached {
     connection: Connection,
-    /// Frames that arrived while another one was expected.
+    /// Frames that arrived while the client waited for another frame.
     early_frames: VecDeque<Frame>,
-    /// Bytes of a frame that were not received yet.
+    /// Bytes of a frame that the caller has not received yet.
     rest: Vec<u8>,
     line: LineState,
     requests: u32,
@@ -236,15 +237,15 @@ pub struct Attached {
     ended: Option<String>,
     /// Whether [`Event::Lost`] has reported the end of the session.
     is_loss_reported: bool,
-    /// State of the session when this client attached.
+    /// State of the session when this client attached to it. Its image to the device is kept up to date.
     pub welcome: Welcome,
 }
 
-/// Ownership of the line.
+/// State of the line for this client. Only the owner of the line can transact with the device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum LineState {
     Free,
-    /// Requested.
+    /// The client has requested the line.
     Requested,
     Owned,
 }
@@ -267,22 +268,22 @@ impl Attached {
         }
     }
 
-    /// Reason for the end of the session, if it has ended.
+    /// Reason for the end of the session; `None` if it has not ended.
     pub fn ended(&self) -> Option<&str> {
         self.ended.as_deref()
     }
 
-    /// Whether this client has the line.
+    /// Whether this client owns the line.
     pub fn has_line(&self) -> bool {
         self.line == LineState::Owned
     }
 
-    /// Waits for the line until `until`. Cancel safe.
+    /// Waits until `until` for the line. Cancel safe.
     pub async fn acquire(&mut self, until: Instant) -> Result<(), SessionBusy> {
         self.acquire_channel(0, until).await
     }
 
-    /// Waits for one channel of the line. Other clients can have other channels at the same time.
+    /// Waits until `until` for one channel of the line. Other clients may own other channels at the same time.
     pub async fn acquire_channel(&mut self, channel: u8, until: Instant) -> Result<(), SessionBusy> {
         if self.line == LineState::Owned {
             return Ok(());
@@ -305,7 +306,7 @@ impl Attached {
             }
         }
         if self.images().is_none() {
-            // Earlier frames belong to earlier exchanges.
+            // Frames that arrived before belong to earlier exchanges.
             self.early_frames.clear();
             self.rest.clear();
         }
@@ -320,7 +321,7 @@ impl Attached {
         }
     }
 
-    /// Claims the right to move the robot.
+    /// Claims motion for this client: no other client of the session may then move the robot.
     pub async fn claim_motion(&mut self) -> Result<(), SessionBusy> {
         if self.may_move {
             return Ok(());
@@ -341,11 +342,12 @@ impl Attached {
 
     /// Detaches from the session.
     pub async fn leave(mut self) {
-        // If the host is gone, no message is needed.
+        // An error is ignored: if the host is gone, no message is needed.
         let _ = timeout_at(Instant::now() + ANSWERS_WITHIN, self.connection.flush()).await;
     }
 
-    /// Sends a datagram or bytes of a stream. Without the line, nothing is sent, because the host would drop it.
+    /// Sends a datagram or bytes of a stream. If the client does not own the line, nothing is sent, because the host
+    /// would drop the bytes.
     pub async fn send(&mut self, channel: u8, bytes: &[u8]) -> io::Result<()> {
         if let Some(why) = &self.ended {
             return Err(io::Error::new(io::ErrorKind::NotConnected, why.clone()));
@@ -360,7 +362,7 @@ impl Attached {
         Ok(())
     }
 
-    /// Marks the session as ended after its socket was closed or failed.
+    /// Marks the session as ended, because its socket was closed or failed. Returns the reason.
     fn end_with(&mut self, error: Option<WireError>) -> String {
         let why = match error {
             Some(error) if !is_gone(&error) => format!("the session was lost: {error}"),
@@ -370,12 +372,12 @@ impl Attached {
         why
     }
 
-    /// Lets the host open a new socket for a channel.
+    /// Requests that the host opens a new socket for a channel.
     pub fn renew(&mut self, channel: u8) {
         self.connection.send_control(Control::Renew(channel));
     }
 
-    /// Waits for a datagram of a channel, at most until `until`. Bytes beyond the buffer are dropped.
+    /// Waits until `until` for a datagram of a channel. Bytes that do not fit into the buffer are dropped.
     pub async fn receive(
         &mut self,
         expected_channel: u8,
@@ -391,7 +393,7 @@ impl Attached {
         }
     }
 
-    /// Waits for bytes of a stream, at most until `until`. Bytes beyond the buffer are returned by the next call.
+    /// Waits until `until` for bytes of a stream. Bytes that do not fit into the buffer are returned by the next call.
     pub async fn read(&mut self, buffer: &mut [u8], until: Instant) -> io::Result<Option<usize>> {
         if self.rest.is_empty() {
             let Some((_, bytes)) = self.data(until).await? else { return Ok(None) };
@@ -422,7 +424,7 @@ impl Attached {
         }
     }
 
-    /// Next frame; `None` after a timeout or the end of the session.
+    /// Returns the next frame; `None` after a timeout or the end of the session.
     async fn next(&mut self, until: Instant) -> Option<Frame> {
         match self.early_frames.pop_front() {
             Some(frame) => Some(frame),
@@ -430,7 +432,7 @@ impl Attached {
         }
     }
 
-    /// Next frame from the socket; `None` after a timeout.
+    /// Returns the next frame from the socket; `None` after a timeout.
     async fn next_from_socket(&mut self, until: Instant) -> Result<Option<Frame>, SessionBusy> {
         if let Some(why) = &self.ended {
             return Err(SessionBusy::Ended(why.clone()));
@@ -438,7 +440,8 @@ impl Attached {
         let next = if Instant::now() < until {
             timeout_at(until, self.connection.next()).await.ok()
         } else {
-            // An expired timer takes a millisecond to fire. Frames that have already arrived are returned without it.
+            // A timer that has expired still needs a millisecond to fire. Frames that have already arrived are read
+            // without a timer.
             yield_now().await;
             self.connection.next().now_or_never()
         };
@@ -456,7 +459,7 @@ impl Attached {
     }
 }
 
-/// A normal exit sends Bye; a killed process does not.
+/// Sends Bye when the client ends normally. A process that is killed sends no Bye.
 impl Drop for Attached {
     fn drop(&mut self) {
         self.connection.send_control(Control::Bye);
@@ -472,35 +475,36 @@ fn copy(bytes: &[u8], buffer: &mut [u8]) -> usize {
 /// Event of an image session.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Event {
-    /// The last shown image was sent.
+    /// The last image of [`Attached::set_output`] was sent.
     Sent,
     /// A new image of the device.
     Image(Vec<u8>),
     /// Another client has changed the image to the device.
     OutputChanged(Change),
-    /// The robot is read-only, and the last image was refused. [`Attached::output`] is the current image to the device.
+    /// The host refused the last image, because the robot is read-only. [`Attached::output`] is the current image to
+    /// the device.
     Denied,
-    /// The link was lost, with the reason.
+    /// The link was lost for this reason.
     Lost(String),
     /// The link is open again. [`Attached::output`] is the current image to the device.
     Reopened,
-    /// No event before the deadline.
+    /// There was no event before the deadline.
     Timeout,
 }
 
 impl Attached {
-    /// Image state; `None` if the session has no images.
+    /// State of the images; `None` if the session has no images.
     fn images(&self) -> Option<&Images> {
         self.welcome.images.as_ref()
     }
 
-    /// Current image to the device, as far as this client knows.
+    /// Current image to the device, as last reported to this client. `None` if the session has no images.
     pub fn output(&self) -> Option<&[u8]> {
         self.images().map(|images| &images.shown[..])
     }
 
-    /// Sends the bits of this image that differ from the current one. Without the line, the exclusive part is not
-    /// changed.
+    /// Sends the bits of this image that differ from the current image. If the client does not own the line, the
+    /// exclusive part of the image is not changed.
     pub fn set_output(&mut self, image: &[u8]) {
         let has_line = self.has_line();
         let Some(images) = &mut self.welcome.images else { return };
@@ -514,8 +518,8 @@ impl Attached {
         self.connection.send_frame(&Frame::Show(change));
     }
 
-    /// Sets the last will: bits (mask and value) that the host sends if this process dies; or removes it. It is valid
-    /// from the next shown image on.
+    /// Sets the last will: bits (mask and value) that the host sends if this process is killed. `None` removes the last
+    /// will. The host handles it before the next image of this client.
     pub fn set_last_will(&mut self, bits: Option<(&[u8], &[u8])>) {
         let Some(images) = &self.welcome.images else { return };
         let generation = images.generation;
@@ -523,7 +527,7 @@ impl Attached {
         self.connection.send_control(Control::Will(will));
     }
 
-    /// Waits for the next event, at most until `until`. Cancel safe.
+    /// Waits until `until` for the next event. Cancel safe.
     pub async fn event(&mut self, until: Instant) -> Event {
         loop {
             match self.next(until).await {
@@ -552,7 +556,7 @@ impl Attached {
                 None => {
                     match self.ended.clone() {
                         Some(why) if !std::mem::replace(&mut self.is_loss_reported, true) => return Event::Lost(why),
-                        // The session has ended, so no more events.
+                        // The session has ended, so there are no more events.
                         Some(_) => sleep_until(until).await,
                         None => {}
                     }

@@ -1,4 +1,4 @@
-//! Locations of sessions: sockets, lock files, and their owners.
+//! Locations of sessions. A location has a socket, a lock file and an owner.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -12,13 +12,13 @@ use super::socket::{self, Lock};
 use super::wire::Info;
 use armctl_files as files;
 
-/// Size limit of a lock file.
+/// Maximum size of a lock file in bytes.
 const MAX_LOCK_BYTES: u64 = 1 << 16;
 
 /// Error of a session location.
 #[derive(Debug, Error)]
 pub enum LocationError {
-    /// Another user could be behind it.
+    /// The folder or socket is not safe: it may belong to another user.
     #[error("{path} is not safe: {why}")]
     Unsafe {
         /// Path of the folder or socket.
@@ -40,7 +40,7 @@ fn io_error(path: &Path) -> impl FnOnce(io::Error) -> LocationError {
     move |error| LocationError::Io { path: path.to_owned(), error }
 }
 
-/// Key of a session, the same for all names of a device.
+/// Returns the key of a session. All names of a device have the same key.
 pub fn key(family: &str, target: &str) -> String {
     let digest = Sha256::digest(format!("{family} {target}"));
     digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect()
@@ -53,7 +53,7 @@ pub struct SessionFolder {
 }
 
 impl SessionFolder {
-    /// Finds the folder if it exists. It must be private to this user.
+    /// Finds the folder; `None` if it does not exist. The folder must be private to this user.
     pub fn find() -> Result<Option<Self>, LocationError> {
         let folder = socket::folder();
         match socket::check_private(&folder, true) {
@@ -71,12 +71,12 @@ impl SessionFolder {
         Self::find()?.ok_or_else(|| io_error(&folder)(io::ErrorKind::NotFound.into()))
     }
 
-    /// Location of the session with this key.
+    /// Returns the location of the session with this key.
     pub fn location(&self, key: &str) -> SessionPath {
         SessionPath { stem: self.folder.join(key) }
     }
 
-    /// Locations of all sessions, alive or dead.
+    /// Returns the locations of all sessions. Some of these sessions may have ended.
     pub fn locations(&self) -> Result<Vec<SessionPath>, LocationError> {
         let entries = std::fs::read_dir(&self.folder).and_then(Iterator::collect::<io::Result<Vec<_>>>);
         let entries = entries.map_err(io_error(&self.folder))?;
@@ -91,14 +91,14 @@ impl SessionFolder {
 
 const SOCKET: &str = "sock";
 
-/// Location of one session: socket, lock file, log file.
+/// Location of one session: socket, lock file and log file.
 #[derive(Debug, Clone)]
 pub struct SessionPath {
     stem: PathBuf,
 }
 
 impl SessionPath {
-    /// A custom location; socket, lock and log file start with this path.
+    /// Creates a custom location. The paths of socket, lock file and log file start with `stem`.
     pub fn at(stem: PathBuf) -> Self {
         Self { stem }
     }
@@ -113,7 +113,7 @@ impl SessionPath {
         self.stem.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// Whether a session listens there, and the socket is private to this user.
+    /// Whether a session listens at this location, and the socket is private to this user.
     pub fn is_open(&self) -> bool {
         self.check().is_ok_and(|is_there| is_there && socket::answers(&self.socket()))
     }
@@ -127,7 +127,8 @@ impl SessionPath {
         self.stem.with_extension("lock")
     }
 
-    /// Locks the location for this process; `None` if a living process has it. Leftovers of a dead process are removed.
+    /// Locks the location for this process. `None` if another running process has locked it. If the last owner ended
+    /// without cleanup, its socket is removed.
     pub fn claim(&self, info: &Info) -> Result<Option<Claim>, LocationError> {
         let text = serde_json::to_vec(info).unwrap_or_default();
         let Some(lock) = Lock::take(&self.lock(), &text).map_err(io_error(&self.lock()))? else { return Ok(None) };
@@ -135,14 +136,14 @@ impl SessionPath {
         Ok(Some(Claim { location: self.clone(), _lock: lock }))
     }
 
-    /// Locks the location as soon as its owner releases it, within a short time.
+    /// Locks the location. If another process has locked it, waits a short time for the release.
     pub async fn lock_soon(&self, info: &Info) -> Result<LockResult, LocationError> {
         let until = Instant::now() + LOCK_WITHIN;
         loop {
             if let Some(claim) = self.claim(info)? {
                 return Ok(LockResult::Locked(claim));
             }
-            // The owner can be a short command, or a session that is just opening.
+            // The owner may be a short command, or a session that is just opening.
             if self.is_open() {
                 return Ok(LockResult::Session);
             }
@@ -153,12 +154,13 @@ impl SessionPath {
         }
     }
 
-    /// Current or last owner.
+    /// Current owner of the location, or the last owner.
     pub fn owner(&self) -> Option<Info> {
         serde_json::from_slice(&files::read(&self.lock(), MAX_LOCK_BYTES).ok()?).ok()
     }
 
-    /// Removes leftovers of a dead session, unless a living process has the location.
+    /// Removes the socket of a session that ended without cleanup. No effect while a running process has locked the
+    /// location.
     pub fn clear(&self) -> Result<(), LocationError> {
         match self.owner() {
             Some(info) => self.claim(&info).map(|_| ()),
@@ -173,7 +175,7 @@ impl SessionPath {
         }
     }
 
-    /// Whether a private socket exists there.
+    /// Whether a socket exists at this location. The socket must be private to this user.
     pub(super) fn check(&self) -> Result<bool, LocationError> {
         let path = self.socket();
         match socket::check_private(&path, false) {
@@ -185,22 +187,22 @@ impl SessionPath {
     }
 }
 
-/// Time limit and interval of the attempts to lock a location.
+/// Time limit for locking a location, and the interval of the attempts.
 const LOCK_WITHIN: Duration = Duration::from_secs(3);
 const LOCK_EVERY: Duration = Duration::from_millis(10);
 
 /// Result of an attempt to lock a location.
 #[derive(Debug)]
 pub enum LockResult {
-    /// Locked by this process.
+    /// This process has locked the location.
     Locked(Claim),
-    /// A session, which accepts clients.
+    /// A session that accepts clients has locked the location.
     Session,
-    /// Another process did not release it in time.
+    /// Another process did not release the location in time.
     Busy,
 }
 
-/// A locked location; dropping it releases the lock.
+/// A locked location. The lock is released when the claim is dropped.
 #[derive(Debug)]
 pub struct Claim {
     location: SessionPath,
@@ -208,7 +210,7 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// The location.
+    /// The location that is locked.
     pub fn location(&self) -> &SessionPath {
         &self.location
     }
@@ -220,7 +222,7 @@ impl Claim {
 
     /// Removes the socket, so that no new client connects.
     pub(super) fn hide(&self) {
-        // If this fails, later clients find the socket dead.
+        // An error is ignored: later clients detect that no session listens on the socket.
         let _ = self.location.remove_socket();
     }
 }
@@ -259,7 +261,7 @@ mod tests {
         assert!(location.owner().is_none());
         let claim = location.claim(&info()).unwrap().unwrap();
         assert!(location.owner() == Some(info()));
-        // Locks belong to open files, so a second one in the same process conflicts as well.
+        // A lock belongs to an open file, so a second lock in the same process also conflicts.
         assert!(location.claim(&info()).unwrap().is_none());
         drop(claim);
         assert!(location.claim(&info()).unwrap().is_some());

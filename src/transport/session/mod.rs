@@ -1,17 +1,20 @@
-//! Sessions: a link that outlives commands. One process, the host, holds it. Other processes reach the device through a
-//! local socket of the host.
+//! Sessions: a link that stays open between commands. One process, the host, owns the link. Other processes reach the
+//! device through a local socket of the host.
 //!
-//! `wire` defines the frames on the socket; they are our own, not those of a controller. The host passes on what
-//! clients send, and only decides whose turn it is:
+//! `wire` defines the frames on the socket. They are armctl's own frames, not frames of a controller. The host passes
+//! on the bytes and images of the clients. It only decides which client may send:
 //!
-//! - The line belongs to one client at a time, for one exchange: take it, transact, release it. So a stop can pass
-//!   between two requests of another client.
-//! - Only the owner of the line can change the exclusive part of an image, such as a remote command. Any client can
-//!   switch the other bits, so a stop needs no turn.
-//! - One client at a time moves the robot.
+//! - The line is the right to transact with the device. It belongs to one client at a time, for one exchange: the
+//!   client
+//!   acquires the line, transacts, and releases the line. A stop of another client can therefore be sent between two
+//!   requests of one client.
+//! - Only the owner of the line can change the exclusive part of an image, for example a remote command. Any client can
+//!   switch the other bits, so a stop need not wait for the line.
+//! - One client at a time may move the robot.
 //!
-//! If a client dies, all it has is released. Its motion is stopped, unless the client has declared that it leaves the
-//! motion running. In that case its changes of the image stay.
+//! If a client is killed or crashes, the host releases everything that the client owned, and stops the motion of the
+//! client. If the client declared that its motion continues after its end, the motion is not stopped, and its changes
+//! of the image stay.
 
 pub mod client;
 pub mod host;
@@ -25,7 +28,7 @@ pub mod wire;
 
 pub use socket::{Detached, detach, leave_terminal, terminate};
 
-/// Id of this process.
+/// Process id of this process.
 pub fn process() -> u32 {
     std::process::id()
 }

@@ -1,4 +1,4 @@
-//! Replacement for systems without private local sockets: opening a session is an error.
+//! Replacement for `socket` on systems without private local sockets. Opening a session returns an error.
 
 use std::ffi::OsString;
 use std::io;
@@ -13,18 +13,18 @@ fn absent<T>() -> io::Result<T> {
     Err(io::Error::new(io::ErrorKind::Unsupported, "sessions need Unix sockets, but this system has none"))
 }
 
-/// Write half of a socket; never exists.
+/// Write half of a socket. It cannot be created.
 #[derive(Debug)]
 pub enum WriteHalf {}
 
 impl WriteHalf {
-    /// As in `socket`.
+    /// Same as in `socket`.
     pub fn try_write(&self, _bytes: &[u8]) -> io::Result<usize> {
         match *self {}
     }
 
-    /// As in `socket`.
-    #[expect(clippy::unused_async, reason = "as of a socket")]
+    /// Same as in `socket`.
+    #[expect(clippy::unused_async, reason = "as in the version with a socket")]
     pub async fn writable(&self) -> io::Result<()> {
         match *self {}
     }
@@ -35,60 +35,60 @@ pub fn folder() -> PathBuf {
     std::env::temp_dir().join("armctl")
 }
 
-/// Not supported.
+/// Returns an error: not supported on this system.
 pub fn make_private(_folder: &Path) -> io::Result<()> {
     absent()
 }
 
-/// Always `false`.
+/// Always returns `false`.
 pub fn answers(_path: &Path) -> bool {
     false
 }
 
-/// Always `NotFound`.
+/// Always returns `NotFound`.
 pub fn check_private(_path: &Path, _is_folder: bool) -> io::Result<Result<(), &'static str>> {
     Err(io::ErrorKind::NotFound.into())
 }
 
-/// A lock file; never exists.
+/// A lock file. It cannot be created.
 #[derive(Debug)]
 pub enum Lock {}
 
 impl Lock {
-    /// Not supported.
+    /// Returns an error: not supported on this system.
     pub fn take(_path: &Path, _text: &[u8]) -> io::Result<Option<Self>> {
         absent()
     }
 }
 
-/// A listener; never exists.
+/// A listener. It cannot be created.
 #[derive(Debug)]
 pub enum Listener {}
 
 impl Listener {
-    /// Not supported.
+    /// Returns an error: not supported on this system.
     pub fn bind(_path: &Path) -> io::Result<Self> {
         absent()
     }
 
-    /// As in `socket`.
-    #[expect(clippy::unused_async, reason = "as of a socket")]
+    /// Same as in `socket`.
+    #[expect(clippy::unused_async, reason = "as in the version with a socket")]
     pub async fn accept(&self) -> io::Result<(ReadHalf, WriteHalf, Option<u32>)> {
         match *self {}
     }
 }
 
-/// Always `None`.
-#[expect(clippy::unused_async, reason = "as of a socket")]
+/// Always returns `None`.
+#[expect(clippy::unused_async, reason = "as in the version with a socket")]
 pub async fn connect(_path: &Path) -> io::Result<Option<(ReadHalf, WriteHalf)>> {
     Ok(None)
 }
 
-/// A background process; never exists.
+/// A background process. It cannot be created.
 #[derive(Debug)]
 pub enum Detached {}
 
-/// Not supported.
+/// Returns an error: not supported on this system.
 pub fn detach(_arguments: impl Iterator<Item = OsString>, _log: &Path) -> io::Result<Detached> {
     absent()
 }
@@ -99,7 +99,7 @@ impl Detached {
         match *self {}
     }
 
-    /// Next line of its output.
+    /// Next line of the output of the process.
     pub fn line(&mut self) -> io::Result<String> {
         match *self {}
     }
@@ -108,7 +108,7 @@ impl Detached {
 /// Does nothing.
 pub fn terminate(_pid: u32) {}
 
-/// Not supported.
+/// Returns an error: not supported on this system.
 pub fn leave_terminal() -> io::Result<()> {
     absent()
 }

@@ -17,7 +17,7 @@ pub type ReadHalf = unix::OwnedReadHalf;
 /// Write half of a socket.
 pub type WriteHalf = unix::OwnedWriteHalf;
 
-/// Folder of the sockets: in the user's runtime folder, or a private folder in the temporary folder.
+/// Returns the folder of the sockets: in the user's runtime folder, or a private folder in the temporary folder.
 pub fn folder() -> PathBuf {
     let runtime = std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from);
     match runtime.filter(|folder| folder.is_absolute() && folder.is_dir()) {
@@ -26,7 +26,7 @@ pub fn folder() -> PathBuf {
     }
 }
 
-/// Creates a private folder, unless it exists.
+/// Creates a private folder, unless the folder exists.
 pub fn make_private(folder: &Path) -> io::Result<()> {
     match DirBuilder::new().mode(0o700).create(folder) {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
@@ -34,10 +34,10 @@ pub fn make_private(folder: &Path) -> io::Result<()> {
     }
 }
 
-/// Checks that a folder or socket is private to this user. The inner error is the reason.
+/// Checks that a folder or socket is private to this user. If it is not private, the inner error is the reason.
 ///
 /// # Errors
-/// `NotFound` if it does not exist.
+/// `NotFound` if the folder or socket does not exist.
 pub fn check_private(path: &Path, is_folder: bool) -> io::Result<Result<(), &'static str>> {
     let found = path.symlink_metadata()?;
     let fits = if is_folder { found.is_dir() } else { found.file_type().is_socket() };
@@ -52,14 +52,14 @@ pub fn check_private(path: &Path, is_folder: bool) -> io::Result<Result<(), &'st
     })
 }
 
-/// A lock file for one process at a time. The lock ends with the process.
+/// A lock file. One process at a time can lock it. The lock ends with the process.
 #[derive(Debug)]
 pub struct Lock {
     _file: File,
 }
 
 impl Lock {
-    /// Takes the lock, and writes this text into the file; `None` if another process has it.
+    /// Locks the file, and writes this text into it. `None` if another process has locked it.
     pub fn take(path: &Path, text: &[u8]) -> io::Result<Option<Self>> {
         use io::{Seek as _, Write as _};
 
@@ -81,19 +81,20 @@ pub fn answers(path: &Path) -> bool {
     std::os::unix::net::UnixStream::connect(path).is_ok()
 }
 
-/// Accepts clients.
+/// Listener that accepts clients.
 #[derive(Debug)]
 pub struct Listener(UnixListener);
 
 impl Listener {
-    /// Binds a path that does not exist yet.
+    /// Listens on a path. The path must not exist yet.
     pub fn bind(path: &Path) -> io::Result<Self> {
         let listener = UnixListener::bind(path)?;
         std::fs::set_permissions(path, Permissions::from_mode(0o600))?;
         Ok(Self(listener))
     }
 
-    /// Waits for the next client of the same user. Also returns its process id, if the system reports it. Cancel safe.
+    /// Waits for the next client of the same user. Returns the socket with the process id of the client, if the system
+    /// reports it. Cancel safe.
     pub async fn accept(&self) -> io::Result<(ReadHalf, WriteHalf, Option<u32>)> {
         loop {
             let (stream, _) = self.0.accept().await?;
@@ -123,7 +124,8 @@ pub struct Detached {
     stdout: BufReader<ChildStdout>,
 }
 
-/// Starts this program in the background with other arguments. Its stderr is appended to a private log file.
+/// Starts this program in the background with other arguments. The stderr of the process is appended to a private log
+/// file.
 pub fn detach(arguments: impl Iterator<Item = std::ffi::OsString>, log: &Path) -> io::Result<Detached> {
     let log = OpenOptions::new().append(true).create(true).mode(0o600).open(log)?;
     let mut child = Command::new(crate::this_program()?)
@@ -142,7 +144,7 @@ impl Detached {
         self.pid
     }
 
-    /// Waits for the next line of its output; empty at the end.
+    /// Waits for the next line of the output of the process. The line is empty at the end of the output.
     pub fn line(&mut self) -> io::Result<String> {
         let mut line = String::new();
         self.stdout.read_line(&mut line)?;
@@ -152,13 +154,13 @@ impl Detached {
 
 /// Terminates a process.
 pub fn terminate(pid: u32) {
-    // It can have ended already.
+    // An error is ignored: the process may have ended already.
     if let Some(pid) = i32::try_from(pid).ok().and_then(Pid::from_raw) {
         let _ = kill_process(pid, Signal::TERM);
     }
 }
 
-/// Detaches from the terminal and its process group (new session).
+/// Starts a new session of the operating system: detaches this process from its terminal and process group.
 pub fn leave_terminal() -> io::Result<()> {
     setsid().map(|_| ()).map_err(io::Error::from)
 }

@@ -1,7 +1,7 @@
-//! Frames between session host and clients.
+//! Frames between a session host and its clients.
 //!
-//! A frame is a 4-byte length (little-endian, of all that follows), a type byte, and the content. Control frames are
-//! JSON; frequent frames are binary.
+//! A frame has a length of 4 bytes (little-endian, the number of bytes after it), a type byte, and the content. Control
+//! frames are JSON; frequent frames are binary.
 
 use std::io;
 
@@ -11,23 +11,23 @@ use tokio::io::AsyncReadExt as _;
 
 use super::socket::ReadHalf;
 
-/// Protocol version; must be equal on both sides.
+/// Protocol version. Host and client must have the same version.
 pub const VERSION: u32 = 3;
 
-/// Longest frame; longer than any datagram or image.
+/// Maximum length of a frame in bytes. It is longer than any datagram or image.
 const MAX_FRAME: usize = 1 << 17;
 const HEAD: usize = 4;
-/// Longest text about a client or host.
+/// Maximum length of a text about a client or host.
 pub const MAX_TEXT: usize = 300;
 
 /// One frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Frame {
-    /// A control message; these are rare.
+    /// A control message. Control messages are rare.
     Control(Control),
     /// Image from the device.
     Image(Vec<u8>),
-    /// Change of the image to the device: a request of a client, or a report of another client's change.
+    /// Change of the image to the device. A client requests a change, or the host reports a change of another client.
     Show(Change),
     /// A datagram, or bytes of a stream.
     Data {
@@ -41,12 +41,12 @@ pub enum Frame {
 /// Change of an image: the bits in `mask` get the values in `value`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Change {
-    /// Generation of the link. A change for an older generation is dropped, so that nothing from before a loss is done
-    /// after it.
+    /// Generation of the link. The host drops a change for an older generation, so that no change from before a loss is
+    /// applied after the loss.
     pub generation: u32,
     /// Bits to change.
     pub mask: Vec<u8>,
-    /// New values; as long as the mask.
+    /// New values of the bits. The length is the length of the mask.
     pub value: Vec<u8>,
 }
 
@@ -69,25 +69,25 @@ pub enum Control {
     Ask,
     /// Client: request to end the session.
     Close {
-        /// Even during a motion.
+        /// Whether to end the session even during a motion.
         force: bool,
     },
     /// Client: request for the line.
     Take {
-        /// Returned with the line.
+        /// Number of the request. The host returns the number with the line.
         number: u32,
         /// Channel of the device.
         channel: u8,
     },
-    /// Client: release of the line, or of its place in the queue.
+    /// Client: releases the line, or its place in the queue for the line.
     Over,
     /// Client: request to move the robot.
     Motion,
-    /// Client: request for a new socket of this channel.
+    /// Client: request for a new socket for this channel.
     Renew(u8),
     /// Client: sets or removes the last will.
     Will(Option<Change>),
-    /// Client: normal detach.
+    /// Client: detaches normally.
     Bye,
 
     /// Host: state of the session for a new client.
@@ -98,17 +98,17 @@ pub enum Control {
     Refused(String),
     /// Host: the session ends.
     Closing,
-    /// Host: the client has the line.
+    /// Host: the client owns the line. The value is the number of the request.
     Taken(u32),
-    /// Host: another client has the line; this one is in the queue.
+    /// Host: another client owns the line, and this client is in the queue.
     Queued(Peer),
-    /// Host: the client can move the robot.
+    /// Host: the client may move the robot.
     Granted,
     /// Host: another client moves the robot.
     Held(Peer),
     /// Host: the last image of the client was sent.
     Sent,
-    /// Host: the link was lost, with the reason.
+    /// Host: the link was lost for this reason.
     Lost(String),
     /// Host: the link is open again.
     Reopened {
@@ -117,14 +117,14 @@ pub enum Control {
         /// Current image to the device.
         shown: Vec<u8>,
     },
-    /// Host: a send or receive failed.
+    /// Host: sending to the device or receiving from it failed.
     Broken(Broken),
     /// Host: a frame was refused, because the robot is read-only.
     Denied {
         /// Current image to the device, on an image link.
         shown: Option<Vec<u8>>,
     },
-    /// Host: the session has ended, with the reason.
+    /// Host: the session has ended for this reason.
     Ended(String),
 }
 
@@ -143,26 +143,26 @@ pub struct Hello {
     pub purpose: Purpose,
 }
 
-/// Purpose of a connection, as far as it concerns the host.
+/// Purpose of a connection. The host uses it for priority and for the end of a client.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Purpose {
-    /// Any command; its motion is stopped if the client dies.
+    /// Any command. If the client is killed, the host stops its motion.
     #[default]
     Any,
-    /// A command whose motion continues if the client dies.
+    /// A command whose motion continues if the client is killed.
     LeavesMotion,
-    /// Stop the robot, before all other clients.
+    /// Stop of the robot. This client gets the line before all other clients.
     Stop,
 }
 
-/// Description of a client for other clients.
+/// Description of a client, for the other clients.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Peer {
     /// Process id.
     pub pid: u32,
     /// Command line.
     pub command: String,
-    /// Time since it has the line or moves the robot, in ms.
+    /// Time in ms since the client got the line or started to move the robot.
     pub for_ms: u64,
 }
 
@@ -177,9 +177,9 @@ pub struct Welcome {
     pub for_ms: u64,
     /// Reason why the link is down; `None` while it is up.
     pub down: Option<String>,
-    /// Command that an earlier client left active.
+    /// Active command of an earlier client that did not wait for its end.
     pub leftover: Option<Leftover>,
-    /// Images of an image link.
+    /// State of the images, if the link has images.
     pub images: Option<Images>,
 }
 
@@ -188,7 +188,8 @@ pub struct Welcome {
 pub struct Images {
     /// Generation of the link.
     pub generation: u32,
-    /// Size of the exclusive part: bytes from the start that only the owner of the line can change.
+    /// Size of the exclusive part: the number of bytes, from the start of the image, that only the owner of the line
+    /// can change.
     pub exclusive: usize,
     /// Image to the device.
     pub shown: Vec<u8>,
@@ -196,19 +197,19 @@ pub struct Images {
     pub seen: Option<Vec<u8>>,
 }
 
-/// Active command that a client left in the exclusive part of the image.
+/// Active command in the exclusive part of the image. Its client has ended or crashed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Leftover {
     /// The former client.
     pub by: Peer,
-    /// Whether it ended without a detach: killed or crashed.
+    /// Whether the client ended without detaching, because it was killed or crashed.
     pub died: bool,
 }
 
 /// Status of a session.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Status {
-    /// Protocol version; see [`VERSION`]. 0 from an old host without this field.
+    /// Protocol version; see [`VERSION`]. It is 0 if an old host does not send this field.
     #[serde(default)]
     pub version: u32,
     /// Device and host process.
@@ -217,36 +218,36 @@ pub struct Status {
     pub for_ms: u64,
     /// Reason why the link is down; `None` while it is up.
     pub down: Option<String>,
-    /// Number of times that the link was opened again.
+    /// Number of times that the link was reopened.
     pub reopenings: u32,
     /// Current clients.
     pub clients: Vec<Peer>,
-    /// Client that moves the robot.
+    /// Client that moves the robot; `None` if no client does.
     pub motion: Option<Peer>,
-    /// Command that an earlier client left active.
+    /// Active command of an earlier client that did not wait for its end.
     pub leftover: Option<Leftover>,
-    /// Whether the robot moves.
+    /// Whether the robot is moving.
     pub under_way: bool,
 }
 
-/// Device and process of a session, or of a command with its own link. The lock file contains it.
+/// Device and process of a session, or of a command with its own link. The lock file contains this information.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Info {
     /// Process id.
     pub pid: u32,
     /// Name of the robot.
     pub robot: String,
-    /// Family of its controller.
+    /// Family of the robot's controller.
     pub family: String,
     /// Target URL.
     pub target: String,
-    /// Command line of the process; empty from an old version without this field.
+    /// Command line of the process. It is empty if an old version did not write this field.
     #[serde(default)]
     pub command: String,
 }
 
 impl Info {
-    /// Info of this process with this command.
+    /// Creates the information about this process and this command.
     pub fn own(robot: &str, family: &str, target: &str, command: &str) -> Self {
         let (robot, family, target) = (robot.to_owned(), family.to_owned(), target.to_owned());
         Self { pid: super::process(), robot, family, target, command: shorten(command) }
@@ -274,7 +275,7 @@ pub enum BrokenKind {
     HostUnreachable,
     /// The network is unreachable.
     NetworkUnreachable,
-    /// Timeout of a send.
+    /// A send did not complete in time.
     TimedOut,
     /// Another error.
     Other,
@@ -308,7 +309,7 @@ pub enum WireError {
     /// The frame is too long.
     #[error("a frame of {0} bytes")]
     TooLong(usize),
-    /// Unknown type, or invalid content.
+    /// The frame type is unknown, or the content is invalid.
     #[error("an invalid frame")]
     Invalid,
     /// The socket failed.
@@ -322,8 +323,8 @@ const SHOW: u8 = b's';
 const DATA: u8 = b'd';
 
 impl Frame {
-    /// Appends the encoded frame. It is never too long: images and datagrams have at most 65535 bytes, and texts are
-    /// cut.
+    /// Appends the encoded frame to `out`. The frame is never too long: images and datagrams have at most 65535 bytes,
+    /// and texts are shortened.
     pub fn emit(&self, out: &mut Vec<u8>) {
         let start = out.len();
         out.extend([0; HEAD]);
@@ -351,7 +352,7 @@ impl Frame {
         out[start..start + HEAD].copy_from_slice(&length.to_le_bytes());
     }
 
-    /// Decodes the first frame of a buffer, and returns its length; `None` if it is incomplete.
+    /// Decodes the first frame of a buffer. Returns the frame and its length; `None` if the frame is incomplete.
     fn parse(bytes: &[u8]) -> Result<Option<(Self, usize)>, WireError> {
         let Some((head, rest)) = bytes.split_first_chunk::<HEAD>() else { return Ok(None) };
         let length = usize::try_from(u32::from_le_bytes(*head)).unwrap_or(usize::MAX);
@@ -391,7 +392,7 @@ impl Reader {
         Self { socket, buffer: Vec::new() }
     }
 
-    /// Waits for the next frame; `None` after the other side has closed. Cancel safe.
+    /// Waits for the next frame. Returns `None` after the other side has closed the connection. Cancel safe.
     pub async fn next(&mut self) -> Result<Option<Frame>, WireError> {
         loop {
             if let Some((frame, length)) = Frame::parse(&self.buffer)? {
@@ -405,7 +406,7 @@ impl Reader {
     }
 }
 
-/// Replaces control characters, and limits the length.
+/// Replaces control characters in a text, and limits its length.
 pub fn shorten(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(MAX_TEXT).collect()
 }

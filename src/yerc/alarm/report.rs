@@ -13,10 +13,10 @@ use armctl_frame::settings::Robot;
 use armctl_frame::settings::alarms::Origin;
 use armctl_frame::settings::target::Family;
 
-/// Sub-code texts of the controller.
+/// Whether the report contains the sub-code texts of the controller.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct WithTexts {
-    /// Whether sub-code texts were requested and the controller has them.
+    /// Whether sub-code texts were requested, and the controller has such texts.
     pub with_texts: bool,
 }
 
@@ -28,39 +28,39 @@ pub struct Own {
     /// Type of the sub-code.
     #[serde(rename = "type")]
     kind: u32,
-    /// Name of the type.
+    /// Name of the sub-code type.
     type_name: &'static str,
     sub_code: SubCode,
-    /// Source, such as `[SV#1]`; null without texts.
+    /// Source of the alarm, for example `[SV#1]`; null without texts.
     board: Option<String>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
 pub(super) struct SubCode {
-    /// Raw value; 0 if there is no sub-code.
+    /// Sub-code as a raw number; 0 if there is no sub-code.
     raw: u32,
-    /// Sub-code as the pendant shows it; hexadecimal bytes if `trust` is `raw`; empty if there is no sub-code.
+    /// Sub-code as the pendant shows it. If `trust` is `raw`, hexadecimal bytes. Empty if there is no sub-code.
     rendered: String,
-    /// Reliability of `rendered`: `printed` in the manuals, `inferred`, or `raw`.
+    /// How reliable `rendered` is: `printed` in the manuals, `inferred`, or `raw`.
     trust: &'static str,
-    /// Text on the pendant, as the controller reports it; null without texts.
+    /// Text that the pendant shows, as the controller reports it; null without texts.
     text: Option<String>,
-    /// A 1 for each character that the pendant shows reversed; null without texts.
+    /// A 1 for each character that the pendant displays reversed; null without texts.
     reversed: Option<String>,
-    /// `rendered`, with the raw value if it is uncertain.
+    /// Text of `rendered`, with the raw value if the text is uncertain.
     #[serde(skip)]
     shown: String,
 }
 
 impl SubCode {
-    /// Text on the pendant, or the best known form; none if there is no sub-code.
+    /// Text on the pendant, or otherwise the best known form; `None` if there is no sub-code.
     pub(super) fn describe(&self) -> Option<&str> {
         let text = self.text.as_deref().filter(|text| !text.trim().is_empty());
         Some(text.unwrap_or(&self.shown)).filter(|rendered_text| !rendered_text.is_empty())
     }
 }
 
-/// Alarm entry from an answer.
+/// Alarm for a report, from an answer of the controller.
 pub(super) fn entry(alarm: &payload::Alarm, encoding: Encoding, model: Model) -> AlarmEntry<Own> {
     let rendered = alarm.sub_code(model);
     let texts = alarm.texts.as_ref();
@@ -87,7 +87,7 @@ pub(super) fn entry(alarm: &payload::Alarm, encoding: Encoding, model: Model) ->
     AlarmEntry { alarm, own }
 }
 
-/// Adds the text of `alarms.toml`.
+/// Adds the user's texts from `alarms.toml` to alarms.
 pub(super) async fn explain(
     entry: AlarmEntry<Own>,
     robot: &Robot,
@@ -100,7 +100,7 @@ pub(super) async fn explain(
     Ok(AlarmEntry { alarm: entry.alarm.with(find(model)?), ..entry })
 }
 
-/// Short form for one line: the sub-code is part of the text.
+/// Short form for one line. The sub-code is a part of the text.
 pub(super) fn short(AlarmEntry { alarm, own }: AlarmEntry<Own>) -> Alarm {
     let parts = [alarm.text.as_deref(), own.sub_code.describe()].into_iter().flatten();
     let text = parts.collect::<Vec<_>>().join(" ");
@@ -108,14 +108,14 @@ pub(super) fn short(AlarmEntry { alarm, own }: AlarmEntry<Own>) -> Alarm {
 }
 
 impl ExtraColumns for Own {
-    // The type is only in JSON, because a column for it would leave no space for the text.
+    // The type has no column, because the column would leave no space for the text. It is only in JSON.
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
         let board = self.board.as_deref().map(str::trim).filter(|board| !board.is_empty());
         vec![("sub-code", self.sub_code.describe().map(ToOwned::to_owned)), ("board", board.map(ToOwned::to_owned))]
     }
 }
 
-/// One line for messages: `alarm 4315 COLLISION DETECT [3]`.
+/// Alarm in one line for messages, for example `alarm 4315 COLLISION DETECT [3]`.
 pub(crate) fn in_a_line(alarm: &payload::Alarm, encoding: Encoding, model: Model) -> String {
     let sub_code = alarm.sub_code(model).to_string();
     let words = [format!("alarm {}", alarm.code), encoding.decode(alarm.name.as_bytes()), sub_code];

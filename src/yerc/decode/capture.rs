@@ -13,16 +13,16 @@ use armctl_frame::decode::capture::{CaptureDecoder, DecodedCapture, DecodedMessa
 use armctl_transport::capture::{Carrier, Message};
 use armctl_transport::tap::Direction;
 
-/// Maximum number of pending requests: more peers than in any plant.
+/// Maximum number of pending requests. There are fewer peers in any plant.
 const MAX_REQUESTS: usize = 1 << 16;
 
-/// Datagrams that start like a frame.
+/// Decodes datagrams that start like a frame.
 #[derive(Debug, Default)]
 pub struct FrameDecoder {
     decoded: DecodedCapture<FieldRow>,
     /// Addresses that sent requests.
     clients: HashSet<SocketAddr>,
-    /// Last request of each id, with its packet number.
+    /// Last request with each id, and the number of its packet.
     requests: HashMap<(SocketAddr, SocketAddr, u8), (u64, Request)>,
 }
 
@@ -36,7 +36,7 @@ impl CaptureDecoder for FrameDecoder {
             return;
         }
         self.decoded.packets += 1;
-        // During a file transfer, frames of both sides look alike.
+        // During a file transfer, the frames of both sides have the same form.
         let sender = match Sender::guess(bytes) {
             _ if self.clients.contains(&from) => Sender::Client,
             _ if self.clients.contains(&to) => Sender::Controller,
@@ -53,7 +53,7 @@ impl CaptureDecoder for FrameDecoder {
             && !frame.ack
         {
             if self.requests.len() >= MAX_REQUESTS {
-                // No plant has that many. Later frames are decoded without their requests.
+                // No plant has this many pending requests. Later frames are decoded without their requests.
                 self.requests.clear();
                 self.clients.clear();
             }

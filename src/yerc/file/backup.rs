@@ -1,4 +1,4 @@
-//! `yerc backup`: all files of the controller in a folder, with a manifest.
+//! `yerc backup`: saves all files of the controller in a folder, with a manifest.
 
 use super::manifest::Controller;
 use super::name::{self, Shown, type_word};
@@ -26,13 +26,13 @@ pub async fn back_up(context: Context<'_, Yerc>, making: SaveOptions) -> Result<
         let question = Controller::question()?.request();
         link.plan_next(&question)?;
         transfer::plan_all(link, transfer::LISTS, FileType::ALL.iter().map(|kind| files::list(*kind)))?;
-        link.then("downloads every listed file (service 0x16) and acknowledges each block");
+        link.then("armctl downloads every listed file (service 0x16) and acknowledges each block");
         return Ok(BackedUp::new(&task.folder, task.scope, false, Vec::new()));
     }
     interrupted_failure(&task.folder, Box::pin(save(link, (screen, robot), &task))).await
 }
 
-/// File on the controller and its local name.
+/// A file on the controller, and its local name.
 struct Listed {
     kind: FileType,
     name: Vec<u8>,
@@ -47,7 +47,7 @@ async fn save(
     let only = Only::of_scope(&task.scope);
     let controller = Controller::ask(link).await?;
     let (mut work, mut refused) = (Vec::new(), Vec::new());
-    // The file service may still be busy with an aborted transfer of another client.
+    // The file service may still be busy with a transfer that another client aborted.
     let looking = screen.spinner("looking for files");
     for kind in FileType::ALL {
         match transfer::list(link, kind).await {
@@ -80,7 +80,7 @@ async fn save(
         let holds = type_word(FileType::from_name(name).unwrap_or(*kind)).to_owned();
         let entry = Entry { name: shown, name_hex: Some(hex(name)), holds, ..Entry::default() };
         let fetched_file = async {
-            // A listed name that is not allowed is an error of the controller, not of the operator.
+            // If the list contains a name that is not allowed, this is an error of the controller, and not of the user.
             let malformed = |failure| Failure { kind: Kind::Malformed, ..failure };
             let local = local.clone().map_err(malformed)?;
             let file = name::exact(name.clone()).map_err(malformed)?;

@@ -1,9 +1,9 @@
 //! `yerc file cmos` (FS and DX 3.4.5): the batch backup.
 //!
-//! The same request creates the backup and downloads it, and the manuals do not say how a controller distinguishes
-//! the two. So the first answer decides. Without data, the backup has been created, and the request is sent once
-//! more. With data, it is already the file. The request is never repeated automatically, because that could create a
-//! second backup.
+//! The same request creates the backup and downloads it, and the manuals do not say how a controller distinguishes the
+//! two. For this reason, the first answer decides. If it has no data, the backup has been created, and the request is
+//! sent once more. If it has data, this is already the file. The request is never repeated automatically, because that
+//! could create a second backup.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -38,7 +38,7 @@ pub struct Cmos {
     /// Create the backup and leave it on the controller
     #[arg(long)]
     start_only: bool,
-    /// Maximum wait for the first answer
+    /// Maximum wait for the first answer of the controller
     #[arg(long, value_name = "TIME", value_parser = duration::parse_some, default_value = "15m")]
     wait: Duration,
     /// Replace the local file if it exists
@@ -58,7 +58,7 @@ impl Command for Cmos {
             return self.start(link, screen).await;
         };
         let name = file.file_name().ok_or_else(|| {
-            Failure::usage(format!("{} is not a file name", file.display())).hint("use a file name, as in cmos.bin")
+            Failure::usage(format!("{} is not a file name", file.display())).hint("use a file name such as cmos.bin")
         })?;
         let folder = private_folder(&folder_of(file), &robot.name, several);
         let path = if several { folder.join(name) } else { file.to_owned() };
@@ -66,8 +66,9 @@ impl Command for Cmos {
         if link.is_dry() {
             link.plan_download(&files::batch_backup(), Reason::default())?;
             if !self.download_only {
-                let reason = Reason::about("after the backup has been created");
-                let reason = reason.depending_on("whether the controller creates the backup first or sends it at once");
+                let reason = Reason::about("after the controller has created the backup");
+                let reason =
+                    reason.depending_on("whether the controller creates the backup first, or sends a backup at once");
                 link.plan_download(&files::batch_backup(), reason)?;
             }
             return Err(unknown());
@@ -82,10 +83,10 @@ impl Command for Cmos {
 impl Cmos {
     async fn start(&self, link: &mut Link, screen: &Screen) -> Result<Files, Failure> {
         let _waiting = Waiting::new(screen, CREATE_TIMEOUT);
-        // The transfer ends at its first block, so that the controller keeps its existing backup.
+        // The transfer is ended at its first block, so that the controller keeps the backup that exists.
         let existed = |_: &[u8]| {
-            Err(Failure::new(Kind::Malformed, "the controller already has a backup and created no new one")
-                .hint("download it with --download-only"))
+            Err(Failure::new(Kind::Malformed, "the controller already has a backup, so it created no new backup")
+                .hint("download the existing backup with --download-only"))
         };
         self.ask(link, existed).await?;
         Ok(created_files(FileItem::pending(NAME)))
@@ -107,8 +108,8 @@ impl Cmos {
             }
         }
         Err(Failure::new(Kind::Malformed, "the controller created a backup instead of sending the existing one").hint(
-            "download it with --download-only; if that also creates a backup, save it on the pendant and report the \
-             problem",
+            "download the backup with --download-only; if that also creates a backup, save the backup on the pendant \
+             and report the problem",
         ))
     }
 
@@ -118,20 +119,20 @@ impl Cmos {
         handle_block: impl FnMut(&[u8]) -> Result<(), Failure>,
     ) -> Result<Option<u64>, Failure> {
         transfer::fetch_backup(link, self.wait, handle_block).await.map_err(|failure| match failure.kind {
-            Kind::OutcomeUnknown => {
-                failure.hint("the controller may still be busy: wait, then use --download-only, or set a longer --wait")
-            }
+            Kind::OutcomeUnknown => failure.hint(
+                "wait, because the controller may still be busy; then use --download-only, or set a longer --wait",
+            ),
             _ => failure,
         })
     }
 }
 
-/// Name on the controller.
+/// Name of the batch backup on the controller.
 const NAME: &str = "CMOSBK.BIN";
 const CREATE_TIMEOUT: &str = "the controller creates its backup (about ten minutes)";
 const FETCHING: &str = "waiting for the backup";
 
-/// Progress display: first the wait for the controller, then the bytes received.
+/// Progress display: first the wait for the controller, and then the number of received bytes.
 struct Waiting<'a> {
     screen: &'a Screen,
     progress: Progress,
@@ -153,13 +154,13 @@ impl<'a> Waiting<'a> {
     }
 }
 
-/// Report of the batch backup; it has a path unless it was left on the controller.
+/// Report of the batch backup. It has a path, unless the backup was left on the controller.
 fn created_files(mut file: FileItem) -> Files {
     file.succeed(State::Done);
     Files::new(vec![file], |files| match files {
         [FileItem { path: Some(path), bytes: Some(bytes), .. }] => {
             View::text(format!("batch backup saved in {path}, {bytes} bytes"))
         }
-        _ => View::text("batch backup created on the controller; --download-only downloads it"),
+        _ => View::text("the controller has created the batch backup; use --download-only to download it"),
     })
 }

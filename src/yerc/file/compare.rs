@@ -1,4 +1,4 @@
-//! Comparison of a transfer with a local file, block by block, with neither file in memory.
+//! Compares a transfer with a local file, block by block. Neither file is completely in memory.
 
 use super::content::Pieces;
 use armctl_frame::backup::job_date::DateFilter;
@@ -12,9 +12,9 @@ pub struct Comparison {
     pub controller_bytes: u64,
     /// Size of the local file.
     pub local_bytes: u64,
-    /// Offset of the first difference; the shorter size if one file is the start of the other.
+    /// Offset of the first difference. If one file is the start of the other, the size of the shorter file.
     pub first_difference: Option<u64>,
-    /// Whether the ignored dates differ.
+    /// Whether the ignored date lines differ.
     pub dates_differ: bool,
 }
 
@@ -22,17 +22,17 @@ pub struct Comparison {
 #[derive(Debug)]
 pub struct Comparer<'a> {
     pieces: Pieces<'a>,
-    /// Local bytes that are not compared yet, starting at `at`.
+    /// Bytes of the local file that are not compared yet. They start at offset `at`.
     buffered: Vec<u8>,
     offset: usize,
     comparison: Comparison,
     local_ended: bool,
-    /// Date filters of both sides.
+    /// Filters that remove the date lines, for the controller's file and the local file.
     date_filter: Option<[DateFilter; 2]>,
 }
 
 impl<'a> Comparer<'a> {
-    /// Starts a comparison with a local file. On request, it ignores the lines that controllers rewrite.
+    /// Starts a comparison with a local file. With `ignore_header`, lines that controllers rewrite are ignored.
     pub fn new(pieces: Pieces<'a>, ignore_header: bool) -> Self {
         let comparison =
             Comparison { controller_bytes: 0, local_bytes: 0, first_difference: None, dates_differ: false };
@@ -76,7 +76,7 @@ impl<'a> Comparer<'a> {
         Ok(())
     }
 
-    /// Result after the last block, with the hash of the local file.
+    /// Result after the last block, and the hash of the local file.
     pub fn finish(mut self) -> Result<(Comparison, Hash), Failure> {
         let rest = self.date_filter.as_mut().map_or(&[][..], |[theirs, _]| theirs.rest());
         self.compare(rest)?;
@@ -115,7 +115,7 @@ impl<'a> Comparer<'a> {
                 break;
             }
         }
-        // Bytes that the filter held back are compared before the end.
+        // Bytes that the date filter kept back are compared before the end.
         self.local_ended = self.buffered.is_empty();
         self.comparison.local_bytes = self.comparison.local_bytes.saturating_add(self.buffered.len() as u64);
         Ok(())

@@ -1,5 +1,5 @@
-//! Content of a local file for an upload: read in pieces, checked if it is a job, with optional conversion of line
-//! endings.
+//! Content of a local file for an upload. The file is read in pieces. A job is checked, and its line endings can be
+//! converted.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read as _, Seek as _};
@@ -11,7 +11,7 @@ use armctl_files as files;
 use armctl_frame::backup::manifest::Hash;
 use armctl_frame::failure::Failure;
 
-/// Size of a piece: a few blocks.
+/// Size of a piece. It contains a few blocks.
 const PIECE: usize = 1 << 13;
 
 /// A local file to send.
@@ -25,27 +25,27 @@ pub struct Content {
     job_name: Option<Vec<u8>>,
 }
 
-/// Rules of [`Content::check_job`] for an invalid job.
+/// What [`Content::check_job`] does with an invalid job.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct JobRules {
-    /// Send CR LF for a line that ends in a bare LF.
+    /// Sends CR LF for a line that ends in a bare LF.
     pub fix_line_endings: bool,
-    /// Send a file that does not look like a job.
+    /// Sends a file even if it does not look like a job.
     pub force: bool,
 }
 
 impl Content {
-    /// Opens a file to send. It must not be empty.
+    /// Opens a file to send. The file must not be empty.
     pub fn open(path: &Path) -> Result<Self, Failure> {
         let content = Self::open_file(path)?;
         if content.len == 0 {
             return Err(Failure::usage(format!("{} is empty", path.display()))
-                .hint("the protocol cannot transfer an empty file"));
+                .hint("check the file: the protocol cannot transfer an empty file"));
         }
         Ok(content)
     }
 
-    /// Opens a file to read.
+    /// Opens a file for reading.
     pub fn open_file(path: &Path) -> Result<Self, Failure> {
         let place = || path.display().to_string();
         let file = match files::open(path) {
@@ -70,7 +70,7 @@ impl Content {
         self.len
     }
 
-    /// Name in the line `//NAME` of a checked job.
+    /// Name in the line `//NAME` of a job that was checked.
     pub fn job_name(&self) -> Option<&[u8]> {
         self.job_name.as_deref()
     }
@@ -95,14 +95,14 @@ impl Content {
         let path = self.path.display();
         if let Some(line) = scan.first_bare.filter(|_| !rules.fix_line_endings) {
             let message =
-                format!("{path}: line {line} ends in a bare LF ({} lines in total); jobs need CR LF", scan.bare);
+                format!("{path}: line {line} ends in LF without CR ({} lines in total); jobs need CR LF", scan.bare);
             return Err(
                 Failure::usage(message).hint(format!("add --fix-line-endings to send CR LF; {path} stays unchanged"))
             );
         }
         if let Some(missing) = scan.missing().filter(|_| !rules.force) {
-            return Err(Failure::usage(format!("{path} does not look like a job: {missing}"))
-                .hint("the controller would refuse it or raise an alarm; --force sends it anyway"));
+            return Err(Failure::usage(format!("{path} is not in the form of a job: {missing}"))
+                .hint("add --force to send the file anyway; the controller would refuse the file or raise an alarm"));
         }
         self.job_name = scan.name;
         self.fixes = scan.bare > 0;
@@ -110,7 +110,7 @@ impl Content {
         Ok(())
     }
 
-    /// Pieces of the file, starting at its beginning.
+    /// Reader for the pieces of the file, from its beginning.
     pub fn pieces(&mut self) -> Result<Pieces<'_>, Failure> {
         self.file.rewind().with_context(|| self.path.display().to_string())?;
         let fixer = self.fixes.then(Fixer::default);
@@ -118,18 +118,18 @@ impl Content {
     }
 }
 
-/// Reader for a [`Content`] in pieces.
+/// Reader that returns a [`Content`] in pieces.
 #[derive(Debug)]
 pub struct Pieces<'a> {
     file: &'a File,
     path: &'a Path,
     fixer: Option<Fixer>,
-    /// Hash of the pieces so far.
+    /// Hash of the pieces that were read so far.
     pub hash: Hash,
 }
 
 impl Pieces<'_> {
-    /// Next piece; empty at the end.
+    /// Returns the next piece, which is empty at the end.
     pub fn next_piece(&mut self) -> Result<Vec<u8>, Failure> {
         let mut piece = Vec::with_capacity(PIECE);
         let read = self.file.take(PIECE as u64).read_to_end(&mut piece);
@@ -142,7 +142,7 @@ impl Pieces<'_> {
     }
 }
 
-/// Inserts a CR before every bare LF.
+/// Inserts a CR before each LF that has none.
 #[derive(Debug, Default)]
 struct Fixer {
     previous: u8,
@@ -162,11 +162,11 @@ impl Fixer {
     }
 }
 
-/// Bytes of a line that the scan keeps: the longest such line has a name.
+/// Maximum number of bytes of a line that the scan keeps. The longest relevant line has a name.
 const HEAD: usize = 48;
 
-/// Requirements of a job file (JBI): `/JOB` in the first line, lines `NOP` and `END`, CR LF line endings. In all
-/// encodings of a pendant, CR and LF are never part of a wider character.
+/// Scan for the requirements of a job file (JBI): `/JOB` in the first line, lines `NOP` and `END`, CR LF line endings.
+/// In all encodings of a pendant, CR and LF are never part of a multi-byte character.
 #[derive(Debug, Default)]
 struct JobScan {
     head: Vec<u8>,
@@ -281,7 +281,10 @@ mod tests {
         let job = b"/JOB\r\nNOP\n\r\nEND\n";
         let failure = check(job, JobRules { force: true, ..JobRules::default() }).unwrap_err();
         assert_eq!(failure.kind.exit(), 2);
-        assert!(failure.message.ends_with("line 2 ends in a bare LF (2 lines in total); jobs need CR LF"), "{failure}");
+        assert!(
+            failure.message.ends_with("line 2 ends in LF without CR (2 lines in total); jobs need CR LF"),
+            "{failure}"
+        );
         assert!(failure.hint.unwrap().starts_with("add --fix-line-endings"));
         assert_eq!(check(job, FIX).unwrap(), b"/JOB\r\nNOP\r\n\r\nEND\r\n");
     }
@@ -324,7 +327,7 @@ mod tests {
             let mut scan = JobScan::default();
             scan.take(&bytes);
             prop_assert_eq!(fixed.len() as u64, bytes.len() as u64 + scan.bare);
-            // Without the CRs before LFs, both texts are equal.
+            // Without the CR before each LF, both texts must be equal.
             let plain = |text: &[u8]| text.iter().enumerate()
                 .filter(|(at, byte)| !(**byte == b'\r' && text.get(at + 1) == Some(&b'\n')))
                 .map(|(_, byte)| *byte).collect::<Vec<_>>();

@@ -24,7 +24,7 @@ pub struct Delete {
     names: Vec<String>,
 }
 
-/// Report of deletions.
+/// Report of the deletions.
 fn report(files: Vec<FileItem>) -> Files {
     Files::new(files, |files| FileItem::transfers(files, "deleted"))
 }
@@ -64,7 +64,7 @@ impl Command for Delete {
     }
 }
 
-/// Confirmation with the files to delete and the missing files.
+/// Confirmation that names the files to delete, and the files that do not exist.
 fn change(encoding: Encoding, lists: Option<&Lists>, files: &[FileName]) -> Change {
     let tell = |file: &FileName| lists.map_or(Existence::No, |lists| lists.existence(file));
     let name = |file: &FileName| encoding.decode(file.as_bytes());
@@ -73,7 +73,9 @@ fn change(encoding: Encoding, lists: Option<&Lists>, files: &[FileName]) -> Chan
     for file in files {
         match tell(file) {
             Existence::Yes => items.push(name(file)),
-            Existence::Unlisted => items.push(format!("{} (not known whether it exists)", name(file))),
+            Existence::Unlisted => {
+                items.push(format!("{} (armctl could not check whether the file exists)", name(file)))
+            }
             Existence::No => missing.push(name(file)),
         }
     }

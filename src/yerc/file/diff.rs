@@ -1,4 +1,4 @@
-//! `yerc file diff`: changes that an upload of the local file would make.
+//! `yerc file diff`: shows the changes that an upload of the local file would make.
 
 use std::path::{Path, PathBuf};
 
@@ -64,7 +64,7 @@ impl Command for Diff {
         let mut comparer = Comparer::new(source.pieces()?, without_date);
         transfer::fetch(link, &file, |block| {
             progress.advance(block.len() as u64);
-            // One byte more than the limit shows that the file is longer.
+            // One byte more than the limit is enough to show that the file is too long.
             let remaining = (MAX_TEXT + 1).saturating_sub(controller_bytes.len());
             controller_bytes.extend_from_slice(block.get(..remaining).unwrap_or(block));
             comparer.take(block)
@@ -97,22 +97,22 @@ impl Command for Diff {
 /// Difference between a file on the controller (old) and a local file (new).
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Difference {
-    /// Whether the files are equal, apart from ignored lines.
+    /// Whether the files are equal. Ignored lines do not count.
     equal: bool,
     /// The local file.
     files: [FileItem<Sides>; 1],
 }
 
-/// Fields of the compared files.
+/// Further fields of the compared files.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 struct Sides {
-    /// Bytes of the name, if the text does not convert back to them.
+    /// Bytes of the name, if the text cannot be converted back to these bytes.
     name_hex: Option<String>,
     #[serde(flatten)]
     compared: Compared,
     /// Size of the controller's file.
     controller_bytes: u64,
-    /// Offset of the first difference.
+    /// Offset of the first difference; null if there is none.
     first_difference_offset: Option<u64>,
 }
 
@@ -137,10 +137,7 @@ impl Difference {
         let Sides { compared, controller_bytes, first_difference_offset, .. } = more;
         match (first_difference_offset, compared.only_line_endings) {
             (None, _) if !compared.ignored.is_empty() => {
-                format!(
-                    "{name} on the controller and {path} are the same, except for the line {DATE_LINE}, which is \
-                     ignored"
-                )
+                format!("{name} on the controller and {path} are the same; the comparison ignores the line {DATE_LINE}")
             }
             (None, _) => format!("{name} on the controller and {path} are the same, {local_bytes} bytes"),
             (Some(_), Some(true)) => format!("{name} on the controller and {path} differ only in line endings"),
@@ -162,7 +159,7 @@ impl Report for Difference {
         if let Some(hunks) = compared.changes() {
             let mut lines = text_diff::unified(&format!("{name} (controller)"), path, hunks);
             if !compared.ignored.is_empty() {
-                lines.push(format!("the line {DATE_LINE} also differs and is ignored").into());
+                lines.push(format!("the line {DATE_LINE} also differs, but the comparison ignores it").into());
             }
             return View::default().append(Section::Lines(lines));
         }
@@ -176,7 +173,7 @@ impl Report for Difference {
                     named.iter().filter(|(n, _)| *n > 0).map(|(n, name)| format!("{n} with {name}")).collect::<Vec<_>>()
                 };
                 View::text(format!(
-                    "only line endings differ: on the controller {} where {path} has {}",
+                    "only line endings differ: the controller has {}, {path} has {}",
                     ends(Change::Removed).join(", "),
                     ends(Change::Added).join(", ")
                 ))
@@ -245,8 +242,7 @@ mod tests {
         assert_eq!((*only_line_endings, hunks.as_ref().map(Vec::len)), (Some(true), Some(1)));
         assert_eq!(
             render::text(&found.view(), 80, false),
-            "only line endings differ: on the controller 2 with CR LF where a.jbi has 1 with LF, 1 with no line \
-             ending\n"
+            "only line endings differ: the controller has 2 with CR LF, a.jbi has 1 with LF, 1 with no line ending\n"
         );
     }
 
@@ -261,7 +257,7 @@ mod tests {
 
     #[test]
     fn reports_differences_invisible_in_text() {
-        // Both decode to the same character, but a controller may treat them as different.
+        // Both byte sequences decode to the same character, but a controller may treat them as different.
         let found = difference(b"\x81\xca\r\n", b"\xee\xf9\r\n");
         assert_eq!(found.files[0].more.compared.hunks.as_ref().map(|hunks| hunks[0].lines.len()), Some(2));
     }

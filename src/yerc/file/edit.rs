@@ -1,4 +1,4 @@
-//! `yerc job edit`: edit a job of the controller in the user's editor.
+//! `yerc job edit`: edits a job of the controller in the user's editor.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -29,10 +29,11 @@ use armctl_frame::{Command, Context, Report};
 #[derive(Debug, Args)]
 #[command(
     after_help = "armctl reads the job, opens it in $VISUAL or $EDITOR, checks it (/JOB, //NAME, NOP, END) and shows \
-                  the changes. After your confirmation, it writes the job and reads it back. A running job, or a job \
-                  that has changed on the controller, is not overwritten. After any failure, your text stays in a file \
-                  that the message names.\n\nIn the editor, the job is UTF-8 with line feeds. The controller gets its \
-                  own encoding and CR LF. A job with bytes that are not text is edited unchanged."
+                  the changes. After your confirmation, armctl writes the job and reads it back. It does not \
+                  overwrite a running job, or a job that has changed on the controller. After a failure, armctl keeps \
+                  your text in a file, and the message shows the path.\n\nIn the editor, the job is UTF-8 with line \
+                  feeds. The controller gets its own encoding and CR LF. A job with bytes that are not text is edited \
+                  unchanged."
 )]
 pub struct Edit {
     /// Job name, with or without .JBI
@@ -73,7 +74,9 @@ impl Command for Edit {
                 Ok(report)
             }
             Err(failure) => Err(edited.keep_file(failure, |path| {
-                format!("your text is in {path}; `yerc file put {path} --as {local} --replace --verify` sends it")
+                format!(
+                    "use `yerc file put {path} --as {local} --replace --verify` to send your text, which is in {path}"
+                )
             })),
         }
     }
@@ -93,7 +96,7 @@ impl Edit {
             return Ok(EditedJob { name: shown, changed: false, bytes: old.len() as u64, hunks: Vec::new() });
         }
         let new = form.encode_text(&edited.text()?)?;
-        // From here on, the file has the bytes for the controller.
+        // From now on, the file contains the bytes for the controller.
         edited.replace(&new)?;
         let mut delivery = Delivery { file: file.clone(), content: Content::open(edited.path())? };
         delivery.content.check_job(JobRules::default())?;
@@ -102,7 +105,9 @@ impl Edit {
                 .hint("rename a job on the pendant, or send it as a new job with `yerc file put`"));
         }
         if delivery.content.job_name().is_none() {
-            return Err(Failure::usage("the line //NAME is missing").hint("the controller would refuse it"));
+            return Err(Failure::usage("the line //NAME is missing").hint(
+                "add the line //NAME with the name of the job; without it, the controller would refuse the job",
+            ));
         }
         let difference = TextDifference::of(link.encoding, old, &new);
         let hunks = difference.map(|found| found.hunks).unwrap_or_default();
@@ -115,7 +120,7 @@ impl Edit {
         if before != after {
             return Err(Failure::new(
                 Kind::Rejected,
-                format!("{} has changed on the controller since it was read", shown.name),
+                format!("{} has changed on the controller since armctl read it", shown.name),
             )
             .hint("edit the job again and merge both changes"));
         }
@@ -132,17 +137,17 @@ impl Edit {
     }
 }
 
-/// Form of a job in the editor.
+/// Form of the job text in the editor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum TextForm {
-    /// Unchanged bytes.
+    /// The bytes as they are on the controller.
     Bytes,
-    /// UTF-8 with line feeds.
+    /// UTF-8 text with LF line endings.
     Text(Encoding),
 }
 
 impl TextForm {
-    /// Text, if the conversion is reversible.
+    /// Text, if its conversion is reversible; otherwise bytes.
     fn of(encoding: Encoding, bytes: &[u8]) -> Self {
         let text = Self::Text(encoding);
         if text.encode_text(&text.decode_text(bytes)).is_ok_and(|back| back == bytes) { text } else { Self::Bytes }
@@ -165,7 +170,7 @@ impl TextForm {
             let line = line.strip_suffix('\r').filter(|_| !ending.is_empty()).unwrap_or(line);
             let encoded = encoding.encode(line).map_err(|error| {
                 Failure::usage(format!("line {}: {error}", index + 1))
-                    .hint("--encoding or the robot's entry sets the encoding")
+                    .hint("set the encoding with --encoding or in the robot's entry in robots.toml")
             })?;
             bytes.extend(encoded);
             bytes.extend_from_slice(ending.as_bytes());
@@ -183,7 +188,7 @@ async fn fetch(link: &mut Link, screen: &Screen, file: &FileName) -> Result<Vec<
         bytes.extend_from_slice(block);
         if bytes.len() > MAX_TEXT {
             return Err(
-                Failure::usage("the job is too large for this command").hint("download it with `yerc file get`")
+                Failure::usage("the job is too large for this command").hint("download the job with `yerc file get`")
             );
         }
         Ok(())
@@ -192,7 +197,7 @@ async fn fetch(link: &mut Link, screen: &Screen, file: &FileName) -> Result<Vec<
     Ok(bytes)
 }
 
-/// A running job is not overwritten.
+/// Rejects the edit while a job runs. A running job must not be overwritten.
 async fn check_idle(link: &mut Link, file: &FileName) -> Result<(), Failure> {
     if !link.ask(&ReadStatus).await?.running() {
         return Ok(());
@@ -214,12 +219,12 @@ async fn check_idle(link: &mut Link, file: &FileName) -> Result<(), Failure> {
 }
 
 fn plan(link: &mut Link, file: &FileName) -> Result<EditedJob, Failure> {
-    link.plan_download(&file.save(), Reason::about("the job, for the editor"))?;
+    link.plan_download(&file.save(), Reason::about("content of the job, for the editor"))?;
     let if_changed = |about| Reason::about(about).depending_on("whether the job was changed in the editor");
     link.plan_if(&ReadStatus.request(), if_changed("whether a job runs"));
     link.plan_download(&file.save(), if_changed("whether the job has changed on the controller"))?;
-    link.plan_if(&file.load(), if_changed("starts to send the edited job"));
-    link.then("sends the job block by block and reads it back");
+    link.plan_if(&file.load(), if_changed("starts the transfer of the edited job"));
+    link.then("armctl sends the job block by block, and reads the job back");
     Err(unknown())
 }
 
@@ -231,7 +236,7 @@ pub struct EditedJob {
     /// Whether the job was written and read back.
     changed: bool,
     bytes: u64,
-    /// Changes.
+    /// Changes in the text.
     hunks: Vec<Hunk>,
 }
 

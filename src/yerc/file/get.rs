@@ -45,10 +45,10 @@ impl Command for Get {
         if to_stdout {
             self.check_stdout(*screen, several)?;
         }
-        // Paths without a leading `./` are easier to read.
+        // A path without a leading `./` is easier to read.
         let dir = if self.dir == Path::new(".") { Path::new("") } else { &self.dir };
         let folder = private_folder(dir, &robot.name, several);
-        // All checks that need no list come before the first request.
+        // All checks for which no list is needed are made before the first request.
         let parsed: Vec<String> = self.names.iter().filter(|name| !is_pattern(name)).cloned().collect();
         let typed = name::parse_names(link.encoding, &parsed)?;
         if !to_stdout {
@@ -61,7 +61,7 @@ impl Command for Get {
         drop(looking);
         if let ([file], true) = (&typed[..], to_stdout) {
             print(link, screen, file).await?;
-            // Stdout has the file itself.
+            // Stdout contains the file itself, so there is no report.
             return Ok(Files::new(Vec::new(), |_| View::default()));
         }
         let mut names = LocalNames::new(link.encoding);
@@ -110,7 +110,7 @@ impl Get {
     }
 }
 
-/// Target path of each file, all checked before the first download.
+/// Target path of each file. All paths are checked before the first download.
 fn targets(encoding: Encoding, files: &[FileName], folder: &Path, force: bool) -> Result<Vec<Target>, Failure> {
     let mut names = LocalNames::new(encoding);
     let target = |file: &FileName| Target::new(folder.join(names.assign(file.as_bytes())?), force);
@@ -121,12 +121,12 @@ async fn print(link: &mut Link, screen: &Screen, file: &FileName) -> Result<(), 
     let mut out = Printer::new(screen, link.encoding);
     let name = link.encoding.decode(file.as_bytes());
     let result = transfer::fetch(link, file, |block| out.take(block)).await;
-    // Received bytes are written even after a failure; the exit code reports the failure.
+    // The bytes that were received are written even after a failure. The exit code reports the failure.
     out.flush()?;
     result.map(|_| ()).map_err(|failure| transfer::describe_request(&name, failure))
 }
 
-/// Writer of a file to stdout: bytes, or on a terminal escaped text that cannot control the terminal.
+/// Writes a file to stdout. On a terminal, it writes escaped text, which cannot control the terminal.
 struct Printer<'a> {
     screen: &'a Screen,
     encoding: Encoding,
@@ -134,7 +134,7 @@ struct Printer<'a> {
     pending: Vec<u8>,
 }
 
-/// Number of bytes collected before a write.
+/// Number of bytes that are collected before a write.
 const BATCH: usize = 1 << 16;
 
 impl<'a> Printer<'a> {
@@ -148,7 +148,7 @@ impl<'a> Printer<'a> {
             return Ok(());
         }
         let rest = match self.pending.iter().rposition(|byte| *byte == b'\n') {
-            // A line feed is never part of a wider character, so text is cut there.
+            // A line feed is never part of a multi-byte character, so the text can be cut there.
             Some(end) if self.is_text => self.pending.split_off(end + 1),
             _ => Vec::new(),
         };

@@ -18,10 +18,10 @@ use armctl_frame::{Command, Context};
 /// Lists the files on the controller.
 #[derive(Debug, Args)]
 pub struct List {
-    /// File types, such as jbi,dat
+    /// File types, for example jbi,dat
     #[arg(long = "type", value_name = "TYPE", value_delimiter = ',', ignore_case = true, default_value = "jbi")]
     types: Vec<TypeArg>,
-    /// Raw filter to send instead, such as '', '*.*' or '*.JBI'
+    /// Raw filter to send instead of the types, such as '', '*.*' or '*.JBI'
     #[arg(long, value_name = "FILTER", conflicts_with = "types", value_parser = filter)]
     filter: Option<String>,
 }
@@ -43,14 +43,14 @@ impl Command for List {
         };
         let requests = filters.iter().map(|(filter, _)| files::list_by(filter));
         let requests: Vec<_> = requests.collect::<Result<_, _>>().map_err(|error| {
-            Failure::usage(error.to_string()).hint("a filter looks like *.JBI; remove --filter to list jobs")
+            Failure::usage(error.to_string()).hint("type a filter such as *.JBI, or remove --filter to list jobs")
         })?;
         if link.is_dry() {
             transfer::plan_all(link, transfer::LISTS, requests)?;
             return Ok(Files::new(Vec::new(), table));
         }
         let mut listed = Vec::new();
-        // The file service may still be busy with an aborted transfer of another client.
+        // The file service may still be busy with a transfer that another client aborted.
         let _looking = screen.spinner("looking for files");
         for ((filter, kind), request) in filters.iter().zip(&requests) {
             match transfer::list_by(link, request).await {
@@ -59,7 +59,7 @@ impl Command for List {
                     let file_type = name_of_type(bytes).or(kind.map(type_word));
                     FileItem::new(name, Listed { name_hex, file_type }, Ok(()))
                 })),
-                // A controller may list jobs but refuse to list parameters.
+                // A controller may list its jobs, but refuse to list its parameters.
                 Err(failure) if backup::continues_after(&failure) && filters.len() > 1 => {
                     let more = Listed { name_hex: None, file_type: kind.map(type_word) };
                     listed.push(FileItem::new(filter, more, Err(failure)));
@@ -71,17 +71,18 @@ impl Command for List {
     }
 }
 
-/// Text of a filter.
+/// Filter as displayed text.
 fn shown(filter: &str) -> String {
     if filter.is_empty() { "the empty filter".to_owned() } else { filter.to_owned() }
 }
 
-/// Fields of a listed file, or of a type that could not be listed: its name is the filter.
+/// Fields of a listed file, or of a type that could not be listed. The name of such a type is its filter.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Listed {
-    /// Bytes of the name, if the text does not convert back to them; as an argument, use them with the prefix `hex:`.
+    /// Bytes of the name, if the text cannot be converted back to these bytes. To use them as an argument, add the
+    /// prefix `hex:`.
     name_hex: Option<String>,
-    /// `jbi`, `dat`, `cnd`, `prm`, `sys` or `lst`; null for any other extension.
+    /// Type: `jbi`, `dat`, `cnd`, `prm`, `sys` or `lst`; null for any other extension.
     #[serde(rename = "type")]
     file_type: Option<&'static str>,
 }

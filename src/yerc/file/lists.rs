@@ -1,5 +1,5 @@
-//! Existence of files on the controller, from its lists: overwritten or deleted files are known before the
-//! confirmation.
+//! Existence of files on the controller, according to its lists. With it, the confirmation can name the files that will
+//! be overwritten or deleted.
 
 use super::transfer;
 use crate::link::Link;
@@ -8,23 +8,23 @@ use armctl_frame::backup::continues_after;
 use armctl_frame::dry_run::Reason;
 use armctl_frame::failure::Failure;
 
-/// Existence of a file.
+/// Whether a file exists on the controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Existence {
     /// The file exists.
     Yes,
     /// The file does not exist.
     No,
-    /// Unknown: there is no list of its type, or the controller refused it.
+    /// Unknown, because there is no list of this type, or the controller refused to send it.
     Unlisted,
 }
 
-/// Lists of some types.
+/// Lists of file names, for some types.
 #[derive(Debug, Default)]
 pub struct Lists(Vec<(FileType, Option<Vec<Vec<u8>>>)>);
 
 impl Lists {
-    /// Reads the lists for these files; `None` in a dry run, which notes the requests.
+    /// Reads the lists for these files. Returns `None` in a dry run, which records the requests.
     pub async fn ask<'a>(
         link: &mut Link,
         is_asked: impl IntoIterator<Item = &'a FileName>,
@@ -53,7 +53,8 @@ impl Lists {
         Ok(Some(lists))
     }
 
-    /// Whether a file exists. A name in other case counts as well: a controller may treat it as the same file.
+    /// Whether a file exists. A name that differs only in upper and lower case also counts, because a controller may
+    /// treat it as the same file.
     pub fn existence(&self, file: &FileName) -> Existence {
         let list = self.0.iter().find(|(kind, _)| Some(*kind) == file.file_type());
         match list {

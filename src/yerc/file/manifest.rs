@@ -24,14 +24,14 @@ pub struct Controller {
     pub model: String,
     /// Version of the system software; null if the controller refused to report it.
     pub software: Option<String>,
-    /// Model of the first robot; null if the controller refused to report it.
+    /// Model of robot R1; null if the controller refused to report it.
     pub robot_model: Option<String>,
-    /// Encoding of the displayed names.
+    /// Encoding of the file names as text.
     pub encoding: String,
 }
 
 impl Controller {
-    /// Reads it from the controller.
+    /// Reads the description from the controller.
     pub async fn ask(link: &mut Link) -> Result<Self, Failure> {
         let question = Self::question()?;
         let info = match link.ask(&question).await {
@@ -49,8 +49,8 @@ impl Controller {
         })
     }
 
-    /// Model by the software version, or else the stored model: old versions of armctl called every model except
-    /// FS100 a DX200.
+    /// Model according to the software version; otherwise the stored model. Old versions of armctl stored every model
+    /// except FS100 as a DX200.
     pub fn description_of(&self) -> &str {
         let reported = self.software.as_ref().and_then(|software| Model::from_software(software.as_bytes()));
         match reported {
@@ -59,9 +59,9 @@ impl Controller {
         }
     }
 
-    /// Request of [`ask`](Self::ask).
+    /// Request that [`ask`](Self::ask) sends.
     pub fn question() -> Result<ReadSystemInfo, Failure> {
-        // The request is the same for every model, and its answer also identifies the model.
+        // The request is the same for each model, and its answer also identifies the model.
         ReadSystemInfo::new(Model::Dx200, SystemPart::Group(Group::R1))
             .map_err(|error| Failure::local(error.to_string()))
     }
@@ -75,7 +75,7 @@ impl About for Controller {
     }
 }
 
-/// File on the controller for an entry.
+/// Name on the controller of the file of an entry.
 pub fn controller_file(entry: &Entry) -> Result<FileName, Failure> {
     exact(entry.name_hex.as_deref().and_then(unhex).unwrap_or_default())
 }

@@ -1,4 +1,4 @@
-//! File names and types in arguments and in reports.
+//! Names and types of files in arguments and in reports.
 
 use clap::ValueEnum;
 use schemars::JsonSchema;
@@ -9,24 +9,25 @@ use armctl_controller::yerc::files::{FileName, FileType};
 use armctl_frame::failure::Failure;
 use armctl_frame::robot::file::FileItem;
 
-/// File name in a report.
+/// Name of a file in a report.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Shown {
-    /// Name on the controller.
+    /// Name of the file on the controller.
     pub name: String,
-    /// Bytes of the name, if the text does not convert back to them; as an argument, use them with the prefix `hex:`.
+    /// Bytes of the name, if the text cannot be converted back to these bytes. To use them as an argument, add the
+    /// prefix `hex:`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub name_hex: Option<String>,
 }
 
 impl Shown {
-    /// Name from the bytes of a controller.
+    /// Creates a name from the bytes of a controller.
     pub fn new(encoding: Encoding, name: &[u8]) -> Self {
         let name = encoding.name(name);
         Self { name: name.text, name_hex: name.hex }
     }
 
-    /// File that was not tried yet.
+    /// Report item for a file that was not tried yet.
     pub fn pending(self) -> FileItem {
         let mut file = FileItem::pending(self.name);
         file.more.name_hex = self.name_hex;
@@ -34,7 +35,7 @@ impl Shown {
     }
 }
 
-/// File types on the command line.
+/// File type as an argument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum TypeArg {
     /// Jobs
@@ -66,19 +67,19 @@ impl TypeArg {
         })
     }
 
-    /// Selected types without duplicates, in the order of the manual.
+    /// Selected types, each only once, in the order of the manual.
     pub fn selected_types(args: &[Self]) -> Vec<FileType> {
         let has = |kind| args.iter().any(|arg| arg.file_type().is_none_or(|chosen| chosen == kind));
         FileType::ALL.into_iter().filter(|kind| has(*kind)).collect()
     }
 }
 
-/// Type of a file in reports; null if its extension is not in the manuals.
+/// Type of a file in reports; `None` if the manuals do not list its extension.
 pub fn name_of_type(name: &[u8]) -> Option<&'static str> {
     FileType::from_name(name).map(type_word)
 }
 
-/// Type in reports and manifests: `jbi`.
+/// Name of the type in reports and manifests, such as `jbi`.
 pub fn type_word(kind: FileType) -> &'static str {
     match kind {
         FileType::Jbi => "jbi",
@@ -90,22 +91,23 @@ pub fn type_word(kind: FileType) -> &'static str {
     }
 }
 
-/// Parses a file argument: text in the robot's encoding, or `hex:` and bytes.
+/// Parses a file argument: text in the robot's encoding, or `hex:` followed by bytes.
 pub fn parse_name(encoding: Encoding, text: &str) -> Result<FileName, Failure> {
     let bytes = if let Some(digits) = text.strip_prefix("hex:") {
         unhex(digits).ok_or_else(|| {
             Failure::usage(format!("'{text}' has an incomplete hexadecimal byte"))
-                .hint("use hex: with the name_hex of `yerc file list --json`, as in hex:5445535430312e4a4249")
+                .hint("type hex: and the name_hex from `yerc file list --json`, such as hex:5445535430312e4a4249")
         })?
     } else {
         encoding.encode_name(text).map_err(|error| {
-            Failure::usage(format!("'{text}': {error}")).hint("--encoding or the robot's entry sets the encoding")
+            Failure::usage(format!("'{text}': {error}"))
+                .hint("set the encoding with --encoding or in the robot's entry in robots.toml")
         })?
     };
     exact(bytes)
 }
 
-/// Checks a name for an upload.
+/// Checks that a name is allowed for an upload.
 pub fn name_to_send(file: FileName) -> Result<FileName, Failure> {
     match file.check_load() {
         Ok(()) => Ok(file),
@@ -113,27 +115,28 @@ pub fn name_to_send(file: FileName) -> Result<FileName, Failure> {
     }
 }
 
-/// Parses several file arguments and rejects duplicates.
+/// Parses several file arguments, and rejects duplicates.
 pub fn parse_names(encoding: Encoding, texts: &[String]) -> Result<Vec<FileName>, Failure> {
     let mut files = Vec::with_capacity(texts.len());
     for text in texts {
         let file = parse_name(encoding, text)?;
         if files.contains(&file) {
-            return Err(Failure::usage(format!("{text} is named twice")).hint("list every file once"));
+            return Err(Failure::usage(format!("{text} appears twice")).hint("type every file once"));
         }
         files.push(file);
     }
     Ok(files)
 }
 
-/// Checks that a name has no wildcards. A controller might match `*` or `?` with any name and delete too many files.
+/// Checks that a name has no wildcards. A controller might match `*` or `?` with any name, and delete too many files.
 pub fn exact(bytes: Vec<u8>) -> Result<FileName, Failure> {
     if bytes.iter().any(|byte| matches!(byte, b'*' | b'?')) {
         return Err(Failure::usage(format!("the file name '{}' contains * or ?", bytes.escape_ascii()))
             .hint("use full file names (see `yerc file list`); only `yerc file get` accepts patterns"));
     }
     FileName::new(bytes).map_err(|error| {
-        Failure::usage(error.to_string()).hint("use a job name such as TESTJOB.JBI; `yerc file list` shows the files")
+        Failure::usage(error.to_string())
+            .hint("use a job name such as TESTJOB.JBI; use `yerc file list` to see the files")
     })
 }
 

@@ -1,4 +1,4 @@
-//! Patterns of file names, such as `*.JBI`: required lists of the controller, and matching names. A pattern is never
+//! Patterns of file names, such as `*.JBI`. They are matched against the lists of the controller. A pattern is never
 //! sent, because a controller might interpret it differently.
 
 use super::name::{self, Shown};
@@ -9,16 +9,16 @@ use armctl_frame::backup::continues_after;
 use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::settings::inventory::matches_pattern;
 
-/// A requested file, or the reason why there is none.
+/// A requested file, or the reason why no file was found.
 #[derive(Debug)]
 pub struct FilePattern {
-    /// Name, or the pattern or list without a result.
+    /// Name of the file, or the pattern or list that has no result.
     pub name: Shown,
-    /// Name to send.
+    /// Name to send to the controller.
     pub file: Result<FileName, Failure>,
 }
 
-/// Whether an argument is a pattern; `hex:` is always a name.
+/// Whether an argument is a pattern. An argument with `hex:` is always a name.
 pub fn is_pattern(text: &str) -> bool {
     text.contains(['*', '?']) && !text.starts_with("hex:")
 }
@@ -29,8 +29,8 @@ fn types(pattern: &str) -> Vec<FileType> {
     FileType::ALL.into_iter().filter(|kind| matches_pattern(&ending.to_uppercase(), kind.extension())).collect()
 }
 
-/// Finds the files of arguments: names unchanged, and matches of patterns, without duplicates. `None` in a dry run,
-/// which notes the requests.
+/// Finds the files for arguments, without duplicates. Names are used unchanged, and patterns are replaced by the names
+/// that match. Returns `None` in a dry run, which records the requests.
 pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<FilePattern>>, Failure> {
     let (patterns, names): (Vec<&String>, Vec<&String>) = asked.iter().partition(|text| is_pattern(text));
     let names: Vec<String> = names.into_iter().cloned().collect();
@@ -41,13 +41,13 @@ pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<FilePa
     };
     if let Some(pattern) = patterns.iter().find(|pattern| types(pattern).is_empty()) {
         return Err(Failure::usage(format!("no controller file can match '{pattern}'"))
-            .hint("file names end in JBI, DAT, CND, PRM, SYS or LST"));
+            .hint("use a file name that ends in JBI, DAT, CND, PRM, SYS or LST"));
     }
     if link.is_dry() {
         transfer::plan_all(link, transfer::LISTS, kinds.into_iter().map(files::list))?;
         transfer::plan_all(link, "downloads the file", files.iter().map(FileName::save))?;
         if !patterns.is_empty() {
-            link.then("downloads every listed file that matches a pattern and acknowledges each block");
+            link.then("armctl downloads every listed file that matches a pattern, and acknowledges each block");
         }
         return Ok(None);
     }
@@ -76,17 +76,18 @@ pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<FilePa
             }
             let is_new = !found.iter().any(|other| other.name == name);
             if matches_any && is_new {
-                // A listed name that is not allowed is an error of the controller, not of the operator.
+                // If the list contains a name that is not allowed, this is an error of the controller, and not of the
+                // user.
                 let file = name::exact(bytes).map_err(|failure| Failure { kind: Kind::Malformed, ..failure });
                 found.push(FilePattern { name, file });
             }
         }
     }
     for (pattern, fitted) in patterns.into_iter().zip(matched) {
-        // After a refused list, the matching files are unknown.
+        // If a list was refused, it is unknown which files match.
         if !fitted && !types(pattern).iter().any(|kind| refused.iter().any(|list| list.name.name == kind.filter())) {
             let no_match = Failure::new(Kind::Refused, "no file on the controller matches")
-                .hint("`yerc file list --type all` shows the names; names are case-sensitive");
+                .hint("use `yerc file list --type all` to see the names; names are case-sensitive");
             found.push(FilePattern { name: Shown { name: pattern.clone(), name_hex: None }, file: Err(no_match) });
         }
     }

@@ -29,16 +29,16 @@ pub struct Put {
     /// Name on the controller [default: the local name]
     #[arg(long = "as", value_name = "NAME")]
     name: Option<String>,
-    /// Send CR LF for job lines that end in a bare LF
+    /// Send CR LF for job lines that end only in LF
     #[arg(long)]
     fix_line_endings: bool,
-    /// Read every file back and compare it
+    /// Read each file back and compare it
     #[arg(long)]
     verify: bool,
-    /// Ignore the line ///DATE, which controllers rewrite
+    /// Ignore the line ///DATE in this comparison, because controllers rewrite it
     #[arg(long, requires = "verify")]
     ignore_header: bool,
-    /// Delete and send a job that the controller does not overwrite
+    /// If the controller does not overwrite a job, delete the old job first
     #[arg(long)]
     replace: bool,
     /// Send a job even if /JOB, NOP or END is missing
@@ -46,7 +46,7 @@ pub struct Put {
     force: bool,
 }
 
-/// Report of uploads.
+/// Report of the uploads.
 fn report(files: Vec<FileItem>) -> Files {
     Files::new(files, |files| FileItem::transfers(files, "sent"))
 }
@@ -68,8 +68,8 @@ impl Command for Put {
             let mut result = Shown::new(link.encoding, file.as_bytes()).pending().with_path(content.path());
             if let Some((own, sent)) = delivery.name_in_job(link.encoding) {
                 screen.note(&format!(
-                    "warning: {} has //NAME {own} but is sent as {sent}: a controller may refuse it, or store it as \
-                     {own}",
+                    "warning: {} has //NAME {own}, but armctl sends it as {sent}: a controller may refuse the job, or \
+                     store it as {own}",
                     content.path().display()
                 ));
                 result.more.notes.push("name_differs".to_owned());
@@ -86,7 +86,7 @@ impl Command for Put {
             return Ok(report(results));
         };
         for (delivery, result) in deliveries.iter_mut().zip(&mut results) {
-            // An unlisted file was not confirmed, so it is not deleted.
+            // A file that was not in a list was not confirmed, so it is not deleted.
             let replace = manner.replace && lists.existence(&delivery.file) != Existence::No;
             let outcome =
                 upload(link, screen, delivery, UploadOptions { replace, ..manner }, &mut result.more.notes).await;
@@ -99,7 +99,7 @@ impl Command for Put {
 }
 
 impl Put {
-    /// All files, checked before the first upload.
+    /// All files to upload. They are checked before the first upload.
     fn deliveries(&self, encoding: Encoding) -> Result<Vec<Delivery>, Failure> {
         if self.name.is_some() && self.files.len() > 1 {
             return Err(Failure::usage("--as needs exactly one file").hint("send the files one by one"));
@@ -117,7 +117,7 @@ impl Put {
                     "{}: another file has the same name on the controller",
                     path.display()
                 ))
-                .hint("send one of them separately with another name (--as)"));
+                .hint("send one of the files separately with another name (--as)"));
             }
             let mut content = Content::open(path)?;
             if file.file_type() == Some(FileType::Jbi) {
@@ -129,7 +129,7 @@ impl Put {
     }
 }
 
-/// Controller file name for a local file.
+/// File name on the controller for a local file.
 fn named_after(encoding: Encoding, path: &Path) -> Result<FileName, Failure> {
     let invalid = |why: String| {
         Failure::usage(format!("{}: {why}", path.display())).hint("set the name on the controller with --as")

@@ -1,4 +1,4 @@
-//! Reads small files of the controller for commands that need their content.
+//! Reads small files from the controller, for commands that need their content.
 
 use super::lists::{Existence, Lists};
 use super::transfer;
@@ -11,16 +11,16 @@ use armctl_frame::output::Screen;
 /// Result of reading a file.
 #[derive(Debug)]
 pub enum FileReading {
-    /// Content.
+    /// Content of the file.
     Read(Vec<u8>),
-    /// The controller has no such file.
+    /// The controller does not have the file.
     Missing,
-    /// The file was not read.
+    /// The file could not be read.
     Failed(Failure),
 }
 
-/// Reads files of at most `most` bytes, each with its own result, in order; `None` in a dry run, which notes the
-/// requests.
+/// Reads files of at most `most` bytes, in order. Each file has its own result. Returns `None` in a dry run, which
+/// records the requests.
 pub async fn read_files(
     link: &mut Link,
     screen: &Screen,
@@ -33,7 +33,7 @@ pub async fn read_files(
     let files = files.collect::<Result<Vec<FileName>, Failure>>()?;
     let looking = screen.spinner("looking for files");
     let Some(lists) = Lists::ask(link, &files).await? else {
-        transfer::plan_all(link, "if the controller has it", files.iter().map(FileName::save))?;
+        transfer::plan_all(link, "if the controller has the file", files.iter().map(FileName::save))?;
         return Ok(None);
     };
     drop(looking);
@@ -49,8 +49,10 @@ pub async fn read_files(
             progress.advance(block.len() as u64);
             bytes.extend_from_slice(block);
             if bytes.len() as u64 > most {
-                return Err(Failure::new(Kind::Malformed, format!("{name} has more than {most} bytes"))
-                    .hint("no known controller has such a large file; record it with --trace and report it"));
+                return Err(Failure::new(Kind::Malformed, format!("{name} has more than {most} bytes")).hint(
+                    "record the transfer with --trace and report the problem; no known controller has such a large \
+                     file",
+                ));
             }
             Ok(())
         });

@@ -1,4 +1,4 @@
-//! `yerc restore`: upload of the files of a backup.
+//! `yerc restore`: uploads the files of a backup.
 
 use std::path::PathBuf;
 
@@ -25,28 +25,29 @@ use armctl_frame::local_names::private_folder;
 use armctl_frame::output::Screen;
 use armctl_frame::robot::file::{FileItem, State};
 
-/// Files of a backup to upload.
+/// Selection of the files of a backup to upload.
 #[derive(Debug)]
 pub struct Restore {
     folder: PathBuf,
-    /// Types of the files.
+    /// File types to send.
     types: Vec<FileType>,
-    /// Patterns of file names.
+    /// Patterns for file names.
     patterns: Only,
-    /// Send a backup to another model.
+    /// Whether to send a backup of another model.
     force: bool,
 }
 
-/// Jobs that the controller does not overwrite by itself are replaced.
+/// Jobs are replaced if the controller itself does not overwrite them.
 const OPTIONS: UploadOptions = UploadOptions { verify: false, ignore_header: false, replace: true };
 
-/// Order of sending: jobs need their data and conditions first, and after parameters a controller may need a restart.
+/// Order in which types are sent. Jobs need their data and conditions first. After parameters, a controller may need a
+/// restart.
 const ORDER: [FileType; 6] = [FileType::Dat, FileType::Cnd, FileType::Jbi, FileType::Lst, FileType::Sys, FileType::Prm];
-/// Types that are sent by default. Parameters and system data change the controller itself.
+/// Types that are sent by default. Parameters and system data are not, because they change the controller itself.
 const DEFAULT_TYPES: [FileType; 3] = [FileType::Dat, FileType::Cnd, FileType::Jbi];
 
 impl Restore {
-    /// Options from those of the `restore` command of all families.
+    /// Converts the options of the `restore` command that all families have.
     pub fn of(restoring: &RestoreSelection) -> Self {
         let RestoreSelection { folder, only: patterns, machine, force } = restoring.clone();
         let mut types = DEFAULT_TYPES.to_vec();
@@ -59,7 +60,7 @@ impl Restore {
         Self { folder, types, patterns, force }
     }
 
-    /// Sends what differs.
+    /// Sends the files that differ.
     pub async fn run(&self, context: Context<'_, Yerc>) -> Result<Restored, Failure> {
         let Context { link, screen, robot, several, authority } = context;
         let folder = private_folder(&self.folder, &robot.name, several);
@@ -67,9 +68,9 @@ impl Restore {
         let manifest: Manifest = manifest::open_existing(&folder)?;
         let (taken_of, model) = (manifest.controller.description_of(), link.model().await?);
         if taken_of != model.name() && !link.is_dry() && !self.force {
-            let message = format!("the backup is of a {taken_of}, {} is a {model}", robot.label());
+            let message = format!("the backup is from a {taken_of}, but {} is a {model}", robot.label());
             return Err(Failure::new(Kind::Rejected, message)
-                .hint("check the model (?model=…); --force sends the files anyway"));
+                .hint("check the model (?model=…), or add --force to send the files anyway"));
         }
         let chosen = self.select_entries(&manifest)?;
         let (mut deliveries, mut results) = (Vec::with_capacity(chosen.len()), Vec::with_capacity(chosen.len()));
@@ -94,7 +95,7 @@ impl Restore {
         if !compare(link, screen, &lists, &mut deliveries, &mut results).await? {
             return Ok(Restored::new(&folder, results));
         }
-        // Equal files are skipped, and files that could not be compared are not sent.
+        // Equal files are skipped. Files that could not be compared are not sent.
         let mut open: Vec<(Delivery, &mut FileItem)> = deliveries
             .into_iter()
             .zip(&mut results)
@@ -104,7 +105,7 @@ impl Restore {
             .await?;
         let mut sent = screen.parts_progress("files sent", open.len());
         for (delivery, result) in &mut open {
-            // An unlisted file was not confirmed, so it is not deleted.
+            // A file that was not in a list was not confirmed, so it is not deleted.
             let replace = lists.existence(&delivery.file) != Existence::No;
             let outcome =
                 upload(link, screen, delivery, UploadOptions { replace, ..OPTIONS }, &mut result.more.notes).await;
@@ -119,7 +120,7 @@ impl Restore {
 }
 
 impl Restore {
-    /// Notes each file of the backup in a dry run.
+    /// In a dry run, records each file of the backup.
     fn plan_items(link: &mut Link, manifest: &Manifest, deliveries: &[Delivery]) {
         let enabled = "whether the controller's file differs";
         for entry in &manifest.files {
@@ -130,7 +131,9 @@ impl Restore {
             link.plan_item(match (is_sent, is_usual) {
                 (true, _) => would_write(&entry.name, ("bytes", copy.bytes), enabled),
                 (false, true) => would_leave(&entry.name, NOT_CHOSEN),
-                (false, false) => would_leave(&entry.name, "parameters or system data; written only with --machine"),
+                (false, false) => {
+                    would_leave(&entry.name, "parameters or system data, which armctl writes only with --machine")
+                }
             });
         }
     }
@@ -147,8 +150,8 @@ impl Restore {
             }
         }
         if chosen.is_empty() {
-            let message = "the backup has only lists, parameters or system data, which change the controller";
-            return Err(Failure::usage(message).hint("add --machine to send them"));
+            let message = "the backup contains only lists, parameters or system data, which change the controller";
+            return Err(Failure::usage(message).hint("add --machine to send these files"));
         }
         let place = |file: &FileName| ORDER.iter().position(|kind| Some(*kind) == file.file_type());
         chosen.sort_by_key(|(file, _)| place(file));
@@ -156,7 +159,7 @@ impl Restore {
     }
 }
 
-/// Finds the files that are equal on the controller; `false` if the work cannot continue.
+/// Finds the files that are equal on the controller. Returns `false` if the work cannot continue.
 async fn compare(
     link: &mut Link,
     screen: &Screen,
@@ -181,14 +184,15 @@ async fn compare(
     Ok(true)
 }
 
-/// Notes in a dry run the requests after the lists.
+/// In a dry run, records the requests that follow the lists.
 async fn plan(link: &mut Link, deliveries: &mut [Delivery], authority: &Authority<'_>) -> Result<(), Failure> {
     authority.confirm(&Change::none()).await?;
     for Delivery { file, .. } in &*deliveries {
-        let reason = Reason::about("if the file is listed: compares").depending_on("whether the file is listed");
+        let reason =
+            Reason::about("content of the file, for the comparison").depending_on("whether the file is listed");
         link.plan_download(&file.save(), reason)?;
     }
-    let reason = Reason::about("if it differs").depending_on("whether the file differs");
+    let reason = Reason::about("if the file differs").depending_on("whether the file differs");
     for delivery in deliveries {
         upload::plan(link, delivery, OPTIONS, reason)?;
     }

@@ -1,4 +1,4 @@
-//! File and list transfers over the link, with a message for every way in which a transfer can end.
+//! File and list transfers over the link. Each way in which a transfer can end has its own message.
 
 use std::time::Duration;
 
@@ -19,24 +19,24 @@ use armctl_frame::local_names::Target;
 use armctl_frame::output::Screen;
 use armctl_frame::output::progress::Progress;
 
-/// Maximum size of a file from a controller; real files have a few megabytes.
+/// Maximum size of a file from a controller. Real files have a few megabytes.
 const MAX_FILE: u64 = 1 << 30;
-/// Maximum size of a list: some hundred thousand names.
+/// Maximum size of a list. It is large enough for some hundred thousand names.
 const MAX_LIST: u64 = 4 << 20;
 
-/// No file of the requested type (DX 3.1).
+/// Added status: no file of the requested type (DX 3.1).
 const NOTHING_LISTED: u32 = 0xE2A7;
-/// The file does not exist or is empty (DX 3.1).
+/// Added status: the file does not exist or is empty (DX 3.1).
 const NO_FILE_OR_EMPTY: u32 = 0xE29C;
-/// A job with this name exists.
+/// Added status: a job with this name exists.
 const JOB_EXISTS: &str = "0x4030";
 
-/// File names of one type, in the order of the controller.
+/// Reads the file names of one type, in the order of the controller.
 pub async fn list(link: &mut Link, kind: FileType) -> Result<Vec<Vec<u8>>, Failure> {
     list_by(link, &files::list(kind)).await
 }
 
-/// File names in the answer to a list request.
+/// Reads the file names that answer this list request.
 pub async fn list_by(link: &mut Link, request: &Request) -> Result<Vec<Vec<u8>>, Failure> {
     let mut data = Vec::new();
     let end = link
@@ -53,14 +53,15 @@ pub async fn list_by(link: &mut Link, request: &Request) -> Result<Vec<Vec<u8>>,
         end => {
             name_taken(service::LIST, &end)?;
             let names = split_list(&data).map_err(|error| {
-                Failure::new(Kind::Malformed, error.to_string()).hint("record it with --trace and report it")
+                Failure::new(Kind::Malformed, error.to_string())
+                    .hint("record the transfer with --trace and report the problem")
             })?;
             Ok(names.into_iter().map(<[u8]>::to_vec).collect())
         }
     }
 }
 
-/// Downloads a file; every block is passed to `take`.
+/// Downloads a file. Every block is passed to `take`.
 pub async fn fetch(
     link: &mut Link,
     file: &FileName,
@@ -69,7 +70,7 @@ pub async fn fetch(
     name_taken(service::SAVE, &link.download(&file.save(), MAX_FILE, None, take).await?)
 }
 
-/// Like [`fetch`], for a file that was just listed: without content it is empty, not missing.
+/// Like [`fetch`], but for a file that was just listed. If such a file has no content, it is empty, and not missing.
 pub async fn fetch_listed(
     link: &mut Link,
     file: &FileName,
@@ -81,7 +82,7 @@ pub async fn fetch_listed(
     }
 }
 
-/// Whether the controller has a file with this content. A file that it does not send counts as different.
+/// Whether the controller has a file with this content. A file that the controller does not send counts as different.
 pub async fn is_same(
     link: &mut Link,
     screen: &Screen,
@@ -103,7 +104,7 @@ pub async fn is_same(
     }
 }
 
-/// Downloads a file to a local one.
+/// Downloads a file to a local file.
 pub async fn save(
     link: &mut Link,
     screen: &Screen,
@@ -132,11 +133,11 @@ pub async fn save(
 pub enum Download<'a> {
     /// A file that may be missing.
     Named(&'a FileName),
-    /// A file that was just listed; it may be empty.
+    /// A file that was just listed. The file may be empty.
     Listed(&'a FileName),
 }
 
-/// Batch backup: `None` if the controller has created it, its size if it was received.
+/// Result for the batch backup: `None` if the controller has created it, or its size if it was received.
 pub async fn fetch_backup(
     link: &mut Link,
     wait: Duration,
@@ -151,7 +152,7 @@ pub async fn fetch_backup(
 /// Deletes a file.
 pub async fn remove(link: &mut Link, file: &FileName) -> Result<(), Failure> {
     let reply = link.raw(&file.delete()).await.map_err(|failure| match failure.kind {
-        Kind::OutcomeUnknown => failure.hint("`yerc file list` shows whether the file still exists"),
+        Kind::OutcomeUnknown => failure.hint("use `yerc file list` to see whether the file still exists"),
         _ => failure,
     })?;
     match reply.status {
@@ -161,7 +162,7 @@ pub async fn remove(link: &mut Link, file: &FileName) -> Result<(), Failure> {
     }
 }
 
-/// Uploads a file. Returns the content that was sent.
+/// Uploads a file. Returns the hash of the content that was sent.
 pub async fn send(
     link: &mut Link,
     file: &FileName,
@@ -186,13 +187,13 @@ pub async fn send(
     Ok(pieces.hash)
 }
 
-/// Whether the controller lists a file with this name.
+/// Whether a list of the controller contains a file with this name.
 async fn is_listed(link: &mut Link, file: &FileName) -> bool {
     let Some(kind) = file.file_type() else { return false };
     list(link, kind).await.is_ok_and(|names| names.iter().any(|name| name.eq_ignore_ascii_case(file.as_bytes())))
 }
 
-/// Notes in a dry run the requests of [`send`].
+/// In a dry run, records the requests of [`send`].
 pub fn plan_send(link: &mut Link, file: &FileName, content: &mut Content, reason: Reason<'_>) -> Result<(), Failure> {
     let mut pieces = content.pieces()?;
     link.plan_upload(&file.load(), reason, || pieces.next_piece())?;
@@ -204,26 +205,26 @@ pub fn plan_send(link: &mut Link, file: &FileName, content: &mut Content, reason
     Ok(link.plan_download(&files::list(kind), without_block_number.depending_on(&depends_on))?)
 }
 
-/// Notes in a dry run several downloads, one after the other.
+/// In a dry run, records several downloads, one after another.
 pub fn plan_all(link: &mut Link, about: &str, requests: impl IntoIterator<Item = Request>) -> Result<(), Failure> {
     Ok(requests.into_iter().try_for_each(|request| link.plan_download(&request, Reason::about(about)))?)
 }
 
-/// Purpose of list requests in dry runs.
+/// Purpose of list requests, as a dry run shows it.
 pub const LISTS: &str = "existing files";
 
-/// Whether the controller refused a file because a job with that name exists.
+/// Whether the controller refused a file because a job with the same name exists.
 pub fn is_job_exists(failure: &Failure) -> bool {
     failure.kind == Kind::Refused && failure.code.as_deref() == Some(JOB_EXISTS)
 }
 
-/// Failure for a file that the controller does not list.
+/// Failure: the controller does not list the file.
 pub fn not_listed() -> Failure {
     Failure::new(Kind::Refused, "the file does not exist on the controller")
-        .hint("`yerc file list` shows the names; names are case-sensitive")
+        .hint("use `yerc file list` to see the names; names are case-sensitive")
 }
 
-/// Received size, or the failure of the transfer.
+/// Size of the received data, or the failure of the transfer.
 pub fn name_taken(service: u8, end: &DownloadEnd) -> Result<u64, Failure> {
     match *end {
         DownloadEnd::Complete { bytes, .. } => Ok(bytes),
@@ -231,22 +232,25 @@ pub fn name_taken(service: u8, end: &DownloadEnd) -> Result<u64, Failure> {
             Err(refusal_failure(Refusal::of_file(service, status)))
         }
         DownloadEnd::Refused { status, bytes } => Err(describe_request(
-            &format!("aborted after {bytes} bytes"),
+            &format!("the transfer ended after {bytes} bytes"),
             refusal_failure(Refusal::of_file(service, status)),
         )),
-        DownloadEnd::Finished => Err(Failure::new(Kind::Malformed, "the controller reported success but sent nothing")
-            .hint("`yerc file list` shows whether the file exists; it may be empty")),
+        DownloadEnd::Finished => {
+            Err(Failure::new(Kind::Malformed, "the controller reported success, but it sent no data")
+                .hint("use `yerc file list` to see whether the file exists; the file may be empty"))
+        }
         DownloadEnd::Violated { violation, bytes } => {
             Err(Failure::new(Kind::Malformed, format!("the transfer failed after {bytes} bytes: {violation}"))
-                .hint("no data was saved; repeat the command, and record it with --trace if the problem persists"))
+                .hint("repeat the command, and record it with --trace if the problem persists; no data was saved"))
         }
         DownloadEnd::TooLarge { limit, .. } => {
-            Err(Failure::new(Kind::Malformed, format!("the controller sends more than {limit} bytes"))
-                .hint("no known controller has such large files; record it with --trace and report it"))
+            Err(Failure::new(Kind::Malformed, format!("the controller sends more than {limit} bytes")).hint(
+                "record the transfer with --trace and report the problem; no known controller has such large files",
+            ))
         }
         DownloadEnd::NoAnswer { bytes, counters } => {
             Err(Failure::new(Kind::NoAnswer, format!("no answer after {bytes} bytes ({counters})"))
-                .hint("repeat the command (no data was saved), or set a longer --timeout"))
+                .hint("repeat the command, or set a longer --timeout; no data was saved"))
         }
     }
 }
@@ -254,22 +258,27 @@ pub fn name_taken(service: u8, end: &DownloadEnd) -> Result<u64, Failure> {
 fn name_sent(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64, Failure> {
     let unknown = |message: String| {
         Err(Failure::new(Kind::OutcomeUnknown, message)
-            .hint(format!("`yerc file diff {name} {path}` shows what the controller has now")))
+            .hint(format!("use `yerc file diff {name} {path}` to see what the controller has now")))
     };
     match *end {
         UploadEnd::Complete { bytes, .. } => Ok(bytes),
         UploadEnd::Unnumbered { .. } => unknown(format!(
-            "all data was sent, but the last acknowledgement has no block number and {name} is not listed"
+            "all data was sent, but the last acknowledgement has no block number, and the controller does not list \
+             {name}"
         )),
-        UploadEnd::Empty => Err(Failure::usage("an empty file cannot be sent").hint("check that it is the right file")),
+        UploadEnd::Empty => {
+            Err(Failure::usage("an empty file cannot be sent").hint("check whether this is the right file"))
+        }
         UploadEnd::TooLong { .. } => {
-            Err(Failure::usage("the file is too long for a transfer").hint("check that it is the right file"))
+            Err(Failure::usage("the file is too long for a transfer").hint("check whether this is the right file"))
         }
         UploadEnd::Refused { status, sent, repeated: true, .. } if sent >= total => {
             let Failure { message, .. } = refusal_failure(Refusal::of_file(service::LOAD, status));
-            unknown(format!("the last block was sent again and then refused: {message} The file may exist"))
+            unknown(format!(
+                "armctl sent the last block again, and the controller refused the block: {message} The file may exist"
+            ))
         }
-        // Refused at the start, or the whole file at the end.
+        // The controller refused the file at the start, or refused the whole file at the end.
         UploadEnd::Refused { status, sent, .. } if sent == 0 || sent >= total => {
             Err(refusal_failure(Refusal::of_file(service::LOAD, status)))
         }
@@ -280,8 +289,8 @@ fn name_sent(end: &UploadEnd, total: u64, name: &str, path: &str) -> Result<u64,
         UploadEnd::OutcomeUnknown { sent: 0, counters, .. } => {
             let seen = if counters.heard_something() { format!(" ({counters})") } else { String::new() };
             unknown(format!(
-                "the request was sent once without an answer{seen}: no data was sent, but the controller may wait for \
-                 it"
+                "the request was sent once, with no answer{seen}: armctl sent no data, but the controller may wait \
+                 for data"
             ))
         }
         UploadEnd::OutcomeUnknown { sent, .. } if sent >= total => {
@@ -308,7 +317,7 @@ mod tests {
         assert_eq!(end(9, true).kind, Kind::OutcomeUnknown);
         assert_eq!(
             end(9, true).hint.as_deref(),
-            Some("`yerc file diff A.JBI a.jbi` shows what the controller has now")
+            Some("use `yerc file diff A.JBI a.jbi` to see what the controller has now")
         );
         assert_eq!(end(9, false).kind, Kind::Refused);
         assert_eq!(end(0, true).kind, Kind::Refused);

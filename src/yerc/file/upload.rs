@@ -1,5 +1,5 @@
-//! Upload of a local file with its options: verification, and replacement of an existing job such that one copy
-//! always exists.
+//! Upload of a local file with its options: verification, and replacement of an existing job. During a replacement,
+//! there is always at least one copy of the job.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,27 +19,27 @@ use armctl_frame::gate::Change;
 use armctl_frame::local_names::{Target, folder_of, local_name};
 use armctl_frame::output::Screen;
 
-/// File to upload.
+/// A file to upload.
 #[derive(Debug)]
 pub struct Delivery {
     /// Name on the controller.
     pub file: FileName,
-    /// Content.
+    /// Content to send.
     pub content: Content,
 }
 
 /// Upload options.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct UploadOptions {
-    /// Read the file back and compare it.
+    /// Whether to read the file back and compare it.
     pub verify: bool,
-    /// Ignore the line that controllers rewrite in the comparison.
+    /// Whether the comparison ignores the line that controllers rewrite.
     pub ignore_header: bool,
-    /// Delete an existing job that the controller refuses to overwrite.
+    /// Whether to delete an existing job that the controller refuses to overwrite.
     pub replace: bool,
 }
 
-/// Asks for confirmation if files are overwritten: listed files, and files of a type without a list.
+/// Asks for confirmation if files will be overwritten: files that are in a list, and files of a type without a list.
 pub async fn confirm_uploads<'a>(
     authority: &Authority<'_>,
     encoding: Encoding,
@@ -51,7 +51,7 @@ pub async fn confirm_uploads<'a>(
     for Delivery { file, content } in deliveries {
         let unlisted_count = match lists.map_or(Existence::No, |lists| lists.existence(file)) {
             Existence::Yes => "",
-            Existence::Unlisted => " (not known whether it exists)",
+            Existence::Unlisted => " (armctl could not check whether the file exists)",
             Existence::No => continue,
         };
         let (name, path) = (encoding.decode(file.as_bytes()), content.path().display());
@@ -69,7 +69,7 @@ pub async fn confirm_uploads<'a>(
     authority.confirm(&change).await
 }
 
-/// Notes in a dry run the requests of [`upload`].
+/// In a dry run, records the requests of [`upload`].
 pub fn plan(
     link: &mut Link,
     delivery: &mut Delivery,
@@ -80,17 +80,25 @@ pub fn plan(
     transfer::plan_send(link, file, content, reason)?;
     if manner.replace && file.file_type() == Some(FileType::Jbi) {
         let if_refused = |about| Reason::about(about).depending_on("whether the controller overwrites the job");
-        link.plan_download(&file.save(), if_refused("if it does not overwrite the job: copies the old job"))?;
-        link.plan_if(&file.delete(), if_refused("if it does not overwrite the job: deletes the old job"));
-        transfer::plan_send(link, file, content, if_refused("if it does not overwrite the job: sends the new job"))?;
+        link.plan_download(
+            &file.save(),
+            if_refused("if the controller does not overwrite the job: copy of the old job"),
+        )?;
+        link.plan_if(&file.delete(), if_refused("if the controller does not overwrite the job: deletes the old job"));
+        transfer::plan_send(
+            link,
+            file,
+            content,
+            if_refused("if the controller does not overwrite the job: sends the new job"),
+        )?;
     }
     if manner.verify {
-        link.plan_download(&file.save(), Reason { about: Some("reads it back"), ..reason })?;
+        link.plan_download(&file.save(), Reason { about: Some("content of the file after the write"), ..reason })?;
     }
     Ok(())
 }
 
-/// Uploads a file and adds the steps to `notes`. Returns the content that was sent.
+/// Uploads a file, and adds the completed steps to `notes`. Returns the content that was sent.
 pub async fn upload(
     link: &mut Link,
     screen: &Screen,
@@ -102,8 +110,8 @@ pub async fn upload(
         Err(failure) if transfer::is_job_exists(&failure) => {
             if !manner.replace {
                 return Err(failure.hint(
-                    "add --replace to delete that job and send this one; if that fails, the old job is restored. `yerc \
-                     file diff` shows the differences",
+                    "add --replace to delete the old job and send the new job; if the transfer fails, armctl restores \
+                     the old job. `yerc file diff` shows the differences",
                 ));
             }
             let sent = replace(link, screen, delivery).await?;
@@ -124,7 +132,7 @@ pub async fn upload(
 }
 
 impl Delivery {
-    /// Name in the job and name of the upload, if they differ.
+    /// Name in the job, and name of the upload; `None` if they are equal.
     pub fn name_in_job(&self, encoding: Encoding) -> Option<(String, String)> {
         let file = self.file.as_bytes();
         let stem = file.get(..file.len().saturating_sub(4)).unwrap_or(file);
@@ -133,10 +141,12 @@ impl Delivery {
     }
 }
 
-/// Adds a hint if the name in the job differs from its file name, a likely cause of a refusal.
+/// Adds a hint to the failure if the name in the job differs from its file name. This is a likely cause of a refusal.
 fn check_job_name(link: &Link, delivery: &Delivery, failure: Failure) -> Failure {
     match delivery.name_in_job(link.encoding) {
-        Some((own, stem)) => failure.hint(format!("the job has //NAME {own} but is sent as {stem}: use the same name")),
+        Some((own, stem)) => {
+            failure.hint(format!("use the same name: the job has //NAME {own}, but armctl sends it as {stem}"))
+        }
         None => failure,
     }
 }
@@ -158,25 +168,28 @@ async fn verify(link: &mut Link, screen: &Screen, delivery: &mut Delivery, ignor
         comparer.take(block)
     })
     .await
-    .map_err(|failure| Failure { message: format!("sent, but not read back: {}", failure.message), ..failure })?;
+    .map_err(|failure| Failure {
+        message: format!("the file was sent, but could not be read back: {}", failure.message),
+        ..failure
+    })?;
     match comparer.finish()?.0 {
         Comparison { first_difference: None, .. } => Ok(()),
         Comparison { controller_bytes, local_bytes, first_difference: Some(at), .. } => Err(Failure::new(
             Kind::Malformed,
             format!(
-                "the controller returned other bytes than were sent: {controller_bytes} bytes instead of \
+                "the controller returned other bytes than armctl sent: {controller_bytes} bytes instead of \
                  {local_bytes}, first difference at byte {at}"
             ),
         )
         .hint(format!(
-            "`yerc file diff {name} {path} --exact` shows the differences; --ignore-header ignores the line ///DATE, \
-             which a controller may rewrite"
+            "use `yerc file diff {name} {path} --exact` to see the differences; add --ignore-header to ignore the \
+             line ///DATE, which a controller may rewrite"
         ))),
     }
 }
 
-/// Replaces an existing job. A local copy of it exists from before its deletion until the new job is on the
-/// controller.
+/// Replaces an existing job. A local copy of the existing job is kept from before its deletion until the new job is on
+/// the controller.
 async fn replace(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> Result<Hash, Failure> {
     let mut old = OldCopy::fetch(link, screen, delivery).await?;
     old.is_needed = true;
@@ -207,7 +220,7 @@ async fn replace(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> R
     }
 }
 
-/// Local copy of a job to be deleted. It is removed at the end, unless it is the only copy.
+/// Local copy of a job that will be deleted. The copy is removed at the end, unless it is the only one.
 #[derive(Debug)]
 struct OldCopy {
     path: PathBuf,
@@ -227,7 +240,7 @@ impl OldCopy {
         Ok(Self { path, screen: *screen, is_needed: false, is_path_reported: false })
     }
 
-    /// First free name: `A.JBI.replaced`, `A.JBI.replaced-2`.
+    /// First free name for the copy: `A.JBI.replaced`, `A.JBI.replaced-2`.
     fn local_folder(folder: &Path, local: &str) -> Result<Target, Failure> {
         let free = |path: &PathBuf| path.symlink_metadata().is_err();
         let numbered = (2..1000).map(|number| folder.join(format!("{local}.replaced-{number}")));
@@ -239,7 +252,7 @@ impl OldCopy {
         Target::new(path, false)
     }
 
-    /// Failure with the location of the copy.
+    /// Adds the path of the copy to a failure.
     fn failure_with_path(&mut self, failure: Failure) -> Failure {
         if !self.is_needed {
             return failure;
@@ -256,7 +269,7 @@ impl Drop for OldCopy {
                 self.screen.note(&format!("the old job is saved in {}", self.path.display()));
             }
         } else if let Err(error) = fs::remove_file(&self.path) {
-            self.screen.note(&format!("{} is left: {error}", self.path.display()));
+            self.screen.note(&format!("{} could not be deleted: {error}", self.path.display()));
         }
     }
 }

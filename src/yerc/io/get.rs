@@ -21,16 +21,16 @@ use armctl_frame::{Command, Context};
 /// Reads signals.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Signals have the numbers of the manuals and the pendant: #20010 to #20017 are the eight signals of \
-                  group 2001. Numbers that end in 8 or 9 do not exist; a range skips them. For names, see `armctl \
-                  names list`."
+    after_help = "The signals have the numbers of the manuals and the pendant: #20010 to #20017 are the eight signals \
+                  of group 2001. Numbers that end in 8 or 9 do not exist; a range skips them. `armctl names list` \
+                  shows the names of signals."
 )]
 pub struct Get {
-    /// Signals, such as 20010, #20010 or 20010..20027, or a name
+    /// Signals, for example 20010, #20010 or 20010..20027, or a name
     #[arg(required_unless_present = "groups", value_name = "NUMBER", value_delimiter = ',', value_parser = signal::Signals::parse,
         add = complete::SIGNAL)]
     signals: Vec<signal::Signals>,
-    /// Groups of eight signals, such as 2001 or 2001..2010 (repeatable)
+    /// Groups of eight signals, for example 2001 or 2001..2010 (repeatable)
     #[arg(long = "group", value_name = "GROUP", value_delimiter = ',', value_parser = Groups::parse)]
     groups: Vec<Groups>,
 }
@@ -76,6 +76,8 @@ impl Command for Get {
 }
 
 impl Watchable for Get {
+    type Value = IoValue;
+
     const WATCH: &'static str = "yerc.io.watch";
     const WATCHED: Watched = WATCHED;
 }

@@ -30,7 +30,7 @@ commands! {
     }
 }
 
-/// Signal in reports.
+/// Report item of a signal.
 fn item(model: Model, signal: Signal, names: &Names) -> Result<IoItem, Failure> {
     let class = signal::class(model, signal.group())?.meaning;
     let name = signal.to_string();
@@ -38,7 +38,7 @@ fn item(model: Model, signal: Signal, names: &Names) -> Result<IoItem, Failure> 
     Ok(IoItem { address: name.clone(), name, label, kind: kind(class), meaning: Some(class.to_owned()) })
 }
 
-/// Group of eight signals; the first signal is the lowest bit.
+/// Report item of a group of eight signals. The first signal is the lowest bit.
 fn group_item(model: Model, group: u16) -> Result<IoItem, Failure> {
     let class = signal::class(model, group)?.meaning;
     let (first, last) = (signal::name(group, 0), signal::name(group, 7));
@@ -46,7 +46,7 @@ fn group_item(model: Model, group: u16) -> Result<IoItem, Failure> {
     Ok(IoItem { name: group.to_string(), label: None, kind: IoKind::Group, address, meaning: Some(class.to_owned()) })
 }
 
-/// Side that sets the signals of a class.
+/// Which side sets the signals of a class.
 fn kind(class: &str) -> IoKind {
     if class.ends_with("input") {
         IoKind::Input

@@ -5,9 +5,8 @@ use std::str::FromStr;
 
 use clap::Args;
 
-use super::super::batch_split::{BatchSplit, plan_in_batches, read_in_batches};
+use super::super::batch_split::{BatchSplit, read_in_batches};
 use super::super::switch_commands::usage;
-use super::super::write_all::{WriteOrder, old_value, write_all};
 use super::{group_item, item, signal};
 use crate::complete;
 use crate::existing_items::read_failure;
@@ -18,26 +17,32 @@ use armctl_controller::typed;
 use armctl_controller::yerc::Model;
 use armctl_controller::yerc::query::Query as _;
 use armctl_controller::yerc::signal::Signal;
-use armctl_controller::yerc::variables::{WriteIoStep, plan_io_reads, plan_io_writes};
-use armctl_frame::dry_run::{Reason, unknown};
-use armctl_frame::failure::Failure;
+use armctl_controller::yerc::variables::{WriteIoStep, parse_numbers, plan_io_reads, plan_io_writes};
+use armctl_frame::dry_run::Reason;
+use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::names;
-use armctl_frame::robot::io::{IoValue, WrittenSignal, WrittenSignals};
+use armctl_frame::output::Screen;
+use armctl_frame::robot::io::{IoItem, IoValue, WrittenSignal, WrittenSignals};
+use armctl_frame::robot::item::Plain;
+use armctl_frame::settings_report::{IF_DIFFERENT, OLD_VALUE};
+use armctl_frame::store::{
+    Answers, ComparedRow, Differing, Field, Ids, Row, Single, Store, TableWords, Writable, ids, write_rows,
+};
 use armctl_frame::{Command, Context};
 
 /// Switches network inputs.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Only network inputs can be written from a PC: #27010 to #29567 on a DX200, #25010 to #26287 on an \
-                  FS100. The protocol writes eight signals at a time: armctl reads the group, changes the named \
-                  signals, and writes the others back unchanged. A change of these others in the meantime is lost. \
-                  --group writes all eight signals without a read."
+    after_help = "A PC can write only network inputs: #27010 to #29567 on a DX200, #25010 to #26287 on an FS100. The \
+                  protocol writes eight signals at a time. armctl reads the group, changes the signals that you type, \
+                  and writes the other signals back unchanged. If another signal of the group changes between the \
+                  read and the write, that change is lost. --group writes all eight signals without a read."
 )]
 pub struct Set {
     /// 27010=on, #27011=off, or clamp=on for a name
     #[arg(required_unless_present = "groups", value_name = "NUMBER=on|off", add = complete::SIGNAL_STATE)]
     signals: Vec<Switch>,
-    /// Eight signals of a group, the first one lowest, such as 2701=0xA5 (repeatable)
+    /// Eight signals of a group, such as 2701=0xA5; the first signal is the lowest bit (repeatable)
     #[arg(long = "group", value_name = "GROUP=VALUE")]
     groups: Vec<GroupValue>,
 }
@@ -77,7 +82,7 @@ impl FromStr for GroupValue {
     }
 }
 
-/// Change of a group: bits in the mask are set to those of the value, the others stay.
+/// Change of a group. Bits in the mask get the bits of the value; the other bits stay unchanged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 struct Change {
     mask: u8,
@@ -97,47 +102,32 @@ impl Command for Set {
     const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenSignals, Failure> {
-        let Context { link, screen, robot, .. } = context;
+        let Context { link, screen, robot, authority, .. } = context;
         let names = names::of_robot(robot, screen);
-        let changes = self.changes()?;
-        let groups: Vec<u16> = changes.keys().copied().collect();
+        let changes: Vec<Row<Groups>> = self.changes()?.into_iter().collect();
+        let groups: Vec<u16> = changes.iter().map(|(group, _)| *group).collect();
         let model = link.model_for(|model| signal::is_readable(model, &groups, true)).await?;
         signal::is_readable(model, &groups, true)?;
-        let (whole, partial): (Vec<u16>, Vec<u16>) =
-            changes.keys().partition(|group| changes.get(group).is_some_and(|change| change.mask == u8::MAX));
-        let mut found = old_value(link, &plan_io_reads(model, &whole).map_err(usage)?).await?;
-        if link.is_dry() && !partial.is_empty() {
-            return Err(plan(link, model, &partial, &changes)?);
-        }
-        let plan = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
-        for (group, outcome) in read_in_batches(link, plan, &partial, |_| BatchSplit::Halves, |_, _| {}).await? {
-            let byte = outcome.map_err(|denied| {
-                let failure = read_failure(denied);
-                Failure { message: format!("group {group}: {}; nothing was written", failure.message), ..failure }
-            })?;
-            found.insert(group, byte);
-        }
-        let values: Vec<(u16, u8)> = changes
-            .iter()
-            .map(|(group, change)| (*group, change.apply(found.get(group).copied().unwrap_or_default())))
-            .collect();
-        let steps = plan_io_writes(model, &values).map_err(usage)?;
-        write_all(link, screen, &steps).await?;
-        let old = |group: u16| found.get(&group).copied();
-        let signals = self.signals.iter().map(|Switch { signal, on }| {
-            let old = old(signal.group()).map(|byte| IoValue::State(signal.is_on(byte)));
-            Ok(WrittenSignal::new(item(model, *signal, names)?, old, IoValue::State(*on)))
+        let rows = write_rows(&Groups { model }, link, screen, authority, changes).await?;
+        let row = |group: u16| rows.iter().find(move |row| row.key == group);
+        let signals = self.signals.iter().filter_map(|Switch { signal, .. }| {
+            let row = row(signal.group())?;
+            Some(item(model, *signal, names).map(|item| written(item, row, |byte| IoValue::State(signal.is_on(byte)))))
         });
-        let groups = self.groups.iter().map(|GroupValue { group, value }| {
-            let old = old(*group).map(|byte| IoValue::Number(byte.into()));
-            Ok(WrittenSignal::new(group_item(model, *group)?, old, IoValue::Number((*value).into())))
+        let groups = self.groups.iter().filter_map(|GroupValue { group, .. }| {
+            let row = row(*group)?;
+            Some(group_item(model, *group).map(|item| written(item, row, |byte| IoValue::Number(byte.into()))))
         });
-        Ok(WrittenSignals::new(signals.chain(groups).collect::<Result<_, Failure>>()?))
+        WrittenSignals::new(signals.chain(groups).collect::<Result<_, Failure>>()?).unless_all_failed()
     }
 }
 
+fn written(item: IoItem, row: &ComparedRow<Groups>, value: impl Fn(u8) -> IoValue) -> WrittenSignal {
+    WrittenSignal::with_outcome(item, row.old.map(&value), value(row.new), row.outcome.clone())
+}
+
 impl Set {
-    /// Change of each group. A signal that appears twice is an error.
+    /// Change of each group. It is an error if a signal occurs twice.
     fn changes(&self) -> Result<BTreeMap<u16, Change>, Failure> {
         let mut changes: BTreeMap<u16, Change> = BTreeMap::new();
         let wholes = self.groups.iter().map(|whole| (whole.group, Change { mask: u8::MAX, value: whole.value }));
@@ -149,7 +139,7 @@ impl Set {
             if known.mask & change.mask != 0 {
                 let bit = u8::try_from((known.mask & change.mask).trailing_zeros()).unwrap_or_default();
                 return Err(Failure::usage(format!("{} appears twice", signal::name(group, bit)))
-                    .hint("give each signal one state"));
+                    .hint("type one state for each signal"));
             }
             *known = Change { mask: known.mask | change.mask, value: known.value | change.value };
         }
@@ -157,37 +147,121 @@ impl Set {
     }
 }
 
-/// Notes in a dry run a change that depends on the values read first.
-fn plan(link: &mut Link, model: Model, partial: &[u16], changes: &BTreeMap<u16, Change>) -> Result<Failure, Failure> {
-    let reads = |groups: &[u16]| plan_io_reads(model, groups).map_err(usage);
-    let about = |groups: &[u16]| Some(format!("reads group {}", typed::runs(groups, "..")));
-    plan_in_batches(link, reads, partial, |_| BatchSplit::Halves, about)?;
-    let writes = |byte: u8| {
-        let values: Vec<(u16, u8)> = changes.iter().map(|(group, change)| (*group, change.apply(byte))).collect();
-        plan_io_writes(model, &values).map_err(usage)
-    };
-    let steps: Vec<(WriteIoStep, WriteIoStep)> = writes(0)?.into_iter().zip(writes(u8::MAX)?).collect();
-    for (one, other) in steps {
-        let (one, other, groups) = (one.request(), other.request(), typed::runs(one.written(), ".."));
-        if one == other {
-            link.plan(&one, &format!("writes group {groups}"));
-        } else {
-            let about = format!("writes group {groups}; the other signals keep the values that were read");
-            link.plan_depending(&one, &other, Reason::about(&about).depending_on("the values that were read"));
-        }
-    }
-    Ok(unknown())
+/// The groups of eight signals as a table.
+#[derive(Debug)]
+struct Groups {
+    model: Model,
 }
 
-impl WriteOrder for WriteIoStep {
-    type Item = u16;
+impl Store for Groups {
+    type Family = Yerc;
+    type Key = u16;
+    type Wire = u8;
+    type Value = u8;
+    type More = Plain;
+    type Options = Single;
 
-    fn items(&self) -> Vec<u16> {
-        self.written().to_vec()
+    const WORDS: TableWords =
+        TableWords { nouns: ["group", "groups"], placeholder: "GROUP", range: "", reading: None, writing: None };
+    const IDS: Ids = ids!("yerc.io");
+
+    fn keys(text: &str) -> Result<Vec<u16>, String> {
+        parse_numbers(text).map_err(|error| error.to_string())
     }
 
-    fn listed(items: Vec<u16>) -> String {
-        format!("group {}", typed::runs(&items, ".."))
+    fn name(group: u16) -> String {
+        group.to_string()
+    }
+
+    async fn open(_link: &mut Link, _options: &Single) -> Result<Self, Failure> {
+        Ok(Self { model: Model::Dx200 })
+    }
+
+    fn fields(&self) -> Vec<Field> {
+        vec![Field::number("value", "value")]
+    }
+
+    fn texts(&self, byte: &u8) -> Vec<String> {
+        vec![byte.to_string()]
+    }
+
+    fn value(&self, byte: &u8) -> Option<u8> {
+        Some(*byte)
+    }
+
+    fn more(&self, _group: u16, _byte: Option<&u8>) -> Plain {
+        Plain {}
+    }
+
+    async fn read(&self, link: &mut Link, _screen: &Screen, groups: &[u16]) -> Result<Answers<u8>, Failure> {
+        let plan = |groups: &[u16]| plan_io_reads(self.model, groups).map_err(usage);
+        let answers = read_in_batches(link, plan, groups, |_| BatchSplit::Halves, |_, _| {}).await?;
+        let row = |group: &u16| match answers.get(group) {
+            Some(outcome) => outcome.clone().map_err(read_failure),
+            None => Err(Failure::new(Kind::Malformed, "the answer does not have this group")),
+        };
+        Ok(Answers::of(groups.iter().map(row).collect()))
+    }
+}
+
+impl Writable for Groups {
+    type Draft = Change;
+
+    const RISK: Risk = Risk::Write;
+
+    fn draft(&self, group: u16, _texts: &[Option<&str>]) -> Result<Change, String> {
+        Err(format!("group {group}: signals are not in files"))
+    }
+
+    fn complete_draft(&self, group: u16, change: &Change, old: Option<&u8>) -> Result<u8, Failure> {
+        match old {
+            Some(byte) => Ok(change.apply(*byte)),
+            None if change.mask == u8::MAX => Ok(change.value),
+            None => Err(Failure::usage(format!("group {group}: the other signals are unknown"))),
+        }
+    }
+
+    async fn read_old(&self, link: &mut Link, screen: &Screen, rows: &[Row<Self>]) -> Result<Answers<u8>, Failure> {
+        let groups: Vec<u16> = rows.iter().map(|(group, _)| *group).collect();
+        self.read(link.for_purpose(OLD_VALUE), screen, &groups).await
+    }
+
+    /// Consecutive groups are one request.
+    fn blocks(&self, rows: &[Differing<'_, Self>]) -> Vec<Vec<usize>> {
+        let index_of = |group: &u16| rows.iter().position(|(key, ..)| key == group);
+        match self.steps(rows.iter().map(|(group, _, new)| (*group, **new))) {
+            Ok(steps) => steps.iter().map(|step| step.written().iter().filter_map(index_of).collect()).collect(),
+            Err(_) => (0..rows.len()).map(|index| vec![index]).collect(),
+        }
+    }
+
+    async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
+        let steps = |old: u8| self.steps(rows.iter().map(|(group, change)| (*group, change.apply(old))));
+        for (one, other) in steps(0)?.iter().zip(steps(u8::MAX)?) {
+            let groups = typed::runs(one.written(), "..");
+            let (one, other) = (one.request(), other.request());
+            let (about, depends_on) = if one == other {
+                (format!("writes group {groups}"), IF_DIFFERENT)
+            } else {
+                let about = format!("writes group {groups}; the other signals keep the values that were read");
+                (about, "the signals that were read")
+            };
+            link.plan_depending(&one, &other, Reason::about(&about).depending_on(depends_on));
+        }
+        Ok(())
+    }
+
+    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
+        for step in self.steps(rows.iter().map(|(group, _, new)| (*group, **new)))? {
+            link.ask(&step).await?;
+        }
+        Ok(())
+    }
+}
+
+impl Groups {
+    fn steps(&self, values: impl Iterator<Item = (u16, u8)>) -> Result<Vec<WriteIoStep>, Failure> {
+        plan_io_writes(self.model, &values.collect::<Vec<_>>()).map_err(usage)
     }
 }
 

@@ -10,7 +10,7 @@ use armctl_controller::yerc::variables::{IoStep, plan_io_reads};
 use armctl_frame::failure::Failure;
 use armctl_frame::names;
 
-/// Placeholder for a name that is not resolved yet: a signal that every model has.
+/// Placeholder for a name that is not resolved yet: a signal that exists on every model.
 const ANY: &str = "10010";
 
 /// Parses a single signal: `20010`, `#20010`, or its name.
@@ -20,12 +20,12 @@ pub fn parse_single(text: &str) -> Result<Signal, String> {
     })
 }
 
-/// A signal or a range of them, as typed.
+/// A signal or a range of signals, as typed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Signals(pub Vec<Signal>);
 
 impl Signals {
-    /// Parses `20010`, `#20010`, `20010..20027` (inclusive), or a name.
+    /// Parses `20010`, `#20010`, a range such as `20010..20027` (both ends included), or a name.
     pub fn parse(text: &str) -> Result<Self, String> {
         names::parse_or_name(&[Kind::Signal], ANY, text, Self::addresses)
     }
@@ -36,12 +36,12 @@ impl Signals {
     }
 }
 
-/// Number of a signal in a group, `bit` from 0 to 7: `#20010`.
+/// Number of a signal in a group, such as `#20010`. `bit` is 0 to 7.
 pub fn name(group: u16, bit: u8) -> String {
     format!("#{:05}", u32::from(group) * 10 + u32::from(bit))
 }
 
-/// Class of a group: its meaning, and whether it is writable.
+/// Class of a group: its meaning, and whether signals of the group can be written.
 pub fn class(model: Model, group: u16) -> Result<&'static Span, Failure> {
     io_class(model, group).ok_or_else(|| {
         Failure::usage(format!("group {group} ({}) does not exist on a {model}", name(group, 0)))
@@ -49,22 +49,26 @@ pub fn class(model: Model, group: u16) -> Result<&'static Span, Failure> {
     })
 }
 
-/// Meanings of groups (all writable if `to_write` is set), and the read requests for them.
+/// Meanings of groups, and the requests that read the groups. If `to_write` is set, all groups must be writable.
 pub fn is_readable(model: Model, groups: &[u16], to_write: bool) -> Result<(Vec<&'static str>, Vec<IoStep>), Failure> {
     let class = if to_write { writable } else { class };
     let meanings = groups.iter().map(|group| Ok(class(model, *group)?.meaning)).collect::<Result<_, Failure>>()?;
     Ok((meanings, plan_io_reads(model, groups).map_err(usage)?))
 }
 
-/// Class of a writable group.
+/// Class of a group, which must be writable.
 pub fn writable(model: Model, group: u16) -> Result<&'static Span, Failure> {
     let span = class(model, group)?;
     if span.writable {
         return Ok(span);
     }
     let (first, meaning) = (name(group, 0), span.meaning);
-    Err(Failure::usage(format!("group {group} ({first}) is {meaning}, which can only be read on a {model}"))
-        .hint(format!("a PC can write {}; transfer them with the ladder program", listed(model, |span| span.writable))))
+    Err(Failure::usage(format!("group {group} ({first}) is {meaning}, which a PC can only read on a {model}")).hint(
+        format!(
+            "use signals that a PC can write ({}), and transfer them with the ladder program",
+            listed(model, |span| span.writable)
+        ),
+    ))
 }
 
 /// All groups of a model.
@@ -95,7 +99,7 @@ mod tests {
     #[test]
     fn rejects_read_only_signals_with_the_writable_ones() {
         let failure = writable(Model::Dx200, 1001).unwrap_err();
-        assert_eq!(failure.message, "group 1001 (#10010) is robot user output, which can only be read on a dx200");
+        assert_eq!(failure.message, "group 1001 (#10010) is robot user output, which a PC can only read on a dx200");
         assert!(failure.hint.unwrap().contains("#27010 to #29567 (network input)"));
         assert!(writable(Model::Fs100, 2501).is_ok());
         assert!(writable(Model::Fs100, 2701).unwrap_err().message.ends_with("does not exist on a fs100"));

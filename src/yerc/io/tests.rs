@@ -7,11 +7,16 @@ use crate::testing::{Bench, DX200, dry_run};
 #[test]
 fn plans_the_change_of_one_signal() {
     let plan = dry_run(DX200, &["io", "set", "27010=on", "27011=off"]).unwrap();
-    let [read, write] = &plan[..] else { panic!("{plan:?}") };
-    assert_eq!(read["about"], "reads group 2701");
-    assert_eq!(&read["hex"].as_str().unwrap()[48..], "78008d0a010e0000");
+    let [write] = &plan[..] else { panic!("{plan:?}") };
     assert!(write["about"].as_str().unwrap().starts_with("writes group 2701"));
     assert_eq!(&write["hex"].as_str().unwrap()[48..], "78008d0a01100000??");
+}
+
+#[test]
+fn equal_signals_are_not_written() {
+    let mut bench = Bench::new("sim:");
+    let written = |bench: &mut Bench| bench.data(&["io", "set", "27010=on"])["items"][0]["written"].clone();
+    assert_eq!([written(&mut bench), written(&mut bench)], [Value::from(true), false.into()]);
 }
 
 #[test]

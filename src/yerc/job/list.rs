@@ -37,20 +37,20 @@ impl Command for List {
     }
 }
 
-/// Jobs of a controller.
+/// Jobs on a controller.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 pub struct Listing {
-    /// In the order of the controller.
+    /// Jobs in the order of the controller.
     jobs: Vec<Listed>,
 }
 
 /// A job.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Listed {
-    /// Name without `.JBI`.
+    /// Job name without `.JBI`.
     #[serde(flatten)]
     name: Shown,
-    /// Whether a start would run this job.
+    /// Whether this job is selected, so that a start runs it.
     selected: bool,
 }
 

@@ -1,7 +1,7 @@
 //! Text of the current line of a job, from the job file (`job show --source`).
 //!
-//! The protocol has no dates, sizes or hashes of files, so a cached file could be outdated. The file is downloaded
-//! each time, and its hash identifies the version.
+//! The protocol has no dates, sizes or hashes of files, so a cached file could be outdated. For this reason the file is
+//! downloaded each time. Its hash identifies the version.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -15,16 +15,16 @@ use armctl_frame::failure::Failure;
 /// A line of a job file.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Source {
-    /// File on the controller.
+    /// Name of the file on the controller.
     file: String,
     /// SHA-256 of the file, as in backups.
     sha256: String,
-    /// Text of the line; null if the file has no such line.
+    /// Text of the line; null if the file does not have the line.
     text: Option<String>,
 }
 
 impl Source {
-    /// Downloads the file of a job and extracts the line.
+    /// Downloads the file of a job, and finds the current line in it.
     pub async fn read(link: &mut Link, job: &JobInfo) -> Result<Self, Failure> {
         let name = [job.name.as_bytes(), b".JBI"].concat();
         let (mut hash, mut content) = (Hash::default(), Vec::new());
@@ -44,7 +44,7 @@ impl Source {
     }
 }
 
-/// Line by the controller's number: NOP, the first instruction, is 0.
+/// Line with this number of the controller. NOP, the first instruction, is line 0.
 fn line(content: &[u8], number: u32) -> Option<&[u8]> {
     let lines = content.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii);
     lines.skip_while(|line| *line != b"NOP").nth(usize::try_from(number).ok()?)

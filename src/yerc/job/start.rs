@@ -1,5 +1,4 @@
-//! `yerc job start`: start of the selected job, or of a job by name, once or several times, with an optional wait for
-//! its end.
+//! `yerc job start`: starts the selected job, or a job by name, once or several times, and can wait for its end.
 
 use std::time::Duration;
 
@@ -32,9 +31,9 @@ use armctl_frame::{Command, Context, Report};
 #[derive(Debug, Args)]
 #[command(
     after_help = "You confirm the job name once; then armctl selects and starts the job. --wait and --repeat read the \
-                  status until the job reaches END or is stopped. --repeat starts the job again only after a reported \
-                  end, with the same job at the same line. Any other event ends the command. After a lost answer, \
-                  armctl never starts the job."
+                  status until the job reaches END or is stopped. --repeat starts the same job again at the same \
+                  line, but only after the controller reported the end. Any other event ends the command. After a \
+                  lost answer, armctl does not start the job again."
 )]
 pub struct Start {
     /// Job name, without .JBI; default: the selected job
@@ -98,7 +97,7 @@ impl Command for Start {
         let mut line = None;
         for _ in 0..self.repeat.count() {
             let too_early = |failure| runs.add_to_failure(failure);
-            // A job is started again only if its state is the same as before.
+            // A job is started again only if the state of the controller is the same as before the previous run.
             if runs.last_ms().is_some() {
                 selected.check_unchanged(link).await.map_err(too_early)?;
             }
@@ -141,7 +140,7 @@ impl Start {
         chosen.item_name(change, link.encoding)
     }
 
-    /// Notes in a dry run what follows a start.
+    /// In a dry run, records what follows a start.
     async fn plan(&self, link: &mut Link) -> Result<Failure, Failure> {
         link.plan(&ReadStatus.request(), "repeatedly until the job has ended");
         let job = link.by_model(|model| ReadJob::new(model, 0)).await?;
@@ -149,22 +148,22 @@ impl Start {
         plan_alarm(link)?;
         if let Some(count) = self.repeat.repeat {
             link.then(&format!(
-                "after each reported end the job is checked and started again, {count} starts in total"
+                "after each reported end, armctl checks the job and starts it again, {count} starts in total"
             ));
         }
         Ok(unknown())
     }
 }
 
-/// Rejects the repetition of a job that does not end, or that ends after each line.
+/// Rejects repeated starts in a cycle mode in which the job does not end, or ends after each line.
 async fn check_cycle(link: &mut Link) -> Result<(), Failure> {
     let Some(status) = link.for_purpose("cycle mode").ask(&ReadStatus).await.known()? else {
         return Ok(());
     };
     let why = if status.has(StatusBit::Continuous) {
-        "the cycle is continuous: the job does not end"
+        "the cycle mode is continuous, so the job does not end"
     } else if status.has(StatusBit::Step) {
-        "the cycle is step: each start runs a line"
+        "the cycle mode is step, so each start runs one line"
     } else {
         return Ok(());
     };
@@ -172,7 +171,7 @@ async fn check_cycle(link: &mut Link) -> Result<(), Failure> {
         .hint("set `yerc cycle once`, so that each start runs the job once"))
 }
 
-/// Rejects the start if another job is selected than the confirmed one.
+/// Rejects the start if the selected job is not the confirmed job.
 fn check_selected(link: &Link, name: &[u8], before: &SelectedJob, now: &SelectedJob) -> Result<(), Failure> {
     let shown = |chosen: &SelectedJob| chosen.name(link.encoding).unwrap_or_else(|| "an unknown job".to_owned());
     if !now.is(name) {
@@ -184,13 +183,13 @@ fn check_selected(link: &Link, name: &[u8], before: &SelectedJob, now: &Selected
     }
     match (before.speed_override(), now.speed_override()) {
         (Some(before), Some(now)) if before != now => {
-            Err(data_changed("the speed override has changed since the question; no job was started"))
+            Err(data_changed("the speed override changed after the confirmation; no job was started"))
         }
         _ => Ok(()),
     }
 }
 
-/// Waits for the end of a started job. Returns the duration and the line at the end.
+/// Waits until a started job ends. Returns the duration, and the line at the end.
 async fn wait(
     link: &mut Link,
     screen: &Screen,
@@ -204,7 +203,7 @@ async fn wait(
     loop {
         let status = link.ask(&ReadStatus).await.map_err(|failure| lost_contact("the job was started", failure))?;
         let look = watch.look(began.elapsed(), status);
-        // A short job may end before the first status read; then its line has changed.
+        // A short job may end before the first status read. In that case its line has changed.
         if !watch.was_running && matches!(look, Look::Running | Look::NeverStarted) && has_changed(link, chosen).await?
         {
             break;
@@ -217,7 +216,7 @@ async fn wait(
             Look::Timeout(limit) => {
                 let message = format!("the job is still running after {}", duration::display(limit));
                 return Err(Failure::new(Kind::ConditionNotMet, message)
-                    .hint("it continues; see `yerc status` and `yerc job show` for the progress"));
+                    .hint("see `yerc status` and `yerc job show` for the progress; the job continues"));
             }
         }
         if let Some(line) = line(link, screen.can_redraw()).await? {
@@ -226,13 +225,13 @@ async fn wait(
         tokio::time::sleep(POLL_INTERVAL).await;
     }
     let elapsed_ms = u64::try_from(began.elapsed().as_millis()).unwrap_or(u64::MAX);
-    // The end is certain even if the controller refuses to report the line.
+    // The job has certainly ended, even if the controller refuses to report the line.
     let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
     let at = link.ask(&question).await;
     Ok((elapsed_ms, at.ok().map(|job| job.line)))
 }
 
-/// Whether the line has changed since the start.
+/// Whether the job is at another line than before the start.
 async fn has_changed(link: &mut Link, chosen: &SelectedJob) -> Result<bool, Failure> {
     let SelectedJob::Job(before) = chosen else { return Ok(false) };
     let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
@@ -240,7 +239,7 @@ async fn has_changed(link: &mut Link, chosen: &SelectedJob) -> Result<bool, Fail
     Ok(now.is_ok_and(|now| now.name == before.name && now.line != before.line))
 }
 
-/// Job and line for the progress display, if there is one; a refusal is ignored here.
+/// Job and line for the progress display, if there is such a display. A refusal is ignored here.
 async fn line(link: &mut Link, is_seen: bool) -> Result<Option<String>, Failure> {
     if !is_seen {
         return Ok(None);
@@ -253,32 +252,33 @@ async fn line(link: &mut Link, is_seen: bool) -> Result<Option<String>, Failure>
 
 fn never_started() -> Failure {
     let message = format!(
-        "the start was accepted, but no running job was reported within {}: it may have ended at once or not started",
+        "the start was accepted, but the controller reported no running job within {}: the job ended at once, or did \
+         not start",
         duration::display(START_TIMEOUT)
     );
     Failure::new(Kind::ConditionNotMet, message)
-        .hint("`yerc job show` shows the line, `yerc status` shows what holds the robot")
+        .hint("use `yerc job show` to see the line, and `yerc status` to see what holds the robot")
 }
 
-/// Watcher of a job from its start to its end.
+/// Watches a job from its start to its end.
 #[derive(Debug)]
 pub(super) struct Watch {
     limit: Option<Duration>,
     was_running: bool,
 }
 
-/// State of the job after a status read.
+/// State of the job, derived from a status.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Look {
-    /// Still running.
+    /// The job is still running.
     Running,
-    /// Ended.
+    /// The job has ended.
     Ended,
-    /// Stopped by a cause.
+    /// The job was stopped. Contains the cause.
     Stopped(StandstillCause),
-    /// Not seen running in time.
+    /// The job was not running in any status read within the time limit.
     NeverStarted,
-    /// Running longer than the limit.
+    /// The job runs longer than the time limit.
     Timeout(Duration),
 }
 
@@ -290,7 +290,7 @@ impl Watch {
     pub(super) fn look(&mut self, elapsed: Duration, status: ControllerStatus) -> Look {
         self.was_running |= status.running();
         match StandstillCause::of(status) {
-            // An error is a message on the pendant; the job may continue.
+            // An error is a message on the pendant. The job may continue.
             Some(StandstillCause::Error) if status.running() => {}
             Some(trouble) => return Look::Stopped(trouble),
             None if self.was_running && !status.running() => return Look::Ended,
@@ -307,9 +307,9 @@ impl Watch {
 /// Result of a start.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Started {
-    /// The controller accepted the start.
+    /// Whether the controller accepted the start.
     accepted: bool,
-    /// The job. Its line is the line at the end; 0 is the first line, where END leads.
+    /// The job. Its line is the line at the end. Line 0 is the first line; END leads to it.
     #[serde(flatten)]
     program: Program,
 }

@@ -9,7 +9,7 @@ use armctl_frame::failure::Failure;
 use armctl_frame::settings_report::{Done, NewValue, Old};
 use armctl_frame::{Command, Context};
 
-/// Stops the running job and all motion: HOLD on, as `yerc hold on` (FS and DX 3.3.20).
+/// Stops the running job and all motion: HOLD on, like `yerc hold on` (FS and DX 3.3.20).
 #[derive(Debug, Args)]
 pub struct Stop {}
 
@@ -31,7 +31,7 @@ impl Command for Stop {
     }
 }
 
-/// Stops all motion, for `yerc stop`.
+/// Stops all motion. This is the command `yerc stop`.
 #[derive(Debug, Args)]
 pub struct Halt {}
 
@@ -56,6 +56,6 @@ impl Command for Halt {
 async fn hold(context: Context<'_, Yerc>) -> Result<Done, Failure> {
     context.link.ask(&query::Hold(true)).await?;
     let words = "HOLD is on and the job is stopped; to continue it, use `yerc hold off` and `yerc job start`";
-    // A stop must not be delayed by a read, as in `hold on`.
+    // A stop must not be delayed by a read, so the old value is not read, as in `hold on`.
     Ok(NewValue::of("held", true, words).replaces(Old::UNREAD))
 }

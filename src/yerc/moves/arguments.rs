@@ -1,4 +1,4 @@
-//! Arguments of a move, converted exactly to the integers of the protocol.
+//! Arguments of a move. They are converted exactly to the integers of the protocol.
 
 use std::fmt;
 
@@ -17,7 +17,7 @@ use armctl_frame::names;
 use armctl_frame::robot::motion;
 use armctl_frame::wait_arguments::MotionEnd;
 
-/// Group that moves, and the wait option.
+/// Group that moves, and the options for the wait.
 #[derive(Debug, Args)]
 pub(super) struct Mover {
     /// Robot or station to move: R1 …, S1 …
@@ -28,7 +28,7 @@ pub(super) struct Mover {
 }
 
 impl Mover {
-    /// Words of the frame: robot number and station number, one of them 0.
+    /// Words of the frame: robot number and station number. One of them is 0.
     pub(super) fn words(&self) -> (u32, u32) {
         match self.group {
             Group::Robot(number) => (number.into(), 0),
@@ -40,12 +40,12 @@ impl Mover {
 
 fn mover(text: &str) -> Result<Group, String> {
     match text.parse()? {
-        group @ Group::Base(_) => Err(format!("{group} moves with its robot: select the robot and give --base-axes")),
+        group @ Group::Base(_) => Err(format!("{group} moves with its robot: select the robot and use --base-axes")),
         group => Ok(group),
     }
 }
 
-/// Complete target in coordinates.
+/// Target of a move.
 #[derive(Debug, Args)]
 pub(super) struct To {
     /// Target: x, y, z in mm and rx, ry, rz in degrees; or a position variable, such as P2 or its name
@@ -61,7 +61,7 @@ pub(super) struct To {
 }
 
 impl To {
-    /// The six coordinates; `None` if not given, which is valid only for a station.
+    /// The six coordinates; `None` if the user gave none. This is valid only for a station.
     pub(super) fn coordinates(&self) -> Option<[i32; 6]> {
         if let Some(ParsedTarget::Coordinates(to)) = &self.to {
             return Some(*to);
@@ -70,7 +70,7 @@ impl To {
         Some([x?, y?, z?, rx?, ry?, rz?])
     }
 
-    /// Target other than coordinates.
+    /// Target that is not given as coordinates.
     pub(super) fn destination(&self) -> Option<Destination> {
         match &self.to {
             Some(ParsedTarget::Variable(variable)) => Some(Destination::Variable(*variable)),
@@ -79,17 +79,17 @@ impl To {
     }
 }
 
-/// Values of `--to`.
+/// Value of `--to`.
 #[derive(Debug, Clone, PartialEq)]
 enum ParsedTarget {
     Coordinates([i32; 6]),
     Variable(Reference),
 }
 
-/// Target of a move other than typed coordinates.
+/// Target of a move that is not given as coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Destination {
-    /// Content of a position variable.
+    /// The position in a variable.
     Variable(Reference),
     /// Axis angles in degrees.
     Degrees(Vec<f64>),
@@ -122,7 +122,7 @@ fn coordinates_or_variable(text: &str) -> Result<ParsedTarget, String> {
     Ok(ParsedTarget::Variable(variable))
 }
 
-/// Angles in degrees, for as many axes as a robot requires.
+/// Angles in degrees. There must be as many angles as a robot requires axes.
 fn axis_degrees(text: &str) -> Result<Destination, String> {
     let degrees: Vec<f64> = text
         .split(',')
@@ -137,7 +137,7 @@ fn axis_degrees(text: &str) -> Result<Destination, String> {
     Err(format!("expected {} to {} numbers of degrees, {} given", ROBOT.start(), ROBOT.end(), degrees.len()))
 }
 
-/// Distance in coordinates.
+/// Distance of a relative move.
 #[derive(Debug, Args)]
 pub(super) struct By {
     /// Distance: x, y, z in mm and rx, ry, rz in degrees
@@ -150,13 +150,13 @@ pub(super) struct By {
 }
 
 impl By {
-    /// The six distances; missing ones are 0.
+    /// The six distances. Missing distances are 0.
     pub(super) fn distances(&self) -> [i32; 6] {
         self.by.unwrap_or_else(|| self.single.values().map(Option::unwrap_or_default))
     }
 }
 
-/// Single coordinates. A target requires all of them, because a missing coordinate must not become 0.
+/// Single coordinates. A target requires all six, because a missing coordinate must not become 0.
 #[derive(Debug)]
 struct Single<const ALL: bool>([Option<i32>; 6]);
 
@@ -197,7 +197,7 @@ impl<const ALL: bool> clap::FromArgMatches for Single<ALL> {
     }
 }
 
-/// Reference of the coordinates.
+/// Coordinate system, tool and user coordinate of the coordinates.
 #[derive(Debug, Args)]
 pub(super) struct Frame {
     /// Coordinate system of the numbers [default: base]
@@ -211,7 +211,7 @@ pub(super) struct Frame {
     pub(super) user: Option<u32>,
 }
 
-/// Coordinates of a move.
+/// Coordinate system of a move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Coordinate {
     /// Base coordinates
@@ -236,7 +236,7 @@ impl From<Coordinate> for PositionKind {
 }
 
 impl Frame {
-    /// Type of the position.
+    /// Type of the position with these coordinates.
     pub(super) fn kind(&self) -> PositionKind {
         self.coordinate.unwrap_or(Coordinate::Base).into()
     }
@@ -249,7 +249,7 @@ impl Frame {
         self.user.unwrap_or(0)
     }
 
-    /// Text for the confirmation.
+    /// Coordinate system and tool as text for the confirmation.
     pub(super) fn describe(&self) -> String {
         let name = match self.coordinate.unwrap_or(Coordinate::Base) {
             Coordinate::Base => "base coordinates".to_owned(),
@@ -264,8 +264,8 @@ impl Frame {
 /// Arm configuration at the target.
 #[derive(Debug, Args)]
 pub(super) struct Forms {
-    /// Arm form; for each pair that is not given, the first value applies: front|back, upper|lower, flip|noflip,
-    /// r-lt180|r-ge180, t-lt180|t-ge180, s-lt180|s-ge180 [default: front,upper,flip]
+    /// Arm form: front|back, upper|lower, flip|noflip, r-lt180|r-ge180, t-lt180|t-ge180, s-lt180|s-ge180; the first
+    /// word of each pair is the default [default: front,upper,flip]
     #[arg(long, value_name = "WORD,…", value_parser = form)]
     pub(super) form: Option<Form>,
     /// Extended form, in the same way: l-lt180|l-ge180, then u-, b-, e-, w- [default: l-lt180]
@@ -282,7 +282,7 @@ impl Forms {
         self.extended_form.unwrap_or_default()
     }
 
-    /// Text for the confirmation.
+    /// Arm form as text for the confirmation.
     pub(super) fn describe(&self) -> String {
         let extended = extended_words(self.extended_form());
         let plus = if extended.is_empty() { "" } else { "+" };
@@ -290,7 +290,7 @@ impl Forms {
     }
 }
 
-/// Number of bits that a move defines; the others are reserved (FS and DX 3.3.39).
+/// Number of bits that a move defines. The other bits are reserved (FS and DX 3.3.39).
 const MOVE_FORM_BITS: usize = 6;
 const MOVE_EXTENDED_FORM_BITS: usize = 5;
 
@@ -302,7 +302,7 @@ fn extended_form(text: &str) -> Result<ExtendedForm, String> {
     bits(text, MOVE_EXTENDED_FORM_BITS, |word| ExtendedForm(word).words().collect()).map(ExtendedForm)
 }
 
-/// Parses form words; `words` returns the words of a value, bit 0 first.
+/// Parses words of a form. `words` returns the words for a value, bit 0 first.
 fn bits(text: &str, count: usize, words: impl Fn(u32) -> Vec<&'static str>) -> Result<u32, String> {
     let (clear, set) = (words(0), words(u32::MAX));
     let pairs = clear.iter().zip(&set).take(count);
@@ -323,16 +323,16 @@ fn bits(text: &str, count: usize, words: impl Fn(u32) -> Vec<&'static str>) -> R
     Ok(value)
 }
 
-/// Speed in the integer and class of the protocol.
+/// Speed as integer and class of the protocol.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Speed {
     pub(super) class: SpeedClass,
     pub(super) word: u32,
 }
 
-/// 100 % in 0.01 %.
+/// Full speed: 100 % in units of 0.01 %.
 const FULL_SPEED: u32 = 10_000;
-/// Suffix, class and unit of each speed notation.
+/// Suffix, class and unit for each way to write a speed.
 const SPEEDS: [(&str, SpeedClass, Unit); 3] = [
     ("%", SpeedClass::Percent, units::PERCENT),
     ("mm/s", SpeedClass::Linear, units::MILLIMETRE_PER_SECOND),
@@ -340,9 +340,9 @@ const SPEEDS: [(&str, SpeedClass, Unit); 3] = [
 ];
 
 impl Speed {
-    /// Parses the speed of a joint move: `10%`.
+    /// Parses the speed of a joint move, for example `10%`.
     pub(super) fn percent(text: &str) -> Result<Self, String> {
-        // A number without a unit is percent.
+        // A number without a unit is in percent.
         let bare = text.trim_end().ends_with(|last: char| last.is_ascii_digit()).then(|| format!("{text}%"));
         match Self::parse(bare.as_deref().unwrap_or(text))? {
             Self { class: SpeedClass::Percent, word } if word > FULL_SPEED => {
@@ -353,7 +353,7 @@ impl Speed {
         }
     }
 
-    /// Parses the speed of a linear move: `100mm/s` or `20deg/s`.
+    /// Parses the speed of a linear move, for example `100mm/s` or `20deg/s`.
     pub(super) fn path(text: &str) -> Result<Self, String> {
         match Self::parse(text)? {
             Self { class: SpeedClass::Percent, .. } => {
@@ -378,7 +378,7 @@ impl Speed {
         let word = unit.parse(number.trim_end()).map_err(|error| error.to_string())?;
         match u32::try_from(word) {
             Ok(word @ 1..) => Ok(Self { class, word }),
-            _ => Err(format!("'{text}' is not a valid speed: it must be more than 0")),
+            _ => Err(format!("'{text}' is not a valid speed: a speed must be more than 0")),
         }
     }
 }
@@ -390,12 +390,12 @@ impl fmt::Display for Speed {
     }
 }
 
-/// Values of axes.
+/// Values of axes, in protocol units.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Values(pub(super) Vec<i32>);
 
 impl Values {
-    /// Values in a field of `N` words; missing values are 0.
+    /// Values for a field of `N` words. Missing values are 0.
     pub(super) fn with_zeros<const N: usize>(&self) -> [i32; N] {
         let mut words = [0; N];
         for (word, value) in words.iter_mut().zip(&self.0) {
@@ -409,25 +409,25 @@ impl Values {
 const MAX_BASE: usize = 3;
 /// Maximum number of station axes in a move.
 const MAX_STATION: usize = 6;
-/// Number of robot axes that are required, and allowed.
+/// Numbers of robot axes that a target can have, from the required number to the maximum.
 const ROBOT: std::ops::RangeInclusive<usize> = 6..=8;
 
-/// Base axes of a cartesian move, in mm.
+/// Parses the base axes of a cartesian move, in mm.
 pub(super) fn base_lengths(text: &str) -> Result<Values, String> {
     list(text, units::MILLIMETRE, 1..=MAX_BASE)
 }
 
-/// Base axes of a pulse move.
+/// Parses the base axes of a pulse move.
 pub(super) fn base_pulses(text: &str) -> Result<Values, String> {
     list(text, units::PULSE, 1..=MAX_BASE)
 }
 
-/// Station axes.
+/// Parses station axes.
 pub(super) fn station_pulses(text: &str) -> Result<Values, String> {
     list(text, units::PULSE, 1..=MAX_STATION)
 }
 
-/// Robot axes.
+/// Parses robot axes.
 pub(super) fn robot_pulses(text: &str) -> Result<Values, String> {
     list(text, units::PULSE, ROBOT)
 }
@@ -461,8 +461,8 @@ fn degrees(text: &str) -> Result<i32, String> {
     units::DEGREE.parse(text).map_err(|error| error.to_string())
 }
 
-/// Part of the target that applies to a group: for a robot the `robot` values and its base, for a station only its
-/// own axes.
+/// Part of the target that a group uses. A robot uses the `robot` values and its base; a station uses only its own
+/// axes.
 pub(super) fn split<'a, T>(
     group: Group,
     robot: Option<T>,
@@ -471,7 +471,10 @@ pub(super) fn split<'a, T>(
     station: Option<&'a Values>,
 ) -> Result<Part<'a, T>, Failure> {
     let wrong = |message: String| {
-        Err(Failure::usage(message).hint("a robot and a station cannot move in one command (FS and DX 3.3.39)"))
+        Err(Failure::usage(message).hint(
+            "use one command for the robot and one command for the station: they cannot move in one command (FS and \
+             DX 3.3.39)",
+        ))
     };
     match (group, robot, station) {
         (Group::Station(_), Some(_), _) => wrong(format!("{group} is a station: use --station-axes, not {flag}")),
@@ -489,13 +492,13 @@ pub(super) fn split<'a, T>(
 /// Target of one group.
 #[derive(Debug)]
 pub(super) enum Part<'a, T> {
-    /// Target of a robot, and of its base if given.
+    /// Target of a robot, and of its base if the user gave one.
     Robot(T, Option<&'a Values>),
     /// Target of a station.
     Station(&'a Values),
 }
 
-/// Text of the target for the confirmation.
+/// Target as text for the confirmation.
 pub(super) fn describe(
     kind: PositionKind,
     robot: Option<&[i32]>,
@@ -507,7 +510,7 @@ pub(super) fn describe(
     [robot, base.map(|base| format!("base {base}")), station].into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-/// Text of the base axes for the confirmation.
+/// Base axes as text for the confirmation.
 pub(super) fn base_is_given(base: Option<&Values>, unit: Unit) -> Option<String> {
     let values: Vec<String> = base?.0.iter().map(|value| unit.show(*value).to_string()).collect();
     Some(format!("{} {}", values.join(" "), unit.symbol))

@@ -1,4 +1,4 @@
-//! A motion from the confirmation to its end: reads before the start, and supervision after it.
+//! A motion from the confirmation to its end: reads before the start, and supervision after the start.
 
 use std::time::Duration;
 
@@ -26,32 +26,32 @@ use armctl_frame::robot::position as robot;
 use armctl_frame::settings::duration;
 use armctl_frame::{Context, Report};
 
-/// A motion that has been checked.
+/// A motion whose arguments have been checked.
 #[derive(Debug)]
 pub(super) struct Execution<Q> {
-    /// Request.
+    /// Request that starts the motion.
     pub(super) order: Q,
     /// Group that moves.
     pub(super) group: Group,
-    /// Target, as far as a position can be compared with it.
+    /// Target, in a form that can be compared with a position if possible.
     pub(super) goal: Goal,
-    /// Groups with axes that the request would move to 0 because they were not named: group, named axes, option to
-    /// name them.
+    /// Groups with axes that the request would move to 0, because the user did not give values for them. Each entry has
+    /// the group, the number of axes with values, and the option that gives the values.
     pub(super) unnamed: Vec<(Group, usize, &'static str)>,
-    /// Whether to return after acceptance.
+    /// Whether the command returns as soon as the controller accepts the motion.
     pub(super) no_wait: bool,
 }
 
-/// Target of a motion.
+/// Target of a motion, for a comparison with positions.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Goal {
-    /// Pulses.
+    /// A target in pulses.
     Pulses(Vec<i32>),
-    /// Base coordinates with this tool.
+    /// A target in base coordinates, with this tool number.
     Base([i32; 6], u32),
-    /// Distance along base coordinates without rotation, with this tool.
+    /// A distance along the base coordinates, without rotation, with this tool number.
     Relative([i32; 3], u32),
-    /// A target that cannot be compared with a position in these coordinates.
+    /// A target that cannot be compared with a position. The position is read in these coordinates.
     Unknown(Coordinates),
 }
 
@@ -64,7 +64,7 @@ impl Goal {
         }
     }
 
-    /// Converts a distance to a target with the start position.
+    /// Converts a distance to a target, from the start position.
     fn from(self, start: &Position) -> Self {
         let Self::Relative(by, tool) = self else { return self };
         let mut target = [0; 6];
@@ -78,7 +78,7 @@ impl Goal {
         Self::Base(target, tool)
     }
 
-    /// Target position, if it can be compared.
+    /// Target position; `None` if it cannot be compared.
     fn position(&self) -> Option<Position> {
         let (kind, axes, tool) = match self {
             Self::Pulses(axes) => (PositionKind::Pulse, &axes[..], 0),
@@ -89,12 +89,12 @@ impl Goal {
         Some(Position { kind, form, tool, user: 0, extended, axes: Axes::new(axes)? })
     }
 
-    /// Whether this position is the target; `None` if unknown.
+    /// Whether this position is the target; `None` if this is unknown.
     fn is_reached(&self, here: &Position) -> Option<bool> {
         let axes = here.axes.as_slice();
         match self {
             Self::Pulses(target) => Some(target.iter().zip(axes).all(|(t, h)| is_near(units::PULSE, *t, *h))),
-            // Coordinates of another tool cannot be compared.
+            // Coordinates with another tool cannot be compared.
             Self::Base(target, tool) if here.tool == *tool && axes.len() >= target.len() => {
                 let unit = |axis| PositionKind::Base.unit(axis);
                 let mut nearest_turn =
@@ -103,7 +103,7 @@ impl Goal {
                 match (place, turn) {
                     (false, _) => Some(false),
                     (true, true) => Some(true),
-                    // Different angles can describe the same orientation.
+                    // The angles differ, but different angles can describe the same orientation.
                     (true, false) => None,
                 }
             }
@@ -112,13 +112,13 @@ impl Goal {
     }
 }
 
-/// Tolerance of the target position: 0.1 mm, 0.1 degree, 100 pulses (less than 0.1 degree on usual axes). It is
-/// larger than the accuracy of a robot and smaller than a useful motion.
+/// Whether a position is near the target. The tolerance is 0.1 mm, 0.1 degree, or 100 pulses (less than 0.1 degree on
+/// usual axes). It is larger than the accuracy of a robot and smaller than a useful motion.
 fn is_near(unit: Unit, target: i32, here: i32) -> bool {
     is_within_tolerance(unit, target, here, 100, 1000)
 }
 
-/// Tolerance between readings of a robot at rest: 0.02 mm, 0.02 degree, 20 pulses.
+/// Whether two positions of a robot at rest are the same. The tolerance is 0.02 mm, 0.02 degree, or 20 pulses.
 fn is_same(unit: Unit, one: i32, other: i32) -> bool {
     is_within_tolerance(unit, one, other, 20, 200)
 }
@@ -127,7 +127,7 @@ fn is_within_tolerance(unit: Unit, one: i32, other: i32, others: i64, degrees: i
     const TURN: i64 = 3_600_000;
     let difference = (i64::from(one) - i64::from(other)).abs();
     if unit == units::DEGREE {
-        // 180 and -180 degrees are equal.
+        // 180 and -180 degrees are the same angle.
         let difference = difference % TURN;
         return difference.min(TURN - difference) <= degrees;
     }
@@ -135,7 +135,7 @@ fn is_within_tolerance(unit: Unit, one: i32, other: i32, others: i64, degrees: i
 }
 
 impl<Q: Query<Answer = ()>> Execution<Q> {
-    /// Confirms the motion, starts it and, unless `--no-wait` is set, waits for its end.
+    /// Confirms the motion and starts it. Unless `--no-wait` is set, waits for its end.
     pub(super) async fn run(
         self,
         context: Context<'_, Yerc>,
@@ -198,9 +198,9 @@ impl<Q: Query<Answer = ()>> Execution<Q> {
                 Progress::Ended if is_at_target == Some(false) => {
                     return Err(Failure::new(
                         Kind::ConditionNotMet,
-                        format!("{outcome}, but it ended before its target; position: {place}"),
+                        format!("{outcome}, but the motion ended before its target; position: {place}"),
                     )
-                    .hint("it was stopped without an alarm: check the pendant before you continue"));
+                    .hint("check the pendant before you continue; the motion was stopped without an alarm"));
                 }
                 Progress::Ended => {
                     let motion = &mut moved.motion;
@@ -216,9 +216,12 @@ impl<Q: Query<Answer = ()>> Execution<Q> {
                     let within = duration::display(START_TIMEOUT);
                     return Err(Failure::new(
                         Kind::ConditionNotMet,
-                        format!("{outcome}, but it has not started within {within}; position: {place}"),
+                        format!("{outcome}, but the motion has not started within {within}; position: {place}"),
                     )
-                    .hint("it may still start: keep clear, and check `yerc status` and the pendant"));
+                    .hint(
+                        "keep clear of the robot, because the motion may still start; check `yerc status` and the \
+                         pendant",
+                    ));
                 }
             }
             tokio::time::sleep(POLL_INTERVAL).await;
@@ -226,7 +229,7 @@ impl<Q: Query<Answer = ()>> Execution<Q> {
     }
 }
 
-/// Notes in a dry run the requests during the motion.
+/// In a dry run, records the requests during the motion.
 pub(super) async fn plan_looks(link: &mut Link, group: Group, coordinates: Coordinates) -> Result<(), Failure> {
     let about = "repeatedly until the motion has ended";
     link.plan(&ReadStatus.request(), about);
@@ -235,10 +238,10 @@ pub(super) async fn plan_looks(link: &mut Link, group: Group, coordinates: Coord
     plan_alarm(link)
 }
 
-/// Maximum number of reads until a robot is at rest: two seconds.
+/// Maximum number of reads until a robot is at rest. They take two seconds.
 const REST_POLLS: u32 = 40;
 
-/// Position of a robot after a stop, as text; the last known position if it cannot be read.
+/// Position of a robot after a stop, as text. If it cannot be read, the last known position.
 async fn resting_place(
     link: &mut Link,
     group: Group,
@@ -259,15 +262,15 @@ async fn resting_place(
     place
 }
 
-/// A move has words for every axis, and a 0 for an axis that was not named would move it there. That is correct only
-/// if the axis is not fitted, or is at 0.
+/// Refuses a move that would move axes to 0 because the user did not give values for them. A move has words for every
+/// axis. A 0 for an axis without a value is correct only if the axis is not fitted, or is at 0.
 async fn refuse_implicit_zeros(link: &mut Link, group: Group, named: usize, flag: &str) -> Result<(), Failure> {
     if named >= words(group) {
         return Ok(());
     }
     let question = link.by_model(|model| ReadPosition::new(model, group, Coordinates::Pulse)).await?;
     let Some(answer) =
-        link.for_purpose("current position of the unnamed axes").ask_optional(&question).await.known()?
+        link.for_purpose("current position of the axes without a target").ask_optional(&question).await.known()?
     else {
         link.plan_existing_axes(group, Coordinates::Pulse);
         return Ok(());
@@ -284,15 +287,15 @@ async fn refuse_implicit_zeros(link: &mut Link, group: Group, named: usize, flag
             let failure = refusal_failure(refusal);
             let message = format!("the axes of {group} that are not in {flag} could not be read: {}", failure.message);
             Err(Failure { message, ..failure }.hint(format!(
-                "nothing was sent, because they might move to 0; repeat the command, or give {} axes with {flag}, 0 \
-                 for axes that are not fitted",
+                "repeat the command, or type {} axes with {flag}, with 0 for axes that are not fitted; nothing was \
+                 sent, because axes without a target could move to 0",
                 words(group)
             )))
         }
     }
 }
 
-/// Number of axes of a group in a move (FS and DX 3.3.39, 3.3.40).
+/// Number of axes that a move has for a group (FS and DX 3.3.39, 3.3.40).
 const fn words(group: Group) -> usize {
     match group {
         Group::Robot(_) => 8,
@@ -304,10 +307,10 @@ const fn words(group: Group) -> usize {
 fn implicit_zero(group: Group, position: &Position, named: usize, flag: &str) -> Option<Failure> {
     let (axis, value) = position.axes.as_slice().iter().enumerate().skip(named).find(|(_, value)| **value != 0)?;
     let message = format!("axis {} of {group} is at {value} pulses and has no target, so it would move to 0", axis + 1);
-    Some(Failure::usage(message).hint(format!("nothing was sent; give every axis of {group} with {flag}")))
+    Some(Failure::usage(message).hint(format!("type every axis of {group} with {flag}; nothing was sent")))
 }
 
-/// Watcher of a motion from its acceptance to its end.
+/// Watches a motion from its acceptance to its end.
 #[derive(Debug)]
 struct Watch {
     start: Position,
@@ -316,16 +319,16 @@ struct Watch {
     has_moved: bool,
 }
 
-/// State of the motion after a read of status and position.
+/// State of the motion, derived from a status and a position.
 #[derive(Debug, PartialEq, Eq)]
 enum Progress {
-    /// Still moving.
+    /// The robot still moves.
     Moving,
-    /// Ended.
+    /// The motion has ended.
     Ended,
-    /// Stopped by a cause.
+    /// The motion was stopped. Contains the cause.
     Stopped(StandstillCause),
-    /// No motion started in time.
+    /// No motion started within the time limit.
     NotStarted,
 }
 
@@ -334,9 +337,9 @@ impl Watch {
         Self { start, last: start, polls: false, has_moved: false }
     }
 
-    /// The position is read after the status: if the status shows that nothing is running, the position is final. The
-    /// running bit may be set shortly after the acceptance. So a standstill counts from the second read, and only if
-    /// the motion was seen or the robot is at its target.
+    /// The position is read after the status. If the status shows that nothing is running, the position is final. But
+    /// the controller may set the running bit only shortly after the acceptance. For this reason, a standstill counts
+    /// only from the second read, and only if a motion was observed or the robot is at its target.
     fn look(
         &mut self,
         elapsed: Duration,
@@ -359,7 +362,7 @@ impl Watch {
     }
 }
 
-/// Whether both readings are those of a group at rest.
+/// Whether both readings show a group at rest.
 pub(crate) fn is_standing(one: &Position, other: &Position) -> bool {
     let axes = one.axes.as_slice().iter().zip(other.axes.as_slice()).enumerate();
     axes.into_iter().all(|(axis, (a, b))| is_same(one.kind.unit(axis), *a, *b))
@@ -370,12 +373,12 @@ pub(crate) fn is_standing(one: &Position, other: &Position) -> bool {
 pub struct MotionReport {
     #[serde(flatten)]
     motion: Motion,
-    /// Variable that contains the target; null if the target was typed.
+    /// Name of the variable that contains the target; null if the user typed the target.
     variable: Option<String>,
 }
 
 impl MotionReport {
-    /// Adds the target position from a variable or from degrees.
+    /// Adds the target position, which comes from a variable or from degrees.
     pub(super) fn leads_to(&mut self, name: Option<String>, target: robot::Position) {
         (self.variable, self.motion.to) = (name, Some(target));
     }

@@ -1,4 +1,4 @@
-//! Confirmation of a motion: each axis with target and unit, and its current value if that can be compared.
+//! Confirmation of a motion. It shows each axis with target and unit, and the current value if it can be compared.
 
 use std::borrow::Cow;
 
@@ -11,28 +11,28 @@ use armctl_controller::yerc::payload::{Position, PositionKind, SpeedClass};
 use armctl_frame::failure::Failure;
 use armctl_frame::gate::{Change, data_changed};
 
-/// Text parts of a motion.
+/// Parts of the text that describes a motion.
 #[derive(Debug)]
 pub(super) struct Question<'a> {
-    /// `move R1 in a straight line`.
+    /// What moves, such as `move R1 in a straight line`.
     pub(super) what: String,
-    /// `to`, or `by` for distances.
+    /// `to`, or `by` for a distance.
     pub(super) preposition: &'static str,
-    /// Type of the numbers.
+    /// Type of the position values.
     pub(super) kind: PositionKind,
-    /// Values of a robot.
+    /// Values of the robot axes.
     pub(super) robot: Option<Vec<i32>>,
-    /// Values of its base, and their unit.
+    /// Values of the base, and their unit.
     pub(super) base: (Option<&'a Values>, Unit),
-    /// Values of a station.
+    /// Values of the station axes.
     pub(super) station: Option<Cow<'a, Values>>,
-    /// `in base coordinates, tool 0`; may be empty.
+    /// Further conditions, such as `in base coordinates, tool 0`; may be empty.
     pub(super) manner: String,
     pub(super) speed: Speed,
 }
 
 impl Question<'_> {
-    /// One-line text, if nothing was read from the robot.
+    /// Text in one line, if nothing was read from the robot.
     pub(super) fn in_a_line(&self) -> String {
         let base = base_is_given(self.base.0, self.base.1);
         let place = describe(self.kind, self.robot.as_deref(), base, self.station.as_deref());
@@ -41,8 +41,8 @@ impl Question<'_> {
         format!("{}{place}{how} at {}", self.what, self.speed)
     }
 
-    /// One line per axis, with its current value if `start` can be compared with the goal. `per_degree` has the
-    /// pulses per degree of each axis, as far as they are known.
+    /// One line per axis, with its current value if `start` can be compared with the goal. `per_degree` contains the
+    /// pulses per degree of each axis, for as many axes as they are known.
     pub(super) fn change(&self, group: Group, start: Option<&Position>, goal: &Goal, per_degree: &[f64]) -> Change {
         let mut change = Change::new(format!("{} at {}", self.what, self.speed));
         match (goal, start) {
@@ -77,7 +77,7 @@ impl Question<'_> {
         }
     }
 
-    /// Minimum duration, for a speed along the path.
+    /// Text with the minimum duration, for a speed along the path.
     fn time(&self, way_mm: f64) -> String {
         if self.speed.class != SpeedClass::Linear {
             return String::new();
@@ -86,7 +86,7 @@ impl Question<'_> {
     }
 }
 
-/// Each axis with its old and its new value.
+/// Adds each axis with its old and new value.
 pub(crate) fn compared(change: Change, group: Group, start: &Position, target: &[i32], per_degree: &[f64]) -> Change {
     let axes = axis_names(start.kind, group).into_iter().zip(start.axes.as_slice().iter().zip(target)).enumerate();
     axes.fold(change, |change, (at, (name, (old, new)))| {
@@ -97,7 +97,7 @@ pub(crate) fn compared(change: Change, group: Group, start: &Position, target: &
     })
 }
 
-/// Axis with the largest rotation, if degrees are known.
+/// Text with the largest rotation of an axis, if degrees are known.
 fn longest_distance(group: Group, start: &Position, target: &[i32], per_degree: &[f64]) -> Option<String> {
     let distances = axis_names(start.kind, group).into_iter().zip(per_degree).enumerate();
     let ways = distances.map(|(at, (name, per))| (name, (describe_distance(start, target, at) / per).abs()));
@@ -112,14 +112,14 @@ fn shown(kind: PositionKind, axis: usize, value: i32) -> String {
     format!("{} {symbol}", unit.show(value))
 }
 
-/// Distance of an axis in steps.
+/// Distance of an axis in protocol units.
 fn describe_distance(start: &Position, target: &[i32], axis: usize) -> f64 {
     let of = |axes: &[i32]| axes.get(axis).copied().map_or(0.0, f64::from);
     of(target) - of(start.axes.as_slice())
 }
 
-/// Failure: the robot has moved since the question.
+/// Failure: the robot moved between the question and the answer.
 pub(crate) fn moved_during_question(group: Group, now: &Position) -> Failure {
     let place = in_a_line(now.kind, now.axes.as_slice(), matches!(group, Group::Robot(_)));
-    data_changed(format!("{group} has moved since the question, to {place}; nothing was sent"))
+    data_changed(format!("{group} moved after the confirmation, to {place}; nothing was sent"))
 }

@@ -1,4 +1,4 @@
-//! Moves to the content of a position variable (`--to P2`), and to axis angles in degrees (`--deg`).
+//! Moves to the position in a variable (`--to P2`), and to axis angles in degrees (`--deg`).
 
 use super::arguments::{Destination, Speed, Values};
 use super::execution::{Execution, Goal, MotionReport, plan_looks};
@@ -24,7 +24,7 @@ use armctl_frame::dry_run::{Known as _, Reason, unknown};
 use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::names;
 
-/// A move to a variable or to degrees.
+/// A move to a position in a variable or to axis angles.
 pub(super) struct Motion<'a> {
     pub(super) target: &'a Target,
     pub(super) kind: MoveKind,
@@ -32,7 +32,7 @@ pub(super) struct Motion<'a> {
 }
 
 impl Motion<'_> {
-    /// Reads the target, confirms the motion and starts it.
+    /// Reads the target, asks the user to confirm, and starts the motion.
     pub(super) async fn run(
         &self,
         context: Context<'_, Yerc>,
@@ -131,12 +131,20 @@ impl Motion<'_> {
             Value::External(external) if external.kind == PositionKind::Pulse => {
                 let [first @ .., seventh, eighth] = external.axes.padded();
                 if (seventh, eighth) != (0, 0) {
-                    return Err(unsuitable_target(name, "it has more axes than a move of a station supports"));
+                    return Err(unsuitable_target(
+                        name,
+                        "the position has more axes than a move of a station supports",
+                    ));
                 }
                 order.station_axes = first;
                 (external.axes, Vec::new())
             }
-            _ => return Err(unsuitable_target(name, "its type is neither pulses nor coordinates of the manual")),
+            _ => {
+                return Err(unsuitable_target(
+                    name,
+                    "the type of the position is neither pulses nor coordinates of the manual",
+                ));
+            }
         };
         let order = link.by_model(|model| MovePulse::new(model, self.kind, order)).await?;
         let goal = Goal::Pulses(axes.as_slice().to_vec());
@@ -152,20 +160,23 @@ impl Motion<'_> {
         let group = self.target.mover.group;
         let [x, y, z, rx, ry, rz, re, eighth] = position.axes.padded();
         if (re, eighth) != (0, 0) {
-            return Err(unsuitable_target(name, "a move to coordinates does not support its seventh axis")
-                .hint("teach it in pulses, which support all axes"));
+            return Err(unsuitable_target(
+                name,
+                "a move to coordinates does not support the seventh axis of the position",
+            )
+            .hint("teach the position in pulses, which support all axes"));
         }
         let target = [x, y, z, rx, ry, rz];
         let mut order = cartesian_move(link, &self.target.mover, self.speed, &self.target.frame);
         order.coordinate = position.kind;
         (order.target, order.form, order.extended) = (target, position.form, position.extended);
-        // The user coordinate number applies only to user coordinates; other moves need 0.
+        // The user coordinate number applies only to user coordinates. Other moves need the number 0.
         (order.tool, order.user) = (position.tool, if position.kind == PositionKind::User { position.user } else { 0 });
         let model = link.model_for(|model| MoveCartesian::new(model, self.kind, order)).await?;
         let order = MoveCartesian::new(model, self.kind, order).map_err(|error| {
             let why = error.to_string();
-            unsuitable_target(name, &format!("a move does not support it: {why}"))
-                .hint("teach it in pulses, which support all axes")
+            unsuitable_target(name, &format!("a move does not support the position: {why}"))
+                .hint("teach the position in pulses, which support all axes")
         })?;
         let goal = match position.kind {
             PositionKind::Base => Goal::Base(target, position.tool),
@@ -180,7 +191,7 @@ impl Motion<'_> {
         })
     }
 
-    /// Converts degrees to pulses, with the values of the inventory.
+    /// Converts degrees to pulses with the pulses per degree in the inventory.
     fn rotated_axis(&self, link: &Link, degrees: &[f64]) -> Result<Position, Failure> {
         let group = self.target.mover.group;
         let per_degree = link.pulses_per_degree(group);
@@ -209,13 +220,13 @@ impl Motion<'_> {
         })
     }
 
-    /// Notes in a dry run what follows; the kind of move is unknown.
+    /// In a dry run, records what follows. The kind of move is unknown.
     async fn plan(&self, link: &mut Link, variable: Reference) -> Result<Failure, Failure> {
         let group = self.target.mover.group;
         let model = link.model_for(|model| ReadPosition::new(model, group, Coordinates::Pulse)).await?;
         if let Group::Robot(number) = group {
             let base = ReadPosition::new(model, Group::Base(number), Coordinates::Pulse).map_err(usage)?;
-            link.plan(&base.request(), "current position of the unnamed axes");
+            link.plan(&base.request(), "current position of the axes without a target");
         }
         let reason = Reason::about("current position").depending_on("whether the variable contains pulses");
         let pulse = ReadPosition::new(model, group, Coordinates::Pulse).map_err(usage)?;
@@ -260,7 +271,7 @@ impl Motion<'_> {
     }
 }
 
-/// Content of a variable, which must be defined.
+/// Content of a variable. The variable must be defined.
 async fn read(link: &mut Link, variable: Reference) -> Result<Value, Failure> {
     let question = ReadVariable::new(variable.kind, variable.number);
     match link.for_purpose("target position").ask_optional(&question).await? {
@@ -268,13 +279,13 @@ async fn read(link: &mut Link, variable: Reference) -> Result<Value, Failure> {
         Err(refusal) if is_undefined(&ReadError::Refused(refusal)) => {
             let message = format!("{variable} was never taught; no motion command was sent");
             Err(Failure { message, ..refusal_failure(refusal) }
-                .hint(format!("`yerc teach {variable}` stores the current position")))
+                .hint(format!("use `yerc teach {variable}` to store the current position")))
         }
         Err(refusal) => Err(refusal_failure(refusal)),
     }
 }
 
-/// Rejects a variable of another group.
+/// Rejects a variable that belongs to another kind of group.
 fn is_suitable(variable: Reference, group: Group) -> Result<(), Failure> {
     let is_right = match group {
         Group::Robot(_) => variable.kind == VariableKind::P,
@@ -299,7 +310,7 @@ fn word(kind: PositionKind) -> &'static str {
     PositionKind::ALL.iter().find(|row| row.0 == kind).map_or("other", |row| row.2)
 }
 
-/// Nearest whole number of pulses.
+/// Rounds to a whole number of pulses; `None` if the number does not fit.
 fn rounded(pulses: f64) -> Option<i32> {
     let text = format!("{pulses:.0}");
     text.parse().ok()

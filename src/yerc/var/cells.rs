@@ -1,6 +1,6 @@
 //! Variables in a table for a spreadsheet: numbers, strings and the fields of positions in columns.
 //!
-//! A position can have some of its columns: the other fields keep their value on the controller.
+//! A position may have only some of its columns. The other fields keep their value on the controller.
 
 use std::collections::BTreeMap;
 
@@ -13,19 +13,19 @@ use armctl_controller::yerc::payload::{Position, PositionKind, Text};
 use armctl_controller::yerc::variables::{Value, VariableKind};
 use armctl_frame::store::Field;
 
-/// Text of each cell that has one, by column.
+/// Text of each cell that is not empty, by column.
 pub type Cells = BTreeMap<String, String>;
 
-/// Column of numbers.
+/// Column for numbers.
 const NUMBER: &str = "value";
-/// Column of strings, and of reals that are not a number.
+/// Column for strings, and for reals that are not a number.
 const TEXT: &str = "text";
-/// Column of the bytes, if the text does not convert back to them.
+/// Column for the bytes, if the text cannot be converted back to these bytes.
 const BYTES: &str = "value_hex";
-/// Text of an empty string, because an empty cell means no value. A string of these two characters also has its bytes in
-/// the row.
+/// Text for an empty string, because an empty cell means no value. A string that consists of these two characters also
+/// has its bytes in the row.
 const EMPTY: &str = "\"\"";
-/// Tools and user coordinates are 0 to 63 (3.3.16).
+/// Highest tool number and user coordinate number (3.3.16). The lowest is 0.
 pub const LAST_TOOL: u32 = 63;
 
 /// Columns of a table.
@@ -38,7 +38,7 @@ pub fn fields() -> Vec<Field> {
     fields.into_iter().map(Field::optional).collect()
 }
 
-/// Cells of a value.
+/// Cells for a value.
 pub fn of(value: &Value, encoding: Encoding) -> Cells {
     let (data, bytes) = Data::of(value, encoding);
     let cell = |column: &str, text: String| (column.to_owned(), text);
@@ -53,26 +53,26 @@ pub fn of(value: &Value, encoding: Encoding) -> Cells {
     cells
 }
 
-/// Value of a number or a string from its cells.
+/// Value of a number or a string, from its cells.
 ///
 /// # Errors
-/// Which cell is missing or wrong.
+/// If a cell is missing or wrong. The error names the cell.
 pub fn plain(kind: VariableKind, cells: &Cells, encoding: Encoding) -> Result<Value, String> {
     let typed = |text: &[u8]| Value::from_text(kind, text).map_err(|error| error.to_string());
     let is_string = matches!(kind, VariableKind::S16 | VariableKind::S32);
     if let Some(column) = cells.keys().find(|column| ![NUMBER, TEXT, BYTES].contains(&column.as_str())) {
-        return Err(format!("{column} is of a position, and {} is none", kind.letters()));
+        return Err(format!("column {column} belongs to positions, and {} is not a position", kind.letters()));
     }
     match (cells.get(NUMBER), cells.get(TEXT), cells.get(BYTES)) {
         (None, text, Some(digits)) => exact(kind, text.map(String::as_str), digits, encoding),
         (Some(number), None, None) if !is_string => typed(number.as_bytes()),
         (None, Some(text), None) if is_string && text == EMPTY => typed(b""),
         (None, Some(text), None) if is_string => typed(&encoding.encode(text).map_err(|error| error.to_string())?),
-        _ => Err(format!("{} has its value in column {}", kind.letters(), if is_string { TEXT } else { NUMBER })),
+        _ => Err(format!("write the value of {} in column {}", kind.letters(), if is_string { TEXT } else { NUMBER })),
     }
 }
 
-/// A value defined by its bytes; the shown text must match them.
+/// Value from its bytes. The displayed text must match these bytes.
 fn exact(kind: VariableKind, shown: Option<&str>, digits: &str, encoding: Encoding) -> Result<Value, String> {
     let bytes = unhex(digits).ok_or_else(|| format!("{BYTES}: '{digits}' is not pairs of hexadecimal digits"))?;
     let wrong = |error| format!("{BYTES}: {error}");
@@ -83,7 +83,7 @@ fn exact(kind: VariableKind, shown: Option<&str>, digits: &str, encoding: Encodi
             let bytes = bytes.try_into().map_err(|_| format!("{BYTES}: a real has 4 bytes"))?;
             Value::Real(f32::from_le_bytes(bytes))
         }
-        _ => return Err(format!("{BYTES}: only strings and reals have one")),
+        _ => return Err(format!("{BYTES}: only strings and reals have bytes")),
     };
     match of(&value, encoding).get(TEXT).map(String::as_str) {
         expected if shown.is_none() || shown == expected => Ok(value),
@@ -91,27 +91,29 @@ fn exact(kind: VariableKind, shown: Option<&str>, digits: &str, encoding: Encodi
     }
 }
 
-/// Checks that cells can be of a position.
+/// Checks that a position can have these cells.
 ///
 /// # Errors
-/// Which cell cannot.
+/// If a position cannot have a cell. The error names the cell.
 pub fn check_position(cells: &Cells) -> Result<(), String> {
     match cells.keys().find(|column| [NUMBER, TEXT, BYTES].contains(&column.as_str())) {
-        Some(column) => Err(format!("a position has its axes in columns; {column} is of numbers and strings")),
+        Some(column) => Err(format!(
+            "write the axes of a position in their own columns; column {column} is for numbers and strings"
+        )),
         None => Ok(()),
     }
 }
 
-/// Complete position, with missing fields from the current one.
+/// Complete position. Missing fields are taken from the current position.
 ///
 /// # Errors
-/// Which field is missing or wrong.
+/// If a field is missing or wrong. The error names the field.
 pub fn merge_over(cells: &Cells, kind: VariableKind, old: Option<&Value>) -> Result<Value, String> {
     let mut merged = old.and_then(PositionData::of).map(|data| data.fields()).unwrap_or_default();
     let is_other_type = cells.get(position::TYPE).is_some_and(|given| merged.get(position::TYPE) != Some(given));
     let is_alone = merged.is_empty() || is_other_type;
     if is_alone && !cells.contains_key(position::TYPE) {
-        return Err("the position is undefined on the controller; give type and all axes".to_owned());
+        return Err("the position is undefined on the controller; fill in type and all axes".to_owned());
     }
     if is_alone {
         merged.clear();
@@ -124,10 +126,13 @@ pub fn merge_over(cells: &Cells, kind: VariableKind, old: Option<&Value>) -> Res
     if missing.is_empty() {
         return Ok(value);
     }
-    Err(format!("the position on the controller has another type; {} is missing", missing.join(", ")))
+    Err(format!(
+        "the position on the controller has another type, so all axes are necessary; {} is missing",
+        missing.join(", ")
+    ))
 }
 
-/// Two values that differ in all unknown fields, for a dry run.
+/// Two values that differ in all fields that are unknown, for a dry run.
 pub fn zero_bytes(cells: &Cells, kind: VariableKind) -> Option<[Value; 2]> {
     if !kind.is_position() {
         let all = |byte| Value::parse(kind, &vec![byte; kind.size()]).ok();
@@ -226,7 +231,7 @@ mod tests {
         assert_eq!(over(&[("x_mm", "7.25")], Some(&old)), Ok(new));
         assert!(over(&[("type", "base"), ("x_mm", "1")], Some(&old)).is_ok());
         assert!(over(&[("type", "base"), ("x_mm", "1")], None).is_err());
-        assert!(over(&[("x_mm", "1")], None).unwrap_err().contains("give type and all axes"));
+        assert!(over(&[("x_mm", "1")], None).unwrap_err().contains("fill in type and all axes"));
         let pulses = value("P2", "pulse:s=1,l=2,u=3,r=4,b=5,t=6").1;
         assert!(over(&[("x_mm", "1")], Some(&pulses)).is_err());
         assert!(over(&[("type", "base"), ("x_mm", "1")], Some(&pulses)).unwrap_err().contains("missing"));
@@ -238,8 +243,8 @@ mod tests {
         let plain = |kind, column, text| plain(kind, &cells(column, text), Encoding::ShiftJis).unwrap_err();
         assert!(plain(VariableKind::B, NUMBER, "256").contains("not a number from 0 to 255"));
         assert!(plain(VariableKind::B, TEXT, "5").contains("in column value"));
-        assert!(plain(VariableKind::B, "x_mm", "5").contains("x_mm is of a position"));
+        assert!(plain(VariableKind::B, "x_mm", "5").contains("x_mm belongs to positions"));
         assert!(plain(VariableKind::S32, NUMBER, "5").contains("in column text"));
-        assert!(check_position(&cells(NUMBER, "1")).unwrap_err().contains("value is of numbers"));
+        assert!(check_position(&cells(NUMBER, "1")).unwrap_err().contains("value is for numbers"));
     }
 }

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::testing::{Bench, DX200, FS100, dry_run, same, without_header};
 
-/// [`same`] with generated words.
+/// Like [`same`], with generated words.
 #[track_caller]
 fn same_many(id: &str, target: &str, first: &[&str], rest: &[String]) {
     let words: Vec<&str> = first.iter().copied().chain(rest.iter().map(String::as_str)).collect();
@@ -179,7 +179,7 @@ fn sets_a_position_from_a_file_of_var_get() {
 fn writes_nothing_without_an_answer() {
     let mut bench = Bench::new("sim:?fault=drop=100%25");
     let failure = bench.run(&["var", "set", "B0=1", "I0=1"]).unwrap_err();
-    // The old value is read first, and the controller does not answer that.
+    // The old value is read first, and the controller does not answer this read.
     assert_eq!(failure.kind.exit(), 4);
     assert!(failure.message.ends_with("; nothing was written"), "{failure}");
 }

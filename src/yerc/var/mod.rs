@@ -1,4 +1,4 @@
-//! `yerc var`: variables, one or many.
+//! `yerc var`: one or several variables.
 
 mod cells;
 #[cfg(test)]
@@ -28,11 +28,11 @@ commands! {
         Get(Get<Variables>),
         /// Write variables: B0=255 R3=1.5 S7=HELLO P1=base:x=…
         Set(set::Set),
-        /// List the variables that hold something
+        /// List the variables that are not empty
         List(List<Variables>),
         /// Print each change of variables
         Watch(Watch<Get<Variables>>),
-        /// Copy a variable to others of its kind: P5 P6..P8
+        /// Copy a variable to others of the same kind: P5 P6..P8
         Copy(Copy<Variables>),
         /// Save variables to a CSV file
         Dump(Dump<Variables>),
@@ -41,7 +41,7 @@ commands! {
     }
 }
 
-/// Variable in a confirmation: `P5`, or `P5 (HOME)` with its name.
+/// Name of a variable in a confirmation: `P5`, or `P5 (HOME)` if the user has named it.
 pub fn variable_name(names: &Names, variable: Reference) -> String {
     let address = variable.to_string();
     match names.label(Kind::Variable, &address) {

@@ -1,4 +1,4 @@
-//! JSON form of positions: every axis with its unit, and the text of `var set`.
+//! JSON form of positions: every axis with its unit, and the text for `var set`.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use armctl_controller::yerc::payload::{
 };
 use armctl_controller::yerc::variables::{Value, VariableKind};
 
-/// Position of a group as a variable value: P for robots, BP for bases, EX for stations.
+/// Position of a group as the value of a variable: P for robots, BP for bases, EX for stations.
 pub fn stored_position(group: Group, position: Position) -> Value {
     let Position { kind, axes, .. } = position;
     match group {
@@ -24,7 +24,7 @@ pub fn stored_position(group: Group, position: Position) -> Value {
     }
 }
 
-/// Value in the form of a robot position; for a base or a station only type and axes are valid.
+/// Value in the form of a robot position. For a base or a station, only the type and the axes are valid.
 pub fn as_position(value: &Value) -> Position {
     let bare = |kind, axes| Position { kind, form: Form(0), tool: 0, user: 0, extended: ExtendedForm(0), axes };
     match value {
@@ -38,17 +38,18 @@ pub fn as_position(value: &Value) -> Position {
 /// A position.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct PositionData {
-    /// Notation of `var set`.
+    /// Position in the notation of `var set`.
     text: String,
-    /// `pulse`, `base`, `robot`, `user`, `tool`; `type5` for a type without a name.
+    /// Type: `pulse`, `base`, `robot`, `user`, `tool`; `type5` for a type without a name.
     r#type: String,
     /// Type number.
     type_code: u32,
-    /// `x_mm`, `y_mm`, `z_mm`, `rx_deg`, `ry_deg`, `rz_deg`, `re_deg`; `s_pulses`, `l_pulses`, …; `axis_8_pulses`.
+    /// Values by axis: `x_mm`, `y_mm`, `z_mm`, `rx_deg`, `ry_deg`, `rz_deg`, `re_deg`; `s_pulses`, `l_pulses`, …;
+    /// `axis_8_pulses`.
     #[serde(flatten)]
     #[schemars(with = "BTreeMap<String, f64>")]
     axes: Map<String, Json>,
-    /// Fields of robot positions only.
+    /// Fields that only robot positions have.
     #[serde(flatten)]
     arm: Option<Arm>,
 }
@@ -58,16 +59,16 @@ pub struct PositionData {
 struct Arm {
     tool: u32,
     user: u32,
-    /// Decoded form: `back+upper+noflip`.
+    /// Form as words: `back+upper+noflip`.
     form: String,
     form_code: u32,
-    /// Decoded extended form.
+    /// Extended form as words.
     extended_form: String,
     extended_form_code: u32,
 }
 
 impl PositionData {
-    /// Value as a position, if it is one.
+    /// The position in a value; `None` if the value is not a position.
     pub fn of(value: &Value) -> Option<Self> {
         let (text, kind, axes, shown) = match value {
             Value::Position(position) => {
@@ -96,12 +97,12 @@ impl PositionData {
         Some(Self { text, r#type: type_name(kind), type_code: kind.word(), axes, arm })
     }
 
-    /// Text in the notation of `var set`.
+    /// Text that `var set` accepts.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// Text of each column of a table, as [`from_fields`] reads it.
+    /// Text of each table column, in the form that [`from_fields`] reads.
     pub fn fields(&self) -> BTreeMap<String, String> {
         let mut fields = BTreeMap::from([(TYPE.to_owned(), self.r#type.clone())]);
         fields.extend(self.axes.iter().map(|(name, amount)| (name.clone(), amount.to_string())));
@@ -115,10 +116,10 @@ impl PositionData {
 
 /// Column of the type.
 pub const TYPE: &str = "type";
-/// Columns of numbers that only robot positions have.
+/// Columns for numbers that only robot positions have.
 pub const ARM: [&str; 4] = ["tool", "user", "form_code", "extended_form_code"];
 
-/// Columns of all axes that a position can have.
+/// Columns for all axes that a position can have.
 pub fn axis_columns() -> impl Iterator<Item = String> {
     const CARTESIAN: [&str; 7] = ["x_mm", "y_mm", "z_mm", "rx_deg", "ry_deg", "rz_deg", "re_deg"];
     const PULSES: [&str; 7] = ["s", "l", "u", "r", "b", "t", "e"];
@@ -131,12 +132,13 @@ pub fn axis_columns() -> impl Iterator<Item = String> {
 /// Units of axes.
 const UNITS: [Unit; 3] = [units::PULSE, units::MILLIMETRE, units::DEGREE];
 
-/// Position from the text of its columns: the type and all axes, and for a robot `tool`, `user` and the codes of the form.
+/// Position from the text of its columns. These are the type and all axes, and for a robot also `tool`, `user` and the
+/// codes of the form.
 ///
 /// # Errors
-/// Which column is missing or wrong.
+/// If a column is missing or wrong. The error names the column.
 pub fn from_fields(kind: VariableKind, fields: &BTreeMap<String, String>) -> Result<Value, String> {
-    let name = fields.get(TYPE).ok_or("type is missing; give type and all axes")?;
+    let name = fields.get(TYPE).ok_or("type is missing; fill in type and all axes")?;
     let (mut parts, mut given) = (Vec::new(), Vec::new());
     for (column, text) in fields.iter().filter(|(column, _)| *column != TYPE) {
         match column.as_str() {
@@ -144,7 +146,8 @@ pub fn from_fields(kind: VariableKind, fields: &BTreeMap<String, String>) -> Res
             "form_code" if kind == VariableKind::P => parts.extend(flags("form", column, text)?),
             "extended_form_code" if kind == VariableKind::P => parts.extend(flags("ext", column, text)?),
             _ => {
-                let axis = axis_of(column).ok_or_else(|| format!("{column} is not of a position of this kind"))?;
+                let axis =
+                    axis_of(column).ok_or_else(|| format!("{column} is not a column of a position of this kind"))?;
                 parts.push(format!("{axis}={text}"));
                 given.push(column);
             }
@@ -162,7 +165,7 @@ pub fn from_fields(kind: VariableKind, fields: &BTreeMap<String, String>) -> Res
     }
 }
 
-/// Flags in the notation of `var set`; none for 0.
+/// Flags in the notation of `var set`; `None` for 0.
 fn flags(key: &str, column: &str, text: &str) -> Result<Option<String>, String> {
     let code: u32 = text.parse().map_err(|_| format!("{column}: '{text}' is not a number from 0 to 4294967295"))?;
     Ok((code != 0).then(|| format!("{key}={code:#x}")))
@@ -177,7 +180,7 @@ fn axes(value: &Value) -> Vec<NamedAxis> {
     }
 }
 
-/// `x_mm`, `s_pulses`, `axis_8_pulses`.
+/// Name of an axis field: `x_mm`, `s_pulses`, `axis_8_pulses`.
 fn key(axis: &NamedAxis) -> String {
     let unit = suffix(axis.unit);
     if axis.key.starts_with(|c: char| c.is_ascii_digit()) {
@@ -187,12 +190,12 @@ fn key(axis: &NamedAxis) -> String {
     }
 }
 
-/// Whether a field is an axis: `x_mm`, `s_pulses`, `axis_8_pulses`.
+/// Whether a field is the field of an axis: `x_mm`, `s_pulses`, `axis_8_pulses`.
 pub fn is_axis(name: &str) -> bool {
     axis_of(name).is_some()
 }
 
-/// `x` of `x_mm`, `8` of `axis_8_pulses`.
+/// Axis of a field: `x` for `x_mm`, `8` for `axis_8_pulses`.
 fn axis_of(name: &str) -> Option<&str> {
     let (axis, unit) = name.rsplit_once('_')?;
     let known = UNITS.into_iter().any(|known| suffix(known) == unit);
@@ -203,13 +206,13 @@ const fn suffix(unit: Unit) -> &'static str {
     unit.symbol
 }
 
-/// Exact decimal as a JSON number.
+/// Exact decimal number in JSON.
 fn parse_amount(quantity: Quantity) -> Json {
     let text = quantity.to_string();
     serde_json::from_str(&text).unwrap_or(Json::String(text))
 }
 
-/// Type with this name.
+/// Position type with this name.
 pub fn parse_named_values(name: &str) -> Option<PositionKind> {
     PositionKind::ALL.iter().find(|row| row.2 == name).map(|row| row.0)
 }
@@ -253,7 +256,7 @@ mod tests {
         assert!(changed("x_mm", "far").contains("far"));
         assert!(changed("x_pulses", "9").contains("twice"));
         assert!(changed("form_code", "-1").starts_with("form_code: '-1'"));
-        assert!(changed("speed", "17").starts_with("speed is not of a position"));
+        assert!(changed("speed", "17").starts_with("speed is not a column of a position"));
         let mut single_value = fields.clone();
         single_value.remove("x_mm");
         single_value.insert("x_deg".to_owned(), "1".to_owned());

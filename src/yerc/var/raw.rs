@@ -17,7 +17,8 @@ use armctl_frame::gate::Change;
 use armctl_frame::settings_report::{OLD_VALUE, nothing_written};
 use armctl_frame::store::{Differing, describe_change};
 
-/// Confirms a raw request that writes positions. `intent` describes a request that armctl cannot decode.
+/// Asks the user to confirm a raw request that writes positions. `intent` is the text for a request that armctl cannot
+/// decode.
 pub async fn confirm_raw(
     link: &mut Link,
     authority: &Authority<'_>,
@@ -39,15 +40,15 @@ pub async fn confirm_raw(
     authority.confirm(&if is_clear { describe_change(&table, &differing) } else { Change::new(intent) }).await
 }
 
-/// What positions hold before a write.
+/// Content of positions before a write.
 struct TaughtPositions {
-    /// Positions that were taught.
+    /// Positions that are defined, and their content.
     positions: HashMap<Reference, Value>,
-    /// Whether the controller refused to tell what others hold.
+    /// Whether the controller refused to report the content of other positions.
     has_unread: bool,
 }
 
-/// Reads positions one by one, because each can be undefined. A dry run notes the requests.
+/// Reads positions one by one, because each can be undefined. A dry run records the requests.
 async fn read_taught(link: &mut Link, references: &[Reference]) -> Result<TaughtPositions, Failure> {
     let mut taught = TaughtPositions { positions: HashMap::new(), has_unread: false };
     for reference in references {
@@ -61,7 +62,7 @@ async fn read_taught(link: &mut Link, references: &[Reference]) -> Result<Taught
     Ok(taught)
 }
 
-/// Positions that a request writes; none if it writes no positions or does not match the manual.
+/// Positions that a request writes; `None` if it writes no positions, or is not as in the manual.
 fn references(request: &Request) -> Option<Vec<Reference>> {
     let kind = |number: fn(VariableKind) -> u16| {
         VariableKind::all().find(|kind| kind.is_position() && number(*kind) == request.command)
@@ -76,7 +77,7 @@ fn references(request: &Request) -> Option<Vec<Reference>> {
         .then(|| (request.instance..=last).map(|number| Reference::new(kind, number)).collect())
 }
 
-/// Value that a request writes to its position at this index, which currently has `old`.
+/// Value that a request writes to its position at this index. The position currently contains `old`.
 fn value_at(request: &Request, at: usize, old: &Value) -> Option<Value> {
     let kind = old.kind();
     match request.service {

@@ -24,13 +24,14 @@ use armctl_frame::{Command, Context};
 /// Writes variables.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "All values are checked before the first is sent; consecutive numbers are sent in one request. What a \
-                  variable holds already is not written. A position is pulse:s=0,l=0,u=0,r=0,b=0,t=0 or \
+    after_help = "armctl checks all values before it sends the first value. It sends consecutive numbers in one \
+                  request, and does not write equal values. A position is pulse:s=0,l=0,u=0,r=0,b=0,t=0 or \
                   base:x=…,y=…,z=…,rx=…,ry=…,rz=… in mm and degrees, with tool=, user=, form=back+lower+noflip. @FILE \
-                  reads the output of `var get P1 --json` or `position --json` (its pulses, if it has both; @- is \
-                  stdin). P1=here is the same as `teach P1`. BP accepts base: or pulse:, EX pulse:1=…. P1.tool=2, \
-                  P1.user=1 and BP5.axis1=-1 change only that word (a P is read, changed and written back \
-                  completely). Axis words are in protocol steps (pulses, or 0.001 mm and 0.0001 degree)."
+                  reads the output of `var get P1 --json` or `position --json` (the pulses, if the output has pulses \
+                  and coordinates; @- is stdin). P1=here is the same as `teach P1`. BP accepts base: or pulse:, EX \
+                  accepts pulse:1=…. P1.tool=2, P1.user=1 and BP5.axis1=-1 change only that word: armctl reads the P, \
+                  changes the word and writes the whole P back. Axis words are in protocol steps (pulses, or 0.001 mm \
+                  and 0.0001 degree)."
 )]
 pub struct Set {
     /// B0=255, I5=-2, R3=1.5, S7=HELLO, P1=base:x=…, P1=@FILE, or NAME=255
@@ -40,7 +41,7 @@ pub struct Set {
     form: StringForm,
 }
 
-/// An assignment such as `B0=255`, checked as far as possible without the robot's settings.
+/// An assignment such as `B0=255`. It is checked as far as possible without the settings of the robot.
 #[derive(Debug, Clone, PartialEq)]
 struct Assignment {
     reference: Reference,
@@ -50,9 +51,9 @@ struct Assignment {
 #[derive(Debug, Clone, PartialEq)]
 enum Input {
     Ready(Value),
-    /// String, with an encoding that is not known yet.
+    /// A string. Its encoding is not known yet.
     Text(String),
-    /// Position in a JSON file.
+    /// A position in a JSON file.
     File(PathBuf),
     /// One word of a position.
     Word(Word),
@@ -65,7 +66,7 @@ impl FromStr for Assignment {
         let (name, value) = typed::setting(text, "a variable", "a value", "B0=255")?;
         let (reference, field) = reference_of(name)?;
         let Some(reference) = reference else {
-            // The variable of a name decides which values are valid.
+            // The values that are valid depend on the variable of the name, which is not known yet.
             return Ok(Self { reference: ANY, input: Input::Text(value.to_owned()) });
         };
         if let Some(field) = field {
@@ -87,14 +88,14 @@ impl FromStr for Assignment {
     }
 }
 
-/// Placeholder for a name that is not resolved yet.
+/// Variable that takes the place of a name that is not resolved yet.
 const ANY: Reference = Reference::new(VariableKind::B, 0);
 
-/// Parses a variable or its name, and the part after it; no variable yet for a name.
+/// Parses a variable or its name, and the part after it. A name gives no variable yet.
 fn reference_of(text: &str) -> Result<(Option<Reference>, Option<&str>), String> {
     let parts = text.rsplit_once('.').map(|(name, field)| (name, Some(field)));
     let address = |name: &str| name.parse::<Reference>().map_err(message);
-    // A name may contain a dot; the part is after the last dot.
+    // A name may contain a dot, so the part is after the last dot.
     let (name, field) = match parts {
         Some((name, field)) if is_part(field.unwrap_or_default()) || address(name).is_ok() => (name, field),
         _ => (text, None),
@@ -103,7 +104,7 @@ fn reference_of(text: &str) -> Result<(Option<Reference>, Option<&str>), String>
     Ok(((!is_open).then_some(reference), field))
 }
 
-/// Whether a word is a part of a position.
+/// Whether a word names a part of a position.
 fn is_part(field: &str) -> bool {
     matches!(field, "tool" | "user") || field.strip_prefix("axis").is_some_and(|number| number.parse::<u8>().is_ok())
 }
@@ -116,7 +117,7 @@ fn in_range(what: &str, number: u32) -> Result<u32, String> {
     }
 }
 
-/// Parses a single word (3.3.16 to 3.3.18).
+/// Parses a value for a single word of a position (3.3.16 to 3.3.18).
 fn word(reference: Reference, field: &str, value: &str) -> Result<Word, String> {
     let kind = reference.kind;
     if !kind.is_position() {
@@ -138,8 +139,10 @@ fn word(reference: Reference, field: &str, value: &str) -> Result<Word, String> 
             })?;
             Ok(Word::Axis(axis - 1, steps))
         }
-        _ if is_robot => Err(format!("'{field}' is not a valid part to write; there are tool, user, axis1 to axis8")),
-        _ => Err(format!("'{field}' is not a valid part to write; there are axis1 to axis8")),
+        _ if is_robot => {
+            Err(format!("'{field}' is not a valid part to write; the parts are tool, user, axis1 to axis8"))
+        }
+        _ => Err(format!("'{field}' is not a valid part to write; the parts are axis1 to axis8")),
     }
 }
 
@@ -155,7 +158,7 @@ impl Command for Set {
     const INTENT: &'static str = "overwrite taught positions";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    /// Only positions are taught.
+    /// Only positions contain taught data.
     fn risk(&self) -> Risk {
         let is_position = self.assignments.iter().any(|assignment| assignment.reference.kind.is_position());
         if is_position { Risk::Destroy } else { Risk::Write }
@@ -172,10 +175,11 @@ impl Command for Set {
 }
 
 impl Set {
-    /// The new content of each variable. Words of a position that is written completely are merged into it.
+    /// New content of each variable. If a position is written completely, single words for it are merged into the
+    /// position.
     fn rows(&self, table: &Variables) -> Result<Vec<Row<Variables>>, Failure> {
         let mut rows: Vec<Row<Variables>> = Vec::new();
-        let repeated = |key| Failure::usage(format!("{key} appears twice")).hint("give each variable one value");
+        let repeated = |key| Failure::usage(format!("{key} appears twice")).hint("type one value for each variable");
         for Assignment { reference, input } in &self.assignments {
             let row = rows.iter_mut().find(|(key, _)| key == reference).map(|(_, draft)| draft);
             match (input, row) {
@@ -206,11 +210,14 @@ fn value_of(table: &Variables, reference: Reference, input: &Input) -> Result<Va
     match input {
         Input::Ready(value) => Ok(value.clone()),
         Input::Text(text) => table.parse(reference, text).map_err(|error| {
-            wrong(error).hint("full-width characters take two bytes each; --encoding sets the encoding of the robot")
+            wrong(error).hint(
+                "check the length: full-width characters take two bytes each; use --encoding to set the encoding of \
+                 the robot",
+            )
         }),
         Input::File(path) => table.parse(reference, &parse_printed_position(path)?).map_err(|error| {
             Failure::usage(format!("{}: {error}", path.display()))
-                .hint(format!("it must be a position of {}", reference.kind.letters()))
+                .hint(format!("use a file with a position of {}", reference.kind.letters()))
         }),
         Input::Word(_) => Err(wrong("a part is not a value".to_owned())),
     }
@@ -227,16 +234,16 @@ mod tests {
     #[test]
     fn checks_values_before_sending() {
         assert_eq!(error("B0=256"), "'256' is not a number from 0 to 255");
-        assert_eq!(error("B0"), "write a variable, '=' and a value, as in B0=255");
+        assert_eq!(error("B0"), "write a variable, '=' and a value, for example B0=255");
         assert_eq!(
             error("X0=1"),
-            "'X0' is not a variable; use B, I, D, R, S, P, BP or EX with a number, e.g. B0 or B0..B99"
+            "'X0' is not a variable; use B, I, D, R, S, P, BP or EX with a number, for example B0 or B0..B99"
         );
         assert!(error("P1=base:x=1").starts_with("axis 'y' is missing"));
         assert_eq!(error("P1=pulse:s=0,l=0,u=0,r=0,b=0,t=0,tool=64"), "tool: 64 is not a number from 0 to 63");
         assert!(error("B0.tool=1").starts_with("B0 has no parts"));
         assert!(error("P1.form=1").contains("tool, user, axis1 to axis8"));
-        assert!(error("BP1.tool=1").ends_with("there are axis1 to axis8"));
+        assert!(error("BP1.tool=1").ends_with("the parts are axis1 to axis8"));
         assert!(error("EX1.axis9=1").contains("axis1 to axis8"));
         let tool = "P1.tool=0x2".parse::<Assignment>().map(|it| it.input);
         assert_eq!(tool, Ok(Input::Word(Word::Tool(2))));

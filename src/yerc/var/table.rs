@@ -1,4 +1,4 @@
-//! The variables of a controller as a table: how they are named, read, written and shown.
+//! The variables of a controller as a table: how they are named, read, written and displayed.
 
 use std::convert::Infallible;
 use std::fmt::Debug;
@@ -36,11 +36,11 @@ use armctl_frame::output::view::Cell;
 use armctl_frame::settings_report::{IF_DIFFERENT, OLD_VALUE};
 use armctl_frame::store::{Answers, Differing, Field, Ids, Row, Store, TableWords, Writable, ids};
 
-/// The variables. Their keys have the 32-byte form of strings, whatever the model has.
+/// Table of the variables. Its keys have the 32-byte form of strings, for any model.
 #[derive(Debug)]
 pub struct Variables {
     encoding: Encoding,
-    /// Model, once it is known; needed only for strings.
+    /// Model, when it is known. It is needed only for strings.
     model: Model,
     is_short: bool,
 }
@@ -53,11 +53,11 @@ pub struct StringForm {
     is_short: bool,
 }
 
-/// What yerc adds to an item.
+/// Fields that yerc adds to an item.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct More {
     number: u16,
-    /// Raw bytes, if the value does not convert back to them.
+    /// Raw bytes, if the value cannot be converted back to these bytes.
     #[serde(skip_serializing_if = "Option::is_none")]
     value_hex: Option<String>,
 }
@@ -67,40 +67,40 @@ pub struct More {
 pub enum Draft {
     /// A complete value.
     Whole(Value),
-    /// Some fields of a position, by their column; without any, a value that is not known in a dry run.
+    /// Some fields of a position, by their column. Without any field: a value that is not known in a dry run.
     Fields(Cells),
     /// Single words of a position.
     Words(Vec<Word>),
 }
 
-/// Maximum number of variables in a range: a larger one is probably a typing error, and a refused range takes long to
-/// read in parts.
+/// Maximum number of variables in a range. A larger range is probably a typing error, and if it is refused, the read in
+/// parts takes long.
 const MOST: usize = 10_000;
 
-/// Added status of a variable without a value. The manuals give 0xB001 a second meaning, which cannot occur when one
-/// variable is read (3.3.16; DX chapter 5).
+/// Added status codes for a variable without a value. The manuals give 0xB001 a second meaning, which cannot occur when
+/// one variable is read (3.3.16; DX chapter 5).
 const UNDEFINED: [u32; 2] = [0xB005, 0xB001];
 
-/// Whether a refusal to read one variable means that it is undefined.
+/// Whether a refusal to read one variable means that the variable is undefined.
 pub fn is_undefined(denied: &ReadError) -> bool {
     matches!(denied, ReadError::Refused(refusal) if UNDEFINED.contains(&refusal.status.added))
 }
 
 impl Variables {
-    /// The table for values in this encoding.
+    /// Creates the table for values in this encoding.
     pub fn with_encoding(encoding: Encoding) -> Self {
         Self { encoding, model: Model::Dx200, is_short: false }
     }
 
-    /// Variable with the string form of the model.
+    /// The variable, with the string form that the model uses.
     fn in_form(&self, key: Reference) -> Reference {
         Reference::new(key.kind.string_form(self.model, self.is_short), key.number)
     }
 
-    /// Value of a variable from its text in the notation of `var set`.
+    /// Value of a variable, from its text in the notation of `var set`.
     ///
     /// # Errors
-    /// Why the variable cannot hold it.
+    /// If the variable cannot have this value. The error gives the reason.
     pub fn parse(&self, key: Reference, text: &str) -> Result<Value, String> {
         let kind = self.in_form(key).kind;
         let is_string = matches!(kind, VariableKind::S16 | VariableKind::S32);
@@ -113,7 +113,7 @@ impl Variables {
         plan_writes(&values.map(|(key, value)| (key.number, value)).collect::<Vec<_>>()).map_err(usage)
     }
 
-    /// Notes in a dry run a write that depends on the content of the variable.
+    /// In a dry run, records a write that depends on the content of the variable.
     fn plan_merged(&self, link: &mut Link, key: Reference, draft: &Draft) -> Result<(), Failure> {
         let reference = self.in_form(key);
         let (both, about) = match draft {
@@ -134,12 +134,12 @@ impl Variables {
             }
         };
         let Some([one, other]) = both else {
-            return Err(Failure::usage(format!("{key}: {about} are not of one type of position"))
-                .hint("give the type in column type, and its axes"));
+            return Err(Failure::usage(format!("{key}: the values {about} do not belong to one type of position"))
+                .hint("fill in the column type and the columns of the axes"));
         };
         let about = match about.as_str() {
             "" => format!("writes {key}"),
-            about => format!("writes {key} with {about}; the other words keep the values that were read"),
+            about => format!("writes {key} with {about}; the other values stay as they were read"),
         };
         let write = |value| WriteVariable::new(key.number, value).map_err(usage);
         let reason = Reason::about(&about).depending_on("the values that were read");
@@ -161,9 +161,10 @@ impl Store for Variables {
         placeholder: "REF",
         range: "B0, I1..I20, D5, R3, S2, P10, BP1, EX1, a kind such as P, or a name",
         reading: Some(
-            "A position that was never taught is null in JSON. Each variable has its own result. The exit code is 9 if \
-             some were refused, and 3 if all were refused or none has a value. armctl reads many variables with few \
-             requests. The standard numbers are 0-99 (positions 0-127); the controller's parameters can define more.",
+            "In JSON, a position that was never taught is null. Each variable has its own result. The exit code is 9 \
+             if the controller refused some variables. The exit code is 3 if it refused all variables or none has a \
+             value. armctl reads many variables with few requests. The standard numbers are 0-99 (positions 0-127); \
+             the controller's parameters can define more.",
         ),
         writing: None,
     };
@@ -201,7 +202,7 @@ impl Store for Variables {
         Ok(Self { is_short: options.is_short, ..Self::with_encoding(link.encoding) })
     }
 
-    /// The controller is asked for its model only if there are strings.
+    /// The model is read from the controller only if there are strings.
     async fn prepare(&mut self, link: &mut Link, keys: &[Reference]) -> Result<(), Failure> {
         let forms = |model| Self { model, ..*self }.forms(keys);
         link.model_for(|model| Ok::<_, Infallible>(forms(model))).await.map(|model| self.model = model)
@@ -237,7 +238,7 @@ impl Store for Variables {
         More { number: key.number, value_hex: value.and_then(|value| Data::of(value, self.encoding).1) }
     }
 
-    /// Axes that are not reported are 0. Positive and negative zero differ, and NaN is equal to itself.
+    /// Axes that were not reported count as 0. Positive and negative zero differ, and NaN is equal to itself.
     fn is_equal(old: &Value, new: &Value) -> bool {
         match (old, new) {
             (Value::Position(old), Value::Position(new)) => {
@@ -261,7 +262,7 @@ impl Store for Variables {
     async fn read(&self, link: &mut Link, screen: &Screen, keys: &[Reference]) -> Result<Answers<Value>, Failure> {
         let wanted = self.forms(keys);
         let progress = (keys.len() > 1).then(|| screen.spinner("reading variables"));
-        // Each position can be undefined; the valid numbers of other kinds end somewhere.
+        // Each position can be undefined. For other kinds, the valid numbers end somewhere in the range.
         let parts = |run: &[Reference]| {
             let is_position = run.first().is_some_and(|reference| reference.kind.is_position());
             if is_position { BatchSplit::Single } else { BatchSplit::Halves }
@@ -283,13 +284,13 @@ impl Store for Variables {
 }
 
 impl Variables {
-    /// Variables with the string form of the model.
+    /// The same variables, with the string form of the model.
     fn forms(&self, keys: &[Reference]) -> Vec<Reference> {
         keys.iter().map(|key| self.in_form(*key)).collect()
     }
 }
 
-/// Standard numbers of a kind.
+/// Standard numbers of a kind, as variables.
 fn standard(kind: VariableKind) -> impl Iterator<Item = Reference> {
     (0..=kind.last_standard()).map(move |number| Reference::new(kind, number))
 }
@@ -299,7 +300,7 @@ impl Writable for Variables {
 
     const RISK: Risk = Risk::Destroy;
 
-    /// Only positions are taught.
+    /// Only positions contain taught data.
     fn risk(key: Reference) -> Risk {
         if key.kind.is_position() { Risk::Destroy } else { Risk::Write }
     }
@@ -321,7 +322,8 @@ impl Writable for Variables {
     }
 
     fn complete_draft(&self, key: Reference, draft: &Draft, old: Option<&Value>) -> Result<Value, Failure> {
-        let wrong = |why: String| Failure::usage(format!("{key}: {why}")).hint("nothing was written");
+        let wrong =
+            |why: String| Failure::usage(format!("{key}: {why}")).hint("correct the value; nothing was written");
         match (draft, old) {
             (Draft::Whole(value), _) => Ok(value.clone()),
             (Draft::Fields(cells), old) => cells::merge_over(cells, key.kind, old).map_err(wrong),
@@ -334,7 +336,8 @@ impl Writable for Variables {
             }
             (Draft::Words(_), None) => {
                 let message = format!("{key}: the position is undefined; nothing was written");
-                Err(Failure::new(FailureKind::Refused, message).hint(format!("write all of it: {key}=pulse:…")))
+                Err(Failure::new(FailureKind::Refused, message)
+                    .hint(format!("write the whole position: {key}=pulse:…")))
             }
         }
     }
@@ -344,7 +347,8 @@ impl Writable for Variables {
         self.read(link.for_purpose(OLD_VALUE), screen, &keys).await
     }
 
-    /// Consecutive variables of a kind are one request; so is a single axis of a BP or an EX.
+    /// Consecutive variables of a kind are written with one request. A single changed axis of a BP or an EX also has
+    /// one request.
     fn blocks(&self, rows: &[Differing<'_, Self>]) -> Vec<Vec<usize>> {
         let (alone, together): (Vec<usize>, Vec<usize>) =
             (0..rows.len()).partition(|index| single_word(&rows[*index]).is_some());
@@ -398,7 +402,7 @@ impl Writable for Variables {
     }
 }
 
-/// The only axis of a BP or an EX that changes.
+/// The axis of a BP or an EX that changes, if it is the only change.
 fn single_word((key, old, new): &Differing<'_, Variables>) -> Option<Word> {
     Word::only_difference(*key, (*old)?, new)
 }

@@ -11,18 +11,18 @@ use armctl_controller::yerc::variables::Value;
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Data {
-    /// B, I, D.
+    /// Value of a B, I or D variable.
     Integer(i32),
-    /// R, with the fewest digits that convert back to it.
+    /// Value of an R variable, with the fewest digits that convert back to the same value.
     Real(f64),
-    /// S; also an R that is not a number: `NaN`, `inf`, `-inf`.
+    /// Value of an S variable; also of an R variable that is not a number: `NaN`, `inf`, `-inf`.
     Text(String),
-    /// P, BP, EX.
+    /// Value of a P, BP or EX variable.
     Position(Box<PositionData>),
 }
 
 impl Data {
-    /// Value in reports, and its bytes in hexadecimal if the value does not convert back to them.
+    /// Value for reports, and its bytes in hexadecimal if the value cannot be converted back to these bytes.
     pub fn of(value: &Value, encoding: Encoding) -> (Self, Option<String>) {
         let text = |bytes: &[u8]| {
             let name = encoding.name(bytes);
@@ -45,12 +45,12 @@ impl Data {
         }
     }
 
-    /// Whether it is a number.
+    /// Whether the value is a number.
     pub const fn is_number(&self) -> bool {
         matches!(self, Self::Integer(_) | Self::Real(_))
     }
 
-    /// Whether it is what a controller holds where nobody wrote: 0, or an empty text.
+    /// Whether the value is 0 or an empty text. A controller has such a value in a variable that was never written.
     pub fn is_blank(&self) -> bool {
         match self {
             Self::Integer(number) => *number == 0,
@@ -65,7 +65,7 @@ impl std::fmt::Display for Data {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Integer(value) => value.fmt(f),
-            // With a decimal point or an exponent, so that it is recognised as a real.
+            // The text has a decimal point or an exponent, so that it is recognized as a real.
             Self::Real(value) => write!(f, "{value:?}"),
             Self::Text(text) => f.write_str(text),
             Self::Position(position) => f.write_str(position.text()),
@@ -73,7 +73,7 @@ impl std::fmt::Display for Data {
     }
 }
 
-/// 64-bit number with the digits of the 32-bit number; none if it is not a number.
+/// 64-bit number with the same digits as the 32-bit number; `None` if it is not a number.
 fn shortest(value: f32) -> Option<f64> {
     if value.is_finite() { format!("{value:?}").parse().ok() } else { None }
 }

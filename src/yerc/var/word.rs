@@ -1,24 +1,25 @@
-//! Single words of positions. A word of a BP or an EX has a request of its own (3.3.17, 3.3.18, service 0x10). The
-//! manuals list none for a P: the position is read, changed and written back completely (3.3.16, service 0x02).
+//! Single words of positions. For a word of a BP or an EX there is a separate request (3.3.17, 3.3.18, service 0x10).
+//! The manuals list no such request for a P: the position is read, changed and written back completely (3.3.16, service
+//! 0x02).
 
 use armctl_controller::yerc::payload::{Axes, ExtendedForm, Form, MAX_AXES, Position, PositionKind};
 use armctl_controller::yerc::query::{QueryError, WriteField};
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::variables::{Reference, Value, VariableKind};
 
-/// A writable word of a position.
+/// A word of a position that can be written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Word {
     /// Tool number of a P.
     Tool(u32),
     /// User coordinate number of a P.
     User(u32),
-    /// Axis (starting with 0) and value in protocol steps.
+    /// Axis (starting with 0), and its value in protocol units.
     Axis(u8, i32),
 }
 
 impl Word {
-    /// Name as typed.
+    /// Name of the word as typed.
     pub fn name(self) -> String {
         match self {
             Self::Tool(_) => "tool".to_owned(),
@@ -47,10 +48,10 @@ impl Word {
         }
     }
 
-    /// Request that writes this axis of a BP or an EX alone; none for other words.
+    /// Request that writes only this axis of a BP or an EX; `None` for other words.
     pub fn field(self, variable: Reference) -> Option<Result<WriteField, QueryError>> {
         match self {
-            // Attribute 1 is the type.
+            // Attribute 1 is the type, so axis 0 has attribute 2.
             Self::Axis(axis, word) if is_single_word_write(variable) => {
                 Some(WriteField::new(variable.kind, variable.number, 2 + axis, word.to_le_bytes()))
             }
@@ -58,7 +59,7 @@ impl Word {
         }
     }
 
-    /// The only axis that differs between two positions of a BP or an EX; none if there are several, or another word
+    /// The axis in which two positions of a BP or an EX differ; `None` if several axes differ, or if another word
     /// differs.
     pub fn only_difference(variable: Reference, old: &Value, new: &Value) -> Option<Self> {
         let axes = |value: &Value| match value {
@@ -89,7 +90,7 @@ fn set_axis(axes: &mut Axes, index: u8, value: i32) {
     *axes = Axes::full(values);
 }
 
-/// Position after a write of one field; none if there is no such field.
+/// Position after a write of one field; `None` if there is no such field.
 pub fn with_field(old: &Value, request: &Request) -> Option<Value> {
     let mut bytes = old.emit();
     let at = usize::from(request.attribute).checked_sub(1)? * 4;
@@ -97,7 +98,7 @@ pub fn with_field(old: &Value, request: &Request) -> Option<Value> {
     Value::parse(old.kind(), &bytes).ok()
 }
 
-/// Two positions that differ in every byte, to show in a dry run the known part of one.
+/// Two positions that differ in every byte. With them, a dry run can show which part of a position is known.
 pub fn different_words() -> [Position; 2] {
     let position = |kind, word: u32, axis| Position {
         kind,

@@ -1,42 +1,39 @@
-//! Conversion between the parts of a controller and the text files of a backup.
+//! The parts of a controller as the text files of a backup.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use anyhow::Context as _;
 use serde::{Deserialize, Serialize};
 
-use super::parts::{Part, Records};
-use crate::link::Link;
-use crate::numbers::{self, Numbers, runs};
+use super::parts::Part;
+use super::save::{GAP, gap_after};
+use crate::data::{Hands, Pallets, PointSheet, Points, Shifts};
+use crate::link::{Link, Yrcx};
+use crate::numbers::runs;
+use crate::overwrite::there;
 use crate::param::{Parameters, Setting};
 use crate::refusal::BuildOrder as _;
-use crate::refusal::refused;
-use crate::several::{check_echo, is_about_commands};
+use crate::robot_settings::Settings;
+use crate::several::{ask_each, is_undefined};
 use crate::single::shown;
-use crate::stores::is_number;
-use armctl_controller::findings::{Finding, Findings};
-use armctl_controller::sheet::{self, Column, Dialect, Sheet};
-use armctl_controller::yrcx::alarm::Alarm;
+use crate::stores::Numbered;
+use crate::var::Variables;
 use armctl_controller::yrcx::order::{Draft, Order};
-use armctl_controller::yrcx::table::{Command, Field};
-use armctl_controller::yrcx::value::{Key, Value, Values};
-use armctl_files as files;
-use armctl_frame::backup::manifest::{About, Entry, LeftOut};
-use armctl_frame::dry_run::Reason;
+use armctl_controller::yrcx::table::Command;
+use armctl_controller::yrcx::value::Key;
+use armctl_frame::backup::manifest::{About, Entry};
+use armctl_frame::backup::parts::Table;
+use armctl_frame::dry_run::{Known as _, Reason};
 use armctl_frame::failure::Failure;
 use armctl_frame::output::Screen;
-use armctl_frame::output::progress::Progress;
 use armctl_frame::settings::target::Family;
-use armctl_frame::store::Store as _;
+use armctl_frame::store::{self, Store, Writable, part_text};
+use armctl_frame::text_files;
 
-/// Cells of a line.
-type Row = Vec<String>;
-
-/// Controller model and its robots.
+/// Host software of the controller, and its robots.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Controller {
-    /// Host software version: `V1.08 R0048`.
+    /// Version of the host software, for example `V1.08 R0048`.
     pub software: String,
     /// Robots of the controller.
     pub robots: Vec<Robot>,
@@ -45,11 +42,11 @@ pub struct Controller {
 /// A robot of the controller.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Robot {
-    /// 1 to 4.
+    /// Robot number, 1 to 4.
     pub robot: u8,
-    /// The number of its model.
+    /// Number of the robot's model.
     pub robot_type: i32,
-    /// Its axes, 1 to 4.
+    /// Axes of the robot, 1 to 4.
     pub axes: Vec<u8>,
 }
 
@@ -68,14 +65,16 @@ impl About for Controller {
 }
 
 impl Controller {
-    /// Reads it from the controller.
+    /// Reads the software version and the robots from the controller.
     pub async fn ask(link: &mut Link) -> Result<Self, Failure> {
         let versions = link.ask(&Command::Versions.order().order()?).await?.values;
         let told = |key| shown(Command::Versions, &versions, key).unwrap_or_default();
         let software = format!("{} {}", told(Key::HostVersion), told(Key::HostRevision));
         let mut robots = Vec::new();
         for robot in 1..=4_u8 {
-            let Ok(servos) = ask(link, &of_robot(Command::ServoStatus, robot).order()?).await? else { continue };
+            let Some(servos) = there(link, &of_robot(Command::ServoStatus, robot).order()?, "").await? else {
+                continue;
+            };
             let has = |(axis, key): (u8, Key)| servos.int(key).filter(|state| *state != NO_AXIS).map(|_| axis);
             let axes: Vec<u8> = (1..).zip(Key::AXES).filter_map(has).collect();
             if axes.is_empty() {
@@ -93,21 +92,16 @@ impl Controller {
         for robot in 1..=4_u8 {
             link.plan(&of_robot(Command::ServoStatus, robot).order()?, &format!("axes of robot {robot}"));
             let (order, about) = (of_robot(Command::System, robot).order()?, format!("type of robot {robot}"));
-            plan_if(link, &order, &about, &format!("the axes: it is read if there is a robot {robot}"));
+            plan_if_there(link, &order, &about);
         }
         Ok(())
     }
 
-    /// Types of the robots as text.
+    /// Lists the types of the robots.
     pub fn types(&self) -> String {
         let types = self.robots.iter().map(|robot| format!("{} (robot {})", robot.robot_type, robot.robot));
         types.collect::<Vec<_>>().join(", ")
     }
-}
-
-/// Notes a conditional request in a dry run.
-fn plan_if(link: &mut Link, order: &Order, about: &str, depends_on: &str) {
-    link.plan_depending(order, order, Reason::about(about).depending_on(depends_on));
 }
 
 /// Servo state of an axis that does not exist (4.7.3).
@@ -115,475 +109,201 @@ const NO_AXIS: i32 = 9;
 
 /// A part as text.
 pub struct Text {
-    /// Content of the file.
-    pub text: String,
-    /// Numbers that were requested.
-    pub numbers: Vec<i32>,
-    /// Numbers that the controller refused, with the alarm.
-    pub refused: Vec<(i32, Alarm)>,
-    /// Items that are not in the file, with the reason.
-    pub left_out: Vec<LeftOut>,
+    /// Content of the file, and what is not in it.
+    pub table: store::Text,
+    /// Points that were requested: `0..107`.
+    pub points: Option<String>,
 }
 
-impl Text {
-    /// Text for the list of items.
-    pub fn holds(&self, part: Part) -> String {
-        match part {
-            Part::Points(_) | Part::Comments(_) => format!("{} {}", part.kind(), runs(&self.numbers)),
-            _ => part.kind().to_owned(),
-        }
-    }
-
-    /// Refused numbers, grouped by alarm.
-    pub fn refusals(&self) -> Vec<LeftOut> {
-        let mut alarms: Vec<Alarm> = self.refused.iter().map(|(_, alarm)| *alarm).collect();
-        alarms.dedup();
-        alarms.sort_unstable_by_key(ToString::to_string);
-        alarms.dedup();
-        let of = |alarm: Alarm| {
-            let numbers = self.refused.iter().filter(|(_, own)| *own == alarm).map(|(number, _)| *number);
-            LeftOut {
-                key: runs(&numbers.collect::<Vec<_>>()),
-                why: format!("refused with alarm {alarm}, {}", alarm.text()),
-            }
-        };
-        alarms.into_iter().map(of).collect()
-    }
-}
-
-/// A command for one robot of the controller.
+/// Starts a request for one robot of the controller.
 fn of_robot(command: Command, robot: u8) -> Draft {
     command.order().with(Key::Robot, i32::from(robot))
 }
 
-/// Sends a request. A refusal is a result, unless the next command would be refused as well.
-pub async fn ask(link: &mut Link, order: &Order) -> Result<Result<Values, Alarm>, Failure> {
-    match link.try_ask(order).await? {
-        Ok(done) => check_echo(order, &done.values).map(|()| Ok(done.values)),
-        Err(refusal) if is_about_commands(refusal.alarm) => Err(refused(order.row(), refusal.alarm)),
-        Err(refusal) => Ok(Err(refusal.alarm)),
-    }
+/// Notes a request in a dry run that is sent only if its robot exists.
+fn plan_if_there(link: &mut Link, order: &Order, about: &str) {
+    let robot = order.values().int(Key::Robot).unwrap_or_default();
+    let depends_on = format!("the axes: read only if there is a robot {robot}");
+    link.plan_depending(order, order, Reason::about(about).depending_on(&depends_on));
 }
 
-/// Number of consecutive undefined points that ends the search, if the user gives no range.
-pub const GAP: usize = 100;
-
-/// Selection of the record numbers to read.
-pub struct Wanted {
-    /// Numbers in the order of reading.
-    pub numbers: Vec<i32>,
-    /// Numbers that are always read.
-    pub always: BTreeSet<i32>,
-    /// Number of consecutive refusals that ends the search; `None` reads all.
-    pub gap: Option<usize>,
-    /// Refusals before the first number.
-    pub gap_before: usize,
-}
-
-impl Wanted {
-    /// Selects all of `numbers`.
-    pub fn all(numbers: Vec<i32>) -> Self {
-        Self { numbers, always: BTreeSet::new(), gap: None, gap_before: 0 }
-    }
-}
-
-impl Records {
-    /// All valid numbers.
-    pub fn all(&self) -> Result<Vec<i32>, Failure> {
-        let numbers = self.numbers.split(',').map(|text| self.parse(text)).collect::<Result<Vec<_>, _>>();
-        Ok(Numbers::of(&numbers.map_err(Failure::local)?))
-    }
-
-    /// Parses a number or a range.
-    pub fn parse(&self, text: &str) -> Result<Numbers, String> {
-        Numbers::parse(self.read, self.columns[0].1, text)
-    }
-
-    /// Request that reads one record.
-    pub fn read(&self, number: i32) -> Result<Order, Failure> {
-        Ok(self.read.order().with(self.columns[0].1, number).order()?)
-    }
-
-    fn columns(&self) -> Vec<Column> {
-        let column = |(name, key): &(&'static str, Key)| {
-            if is_number(*key) { Column::number(*name) } else { Column::text(*name) }
-        };
-        self.columns.iter().map(column).collect()
-    }
-
-    /// Row of an answer, in the order of the columns.
-    pub fn row(&self, number: i32, values: &Values) -> Row {
-        let text = |(index, key): (usize, Key)| match values.value(key) {
-            None if index == 0 => {
-                let value = Value::Int(number);
-                self.read.row().request().find(|field| field.key == key).map(|field| field.show(&value))
-            }
-            None => None,
-            Some(value) => field(self.read.row().answer(), key, values).map(|field| field.show(value)),
-        };
-        self.columns.iter().map(|(_, key)| *key).enumerate().map(|column| text(column).unwrap_or_default()).collect()
-    }
-
-    /// Request that stores a row.
-    pub fn store(&self, row: &Row) -> Result<Store, Failure> {
-        let cells = || self.columns.iter().map(|(_, key)| *key).zip(row);
-        // A hand is written to a robot, and its answer names that robot. No hand system is an empty text.
-        let draft = cells().fold(self.write.order(), |draft, (key, text)| match key {
-            Key::Owner => draft.with(Key::Robot, text.as_str()),
-            Key::HandSystem if text.is_empty() => draft,
-            _ => draft.with(key, text.as_str()),
-        });
-        let write = draft.order()?;
-        let (key, number) = (row[0].clone(), write.values().int(self.columns[0].1).unwrap_or_default());
-        Ok(Store { key, read: self.read(number)?, wanted: self.stored(write.values()), write })
-    }
-
-    /// Values that are read after a request with `values` stored them.
-    pub fn stored(&self, values: &Values) -> Values {
-        let stored = |key: Key| match key {
-            // Robot 0 is the first.
-            Key::Owner => (key, Value::Int(values.int(Key::Robot).unwrap_or_default().max(1))),
-            key => (key, values.value(key).cloned().unwrap_or(Value::Int(0))),
-        };
-        self.columns[1..].iter().map(|(_, key)| stored(*key)).collect()
-    }
-}
-
-/// Last field of a key, because a layout can have several.
-fn field(mut layout: impl Iterator<Item = &'static Field>, key: Key, values: &Values) -> Option<&'static Field> {
-    let counts = |field: &Field| {
-        let other = |key| values.int(key).unwrap_or_default();
-        field.when.is_none_or(|when| (when.least..=when.most).contains(&other(when.key)))
-    };
-    layout.find(|field| field.key == key && counts(field))
-}
-
-/// Settings of a robot: name, read command and key, write command and key (4.2.8, 4.2.14 to 16, 4.2.19; 4.7.8, 9,
-/// 16).
-const SETTINGS: [(&str, Command, Key, Command, Key); 5] = [
-    ("auto_speed_percent", Command::SpeedStatus, Key::AutoSpeed, Command::SpeedAuto, Key::SpeedPercent),
-    ("manual_speed_percent", Command::SpeedStatus, Key::ManualSpeed, Command::SpeedManual, Key::SpeedPercent),
-    ("program_speed_percent", Command::SpeedStatus, Key::ProgramSpeed, Command::SpeedProgram, Key::SpeedPercent),
-    ("inching_distance", Command::InchAmountGet, Key::InchingAmount, Command::InchAmountSet, Key::InchingAmount),
-    ("hand_system", Command::ArmDesignation, Key::Arm, Command::ArmSelect, Key::Arm),
-];
-/// Columns of settings and parameters.
-const OF_ROBOT: [&str; 3] = ["robot", "name", "value"];
-
-/// Notes the read requests of a part in a dry run; `points` is the requested selection.
-pub fn plan(link: &mut Link, part: Part, points: Option<&BTreeSet<i32>>) -> Result<(), Failure> {
-    match (part, part.records()) {
-        (Part::Points(_), Some(records)) => {
-            // These are read in any case.
+/// Notes the requests that read a part in a dry run. `points` are the points that the user selected.
+pub async fn plan(link: &mut Link, screen: &Screen, part: Part, points: Option<&BTreeSet<i32>>) -> Result<(), Failure> {
+    let orders = match part {
+        Part::Settings(robot) => Settings { robot }.read_orders(&Settings::all())?,
+        Part::Parameters(robot) => {
+            let table = Parameters { robot };
+            Parameters::all().into_iter().map(|key| table.read_order(key)).collect::<Result<_, _>>()?
+        }
+        Part::Info => {
+            let [versions, slots] = info_orders()?;
+            link.plan(&versions, "versions");
+            link.plan(&slots, "option slots");
+            return Ok(());
+        }
+        Part::Points(_) => {
+            // These points are read in any case; the search cannot end earlier.
             let certain = || (0..).take(GAP).collect();
             let numbers = points.map_or_else(certain, |points| points.iter().copied().collect::<Vec<_>>());
-            plan_records(link, records, numbers)?;
-            let others = if points.is_some() { "" } else { "the other points until 100 in a row are not defined, " };
+            Numbered::<Points>::default().read(link, screen, &numbers).await.known()?;
+            let others = if points.is_some() {
+                ""
+            } else {
+                "the other points, until 100 consecutive points are not \
+                                                            defined, "
+            };
             link.then(&format!("{others}the points of pallets, then the comments of the points that are defined"));
-            Ok(())
+            return Ok(());
         }
-        (_, Some(records)) => plan_records(link, records, records.all()?),
-        (Part::Settings, _) => {
-            for robot in 1..=4_u8 {
-                for (command, about) in [
-                    (Command::SpeedStatus, "speeds"),
-                    (Command::InchAmountGet, "inching distance"),
-                    (Command::ArmDesignation, "hand system"),
-                ] {
-                    let (order, about) = (of_robot(command, robot).order()?, format!("{about} of robot {robot}"));
-                    plan_if(link, &order, &about, &format!("its axes: it is read if there is a robot {robot}"));
-                }
-            }
-            Ok(())
+        Part::Variables | Part::Pallets | Part::Shifts | Part::Hands => {
+            let none = Controller { software: String::new(), robots: Vec::new() };
+            return read(link, screen, part, &none).await.known().map(|_| ());
         }
-        (Part::Parameters, _) => {
-            for robot in 1..=4 {
-                let table = Parameters { robot };
-                for key in Parameters::all() {
-                    let (order, about) = (table.read_order(key)?, of_its_robot(&Parameters::name(key), robot));
-                    plan_if(link, &order, &about, "its axes: they are read if the robot has them");
-                }
-            }
-            Ok(())
-        }
-        _ => {
-            link.plan(&Command::Versions.order().order()?, "versions");
-            link.plan(&Command::Slots.order().with(Key::Controller, 1).order()?, "option slots");
-            Ok(())
-        }
-    }
-}
-
-fn plan_records(link: &mut Link, records: &Records, numbers: Vec<i32>) -> Result<(), Failure> {
-    for number in numbers {
-        let key = numbers::named(records.read, records.columns[0].1, number);
-        link.plan(&records.read(number)?, &format!("{} {key}", records.kind));
+    };
+    for order in orders {
+        plan_if_there(link, &order, order.row().name);
     }
     Ok(())
 }
 
-/// Reads a part that is not made of records.
-pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Controller) -> Result<Text, Failure> {
-    let (text, left_out) = match part {
-        Part::Settings => settings(link, controller).await?,
-        Part::Parameters => parameters(link, screen, controller).await?,
-        _ => (info(link, controller).await?, Vec::new()),
-    };
-    Ok(Text { text, numbers: Vec::new(), refused: Vec::new(), left_out })
-}
-
-/// Reads records.
-pub async fn read_records(
+/// Reads a part, except points.
+pub async fn read(
     link: &mut Link,
     screen: &Screen,
-    records: &Records,
-    wanted: &Wanted,
-) -> Result<Text, Failure> {
-    let mut progress = bar(screen, records.kind, wanted.numbers.len());
-    let (mut rows, mut refused, mut asked) = (Vec::new(), Vec::new(), Vec::new());
-    let mut gap = wanted.gap_before;
-    for number in &wanted.numbers {
-        let is_over = wanted.gap.is_some_and(|most| gap >= most);
-        if is_over && !wanted.always.contains(number) {
-            continue;
+    part: Part,
+    controller: &Controller,
+) -> Result<store::Text, Failure> {
+    match part {
+        Part::Info => {
+            let text = info(link, screen, controller).await?;
+            Ok(store::Text { text, left_out: Vec::new(), undefined: Vec::new() })
         }
-        match ask(link, &records.read(*number)?).await? {
-            Ok(values) => {
-                gap = if is_over { gap } else { 0 };
-                // A point without a comment has an empty comment.
-                if values.text(Key::Comment) != Some("") {
-                    rows.push(records.row(*number, &values));
-                }
-            }
-            Err(alarm) => {
-                gap += usize::from(!is_over);
-                refused.push((*number, alarm));
-            }
+        Part::Settings(robot) => rows(link, screen, &Settings { robot }, &Settings::all()).await.map(all_left_out),
+        Part::Parameters(robot) => {
+            let axes = controller.robots.iter().find(|one| one.robot == robot).map_or(&[][..], |one| &one.axes);
+            let exists = |(_, axis): &Setting| axis.is_none_or(|axis| axes.contains(&axis));
+            let keys: Vec<Setting> = Parameters::all().into_iter().filter(exists).collect();
+            rows(link, screen, &Parameters { robot }, &keys).await.map(all_left_out)
         }
-        asked.push(*number);
-        progress.advance(1);
+        Part::Variables => all_rows(link, screen, Numbered::<Variables>::default()).await,
+        Part::Pallets => all_rows(link, screen, Numbered::<Pallets>::default()).await,
+        Part::Shifts => all_rows(link, screen, Numbered::<Shifts>::default()).await,
+        Part::Hands => all_rows(link, screen, Numbered::<Hands>::default()).await,
+        Part::Points(_) => Err(Failure::local("internal error: points are read by number")),
     }
-    let mut left_out = Vec::new();
-    keep_writable(&mut rows, &mut left_out, |row| records.store(row));
-    Ok(Text { text: sheet::write(Dialect::COMMAS, &records.columns(), &rows), numbers: asked, refused, left_out })
 }
 
-/// Removes rows that the controller would refuse, such as a pallet without positions, and lists them.
-fn keep_writable(rows: &mut Vec<Row>, left_out: &mut Vec<LeftOut>, store: impl Fn(&Row) -> Result<Store, Failure>) {
-    rows.retain(|row| {
-        let Err(failure) = store(row) else { return true };
-        let why = format!("it cannot be written back: {}", failure.message);
-        left_out.push(LeftOut { key: row.join(" "), why });
-        false
+async fn all_rows<S: Writable<Family = Yrcx>>(
+    link: &mut Link,
+    screen: &Screen,
+    table: S,
+) -> Result<store::Text, Failure> {
+    rows(link, screen, &table, &S::all()).await
+}
+
+async fn rows<S: Writable<Family = Yrcx>>(
+    link: &mut Link,
+    screen: &Screen,
+    table: &S,
+    keys: &[S::Key],
+) -> Result<store::Text, Failure> {
+    part_text(table, keys, certain_rows(link, screen, table, keys).await?)
+}
+
+/// Rows of a table, or that they are not defined. Another failure concerns all rows: the part is not complete.
+async fn certain_rows<S: Writable<Family = Yrcx>>(
+    link: &mut Link,
+    screen: &Screen,
+    table: &S,
+    keys: &[S::Key],
+) -> Result<Vec<Result<Option<S::Wire>, Failure>>, Failure> {
+    let rows = table.read(link, screen, keys).await?.rows;
+    let certain = rows.into_iter().map(|row| match row {
+        Err(failure) if !S::is_undefined(&failure) => Err(failure),
+        row => Ok(row),
     });
+    certain.collect()
 }
 
-fn bar(screen: &Screen, what: &str, count: usize) -> Progress {
-    screen.items_progress(&format!("reading {what}"), count as u64)
+/// Every robot has all settings and parameters: a refusal belongs in the report.
+fn all_left_out(text: store::Text) -> store::Text {
+    let store::Text { text, mut left_out, undefined } = text;
+    left_out.extend(undefined);
+    store::Text { text, left_out, undefined: Vec::new() }
 }
 
-async fn info(link: &mut Link, controller: &Controller) -> Result<String, Failure> {
+/// Reads points with their comments. With `gap`, the number of undefined points before them, the search ends after
+/// [`GAP`] in a row; after that only the points in `always` are read.
+pub async fn read_points(
+    link: &mut Link,
+    screen: &Screen,
+    numbers: &[i32],
+    always: &BTreeSet<i32>,
+    mut gap: Option<usize>,
+) -> Result<Text, Failure> {
+    let table = PointSheet::default();
+    let mut progress = screen.items_progress("reading points", numbers.len() as u64);
+    let (mut asked, mut found, mut rest) = (Vec::new(), Vec::new(), numbers);
+    while let Some(first) = rest.first() {
+        let is_over = gap.is_some_and(|gap| gap >= GAP);
+        let (block, others) = rest.split_at(rest.len().min(GAP - gap.filter(|_| !is_over).unwrap_or_default()));
+        let block: Vec<i32> = block.iter().copied().filter(|number| !is_over || always.contains(number)).collect();
+        let rows = certain_rows(link, &screen.silenced(), &table, &block).await?;
+        let defined = block.iter().zip(&rows).filter(|(_, row)| row.is_ok()).map(|(number, _)| *number);
+        let within = *first..*others.first().unwrap_or(first);
+        gap = gap.map(|gap| gap_after(gap, within, &defined.collect::<Vec<_>>()));
+        asked.extend(block);
+        found.extend(rows);
+        progress.advance((rest.len() - others.len()) as u64);
+        rest = others;
+    }
+    Ok(Text { table: part_text(&table, &asked, found)?, points: Some(runs(&asked)) })
+}
+
+/// Requests of the information.
+fn info_orders() -> Result<[Order; 2], Failure> {
+    Ok([Command::Versions.order().order()?, Command::Slots.order().with(Key::Controller, 1).order()?])
+}
+
+async fn info(link: &mut Link, screen: &Screen, controller: &Controller) -> Result<String, Failure> {
     let mut text = String::from("# Information about the controller. It is not written back.\n");
     let mut add = |name: &str, value: String| text.push_str(&format!("{name} = {value:?}\n"));
-    for (command, keys) in
-        [(Command::Versions, &VERSIONS[..]), (Command::Slots, &[Key::Slot1, Key::Slot2, Key::Slot3, Key::Slot4][..])]
-    {
-        let draft = command.order();
-        let order = if command == Command::Slots { draft.with(Key::Controller, 1) } else { draft }.order()?;
-        match ask(link, &order).await? {
+    let orders = info_orders()?;
+    for (order, answer) in orders.iter().zip(ask_each(link, screen, "reading information", &orders).await?.outcomes) {
+        match answer {
             Ok(values) => {
-                for key in keys {
-                    add(key.name(), shown(command, &values, *key).unwrap_or_default());
+                for (key, _) in values.iter().filter(|(key, _)| order.values().value(*key).is_none()) {
+                    add(key.name(), shown(order.command(), &values, key).unwrap_or_default());
                 }
             }
-            Err(alarm) => add(order.row().id, format!("refused with alarm {alarm}")),
+            Err(failure) if is_undefined(&failure) => add(order.row().id, failure.message),
+            Err(failure) => return Err(failure),
         }
     }
     for Robot { robot, robot_type, axes } in &controller.robots {
-        let axes: Vec<String> = axes.iter().map(ToString::to_string).collect();
-        text.push_str(&format!(
-            "\n[[robot]]\nrobot = {robot}\nrobot_type = {robot_type}\naxes = [{}]\n",
-            axes.join(", ")
-        ));
+        text.push_str(&format!("\n[[robot]]\nrobot = {robot}\nrobot_type = {robot_type}\naxes = {axes:?}\n"));
     }
     Ok(text)
 }
 
-const VERSIONS: [Key; 7] = [
-    Key::HostVersion,
-    Key::HostRevision,
-    Key::FpgaVersion,
-    Key::DriverVersion1,
-    Key::DriverVersion2,
-    Key::DriverVersion3,
-    Key::DriverVersion4,
-];
-
-async fn settings(link: &mut Link, controller: &Controller) -> Result<(String, Vec<LeftOut>), Failure> {
-    let (mut rows, mut left_out) = (Vec::new(), Vec::new());
-    for Robot { robot, .. } in &controller.robots {
-        let mut last: Option<(Command, Result<Values, Alarm>)> = None;
-        for (name, command, key, ..) in SETTINGS {
-            if last.as_ref().is_none_or(|(of, _)| *of != command) {
-                last = Some((command, ask(link, &of_robot(command, *robot).order()?).await?));
-            }
-            match &last {
-                Some((_, Ok(values))) => {
-                    let value = shown(command, values, key).unwrap_or_default();
-                    rows.push(vec![robot.to_string(), name.to_owned(), value]);
-                }
-                Some((_, Err(alarm))) => left_out.push(not_told(of_its_robot(name, robot), *alarm)),
-                None => {}
-            }
-        }
-    }
-    keep_writable(&mut rows, &mut left_out, setting_store);
-    Ok((sheet::write(Dialect::COMMAS, &OF_ROBOT.map(Column::text), &rows), left_out))
-}
-
-fn not_told(key: String, alarm: Alarm) -> LeftOut {
-    LeftOut { key, why: format!("refused with alarm {alarm}, {}", alarm.text()) }
-}
-
-async fn parameters(
-    link: &mut Link,
-    screen: &Screen,
-    controller: &Controller,
-) -> Result<(String, Vec<LeftOut>), Failure> {
-    let mut wanted = Vec::new();
-    for Robot { robot, axes, .. } in &controller.robots {
-        let exists = |key: &Setting| key.1.is_none_or(|axis| axes.contains(&axis));
-        wanted.extend(Parameters::all().into_iter().filter(exists).map(|key| (*robot, key)));
-    }
-    let mut progress = bar(screen, "parameters", wanted.len());
-    let (mut rows, mut left_out) = (Vec::new(), Vec::new());
-    for (robot, key) in wanted {
-        let name = Parameters::name(key);
-        match ask(link, &Parameters { robot }.read_order(key)?).await? {
-            Ok(values) => {
-                let value = values.int(Key::Value).unwrap_or_default();
-                rows.push(vec![robot.to_string(), name, value.to_string()]);
-            }
-            Err(alarm) => left_out.push(not_told(of_its_robot(&name, robot), alarm)),
-        }
-        progress.advance(1);
-    }
-    keep_writable(&mut rows, &mut left_out, parameter_store);
-    Ok((sheet::write(Dialect::COMMAS, &OF_ROBOT.map(Column::text), &rows), left_out))
-}
-
-fn of_its_robot(name: &str, robot: impl std::fmt::Display) -> String {
-    format!("{name} of robot {robot}")
-}
-
-/// A value to be written, unless the controller already has it.
-#[derive(Debug, PartialEq)]
-pub struct Store {
-    /// Name of the value.
-    pub key: String,
-    /// Request that reads the current value.
-    pub read: Order,
-    /// Request that writes it.
-    pub write: Order,
-    /// Fields that an equal answer must contain.
-    pub wanted: Values,
-}
-
-impl Store {
-    /// Whether the value read equals the value to be written.
-    pub fn is_there(&self, values: &Values) -> bool {
-        self.wanted.iter().all(|(key, wanted)| values.value(key).unwrap_or(&Value::Int(0)) == wanted)
-    }
-
-    /// Text of the value read.
-    pub fn describe(&self, values: &Values) -> String {
-        let fields = self.wanted.iter().filter_map(|(key, _)| {
-            let value = values.value(key)?;
-            field(self.read.row().answer(), key, values).map(|field| field.show(value))
-        });
-        fields.collect::<Vec<_>>().join(" ")
-    }
-
-    /// Text of the value to be written.
-    pub fn wanted(&self) -> String {
-        self.describe(&self.wanted)
-    }
-}
-
-/// Reads and checks the file of a part. Returns the values to be written.
-pub fn load(part: Part, folder: &Path) -> Result<Vec<Store>, Failure> {
+/// Reads and checks the file of a part.
+pub fn load(part: Part, folder: &Path) -> Result<Option<Table<Yrcx>>, Failure> {
     let path = folder.join(part.file());
-    let text = files::text(&path, files::SETTINGS).with_context(|| path.display().to_string())?;
-    let wrong = |why: String| Failure::usage(format!("{}: {why}", path.display())).hint("make a new backup");
-    let columns: Vec<&str> = match (part, part.records()) {
-        (_, Some(records)) => records.columns.iter().map(|(name, _)| *name).collect(),
-        (Part::Settings | Part::Parameters, _) => OF_ROBOT.into(),
-        _ => return Ok(Vec::new()),
-    };
-    let store = |row: &Row| match part.records() {
-        Some(records) => records.store(row),
-        None if part == Part::Settings => setting_store(row),
-        None => parameter_store(row),
-    };
-    let mut seen = BTreeSet::new();
-    let mut stores = Vec::new();
-    for (line, row) in rows(&columns, &text).map_err(wrong)? {
-        let store = store(&row).map_err(|failure| wrong(format!("line {line}: {}", failure.message)))?;
-        if !seen.insert(store.key.clone()) {
-            return Err(wrong(format!("line {line}: {} is listed twice", store.key)));
-        }
-        stores.push(store);
-    }
-    Ok(stores)
-}
-
-/// Rows of a file that has all of these columns, each with its line.
-fn rows(columns: &[&str], text: &str) -> Result<Vec<(usize, Row)>, String> {
-    let mut findings = Findings::default();
-    let expected = format!("the columns are {}", columns.join(", "));
-    let sheet = Sheet::read(text.as_bytes(), &expected, &mut findings);
-    let places = sheet.as_ref().map(|sheet| sheet.columns(columns, &expected, &mut findings));
-    if let Some(Finding { line, message, .. }) = findings.into_errors().first() {
-        return Err(format!("line {line}: {message}"));
-    }
-    let places: Option<Vec<usize>> = places.and_then(|places| places.into_iter().collect());
-    let (sheet, places) = sheet.zip(places).ok_or(expected)?;
-    let cells = |row: &sheet::Row| places.iter().map(|at| row.string(*at).to_owned()).collect();
-    Ok(sheet.rows().iter().map(|row| (row.line, cells(row))).collect())
-}
-
-fn setting_store(row: &Row) -> Result<Store, Failure> {
-    let [robot, name, value] = &row[..] else { return Err(Failure::usage("expected three cells")) };
-    let setting = SETTINGS.iter().find(|(known, ..)| known == name);
-    let (_, read, told, write, key) =
-        setting.ok_or_else(|| Failure::usage(format!("setting '{name}' does not exist")))?;
-    let write = write.order().with(Key::Robot, robot.as_str()).with(*key, value.as_str()).order()?;
-    let wanted = Values::from_iter([(*told, write.values().value(*key).cloned().unwrap_or(Value::Int(0)))]);
-    let read = read.order().with(Key::Robot, robot.as_str()).order()?;
-    Ok(Store { key: of_its_robot(name, robot), read, write, wanted })
-}
-
-fn parameter_store(row: &Row) -> Result<Store, Failure> {
-    let [robot, name, value] = &row[..] else { return Err(Failure::usage("expected three cells")) };
-    let [key] = Parameters::keys(name).map_err(Failure::usage)?[..] else {
-        return Err(Failure::usage(format!("'{name}' is not a single parameter")));
-    };
-    let number = robot.parse().ok().filter(|number| (1..=4).contains(number));
-    let number = number.ok_or_else(|| Failure::usage(format!("robot '{robot}' does not exist")))?;
-    let table = Parameters { robot: number };
-    let write = table.write_order(key, value)?;
-    let wanted = Values::from_iter([(Key::Value, write.values().int(Key::Value).unwrap_or_default())]);
-    Ok(Store { key: of_its_robot(name, robot), read: table.read_order(key)?, write, wanted })
+    let bytes = text_files::read(&path)?;
+    part.table(&bytes).map_err(|errors| text_files::file_failure(&text_files::display_path(&path), &errors))
 }
 
 /// Numbers of the points in a file.
 pub fn defined(part: Part, folder: &Path) -> Result<Vec<i32>, Failure> {
-    let number = |store: &Store| store.write.values().int(Key::Point);
-    Ok(load(part, folder)?.iter().filter_map(number).collect())
+    let path = folder.join(part.file());
+    store::keys_of::<PointSheet>(&path, &text_files::read(&path)?)
 }
 
 /// Points that the pallet file refers to: five for each pallet (4.3.3).
-pub fn points_of_pallets(pallets: Part, folder: &Path) -> Result<BTreeSet<i32>, Failure> {
-    let first = |store: &Store| store.write.values().int(Key::FirstPoint);
-    Ok(load(pallets, folder)?.iter().filter_map(first).flat_map(|first| first..first + 5).collect())
+pub fn points_of_pallets(folder: &Path) -> Result<BTreeSet<i32>, Failure> {
+    let table = Numbered::<Pallets>::default();
+    let rows = store::rows_of_file(&table, &folder.join(Part::Pallets.file()))?;
+    let first = |(number, draft)| Ok(table.complete_draft(number, &draft, None)?.values().int(Key::FirstPoint));
+    let first = rows.into_iter().map(first).collect::<Result<Vec<_>, Failure>>()?;
+    Ok(first.into_iter().flatten().flat_map(|first| first..first + 5).collect())
 }

@@ -1,6 +1,7 @@
-//! `yrcx backup` and `yrcx restore`: a folder of text files with a manifest, read and written with remote commands.
+//! Commands `yrcx backup` and `yrcx restore`. A backup is a folder of text files with a manifest. Remote commands read
+//! and write the data.
 //!
-//! Remote commands cannot reach programs and other data.
+//! Remote commands have no access to programs and some other data, so a backup does not contain them.
 
 mod content;
 mod parts;
@@ -9,6 +10,5 @@ mod save;
 #[cfg(test)]
 mod tests;
 
-pub use parts::{COMMENTS, HANDS, PALLETS, POINTS, Records, SHIFTS, VARIABLES};
 pub use restore::restore;
 pub use save::{Backup, back_up, points};

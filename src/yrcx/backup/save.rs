@@ -5,13 +5,13 @@ use std::ops::Range;
 
 use clap::Args;
 
-use super::content::{self, Controller, GAP, Text, Wanted};
-use super::parts::{POINTS, Part, THOUSAND};
+use super::content::{self, Controller, Text};
+use super::parts::{Part, THOUSAND};
+use crate::data::PointSheet;
 use crate::link::Link;
 use crate::link::Yrcx;
-use crate::numbers::{Numbers, runs};
 use armctl_frame::backup::arguments::BackupOptions;
-use armctl_frame::backup::manifest::Entry;
+use armctl_frame::backup::manifest::{Entry, LeftOut};
 use armctl_frame::backup::save::{self, BackupWriter, Task, interrupted_failure};
 use armctl_frame::backup::{BackedUp, Only, SaveOptions};
 use armctl_frame::dry_run::unknown;
@@ -19,29 +19,30 @@ use armctl_frame::failure::Failure;
 use armctl_frame::output::Screen;
 use armctl_frame::robot::file::{FileItem, State};
 use armctl_frame::settings::Robot;
+use armctl_frame::store::{self, Store as _};
 use armctl_frame::{Command, Context};
 
 /// Saves points, pallets, shifts, hands, variables and parameters in a folder of text files.
 #[derive(Debug, Args)]
 #[command(after_help = "Remote commands cannot read programs. Save programs with the controller's own tools.\n\nEach \
-                        point takes one remote command: 60 ms or more at an RPI of 20 ms. Without --points, points are \
-                        read from 0 until 100 in a row are not defined. The points of pallets are always read. \
-                        manifest.json lists the points that were read. A controller refuses undefined points and may \
-                        record this in its alarm history.")]
+                        point takes one remote command: 60 ms or more at an RPI of 20 ms. Without --points, armctl \
+                        reads points from 0 until 100 consecutive points are not defined. armctl always reads the \
+                        points of pallets. manifest.json lists the points that were read. A controller refuses \
+                        undefined points, and may record the refusal in its alarm history.")]
 pub struct Backup {
     #[command(flatten)]
     options: BackupOptions,
-    /// Points, 0 to 29999: 0..999 or 0..99,500
+    /// Points to save, 0 to 29999: 0..999 or 0..99,500
     #[arg(long, value_name = "POINT", value_delimiter = ',', value_parser = points)]
     points: Vec<String>,
 }
 
-/// Points to read, as typed.
+/// Checks the points that the user typed, and returns the text unchanged.
 pub fn points(text: &str) -> Result<String, String> {
-    POINTS.parse(text).map(|_| text.to_owned())
+    PointSheet::keys(text).map(|_| text.to_owned())
 }
 
-/// Prefix of the points in the scope of a backup.
+/// Prefix that marks a selection of points in the scope of a backup.
 const OF_POINTS: &str = "points ";
 
 impl Command for Backup {
@@ -60,42 +61,40 @@ pub async fn back_up(context: Context<'_, Yrcx>, making: SaveOptions) -> Result<
     let Context { link, screen, robot, several, .. } = context;
     link.no_unit("a backup contains the whole controller")?;
     let task = Task::new(making, robot, several)?;
-    let asked = Asked::of(&task.scope)?;
+    let selection = Selection::of(&task.scope)?;
     if link.is_dry() {
-        return dry_run(link, &asked);
+        return dry_run(link, screen, &selection).await;
     }
-    interrupted_failure(&task.folder, Box::pin(save(link, (screen, robot), &task, asked))).await
+    interrupted_failure(&task.folder, Box::pin(save(link, (screen, robot), &task, selection))).await
 }
 
-/// Requested points.
-struct Asked {
+/// Selected parts and points.
+struct Selection {
     only: Only,
-    /// Selected points; `None` searches until a gap.
+    /// Selected points; `None` means that armctl reads points until it finds a gap.
     points: Option<BTreeSet<i32>>,
 }
 
-impl Asked {
+impl Selection {
     fn of(scope: &[String]) -> Result<Self, Failure> {
         let ranges = scope.iter().filter_map(|word| word.strip_prefix(OF_POINTS));
-        let ranges = ranges.map(|range| POINTS.parse(range)).collect::<Result<Vec<Numbers>, _>>();
-        let ranges = ranges.map_err(Failure::usage)?;
-        let points = Some(Numbers::of(&ranges).into_iter().collect()).filter(|_| !ranges.is_empty());
+        let ranges = ranges.map(PointSheet::keys).collect::<Result<Vec<_>, _>>().map_err(Failure::usage)?;
+        let points = (!ranges.is_empty()).then(|| ranges.concat().into_iter().collect());
         let only = Only::of_scope(scope);
-        let names: Vec<String> = Part::all().map(|part| part.to_string()).collect();
-        only.check(&names)?;
+        only.check(&Part::all().flat_map(Part::names).collect::<Vec<_>>())?;
         Ok(Self { only, points })
     }
 
     fn has(&self, part: Part) -> bool {
-        self.only.has(&part.to_string())
+        self.only.has_any(&part.names())
     }
 }
 
-fn dry_run(link: &mut Link, asked: &Asked) -> Result<BackedUp, Failure> {
+async fn dry_run(link: &mut Link, screen: &Screen, selection: &Selection) -> Result<BackedUp, Failure> {
     Controller::plan(link)?;
-    let parts = Part::single().into_iter().chain([Part::Points(0)]);
-    for part in parts.filter(|part| asked.has(*part)) {
-        content::plan(link, part, asked.points.as_ref())?;
+    let parts = Part::without_points(1..=4).chain([Part::Points(0)]);
+    for part in parts.filter(|part| selection.has(*part)) {
+        content::plan(link, screen, part, selection.points.as_ref()).await?;
     }
     Err(unknown())
 }
@@ -104,72 +103,74 @@ async fn save(
     link: &mut Link,
     (screen, robot): (&Screen, &Robot),
     task: &Task<Controller>,
-    asked: Asked,
+    selection: Selection,
 ) -> Result<BackedUp, Failure> {
     let controller = Controller::ask(link).await?;
     let robots = controller.robots.clone();
     let list = task.begin((screen, robot), controller.clone(), |earlier, _| earlier.controller.robots == robots)?;
-    let mut reading = Reading { link, screen, task, controller, asked, list };
-    let goes_on = reading.all().await?;
-    let Reading { asked, mut list, .. } = reading;
+    let numbers = robots.iter().map(|robot| robot.robot);
+    let parts: Vec<Part> = Part::without_points(numbers).filter(|part| selection.has(*part)).collect();
+    let mut reading = Reading { link, screen, task, controller, selection, list };
+    let goes_on = reading.all(&parts).await?;
+    let Reading { selection, mut list, .. } = reading;
     let tried: Vec<String> = list.files().iter().map(|file| file.name.clone()).collect();
-    let rest = Part::single().into_iter().chain([Part::Points(0), Part::Comments(0)]).filter(|_| !goes_on);
-    let rest = rest.filter(|part| asked.has(*part) && !tried.contains(&part.to_string()));
-    // Refusals appear only in the manifest.
+    let rest = parts.into_iter().chain(Some(Part::Points(0)).filter(|part| selection.has(*part))).filter(|_| !goes_on);
+    let rest = rest.filter(|part| !tried.contains(&part.to_string()));
+    // The refusals of a file that was kept are only in the manifest, and not in the report.
     let kept = list.files().iter_mut().filter(|file| file.more.state == State::Kept);
     kept.for_each(|file| file.more.left_out.clear());
     list.end(rest.map(FileItem::pending))
 }
 
-/// A backup in progress.
+/// Reads a backup into its folder.
 struct Reading<'a> {
     link: &'a mut Link,
     screen: &'a Screen,
     task: &'a Task<Controller>,
     controller: Controller,
-    asked: Asked,
+    selection: Selection,
     list: BackupWriter<'a, Controller>,
 }
 
 impl Reading<'_> {
-    /// Reads all parts; `false` if the work ended early.
-    async fn all(&mut self) -> Result<bool, Failure> {
-        for part in Part::single() {
-            if self.asked.has(part) && !self.part(part, None).await? {
+    /// Reads these parts, then the points; `false` if the work ended early.
+    async fn all(&mut self, parts: &[Part]) -> Result<bool, Failure> {
+        for part in parts {
+            let Self { link, screen, controller, list, .. } = self;
+            let read = async {
+                let table = content::read(link, screen, *part, controller).await?;
+                Ok(saved(*part, Text { table, points: None }))
+            };
+            if !list.part(entry(*part), read).await? {
                 return Ok(false);
             }
         }
         let folder = self.task.folder.as_path();
-        let pallets = Part::Records(&super::parts::PALLETS);
         let of_pallets =
-            if self.is_saved(pallets) { content::points_of_pallets(pallets, folder)? } else { BTreeSet::new() };
+            if self.is_saved(Part::Pallets) { content::points_of_pallets(folder)? } else { BTreeSet::new() };
         let mut gap = 0;
         for thousand in 0..30 {
             let part = Part::Points(thousand);
             let first = i32::from(thousand * THOUSAND);
             let within = first..first + i32::from(THOUSAND);
-            let is_open = self.asked.points.is_none() && gap < GAP;
-            let given = self.asked.points.as_ref().map(|points| points.range(within.clone()).copied().collect());
+            let is_open = self.selection.points.is_none() && gap < GAP;
+            let given = self.selection.points.as_ref().map(|points| points.range(within.clone()).copied().collect());
             let given: Vec<i32> = given.unwrap_or_else(|| if is_open { within.clone().collect() } else { Vec::new() });
             let always: BTreeSet<i32> = of_pallets.range(within.clone()).copied().collect();
             let numbers: BTreeSet<i32> = given.into_iter().chain(always.iter().copied()).collect();
-            if numbers.is_empty() {
+            if numbers.is_empty() || !self.selection.has(part) {
                 continue;
             }
-            if self.asked.has(part) {
-                let numbers = numbers.into_iter().collect();
-                let wanted = Wanted { numbers, always, gap: is_open.then_some(GAP), gap_before: gap };
-                if !self.part(part, Some(wanted)).await? {
-                    return Ok(false);
-                }
+            let numbers: Vec<i32> = numbers.into_iter().collect();
+            let Self { link, screen, list, .. } = self;
+            let read = async {
+                Ok(saved(part, content::read_points(link, screen, &numbers, &always, is_open.then_some(gap)).await?))
+            };
+            if !list.part(entry(part), read).await? {
+                return Ok(false);
             }
             let defined = if self.is_saved(part) { content::defined(part, folder)? } else { Vec::new() };
             gap = gap_after(gap, within, &defined);
-            let comments = Part::Comments(thousand);
-            let is_wanted = !defined.is_empty() && self.asked.has(comments);
-            if is_wanted && !self.part(comments, Some(Wanted::all(defined))).await? {
-                return Ok(false);
-            }
         }
         Ok(true)
     }
@@ -177,53 +178,31 @@ impl Reading<'_> {
     fn is_saved(&self, part: Part) -> bool {
         self.list.entry(&part.to_string()).is_some_and(|entry| entry.copy.is_some())
     }
+}
 
-    /// Reads a part into its file, unless the file exists; `false` if the next part cannot be read.
-    async fn part(&mut self, part: Part, wanted: Option<Wanted>) -> Result<bool, Failure> {
-        let Self { link, screen, controller, list, .. } = self;
-        let entry = Entry { name: part.to_string(), holds: part.kind().to_owned(), ..Entry::default() };
-        let read = async {
-            let text = read(link, screen, controller, part, wanted).await?;
-            let notes = match part {
-                Part::Points(_) => {
-                    vec![format!("{} defined in {}", text.text.lines().count() - 1, runs(&text.numbers))]
-                }
-                _ => Vec::new(),
-            };
-            let (holds, absent) = (Some(text.holds(part)), text.refusals());
-            let Text { text, left_out, .. } = text;
-            Ok(save::SavedPart {
-                content: save::Content::Text(part.file(), text),
-                holds,
-                left_out,
-                is_absent: absent,
-                notes,
-            })
-        };
-        list.part(entry, read).await
+fn entry(part: Part) -> Entry {
+    Entry { name: part.to_string(), holds: part.kind().to_owned(), ..Entry::default() }
+}
+
+/// A part that was read, for the manifest.
+fn saved(part: Part, Text { table, points }: Text) -> save::SavedPart {
+    let rows = table.text.lines().count().saturating_sub(1);
+    let of_rows = |rows: Vec<store::LeftOut>| rows.into_iter().map(LeftOut::from).collect();
+    save::SavedPart {
+        holds: points.as_ref().map(|points| format!("{} {points}", part.kind())),
+        notes: points.map(|points| format!("{rows} defined in {points}")).into_iter().collect(),
+        content: save::Content::Text(part.file(), table.text),
+        left_out: of_rows(table.left_out),
+        is_absent: of_rows(table.undefined),
     }
 }
 
-async fn read(
-    link: &mut Link,
-    screen: &Screen,
-    controller: &Controller,
-    part: Part,
-    wanted: Option<Wanted>,
-) -> Result<Text, Failure> {
-    let Some(records) = part.records() else {
-        return content::read(link, screen, part, controller).await;
-    };
-    let wanted = match wanted {
-        Some(wanted) => wanted,
-        None => Wanted::all(records.all()?),
-    };
-    content::read_records(link, screen, records, &wanted).await
-}
+/// Number of consecutive undefined points that ends the search, if the user gives no range.
+pub const GAP: usize = 100;
 
-/// Number of consecutive undefined points at the end of a range, with `gap` before it; at least [`GAP`] if that many
-/// occurred inside the range.
-fn gap_after(gap: usize, within: Range<i32>, defined: &[i32]) -> usize {
+/// Counts the consecutive undefined points at the end of a range. `gap` is their number directly before the range.
+/// Returns at least [`GAP`] if so many were found in a row inside the range.
+pub fn gap_after(gap: usize, within: Range<i32>, defined: &[i32]) -> usize {
     let mut next = within.start;
     let mut gap = gap;
     for number in defined {

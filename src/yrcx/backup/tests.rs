@@ -44,7 +44,7 @@ impl Desk {
         self.folder.path().join(name)
     }
 
-    /// Runs a line; `@` is replaced by the folder.
+    /// Runs a command line. `@` in the line is replaced by the folder.
     fn run(&mut self, line: &str) -> Result<(Value, Option<Failure>), Failure> {
         let line = line.replace('@', self.folder.path().to_str().unwrap());
         let (_, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>())?;
@@ -68,7 +68,7 @@ impl Desk {
         }
     }
 
-    /// Runs a line for this time, then drops it.
+    /// Runs a command line for the time `after`, then drops it.
     fn cut(&mut self, line: &str, after: Duration) {
         let line = line.replace('@', self.folder.path().to_str().unwrap());
         let (_, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>()).unwrap();
@@ -100,7 +100,7 @@ fn item<'d>(data: &'d Value, name: &str) -> &'d Value {
 }
 
 /// Lines that change every part.
-const CHANGES: [&str; 9] = [
+const CHANGES: [&str; 10] = [
     "point set 19 --pulse 1,2,3,4",
     "point set 50 --mm 1,2,3,4 --hand left",
     "comment set 50 OTHER",
@@ -109,7 +109,8 @@ const CHANGES: [&str; 9] = [
     "hand-data set 1 2 1 2 3 0",
     "var set SGI5 5",
     "var set SGR5 0.1",
-    "param set TOLE.3 99 --unit 2",
+    "param set TOLE.3 99",
+    "speed auto 55",
 ];
 
 #[test]
@@ -117,43 +118,44 @@ fn what_is_restored_is_what_was_saved() {
     let mut desk = Desk::new("");
     let data = desk.data("backup @/first");
     let done = data["files"].as_array().unwrap().iter().filter(|file| file["ok"] == true).count();
-    assert_eq!((&data["complete"], done), (&json!(true), 9));
+    assert_eq!((&data["complete"], done), (&json!(true), 14));
     let first = files(&desk.path("first"));
     assert_eq!(first["pallets.csv"], "name,nx,ny,nz,first_point\n1,5,5,1,110\n2,10,15,1,110\n10,10,15,1,110\n");
-    assert_eq!(first["comments-00000.csv"], "name,comment\n50,WAIT ORG\n");
-    assert!(first["points-00000.csv"].contains("\n0,pulse,0,0,0,0,\n1,mm,100.000,100.000,0.000,0.000,none\n"));
-    assert!(first["parameters.csv"].contains("\n2,TOLE.3,80\n"));
+    let points = &first["points-00000.csv"];
+    assert!(points.contains("\n0,pulse,0,0,0,0,,\n1,mm,100.000,100.000,0.000,0.000,none,\n"), "{points}");
+    assert!(points.contains("\n50,mm,10.000,-20.000,5.000,-18.000,none,WAIT ORG\n"), "{points}");
+    assert!(
+        first["parameters-2.csv"].starts_with("name,value\n") && first["parameters-2.csv"].contains("\nTOLE.3,80\n")
+    );
+    assert!(!first["parameters-3.csv"].contains("TOLE.3"), "robot 3 has two axes");
+    assert_eq!(first["settings-1.csv"].lines().last(), Some("hand_system,right"));
     for line in CHANGES {
-        let line = if line.ends_with("--unit 2") { line.to_owned() } else { format!("{line} --unit 0") };
-        let (robot, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>()).unwrap();
-        let Desk { runtime, link, .. } = &mut desk;
-        runtime.block_on(testing::run::<Yrcx>(&*command, context(&robot, link))).unwrap();
+        desk.data(line);
     }
-    desk.link.set_unit(0);
     desk.data("backup @/changed");
     let changed = files(&desk.path("changed"));
     let differing: Vec<&str> = first.keys().filter(|name| first[*name] != changed[*name]).map(String::as_str).collect();
     assert_eq!(
         differing,
         [
-            "comments-00000.csv",
             "hands.csv",
             "pallets.csv",
-            "parameters.csv",
+            "parameters-1.csv",
             "points-00000.csv",
+            "settings-1.csv",
             "shifts.csv",
             "variables.csv"
         ]
     );
     let restored = desk.data("restore @/first");
-    for (name, written) in
-        [("points-00000", 2), ("comments-00000", 1), ("pallets", 1), ("shifts", 1), ("hands", 1), ("variables", 2)]
-    {
+    for (name, written) in [("points-00000", 2), ("pallets", 1), ("shifts", 1), ("hands", 1), ("variables", 2)] {
         assert_eq!(item(&restored, name)["written"], written, "{name}");
     }
-    assert!(restored["files"].as_array().unwrap().iter().all(|item| item["name"] != "parameters"));
+    assert!(restored["files"].as_array().unwrap().iter().all(|item| item["name"] != "parameters-1"));
     let restored = desk.data("restore @/first --machine --only parameters,settings");
-    assert_eq!((&restored["files"][0]["written"], &restored["files"][1]["written"]), (&json!(0), &json!(1)));
+    assert_eq!(restored["files"].as_array().unwrap().len(), 8);
+    let written = |name: &str| item(&restored, name)["written"].clone();
+    assert_eq!((written("parameters-1"), written("settings-1")), (json!(1), json!(1)));
     desk.data("backup @/second");
     assert_eq!(files(&desk.path("second")), first);
     // Equal values are not written again.
@@ -167,16 +169,16 @@ fn a_backup_that_was_cut_off_goes_on() {
     desk.cut("backup @/cut", Duration::from_secs(4));
     let list = manifest(&desk.path("cut"));
     let saved = list["files"].as_array().unwrap().len();
-    assert!(saved > 2 && saved < 9 && list["complete"] == false, "{saved}");
+    assert!(saved > 2 && saved < 14 && list["complete"] == false, "{saved}");
     let failure = desk.failure("backup @/cut");
-    assert!(failure.message.contains("holds an incomplete backup"), "{failure}");
+    assert!(failure.message.contains("contains an incomplete backup"), "{failure}");
     let other = desk.failure("backup @/cut --resume --points 0..9");
     assert_eq!(other.kind, Kind::Usage, "{other}");
     let data = desk.data("backup @/cut --resume");
     assert_eq!((&data["complete"], &item(&data, "info")["state"]), (&json!(true), &json!("kept")));
     desk.data("backup @/whole");
     assert_eq!(files(&desk.path("cut")), files(&desk.path("whole")));
-    // A file that changed after the backup is read again.
+    // A file that changed after the backup is read again from the controller.
     std::fs::write(desk.path("cut/variables.csv"), "x").unwrap();
     let data = desk.data("backup @/cut --resume");
     assert_eq!((&item(&data, "variables")["state"], &item(&data, "hands")["state"]), (&json!("done"), &json!("kept")));
@@ -196,7 +198,7 @@ fn points_end_at_a_gap_unless_they_are_named_and_those_of_pallets_come_anyway() 
     desk.data("backup @/named --points 299..301 --only points*");
     assert_eq!(manifest(&desk.path("named"))["scope"], json!(["points 299..301", "only points*"]));
     assert!(files(&desk.path("named"))["points-00000.csv"].ends_with("\n300,pulse,1,2,3,4,\n"));
-    // With --resume, the earlier selection continues.
+    // `--resume` uses the selection of the earlier run.
     std::fs::remove_file(desk.path("named/points-00000.csv")).unwrap();
     desk.data("backup @/named --resume");
     assert_eq!(files(&desk.path("named")).len(), 1);
@@ -230,8 +232,8 @@ fn what_a_controller_refuses_is_told_and_does_not_end_the_work() {
     let (data, failure) = other.run(&format!("restore {} --force --machine", saved.display())).unwrap();
     let failure = failure.unwrap();
     assert_eq!(failure.kind, Kind::Mixed);
-    assert!(failure.message.contains("of robot"), "{failure}");
-    let parameters = item(&data, "parameters");
+    assert!(failure.message.contains("settings-2: "), "{failure}");
+    let parameters = item(&data, "parameters-2");
     assert_eq!((&parameters["state"], &item(&data, "points-00000")["written"]), (&json!("failed"), &json!(13)));
     assert!(parameters["left_out"].as_array().unwrap().len() > 3, "{parameters}");
 }
@@ -243,7 +245,7 @@ fn nothing_is_written_while_the_program_runs() {
     desk.data("run");
     let failure = desk.failure("restore @/saved");
     assert_eq!(failure.kind, Kind::Rejected);
-    assert_eq!(failure.message, "the robot program is running and may use the data to be written");
+    assert_eq!(failure.message, "the robot program is running, and may use the data that the restore writes");
 }
 
 #[test]
@@ -256,9 +258,9 @@ fn dry_runs_show_what_would_be_read_and_written() {
     let sent = frames(&["restore", desk.path("saved").to_str().unwrap(), "--force"]).unwrap();
     // All reads come before the first write.
     let last: Vec<_> = sent[sent.len() - 6..].iter().map(|frame| (&frame["about"], &frame["wi"][0])).collect();
-    assert_eq!(last[2], (&json!("pallets 10, to compare"), &json!("0x0109")));
-    assert_eq!(last[5], (&json!("pallets 10"), &json!("0x0108")));
-    assert_eq!(sent.last().unwrap()["depends_on"], "the comparison: written if different");
+    assert_eq!(last[2], (&json!("pallet 10"), &json!("0x0109")));
+    assert_eq!(last[5], (&json!("pallet 10"), &json!("0x0108")));
+    assert_eq!(sent.last().unwrap()["depends_on"], "the current data: written if different");
     assert_eq!((risk(&["backup", "x"]), risk(&["restore", "x"])), (Risk::Read, Risk::Destroy));
     assert_eq!(words(&["backup", "x", "--unit", "2"]).unwrap_err().kind, Kind::Usage);
 }

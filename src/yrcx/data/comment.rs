@@ -1,7 +1,7 @@
 //! `yrcx comment` (4.3.2).
 
-use crate::backup::{COMMENTS, Records};
 use crate::stores::{Kind, Numbered};
+use armctl_controller::yrcx::table::Command;
 use armctl_controller::yrcx::value::{Key, Values};
 use armctl_frame::store::{Ids, TableWords, ids, table_commands};
 
@@ -24,8 +24,10 @@ impl Kind for Comments {
         writing: None,
     };
     const IDS: Ids = ids!("yrcx.comment");
-    const RECORDS: &'static Records = &COMMENTS;
-    const HEADINGS: &'static [&'static str] = &["comment"];
+    const READ: (Command, Key) = (Command::CommentGet, Key::Point);
+    const WRITE: Command = Command::CommentSet;
+    const NUMBERS: &'static [&'static str] = &["0..29999"];
+    const FIELDS: &'static [(&'static str, Key, &'static str)] = &[("comment", Key::Comment, "comment")];
     const IS_SMALL: bool = false;
     const IS_TEXT: bool = true;
 

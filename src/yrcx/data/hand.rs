@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::backup::{HANDS, Records};
 use crate::stores::{Kind, Numbered, int, mm};
+use armctl_controller::yrcx::table::Command;
 use armctl_controller::yrcx::value::{Key, Values};
 use armctl_frame::store::{Ids, TableWords, ids, table_commands};
 
@@ -13,9 +13,10 @@ table_commands! {
     HandData of Numbered<Hands> {}
 }
 
-/// Note on data 1, the only number without a unit.
-const DATA_1: &str = "Data 1 is the raw value of the protocol, because the manual is ambiguous about its unit. Its \
-                      example for a Cartesian robot uses 10000 for 10.000 mm, its text uses a whole number.";
+/// Note for the help about data 1, the only value whose unit is not clear.
+const DATA_1: &str = "Data 1 is the raw value of the protocol, because the manual is ambiguous about the unit. The \
+                      example of the manual for a Cartesian robot uses 10000 for 10.000 mm. The text of the manual \
+                      uses a whole number.";
 
 /// The hands of the controller.
 #[derive(Debug)]
@@ -31,8 +32,16 @@ impl Kind for Hands {
         writing: Some(DATA_1),
     };
     const IDS: Ids = ids!("yrcx.hand-data");
-    const RECORDS: &'static Records = &HANDS;
-    const HEADINGS: &'static [&'static str] = &["robot", "data 1", "data 2 (mm)", "data 3 (mm)", "data 4"];
+    const READ: (Command, Key) = (Command::HandGet, Key::Hand);
+    const WRITE: Command = Command::HandSet;
+    const NUMBERS: &'static [&'static str] = &["0..31"];
+    const FIELDS: &'static [(&'static str, Key, &'static str)] = &[
+        ("robot", Key::Owner, "robot"),
+        ("data_1", Key::Data1, "data 1"),
+        ("data_2_mm", Key::Data2, "data 2 (mm)"),
+        ("data_3_mm", Key::Data3, "data 3 (mm)"),
+        ("data_4", Key::Data4, "data 4"),
+    ];
 
     fn value(values: &Values) -> Option<Data> {
         Some(Data {
@@ -49,16 +58,16 @@ impl Kind for Hands {
     }
 }
 
-/// A hand.
+/// Data of a hand.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Data {
     /// Robot that the hand belongs to.
     robot: i32,
-    /// Raw value of the protocol: the manual does not define its unit clearly.
+    /// Data 1 as the raw value of the protocol, because the manual does not clearly define its unit.
     data_1: i32,
     data_2_mm: f64,
     data_3_mm: f64,
-    /// 1 for a hand on the R axis, else 0.
+    /// Data 4: 1 for a hand on the R axis, otherwise 0.
     data_4: i32,
 }
 

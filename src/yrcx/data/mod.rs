@@ -11,4 +11,5 @@ pub use comment::{Comment, Comments};
 pub use hand::{HandData, Hands};
 pub use pallet::{PalletData, Pallets};
 pub use point::{Point, Points};
+pub use sheet::PointSheet;
 pub use shift::{ShiftData, Shifts};

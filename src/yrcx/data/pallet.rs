@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::backup::{PALLETS, Records};
 use crate::stores::{Kind, Numbered, all_zero, int};
+use armctl_controller::yrcx::table::Command;
 use armctl_controller::yrcx::value::{Key, Values};
 use armctl_frame::store::{Ids, TableWords, ids, table_commands};
 
@@ -25,13 +25,20 @@ impl Kind for Pallets {
         range: "Pallets, 0 to 39: 10, 0..39 or 1,5",
         reading: None,
         writing: Some(
-            "The controller stores the corners of a pallet in five points, starting with the first point. Set them with \
-             `yrcx point set` or `yrcx teach`.",
+            "The controller stores the corners of a pallet in five points, starting with the first point. Set these \
+             points with `yrcx point set` or `yrcx teach`.",
         ),
     };
     const IDS: Ids = ids!("yrcx.pallet-data");
-    const RECORDS: &'static Records = &PALLETS;
-    const HEADINGS: &'static [&'static str] = &["nx", "ny", "nz", "first point"];
+    const READ: (Command, Key) = (Command::PalletGet, Key::Pallet);
+    const WRITE: Command = Command::PalletSet;
+    const NUMBERS: &'static [&'static str] = &["0..39"];
+    const FIELDS: &'static [(&'static str, Key, &'static str)] = &[
+        ("nx", Key::CountX, "nx"),
+        ("ny", Key::CountY, "ny"),
+        ("nz", Key::CountZ, "nz"),
+        ("first_point", Key::FirstPoint, "first point"),
+    ];
 
     fn value(values: &Values) -> Option<Places> {
         let [nx, ny, nz, first_point] =
@@ -44,16 +51,16 @@ impl Kind for Pallets {
     }
 }
 
-/// A pallet.
+/// Data of a pallet.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Places {
-    /// Positions in X.
+    /// Number of positions in X.
     nx: i32,
-    /// Positions in Y.
+    /// Number of positions in Y.
     ny: i32,
-    /// Positions in Z.
+    /// Number of positions in Z.
     nz: i32,
-    /// The first of the five points that define it.
+    /// First of the five points that define the pallet.
     first_point: i32,
 }
 

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::ArgGroup;
+
 use super::sheet::PointSheet;
-use crate::backup::{POINTS, Records};
 use crate::link::Yrcx;
 use crate::numbers::single;
 use crate::position::{Unit, mm, position, unit_of};
@@ -13,13 +14,12 @@ use armctl_controller::yrcx::table;
 use armctl_controller::yrcx::value::{Key, Values};
 use armctl_frame::failure::Failure;
 use armctl_frame::gate::Confirmation;
-use armctl_frame::robot::position::Position;
+use armctl_frame::robot::position::FourAxes;
 use armctl_frame::store::{
     Copy, Dump, Get, Ids, List, Restore, TableWords, TableWrite, Writable as _, WrittenOf, ids, write,
 };
 use armctl_frame::teach::parse_printed_position;
 use armctl_frame::{Command, Context, commands};
-use clap::ArgGroup;
 
 commands! {
     /// Commands for points.
@@ -30,7 +30,7 @@ commands! {
         List(List<Numbered<Points>>),
         /// Define a point: 100 --mm 10,-20,5,-18
         Set(Set),
-        /// Copy a point to others: 5 6..8
+        /// Copy a point to other points: 5 6..8
         Copy(Copy<Numbered<Points>>),
         /// Save points and their comments to a CSV file
         Dump(Dump<PointSheet>),
@@ -44,7 +44,7 @@ commands! {
 pub struct Points;
 
 impl Kind for Points {
-    type Value = Position;
+    type Value = FourAxes;
     const WORDS: TableWords = TableWords {
         nouns: ["point", "points"],
         placeholder: "POINT",
@@ -56,8 +56,17 @@ impl Kind for Points {
         writing: None,
     };
     const IDS: Ids = ids!("yrcx.point");
-    const RECORDS: &'static Records = &POINTS;
-    const HEADINGS: &'static [&'static str] = &["unit", "axis 1", "axis 2", "axis 3", "axis 4", "hand"];
+    const READ: (table::Command, Key) = (table::Command::PointGet, Key::Point);
+    const WRITE: table::Command = table::Command::PointSet;
+    const NUMBERS: &'static [&'static str] = &["0..29999"];
+    const FIELDS: &'static [(&'static str, Key, &'static str)] = &[
+        ("unit", Key::Unit, "unit"),
+        ("axis_1", Key::Axis1, "axis 1"),
+        ("axis_2", Key::Axis2, "axis 2"),
+        ("axis_3", Key::Axis3, "axis 3"),
+        ("axis_4", Key::Axis4, "axis 4"),
+        ("hand_system", Key::HandSystem, "hand"),
+    ];
     const IS_SMALL: bool = false;
 
     fn line(values: &Values) -> Option<String> {
@@ -74,15 +83,15 @@ impl Kind for Points {
         Some(format!("{} {}{hand}", axes.join(", "), unit.symbol()))
     }
 
-    fn value(values: &Values) -> Option<Position> {
-        position(values, unit_of(values))
+    fn value(values: &Values) -> Option<FourAxes> {
+        position(values, unit_of(values)).map(FourAxes)
     }
 }
 
 /// Defines a point.
 #[derive(Debug, clap::Args)]
 #[command(group = ArgGroup::new("coordinates").required(true),
-    after_help = "Give 0 for an axis that the robot does not have. `yrcx teach 19` (or `yrcx point set 19 here`) \
+    after_help = "Type 0 for an axis that the robot does not have. `yrcx teach 19` (or `yrcx point set 19 here`) \
                   stores the current position. `yrcx point set 19 @FILE` stores the output of `yrcx position --json` \
                   from FILE; @- reads stdin.")]
 pub struct Set {
@@ -95,7 +104,7 @@ pub struct Set {
     /// Coordinates of axes 1 to 4 in pulses
     #[arg(long, value_name = "PULSES,…", group = "coordinates", allow_hyphen_values = true, value_parser = four)]
     pulse: Option<Four>,
-    /// File with coordinates and hand system from `position --json`; - is stdin
+    /// File with coordinates and hand system from `position --json`; - reads stdin
     #[arg(long, value_name = "FILE", group = "coordinates")]
     position: Option<PathBuf>,
     /// Hand system of coordinates in mm
@@ -140,16 +149,16 @@ impl Set {
     }
 }
 
-/// A number for each of the four axes, as typed.
+/// A number for each of the four axes, as the user typed them.
 type Four = [String; 4];
 
 fn four(text: &str) -> Result<Four, String> {
     let numbers: Vec<String> = text.split(',').map(|number| number.trim().to_owned()).collect();
     let count = numbers.len();
-    numbers.try_into().map_err(|_| format!("expected four numbers, one per axis, as in 10,-20,5,-18; {count} given"))
+    numbers.try_into().map_err(|_| format!("expected four numbers, one per axis, such as 10,-20,5,-18; {count} given"))
 }
 
-/// Point in the output of `position --json` or `point get --json`.
+/// Reads a point from the output of `position --json` or `point get --json`.
 fn printed_point(file: &Path) -> Result<Given, Failure> {
     let text = parse_printed_position(file)?;
     let words: Vec<&str> = text.split_whitespace().collect();
@@ -162,7 +171,7 @@ fn printed_point(file: &Path) -> Result<Given, Failure> {
                 .hint("write the file with `yrcx position --json` or `yrcx point get --json`"));
         }
     };
-    let four = four(axes).map_err(|error| Failure::usage(error).hint("give four numbers separated by commas"))?;
+    let four = four(axes).map_err(|error| Failure::usage(error).hint("type four numbers separated by commas"))?;
     Ok(Given { unit, four, hand })
 }
 
@@ -170,7 +179,7 @@ fn printed_point(file: &Path) -> Result<Given, Failure> {
 mod tests {
     use serde_json::json;
 
-    use crate::testing::{Reply, Scripted, example, objection, read_example, report_on, run_on, words, written};
+    use crate::testing::{Reply, Scripted, example, objects, read_example, report_on, run_on, words, written};
     use armctl_frame::failure::Kind;
 
     #[test]
@@ -193,17 +202,14 @@ mod tests {
     fn coordinates_have_a_unit_and_a_hand() {
         let sent = written(&["point", "set", "0", "--mm", "1,-2.5,0,0", "--hand", "left"]).unwrap();
         assert_eq!(sent[0][..8], ["0x0100", "0x0005", "0x0000", "0x0000", "0x03E8", "0x0000", "0xF63C", "0xFFFF"]);
-        for (line, part) in [
+        objects([
             ("point set 1", "--mm"),
-            ("point set 1 --mm 1,2,3", "expected four numbers, one per axis, as in 10,-20,5,-18; 3 given"),
+            ("point set 1 --mm 1,2,3", "expected four numbers, one per axis, such as 10,-20,5,-18; 3 given"),
             ("point set 1 --mm 1,2,3,4 --pulse 1,2,3,4", "cannot be used with"),
             ("point set 1 --pulse 1,2,3,4 --hand left", "cannot be used with"),
             ("point set 30000 --mm 1,2,3,4", "allowed: 0 to 29999"),
             ("point get 0..30000", "allowed: 0 to 29999"),
-        ] {
-            let objection = objection(&line.split(' ').collect::<Vec<_>>());
-            assert!(objection.contains(part), "{line}: {objection}");
-        }
+        ]);
         let failure = words(&["point", "set", "1", "--mm", "1.0005,2,3,4"]).unwrap_err();
         assert!(failure.message.contains("axis_1"), "{failure}");
         assert_eq!(words(&["point", "get", "1", "--unit", "2"]).unwrap_err().kind, Kind::Usage);

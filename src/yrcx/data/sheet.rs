@@ -1,17 +1,19 @@
 //! Points with their comments, as a spreadsheet has them: `yrcx point dump` and `restore`.
 
+use std::collections::{HashMap, HashSet};
+
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Comments, Points};
-use crate::backup::{COMMENTS, POINTS};
 use crate::link::{Link, Yrcx};
+use crate::several::plan_each;
 use crate::stores::{Draft as Texts, Kind as _, Numbered, Row};
 use armctl_controller::Risk;
 use armctl_frame::failure::Failure;
 use armctl_frame::output::Screen;
 use armctl_frame::robot::item::Plain;
-use armctl_frame::robot::position::Position;
+use armctl_frame::robot::position::FourAxes;
 use armctl_frame::store::{Answers, Differing, Field, Ids, Row as TableRow, Single, Store, TableWords, Writable, ids};
 
 /// The points with their comments.
@@ -21,14 +23,14 @@ pub struct PointSheet {
     comments: Numbered<Comments>,
 }
 
-/// A point, and its comment; none if it was not read.
+/// A point and its comment; `None` for a part that was not read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Content {
     point: Option<Row>,
     comment: Option<Row>,
 }
 
-/// New content of a point, and its comment, as far as they were given.
+/// New content of a point and of its comment; `None` for a part that is not given.
 #[derive(Debug, Clone)]
 pub struct Draft {
     point: Option<Texts>,
@@ -39,7 +41,7 @@ pub struct Draft {
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Commented {
     #[serde(flatten)]
-    point: Option<Position>,
+    point: Option<FourAxes>,
     comment: Option<String>,
 }
 
@@ -53,19 +55,18 @@ impl Content {
 }
 
 impl PointSheet {
-    /// Reads points or comments or both; comments only of points that are defined.
+    /// Reads points, if they are wanted, and the comments of some of them, if they are defined.
     async fn read_parts(
         &self,
         link: &mut Link,
         screen: &Screen,
-        numbers: &[i32],
-        [has_points, has_comments]: [bool; 2],
+        (numbers, has_points): (&[i32], bool),
+        commented: &[i32],
     ) -> Result<Answers<Content>, Failure> {
         if link.is_dry() {
-            let parts = [(&POINTS, has_points), (&COMMENTS, has_comments)];
-            let parts = parts.into_iter().filter(|(_, is_read)| *is_read);
-            let orders = parts.flat_map(|(records, _)| numbers.iter().map(|number| records.read(*number)));
-            link.plan_all(&orders.collect::<Result<Vec<_>, Failure>>()?)?;
+            let points = numbers.iter().filter(|_| has_points).map(|number| Numbered::<Points>::read_order(*number));
+            let comments = commented.iter().map(|number| Numbered::<Comments>::read_order(*number));
+            plan_each(link, &points.chain(comments).collect::<Result<Vec<_>, Failure>>()?)?;
         }
         let mut asked = numbers.len();
         let points: Vec<Result<Option<Row>, Failure>> = if has_points {
@@ -75,20 +76,21 @@ impl PointSheet {
         } else {
             numbers.iter().map(|_| Ok(None)).collect()
         };
-        let defined = numbers.iter().zip(&points).filter(|(_, point)| has_comments && point.is_ok());
-        let defined: Vec<i32> = defined.map(|(number, _)| *number).collect();
+        let undefined = numbers.iter().zip(&points).filter(|(_, point)| point.is_err());
+        let undefined: HashSet<i32> = undefined.map(|(number, _)| *number).collect();
+        let commented: Vec<i32> = commented.iter().copied().filter(|number| !undefined.contains(number)).collect();
         let comments =
-            if defined.is_empty() { Vec::new() } else { self.comments.read(link, screen, &defined).await?.rows };
-        let mut comments = comments.into_iter();
-        let content = |point: Result<Option<Row>, Failure>| {
+            if commented.is_empty() { Vec::new() } else { self.comments.read(link, screen, &commented).await?.rows };
+        let mut comments: HashMap<i32, _> = commented.into_iter().zip(comments).collect();
+        let content = |(number, point): (&i32, Result<Option<Row>, Failure>)| {
             let point = point?;
-            let comment = match comments.next().transpose() {
+            let comment = match comments.remove(number).transpose() {
                 Err(failure) if !Self::is_undefined(&failure) => return Err(failure),
                 comment => comment.ok().flatten().flatten(),
             };
             Ok(Some(Content { point, comment }))
         };
-        Ok(Answers { rows: points.into_iter().map(content).collect(), asked })
+        Ok(Answers { rows: numbers.iter().zip(points).map(content).collect(), asked })
     }
 }
 
@@ -125,7 +127,7 @@ impl Store for PointSheet {
     }
 
     fn texts(&self, Content { point, comment }: &Content) -> Vec<String> {
-        let blank = || vec![String::new(); Points::HEADINGS.len()];
+        let blank = || vec![String::new(); Points::FIELDS.len()];
         let point = point.as_ref().map_or_else(blank, |row| self.points.texts(row));
         let comment = comment.as_ref().map_or_else(|| vec![String::new()], |row| self.comments.texts(row));
         [point, comment].concat()
@@ -148,8 +150,13 @@ impl Store for PointSheet {
         Numbered::<Points>::is_undefined(failure)
     }
 
+    fn consequences(&self, rows: &[Differing<'_, Self>]) -> Vec<String> {
+        let added = rows.iter().filter(|(_, old, _)| old.is_none()).count();
+        if added == 0 { Vec::new() } else { vec![format!("New points are added: {added}.")] }
+    }
+
     async fn read(&self, link: &mut Link, screen: &Screen, numbers: &[i32]) -> Result<Answers<Content>, Failure> {
-        self.read_parts(link, screen, numbers, [true, true]).await
+        self.read_parts(link, screen, (numbers, true), numbers).await
     }
 }
 
@@ -159,7 +166,7 @@ impl Writable for PointSheet {
     const RISK: Risk = Risk::Destroy;
 
     fn draft(&self, number: i32, texts: &[Option<&str>]) -> Result<Draft, String> {
-        let (point, comment) = texts.split_at(Points::HEADINGS.len());
+        let (point, comment) = texts.split_at(Points::FIELDS.len());
         if point[0].is_none() && point[1..5].iter().any(Option::is_some) {
             return Err("column unit is missing: the axes are in mm or in pulses".to_owned());
         }
@@ -182,11 +189,6 @@ impl Writable for PointSheet {
         Ok(Content { point, comment })
     }
 
-    fn consequences(&self, rows: &[Differing<'_, Self>]) -> Vec<String> {
-        let added = rows.iter().filter(|(_, old, _)| old.is_none()).count();
-        if added == 0 { Vec::new() } else { vec![format!("New points are added: {added}.")] }
-    }
-
     async fn read_old(
         &self,
         link: &mut Link,
@@ -195,8 +197,9 @@ impl Writable for PointSheet {
     ) -> Result<Answers<Content>, Failure> {
         let numbers: Vec<i32> = rows.iter().map(|(number, _)| *number).collect();
         let has_points = rows.iter().any(|(_, draft)| draft.point.is_some());
-        let has_comments = rows.iter().any(|(_, draft)| draft.comment.is_some());
-        self.read_parts(link, screen, &numbers, [has_points, has_comments]).await
+        let commented = rows.iter().filter(|(_, draft)| draft.comment.is_some());
+        let commented: Vec<i32> = commented.map(|(number, _)| *number).collect();
+        self.read_parts(link, screen, (&numbers, has_points), &commented).await
     }
 
     async fn plan(&self, link: &mut Link, rows: &[TableRow<Self>]) -> Result<(), Failure> {
@@ -236,11 +239,11 @@ mod tests {
     use super::*;
     use armctl_controller::yrcx::value::Values;
 
-    /// Point 7, left-handed in mm, or in pulses.
+    /// Returns point 7 as it is stored: in mm and left-handed, or in pulses.
     fn held(texts: [&str; 6]) -> Content {
         let texts: Vec<Option<String>> = texts.into_iter().map(|text| Some(text.to_owned())).collect();
         let point = Numbered::<Points>::default().complete_draft(7, &texts, None).unwrap();
-        Content { point: Some(point), comment: Some(Row::new::<Comments>(7, Values::default())) }
+        Content { point: Some(point), comment: Some(Row::new::<Comments>(Values::default())) }
     }
 
     #[test]

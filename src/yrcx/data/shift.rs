@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::backup::{Records, SHIFTS};
 use crate::stores::{Kind, Numbered, all_zero, mm as mm_of};
+use armctl_controller::yrcx::table::Command;
 use armctl_controller::yrcx::value::{Key, Values};
 use armctl_frame::store::{Ids, TableWords, ids, table_commands};
 
@@ -27,8 +27,15 @@ impl Kind for Shifts {
         writing: None,
     };
     const IDS: Ids = ids!("yrcx.shift-data");
-    const RECORDS: &'static Records = &SHIFTS;
-    const HEADINGS: &'static [&'static str] = &["axis 1 (mm)", "axis 2 (mm)", "axis 3 (mm)", "axis 4 (mm)"];
+    const READ: (Command, Key) = (Command::ShiftGet, Key::Shift);
+    const WRITE: Command = Command::ShiftSet;
+    const NUMBERS: &'static [&'static str] = &["0..39"];
+    const FIELDS: &'static [(&'static str, Key, &'static str)] = &[
+        ("axis_1_mm", Key::Axis1, "axis 1 (mm)"),
+        ("axis_2_mm", Key::Axis2, "axis 2 (mm)"),
+        ("axis_3_mm", Key::Axis3, "axis 3 (mm)"),
+        ("axis_4_mm", Key::Axis4, "axis 4 (mm)"),
+    ];
 
     fn value(values: &Values) -> Option<Shift> {
         Some(Shift { shift_mm: Key::AXES.map(|key| mm_of(values, key)) })
@@ -39,7 +46,7 @@ impl Kind for Shifts {
     }
 }
 
-/// A shift.
+/// Data of a shift.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Shift {
     /// Shift of axes 1 to 4 in mm, or degrees for rotary axes.
@@ -67,6 +74,6 @@ mod tests {
     #[test]
     fn mistakes_are_named() {
         assert!(objection(&["shift-data", "set", "40", "1", "2", "3", "4"]).contains("allowed: 0 to 39"));
-        assert!(words(&["shift-data", "set", "4", "1"]).unwrap_err().message.contains("4 values needed, 1 given"));
+        assert!(words(&["shift-data", "set", "4", "1"]).unwrap_err().message.contains("4 values needed, but 1 typed"));
     }
 }

@@ -14,23 +14,23 @@ use armctl_frame::decode::capture::{DecodedCapture, DecodedMessage, cut, note};
 use armctl_transport::capture::Message;
 use armctl_transport::tap::Direction;
 
-/// Maximum number of connections and pending requests to remember. No plant has that many.
+/// Maximum number of connections and pending requests that the decoder keeps. A real plant has fewer.
 pub const MOST: usize = 1 << 16;
 
 /// Decoder of one fieldbus.
 pub trait BusDecoder: fmt::Debug {
-    /// Handles a packet that may belong to this fieldbus.
+    /// Decodes a packet, if it belongs to this fieldbus.
     fn take(&mut self, message: &Message<'_>, images: &mut Images);
 
-    /// Adds notes on missing data at the end.
+    /// Adds notes about missing data, at the end of the capture.
     fn finish(&mut self, images: &mut Images);
 }
 
-/// Decoded images and messages.
+/// Images and messages that were decoded.
 #[derive(Debug, Default)]
 pub struct Images {
     decoded: DecodedCapture<FieldRow>,
-    /// Whether images without new content are listed.
+    /// Whether to list images without new content too.
     all: bool,
     shown: HashMap<(String, String), Shown>,
 }
@@ -38,9 +38,9 @@ pub struct Images {
 /// Last images of a connection.
 #[derive(Debug, Default)]
 struct Shown {
-    /// Last image of the client and of the controller.
+    /// Last image from the client, and last image from the controller.
     images: [Option<Image>; 2],
-    /// Command in progress, or the last one.
+    /// Latest command, with its packet number.
     command: Option<(u64, Words)>,
 }
 
@@ -50,7 +50,7 @@ impl Images {
         Self { all, ..Self::default() }
     }
 
-    /// Whether every image is listed.
+    /// Whether the result lists every image.
     pub fn lists_all(&self) -> bool {
         self.all
     }
@@ -75,7 +75,7 @@ impl Images {
         note(&mut self.decoded.notes, text);
     }
 
-    /// Handles an image from one end.
+    /// Adds an image from the client or the controller, if it has new content.
     pub fn image(&mut self, message: &Message<'_>, direction: Direction, link: &(String, String), image: &Image) {
         if self.shown.len() >= MOST {
             self.shown.clear();
@@ -99,7 +99,8 @@ impl Images {
                     if words[0] != 0 && (words[0] != was || shown.command.is_none()) {
                         shown.command = Some((message.number, *words));
                     }
-                    // Without a command, the words are data of the next command and not yet a problem.
+                    // If WI0 is 0, there is no command yet: the other words are data of the next command, so they are
+                    // not a problem.
                     if words[0] != 0 {
                         describe(&mut decoded, command(words));
                     }

@@ -1,22 +1,20 @@
-//! Explicit messages to the DeviceNet node of a controller. It is not polled.
+//! Explicit messages to the DeviceNet node of a controller. They start no polling of the node.
 
 use std::time::Duration;
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::check;
-use super::connect::{adapter, options, request_timeout};
-use crate::fieldbus::{self, At};
+use super::connect::{adapter, request_timeout};
+use crate::fieldbus::{At, BusBoard, Checked};
 use crate::link_error::not_open;
 use armctl_controller::yrcx::image::Image;
 use armctl_frame::face::layers::Layers;
 use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::output::view::Cell;
 use armctl_frame::settings::target::bus::Scheme;
-use armctl_frame::settings::target::devicenet::DeviceNet;
+use armctl_frame::settings::target::devicenet::{BUS, DeviceNet};
 use armctl_transport::devicenet::error::Error;
 use armctl_transport::devicenet::link::{produced, read};
 use armctl_transport::devicenet::network::{Connection, Network, Tap};
@@ -25,12 +23,10 @@ use armctl_transport::devicenet::settings::{Purpose, Settings};
 use armctl_transport::devicenet::wire::{Request, class, connection};
 use armctl_transport::image::LinkError;
 
-/// Vendor id of the manufacturer of YRCX.
-pub const MAKER: u16 = 636;
 /// Time to listen for the polls of another master.
 const LISTEN: Duration = Duration::from_secs(1);
 
-/// DeviceNet node of a controller. The adapter opens with the first request.
+/// DeviceNet node of a controller. The first request opens the adapter.
 #[derive(Debug)]
 pub struct Board {
     node: DeviceNet,
@@ -43,10 +39,10 @@ pub struct Board {
 }
 
 impl Board {
-    /// Node of a URL.
+    /// Creates the client for the node of a URL.
     pub(super) fn new(at: &At<'_>) -> Result<Self, LinkError> {
         Ok(Self {
-            node: options(at)?.clone(),
+            node: at.options::<DeviceNet>()?.clone(),
             scheme: at.bus.scheme,
             label: at.robot.label(),
             timeout: request_timeout(at),
@@ -61,7 +57,7 @@ impl Board {
         &self.node
     }
 
-    /// The adapter, with this program as a node.
+    /// Opens the adapter, if necessary. armctl is then a node of the network.
     pub async fn network(&mut self) -> Result<Network, Failure> {
         if let Some(network) = &self.network {
             return Ok(network.clone());
@@ -72,13 +68,13 @@ impl Board {
         Ok(network)
     }
 
-    /// All nodes that answer.
+    /// Finds all nodes that answer.
     pub async fn nodes(&mut self) -> Result<Vec<Node>, Failure> {
         let found = self.network().await?.find().await;
         Ok(found.map_err(|error| self.failure(error))?.into_iter().map(Node::from).collect())
     }
 
-    /// The explicit connection; opened if necessary.
+    /// Opens the explicit connection, if necessary.
     async fn connection(&mut self) -> Result<&Connection, Failure> {
         if self.connection.is_none() {
             let network = self.network().await?;
@@ -90,7 +86,7 @@ impl Board {
         self.connection.as_ref().ok_or_else(|| Failure::local("there is no connection"))
     }
 
-    /// Reads an attribute; `None` if the node does not have it.
+    /// Reads an attribute; `None` if the node refuses it.
     async fn get(&mut self, request: Request) -> Result<Option<Vec<u8>>, Failure> {
         let mac = self.node.mac;
         match read(self.connection().await?, mac, &request).await {
@@ -125,13 +121,13 @@ impl Board {
         })
     }
 
-    /// Reads the image sizes: from the node, to the node.
+    /// Reads the image sizes: bytes from the node, and bytes to the node.
     pub async fn sizes(&mut self) -> Result<(Option<u16>, Option<u16>), Failure> {
         let of = |attribute| Request::get(class::CONNECTION, connection::POLL_INSTANCE.into(), attribute);
         Ok((self.word(of(7)).await?, self.word(of(8)).await?))
     }
 
-    /// Reads the image with messages; `None` if the node only sends it in polls.
+    /// Reads the image with explicit messages; `None` if the node sends its image only in polls.
     pub async fn image(&mut self) -> Result<Option<Image>, Failure> {
         let mac = self.node.mac;
         let request = match produced(self.connection().await?, mac).await {
@@ -142,17 +138,17 @@ impl Board {
         Ok(self.get(request).await?.and_then(|image| Image::from_link(&image)))
     }
 
-    /// Listens to the exchange with another master.
+    /// Listens to the polls of another master, and returns the image of the node.
     pub async fn overheard(&mut self) -> Result<Option<Image>, Failure> {
         let mac = self.node.mac;
         let seen = self.network().await?.listen(mac, LISTEN).await.input;
         Ok(seen.and_then(|seen| Image::from_link(&seen.image)))
     }
 
-    /// Releases the connection of the node.
+    /// Releases the explicit connection to the node.
     pub async fn release(&mut self) {
         if let Some(connection) = self.connection.take() {
-            // If the node does not answer, its connection times out.
+            // An error is ignored: if the node does not answer, its connection times out.
             let _ = connection.close().await;
         }
     }
@@ -161,7 +157,7 @@ impl Board {
         not_open(&self.label, self.scheme, &LinkError::from(error))
     }
 
-    /// Failure for a missing node, with the nodes that are present.
+    /// Returns the failure for a node that does not answer. It lists the nodes that answer.
     pub fn absent(&self, nodes: &[Node]) -> Failure {
         let others: Vec<String> = nodes.iter().map(|node| node.mac.to_string()).collect();
         let others = if others.is_empty() {
@@ -170,30 +166,33 @@ impl Board {
             format!("MAC {} answer", others.join(", "))
         };
         Failure::new(Kind::NoAnswer, format!("MAC {} does not answer; {others}", self.node.mac))
-            .hint("check mac of the URL, and the number that is set at the controller")
+            .hint("check mac of the URL, and the MAC ID that is set at the controller")
     }
 }
 
-impl fieldbus::Board for Board {
-    fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
-        check::look(self, layers).boxed_local()
+impl BusBoard for Board {
+    const BUS: &'static str = BUS;
+    const DEVICE: &'static str = "node";
+
+    async fn look(&mut self, layers: &mut Layers) -> Checked<Option<Image>> {
+        check::look(self, layers).await
     }
 
-    fn close(mut self: Box<Self>) -> LocalBoxFuture<'static, ()> {
-        async move { self.release().await }.boxed_local()
+    async fn end(mut self) {
+        self.release().await;
     }
 }
 
 /// A node that was found on the bus.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Node {
-    /// Its MAC ID.
+    /// MAC ID of the node.
     pub mac: u8,
     /// Vendor id; YRCX has 636.
     pub vendor: u16,
-    /// As in `0x00C0FFEE`.
+    /// Serial number, for example `0x00C0FFEE`.
     pub serial: String,
-    /// Whether the node answered; false if it only announced that it is going on line.
+    /// Whether the node answered; false if it only announced that it will go on line.
     pub on_line: bool,
 }
 
@@ -208,10 +207,10 @@ impl From<Found> for Node {
     }
 }
 
-/// Identity of a node; attributes that the node does not report are null. The name is untrusted.
+/// Identity of a node; an attribute that the node does not report is null. Do not trust the name.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Identity {
-    /// Its MAC ID.
+    /// MAC ID of the node.
     pub mac: u8,
     /// Vendor id; YRCX has 636.
     pub vendor: Option<u16>,
@@ -219,9 +218,9 @@ pub struct Identity {
     pub device_type: Option<u16>,
     /// Product code.
     pub product: Option<u16>,
-    /// Major and minor.
+    /// Major and minor revision.
     pub revision: Option<String>,
-    /// As in `0x00C0FFEE`.
+    /// Serial number, for example `0x00C0FFEE`.
     pub serial: Option<String>,
     /// Product name that the node reports.
     pub name: Option<String>,

@@ -12,7 +12,7 @@ use armctl_controller::yrcx::alarm::Alarm;
 use armctl_frame::settings::target::devicenet;
 use armctl_transport::capture::LINKTYPE_CAN;
 
-/// DeviceNet.
+/// DeviceNet as a fieldbus.
 pub const BUS: Fieldbus = Fieldbus {
     name: devicenet::BUS,
     link_alarm: Alarm::new(12, 541),

@@ -1,6 +1,7 @@
 //! Layers of `armctl robots check` for a DeviceNet node: from the adapter to the image of the controller.
 
-use super::board::{Board, MAKER};
+use super::board::Board;
+use crate::fieldbus::{Checked, InLayer as _, MAKER};
 use armctl_controller::yrcx::image::Image;
 use armctl_frame::face::layers::Layers;
 use armctl_frame::failure::Kind;
@@ -10,24 +11,12 @@ use armctl_transport::devicenet::can::BusState;
 pub(super) const LAYERS: &[&str] = &["name", "adapter", "bus", "MAC ID", "owner", "identity", "sizes", "inputs"];
 
 /// Checks the layers. Returns the image of the controller, if it can be read.
-pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image> {
+pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
     let node = board.node().clone();
     layers.ok("name", format!("MAC {} behind {}", node.mac, node.place));
-    let network = match board.network().await {
-        Err(failure) => {
-            layers.fail("adapter", &failure);
-            return None;
-        }
-        Ok(network) => network,
-    };
+    let network = board.network().await.in_layer("adapter")?;
     layers.ok("adapter", format!("{} at {}", node.place, node.bitrate));
-    let nodes = match board.nodes().await {
-        Err(failure) => {
-            layers.fail("bus", &failure);
-            return None;
-        }
-        Ok(nodes) => nodes,
-    };
+    let nodes = board.nodes().await.in_layer("bus")?;
     let (health, frames) = network.health();
     let advice = "check the bit rate, the 24 V of the bus, its plugs and both terminators (121 ohm)";
     match health.state {
@@ -39,26 +28,30 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
         _ => layers.ok("bus", count(nodes.len())),
     }
     if !nodes.iter().any(|found| found.mac == node.mac.number()) {
-        layers.fail("MAC ID", &board.absent(&nodes));
-        return None;
+        return Err(("MAC ID", board.absent(&nodes)));
     }
     layers.ok("MAC ID", format!("MAC {} is on line", node.mac));
     let identity = match board.identity().await {
         Err(failure) if failure.kind == Kind::Refused => {
-            layers.warn("owner", "another master, such as a PLC or a session, has its connections", OWNED);
+            layers.warn(
+                "owner",
+                "another master, such as a PLC or a session, uses the connections of the controller",
+                OWNED,
+            );
             return overheard(board, layers).await;
         }
-        Err(failure) => {
-            layers.fail("owner", &failure);
-            return None;
-        }
-        Ok(identity) => identity,
+        identity => identity.in_layer("owner")?,
     };
     layers.ok("owner", "no master");
     let name = identity.name.as_deref().unwrap_or("without a name");
     let vendor = identity.vendor.map_or_else(|| "?".to_owned(), |vendor| vendor.to_string());
     let told = format!("{name}, vendor {vendor}");
-    layers.judge("identity", identity.vendor == Some(MAKER), (&told, &told), "the vendor id of a YRCX is 636");
+    layers.judge(
+        "identity",
+        identity.vendor == Some(MAKER),
+        (&told, &told),
+        "check the node: the vendor id of a YRCX is 636",
+    );
     match board.sizes().await {
         Err(failure) => layers.fail("sizes", &failure),
         Ok(sizes) => match profile(sizes) {
@@ -70,33 +63,31 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
     }
     let image = board.image().await;
     board.release().await;
+    let image = image.in_layer("inputs")?;
     match image {
-        Err(failure) => layers.fail("inputs", &failure),
-        Ok(None) => layers.warn("inputs", "sent only in polls", "`armctl session open` polls it"),
-        Ok(Some(image)) => {
-            layers.ok("inputs", "readable");
-            return Some(image);
-        }
+        None => layers.warn(
+            "inputs",
+            "the controller sends its inputs only in answers to a poll",
+            "use `armctl session open` to poll the controller",
+        ),
+        Some(_) => layers.ok("inputs", "readable"),
     }
-    None
+    Ok(image)
 }
 
-const OWNED: &str = "to send commands, stop the scan of that master; read-only commands work in parallel";
+const OWNED: &str = "stop the scan of that master to send commands; read-only commands work in parallel";
 
-/// With another master on the bus, only listening is possible.
-async fn overheard(board: &mut Board, layers: &mut Layers) -> Option<Image> {
-    match board.overheard().await {
-        Err(failure) => layers.fail("inputs", &failure),
-        Ok(None) => layers.warn("inputs", "the master does not poll the controller", "check the PLC"),
-        Ok(Some(image)) => {
-            layers.ok("inputs", "received from its answers to the master");
-            return Some(image);
-        }
+/// Listens to the polls of the other master: while it owns the node, armctl cannot read the image with messages.
+async fn overheard(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
+    let image = board.overheard().await.in_layer("inputs")?;
+    match image {
+        None => layers.warn("inputs", "the master does not poll the controller", "check the PLC"),
+        Some(_) => layers.ok("inputs", "received from the answers of the controller to the master"),
     }
-    None
+    Ok(image)
 }
 
-/// Name of an image size.
+/// Returns the name of the setting that has these image sizes.
 pub(super) fn profile(sizes: (Option<u16>, Option<u16>)) -> Option<&'static str> {
     match sizes {
         (Some(48), Some(48)) => Some("Normal: 48 bytes each way"),

@@ -10,18 +10,18 @@ use armctl_transport::devicenet::link::{Listened, Polled, Reading};
 use armctl_transport::devicenet::network::{Adapter, Network};
 use armctl_transport::devicenet::scanner::Identity;
 use armctl_transport::devicenet::settings::{Images, Profile, Purpose as For, Settings};
-use armctl_transport::image::{Cause, ImageLink, LinkError};
+use armctl_transport::image::{ImageLink, LinkError};
 
 /// Time to wait for images of another master, whose polls can be slow.
 const LISTEN: Duration = Duration::from_secs(1);
-/// Silence after which the polls of another master have ended.
+/// Silence after which armctl assumes that another master has stopped its polls.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// Minimum interval of reads with messages.
+/// Minimum interval of reads by explicit messages.
 const PAUSE: Duration = Duration::from_millis(100);
-/// Vendor id of this program. ODVA has not assigned one.
+/// Vendor id of armctl. ODVA has not assigned one to armctl.
 const UNREGISTERED_VENDOR: u16 = 0xFFFF;
 
-/// Image sizes that a controller can be set to.
+/// Image sizes that can be set at the controller.
 pub(super) fn profiles() -> Vec<Profile> {
     [("Normal", Image::BYTES), ("Compact", Image::SIGNAL_BYTES)]
         .map(|(name, size)| Profile { name, resting: resting().to_link(size) })
@@ -29,7 +29,7 @@ pub(super) fn profiles() -> Vec<Profile> {
 }
 
 pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
-    let node = options(&at)?;
+    let node: &DeviceNet = at.options()?;
     if purpose == Purpose::Look {
         return look(&at, node).await;
     }
@@ -41,8 +41,8 @@ pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, Link
     Ok(ImageLink::over(Polled::open(&network, settings).await?))
 }
 
-/// Opens a link that only reads: it listens to the exchange with another master. Without one, it reads with messages,
-/// which start no polls.
+/// Opens a read-only link. If another master polls the node, the link listens to these polls. Otherwise, the link reads
+/// with explicit messages, which start no polls.
 async fn look(at: &At<'_>, node: &DeviceNet) -> Result<ImageLink, LinkError> {
     let silent = Network::open(&Adapter { identity: None, ..adapter(node) }, at.tap.clone()).await?;
     if let Some(listened) = Listened::open(silent.clone(), node.mac, LISTEN, PATIENCE).await {
@@ -60,21 +60,17 @@ async fn look(at: &At<'_>, node: &DeviceNet) -> Result<ImageLink, LinkError> {
     }
 }
 
-const NOT_SHOWN: &str = "no master polls the controller, and it sends its signals only to its master: open a session \
-                         with `armctl session open`, then read through that session";
+const NOT_SHOWN: &str = "open a session with `armctl session open`, then read through that session: no master polls \
+                         the controller, and the controller sends its signals only to its master";
 
-/// The adapter, with this program as master.
+/// Returns the adapter of the URL, with armctl as the master.
 pub(super) fn adapter(node: &DeviceNet) -> Adapter {
     let serial = 0x4152_0000 | armctl_transport::session::process() & 0xFFFF;
     let identity = Identity { mac: node.master, vendor: UNREGISTERED_VENDOR, serial };
     Adapter { place: node.place.clone(), bitrate: node.bitrate, identity: Some(identity) }
 }
 
-pub(super) fn options<'a>(at: &At<'a>) -> Result<&'a DeviceNet, LinkError> {
-    at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is not a URL of DeviceNet", at.bus))))
-}
-
-/// Half of the robot's timeout, because a request is sent twice before it fails.
+/// Returns the timeout of a request: half of the robot's timeout, because a request fails only after two transmissions.
 pub(super) fn request_timeout(at: &At<'_>) -> Duration {
     (at.robot.timeout.value / 2).clamp(Duration::from_millis(100), Duration::from_secs(1))
 }

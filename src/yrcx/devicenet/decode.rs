@@ -15,7 +15,7 @@ use armctl_transport::tap::Direction;
 #[derive(Debug, Default)]
 pub struct Decoder {
     monitor: Monitor,
-    /// Last request to each node: packet number and master.
+    /// Last request to each node: the packet number and the master that sent it.
     asked: HashMap<Mac, (u64, Mac)>,
 }
 
@@ -46,7 +46,7 @@ impl Decoder {
         }
     }
 
-    /// Master of the last request to a node.
+    /// Returns the master that sent the last request to a node.
     fn master(&self, mac: Mac) -> Option<Mac> {
         self.asked.get(&mac).map(|(_, master)| *master)
     }
@@ -86,7 +86,7 @@ fn is_taken(frame: &Frame) -> bool {
     frame.data().first().is_some_and(|first| first & 0x80 != 0)
 }
 
-/// Text of an explicit message.
+/// Describes an explicit message.
 fn explicit(body: &[u8]) -> Option<String> {
     if let Some(request) = Request::parse(Format::Byte8Byte8, body) {
         let what = service_name(request.service);

@@ -6,9 +6,9 @@ use clap::Args;
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
-use super::board::{MAKER, Node};
+use super::board::Node;
 use super::connect::adapter;
-use crate::fieldbus::{self, Device, Scope, bus_of, fields};
+use crate::fieldbus::{self, Device, MAKER, Scope, bus_of, fields};
 use crate::link_error::not_open;
 use armctl_frame::failure::Failure;
 use armctl_frame::settings::target::Bus;
@@ -26,12 +26,12 @@ pub struct Search {
     adapters: Vec<(String, Bus)>,
 }
 
-/// Parses the URL of an adapter. A MAC ID is appended, so that it is valid as the URL of a node.
+/// Parses the URL of an adapter. Appends a MAC ID, so that the text becomes a valid URL of a node.
 fn wired(text: &str) -> Result<(String, Bus), String> {
     let sign = if text.contains('?') { '&' } else { '?' };
     let bus = bus_of(&format!("{text}{sign}mac=63")).map_err(|failure| failure.message)?;
     if bus.options::<DeviceNet>().is_none() {
-        return Err(format!("'{text}' is not a CAN adapter, as in slcan:///dev/ttyACM0"));
+        return Err(format!("'{text}' is not a CAN adapter, such as slcan:///dev/ttyACM0"));
     }
     Ok((text.to_owned(), bus))
 }

@@ -1,5 +1,5 @@
-//! Controllers on DeviceNet, and `yrcx devicenet`: diagnosis of the nodes with explicit messages. No polls are started,
-//! so the end of the command does not affect the controller.
+//! Controllers on DeviceNet, and the commands `yrcx devicenet`, which diagnose the nodes with explicit messages. The
+//! commands start no polls, so their end does not affect the controller.
 
 mod board;
 pub mod bus;
@@ -13,27 +13,17 @@ mod scan;
 mod serve;
 pub mod simulated;
 
-use self::board::Board;
-use super::link::Link;
+use super::messages::ReadBoard;
 use armctl_frame::commands;
-use armctl_frame::failure::Failure;
-use armctl_frame::settings::target::devicenet::BUS;
-
-fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
-    link.board(BUS)
-}
-
-/// Reason why `--unit` is rejected.
-const NO_UNIT: &str = "the node belongs to the whole controller";
 
 commands! {
-    /// Commands on the bus.
+    /// Commands for DeviceNet.
     pub enum DeviceNet {
-        /// List the nodes on the bus; no node is allocated
-        Scan(scan::Scan),
+        /// List the nodes on the bus, without allocating a node
+        Scan(ReadBoard<scan::Scanned>),
         /// Identity of the controller's node
-        Identity(identity::Identify),
+        Identity(ReadBoard<identity::Identified>),
         /// Image sizes and owner of the node
-        Probe(probe::Probe),
+        Probe(ReadBoard<probe::Probed>),
     }
 }

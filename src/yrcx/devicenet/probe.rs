@@ -1,32 +1,37 @@
 //! `yrcx devicenet probe`.
 
-use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::board::Identity;
+use super::board::{Board, Identity};
 use super::check::profile;
-use super::{NO_UNIT, board_of};
-use crate::link::Yrcx;
+use crate::messages::BoardReport;
+use armctl_frame::Report;
 use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::output::view::{Cell, Section, View};
-use armctl_frame::{Command, ConnectMode, Context, Report};
 
-/// Reads the image sizes from the node; they show how the unit is set. Its connections are allocated for the request
-/// and released; no polls are sent.
-#[derive(Debug, Args)]
-pub struct Probe {}
+/// Image sizes of the node; they show how the unit is set. Its connections are allocated for the request and released;
+/// no polls are sent.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Probed {
+    /// Identity of the node. Null if another master owns the connections, because other clients then cannot read it.
+    identity: Option<Identity>,
+    /// Whether another master owns the connections of the node.
+    owned: bool,
+    /// Number of bytes from the controller.
+    in_size: Option<u16>,
+    /// Number of bytes to the controller.
+    out_size: Option<u16>,
+    /// Setting of the fieldbus unit that has these sizes.
+    profile: Option<&'static str>,
+}
 
-impl Command for Probe {
-    type Family = Yrcx;
-    type Report = Probed;
+impl BoardReport for Probed {
+    type Board = Board;
     const ID: &'static str = "yrcx.devicenet.probe";
-    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
+    const MESSAGES: &'static str = "messages that read the identity and the image sizes of the node";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Probed, Failure> {
-        context.link.no_unit(NO_UNIT)?;
-        context.link.then("messages that read the identity and the image sizes of the node");
-        let board = board_of(context.link)?;
+    async fn read(board: &mut Board) -> Result<Self, Failure> {
         let identity = match board.identity().await {
             Ok(identity) => Some(identity),
             Err(failure) if failure.kind == Kind::Refused => None,
@@ -35,23 +40,8 @@ impl Command for Probe {
         let owned = identity.is_none();
         let sizes = if owned { (None, None) } else { board.sizes().await? };
         let profile = profile(sizes);
-        Ok(Probed { identity, owned, in_size: sizes.0, out_size: sizes.1, profile })
+        Ok(Self { identity, owned, in_size: sizes.0, out_size: sizes.1, profile })
     }
-}
-
-/// Result of the probe.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Probed {
-    /// Null if another master owns the connections, because no other client can then read.
-    identity: Option<Identity>,
-    /// Whether another master owns the connections of the node.
-    owned: bool,
-    /// Bytes from the controller.
-    in_size: Option<u16>,
-    /// Bytes to the controller.
-    out_size: Option<u16>,
-    /// Meaning of the sizes.
-    profile: Option<&'static str>,
 }
 
 impl Report for Probed {

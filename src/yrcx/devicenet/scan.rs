@@ -1,38 +1,29 @@
 //! `yrcx devicenet scan`.
 
-use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::board::Node;
-use super::{NO_UNIT, board_of};
-use crate::link::Yrcx;
+use super::board::{Board, Node};
+use crate::messages::BoardReport;
+use armctl_frame::Report;
 use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::output::view::{Section, Table, View};
-use armctl_frame::{Command, ConnectMode, Context, Report};
 
-/// Lists the nodes of the bus with a duplicate MAC ID check for each MAC ID. No node is allocated.
-#[derive(Debug, Args)]
-pub struct Scan {}
-
-impl Command for Scan {
-    type Family = Yrcx;
-    type Report = Scanned;
-    const ID: &'static str = "yrcx.devicenet.scan";
-    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
-
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Scanned, Failure> {
-        context.link.no_unit(NO_UNIT)?;
-        context.link.then("a duplicate MAC ID check for every MAC ID");
-        Ok(Scanned { nodes: board_of(context.link)?.nodes().await? })
-    }
-}
-
-/// Nodes that answered.
+/// Nodes that answered a duplicate MAC ID check. No node is allocated.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Scanned {
     /// Nodes in the order of their MAC IDs.
     nodes: Vec<Node>,
+}
+
+impl BoardReport for Scanned {
+    type Board = Board;
+    const ID: &'static str = "yrcx.devicenet.scan";
+    const MESSAGES: &'static str = "a duplicate MAC ID check for every MAC ID";
+
+    async fn read(board: &mut Board) -> Result<Self, Failure> {
+        Ok(Self { nodes: board.nodes().await? })
+    }
 }
 
 impl Report for Scanned {

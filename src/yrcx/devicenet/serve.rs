@@ -6,13 +6,11 @@ use std::path::Path;
 
 use clap::Args;
 
-use super::simulated::{self, Controller, FAULTS, size};
-use crate::fieldbus::{Operator, Serve, Served};
+use super::simulated;
+use super::simulated::{Controller, FAULTS, size};
+use crate::fieldbus::{Operator, Serve, Served, ToServe};
 use crate::simulated::{faults, faults_of_option};
-use armctl_controller::yrcx::simulator::Start;
 use armctl_frame::failure::Failure;
-#[cfg(unix)]
-use armctl_frame::serve::terminal_link::TerminalLink;
 use armctl_frame::serve::{address, bind_failure};
 use armctl_frame::settings::target::devicenet::SLCAN;
 use armctl_transport::devicenet::can::Bitrate;
@@ -20,11 +18,15 @@ use armctl_transport::devicenet::device::Setup;
 use armctl_transport::devicenet::hub::{Hub, Listen};
 use armctl_transport::devicenet::wire::Mac;
 
-/// SLCAN adapters and node of the simulator.
+#[cfg(unix)]
+use armctl_frame::serve::terminal_link::TerminalLink;
+
+/// Arguments for the SLCAN adapters and the node of the simulator.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct ServeArgs {
-    /// DeviceNet: address of the SLCAN adapters, one for each TCP client; port 0 lets the system choose
+    /// DeviceNet: address of the SLCAN adapters; each TCP client gets its own adapter; with port 0, the system chooses
+    /// a port
     #[arg(long, value_name = "ADDRESS[:PORT]", default_value = "127.0.0.1:0", value_parser = listen)]
     slcan_bind: SocketAddr,
     /// DeviceNet: MAC ID of the controller
@@ -41,7 +43,7 @@ fn listen(text: &str) -> Result<SocketAddr, String> {
 
 fn bitrate(text: &str) -> Result<Bitrate, String> {
     let found = Bitrate::ALL.into_iter().find(|bitrate| bitrate.name() == text);
-    found.ok_or_else(|| format!("there are {}, not '{text}'", Bitrate::ALL.map(Bitrate::name).join(", ")))
+    found.ok_or_else(|| format!("the bit rates are {}, not '{text}'", Bitrate::ALL.map(Bitrate::name).join(", ")))
 }
 
 impl Serve for ServeArgs {
@@ -49,13 +51,7 @@ impl Serve for ServeArgs {
         cfg!(unix)
     }
 
-    fn serve(
-        &self,
-        simulator: Option<&str>,
-        start: Start,
-        link: Option<&Path>,
-        faults: Option<&str>,
-    ) -> Result<Served, Failure> {
+    fn serve(&self, ToServe { simulator, start, link, faults }: ToServe<'_>) -> Result<Served, Failure> {
         let setup = Setup::stand_in(self.mac, self.bitrate, size(simulator));
         #[cfg(unix)]
         let terminal = link.map(|_| Listen::Pty);
@@ -93,7 +89,7 @@ type Link = Option<TerminalLink>;
 #[cfg(not(unix))]
 type Link = Option<()>;
 
-/// SLCAN adapters. The symbolic link is removed with them.
+/// SLCAN adapters. When they are dropped, the symbolic link is removed.
 struct Adapters {
     hub: Hub<Controller>,
     _link: Link,

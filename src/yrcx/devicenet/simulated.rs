@@ -19,7 +19,7 @@ use armctl_transport::devicenet::wire::Mac;
 use armctl_transport::fault::{self, FaultNames, FaultSpec, SimulatorFaults};
 use armctl_transport::image::ImagePeer;
 
-/// Name of the four-byte size in `bus=` and `--bus`.
+/// Name of the simulator with the four-byte image, for `bus=` and `--bus`.
 const COMPACT: &str = "devicenet-compact";
 /// Default MAC ID of a simulated controller.
 pub(super) const MAC: u8 = 5;
@@ -33,12 +33,12 @@ pub fn on_loopback(sim: &Sim) -> Result<Hub<Controller>, Failure> {
     Ok(served.context("the simulator on the loopback")?)
 }
 
-/// URL of a simulated controller behind that adapter.
+/// Returns the URL of a simulated controller behind the adapter at `place`.
 pub fn target(place: &str) -> String {
     format!("{}://{place}?mac={MAC}", SLCAN.name)
 }
 
-/// Image size of a simulator with this name in bytes: the whole image, or only its signals.
+/// Returns the image size, in bytes, of the simulator with this name: the whole image, or only its signals.
 pub fn size(simulator: Option<&str>) -> u16 {
     if simulator == Some(COMPACT) { 4 } else { 48 }
 }
@@ -55,7 +55,8 @@ pub fn serve(start: Start, setup: Setup, listen: &[Listen], faults: Faults) -> i
 /// Faults of frames and of the slave.
 type Faults = SimulatorFaults<FaultSpec, DeviceFault>;
 
-/// Faults by name. Frames with a checksum are lost and not corrupted.
+/// Names of the simulated faults. There is no fault that corrupts frames: frames have a checksum, so a corrupted frame
+/// would be lost.
 pub const FAULTS: FaultNames<DeviceFault> =
     FaultNames { link: &["drop", "dup", "delay", "reorder", "seed"], device: &DeviceFault::ALL };
 

@@ -2,13 +2,11 @@
 
 use std::net::SocketAddrV4;
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{check, connect};
-use crate::fieldbus::{self, At};
+use crate::fieldbus::{At, BusBoard, Checked};
 use crate::link_error::not_open;
 use armctl_controller::text;
 use armctl_controller::yrcx::image::Image;
@@ -26,9 +24,9 @@ use armctl_transport::eip::status;
 use armctl_transport::eip::wire;
 use armctl_transport::image::LinkError;
 
-/// Attribute 3 of an assembly: its data.
+/// Attribute 3 of an assembly, which has the data.
 const IMAGE: u32 = 3;
-/// Usual assemblies of a YRCX: output, input.
+/// Usual assemblies of a YRCX: for output and for input.
 const USUAL_OUTPUT: u32 = 150;
 const USUAL_INPUT: u32 = 100;
 
@@ -41,7 +39,7 @@ pub struct Board {
 }
 
 impl Board {
-    /// Resolves the address of the board. It connects with the first request.
+    /// Resolves the address of the board. The first request opens the connection.
     pub(super) async fn open(at: &At<'_>) -> Result<Self, LinkError> {
         let (client, eip) = connect::client(at).await?;
         Ok(Self { client, eip, label: at.robot.label() })
@@ -52,12 +50,17 @@ impl Board {
         &self.eip
     }
 
-    /// TCP address.
+    /// Robot in messages.
+    pub fn label(&self) -> &str {
+        &self.label
+    }
+
+    /// Returns the TCP address of the board.
     pub fn address(&self) -> SocketAddrV4 {
         self.client.target()
     }
 
-    /// Reads the identity; `None` if the board does not support it.
+    /// Reads the identity; `None` if the board does not support the request.
     pub async fn identity(&mut self) -> Result<Option<Identity>, Failure> {
         match self.client.identity().await {
             Ok(identity) => Ok(identity.map(Identity::from)),
@@ -66,7 +69,7 @@ impl Board {
         }
     }
 
-    /// Reads the services; `None` if the board does not support it.
+    /// Reads the list of services; `None` if the board does not support the request.
     pub async fn services(&mut self) -> Result<Option<Vec<&'static str>>, Failure> {
         match self.client.services().await {
             Ok(services) => Ok(services.map(|services| {
@@ -85,9 +88,9 @@ impl Board {
         if answer.status.is_ok() { Ok(answer.data) } else { Err(self.refused(object.reading(), object, &answer)) }
     }
 
-    /// Writes an attribute, only once. If the answer is lost, the outcome is unknown.
+    /// Writes an attribute. The request is sent only once, so if the answer is lost, the outcome is unknown.
     pub async fn set(&mut self, object: Object, value: &[u8]) -> Result<(), Failure> {
-        // A harmless request first shows whether the board answers.
+        // Check with a harmless request first that the board answers.
         self.services().await?;
         let answer = match self.client.ask(SETTING, &object.set(value)).await {
             Ok(answer) => answer,
@@ -95,7 +98,7 @@ impl Board {
                 return Err(self.failure(error));
             }
             Err(error) => {
-                let message = format!("{}: sent once; the result is unknown: {error}", self.label);
+                let message = format!("{}: the request was sent once, and the result is unknown: {error}", self.label);
                 return Err(Failure::new(Kind::OutcomeUnknown, message)
                     .hint(format!("read the value with `yrcx eip get {}`", object.arguments())));
             }
@@ -110,11 +113,12 @@ impl Board {
         let image = bytes.get(..Image::BYTES).and_then(Image::from_bytes);
         image.ok_or_else(|| {
             let message = format!("assembly {} has {} bytes, fewer than an image", self.eip.input, bytes.len());
-            Failure::new(Kind::Malformed, message).hint("check in of the URL: `yrcx eip probe` finds the assemblies")
+            Failure::new(Kind::Malformed, message)
+                .hint("check in of the URL; use `yrcx eip probe` to find the assemblies")
         })
     }
 
-    /// Finds assemblies and their sizes by reading; `identity` is that of the board.
+    /// Reads assemblies to find the existing ones and their sizes. `identity` is the identity of the board.
     pub async fn survey(&mut self, identity: Option<&Identity>) -> Result<Probed, Failure> {
         let thought = self.thought();
         let exchanged = Instances { output: thought.input, input: thought.output, ..thought };
@@ -123,14 +127,15 @@ impl Board {
         Ok(Probed::of(&found.map_err(|error| self.failure(error))?, &self.eip, identity))
     }
 
-    /// Finds the connection parameters, also by requesting connections; `identity` is that of the board.
+    /// Finds the connection parameters. For this, armctl also requests connections. `identity` is the identity of the
+    /// board.
     pub async fn probe(&mut self, identity: Option<&Identity>) -> Result<Probed, Failure> {
         let thought = self.thought();
         let found = probe::probe(&mut self.client, thought).await.map_err(|error| self.failure(error))?;
         Ok(Probed::of(&found, &self.eip, identity))
     }
 
-    /// Reads the assemblies of the URL: input, output.
+    /// Reads whether the assemblies of the URL exist: input, output.
     pub async fn assemblies(&mut self) -> Result<[(u32, Presence); 2], Failure> {
         let Instances { output, input, .. } = self.thought();
         let mut found = [(input, Presence::Unknown), (output, Presence::Unknown)];
@@ -140,7 +145,7 @@ impl Board {
         Ok(found)
     }
 
-    /// Instances of the URL. For a URL without output, the usual one is used.
+    /// Returns the assemblies that the URL names. If the URL has no output assembly, the usual output assembly is used.
     fn thought(&self) -> Instances {
         let usual = if self.eip.role == EipRole::Owner { self.eip.output } else { USUAL_OUTPUT };
         Instances { output: usual, input: self.eip.input, configuration: self.eip.configuration }
@@ -161,13 +166,16 @@ impl Board {
     }
 }
 
-impl fieldbus::Board for Board {
-    fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
-        check::look(self, layers).boxed_local()
+impl BusBoard for Board {
+    const BUS: &'static str = SCHEME.bus;
+    const DEVICE: &'static str = "board";
+
+    async fn look(&mut self, layers: &mut Layers) -> Checked<Option<Image>> {
+        check::look(self, layers).await
     }
 
-    fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()> {
-        self.client.close().boxed_local()
+    async fn end(self) {
+        self.client.close().await;
     }
 }
 
@@ -176,11 +184,11 @@ const SETTING: &str = "Set_Attribute_Single";
 /// An object of a board, or one of its attributes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Object {
-    /// Class.
+    /// Number of the class.
     pub class: u32,
-    /// Instance; 0 is the class itself.
+    /// Number of the instance; 0 means the class itself.
     pub instance: u32,
-    /// Attribute; `None` means all.
+    /// Number of the attribute; `None` means all attributes.
     pub attribute: Option<u32>,
 }
 
@@ -195,12 +203,12 @@ impl Object {
         self.set(value).request()
     }
 
-    /// Name of the read service.
+    /// Returns the name of the service that reads the object.
     pub fn reading(self) -> &'static str {
         if self.attribute.is_some() { "Get_Attribute_Single" } else { "Get_Attributes_All" }
     }
 
-    /// Whether it is an assembly, which can contain the output image.
+    /// Whether the object is an assembly. An assembly can contain the output image.
     pub fn is_assembly(self) -> bool {
         self.class == ASSEMBLY
     }
@@ -223,7 +231,7 @@ impl Object {
 }
 
 impl std::fmt::Display for Object {
-    /// Format: "class 0x04 (assembly), instance 100, attribute 3".
+    /// Formats the object, for example "class 0x04 (assembly), instance 100, attribute 3".
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "class {:#04x}", self.class)?;
         if let Some((_, name)) = CLASSES.iter().find(|(class, _)| *class == self.class) {
@@ -245,10 +253,7 @@ const CLASSES: [(u32, &str); 7] = [
     (0xF6, "Ethernet link"),
 ];
 
-/// Vendor id of the manufacturer of YRCX.
-pub const MAKER: u16 = 636;
-
-/// Identity of a board. The name is untrusted.
+/// Identity of a board. Do not trust the name.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Identity {
     /// Vendor id; YRCX has 636.
@@ -257,19 +262,19 @@ pub struct Identity {
     pub device_type: u16,
     /// Product code.
     pub product: u16,
-    /// Major and minor.
+    /// Major and minor revision.
     pub revision: String,
-    /// As in `0x0001E240`.
+    /// Serial number, for example `0x0001E240`.
     pub serial: String,
     /// Product name that the board reports.
     pub name: String,
-    /// Status word, as in `0x0030`.
+    /// Status word, for example `0x0030`.
     pub status: String,
     /// Meaning of the status word.
     pub status_text: Vec<&'static str>,
     /// Whether a master owns the outputs.
     pub owned: bool,
-    /// `operational`, `standby` and so on; null if the board does not report it.
+    /// State of the board, for example `operational` or `standby`; null if the board does not report its state.
     pub state: Option<&'static str>,
 }
 
@@ -291,7 +296,7 @@ impl From<wire::Identity> for Identity {
     }
 }
 
-/// Bits of the status word: mask, value, text (volume 1, 5-2.2.1.5).
+/// Meanings of the bits of the status word: mask, value, text (volume 1, 5-2.2.1.5).
 const STATUS: [(u16, u16, &str); 14] = [
     (0x0001, 0x0001, "owned by a master"),
     (0x0004, 0x0004, "configured"),
@@ -330,17 +335,18 @@ impl Identity {
     }
 }
 
-/// Connection parameters that were found.
+/// Result of a probe: assemblies and connection parameters.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Probed {
     /// Assemblies that can be read.
     pub assemblies: Vec<Assembly>,
-    /// With `--try`: connection requests with invalid sizes, so that none opens.
+    /// Connection requests with `--try`. They have invalid sizes, so that no connection opens.
     pub attempts: Vec<Attempt>,
-    /// Parameters of a possible connection; without `--try`, derived from the readable assemblies. Null if none fits.
+    /// Parameters that a connection can use; null if none were found. Without `--try`, they are derived from the
+    /// readable assemblies.
     pub connectable: Option<Connectable>,
-    /// Whether another master owns the outputs: the board reports it in its status, or refuses a second owner with
-    /// `--try`. Some boards do only one of the two.
+    /// Whether another master owns the outputs. Either the board reports this in its status, or it refuses a second
+    /// owner when armctl uses `--try`. Some boards do only one of the two.
     pub owned: bool,
 }
 
@@ -349,53 +355,53 @@ pub struct Probed {
 pub struct Assembly {
     /// Instance number.
     pub instance: u32,
-    /// Size; null if the board does not report it.
+    /// Size in bytes; null if the board does not report it.
     pub bytes: Option<u16>,
 }
 
-/// A connection request.
+/// A connection request and its answer.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Attempt {
-    /// Assembly from the controller.
+    /// Assembly with the data from the controller.
     #[serde(rename = "in")]
     pub input: u32,
-    /// Assembly to the controller.
+    /// Assembly with the data to the controller.
     #[serde(rename = "out")]
     pub output: u32,
-    /// Assembly of the configuration; null for none.
+    /// Configuration assembly; null for none.
     pub config: Option<u32>,
-    /// Requested bytes from the controller.
+    /// Requested number of bytes from the controller.
     pub in_size: u16,
-    /// Requested bytes to the controller.
+    /// Requested number of bytes to the controller.
     pub out_size: u16,
-    /// Status code, as in `0x01/0x0109`.
+    /// Status code, for example `0x01/0x0109`.
     pub code: String,
     /// Meaning of the status code.
     pub answer: String,
-    /// Advice for this status.
+    /// Advice for this status code.
     pub advice: Option<&'static str>,
 }
 
 /// Parameters of a connection.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Connectable {
-    /// Assembly from the controller.
+    /// Assembly with the data from the controller.
     #[serde(rename = "in")]
     pub input: u32,
-    /// Assembly to the controller.
+    /// Assembly with the data to the controller.
     #[serde(rename = "out")]
     pub output: u32,
-    /// Assembly of the configuration; null for none.
+    /// Configuration assembly; null for none.
     pub config: Option<u32>,
-    /// Bytes from the controller; null if the board does not report it.
+    /// Number of bytes from the controller; null if the board does not report it.
     pub in_size: Option<u16>,
-    /// Bytes to the controller; null if the board does not report it.
+    /// Number of bytes to the controller; null if the board does not report it.
     pub out_size: Option<u16>,
     /// URL with these parameters.
     pub target: String,
 }
 
-/// Extended status: another originator owns the outputs.
+/// Extended status for "another originator owns the outputs".
 const OWNED: u16 = 0x0106;
 
 impl Probed {
@@ -423,7 +429,7 @@ impl Probed {
             let Instances { output, input, configuration } = connectable.instances;
             let config = configuration.map_or_else(|| "none".to_owned(), |instance| instance.to_string());
             let mut target = format!("eip://{}:{}?in={input}&out={output}&config={config}", eip.host, eip.port);
-            // The default sizes are omitted.
+            // The URL omits sizes that are the default.
             for (name, size) in [("in_size", connectable.input_size), ("out_size", connectable.output_size)] {
                 if let Some(size) = size.filter(|size| usize::from(*size) != Image::BYTES) {
                     target.push_str(&format!("&{name}={size}"));

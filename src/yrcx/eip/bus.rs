@@ -12,7 +12,7 @@ use armctl_controller::yrcx::alarm::Alarm;
 use armctl_frame::settings::target::eip::SCHEME;
 use armctl_transport::tap::LINKTYPE_RAW;
 
-/// EtherNet/IP.
+/// EtherNet/IP as a fieldbus.
 pub const BUS: Fieldbus = Fieldbus {
     name: SCHEME.bus,
     link_alarm: Alarm::new(12, 551),

@@ -1,6 +1,7 @@
 //! Layers of `armctl robots check` for a network board: from the host name to the image of the controller.
 
-use super::board::{Board, MAKER};
+use super::board::Board;
+use crate::fieldbus::{Checked, InLayer as _, MAKER};
 use armctl_controller::yrcx::image::Image;
 use armctl_frame::face::layers::Layers;
 use armctl_frame::settings::target::eip::Eip;
@@ -10,36 +11,31 @@ use armctl_transport::eip::probe::Presence;
 pub(super) const LAYERS: &[&str] = &["name", "board", "identity", "connection", "owner", "inputs"];
 
 /// Checks the layers. Returns the image of the controller, if it can be read.
-pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image> {
+pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
     layers.ok("name", format!("{} is {}", board.settings().host, board.address()));
-    match board.services().await {
-        Err(failure) => {
-            layers.fail("board", &failure);
-            return None;
-        }
-        Ok(None) => layers.warn(
+    match board.services().await.in_layer("board")? {
+        None => layers.warn(
             "board",
-            "it accepts sessions but lists no services",
-            "check that the address is that of a robot's network board",
+            "the board accepts sessions, but lists no services",
+            "check that the address belongs to a robot's network board",
         ),
-        Ok(Some(services)) if services.len() == 2 => layers.ok("board", services.join(", ")),
-        Ok(Some(_)) => layers.warn(
+        Some(services) if services.len() == 2 => layers.ok("board", services.join(", ")),
+        Some(_) => layers.warn(
             "board",
-            "it does not support cyclic images",
-            "check that the address is that of a robot's network board",
+            "the board does not support cyclic images",
+            "check that the address belongs to a robot's network board",
         ),
     }
-    let identity = match board.identity().await {
-        Err(failure) => {
-            layers.fail("identity", &failure);
-            return None;
-        }
-        Ok(identity) => identity,
-    };
+    let identity = board.identity().await.in_layer("identity")?;
     match &identity {
         Some(identity) => {
             let told = format!("{}, vendor {}, revision {}", identity.name, identity.vendor, identity.revision);
-            layers.judge("identity", identity.vendor == MAKER, (&told, &told), "the vendor id of a YRCX is 636");
+            layers.judge(
+                "identity",
+                identity.vendor == MAKER,
+                (&told, &told),
+                "check the address: the vendor id of a YRCX is 636",
+            );
         }
         None => layers.warn("identity", "the board has no identity", "check the address"),
     }
@@ -51,22 +47,16 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
     layers.judge(
         "owner",
         !owned,
-        ("no master", "another master, such as a PLC or a session, commands it"),
-        "to send commands, stop that connection; read-only commands work in parallel",
+        ("no master", "another master, such as a PLC or a session, commands the controller"),
+        "stop that connection to send commands; read-only commands work in parallel",
     );
-    match board.image().await {
-        Err(failure) => {
-            layers.fail("inputs", &failure);
-            None
-        }
-        Ok(image) => {
-            layers.ok("inputs", format!("assembly {} is readable", board.settings().input));
-            Some(image)
-        }
-    }
+    let image = board.image().await.in_layer("inputs")?;
+    layers.ok("inputs", format!("assembly {} is readable", board.settings().input));
+    Ok(Some(image))
 }
 
-/// Compares the URL with the assemblies of the board. It requests no connection, because that could take control.
+/// Compares the URL with the assemblies of the board. armctl requests no connection, because a connection could take
+/// control.
 fn connection(settings: &Eip, found: [(u32, Presence); 2], layers: &mut Layers) {
     let layer = "connection";
     if let Some((instance, _)) = found.iter().find(|(_, presence)| *presence == Presence::Absent) {
@@ -81,13 +71,15 @@ fn connection(settings: &Eip, found: [(u32, Presence); 2], layers: &mut Layers) 
     if differs(from, settings.input_size) || differs(to, settings.output_size) {
         let size = |size: Option<u16>| size.map_or_else(|| "?".to_owned(), |size| size.to_string());
         let (from, to) = (size(from), size(to));
-        let what = format!("the board has {from} bytes from it and {to} bytes to it; the URL has other sizes");
+        let what = format!(
+            "the board has {from} bytes from the controller and {to} bytes to the controller; the URL has other sizes"
+        );
         return layers.fail_with(layer, what, format!("set in_size={from} and out_size={to} in the URL"));
     }
     let instances = format!("in {input}, out {output}");
     if from.is_none() || to.is_none() {
-        let advice = "`yrcx eip probe --try` requests a connection, which may take control";
-        return layers.warn(layer, format!("{instances}: the board does not report their sizes"), advice);
+        let advice = "use `yrcx eip probe --try` to request a connection, which may take control";
+        return layers.warn(layer, format!("{instances}: the board does not report the sizes"), advice);
     }
-    layers.ok(layer, format!("{instances}, {} and {} bytes fit", settings.input_size, settings.output_size));
+    layers.ok(layer, format!("{instances}: the sizes {} and {} bytes fit", settings.input_size, settings.output_size));
 }

@@ -1,4 +1,4 @@
-//! Texts of EtherNet/IP messages before, during and after a connection.
+//! Descriptions of the EtherNet/IP messages before, during and after a connection.
 
 use armctl_controller::yrcx::describe::FieldNote;
 use armctl_transport::eip::status::{describe, encapsulation};
@@ -10,15 +10,15 @@ use armctl_transport::eip::wire::{
 /// A decoded message.
 #[derive(Debug)]
 pub struct EncapsulatedMessage {
-    /// One-line text.
+    /// Description in one line.
     pub text: String,
     /// Fields of the message.
     pub fields: Vec<FieldNote>,
-    /// Problem of the message.
+    /// Problem in the message, if any.
     pub problem: Option<String>,
-    /// Whether it is an answer.
+    /// Whether the message is an answer.
     pub is_answer: bool,
-    /// Ids of a connection that it opened: to the controller, from the controller.
+    /// Ids of the connection that the message opened: to the controller, from the controller.
     pub opened: Option<(u32, u32)>,
 }
 
@@ -55,11 +55,11 @@ pub fn may_be_message(bytes: &[u8]) -> bool {
     let Some(command) = bytes.first_chunk::<2>() else { return true };
     let command = Command(u16::from_le_bytes(*command));
     let is_known = command_name(command).is_some() || command == Command::SEND_UNIT_DATA;
-    // The options field is always 0.
+    // The options field of a valid message is always 0.
     is_known && bytes.get(20..HEADER_LEN).is_none_or(|options| options == [0; 4])
 }
 
-/// Decodes a message. A problem is part of the result.
+/// Decodes a message. If the message has an error, the result contains the problem.
 pub fn explain(bytes: &[u8]) -> EncapsulatedMessage {
     let frame = match Frame::parse(bytes) {
         Ok(frame) => frame,

@@ -1,4 +1,4 @@
-//! EtherNet/IP links and message sessions with the options of a URL.
+//! EtherNet/IP links and explicit messaging sessions, with the options of a URL.
 
 use std::time::Duration;
 
@@ -14,7 +14,7 @@ use armctl_transport::eip::wire::Key;
 use armctl_transport::image::{Cause, ImageLink, LinkError};
 
 pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
-    let eip = options(&at)?;
+    let eip: &Eip = at.options()?;
     if purpose == Purpose::Look && eip.role == EipRole::Owner {
         return look(&at, eip).await;
     }
@@ -22,25 +22,22 @@ pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, Link
     Ok(ImageLink::over(Class1::open(&eip.host, eip.port, settings, at.tap.into()).await?))
 }
 
-/// Opens a message session with the board.
+/// Creates the explicit messaging client for the board.
 pub(super) async fn client(at: &At<'_>) -> Result<(Client, Eip), LinkError> {
-    let eip = options(at)?;
+    let eip: &Eip = at.options()?;
     let target = resolve(&eip.host, eip.port).await?;
     Ok((Client::new(target, at.robot.timeout.value, at.tap.clone().into()), eip.clone()))
 }
 
-fn options<'a>(at: &At<'a>) -> Result<&'a Eip, LinkError> {
-    at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is not a URL of EtherNet/IP", at.bus))))
-}
-
-/// Heartbeat instances of input-only connections on boards of several manufacturers, in the order in which they are
-/// tried. A board does not report the loss of the first to its controller. The loss of the last can be reported.
+/// Heartbeat instances for input-only connections, as boards of several manufacturers use them. armctl tries them in
+/// this order. If a connection with the first instance is lost, the board does not report this to its controller. With
+/// the last instance, the board may report it.
 const HEARTBEATS: [u32; 5] = [6, 238, 254, 198, 3];
-/// Minimum interval of reads, because boards answer messages with low priority.
+/// Minimum interval of reads, because boards answer explicit messages with low priority.
 const PAUSE: Duration = Duration::from_millis(20);
 
-/// Opens a link that only reads: with messages, which have no lasting effect. If the board refuses them, with an
-/// input-only connection.
+/// Opens a read-only link. It reads with explicit messages, which have no lasting effect. If the board refuses these
+/// messages, it opens an input-only connection.
 async fn look(at: &At<'_>, eip: &Eip) -> Result<ImageLink, LinkError> {
     let (client, _) = client(at).await?;
     let assembly = Assembly { instance: eip.input, size: eip.input_size };

@@ -17,12 +17,12 @@ use armctl_transport::tap::Direction;
 /// State of the decoder.
 #[derive(Debug, Default)]
 pub struct Decoder {
-    /// Directions of TCP streams; `None` if the stream is not EtherNet/IP.
+    /// TCP streams, one entry per direction; `None` if the stream is not EtherNet/IP.
     streams: HashMap<(SocketAddr, SocketAddr), Option<Frames>>,
-    /// Pending requests by client, controller and sender context, with the packet number.
+    /// Packet numbers of pending requests, by client, controller and sender context.
     asked: HashMap<(SocketAddr, SocketAddr, [u8; 8]), u64>,
-    /// Connections whose ForwardOpen was seen, by controller and id. Ids from the controller have their client, because
-    /// the images can go to a multicast group. Both directions can have the same id.
+    /// Connections whose ForwardOpen was seen, by controller and connection id. For ids of data from the controller,
+    /// the client is stored too, because that data can go to a multicast group. Both directions can have the same id.
     forth: HashSet<(IpAddr, u32)>,
     back: HashMap<(IpAddr, u32), IpAddr>,
     flows: HashMap<(SocketAddr, SocketAddr, u32), Flow>,
@@ -34,7 +34,7 @@ struct Flow {
     /// Sequence number of the last datagram.
     sequence: u32,
     lost: u64,
-    /// Run bit of the last header.
+    /// Run bit of the last run/idle header.
     run: Option<bool>,
 }
 
@@ -71,7 +71,7 @@ impl Decoder {
         self.streams.insert(ends, Some(frames));
     }
 
-    /// Clears the state if it is too large. Decoding continues without history.
+    /// Clears the state if it is too large. Decoding then continues without history.
     fn forget_if_many(&mut self) {
         let known = [self.streams.len(), self.asked.len(), self.forth.len(), self.back.len(), self.flows.len()];
         if known.iter().any(|known| *known >= MOST) {
@@ -114,7 +114,7 @@ impl Decoder {
         });
     }
 
-    /// Handles a cyclic datagram, if it is one.
+    /// Adds the image of a datagram, if the datagram is cyclic data of a YRCX.
     fn cyclic(&mut self, message: &Message<'_>, from: SocketAddr, to: SocketAddr, images: &mut Images) {
         self.forget_if_many();
         let Ok(cyclic) = Cyclic::parse(message.bytes) else { return };
@@ -122,8 +122,8 @@ impl Decoder {
         let is_forth = self.forth.contains(&(to.ip(), cyclic.id));
         let len = cyclic.body.len();
         let known = match (is_forth, client) {
-            // If both ends are on one computer, equal ids match both directions. Then the size decides, as without a
-            // ForwardOpen.
+            // If client and controller are on one computer, both directions can have the same id. Then the size shows
+            // the direction, as for a connection whose ForwardOpen was not seen.
             (true, Some(_)) | (false, None) => None,
             (true, None) => Some(Direction::Sent),
             (false, Some(_)) => Some(Direction::Received),
@@ -133,7 +133,7 @@ impl Decoder {
                 (known.unwrap_or(Direction::Sent), Some(u32::from_le_bytes(*header) & RUN == RUN), image)
             }
             (known, _) if len == Image::BYTES => (known.unwrap_or(Direction::Received), None, cyclic.body),
-            // A heartbeat of a known connection. Anything else does not belong to a YRCX.
+            // A known connection sends a heartbeat here. Other datagrams do not belong to a YRCX.
             (Some(_), _) => {
                 images.count();
                 return;
@@ -151,7 +151,7 @@ impl Decoder {
         let flow = self.flows.entry((from, to, cyclic.id)).or_insert(flow);
         let missing = cyclic.sequence.wrapping_sub(flow.sequence).wrapping_sub(1);
         if missing > u32::MAX / 2 {
-            // Old or duplicate.
+            // The datagram is old or a duplicate.
             return;
         }
         flow.lost += u64::from(missing);

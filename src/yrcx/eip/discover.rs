@@ -8,8 +8,8 @@ use clap::Args;
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
-use super::board::{Identity, MAKER};
-use crate::fieldbus::{self, Device, Scope, fields};
+use super::board::Identity;
+use crate::fieldbus::{self, Device, MAKER, Scope, fields};
 use armctl_frame::failure::{Failure, Kind, plain};
 use armctl_frame::settings::target::eip::SCHEME;
 use armctl_transport::eip::PORT;
@@ -20,13 +20,13 @@ use armctl_transport::image::tap::Tap;
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct Search {
-    /// Ask only these addresses
+    /// Send the search only to these addresses
     #[arg(value_name = "ADDRESS[:PORT]", value_parser = address)]
     targets: Vec<SocketAddrV4>,
     /// Broadcast address; 255.255.255.255 by default (repeatable)
     #[arg(long, value_name = "ADDRESS[:PORT]", value_parser = address)]
     broadcast: Vec<SocketAddrV4>,
-    /// Address of this computer to send from
+    /// Address of this computer from which armctl searches
     #[arg(long, value_name = "ADDRESS", default_value_t = Ipv4Addr::UNSPECIFIED, hide_default_value = true)]
     bind: Ipv4Addr,
 }
@@ -54,8 +54,8 @@ impl fieldbus::Search for Search {
             }
             let tap = tap.into();
             let mut asked = list_identity(self.bind, &targets, wait, &tap).await;
-            // Without a default route, for example on a computer that is only in the robot network, each local network
-            // is asked.
+            // A computer that is only in the robot network, for example, has no default route. Then search each local
+            // network by its own broadcast address.
             if is_open && asked.as_ref().is_err_and(|error| error.kind() == ErrorKind::NetworkUnreachable) {
                 let networks = discovery::broadcasts().unwrap_or_default();
                 let networks: Vec<_> = networks.into_iter().map(|own| SocketAddrV4::new(own, PORT)).collect();
@@ -65,7 +65,7 @@ impl fieldbus::Search for Search {
             }
             let found = asked.map_err(|error| {
                 Failure::new(Kind::NoAnswer, format!("the network cannot be searched: {}", plain(&error)))
-                    .hint("select the network card with --bind or the network with --broadcast, as in 192.168.0.255")
+                    .hint("select the network card with --bind, or the network with --broadcast, such as 192.168.0.255")
             })?;
             found.into_iter().map(found_board).collect()
         }

@@ -1,48 +1,38 @@
 //! `yrcx eip identity`.
 
-use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::board;
-use super::{NO_UNIT, board_of};
-use crate::link::Yrcx;
+use super::board::{Board, Identity};
+use crate::messages::BoardReport;
+use armctl_frame::Report;
 use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::output::view::{Section, View};
-use armctl_frame::{Command, ConnectMode, Context, Report};
 
-/// Reads the identity and the services of the board (ListIdentity, ListServices).
-#[derive(Debug, Args)]
-pub struct Identify {}
-
-impl Command for Identify {
-    type Family = Yrcx;
-    type Report = Identified;
-    const ID: &'static str = "yrcx.eip.identity";
-    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
-
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Identified, Failure> {
-        context.link.no_unit(NO_UNIT)?;
-        context.link.then("messages that read the identity and the services of the board");
-        let board = board_of(context.link)?;
-        let address = board.address().to_string();
-        let Some(identity) = board.identity().await? else {
-            return Err(Failure::new(Kind::Malformed, format!("{}: the board has no identity", context.robot.label()))
-                .hint("check that the address is that of an EtherNet/IP board"));
-        };
-        Ok(Identified { address, identity, services: board.services().await? })
-    }
-}
-
-/// Identity and services of the board.
+/// Identity and services of the board (ListIdentity, ListServices).
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Identified {
     /// TCP address of the board.
     address: String,
     #[serde(flatten)]
-    identity: board::Identity,
+    identity: Identity,
     /// Services that the board lists; null if it lists none.
     services: Option<Vec<&'static str>>,
+}
+
+impl BoardReport for Identified {
+    type Board = Board;
+    const ID: &'static str = "yrcx.eip.identity";
+    const MESSAGES: &'static str = "messages that read the identity and the services of the board";
+
+    async fn read(board: &mut Board) -> Result<Self, Failure> {
+        let address = board.address().to_string();
+        let Some(identity) = board.identity().await? else {
+            return Err(Failure::new(Kind::Malformed, format!("{}: the board has no identity", board.label()))
+                .hint("check that the address belongs to an EtherNet/IP board"));
+        };
+        Ok(Self { address, identity, services: board.services().await? })
+    }
 }
 
 impl Report for Identified {

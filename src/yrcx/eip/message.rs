@@ -5,8 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::json;
 
-use super::board::{Object, shown};
-use super::{NO_UNIT, board_of};
+use super::board::{Board, Object, shown};
 use crate::link::Yrcx;
 use armctl_controller::Risk;
 use armctl_controller::text;
@@ -20,12 +19,12 @@ use armctl_frame::{Command, ConnectMode, Context, Report};
 /// Reads an attribute of an object, or all its attributes (Get_Attribute_Single, Get_Attributes_All).
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Class 1 is the identity, 4 the assemblies (attribute 3 the data, 4 the size), 0xF5 the TCP/IP \
-                  interface, 0xF6 the Ethernet link. Instance 0 is the class itself. The objects depend on the board; \
-                  the manuals of the controller do not list them."
+    after_help = "Class 1 is the identity, class 4 the assemblies (attribute 3 is the data, attribute 4 the size), \
+                  class 0xF5 the TCP/IP interface, class 0xF6 the Ethernet link. Instance 0 is the class itself. The \
+                  objects depend on the board; the manuals of the controller do not list them."
 )]
 pub struct Get {
-    /// Number of the class, as in 4 or 0xF5
+    /// Number of the class, for example 4 or 0xF5
     #[arg(value_parser = number)]
     class: u32,
     /// Number of the instance
@@ -43,12 +42,12 @@ impl Command for Get {
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Value, Failure> {
-        context.link.no_unit(NO_UNIT)?;
+        context.link.no_unit_of::<Board>()?;
         let object = Object { class: self.class, instance: self.instance, attribute: self.attribute };
         let about = format!("{} of {object}", object.reading());
         let asked = object.get_bytes();
         context.link.plan_frame(json!({ "hex": text::hex(&asked), "about": about }))?;
-        let bytes = board_of(context.link)?.get(object).await?;
+        let bytes = context.link.board::<Board>()?.get(object).await?;
         context.link.tell_message(&asked, &bytes, &about);
         Ok(Value::of(object, &bytes))
     }
@@ -57,11 +56,12 @@ impl Command for Get {
 /// Writes an attribute of an object (Set_Attribute_Single).
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The bytes are sent unchanged: low byte first, and a text after its length. The output assembly \
-                  contains the inputs of the controller. Writing it can move the robot and needs a confirmation."
+    after_help = "armctl sends the bytes unchanged: low byte first, and a text after its length. The output assembly \
+                  contains the inputs of the controller. A write to the output assembly can move the robot, and needs \
+                  a confirmation."
 )]
 pub struct Set {
-    /// Number of the class, as in 4 or 0xF5
+    /// Number of the class, for example 4 or 0xF5
     #[arg(value_parser = number)]
     class: u32,
     /// Number of the instance
@@ -70,7 +70,7 @@ pub struct Set {
     /// Number of the attribute
     #[arg(value_parser = number)]
     attribute: u32,
-    /// Its bytes in hexadecimal, as in 0A00
+    /// Bytes of the value in hexadecimal, for example 0A00
     #[arg(value_name = "HEX", value_parser = bytes)]
     data: Bytes,
 }
@@ -96,18 +96,18 @@ impl Command for Set {
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
-        context.link.no_unit(NO_UNIT)?;
+        context.link.no_unit_of::<Board>()?;
         let object = self.object();
         let (asked, about) = (object.set_bytes(&self.data.0), format!("Set_Attribute_Single of {object}"));
         context.link.plan_frame(json!({ "hex": text::hex(&object.get_bytes()), "about": OLD_VALUE })).known()?;
         context.link.plan_frame(json!({ "hex": text::hex(&asked), "about": about }))?;
         context.link.authorize("yrcx.eip.set", self.risk())?;
-        let old = match board_of(context.link)?.get(object).await {
+        let old = match context.link.board::<Board>()?.get(object).await {
             Ok(bytes) => Some(text::hex(&bytes)),
             Err(failure) if failure.kind == Kind::Refused => None,
             Err(failure) => return Err(nothing_written(failure)),
         };
-        board_of(context.link)?.set(object, &self.data.0).await?;
+        context.link.board::<Board>()?.set(object, &self.data.0).await?;
         context.link.tell_message(&asked, &[], &about);
         let words = format!("set {object} to {}", shown(&self.data.0));
         let new = NewValue::of("attribute", text::hex(&self.data.0), words);
@@ -127,25 +127,25 @@ fn bytes(text: &str) -> Result<Bytes, String> {
     }
 }
 
-/// Parses an object number: 16 bits, decimal or hexadecimal with 0x.
+/// Parses the number of a class, instance or attribute: 16 bits, decimal or hexadecimal with 0x.
 fn number(text: &str) -> Result<u32, String> {
     typed::unsigned::<u16>(text)
         .map(u32::from)
-        .ok_or_else(|| format!("'{text}' is not a number from 0 to 65535, as in 4 or 0xF5"))
+        .ok_or_else(|| format!("'{text}' is not a number from 0 to 65535, such as 4 or 0xF5"))
 }
 
-/// Value of an attribute.
+/// Value of an attribute, or of all attributes of an object.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Value {
-    /// `class 0x04 (assembly), instance 100, attribute 3`.
+    /// Object, for example `class 0x04 (assembly), instance 100, attribute 3`.
     object: String,
-    /// The bytes, unchanged.
+    /// The bytes in hexadecimal, unchanged.
     hex: String,
     /// Number of bytes.
     bytes: usize,
     /// The bytes as an unsigned number, low byte first; null unless there are 1, 2, 4 or 8 bytes.
     number: Option<u64>,
-    /// The bytes as a text after its length; null if they are not a text. Untrusted.
+    /// The bytes as a text with a length byte in front; null if they are not such a text. Do not trust the text.
     text: Option<String>,
 }
 
@@ -183,8 +183,8 @@ mod tests {
 
     #[test]
     fn messages_have_the_bytes_of_the_specification() {
-        // Volume 1, appendix C-1: service, path length in words, then class, instance and attribute in 8 bits if they
-        // fit.
+        // Format of volume 1, appendix C-1: service, then the path length in words, then class, instance and attribute.
+        // Each number has 8 bits if it fits.
         let hex = |line: &[&str]| frames(line).unwrap()[0]["hex"].as_str().unwrap().to_owned();
         assert_eq!(hex(&["eip", "get", "4", "100", "3"]), "0e03200424643003");
         assert_eq!(hex(&["eip", "get", "0xF5", "1"]), "010220f52401");

@@ -4,8 +4,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::board::{self, Probed, warned};
-use super::{NO_UNIT, board_of};
+use super::board::{Board, Identity, Probed, warned};
 use crate::link::Yrcx;
 use armctl_controller::Risk;
 use armctl_frame::failure::{Failure, Kind};
@@ -13,16 +12,16 @@ use armctl_frame::output::csv::RowsOf;
 use armctl_frame::output::view::{Cell, Section, Table, View};
 use armctl_frame::{Command, ConnectMode, Context, Report};
 
-/// Finds the assemblies of the board: reads every assembly from 1 to 255. No connection is requested.
+/// Finds the assemblies of the board: armctl reads every assembly from 1 to 255. It requests no connection.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Use the resulting target with -t or `armctl robots add`.\n\nWith --try, armctl also requests owner \
-                  connections with invalid sizes, starting with the instances of the URL. The board refuses them with \
-                  a reason that identifies instances and sizes. If the board accepts one, armctl commands the \
-                  controller until the connection closes, and the close stops the robot."
+                  connections with invalid sizes, starting with the instances of the URL. The board refuses these \
+                  connections with a reason that identifies instances and sizes. If the board accepts a connection, \
+                  armctl commands the controller until the connection closes. The close stops the robot."
 )]
 pub struct Probe {
-    /// Request connections to find fitting parameters
+    /// Request connections to find the parameters that the board accepts
     #[arg(long = "try")]
     tries: bool,
 }
@@ -31,23 +30,24 @@ impl Command for Probe {
     type Family = Yrcx;
     type Report = ProbeReport;
     const ID: &'static str = "yrcx.eip.probe";
-    const INTENT: &'static str = "request owner connections that the board should refuse; if the board accepts one, \
-                                  armctl commands the controller, and the end of the connection stops the robot";
+    const INTENT: &'static str = "request owner connections that the board should refuse; if the board accepts a \
+                                  connection, armctl commands the controller, and the end of the connection stops the \
+                                  robot";
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     fn risk(&self) -> Risk {
-        // A board can accept a connection that it should refuse.
+        // With --try, a board may accept a connection that it should refuse.
         if self.tries { Risk::Motion } else { Risk::Read }
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<ProbeReport, Failure> {
-        context.link.no_unit(NO_UNIT)?;
+        context.link.no_unit_of::<Board>()?;
         context.link.then("messages that read the identity and the assemblies of the board");
         if self.tries {
             context.link.then("requests for owner connections (ForwardOpen) with invalid sizes");
             context.link.authorize(Self::ID, self.risk())?;
         }
-        let board = board_of(context.link)?;
+        let board: &mut Board = context.link.board()?;
         let identity = board.identity().await?;
         let probed =
             if self.tries { board.probe(identity.as_ref()).await? } else { board.survey(identity.as_ref()).await? };
@@ -58,8 +58,8 @@ impl Command for Probe {
 /// Result of the probe.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ProbeReport {
-    /// Null if the board does not report it.
-    identity: Option<board::Identity>,
+    /// Identity of the board; null if the board does not report it.
+    identity: Option<Identity>,
     #[serde(flatten)]
     probed: Probed,
     #[serde(skip)]
@@ -104,7 +104,8 @@ impl Report for ProbeReport {
             if self.has_tried {
                 failure.hint("find the instances in the board's EDS file and set in, out and config in the URL")
             } else {
-                failure.hint("when the cell is clear of people, add --try to request connections from the board")
+                failure
+                    .hint("add --try to request connections from the board, but only when the cell is clear of people")
             }
         })
     }

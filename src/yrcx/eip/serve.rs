@@ -1,14 +1,12 @@
 //! Server for a simulated controller as an EtherNet/IP adapter.
 
 use std::net::SocketAddrV4;
-use std::path::Path;
 
 use clap::Args;
 
 use super::simulated::{self, Controller, FAULTS};
-use crate::fieldbus::{Operator, Serve, Served};
+use crate::fieldbus::{Operator, Serve, Served, ToServe};
 use crate::simulated::{faults, faults_of_option};
-use armctl_controller::yrcx::simulator::Start;
 use armctl_frame::failure::Failure;
 use armctl_frame::serve::{address, bind_failure};
 use armctl_frame::settings::target::eip::SCHEME;
@@ -19,7 +17,7 @@ use armctl_transport::eip::{IO_PORT, PORT};
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct ServeArgs {
-    /// EtherNet/IP: address to listen on, with the TCP port of sessions; port 0 lets the system choose
+    /// EtherNet/IP: address to listen on, with the TCP port of sessions; with port 0, the system chooses a port
     #[arg(long, alias = "listen", value_name = "ADDRESS[:PORT]", default_value = "127.0.0.1:44818", value_parser = listen)]
     bind: SocketAddrV4,
     /// EtherNet/IP: UDP port of images; default: 2222, or a free port if the system chooses the session port
@@ -35,13 +33,7 @@ fn listen(text: &str) -> Result<SocketAddrV4, String> {
 }
 
 impl Serve for ServeArgs {
-    fn serve(
-        &self,
-        _simulator: Option<&str>,
-        start: Start,
-        _link: Option<&Path>,
-        faults: Option<&str>,
-    ) -> Result<Served, Failure> {
+    fn serve(&self, ToServe { start, faults, .. }: ToServe<'_>) -> Result<Served, Failure> {
         let io_port = self.io_port.unwrap_or(if self.bind.port() == 0 { 0 } else { IO_PORT });
         let listen = Listen { address: *self.bind.ip(), port: self.bind.port(), io_port };
         let server = simulated::serve(start, listen, faults_of_option(faults, &FAULTS)?).map_err(|error| {

@@ -35,7 +35,7 @@ type Faults = SimulatorFaults<FaultSpec, AdapterFault>;
 pub const FAULTS: FaultNames<AdapterFault> =
     FaultNames { link: &["drop", "dup", "delay", "reorder", "corrupt", "seed"], device: &AdapterFault::ALL };
 
-/// Input, output and configuration assembly: the numbers of an older controller of the manufacturer.
+/// Input, output and configuration assembly. An older controller of the manufacturer has these numbers.
 const INPUT: u32 = 100;
 const OUTPUT: u32 = 150;
 const CONFIGURATION: u32 = 1;
@@ -56,7 +56,7 @@ pub fn set_faults(server: &Server<Controller>, faults: Faults) {
     server.with(|adapter, _| adapter.set_fault(faults.device));
 }
 
-/// State "operational" (volume 2, 2-4.2.2).
+/// Code of the state "operational" (volume 2, 2-4.2.2).
 const OPERATIONAL: u8 = 3;
 
 fn identity() -> Identity {
@@ -79,7 +79,7 @@ pub struct Controller(pub Simulated);
 
 impl Application for Controller {
     fn image_out(&mut self, now: Duration, _instance: u32, image: &[u8], run: bool) {
-        // Ignore the image of an idle master.
+        // The controller ignores the image of a master that is idle.
         if run {
             self.0.input(now, Some(image));
         }

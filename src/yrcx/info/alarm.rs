@@ -1,4 +1,4 @@
-//! `yrcx info alarm` (4.7.17), and alarms in answers.
+//! Command `yrcx info alarm` (4.7.17), and the conversion of alarms in answers.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -10,7 +10,7 @@ use armctl_controller::yrcx::value::{Key, Values};
 use armctl_frame::robot::alarm::{Alarm as Told, AlarmEntry, Alarms, ExtraColumns, Kind, Nothing, Row, Source};
 
 one_row! {
-    /// Reads the last alarm of a remote command.
+    /// Reads the last alarm that a remote command caused.
     Alarm(self) "yrcx.info.alarm" -> Alarms<Part> {}
     gives Command::LatestAlarm,
     done as answer => {
@@ -22,9 +22,9 @@ one_row! {
 /// Source of an alarm.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Part {
-    /// Robot, controller or task.
+    /// Robot, controller or task that the alarm concerns.
     place: Option<String>,
-    /// Axis, motor, option slot or program task.
+    /// Axis, motor, option slot or program task that the alarm concerns.
     part: Option<String>,
 }
 
@@ -34,7 +34,7 @@ impl ExtraColumns for Part {
     }
 }
 
-/// Alarm in an answer; none if the number is 0.0.
+/// Takes the alarm from an answer; `None` if the alarm number is 0.0.
 pub fn entry(values: &Values, kind: Kind) -> Option<AlarmEntry<Part>> {
     let number = |key| values.int(key).and_then(|number| u16::try_from(number).ok()).unwrap_or_default();
     let found = alarm::Alarm::new(number(Key::AlarmGroup), number(Key::AlarmCategory));
@@ -44,7 +44,7 @@ pub fn entry(values: &Values, kind: Kind) -> Option<AlarmEntry<Part>> {
     let place = |kind, count| {
         let kind = shown(Command::LatestAlarm, values, kind)?;
         match values.int(count) {
-            // No number means all, or a task without a number.
+            // Without a number, the source is all of this kind, or a task without a number.
             Some(0) | None => Some(kind),
             Some(number) => Some(format!("{kind} {number}")),
         }
@@ -53,7 +53,7 @@ pub fn entry(values: &Values, kind: Kind) -> Option<AlarmEntry<Part>> {
     Some(AlarmEntry { alarm: Told { kind: Some(kind), ..told(found) }, own: part })
 }
 
-/// Alarm text from the built-in table, if known.
+/// Adds text, cause and remedy from the built-in table to an alarm number.
 pub fn told(alarm: alarm::Alarm) -> Told {
     let known = alarm.known();
     let line = |lines: &[&str]| Some(lines.join("; ")).filter(|line| !line.is_empty());

@@ -18,7 +18,8 @@ use armctl_frame::{Command, Context, Report};
 
 /// Reads the selected and the current hand system.
 #[derive(Debug, Args)]
-#[command(after_help = "A robot without axes reports `right` for both. `yrcx arm select` changes the selection.")]
+#[command(after_help = "A robot without axes reports `right` for both hand systems. `yrcx arm select` changes the \
+                        selection.")]
 pub struct Arm {}
 
 impl Command for Arm {
@@ -51,9 +52,9 @@ impl Command for Arm {
 /// Hand systems.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Arms {
-    /// `right` or `left`: the system for motions.
+    /// Hand system selected for motions: `right` or `left`.
     selected: Option<String>,
-    /// `right` or `left`: the present system of the arm.
+    /// Hand system that the arm has now: `right` or `left`.
     current: Option<String>,
     /// Values that could not be read, and the reason.
     errors: Vec<ItemError>,

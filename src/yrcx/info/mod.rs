@@ -37,7 +37,7 @@ commands! {
         Line(tasks::Line),
         /// Boards in the option slots
         Slots(slots::Slots),
-        /// The last alarm of a remote command
+        /// The last alarm that a remote command caused
         Alarm(alarm::Alarm),
     }
 }

@@ -13,10 +13,10 @@ use armctl_frame::failure::Failure;
 use armctl_frame::output::view::{Cell, Table, Tone, View};
 use armctl_frame::{Command, Context, Report};
 
-/// Reads the origin return status: of all robots together, or of each axis of the robot of --unit.
+/// Reads the origin return status: with --unit, of each axis of that robot; without --unit, of all robots together.
 #[derive(Debug, Args)]
 pub struct Origin {
-    /// Only axes of the robot of --unit with this type of motor
+    /// Read only the axes with this type of motor (needs --unit)
     #[arg(long, value_name = "TYPE", value_parser = ["incremental", "absolute"])]
     motor: Option<String>,
 }
@@ -30,7 +30,9 @@ impl Command for Origin {
         let link = context.link;
         let draft = link.draft(table::Command::OriginStatus)?.with_some(Key::MotorType, self.motor.clone());
         let order = draft.build().map_err(|error| match error.place.key {
-            Some(Key::MotorType) => Failure::usage("--motor needs one robot").hint("select the robot, as in --unit 1"),
+            Some(Key::MotorType) => {
+                Failure::usage("--motor needs one robot").hint("select the robot, such as --unit 1")
+            }
             _ => invalid_words(error),
         })?;
         let values = link.ask(&order).await?.values;
@@ -46,19 +48,19 @@ impl Command for Origin {
 /// Origin return status.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Origins {
-    /// `complete` or `incomplete`, of all robots together; null with --unit.
+    /// Status of all robots together: `complete` or `incomplete`; null with --unit.
     system: Option<String>,
-    /// Axes of the robot of --unit; empty without it.
+    /// Axes of the robot that --unit selects; empty without --unit.
     axes: Vec<AxisOrigin>,
 }
 
 /// Origin return status of an axis.
 #[derive(Debug, Serialize, JsonSchema)]
 struct AxisOrigin {
-    /// 1 to 4.
+    /// Axis number, 1 to 4.
     #[serde(rename = "axis_number")]
     axis: usize,
-    /// `complete`, `incomplete`, or `not applicable`.
+    /// Status of the axis: `complete`, `incomplete`, or `not applicable`.
     state: String,
 }
 

@@ -80,7 +80,7 @@ fn milliseconds(time: Duration) -> u64 {
 pub struct Place {
     #[serde(flatten)]
     positions: Positions,
-    /// Time since the start of the output; null unless the output is continuous.
+    /// Time in ms since the continuous output started; null for a single reading.
     elapsed_ms: Option<u64>,
 }
 

@@ -1,4 +1,5 @@
-//! Reports from a single answer: `yrcx info version` (4.7.1), `system` (4.7.2), `speed` (4.7.8), `inch` (4.7.16).
+//! Commands whose report comes from a single answer: `yrcx info version` (4.7.1), `system` (4.7.2), `speed` (4.7.8),
+//! `inch` (4.7.16).
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -27,7 +28,7 @@ one_row! {
     System(self) "yrcx.info.system" -> Models {}
     gives Command::System,
     done as answer => {
-        // 0 means not present.
+        // The controller reports 0 for a robot or axis that is not present.
         let model = |key| answer.values.int(key).filter(|number| *number != 0);
         Models { robot_type: model(Key::RobotType), axis_types: Key::AXES.map(model) }
     };
@@ -36,7 +37,7 @@ one_row! {
     Speed(self) "yrcx.info.speed" -> Speeds {}
     gives Command::SpeedStatus,
     done as answer => {
-        // A robot without axes reports 0.
+        // The controller reports 0 for a robot without axes.
         let speed = |key| answer.values.int(key).filter(|percent| *percent != 0);
         Speeds {
             manual_speed_percent: speed(Key::ManualSpeed),
@@ -45,7 +46,7 @@ one_row! {
         }
     };
 
-    /// Reads the inching amount.
+    /// Reads the inching distance.
     Inch(self) "yrcx.info.inch" -> Amount {}
     gives Command::InchAmountGet,
     done as answer => {
@@ -61,9 +62,9 @@ const DRIVERS: [Key; 4] = [Key::DriverVersion1, Key::DriverVersion2, Key::Driver
 pub struct Versions {
     host_version: Option<String>,
     host_revision: Option<String>,
-    /// FPGA of the driver.
+    /// Version of the FPGA of the driver.
     fpga_version: Option<String>,
-    /// Drivers of axes 1 to 4.
+    /// Versions of the drivers of axes 1 to 4.
     driver_versions: [Option<String>; 4],
 }
 
@@ -83,11 +84,11 @@ impl Report for Versions {
     }
 }
 
-/// Model numbers; null if not present.
+/// Model numbers; null for a robot or axis that is not present.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Models {
     robot_type: Option<i32>,
-    /// Axes 1 to 4.
+    /// Model numbers of axes 1 to 4.
     axis_types: [Option<i32>; 4],
 }
 
@@ -124,12 +125,12 @@ impl Report for Speeds {
     }
 }
 
-/// Inching distance: one number, in the unit of the inching command.
+/// Inching distance: one number, whose unit depends on the inching command.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Amount {
-    /// For an axis.
+    /// Distance for a single axis, in pulses.
     amount_pulses: i32,
-    /// Along a Cartesian or tool axis.
+    /// Distance along a Cartesian or tool axis, in mm.
     amount_mm: f64,
 }
 

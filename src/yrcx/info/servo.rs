@@ -16,7 +16,7 @@ one_row! {
     done as answer => Servos { axes: servos(&answer.values) };
 }
 
-/// The axes of a robot.
+/// Servos of a robot.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Servos {
     axes: Vec<AxisServo>,
@@ -25,10 +25,10 @@ pub struct Servos {
 /// The servo of an axis.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct AxisServo {
-    /// 1 to 4.
+    /// Axis number, 1 to 4.
     #[serde(rename = "axis_number")]
     pub axis: usize,
-    /// `servo` (on), `brake` (off), `free` (off, brake released).
+    /// State: `servo` (servo on), `brake` (servo off, brake applied), `free` (servo off, brake released).
     pub state: String,
 }
 
@@ -40,7 +40,7 @@ pub fn servos(values: &Values) -> Vec<AxisServo> {
 }
 
 impl AxisServo {
-    /// State with its tone.
+    /// Returns the state as a cell in its color.
     pub fn cell(&self) -> Cell {
         let tone = match &self.state[..] {
             "servo" => Tone::Good,

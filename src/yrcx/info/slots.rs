@@ -39,11 +39,11 @@ pub struct Modules {
 /// An option slot.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Slot {
-    /// 1 to 4.
+    /// Slot number, 1 to 4.
     slot: usize,
     /// Name of the board; `none` if the slot is empty.
     module: String,
-    /// Code from the controller.
+    /// Code that the controller reports.
     code: String,
 }
 

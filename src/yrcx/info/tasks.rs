@@ -1,4 +1,4 @@
-//! `yrcx info tasks` (4.7.5) and `yrcx info line` (4.7.6): eight tasks per command.
+//! Commands `yrcx info tasks` (4.7.5) and `yrcx info line` (4.7.6). One remote command reads eight tasks.
 
 use clap::Args;
 use schemars::JsonSchema;
@@ -19,10 +19,10 @@ use armctl_frame::output::view::{Cell, Tone};
 use armctl_frame::robot::item::{Columns, Item, Items};
 use armctl_frame::{Command, Context};
 
-/// Tasks of one command.
+/// Tasks in the answer of one remote command: half of the 16 tasks.
 const HALF: [Key; 8] = [Key::Task1, Key::Task2, Key::Task3, Key::Task4, Key::Task5, Key::Task6, Key::Task7, Key::Task8];
 
-/// Selection of tasks.
+/// Argument that selects tasks.
 #[derive(Debug, Args)]
 struct Chosen {
     /// Tasks, 1 to 16: 3, 1..8 or 1,9; default: all existing tasks
@@ -48,7 +48,7 @@ impl Chosen {
         self.tasks.is_empty() || self.tasks.iter().any(|Span(first, last)| (*first..=*last).contains(&task))
     }
 
-    /// Reads the halves with a selected task, and returns the tasks with their values.
+    /// Reads the halves that contain a selected task, and returns the tasks with their values.
     async fn read<V: Clone>(
         &self,
         context: Context<'_, Yrcx>,
@@ -67,12 +67,12 @@ impl Chosen {
         if let ([half], [Err(failure)]) = (&halves[..], &answers.outcomes[..]) {
             return Err(Failure { message: format!("{}: {}", told(half), failure.message), ..failure.clone() });
         }
-        // The outcome of a half applies to each of its tasks.
+        // The failure or answer of a half applies to each task in it.
         let (mut items, mut asked) = (Vec::new(), 0);
         for (at, (half, outcome)) in halves.iter().zip(&answers.outcomes).enumerate() {
             for (place, key) in HALF.into_iter().enumerate().filter(|(place, _)| self.has(task(*half, *place))) {
                 let read = outcome.clone().map(|values| of(&values, key));
-                // Of all tasks, those that exist are reported.
+                // If the user selected no tasks, armctl reports only the tasks that exist.
                 if self.tasks.is_empty() && matches!(read, Ok(None)) {
                     continue;
                 }
@@ -138,9 +138,9 @@ impl Command for Line {
 /// Current line of a task.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct TaskLine {
-    /// From 1.
+    /// Line number, starting with 1.
     line: i32,
-    /// Whether it is a line of the COMMON program.
+    /// Whether the line is in the COMMON program.
     in_common: bool,
 }
 

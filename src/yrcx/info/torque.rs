@@ -16,7 +16,7 @@ one_row! {
         /// Reference of the percentage
         #[arg(long, value_name = "TORQUE", default_value = "max")]
         of: Reference,
-        /// Axes, as in 1,3; default: all
+        /// Axes, for example 1,3; default: all
         #[arg(long, value_name = "AXES", value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=4))]
         axes: Vec<u8>,
     }
@@ -49,7 +49,7 @@ pub enum Reference {
 /// Torques of the selected axes.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Torques {
-    /// Reference for 100 %: the maximum or the rated torque.
+    /// Torque that is 100 %: the maximum or the rated torque.
     of: Reference,
     axes: Vec<AxisTorque>,
 }
@@ -57,10 +57,10 @@ pub struct Torques {
 /// The torque of an axis.
 #[derive(Debug, Serialize, JsonSchema)]
 struct AxisTorque {
-    /// 1 to 4.
+    /// Axis number, 1 to 4.
     #[serde(rename = "axis_number")]
     axis: u8,
-    /// 0 also for an axis that does not exist.
+    /// Torque in percent; also 0 for an axis that does not exist.
     torque_percent: i32,
 }
 

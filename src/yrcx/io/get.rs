@@ -16,8 +16,8 @@ use armctl_frame::{Command, ConnectMode, Context};
 #[derive(Debug, Args)]
 #[command(after_help = "While a remote command runs, the words contain the command and its answer.")]
 pub struct Get {
-    /// Names or numbers, as in servo-on, 20 or SO(157); SI20 for an input of the controller; SOW2, SOD4, SIW2, SID4
-    /// for words; SO20..SO37 for a range; names of robots.toml. Default: all dedicated outputs, and the
+    /// Names or numbers, for example servo-on, 20 or SO(157). SI20 is an input of the controller; SOW2, SOD4, SIW2,
+    /// SID4 are words; SO20..SO37 is a range. Names of robots.toml are allowed. Default: all dedicated outputs, and the
     /// general-purpose outputs that are on
     #[arg(value_name = "SIGNAL", value_delimiter = ',', value_parser = readables, add = complete::OUTPUT)]
     signals: Vec<Series<Readable>>,

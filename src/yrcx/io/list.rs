@@ -10,7 +10,7 @@ use armctl_frame::names;
 use armctl_frame::robot::io::{Filter, Signals};
 use armctl_frame::{Command, ConnectMode, Context};
 
-/// Reads all signals. Only the client that sets the inputs can read them, so they are listed only in a session.
+/// Reads all signals. Inputs are listed only in a session, because only the client that sets the inputs can read them.
 #[derive(Debug, Args)]
 pub struct List {
     #[command(flatten)]

@@ -14,8 +14,8 @@ use armctl_frame::{OfflineCommand, Report};
 /// Prints the address table.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Without start addresses, they count from m (read by the master) and n (written by the master), as in \
-                  the manual. Use -o csv or --json to save the table."
+    after_help = "Without start addresses, the addresses count from m (read by the master) and n (written by the \
+                  master), as in the manual. Use -o csv or --json to save the table."
 )]
 pub struct Map {
     /// Fieldbus: devicenet, devicenet-compact, ethernet-ip, profibus, profinet
@@ -47,19 +47,19 @@ pub struct Addresses {
     rows: Vec<Row>,
 }
 
-/// A word, a byte or a bit.
+/// A row of the table: a word, a byte or a bit.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Row {
-    /// `from_controller` or `to_controller`.
+    /// Direction: `from_controller` or `to_controller`.
     direction: &'static str,
-    /// Address as the master counts.
+    /// Address in the counting of the master.
     address: String,
-    /// Bits of the address, as in `3` or `0 - 7`.
+    /// Bits of the address, for example `3` or `0 - 7`.
     bits: String,
-    /// As in `SI(20) to SI(27)`; empty if reserved.
+    /// Signals, for example `SI(20) to SI(27)`; empty if reserved.
     signal: String,
     meaning: String,
-    /// Whether its use is forbidden.
+    /// Whether the manual forbids the use of this address.
     reserved: bool,
 }
 

@@ -29,12 +29,12 @@ commands! {
         Pulse(set::Pulse),
         /// Show signal changes until Ctrl-C
         Watch(Watch<watch::Outputs>),
-        /// Fieldbus address table of words and signals, for the PLC engineer
+        /// Show the fieldbus addresses of words and signals, for the PLC engineer
         Map(Offline<map::Map>),
     }
 }
 
-/// A signal or a word as typed.
+/// A signal or a word that the user named.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Readable {
     Signal(Signal),
@@ -59,7 +59,7 @@ impl std::fmt::Display for Readable {
     }
 }
 
-/// Parses signals and words, a range of them, or a name.
+/// Parses a signal, a word, a range of them, or a name that the user assigned.
 fn readables(text: &str) -> Result<Series<Readable>, String> {
     names::parse_or_name(&[Kind::Signal], "SO(20)", text, Series::reader(readable))
 }
@@ -71,21 +71,21 @@ fn readable(text: &str) -> Result<Readable, String> {
     }
 }
 
-/// Parses a signal: `servo-on`, `20` and `SO(20)` are outputs of the controller. `SI20` is an input, and so is a name
-/// that only inputs have, such as `stop`.
+/// Parses a signal. `servo-on`, `20` and `SO(20)` are outputs of the controller. `SI20` is an input. A name that only
+/// inputs have, for example `stop`, is an input too.
 fn signal(text: &str) -> Result<Signal, String> {
     let is_input = text.get(..2).is_some_and(|prefix| prefix.eq_ignore_ascii_case("SI"));
     let side = if is_input { Side::Input } else { Side::Output };
     Signal::parse(side, text).or_else(|error| input(text).map_err(|_| error.to_string()))
 }
 
-/// Parses an input of the controller, by number or name. Returns the name if one was typed.
+/// Parses an input of the controller. Also returns the name, if the user typed a name that the user assigned.
 fn named_input(text: &str) -> Result<(Signal, Option<String>), String> {
     let signal = names::parse_or_name(&[Kind::Signal], ANY_INPUT, text, input)?;
     Ok((signal, input(text).is_err().then(|| text.to_owned())))
 }
 
-/// Placeholder for a name that is not resolved yet.
+/// Input that stands for a name as long as the name is not resolved.
 const ANY_INPUT: &str = "SI(20)";
 
 /// Text of a signal: name and number.
@@ -102,7 +102,8 @@ fn input(text: &str) -> Result<Signal, String> {
 fn item(signal: Signal, names: &Names) -> IoItem {
     let dedicated = signal.dedicated();
     let address = signal.to_string();
-    // A name that an input and an output share means the output when typed.
+    // If an input and an output have the same name, the name means the output. The input is then reported by its
+    // address.
     let is_one = |name: &&str| self::signal(name).is_ok_and(|typed| typed == signal);
     let name = dedicated.map(|dedicated| dedicated.name).filter(is_one);
     IoItem {
@@ -119,7 +120,7 @@ fn row(signal: Signal, image: &Image, names: &Names) -> IoRow {
     IoRow::state(item(signal, names), Ok(signal.is_on(image)))
 }
 
-/// General-purpose word in reports; `image` is its source.
+/// Describes a general-purpose word for reports; `image` contains the word.
 fn word_item(register: Register, image: Option<&Image>, names: &Names) -> IoItem {
     let name = register.to_string();
     let is_in_command = image.is_some_and(|image| image.command()[0] != 0);

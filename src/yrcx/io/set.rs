@@ -27,7 +27,7 @@ use armctl_frame::{Command, Context};
                   remote command uses the words while it runs, then restores them."
 )]
 pub struct Set {
-    /// Name or number and state, as in servo-on=on or 20=off; or a word and its value, as in SIW2=5 or SID4=0x1F
+    /// Signal and state, for example servo-on=on or 20=off; or word and value, for example SIW2=5 or SID4=0x1F
     #[arg(value_name = "SIGNAL=STATE", required = true, value_parser = change, add = complete::INPUT_STATE)]
     changes: Vec<Change>,
 }
@@ -35,7 +35,7 @@ pub struct Set {
 /// A change of an input or a word.
 #[derive(Debug, Clone)]
 enum Change {
-    /// With the name, if one was typed.
+    /// A signal; `name` is the name that the user assigned and typed, if any.
     Signal {
         signal: Signal,
         name: Option<String>,
@@ -69,14 +69,14 @@ fn change(text: &str) -> Result<Change, String> {
             Err(format!("only the controller sets {register}; armctl can set SIW and SID"))
         }
         Settable::Word(register) => Ok(Change::Word { register, value: register.value(state)? }),
-        // The meaning of a name decides what can be set.
+        // The name is not resolved yet, so armctl cannot yet check the state.
         Settable::Signal(signal) if is_open => Ok(Change::Signal { signal, name, on: false }),
         Settable::Signal(signal) => Ok(Change::Signal { signal, name, on: typed::state(state)? }),
     }
 }
 
 impl Change {
-    /// Result of the change; `shown` is the image before it.
+    /// Returns the result of the change; `shown` is the image before the change.
     fn written(&self, shown: Option<&Image>, names: &Names) -> WrittenSignal {
         match self {
             Self::Signal { signal, on, .. } => {
@@ -106,7 +106,7 @@ impl Change {
         }
     }
 
-    /// Word and value, if the change is one of a word.
+    /// Returns word and value, if this is a change of a word.
     fn word(&self) -> Option<(Register, u32)> {
         match self {
             Self::Signal { .. } => None,
@@ -163,7 +163,7 @@ fn describe(changes: &[Change]) -> String {
 /// Switches an input of the controller on and off again.
 #[derive(Debug, Args)]
 pub struct Pulse {
-    /// Name or number, as in alarm-reset or 20
+    /// Name or number, for example alarm-reset or 20
     #[arg(value_name = "SIGNAL", value_parser = named_input, add = complete::INPUT)]
     signal: (Signal, Option<String>),
 }
@@ -195,11 +195,11 @@ impl Command for Pulse {
     }
 }
 
-/// Procedure that switches an input.
+/// Returns the procedure that switches a signal; an error if the signal is an output.
 fn switching(procedure: Option<Procedure>) -> Result<Procedure, Failure> {
     procedure.ok_or_else(|| {
         Failure::usage("only the controller switches its outputs")
-            .hint("`yrcx io get` reads them; `yrcx port set` switches DO, MO and SO")
+            .hint("use `yrcx io get` to read the outputs; use `yrcx port set` to switch DO, MO and SO")
     })
 }
 

@@ -9,14 +9,14 @@ use armctl_controller::names::Kind;
 use armctl_controller::yrcx::signal::{Side, Signal};
 use armctl_frame::failure::Failure;
 use armctl_frame::names;
-use armctl_frame::robot::io::{Signals, WATCHED};
+use armctl_frame::robot::io::{IoValue, Signals, WATCHED};
 use armctl_frame::watch::{Watchable, Watched};
 use armctl_frame::{Command, ConnectMode, Context};
 
-/// Outputs of the controller, for a watch.
+/// Arguments: the outputs of the controller to watch.
 #[derive(Debug, Args)]
 pub struct Outputs {
-    /// Names or numbers of outputs of the controller, as in servo-on or 20; default: all
+    /// Names or numbers of outputs of the controller, for example servo-on or 20; default: all
     #[arg(value_name = "SIGNAL", value_parser = output, add = complete::OUTPUT)]
     signals: Vec<Signal>,
 }
@@ -38,7 +38,7 @@ impl Command for Outputs {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals, Failure> {
         let names = names::of_robot(context.robot, context.screen);
         let link = context.link;
-        // A change that occurred during a wait is reported, however short it was.
+        // Report the image that the wait received, so that even a very short change is reported.
         let image = match link.seen.take() {
             Some(image) => image,
             None => link.look().await?,
@@ -50,6 +50,8 @@ impl Command for Outputs {
 }
 
 impl Watchable for Outputs {
+    type Value = IoValue;
+
     const WATCH: &'static str = "yrcx.io.watch";
     const WATCHED: Watched = WATCHED;
 

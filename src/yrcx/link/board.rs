@@ -5,7 +5,7 @@ use std::any::Any;
 use serde_json::Value as Json;
 
 use super::Link;
-use crate::fieldbus::Board;
+use crate::fieldbus::{Board, BusBoard};
 use armctl_frame::dry_run::{Reason, unknown};
 use armctl_frame::failure::Failure;
 use armctl_frame::trace::lock_writer;
@@ -22,13 +22,18 @@ impl Link {
     }
 
     /// Explicit messaging client of a specific fieldbus.
-    pub fn board<B: Board>(&mut self, fieldbus: &str) -> Result<&mut B, Failure> {
+    pub fn board<B: BusBoard>(&mut self) -> Result<&mut B, Failure> {
         let label = self.label.clone();
         let board: &mut dyn Any = self.any_board()?;
         board.downcast_mut().ok_or_else(|| {
-            Failure::usage(format!("{label} is not on {fieldbus}"))
-                .hint("`armctl yrcx --help` lists the commands of each fieldbus")
+            Failure::usage(format!("{label} is not on {}", B::BUS))
+                .hint("use `armctl yrcx --help` to list the commands of each fieldbus")
         })
+    }
+
+    /// Rejects `--unit`, because the device of the fieldbus belongs to the whole controller.
+    pub fn no_unit_of<B: BusBoard>(&self) -> Result<(), Failure> {
+        self.no_unit(&format!("the {} belongs to the whole controller", B::DEVICE))
     }
 
     /// Prints a request and its answer at `-vv`.
@@ -38,7 +43,7 @@ impl Link {
         trace.message(Direction::Received, received, "done");
     }
 
-    /// Notes a message in a dry run, in which its answer is unknown.
+    /// Notes a message in a dry run. In a dry run, the answer is unknown.
     pub fn plan_frame(&mut self, frame: Json) -> Result<(), Failure> {
         self.client.plan_frame(frame, Reason::default());
         if self.client.is_dry() { Err(unknown()) } else { Ok(()) }

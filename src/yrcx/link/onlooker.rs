@@ -31,7 +31,7 @@ impl Watcher<Event> for Onlooker {
                  (`armctl robots check`)",
             ),
             Event::Lost { why, is_reopening } => {
-                let again = if is_reopening { "; it is being opened again" } else { "" };
+                let again = if is_reopening { "; armctl opens the link again" } else { "" };
                 screen.note(&format!("{label}: the link was lost: {why}{again}"));
                 if let LinkError::Lost { outputs, .. } = why {
                     screen.detail(1, &format!("{label}: the controller: {outputs}"));
@@ -43,7 +43,10 @@ impl Watcher<Event> for Onlooker {
                 screen.note(&format!("{label}: the link is open again{stop}"));
             }
             Event::StatusReset(command, status) => {
-                screen.detail(1, &format!("the status was '{status}' before {}; it was reset", command.row().id));
+                screen.detail(
+                    1,
+                    &format!("the status was '{status}' before {}; armctl reset the status", command.row().id),
+                );
             }
             Event::NotReleased(command) => {
                 let id = command.row().id;
@@ -53,10 +56,10 @@ impl Watcher<Event> for Onlooker {
             Event::Unanswered(error) => screen.note(&format!("warning: {}", failure(label, error))),
             Event::OtherCommandEnded { words, answer } => {
                 let (what, end) = (command_summary(&words), answer_summary(&answer));
-                screen.note(&format!("{label}: another client left {what} running; it ended: {end}"));
+                screen.note(&format!("{label}: another client left {what} running; that command ended: {end}"));
             }
             Event::Stopping => {
-                // In its own thread: a blocked terminal must not delay the stop.
+                // This thread prints the notice, because a blocked terminal must not delay the stop.
                 let screen = *screen;
                 std::thread::spawn(move || screen.note("stopping the robot: stop input SI(06) off"));
             }

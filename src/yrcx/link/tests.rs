@@ -19,7 +19,8 @@ fn ends(scans: u32, head: &[u16]) -> Reply {
 
 const MOVE: &[&str] = &["move", "--point", "19", "--speed", "50"];
 const STOPPED: &[u16] = &[0x4000, 12, 400];
-/// Resting image: emergency stop and stop inputs on; and without the stop input.
+/// Word of dedicated inputs in the resting image, with the emergency-stop and stop inputs on; then the same word with
+/// the stop input off.
 const REST: u16 = 0x0041;
 const HELD: u16 = 0x0001;
 
@@ -98,7 +99,7 @@ fn a_controller_that_takes_nothing_is_told_as_such() {
     let (servos, peer) = run_on(Scripted::new([]), &["info", "servo"]);
     let failure = servos.unwrap_err();
     assert_eq!(failure.kind, Kind::NoAnswer);
-    assert!(failure.message.contains("did not start it"), "{failure}");
+    assert!(failure.message.contains("did not start the command"), "{failure}");
     assert!(!peer.taken.is_empty());
     let (moved, _) = run_on(Scripted::new([]), MOVE);
     assert_eq!(moved.unwrap_err().kind, Kind::OutcomeUnknown);
@@ -152,7 +153,7 @@ fn signals_are_switched_while_a_command_runs() {
     let busy = bench.run(&["alarm", "reset"]).unwrap_err();
     assert!(busy.message.contains("move-ptp still runs"), "{busy}");
     bench.runtime.block_on(async { tokio::time::sleep(Duration::from_secs(2)).await });
-    // The end of the command is noticed, and the next command is sent.
+    // The client notices that the command has ended, and sends the next command.
     bench.run(&["alarm", "reset"]).unwrap();
     assert_eq!(bench.into_peer().taken.len(), 2);
 }

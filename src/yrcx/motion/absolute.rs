@@ -18,15 +18,15 @@ use armctl_frame::{Command, Context};
 /// Resets the absolute position of an axis of the mark type.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "First use `--move +` or `--move -` to move to the nearest reset position. There are four per motor \
-                  turn. Check the marks: a reset at the wrong position shifts the origin. Then run the command without \
-                  --move."
+    after_help = "First use `--move +` or `--move -` to move to the nearest reset position. There are four reset \
+                  positions per motor turn. Check the marks: a reset at the wrong position shifts the origin. Then \
+                  run the command without --move."
 )]
 pub struct AbsReset {
     /// The axis, 1 to 4
     #[arg(long, value_name = "AXIS")]
     axis: String,
-    /// Only move in this direction to the nearest reset position
+    /// Do not reset: only move in this direction to the nearest reset position
     #[arg(long = "move", value_name = "DIRECTION", allow_hyphen_values = true)]
     direction: Option<Direction>,
     #[command(flatten)]
@@ -43,7 +43,7 @@ impl AbsReset {
         }
     }
 
-    /// `axis 2 of robot 1`.
+    /// Names the axis, for example `axis 2 of robot 1`.
     fn axis(&self) -> String {
         format!("axis {} of {}", self.axis, self.which.name())
     }

@@ -8,7 +8,7 @@ use crate::position::Unit;
 
 use armctl_controller::yrcx::order::Draft;
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::{Key, Values};
+use armctl_controller::yrcx::value::Key;
 use armctl_frame::failure::Failure;
 
 /// Moves by the inching distance.
@@ -56,10 +56,6 @@ impl Motion for Inch {
 
     fn usual_unit(&self) -> Option<Unit> {
         Some(self.system.unit())
-    }
-
-    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
-        moved
     }
 }
 

@@ -1,4 +1,5 @@
-//! `yrcx jog` (4.2.6): an axis moves until it is stopped. Every exit path stops it.
+//! Command `yrcx jog` (4.2.6): moves an axis until it is stopped. armctl stops the axis on every way out of the
+//! command.
 
 use std::time::Duration;
 
@@ -30,7 +31,7 @@ pub struct Jog {
     axis: String,
     /// Direction
     direction: Direction,
-    /// How long; default: until Ctrl-C
+    /// How long to jog; default: until Ctrl-C
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
     within: Option<Duration>,
     /// Report the end position in this unit; default: the unit of the axes
@@ -49,7 +50,7 @@ impl Jog {
         }
     }
 
-    /// Completes "jog axis 1 …".
+    /// Describes direction and coordinate system, to complete "jog axis 1 …".
     fn describe(&self) -> String {
         format!("{}{}", self.direction.describe(), self.system.describe())
     }

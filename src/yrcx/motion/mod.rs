@@ -1,4 +1,4 @@
-//! Motions by remote commands (4.2): common execution and reports.
+//! Motions by remote commands (4.2): code and reports that all motions use.
 
 mod absolute;
 mod drive;
@@ -48,52 +48,62 @@ pub use push::Push;
 pub use relative::Movei;
 pub use tool::Movet;
 
-/// A motion that ends on its own and can report the position; [`Moving`] makes it a command.
+/// A motion that ends on its own and can report the position; [`Moving`] makes a command of it.
 pub trait Motion: Args {
     /// Report type.
-    type Report: Report + 'static;
-    /// `yrcx.move`: name in envelopes and schemas.
+    type Report: FromMotion + 'static;
+    /// Name in envelopes and schemas, for example `yrcx.move`.
     const ID: &'static str;
-    /// Verb forms: move, moving, moved.
+    /// Forms of the verb: move, moving, moved.
     const VERB: [&'static str; 3] = ["move", "moving", "moved"];
 
     /// Row of the command table.
     fn command(&self) -> table::Command;
 
-    /// Sets the typed arguments.
+    /// Sets the fields from the arguments that the user typed.
     fn fill(&self, draft: Draft) -> Result<Draft, Failure>;
 
-    /// Axis of a single-axis motion: `axis 3`.
+    /// Describes the axis of a single-axis motion, for example `axis 3`.
     fn axis(&self) -> Option<String> {
         None
     }
 
-    /// Target: `to point 19 in a straight line`.
+    /// Describes the target, for example `to point 19 in a straight line`.
     fn target(&self) -> String;
 
-    /// Axes and speed: `all axes, at 50 %`.
+    /// Describes axes and speed, for example `all axes, at 50 %`.
     fn manner(&self) -> String;
 
-    /// Unnamed axes that are sent to their current position so that they do not move (4.2.1).
+    /// Returns the axes that the user did not name and that would move. armctl sends their current position as the
+    /// target, so that they stay in place (4.2.1).
     fn stays(&self) -> Vec<usize> {
         Vec::new()
     }
 
-    /// Typed coordinates or distances per axis.
+    /// Returns the coordinates or distances that the user typed, per axis.
     fn targets(&self) -> Vec<Target> {
         Vec::new()
     }
 
-    /// Default unit of the reported position.
+    /// Returns the unit of the reported position, if the user does not select one.
     fn usual_unit(&self) -> Option<Unit> {
         None
     }
-
-    /// Report of the motion; `values` are those of the answer, if the motion has ended.
-    fn report(&self, moved: MotionReport, values: Option<&Values>) -> Self::Report;
 }
 
-/// A motion as a command.
+/// Report of a motion.
+pub trait FromMotion: Report {
+    /// Builds the report of the motion. `values` are the values of the answer, if the motion has ended.
+    fn from_motion(moved: MotionReport, values: Option<&Values>) -> Self;
+}
+
+impl FromMotion for MotionReport {
+    fn from_motion(moved: MotionReport, _values: Option<&Values>) -> Self {
+        moved
+    }
+}
+
+/// Command that executes a motion.
 #[derive(Debug, Args)]
 pub struct Moving<M: Args> {
     #[command(flatten)]
@@ -109,7 +119,7 @@ impl<M: Motion> Moving<M> {
         self.ending.report.or(self.motion.usual_unit())
     }
 
-    /// The target, after the axis of a single-axis motion.
+    /// Describes the target; for a single-axis motion, the axis and the target.
     fn object(&self) -> String {
         self.motion.axis().map_or_else(|| self.motion.target(), |axis| format!("{axis} {}", self.motion.target()))
     }
@@ -144,11 +154,12 @@ impl<M: Motion> Command for Moving<M> {
         let words = if done.is_some() { has_done } else { doing };
         let mut report = MotionReport::new(words, &order, done.as_ref(), self.unit());
         report.motion.targets = self.motion.targets();
-        Ok(self.motion.report(report, done.as_ref().map(|done| &done.values)))
+        Ok(M::Report::from_motion(report, done.as_ref().map(|done| &done.values)))
     }
 }
 
-/// Adds the current position of these axes: a SCARA moves them to the target position even if they are not named.
+/// Adds the current position of `axes` to the command. Without it, a SCARA moves these axes to the target position
+/// although the user did not name them.
 async fn staying(link: &mut Link, draft: Draft, axes: &[usize]) -> Result<Order, Failure> {
     let order = draft.clone().order()?;
     if axes.is_empty() {
@@ -161,13 +172,16 @@ async fn staying(link: &mut Link, draft: Draft, axes: &[usize]) -> Result<Order,
         let one = draft.clone();
         let keys: Vec<Key> = axes.iter().filter_map(|axis| Key::AXES.get(axis - 1).copied()).collect();
         let other = keys.into_iter().fold(one, |draft, key| draft.with(key, -1)).order()?;
-        let kept = format!("current position of the unnamed axis: {names}");
+        let kept = format!("current position of the axes without a target: {names}");
         link.plan_depending(&order, &other, Reason::default().depending_on(&kept));
         return Err(unknown());
     }
     let not_moved = |failure: Failure| Failure {
-        message: format!("not moved: the current position of the unnamed axes is unknown: {}", failure.message),
-        ..failure.hint("name axes 1 and 2 as well, or use `yrcx drive`")
+        message: format!(
+            "the robot did not move: the current position of the axes without a target is unknown: {}",
+            failure.message
+        ),
+        ..failure.hint("type axes 1 and 2 as well, or use `yrcx drive`")
     };
     let place = link.ask(&present).await.map_err(not_moved)?.values.axes();
     let place = place.ok_or_else(|| not_moved(Failure::new(Kind::Malformed, "the answer has no position")))?;
@@ -192,18 +206,19 @@ async fn go(
     done.map(Some)
 }
 
-/// Display of the motion and its duration, in its own thread: a blocked terminal must not delay the stop.
+/// Shows the motion and its duration. The display has its own thread, because a blocked terminal must not delay the
+/// stop.
 struct Live(Option<(Sender<()>, JoinHandle<()>)>);
 
 impl Live {
-    /// Starts the display. In a dry run nothing moves.
+    /// Starts the display, except in a dry run, in which nothing moves.
     fn new(link: &Link, screen: &Screen, doing: &str) -> Self {
         let (screen, doing) = (*screen, doing.to_owned());
         Self((!link.is_dry()).then(|| {
             let (end, ended) = mpsc::channel();
             let show = move || {
                 let _progress = screen.spinner(&doing);
-                // The channel carries no messages; it ends when the sender is dropped.
+                // The channel carries no messages: `recv` returns when the sender is dropped.
                 ended.recv().unwrap_or_default();
             };
             (end, thread::spawn(show))
@@ -222,19 +237,19 @@ impl Live {
 /// Result of a motion.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct MotionReport {
-    /// Kind of motion: `move-ptp`.
+    /// Kind of motion, for example `move-ptp`.
     #[serde(rename = "motion")]
     kind: &'static str,
     #[serde(flatten)]
     motion: robot::Motion,
-    /// Named axes; empty for all.
+    /// Axes that the user named; empty for all axes.
     axes: Vec<u32>,
     /// Target point; null for a motion without a point.
     point: Option<i32>,
-    /// Pallet and position on it.
+    /// Pallet, and the position on the pallet; null for other motions.
     pallet: Option<i32>,
     work_position: Option<i32>,
-    /// Direction of a jog and similar motions: `plus` or `minus`.
+    /// Direction of a jog or a similar motion: `plus` or `minus`; null for other motions.
     direction: Option<&'static str>,
     #[serde(skip)]
     words: String,
@@ -247,7 +262,7 @@ fn targets(axes: &Axes, mm: &[String], pulses: &[String]) -> Vec<Target> {
     pairs.into_iter().map(|(axis, text)| target(axis.to_string(), text, unit)).collect()
 }
 
-/// Target of one axis; none for a motion to a point.
+/// Returns the target of one axis; empty for a motion to a point.
 fn single_target(axis: &str, mm: Option<&String>, pulses: Option<&String>) -> Vec<Target> {
     let mm = mm.map(|text| target(axis.to_owned(), text, Unit::Mm));
     mm.or_else(|| pulses.map(|text| target(axis.to_owned(), text, Unit::Pulse))).into_iter().collect()
@@ -257,7 +272,7 @@ fn target(axis: String, text: &str, unit: Unit) -> Target {
     Target { axis, from: None, to: text.parse().ok(), unit: unit.symbol() }
 }
 
-/// Speed key of a command, its divisor, and the unit.
+/// Fields that can contain the speed of a command: the key, the divisor of its value, and the unit.
 const SPEEDS: [(Key, f64, &str); 3] =
     [(Key::SpeedPercent, 1.0, "%"), (Key::SpeedMmS, 1.0, "mm/s"), (Key::SpeedOfMax, 100.0, "%")];
 

@@ -13,15 +13,15 @@ use armctl_frame::failure::Failure;
 use armctl_frame::wait_arguments::MotionEnd;
 use armctl_frame::{Command, Context};
 
-/// Returns to origin.
+/// Returns robots or one axis to origin.
 #[derive(Debug, Args)]
 #[command(after_help = "Without --unit and --axis, all robots of the controller return to origin. Semi-absolute axes \
                         search for their position. Axes of the absolute mark type need `yrcx abs-reset` first.")]
 pub struct Origin {
-    /// One axis of one robot, 1 to 4
+    /// Return only this axis of one robot, 1 to 4
     #[arg(long, value_name = "AXIS", conflicts_with = "only")]
     axis: Option<String>,
-    /// Only axes of this type
+    /// Return only the axes of this type
     #[arg(long, value_name = "KIND")]
     only: Option<Kind>,
     #[command(flatten)]
@@ -57,7 +57,7 @@ impl Origin {
         if self.axis.is_some() { table::Command::OriginAxis } else { table::Command::OriginRobot }
     }
 
-    /// `axis 1 of robot 1`.
+    /// Describes the axes, for example `axis 1 of robot 1`.
     fn describe(&self) -> String {
         if let Some(axis) = &self.axis {
             return format!("axis {axis} of {}", self.which.name());

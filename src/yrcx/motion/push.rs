@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::drive::Destination;
-use super::{Motion, MotionReport};
+use super::{FromMotion, Motion, MotionReport};
 use crate::arguments::Pace;
 use armctl_controller::yrcx::order::Draft;
 use armctl_controller::yrcx::table::Command;
@@ -36,7 +36,7 @@ pub struct Push {
     pace: Pace,
 }
 
-/// A time in whole milliseconds.
+/// Parses a time in whole milliseconds.
 fn milliseconds(text: &str) -> Result<i32, String> {
     let time = duration::parse(text)?;
     match i32::try_from(time.as_millis()) {
@@ -73,11 +73,6 @@ impl Motion for Push {
             self.time.map(|ms| format!(", for {}", duration::display(Duration::from_millis(ms.unsigned_abs().into()))));
         format!("{}{}{}", self.pace.describe(), force.unwrap_or_default(), time.unwrap_or_default())
     }
-
-    fn report(&self, moved: MotionReport, values: Option<&Values>) -> Pushed {
-        let push_result = values.and_then(|values| values.int(Key::PushResult));
-        Pushed { moved, push_completed: push_result.map(|result| result == 1), push_result }
-    }
 }
 
 /// Result of a push.
@@ -85,17 +80,24 @@ impl Motion for Push {
 pub struct Pushed {
     #[serde(flatten)]
     moved: MotionReport,
-    /// Whether it pushed for the whole time; null unless it has ended.
+    /// Whether the axis pushed for the whole time; null if the push has not ended.
     push_completed: Option<bool>,
-    /// Raw result: 1 or 0.
+    /// Result as the controller reports it: 1 or 0; null if the push has not ended.
     push_result: Option<i32>,
+}
+
+impl FromMotion for Pushed {
+    fn from_motion(moved: MotionReport, values: Option<&Values>) -> Self {
+        let push_result = values.and_then(|values| values.int(Key::PushResult));
+        Self { moved, push_completed: push_result.map(|result| result == 1), push_result }
+    }
 }
 
 impl Report for Pushed {
     fn view(&self) -> View {
         self.moved.view_with(match self.push_completed {
-            Some(true) => "; it pushed for the whole time",
-            Some(false) => "; it ended before the push time was over",
+            Some(true) => "; the axis pushed for the whole push time",
+            Some(false) => "; the push ended before the push time was over",
             None => "",
         })
     }

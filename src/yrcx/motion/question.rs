@@ -1,4 +1,4 @@
-//! Confirmation of a motion after reading the controller: current position and target of each axis.
+//! Confirmation of a motion. Before the question, armctl reads the current position and the target of each axis.
 
 use crate::link::Link;
 use crate::overwrite::mm;
@@ -15,14 +15,15 @@ use armctl_frame::gate::{Change, data_changed};
 #[derive(Debug, Clone, PartialEq)]
 struct Goal {
     unit: Unit,
-    /// Axes 1 to 4; none for an axis without a target.
+    /// Values of axes 1 to 4; `None` for an axis without a target.
     axes: [Option<i32>; 4],
     /// Whether the values are distances from the current position.
     by_distance: bool,
 }
 
-/// Confirms a motion. `intent` describes it in one line. Before an interactive question, the current position and the
-/// target point are read. The point must be unchanged after the answer.
+/// Asks the user to confirm a motion. `intent` describes the motion in one line. Before an interactive question, armctl
+/// reads the current position and the target point. After the user has answered, armctl reads the point again; if it
+/// has changed, the robot does not move.
 pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order, intent: String) -> Result<(), Failure> {
     let change = Change::new(intent);
     if !authority.asks() {
@@ -38,11 +39,11 @@ pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order, 
     authority.confirm(&goal.clone().from(here).describe(change, here)).await?;
     match self::goal(link, order).await? {
         Some(now) if now == goal => Ok(()),
-        _ => Err(data_changed("the point changed after the question; not moved")),
+        _ => Err(data_changed("the point changed after the confirmation; the robot did not move")),
     }
 }
 
-/// Current position; none if the controller refuses to report it.
+/// Reads the current position; `None` if the controller refuses to report it.
 async fn present(link: &mut Link, unit: Unit) -> Result<Option<[i32; 4]>, Failure> {
     let command = match unit {
         Unit::Mm => Command::PositionMm,
@@ -58,14 +59,14 @@ fn standing(change: Change, order: &Order, here: Option<[i32; 4]>) -> Change {
     here.fold(change, |change, (at, steps)| change.item(format!("axis {}: from {} mm", at + 1, mm(steps))))
 }
 
-/// Axes that a command moves: the named axes, or all.
+/// Whether a command moves an axis: either the command names the axis, or it moves all axes.
 fn meant(order: &Order) -> impl Fn(usize) -> bool + use<> {
     let mask = order.values().int(Key::Axes).unwrap_or_default();
     move |at| mask == 0 || mask >> at & 1 == 1
 }
 
-/// Target of a command, if it is numeric; a distance stays a distance until the start is known. Pallets are described
-/// in the intent.
+/// Returns the target of a command, if the target is numeric. A distance stays a distance until the start position is
+/// known. A pallet position has no numeric target: the intent describes it.
 async fn goal(link: &mut Link, order: &Order) -> Result<Option<Goal>, Failure> {
     let values = order.values();
     let is_meant = meant(order);
@@ -100,7 +101,7 @@ async fn goal(link: &mut Link, order: &Order) -> Result<Option<Goal>, Failure> {
     }))
 }
 
-/// Whether the numbers of a command, or those of its point, are distances.
+/// Whether the numbers of a command, or the numbers of its point, are distances.
 const fn is_distance(command: Command) -> bool {
     matches!(
         command,
@@ -114,14 +115,14 @@ const fn is_distance(command: Command) -> bool {
     )
 }
 
-/// Reads values; none if the controller refuses.
+/// Reads values; `None` if the controller refuses.
 async fn read(link: &mut Link, command: Command, with: &[(Key, i32)]) -> Result<Option<Values>, Failure> {
     let draft = with.iter().fold(link.draft(command)?, |draft, (key, value)| draft.with(*key, *value));
     Ok(link.try_ask(&draft.order()?).await?.ok().map(|done| done.values))
 }
 
 impl Goal {
-    /// Adds the start position to a distance.
+    /// Converts distances to positions, if the start position is known.
     fn from(self, here: Option<[i32; 4]>) -> Self {
         let Some(here) = here.filter(|_| self.by_distance) else { return self };
         let mut axes = self.axes;
@@ -131,7 +132,7 @@ impl Goal {
         Self { axes, by_distance: false, ..self }
     }
 
-    /// Adds a line for each axis with a target, and its distance.
+    /// Adds a line for each axis with a target, and the straight distance to the target if known.
     fn describe(&self, change: Change, here: Option<[i32; 4]>) -> Change {
         let shown = |steps: i32| if self.unit == Unit::Mm { mm(steps) } else { steps.to_string() };
         let told = self.axes.iter().enumerate().filter_map(|(at, new)| Some((at, (*new)?)));

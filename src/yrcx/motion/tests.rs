@@ -8,7 +8,7 @@ use crate::testing::{
 use armctl_controller::yrcx::image::Words;
 use armctl_frame::failure::Kind;
 
-/// A command line for each worked example of 4.2. Misprinted words are corrected as in the data file.
+/// A command line for each worked example of 4.2. Misprints of the manual are corrected, as in the data file.
 const EXAMPLES: &[(&str, &str)] = &[
     ("4.2.1-ptp", "move --point 100 --speed 50 --report pulse"),
     ("4.2.1-arch", "move --point 100 --speed 50 --arch 3:1.000 --arch-start 0 --arch-end 0 --report mm"),
@@ -55,7 +55,8 @@ const EXAMPLES: &[(&str, &str)] = &[
     ("4.2.23-direct-pulse", "push --axis 3 --to-pulse 10000 --speed 50 --force 100 --time 0.1s --report pulse"),
 ];
 
-/// Examples that a single command sends; teaching also reads (its example is in `orders`).
+/// Whether a single command sends the example. The command line for teaching sends several commands, so its example is
+/// in `orders`.
 fn is_one_order(id: &str) -> bool {
     id.starts_with("4.2.") && id != "4.2.9-teach"
 }
@@ -79,7 +80,7 @@ fn lines_become_the_words_of_the_examples() {
     }
     let walk_through = words(&split("move --point 19 --speed 50")).unwrap();
     assert_eq!(walk_through, [example("2-ptp-walkthrough")]);
-    // The printed example means robot 1 but selects all robots (4.2.12).
+    // According to its text, the example in the manual is for robot 1, but its words select all robots (4.2.12).
     assert_eq!(words(&["origin"]).unwrap()[0][0], "0x0032");
 }
 
@@ -131,7 +132,8 @@ fn words_of(head: &[u16]) -> Words {
     words
 }
 
-/// Resting image: emergency stop and stop inputs on; and without the stop input.
+/// Word of dedicated inputs in the resting image, with the emergency-stop and stop inputs on; then the same word with
+/// the stop input off.
 const REST: u16 = 0x0041;
 const HELD: u16 = 0x0001;
 
@@ -214,7 +216,7 @@ fn a_relative_motion_that_breaks_off_tells_of_its_target() {
     for line in ["movei --point 1", "drivei --axis 1 --by 5"] {
         let (outcome, _) = run_on(Scripted::new([Reply::Ends(9, words_of(&[0x4000, 12, 600]))]), &split(line));
         let hint = outcome.unwrap_err().hint.unwrap();
-        assert!(hint.contains("release it") && hint.contains("moves to the old target"), "{hint}");
+        assert!(hint.contains("release the emergency stop") && hint.contains("moves to the old target"), "{hint}");
     }
     let (outcome, _) = run_on(Scripted::new([Reply::Ends(9, words_of(&[0x4000, 12, 600]))]), &split("move --point 1"));
     assert!(!outcome.unwrap_err().hint.unwrap().contains("old target"));

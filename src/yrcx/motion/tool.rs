@@ -6,10 +6,10 @@ use super::{Motion, MotionReport};
 use crate::arguments::{Axes, Pace, Ramps};
 use armctl_controller::yrcx::order::Draft;
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::{Key, Values};
+use armctl_controller::yrcx::value::Key;
 use armctl_frame::failure::Failure;
 
-/// Moves to a point in tool coordinates: the point is relative to the tool, along its axes.
+/// Moves a robot to a point in tool coordinates. The coordinates of the point are along the axes of the tool.
 #[derive(Debug, Args)]
 pub struct Movet {
     /// Point to move to
@@ -47,9 +47,5 @@ impl Motion for Movet {
 
     fn manner(&self) -> String {
         format!("{}, {}", self.axes.describe(&[]), self.pace.describe())
-    }
-
-    fn report(&self, moved: MotionReport, _values: Option<&Values>) -> MotionReport {
-        moved
     }
 }

@@ -1,14 +1,12 @@
-//! Requests to PROFIBUS stations that do not lock them.
+//! Requests to PROFIBUS stations. They do not lock a station.
 
 use std::time::Duration;
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{check, connect};
-use crate::fieldbus::{self, At};
+use crate::fieldbus::{At, BusBoard, Checked};
 use crate::link_error::not_open;
 use armctl_controller::text::hex;
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Image};
@@ -26,7 +24,7 @@ use armctl_transport::profibus::request::Requester;
 use armctl_transport::profibus::survey::{Found, Survey, Unknown};
 use armctl_transport::profibus::wire::{Configuration, Diagnosis, Flag, MAX_STATION, Station as StationKind};
 
-/// The line of a URL. The port opens with the first request.
+/// PROFIBUS line of a URL. Each request opens the port.
 #[derive(Debug)]
 pub struct Board {
     profibus: Profibus,
@@ -35,17 +33,17 @@ pub struct Board {
     tap: Tap,
 }
 
-/// Number of repetitions, because a station can be missing.
+/// Number of retries in a scan. It is low, because most addresses have no station.
 const RETRIES: u8 = 1;
 
 impl Board {
-    /// Line of a URL.
+    /// Creates the client for the line of a URL.
     pub fn new(at: &At<'_>) -> Result<Self, LinkError> {
         let (label, timeout) = (at.robot.label(), at.robot.timeout.value);
-        Ok(Self { profibus: connect::options(at)?.clone(), label, timeout, tap: at.tap.clone() })
+        Ok(Self { profibus: at.options::<Profibus>()?.clone(), label, timeout, tap: at.tap.clone() })
     }
 
-    /// Line without a robot.
+    /// Creates the client for a line without a robot.
     pub fn of_line(bus: &Bus, line: &str, tap: Tap) -> Result<Self, Failure> {
         let profibus: &Profibus =
             bus.options().ok_or_else(|| Failure::local(format!("{bus:?} is not a URL of PROFIBUS")))?;
@@ -64,12 +62,12 @@ impl Board {
         Ok(found.iter().map(Station::from).collect())
     }
 
-    /// Reads the station of the URL and its image; `None` if it does not answer.
+    /// Reads the station of the URL and its image; `None` if the station does not answer.
     pub async fn station(&self) -> Result<Option<(Station, Option<Image>)>, Failure> {
         Ok(self.found().await?.map(|found| (Station::from(&found), self.image(&found))))
     }
 
-    /// Listens to the exchange of the station with another master. Nothing is sent.
+    /// Listens to the data exchange between the station and another master. armctl sends nothing.
     pub async fn overheard(&self) -> Result<Option<Image>, Failure> {
         let failed = |error: &LinkError| not_open(&self.label, &SCHEME, error);
         let listening = connect::listen(&self.profibus, self.tap.clone(), self.timeout).await;
@@ -81,24 +79,24 @@ impl Board {
         }
     }
 
-    /// Reads the diagnosis of the station in the URL.
+    /// Reads the diagnosis of the URL's station.
     pub async fn diagnosis(&self) -> Result<Diagnosis, Failure> {
         let found = self.found().await?.ok_or_else(|| self.silent())?;
         found.diagnosis.map_err(|why| match why {
             Unknown::NoAnswer => self.silent(),
             Unknown::NotAsked => {
                 Failure::new(Kind::Malformed, format!("{}: it is a {}", self.name(), kind(found.kind)))
-                    .hint("check station of the URL; `yrcx profibus scan` lists the slaves")
+                    .hint("check station of the URL; use `yrcx profibus scan` to list the slaves")
             }
             why => Failure::new(Kind::Malformed, format!("{}: Slave_Diag: {}", self.name(), unknown(&why)))
-                .hint("check that this is a slave of PROFIBUS DP"),
+                .hint("check that the station is a PROFIBUS DP slave"),
         })
     }
 
     /// Failure: the station of the URL does not answer.
     pub fn silent(&self) -> Failure {
         Failure::new(Kind::NoAnswer, format!("{} does not answer", self.name()))
-            .hint("`yrcx profibus scan` lists the stations that answer")
+            .hint("use `yrcx profibus scan` to list the stations that answer")
     }
 
     fn name(&self) -> String {
@@ -110,7 +108,7 @@ impl Board {
         Ok(self.ask(vec![self.profibus.station], retries).await?.into_iter().next())
     }
 
-    /// Image of the controller, if it exchanges data.
+    /// Returns the image of the controller, if the station exchanges data.
     fn image(&self, found: &Found) -> Option<Image> {
         let mut bytes = found.inputs.as_ref().ok().cloned()?;
         if self.profibus.is_big_endian {
@@ -144,36 +142,35 @@ impl Board {
     }
 }
 
-impl fieldbus::Board for Board {
-    fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
-        check::look(self, layers).boxed_local()
-    }
+impl BusBoard for Board {
+    const BUS: &'static str = SCHEME.bus;
+    const DEVICE: &'static str = "station";
 
-    fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()> {
-        std::future::ready(()).boxed_local()
+    async fn look(&mut self, layers: &mut Layers) -> Checked<Option<Image>> {
+        check::look(self, layers).await
     }
 }
 
-/// Station data from its diagnosis.
+/// State and configuration of a station.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Station {
-    /// Its address.
+    /// Address of the station.
     pub station: u8,
-    /// `slave`, or the type of master.
+    /// Kind of station: `slave`, or the type of master.
     pub kind: &'static str,
-    /// Ident number, such as 0x1234; null if the station does not report it.
+    /// Ident number, for example 0x1234; null if the station does not report it.
     pub ident: Option<String>,
-    /// Master of the slave; null if it has none.
+    /// Address of the slave's master; null if the slave has no master.
     pub master: Option<u8>,
-    /// Diagnosis as text, or the reason why there is none.
+    /// Diagnosis in words, or the reason why there is none.
     pub diagnosis: String,
-    /// Identifier bytes of its configuration; null if the station does not report them.
+    /// Identifier bytes of the configuration; null if the station does not report them.
     pub configuration: Option<String>,
-    /// Bytes from the station, by the configuration.
+    /// Number of bytes from the station, calculated from the configuration.
     pub in_size: Option<usize>,
-    /// Bytes to the station, by the configuration.
+    /// Number of bytes to the station, calculated from the configuration.
     pub out_size: Option<usize>,
-    /// Whether it exchanges data with its master.
+    /// Whether the station exchanges data with its master.
     pub exchanging: bool,
 }
 
@@ -200,7 +197,7 @@ impl From<&Found> for Station {
 }
 
 impl Station {
-    /// Whether its images have the size of a YRCX.
+    /// Whether the images of the station have the size of a YRCX.
     pub fn fits(&self) -> bool {
         self.in_size == Some(Image::BYTES) && self.out_size == Some(Image::BYTES)
     }

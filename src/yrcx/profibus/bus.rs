@@ -12,7 +12,7 @@ use armctl_controller::yrcx::alarm::Alarm;
 use armctl_frame::settings::target::profibus::SCHEME;
 use armctl_transport::tap::LINKTYPE_PROFIBUS_DL;
 
-/// PROFIBUS DP.
+/// PROFIBUS DP as a fieldbus.
 pub const BUS: Fieldbus = Fieldbus {
     name: SCHEME.bus,
     link_alarm: Alarm::new(12, 561),

@@ -1,7 +1,8 @@
-//! Layers of `armctl robots check` for a PROFIBUS line: from the adapter to the image of the controller. The station is
-//! not locked.
+//! Layers of `armctl robots check` for a PROFIBUS line: from the adapter to the image of the controller. The check does
+//! not lock the station.
 
 use super::board::Board;
+use crate::fieldbus::{Checked, InLayer as _};
 use armctl_controller::yrcx::image::Image;
 use armctl_frame::face::layers::Layers;
 use armctl_frame::failure::Kind;
@@ -10,20 +11,14 @@ use armctl_transport::profibus::port::latency_timer;
 /// Layers in the order of the check.
 pub(super) const LAYERS: &[&str] = &["name", "station", "ident", "configuration", "owner", "inputs"];
 
-/// Checks the layers. Returns the image of the controller, if it exchanges data with a master that is not on this line.
-pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image> {
+/// Checks the layers. Returns the image of the controller, if it can be read.
+pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
     let settings = board.settings().clone();
     if !settings.is_owner {
         return overheard(board, layers).await;
     }
-    let answered = match board.station().await {
-        // The adapter failed, or another master is on the line.
-        Err(failure) => {
-            layers.fail("name", &failure);
-            return None;
-        }
-        Ok(answered) => answered,
-    };
+    // The failure is that of the adapter, or another master on the line.
+    let answered = board.station().await.in_layer("name")?;
     match latency_timer(&settings.port) {
         None => layers.ok("name", format!("{} opens, and no other master is active", settings.port)),
         Some(time) => layers.warn(
@@ -36,25 +31,30 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
         layers.fail_with(
             "station",
             format!("station {} does not answer", settings.station),
-            "check station and baud of the URL, wires A and B, the terminators, and that the controller is on. `yrcx \
-             profibus scan` lists the stations that answer",
+            "check station and baud of the URL, wires A and B, the terminators, and that the controller is on. Use \
+             `yrcx profibus scan` to list the stations that answer",
         );
-        return None;
+        return Ok(None);
     };
     if station.kind == "slave" {
         layers.ok("station", format!("station {} answers: {}", station.station, station.diagnosis));
     } else {
-        layers.fail_with("station", station.kind, "check station of the URL: `yrcx profibus scan` lists the slaves");
-        return None;
+        layers.fail_with(
+            "station",
+            station.kind,
+            "check station of the URL; use `yrcx profibus scan` to list the \
+                                                   slaves",
+        );
+        return Ok(None);
     }
     let wanted = settings.ident.map(|ident| format!("{ident:#06x}"));
     match &station.ident {
-        None => layers.fail_with("ident", station.diagnosis.clone(), "check that this is a slave of PROFIBUS DP"),
+        None => layers.fail_with("ident", station.diagnosis.clone(), "check that the station is a PROFIBUS DP slave"),
         Some(ident) if wanted.as_ref().is_some_and(|wanted| wanted != ident) => {
             layers.fail_with(
                 "ident",
                 ident.clone(),
-                format!("set ident={ident} in the URL, if this is the controller"),
+                format!("set ident={ident} in the URL, if the station is the controller"),
             );
         }
         Some(ident) => layers.ok("ident", ident.clone()),
@@ -65,45 +65,47 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image
         (Some(bytes), false) => {
             let sizes =
                 [station.in_size, station.out_size].map(|size| size.map_or("?".to_owned(), |size| size.to_string()));
-            let found = format!("{bytes}: {} bytes from it and {} bytes to it, not 48", sizes[0], sizes[1]);
+            let found =
+                format!("{bytes}: {} bytes from the station and {} bytes to the station, not 48", sizes[0], sizes[1]);
             layers.fail_with("configuration", found, "check station of the URL, and the unit of the controller");
         }
         (None, false) => {
-            layers.fail_with("configuration", "the station does not report it", "set cfg= or gsd= in the URL");
+            layers.fail_with(
+                "configuration",
+                "the station does not report its configuration",
+                "set cfg= or gsd= in the URL",
+            );
         }
     }
-    let found = station.master.map(|master| format!("master {master} owns it"));
+    let found = station.master.map(|master| format!("master {master} owns the station"));
     layers.judge(
         "owner",
         found.is_none(),
         ("no master", found.as_deref().unwrap_or_default()),
-        "to send commands, disconnect that master",
+        "disconnect that master to send commands",
     );
     match image {
         Some(_) => layers.ok("inputs", "readable"),
         None => layers.warn(
             "inputs",
             "a slave without a master sends no data",
-            "start a master with `armctl session open`; then `yrcx status` shows the signals",
+            "start a master with `armctl session open`, then use `yrcx status` to see the signals",
         ),
     }
-    image
+    Ok(image)
 }
 
-/// With role=listen, only listening is possible.
-async fn overheard(board: &Board, layers: &mut Layers) -> Option<Image> {
-    let opens = format!("{} opens; nothing is sent because of role=listen", board.settings().port);
-    match board.overheard().await {
-        Err(failure) if failure.kind != Kind::NoAnswer => layers.fail("name", &failure),
-        Err(failure) => {
-            layers.ok("name", opens);
-            layers.fail("inputs", &failure);
-        }
-        Ok(image) => {
-            layers.ok("name", opens);
-            layers.ok("inputs", "received from its answers to the master");
-            return image;
-        }
+/// With role=listen, armctl sends nothing, so this check only listens.
+async fn overheard(board: &Board, layers: &mut Layers) -> Checked<Option<Image>> {
+    let opens = format!("{} opens; armctl sends nothing, because of role=listen", board.settings().port);
+    let heard = board.overheard().await;
+    if let Err(failure) = &heard
+        && failure.kind != Kind::NoAnswer
+    {
+        return heard.in_layer("name");
     }
-    None
+    layers.ok("name", opens);
+    let image = heard.in_layer("inputs")?;
+    layers.ok("inputs", "received from the answers of the slave to the master");
+    Ok(image)
 }

@@ -3,11 +3,9 @@
 use std::path::Path;
 use std::time::Duration;
 
-use crate::fieldbus::{At, Purpose};
+use crate::fieldbus::{At, Purpose, device_file};
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Image};
 use armctl_controller::yrcx::signal::resting;
-use armctl_files as files;
-use armctl_frame::failure::plain;
 use armctl_frame::settings::target::profibus::Profibus;
 use armctl_transport::image::tap::Tap;
 use armctl_transport::image::{Cause, ImageLink, LinkError};
@@ -19,8 +17,9 @@ use armctl_transport::profibus::rates::Rate;
 use armctl_transport::profibus::settings::Settings;
 
 pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
-    let profibus = options(&at)?;
-    // A read must not take the outputs, and a slave sends its image only to its master.
+    let profibus: &Profibus = at.options()?;
+    // A read-only link must not become the master that sets the outputs. A slave sends its image only to its master, so
+    // the link listens.
     if purpose == Purpose::Look || !profibus.is_owner {
         return listen(profibus, at.tap, at.robot.timeout.value).await;
     }
@@ -28,7 +27,7 @@ pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, Link
     Ok(ImageLink::over(Master::open(settings, swapped(profibus), opener(profibus)?, at.tap).await?))
 }
 
-/// Listens to the exchange of another master and the slave.
+/// Listens to the data exchange between the slave and another master.
 pub(super) async fn listen(profibus: &Profibus, tap: Tap, timeout: Duration) -> Result<ImageLink, LinkError> {
     let (silence, opener) = (timeout.max(LISTEN), opener(profibus)?);
     let listening = Listening::open(profibus.station, Image::BYTES, swapped(profibus), opener, tap, silence).await;
@@ -39,14 +38,10 @@ const fn swapped(profibus: &Profibus) -> Swapped {
     Swapped { bytes: if profibus.is_big_endian { 2 * COMMAND_WORDS } else { 0 } }
 }
 
-/// Minimum time to listen, longer than the longest cycle of a master.
+/// Minimum time to listen. It is longer than the longest cycle of a master.
 const LISTEN: Duration = Duration::from_secs(3);
 
-pub(super) fn options<'a>(at: &At<'a>) -> Result<&'a Profibus, LinkError> {
-    at.bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{:?} is not a URL of PROFIBUS", at.bus))))
-}
-
-/// Opens the adapter; can be called again after a loss.
+/// Returns a function that opens the adapter. The link calls it again after a loss.
 pub(super) fn opener(profibus: &Profibus) -> Result<Opener, LinkError> {
     let (path, rate) = (profibus.port.clone(), rate(profibus)?);
     Ok(Box::new(move || Ok(Box::new(Serial::open(&path, rate)?) as Box<dyn Port>)))
@@ -57,7 +52,7 @@ fn rate(profibus: &Profibus) -> Result<Rate, LinkError> {
     Rate::from_baud(profibus.baud).ok_or_else(unknown)
 }
 
-/// Link settings. URL options have priority over the GSD file.
+/// Returns the link settings. Options of the URL have priority over the GSD file.
 pub(super) fn settings(profibus: &Profibus, calm: Duration) -> Result<Settings, LinkError> {
     let usual = Settings::new(profibus.station, rate(profibus)?, resting().to_link(Image::BYTES));
     let mut settings = Settings {
@@ -80,13 +75,10 @@ pub(super) fn settings(profibus: &Profibus, calm: Duration) -> Result<Settings, 
     Ok(settings)
 }
 
-/// Reads a GSD file and selects the named module, or the only one with the size of the image.
+/// Reads a GSD file and selects a module: the module with this name, or the only module with the size of the image.
 fn file(path: &Path, module: Option<&str>) -> Result<(Gsd, Module), LinkError> {
     let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
-    let bytes = files::read(path, MAX_FILE).map_err(|error| {
-        LinkError::Local(wrong(plain(&error)).advice("set gsd= in the URL to the manufacturer's GSD file"))
-    })?;
-    let gsd = Gsd::parse(&bytes).map_err(|error| LinkError::Settings(wrong(error.to_string())))?;
+    let gsd = device_file(path, MAX_FILE, "set gsd= in the URL to the manufacturer's GSD file", Gsd::parse)?;
     let found = match module {
         Some(name) => gsd.modules.iter().find(|module| module.name.eq_ignore_ascii_case(name)),
         None => gsd.fitting(Image::BYTES, Image::BYTES),

@@ -15,7 +15,7 @@ use armctl_transport::tap::{Direction, LINKTYPE_PROFIBUS_DL};
 #[derive(Debug, Default)]
 pub struct Decoder {
     tokens: u64,
-    /// Bytes that begin no telegram.
+    /// Number of bytes that do not start a telegram.
     noise: usize,
     /// Pending request: packet number, master, slave.
     asked: Option<(u64, u8, u8)>,
@@ -104,7 +104,7 @@ fn link(master: u8, slave: u8) -> (String, String) {
     (format!("station {master}"), format!("station {slave}"))
 }
 
-/// Text of the data of a telegram.
+/// Describes the data of a telegram.
 fn about(frame: &Frame, service: Option<u8>) -> Option<String> {
     if frame.data.is_empty() {
         return None;
@@ -115,7 +115,7 @@ fn about(frame: &Frame, service: Option<u8>) -> Option<String> {
         sap::GLOBAL_CONTROL => GlobalControl::parse(&frame.data).map_or_else(unread, |control| control.to_string()),
         sap::GET_CFG | sap::CHK_CFG => Configuration::parse(&frame.data).map_or_else(unread, |configuration| {
             let (input, output) = (configuration.input(), configuration.output());
-            format!("{}, {input} bytes from the slave, {output} to it", hex(configuration.bytes()))
+            format!("{}, {input} bytes from the slave, {output} bytes to the slave", hex(configuration.bytes()))
         }),
         sap::SET_PRM => Parameters::parse(&frame.data).map_or_else(unread, |parameters| {
             let lock = match parameters.lock {

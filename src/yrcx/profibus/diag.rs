@@ -1,32 +1,37 @@
 //! `yrcx profibus diag`.
 
-use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{NO_UNIT, board_of};
-use crate::link::Yrcx;
+use super::board::Board;
+use crate::messages::BoardReport;
+use armctl_frame::Report;
 use armctl_frame::failure::Failure;
 use armctl_frame::output::view::{Cell, Section, View};
-use armctl_frame::{Command, ConnectMode, Context, Report};
 
-/// Reads the diagnosis of the station (Slave_Diag): state, and the diagnostic blocks of the unit, its modules and
-/// channels. The station is not locked and nothing changes.
-#[derive(Debug, Args)]
-pub struct Diag {}
+/// Diagnosis of a station (Slave_Diag): its state, and the blocks of the unit, its modules and channels.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct Diagnosed {
+    /// Address of the station.
+    station: u8,
+    /// Ident number, for example 0x1234.
+    ident: String,
+    /// Address of the slave's master; null if the slave has no master.
+    master: Option<u8>,
+    /// Flags of the standard diagnosis that are set.
+    states: Vec<&'static str>,
+    /// Extended diagnosis, one entry per block, in the order received.
+    blocks: Vec<String>,
+}
 
-impl Command for Diag {
-    type Family = Yrcx;
-    type Report = Diagnosed;
+impl BoardReport for Diagnosed {
+    type Board = Board;
     const ID: &'static str = "yrcx.profibus.diag";
-    const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
+    const MESSAGES: &'static str = "telegrams that read state, diagnosis and configuration of the station";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Diagnosed, Failure> {
-        context.link.no_unit(NO_UNIT)?;
-        context.link.then("telegrams that read state, diagnosis and configuration of the station");
-        let board = board_of(context.link)?;
+    async fn read(board: &mut Board) -> Result<Self, Failure> {
         let diagnosis = board.diagnosis().await?;
-        Ok(Diagnosed {
+        Ok(Self {
             station: board.settings().station,
             ident: format!("{:#06x}", diagnosis.ident),
             master: diagnosis.master,
@@ -34,21 +39,6 @@ impl Command for Diag {
             blocks: diagnosis.blocks.iter().map(ToString::to_string).collect(),
         })
     }
-}
-
-/// Diagnosis of a station.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Diagnosed {
-    /// Station address.
-    station: u8,
-    /// Ident number, such as 0x1234.
-    ident: String,
-    /// Master of the slave; null if it has none.
-    master: Option<u8>,
-    /// Standard diagnosis flags that are set.
-    states: Vec<&'static str>,
-    /// Extended diagnosis, one entry per block, in the order received.
-    blocks: Vec<String>,
 }
 
 impl Report for Diagnosed {

@@ -16,12 +16,12 @@ use armctl_transport::image::tap::Tap;
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct Search {
-    /// Find PROFIBUS stations on this adapter, such as /dev/ttyUSB0 or /dev/ttyUSB0?baud=1.5M
+    /// Find PROFIBUS stations on this adapter, for example /dev/ttyUSB0 or /dev/ttyUSB0?baud=1.5M
     #[arg(long, value_name = "PORT[?baud=RATE]", value_parser = port)]
     profibus: Option<String>,
 }
 
-/// Parses a port. The form of a URL is also accepted.
+/// Parses a port. A URL is also accepted.
 #[expect(clippy::unnecessary_wraps, reason = "it parses a value for clap")]
 fn port(text: &str) -> Result<String, String> {
     let of_url = text.strip_prefix(SCHEME.name).and_then(|rest| rest.strip_prefix("://"));
@@ -54,7 +54,7 @@ fn found(station: &Station, line: &str, target: String) -> Result<Device, Failur
     Ok(Device {
         address: format!("station {} on {line}", station.station),
         target,
-        // The vendor is unknown, so the image size decides.
+        // A station does not report its vendor, so armctl recognizes a YRCX by the image size.
         is_yrcx: station.kind == "slave" && station.fits(),
         device,
         identity: fields(station)?,

@@ -1,4 +1,5 @@
-//! Controllers on PROFIBUS DP, and `yrcx profibus`: diagnosis of the line and its stations. No slave is locked.
+//! Controllers on PROFIBUS DP, and the commands `yrcx profibus`, which diagnose the line and its stations. The commands
+//! do not lock a slave.
 
 mod board;
 pub mod bus;
@@ -12,27 +13,17 @@ mod scan;
 mod serve;
 pub mod simulated;
 
-use self::board::Board;
-use super::link::Link;
+use super::messages::ReadBoard;
 use armctl_frame::commands;
-use armctl_frame::failure::Failure;
-use armctl_frame::settings::target::profibus::SCHEME;
-
-fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
-    link.board(SCHEME.bus)
-}
-
-/// Reason why `--unit` is rejected.
-const NO_UNIT: &str = "the station belongs to the whole controller";
 
 commands! {
     /// Commands for a line and its stations.
     pub enum Profibus {
         /// List the stations of the line without locking them
-        Scan(scan::Scan),
+        Scan(ReadBoard<scan::Stations>),
         /// Show diagnosis, ident number and configuration of the station without locking it
-        Probe(probe::Probe),
+        Probe(ReadBoard<probe::Probed>),
         /// Show the diagnosis of the station with its blocks decoded, without locking it
-        Diag(diag::Diag),
+        Diag(ReadBoard<diag::Diagnosed>),
     }
 }

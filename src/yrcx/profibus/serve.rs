@@ -1,13 +1,10 @@
 //! Server for a simulated controller as a PROFIBUS slave behind a pseudo-terminal.
 
-use std::path::Path;
-
 use clap::Args;
 
 use super::simulated::{self, FAULTS, Options, Server};
-use crate::fieldbus::{self, Operator, Served};
+use crate::fieldbus::{Operator, Serve, Served, ToServe};
 use crate::simulated::{faults, faults_of_option};
-use armctl_controller::yrcx::simulator::Start;
 use armctl_frame::failure::Failure;
 use armctl_frame::serve::terminal_link::TerminalLink;
 use armctl_transport::profibus::rates::{RATES, Rate};
@@ -36,18 +33,12 @@ fn rate(text: &str) -> Result<Rate, String> {
     Rate::from_name(text).ok_or_else(|| format!("there are {}", RATES.map(|rate| rate.name).join(", ")))
 }
 
-impl fieldbus::Serve for ServeArgs {
+impl Serve for ServeArgs {
     fn has_terminal(&self) -> bool {
         true
     }
 
-    fn serve(
-        &self,
-        _simulator: Option<&str>,
-        start: Start,
-        link: Option<&Path>,
-        faults: Option<&str>,
-    ) -> Result<Served, Failure> {
+    fn serve(&self, ToServe { start, link, faults, .. }: ToServe<'_>) -> Result<Served, Failure> {
         let options = Options {
             station: self.station,
             ident: self.ident,
@@ -55,7 +46,7 @@ impl fieldbus::Serve for ServeArgs {
             faults: faults_of_option(faults, &FAULTS)?,
         };
         let server = simulated::serve(start, options)?;
-        // From here on, Ctrl-C must remove the symbolic link.
+        // From here on, Ctrl-C must not end the process before the symbolic link is removed.
         armctl_frame::interrupt::catch_interrupts();
         let link = link.map(|link| TerminalLink::create(link, server.port())).transpose()?;
         let name = link.as_ref().map(|link| link.name().display().to_string());
@@ -67,7 +58,7 @@ impl fieldbus::Serve for ServeArgs {
     }
 }
 
-/// A slave on a pseudo-terminal. The symbolic link is removed with the server.
+/// A slave on a pseudo-terminal. When the server is dropped, the symbolic link is removed too.
 #[derive(Debug)]
 struct Terminal {
     server: Server,

@@ -54,14 +54,14 @@ type Faults = SimulatorFaults<LineFaultSpec, SlaveFault>;
 pub const FAULTS: FaultNames<SlaveFault> =
     FaultNames { link: &["noise", "parity", "drop", "dup", "delay", "echo", "seed"], device: &SlaveFault::ALL };
 
-/// A running slave. It stops when it is dropped.
+/// A running simulated slave. It stops when this value is dropped.
 #[derive(Debug)]
 pub struct Server {
     slave: Arc<Mutex<Slave<Simulated>>>,
     port: String,
     options: Options,
     clock: tokio::time::Instant,
-    /// New faults of characters. The thread ends when it is dropped.
+    /// Sends new faults of characters to the server thread. The thread ends when this sender is dropped.
     faults: Option<UnboundedSender<Option<LineFaultSpec>>>,
     thread: Option<JoinHandle<()>>,
 }
@@ -83,7 +83,7 @@ pub fn serve(start: Start, options: Options) -> Result<Server, Failure> {
     let clock = tokio::time::Instant::now();
     let serve = move || {
         runtime.block_on(server.run(&mut peer, changed));
-        // A read of the terminal can still block.
+        // A read of the terminal may still block, so do not wait for it.
         runtime.shutdown_background();
     };
     let thread = std::thread::Builder::new().name("profibus-slave".to_owned()).spawn(serve).map_err(failed)?;
@@ -96,8 +96,8 @@ impl Server {
         &self.port
     }
 
-    /// URL of the slave, optionally with another name of its port. The time limits are longer than on a real line,
-    /// because both ends share a processor and a pseudo-terminal has no timing.
+    /// Returns the URL of the slave; `name` is another name of its port. The time limits are longer than on a real
+    /// line: master and slave share a processor, and a pseudo-terminal does not keep the timing of characters.
     pub fn url(&self, name: Option<&str>) -> String {
         let (scheme, port) = (SCHEME.name, name.unwrap_or(&self.port));
         let (station, baud) = (self.options.station, self.options.rate.name);
@@ -120,14 +120,14 @@ impl Server {
     }
 }
 
-/// Slot time on a busy computer.
+/// Minimum slot time. It is long enough for a busy computer.
 const SLOT: Duration = Duration::from_millis(60);
 
 impl Drop for Server {
     fn drop(&mut self) {
         drop(self.faults.take());
         if let Some(thread) = self.thread.take() {
-            // A panic of the thread was already printed.
+            // If the thread panicked, the panic message was already printed.
             let _ = thread.join();
         }
     }

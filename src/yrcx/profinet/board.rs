@@ -1,13 +1,10 @@
-//! Requests to a PROFINET station without a connection.
+//! Requests to a PROFINET station that need no connection.
 
 use std::net::Ipv4Addr;
 use std::time::Duration;
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
-
 use super::{check, connect};
-use crate::fieldbus::{self, At};
+use crate::fieldbus::{At, BusBoard, Checked};
 use crate::link_error::not_open;
 use armctl_controller::yrcx::image::Image;
 use armctl_frame::face::layers::Layers;
@@ -33,7 +30,7 @@ pub struct Board {
 impl Board {
     /// Station of a URL.
     pub fn new(at: &At<'_>) -> Result<Self, LinkError> {
-        Ok(Self { profinet: connect::options(at.bus)?.clone(), label: at.robot.label(), tap: at.tap.clone() })
+        Ok(Self { profinet: at.options::<Profinet>()?.clone(), label: at.robot.label(), tap: at.tap.clone() })
     }
 
     /// Options of the URL.
@@ -41,7 +38,7 @@ impl Board {
         &self.profinet
     }
 
-    /// The interface, with a recorder.
+    /// Returns the interface, with the recorder of packets.
     pub fn interface(&self) -> Result<Interface, Failure> {
         let mut interface = Interface::find(&self.profinet.interface).map_err(|error| self.failure(error))?;
         interface.tap = self.tap.clone();
@@ -78,7 +75,7 @@ impl Board {
         Ok(other.map(|mac| format!("station {mac}")))
     }
 
-    /// Finds another owner of this IP address.
+    /// Finds another device that has this IP address.
     pub async fn holder(&self, address: Ipv4Addr, than: &Found) -> Result<Option<String>, Failure> {
         let (mac, own) = (than.mac, self.interface()?.mac);
         let other = self.ask(move |interface| commission::holder(interface, address, mac)).await?;
@@ -98,7 +95,7 @@ impl Board {
             let answer = commission::change(interface, mac, what, &block);
             let is_open = matches!(answer, Err(ProfinetError::NoAnswer { .. }));
             match answer {
-                // A refusal is also an answer.
+                // If the station refuses, do not wait for the new value.
                 Err(error @ ProfinetError::Dcp { .. }) => return Ok(Err(error)),
                 Err(error) if !is_open => return Err(error),
                 _ => {}
@@ -109,17 +106,17 @@ impl Board {
             Ok(found) => Ok(found),
             Err(error @ ProfinetError::Dcp { .. }) => {
                 let failure = Failure::new(Kind::Refused, format!("{}: {error}", self.label));
-                Err(failure.hint("nothing was changed; `yrcx profinet identify` shows the current settings"))
+                Err(failure.hint("use `yrcx profinet identify` to see the current settings; nothing was changed"))
             }
             Err(error) => {
-                let message = format!("{}: sent; the result is unknown: {error}", self.label);
+                let message = format!("{}: the request was sent, and the result is unknown: {error}", self.label);
                 Err(Failure::new(Kind::OutcomeUnknown, message)
-                    .hint("`yrcx profinet identify` shows the current settings"))
+                    .hint("use `yrcx profinet identify` to see the current settings"))
             }
         }
     }
 
-    /// Connects with this layout until data flows, then disconnects. Returns the answer of the station.
+    /// Opens a connection with this layout until data flows, then closes it. Returns the answer of the station.
     pub async fn attempt(&self, layout: &Layout) -> Result<Result<(), ProfinetError>, Failure> {
         let profinet = Profinet { layout: Some(layout.clone()), gsdml: None, ..self.profinet.clone() };
         let settings = connect::settings(&profinet, Duration::ZERO).map_err(|error| self.failure_of(&error))?;
@@ -137,12 +134,11 @@ impl Board {
     }
 }
 
-impl fieldbus::Board for Board {
-    fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
-        check::look(self, layers).boxed_local()
-    }
+impl BusBoard for Board {
+    const BUS: &'static str = SCHEME.bus;
+    const DEVICE: &'static str = "station";
 
-    fn close(self: Box<Self>) -> LocalBoxFuture<'static, ()> {
-        std::future::ready(()).boxed_local()
+    async fn look(&mut self, layers: &mut Layers) -> Checked<Option<Image>> {
+        check::look(self, layers).await
     }
 }

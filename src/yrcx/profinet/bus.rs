@@ -13,7 +13,7 @@ use armctl_frame::settings::target::profinet::SCHEME;
 use armctl_transport::capture::LINKTYPE_ETHERNET;
 use armctl_transport::profinet::wire::status::Status;
 
-/// PROFINET IO.
+/// PROFINET IO as a fieldbus.
 pub const BUS: Fieldbus = Fieldbus {
     name: SCHEME.bus,
     link_alarm: Alarm::new(12, 571),

@@ -1,10 +1,11 @@
-//! Layers of `armctl robots check` for a PROFINET device: from the interface to the image of the controller. It
-//! connects only to a simulator, because the end of a connection stops a controller.
+//! Layers of `armctl robots check` for a PROFINET device: from the interface to the image of the controller. The check
+//! opens a connection only to a simulator, because a real controller stops the robot when a connection ends.
 
 use std::time::Duration;
 
 use super::board::Board;
 use super::connect;
+use crate::fieldbus::{Checked, InLayer as _};
 use armctl_controller::yrcx::image::Image;
 use armctl_frame::face::layers::Layers;
 use armctl_frame::failure::Failure;
@@ -21,28 +22,18 @@ use armctl_transport::profinet::wire::record::RealModule;
 pub(super) const LAYERS: &[&str] = &["name", "interface", "privilege", "station", "IP", "RPC", "modules", "data"];
 
 /// Checks the layers. Returns the image of the controller, if it can be read.
-pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Option<Image> {
-    match asked(board, layers).await {
-        Ok(image) => image,
-        Err((layer, failure)) => {
-            layers.fail(layer, &failure);
-            None
-        }
-    }
-}
-
-async fn asked(board: &Board, layers: &mut Layers) -> Result<Option<Image>, (&'static str, Failure)> {
+pub(super) async fn look(board: &Board, layers: &mut Layers) -> Checked<Option<Image>> {
     let profinet = board.settings().clone();
     layers.ok("name", format!("{} through {}", profinet.station, profinet.interface));
-    let interface = board.interface().map_err(|failure| ("interface", failure))?;
+    let interface = board.interface().in_layer("interface")?;
     let usable = interface.check().and_then(|()| interface.address());
-    let here = usable.map_err(|error| ("interface", board.failure(error)))?;
+    let here = usable.map_err(|error| board.failure(error)).in_layer("interface")?;
     layers.ok("interface", format!("{} is up with a carrier, {} at {}", interface.name, here.address, interface.mac));
     if interface.network().is_none() {
-        interface.raw_socket(ETHER_TYPE).map_err(|error| ("privilege", board.failure(error)))?;
+        interface.raw_socket(ETHER_TYPE).map_err(|error| board.failure(error)).in_layer("privilege")?;
     }
     layers.ok("privilege", "raw Ethernet is allowed");
-    let found = board.station().await.map_err(|failure| ("station", failure))?;
+    let found = board.station().await.in_layer("station")?;
     let kind = &found.station.kind;
     layers.ok("station", format!("'{}' at {}, {kind}, found once", found.station.name, found.mac));
     let address = match (found.station.address(), profinet.ip) {
@@ -53,7 +44,11 @@ async fn asked(board: &Board, layers: &mut Layers) -> Result<Option<Image>, (&'s
         (has, Some(wanted)) if has != Some(wanted.address) => {
             let has = has.map_or_else(|| "none".to_owned(), |address| address.to_string());
             let found = format!("the device has {has}, the target has {}", wanted.address);
-            layers.warn("IP", found, "a connection sets this address until the device is switched off");
+            layers.warn(
+                "IP",
+                found,
+                "check ip= of the target: a connection sets this address until the device is switched off",
+            );
             return Ok(None);
         }
         (None, Some(wanted)) => wanted.address,
@@ -66,19 +61,19 @@ async fn asked(board: &Board, layers: &mut Layers) -> Result<Option<Image>, (&'s
     layers.ok("IP", format!("{address}, in the network of {}", here.address));
     records(board, &found, layers).await?;
     if let Some(network) = Network::find(&profinet.interface) {
-        return data(board, &network, layers).await.map_err(|failure| ("data", failure));
+        return data(board, &network, layers).await.in_layer("data");
     }
     layers.warn(
         "data",
         "a device sends its data only to the controller that owns the connection",
-        "connect with `armctl session open`; then `yrcx status` shows the signals",
+        "connect with `armctl session open`, then use `yrcx status` to see the signals",
     );
     Ok(None)
 }
 
 /// Checks the records of the device.
-async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Result<(), (&'static str, Failure)> {
-    let identity = board.identity(found.clone()).await.map_err(|failure| ("RPC", failure))?;
+async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Checked<()> {
+    let identity = board.identity(found.clone()).await.in_layer("RPC")?;
     match identity.im0 {
         Ok(im0) => layers.ok("RPC", format!("answers: order id '{}', vendor {:#06x}", im0.order_id, im0.vendor)),
         Err(ProfinetError::Refused { status, .. }) => {
@@ -111,24 +106,29 @@ async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Result<()
                         "equal to the target, except {left_out} of the access point, which only the device has: \
                          {layout}"
                     ),
-                    "a device can require all submodules of its access point: `yrcx profinet probe` lists them",
+                    "use `yrcx profinet probe` to list the submodules of the access point; a device can require all \
+                     of them",
                 ),
             }
         }
         Err(error) => {
-            layers.warn("modules", format!("not reported: {error}"), "a connection shows whether they fit");
+            layers.warn(
+                "modules",
+                format!("the device does not report its modules: {error}"),
+                "open a connection to see whether the modules fit",
+            );
         }
     }
     Ok(())
 }
 
-/// Format: `; it has 0:0x1,1:0x101`.
+/// Lists the modules of the device, for example `; it has 0:0x1,1:0x101`.
 fn listed(modules: &[RealModule]) -> String {
     let all: Vec<String> = modules.iter().map(|module| format!("{}:{:#x}", module.slot, module.ident)).collect();
     format!("; it has {}", all.join(","))
 }
 
-/// Differences between the layout and the real modules.
+/// Compares the layout with the real modules of the device, and returns the differences.
 fn mismatches(layout: &Layout, real: &[RealModule]) -> Vec<ModuleMismatch> {
     let mut mismatches = Vec::new();
     for module in layout.expected() {
@@ -149,7 +149,7 @@ fn mismatches(layout: &Layout, real: &[RealModule]) -> Vec<ModuleMismatch> {
     mismatches
 }
 
-/// Submodules of the access point that the layout does not contain.
+/// Lists the submodules of the access point that the layout does not contain.
 fn left_out(layout: &Layout, real: &[RealModule]) -> Option<String> {
     let head = real.iter().find(|module| module.slot == 0)?;
     let left_out = head.submodules.iter().filter(|(subslot, _)| layout.find(0, *subslot).is_none());

@@ -3,11 +3,9 @@
 use std::path::Path;
 use std::time::Duration;
 
-use crate::fieldbus::{At, Purpose};
+use crate::fieldbus::{At, Purpose, device_file, options};
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Image};
 use armctl_controller::yrcx::signal::resting;
-use armctl_files as files;
-use armctl_frame::failure::plain;
 use armctl_frame::settings::target::profinet::{Profinet, address};
 use armctl_frame::settings::target::{Address, Bus};
 use armctl_transport::image::tap::Tap;
@@ -24,9 +22,10 @@ use armctl_transport::profinet::simulated::Network;
 use armctl_transport::profinet::wire::record::Parameter;
 
 pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
-    let profinet = options(at.bus)?;
+    let profinet: &Profinet = at.options()?;
     if purpose == Purpose::Look {
-        // A read would need a connection, and its end would stop the controller.
+        // To read the signals, armctl would have to open a connection, and the end of the connection would stop the
+        // controller.
         let cause = Cause::new("a PROFINET device sends its signals only to the controller that owns the connection");
         return Err(LinkError::Refused(
             cause.advice("open a session with `armctl session open`, then read through that session"),
@@ -42,27 +41,23 @@ pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, Link
 /// Opens a connection until data flows, then closes it.
 pub(super) async fn attempt(profinet: &Profinet, settings: Settings, tap: Tap) -> Result<(), ProfinetError> {
     if let Some(network) = Network::find(&profinet.interface) {
-        // The in-process device always receives the close, so its result does not matter.
+        // A device in this process always receives the close request, so the result of the close does not matter.
         let _ = ImageLink::in_process(Box::new(network.open(settings)?)).close().await;
         return Ok(());
     }
     network::Network::shared(&profinet.interface)?.open(settings, tap).await?.close().await
 }
 
-/// Addresses of a station from DCP: name and MAC address.
+/// Returns the addresses of a station, which DCP reports: name and MAC address.
 pub(super) fn addresses(bus: &Bus) -> Result<Vec<Address>, LinkError> {
-    let profinet = options(bus)?;
+    let profinet: &Profinet = options(bus)?;
     let interface = Interface::find(&profinet.interface)?;
     let found = commission::find(&interface, &profinet.station)?;
     let names = [Station::Name(found.station.name), Station::Mac(found.mac)];
     Ok(names.iter().map(|name| address(&profinet.interface, name)).collect())
 }
 
-pub(super) fn options(bus: &Bus) -> Result<&Profinet, LinkError> {
-    bus.options().ok_or_else(|| LinkError::Settings(Cause::new(format!("{bus:?} is not a URL of PROFINET"))))
-}
-
-/// Link settings. `calm` is the minimum interval for a caller that reads rarely.
+/// Returns the link settings. `calm` is the minimum cycle for a caller that reads rarely.
 pub(super) fn settings(profinet: &Profinet, calm: Duration) -> Result<Settings, LinkError> {
     let Modules { layout, parameters, shortest, startup } = modules(profinet)?;
     let sizes = (layout.size(Direction::Input), layout.size(Direction::Output));
@@ -70,11 +65,11 @@ pub(super) fn settings(profinet: &Profinet, calm: Duration) -> Result<Settings, 
     if !fits {
         let (input, output) = sizes;
         let cause = Cause::new(format!(
-            "the modules have {input} bytes from the controller and {output} bytes to it, not {} each way",
+            "the modules have {input} bytes from the controller and {output} bytes to the controller, not {} each way",
             Image::BYTES
         ));
         return Err(LinkError::Settings(
-            cause.advice("correct layout= in the URL; `yrcx profinet probe` finds the layout"),
+            cause.advice("correct layout= in the URL; use `yrcx profinet probe` to find the layout"),
         ));
     }
     if profinet.cycle < shortest {
@@ -107,7 +102,7 @@ fn whole(time: Duration) -> Duration {
     Duration::from_millis(millis.next_power_of_two())
 }
 
-/// Modules of a device, as far as known.
+/// What is known about the modules of a device.
 struct Modules {
     layout: Layout,
     parameters: Vec<Parameter>,
@@ -133,9 +128,9 @@ fn modules(profinet: &Profinet) -> Result<Modules, LinkError> {
     }
 }
 
-/// Modules of a GSDML file, if there is a unique selection with the image size of a YRCX.
+/// Selects modules of a GSDML file. There must be exactly one selection that has the image size of a YRCX.
 fn file(path: &Path) -> Result<Modules, LinkError> {
-    /// Unit of the shortest cycle.
+    /// Unit in which the file gives the shortest cycle.
     const UNIT: Duration = Duration::from_nanos(31_250);
     let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
     let gsdml = read(path)?;
@@ -154,16 +149,12 @@ fn file(path: &Path) -> Result<Modules, LinkError> {
     }
     let size = Image::BYTES;
     let cause = wrong(format!("there is no unique selection of modules with {size} bytes each way"));
-    let advice = "set layout= in the URL instead; `yrcx profinet gsdml FILE` lists the modules";
+    let advice = "set layout= in the URL instead; use `yrcx profinet gsdml FILE` to list the modules";
     Err(LinkError::Settings(cause.advice(advice)))
 }
 
 pub(super) fn read(path: &Path) -> Result<Gsdml, LinkError> {
-    let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
-    let bytes = files::read(path, MOST_BYTES).map_err(|error| {
-        LinkError::Local(wrong(plain(&error)).advice("give the manufacturer's GSDML file: gsdml= in the URL, or FILE"))
-    })?;
-    Gsdml::parse(&bytes).map_err(|error| LinkError::Settings(wrong(error.to_string())))
+    device_file(path, MOST_BYTES, "use the manufacturer's GSDML file: gsdml= in the URL, or FILE", Gsdml::parse)
 }
 
 #[cfg(test)]
@@ -196,6 +187,6 @@ mod tests {
         let error = of("profinet://robot@eth0", Duration::ZERO).unwrap_err();
         assert!(error.cause().advice.as_ref().unwrap().contains("set gsdml= to"), "{error:?}");
         let error = of("profinet://robot@eth0?layout=1:1:i48,2:2:o32", Duration::ZERO).unwrap_err();
-        assert!(error.to_string().contains("48 bytes from the controller and 32 bytes to it"), "{error}");
+        assert!(error.to_string().contains("48 bytes from the controller and 32 bytes to the controller"), "{error}");
     }
 }

@@ -26,7 +26,7 @@ pub struct Decoder {
     calls: HashMap<(Uuid, u32), (u64, Vec<Request>)>,
     /// Cyclic data by MAC addresses and frame id.
     streams: HashMap<(Mac, Mac, u16), Stream>,
-    /// Number of cyclic frames whose Connect is not in the capture.
+    /// Number of cyclic frames that cannot be decoded because their Connect is not in the capture.
     unknown: u64,
     unreadable: u64,
 }
@@ -35,12 +35,12 @@ pub struct Decoder {
 #[derive(Debug)]
 struct Stream {
     direction: Direction,
-    /// Controller and device.
+    /// Names of controller and device.
     link: (String, String),
     length: usize,
-    /// Offset and length of the image parts; a status follows each.
+    /// Offset and length of each part of the image. A status byte follows each part.
     places: Vec<(usize, usize)>,
-    /// Last reported problem of the data.
+    /// Problem of the data that was reported last.
     trouble: Option<String>,
 }
 
@@ -107,7 +107,8 @@ impl Decoder {
         }
     }
 
-    /// Handles a datagram of a call. The controller calls the device; the device calls back with ApplicationReady.
+    /// Adds a datagram of an RPC call. The controller calls the device. For ApplicationReady, the device calls the
+    /// controller.
     fn call(&mut self, message: &Message<'_>, ends: (String, String), datagram: &Datagram<'_>, images: &mut Images) {
         let header = &datagram.header;
         let (key, name) = ((header.activity, header.sequence), name(header));
@@ -136,7 +137,7 @@ impl Decoder {
         images.message(DecodedMessage { answers, ..decoded(message, direction, link, text) });
     }
 
-    /// Text of an answer. A Connect answer also defines the streams.
+    /// Describes an answer. A Connect answer also defines the streams.
     fn answered(&mut self, header: &Header, body: &[u8], asked: Option<&(u64, Vec<Request>)>) -> String {
         let reply = match Reply::parse(body, header.order) {
             Ok(reply) => reply,
@@ -220,7 +221,7 @@ impl Stream {
         }
     }
 
-    /// Image of a frame, or the reason why it is not valid.
+    /// Returns the image in a frame, or the reason why the image is not valid.
     fn image(&self, payload: &[u8]) -> Result<Vec<u8>, String> {
         let cyclic = Cyclic::parse(payload, self.length).map_err(|error| error.to_string())?;
         if !cyclic.is_usable() {
@@ -238,7 +239,7 @@ impl Stream {
     }
 }
 
-/// Positions of the submodule data, in the order of the slots.
+/// Returns offset and length of the data of each submodule, in the order of the slots.
 fn places(iocr: &Iocr, modules: &[&ExpectedModule]) -> Vec<(usize, usize)> {
     let length = |slot: u16, subslot: u16| {
         let of_slot = modules.iter().filter(|module| module.slot == slot).flat_map(|module| &module.submodules);
@@ -267,7 +268,7 @@ fn name(header: &Header) -> &'static str {
     }
 }
 
-/// Names of packet types other than call and answer.
+/// Returns the name of a packet type other than call and answer.
 fn kind_name(kind: u8) -> &'static str {
     match Kind(kind) {
         Kind::PING => "ping",
@@ -280,7 +281,7 @@ fn kind_name(kind: u8) -> &'static str {
     }
 }
 
-/// Text of a call, and its blocks for the answer.
+/// Describes a call. Also returns its blocks, which are needed to decode the answer.
 fn request(header: &Header, body: &[u8]) -> (String, Vec<Request>) {
     let unread = |error| (format!(": invalid: {error}"), Vec::new());
     let call = match Call::parse(body, header.order) {
@@ -327,7 +328,7 @@ fn describe_connect(requests: &[Request]) -> String {
             Request::Ar(ar) => parts.push(format!("controller '{}'", ar.name)),
             Request::Iocr(iocr) if iocr.kind == 1 => {
                 let cycle = u32::from(iocr.send_clock) * u32::from(iocr.ratio);
-                // 31.25 us is 1/32 ms.
+                // The unit is 31.25 us, which is 1/32 ms.
                 let ms = f64::from(cycle) / 32.0;
                 parts.push(format!("every {ms} ms, watchdog {} ms", ms * f64::from(iocr.watchdog)));
             }
@@ -396,7 +397,7 @@ fn station(dcp: &Dcp) -> String {
 /// Text of a block in a request.
 fn asked(service: Service, block: &dcp::Block) -> String {
     let name = setting_name(block.setting);
-    // In a Set, the value follows its qualifier.
+    // In a Set request, a qualifier of two bytes precedes the value.
     let value = if service == Service::Set { block.data.get(2..).unwrap_or_default() } else { &block.data[..] };
     match block.setting {
         Setting::NAME | Setting::ALIAS | Setting::STATION_TYPE if !value.is_empty() => {

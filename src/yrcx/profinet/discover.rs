@@ -16,11 +16,11 @@ use armctl_transport::image::tap::Tap;
 use armctl_transport::profinet::commission;
 use armctl_transport::profinet::interface::Interface;
 
-/// Interface to search.
+/// Arguments: the interfaces to search.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct Search {
-    /// Find all PROFINET stations on this Ethernet interface, such as eth0 (repeatable)
+    /// Find all PROFINET stations on this Ethernet interface, for example eth0 (repeatable)
     #[arg(long = "interface", value_name = "IFACE")]
     interfaces: Vec<String>,
 }
@@ -53,14 +53,14 @@ impl fieldbus::Search for Search {
 }
 
 fn found_station(station: &Station, interface: &str) -> Result<Device, Failure> {
-    // A duplicate name does not identify a station, so use the MAC address.
-    let is_twice = station.remarks.iter().any(|remark| remark.ends_with("has its name too"));
+    // A name that two stations have does not identify a station, so use the MAC address.
+    let is_twice = station.remarks.iter().any(|remark| remark.ends_with("has the same name"));
     let place = if station.station.is_empty() || is_twice { &station.mac } else { &station.station };
     let name = if station.station.is_empty() { "no name" } else { &station.station };
     Ok(Device {
         address: station.ip.clone().unwrap_or_else(|| station.mac.clone()),
         target: format!("{}://{place}@{interface}", SCHEME.name),
-        // The vendor id is not known, so the station type decides.
+        // The vendor id of the manufacturer is not known, so armctl recognizes a YRCX by the station type.
         is_yrcx: ["RCX", "YAMAHA"].iter().any(|word| station.kind.to_uppercase().contains(word)),
         device: format!("{name}, {}", station.in_a_line()),
         identity: fields(station)?,

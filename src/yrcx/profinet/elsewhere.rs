@@ -1,4 +1,4 @@
-//! `yrcx profinet` on systems without raw Ethernet: only the GSDML file.
+//! Commands `yrcx profinet` on systems without raw Ethernet: only the command for GSDML files.
 
 mod gsdml;
 

@@ -15,15 +15,15 @@ use armctl_frame::{OfflineCommand, Report};
 use armctl_transport::profinet::gsdml::{self, Fitting, Gsdml, Head};
 use armctl_transport::profinet::layout::Direction;
 
-/// Reads a device's GSDML file: its modules, and the layout for a target. Needs no robot.
+/// Reads the GSDML file of a device: its modules, and the layout for a target. This needs no robot.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "An error in the file is reported with its line and element (exit 2). The layout uses the modules \
-                  with 48 bytes each way, as on a YRCX. If several layouts are possible, write the layout into the \
-                  target yourself; see `armctl help profinet`."
+    after_help = "armctl reports an error in the file with its line and element (exit code 2). The layout uses the \
+                  modules with 48 bytes each way, as on a YRCX. If several layouts are possible, write the layout \
+                  into the target yourself; see `armctl help profinet`."
 )]
 pub struct ReadFile {
-    /// GSDML file, such as GSDML-V2.35-….xml
+    /// GSDML file, for example GSDML-V2.35-….xml
     #[arg(value_name = "FILE")]
     file: PathBuf,
 }
@@ -36,20 +36,20 @@ impl OfflineCommand for ReadFile {
         let shown = self.file.display();
         let bytes = files::read(&self.file, gsdml::MOST_BYTES).map_err(|error| Failure::io(&shown, &error))?;
         let read = Gsdml::parse(&bytes).map_err(|error| {
-            Failure::usage(format!("{shown}: {error}")).hint("check that it is the GSDML file of the device")
+            Failure::usage(format!("{shown}: {error}")).hint("check that the file is the GSDML file of the device")
         })?;
         Ok(Described::from(&read))
     }
 }
 
-/// Device description of the manufacturer. Names are untrusted.
+/// Device description by the manufacturer. Do not trust the names.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Described {
-    /// As in `0x0123`.
+    /// Vendor id, for example `0x0123`.
     vendor: String,
-    /// As in `0x0001`.
+    /// Device id, for example `0x0001`.
     device: String,
-    /// Access points for slot 0; one of them is plugged.
+    /// Access points that slot 0 can contain. A device has one of them.
     access_points: Vec<AccessPoint>,
 }
 
@@ -61,16 +61,17 @@ struct AccessPoint {
     name: String,
     /// Default station name; empty if there is none.
     station: String,
-    /// As in `0x1`.
+    /// Ident number, for example `0x1`.
     ident: String,
-    /// `advanced`, `legacy`.
+    /// Start-up modes that the access point supports: `advanced`, `legacy`.
     startup: Vec<&'static str>,
     /// Minimum cycle time in us.
     cycle_us: u32,
     modules: Vec<Module>,
-    /// `layout=` for a target with images of 48 bytes each way; null unless exactly one selection of modules fits.
+    /// Value of `layout=` for a target with images of 48 bytes each way; null unless exactly one selection of modules
+    /// has this size.
     layout: Option<String>,
-    /// Number of start-up parameter records for this layout.
+    /// Number of start-up parameter records that this layout needs.
     parameters: Option<usize>,
 }
 
@@ -80,15 +81,15 @@ struct Module {
     /// ID in the file.
     id: String,
     name: String,
-    /// As in `0x101`.
+    /// Ident number, for example `0x101`.
     ident: String,
-    /// Allowed slots.
+    /// Slots in which the module is allowed.
     slots: Vec<u16>,
-    /// Fixed slots.
+    /// Slots that always contain the module.
     fixed: Vec<u16>,
-    /// Bytes from the device.
+    /// Number of bytes from the device.
     in_size: usize,
-    /// Bytes to the device.
+    /// Number of bytes to the device.
     out_size: usize,
 }
 
@@ -112,7 +113,7 @@ impl From<&Head> for AccessPoint {
             station: head.dns_name.clone(),
             ident: format!("{:#x}", head.ident),
             startup: modes.into_iter().filter(|(_, has)| *has).map(|(mode, _)| mode).collect(),
-            // The unit is 31.25 us.
+            // The unit in the file is 31.25 us.
             cycle_us: u32::from(head.shortest) * 125 / 4,
             modules: head.modules.iter().map(Module::from).collect(),
             layout: chosen.as_ref().and_then(|chosen| head.layout(chosen).ok()).map(|layout| layout.to_string()),
@@ -170,7 +171,7 @@ impl Report for Described {
     }
 }
 
-/// Format: `1 to 4, 7`.
+/// Formats slots as ranges, for example `1 to 4, 7`.
 fn ranges(slots: &[u16]) -> String {
     let mut ranges: Vec<(u16, u16)> = Vec::new();
     for slot in slots {

@@ -4,14 +4,15 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::board::Board;
+use super::plan_search;
 use super::station::Station;
-use super::{NO_UNIT, board_of, plan_search};
 use crate::link::Yrcx;
 use armctl_frame::failure::Failure;
 use armctl_frame::output::view::{Section, View};
 use armctl_frame::{Command, ConnectMode, Context, Report};
 
-/// Reads the identity of the station (DCP Identify). The station needs no address, and is not connected.
+/// Reads the identity of the station (DCP Identify). The station needs no IP address, and armctl opens no connection.
 #[derive(Debug, Args)]
 #[command(after_help = "Use the MAC address for a station without a name: profinet://02:00:00:00:00:01@eth0. `armctl \
                         robots discover --interface eth0` lists all stations.")]
@@ -24,9 +25,9 @@ impl Command for Identify {
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Identified, Failure> {
-        context.link.no_unit(NO_UNIT)?;
+        context.link.no_unit_of::<Board>()?;
         plan_search(context.link, context.robot)?;
-        let found = board_of(context.link)?.station().await?;
+        let found = context.link.board::<Board>()?.station().await?;
         Ok(Identified { station: Station::from(&found) })
     }
 }

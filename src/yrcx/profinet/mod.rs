@@ -1,5 +1,5 @@
-//! Controllers on PROFINET IO with this computer as the IO controller, and `yrcx profinet`: stations, their names and
-//! addresses, GSDML files.
+//! Controllers on PROFINET IO, with this computer as the IO controller. Also the commands `yrcx profinet`: stations,
+//! their names and addresses, GSDML files.
 
 mod board;
 pub mod bus;
@@ -17,7 +17,6 @@ mod station;
 
 use serde_json::json;
 
-use self::board::Board;
 use super::connect::{Endpoint, endpoint};
 use super::link::Link;
 use armctl_controller::text;
@@ -30,18 +29,11 @@ use armctl_transport::profinet::settings::Station;
 use armctl_transport::profinet::wire::Mac;
 use armctl_transport::profinet::wire::dcp::Block;
 
-fn board_of(link: &mut Link) -> Result<&mut Board, Failure> {
-    link.board(SCHEME.bus)
-}
-
-/// Reason why `--unit` is rejected.
-const NO_UNIT: &str = "the station belongs to the whole controller";
-
-/// Station of a robot's URL.
+/// Returns the station that a robot's URL names.
 fn station_of(robot: &Robot) -> Result<Station, Failure> {
     let other = || {
         Failure::usage(format!("{} is not on {}", robot.label(), SCHEME.bus))
-            .hint("give a station: -t profinet://NAME@INTERFACE")
+            .hint("select a station: -t profinet://NAME@INTERFACE")
     };
     match endpoint(robot)? {
         Endpoint::Bus(bus, _) => {
@@ -59,7 +51,7 @@ fn plan_search(link: &mut Link, robot: &Robot) -> Result<(), Failure> {
     link.plan_frame(json!({ "hex": unknown(&hex, true), "about": "DCP Identify: MAC address of the station" }))
 }
 
-/// Frame of a DCP Set, as far as known before the station is found.
+/// Returns the frame of a DCP Set, with the digits that are known before the station is found.
 fn frame_for(station: &Station, block: &Block) -> String {
     let (destination, is_known) = match station {
         Station::Name(_) => (Mac::default(), false),
@@ -68,8 +60,8 @@ fn frame_for(station: &Station, block: &Block) -> String {
     unknown(&text::hex(&commission::set(Mac::default(), destination, 0, block)), is_known)
 }
 
-/// Replaces unknown digits of a frame by `?`: MAC address of this computer, MAC address of a station known by name, and
-/// Xid (bytes 6, 0 and 18).
+/// Replaces the unknown digits of a frame by `?`. The MAC address of this computer (from byte 6) and the Xid (from byte
+/// 18) are unknown. The MAC address of the station (from byte 0) is unknown if only the name of the station is known.
 fn unknown(hex: &str, is_destination_known: bool) -> String {
     let is_unknown =
         |digit| (!is_destination_known && digit < 12) || (12..24).contains(&digit) || (36..44).contains(&digit);

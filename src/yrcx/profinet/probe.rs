@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::board::Board;
 use super::station::Station;
-use super::{NO_UNIT, board_of, connect, plan_search};
+use super::{connect, plan_search};
 use crate::link::Yrcx;
 use armctl_controller::Risk;
 use armctl_controller::yrcx::image::Image;
@@ -23,15 +23,16 @@ use armctl_transport::profinet::guess;
 use armctl_transport::profinet::layout::Layout;
 use armctl_transport::profinet::wire::record::{Im0, RealModule};
 
-/// Reads the records of the station (I&M0, 0xF000): identity and modules. The station is not connected.
+/// Reads the records of the station (I&M0, 0xF000): identity and modules. armctl opens no connection for this.
 #[derive(Debug, Args)]
 #[command(
     after_help = "With --try, armctl connects with the layout of the target, then with the layouts that its modules \
-                  allow, until data flows. Each connection sends the resting image to the controller, and its end \
-                  stops the robot. If another controller owns the station, it refuses and nothing changes."
+                  allow, until data flows. Each connection sends the resting image to the controller. The end of each \
+                  connection stops the robot. If another controller owns the station, the station refuses the \
+                  connection, and nothing changes."
 )]
 pub struct Probe {
-    /// Try layouts until one fits
+    /// Connect with one layout after the other until one fits
     #[arg(long = "try")]
     tries: bool,
 }
@@ -45,13 +46,13 @@ impl Command for Probe {
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     fn risk(&self) -> Risk {
-        // The end of a connection stops the robot, although the command starts no motion.
+        // With --try, the command starts no motion, but the end of a connection stops the robot.
         if self.tries { Risk::Motion } else { Risk::Read }
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Probed, Failure> {
         let Context { robot, link, .. } = context;
-        link.no_unit(NO_UNIT)?;
+        link.no_unit_of::<Board>()?;
         link.then("calls that read I&M0 and the modules (ReadImplicit of 0xAFF0 and 0xF000)");
         if self.tries {
             link.then("a connection with each possible layout, until data flows");
@@ -60,7 +61,7 @@ impl Command for Probe {
         if self.tries {
             link.authorize(Self::ID, self.risk())?;
         }
-        let board: &Board = board_of(link)?;
+        let board: &Board = link.board()?;
         let found = board.station().await?;
         let station = Station::from(&found);
         let identity = board.identity(found).await?;
@@ -70,14 +71,14 @@ impl Command for Probe {
     }
 }
 
-/// Candidate layouts, the one of the target first.
+/// Returns the layouts that are possible. The layout of the target comes first.
 fn possible(board: &Board, identity: &Identity) -> Vec<Layout> {
     let bytes = u16::try_from(Image::BYTES).unwrap_or(u16::MAX);
-    // The command is for targets without a layout.
+    // An error is ignored, because this command is also for targets without a layout.
     let told = connect::settings(board.settings(), Duration::ZERO).ok().map(|settings| settings.layout);
     let guessed = match &identity.modules {
         Ok(real) => guess::layouts(real, bytes),
-        // The answer contains the modules of the device.
+        // Start with any layout: the answer of the device lists its real modules.
         Err(_) => vec![Layout::two_modules(1, 2)],
     };
     let mut layouts: Vec<Layout> = Vec::new();
@@ -89,7 +90,7 @@ fn possible(board: &Board, identity: &Identity) -> Vec<Layout> {
     layouts
 }
 
-/// Limit of connection attempts.
+/// Maximum number of connection attempts.
 const MOST: usize = 10;
 
 async fn attempts(board: &Board, mut left: VecDeque<Layout>) -> Result<Vec<Attempt>, Failure> {
@@ -104,7 +105,7 @@ async fn attempts(board: &Board, mut left: VecDeque<Layout>) -> Result<Vec<Attem
         }
         let is_over = match &answer {
             Err(ProfinetError::Refused { status, .. }) => status.is_owned(),
-            // Success, no device, or a problem of this computer.
+            // A further attempt makes no sense: success, no device, or a problem of this computer.
             Ok(())
             | Err(ProfinetError::NotFound { .. } | ProfinetError::Privilege | ProfinetError::PortTaken { .. }) => true,
             Err(_) => false,
@@ -128,48 +129,48 @@ fn untried(layouts: &[Layout]) -> Vec<Attempt> {
 pub struct Probed {
     #[serde(flatten)]
     station: Station,
-    /// I&M0; null if the station does not report it.
+    /// Identity record I&M0; null if the station does not report it.
     identity: Option<Product>,
-    /// Plugged modules; null if the station does not report them.
+    /// Modules in the slots of the station; null if the station does not report them.
     modules: Option<Vec<Module>>,
-    /// Reasons for missing data.
+    /// Reasons why data is missing.
     refusals: Vec<String>,
-    /// Possible or tried layouts, as `layout=` of a target accepts them.
+    /// Layouts that are possible or were tried, in the form of `layout=` of a target.
     layouts: Vec<Attempt>,
     #[serde(skip)]
     has_tried: bool,
 }
 
-/// I&M0. Its texts are untrusted.
+/// Identity record I&M0. Do not trust its texts.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Product {
     order_id: String,
     serial: String,
-    /// As in `0x0123`.
+    /// Vendor id of the manufacturer, for example `0x0123`.
     maker: String,
     hardware: u16,
-    /// As in `V1.2.3`.
+    /// Software version, for example `V1.2.3`.
     software: String,
 }
 
-/// A module.
+/// A module in a slot of the station.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Module {
     slot: u16,
-    /// As in `0x101`.
+    /// Ident number, for example `0x101`.
     ident: String,
-    /// Subslots with their kinds, as in `0x1:0x1`.
+    /// Subslots with the ident numbers of their submodules, for example `0x1:0x1`.
     submodules: Vec<String>,
 }
 
-/// A layout.
+/// A layout, and the result of a connection attempt with it.
 #[derive(Debug, Serialize, JsonSchema)]
 struct Attempt {
-    /// `0:0x1,1:0x101:i48,2:0x102:o48`.
+    /// Layout, for example `0:0x1,1:0x101:i48,2:0x102:o48`.
     layout: String,
-    /// Null if not tried.
+    /// Whether the station accepts the layout; null if not tried.
     fits: Option<bool>,
-    /// Result of the attempt.
+    /// Answer of the station; null if not tried.
     answer: Option<String>,
 }
 

@@ -1,14 +1,11 @@
 //! Server for a simulated controller as an IO device on a network interface.
 
-use std::path::Path;
-
 use clap::Args;
 
 use super::simulated::{Controller, NAME, controller, layout, setup};
-use crate::fieldbus::{Operator, Serve, Served};
+use crate::fieldbus::{Operator, Serve, Served, ToServe};
 use crate::link_error::not_open;
 use crate::simulated::{faults, faults_of_option};
-use armctl_controller::yrcx::simulator::Start;
 use armctl_frame::failure::Failure;
 use armctl_frame::settings::target::profinet::{self, SCHEME};
 use armctl_transport::fault::{FaultNames, FaultSpec, SimulatorFaults};
@@ -28,25 +25,20 @@ pub struct ServeArgs {
     /// PROFINET: name of the station
     #[arg(long, value_name = "NAME", default_value = NAME, value_parser = profinet::name)]
     station_name: String,
-    /// PROFINET: modules of the device, as in 1:0x101:i48,2:0x102:o48
+    /// PROFINET: modules of the device, for example 1:0x101:i48,2:0x102:o48
     #[arg(long, value_name = "LAYOUT")]
     layout: Option<Layout>,
 }
 
-/// Faults by name. A real Ethernet interface has no simulated ones.
+/// Names of the simulated faults of the device. On a real Ethernet interface, armctl does not simulate faults of
+/// frames.
 const DEVICE_FAULTS: FaultNames<Fault> = FaultNames { link: &[], device: &Fault::ALL };
 
 impl Serve for ServeArgs {
-    fn serve(
-        &self,
-        _simulator: Option<&str>,
-        start: Start,
-        _link: Option<&Path>,
-        faults: Option<&str>,
-    ) -> Result<Served, Failure> {
+    fn serve(&self, ToServe { start, faults, .. }: ToServe<'_>) -> Result<Served, Failure> {
         let Some(interface) = &self.interface else {
             return Err(Failure::usage("a PROFINET device needs an Ethernet interface")
-                .hint("add --interface IFACE; `ip link` lists the interfaces"));
+                .hint("add --interface IFACE; use `ip link` to list the interfaces"));
         };
         let faults: SimulatorFaults<FaultSpec, Fault> = faults_of_option(faults, &DEVICE_FAULTS)?;
         let layout = self.layout.clone().unwrap_or_else(layout);

@@ -1,4 +1,4 @@
-//! `yrcx profinet blink`, `set-name`, `set-ip` and `reset`: values set by DCP.
+//! Commands `yrcx profinet blink`, `set-name`, `set-ip` and `reset`, which set values by DCP.
 
 use std::net::Ipv4Addr;
 
@@ -6,7 +6,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::board::Board;
-use super::{NO_UNIT, board_of, frame_for, plan_search, station_of};
+use super::{frame_for, plan_search, station_of};
 use crate::link::Yrcx;
 use armctl_controller::Risk;
 use armctl_frame::dry_run::Known as _;
@@ -18,43 +18,43 @@ use armctl_frame::{Command, ConnectMode, Context};
 use armctl_transport::profinet::commission::Found;
 use armctl_transport::profinet::wire::dcp::{Block, IpSuite, Station};
 
-/// Effect of a new name or address on a station with a connected controller.
+/// Warning: what a new name or address does if a controller is connected to the station.
 const ENDS: &str = "If a controller is connected to the station, the connection may end, which stops the robot.";
 
-/// Makes the light of the station blink for about three seconds, to find it in the cabinet.
+/// Makes the light of the station blink for about three seconds, so that you can find the station in the cabinet.
 #[derive(Debug, Args)]
 pub struct Blink {}
 
-/// Sets the station name (DCP Set). The station keeps the name after power-off, unless --temporary is used.
+/// Sets the station name (DCP Set). The station keeps the name after power-off, unless you give --temporary.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "A name can have lowercase letters, digits, - and dots, with up to 63 characters between dots. A name \
-                  that another station has is rejected. The new target is profinet://NAME@eth0."
+    after_help = "A name can have lowercase letters, digits, - and dots, with up to 63 characters between dots. \
+                  armctl rejects a name that another station has. The new target is profinet://NAME@eth0."
 )]
 pub struct SetName {
-    /// The new name, as in robot-7
+    /// New name, for example robot-7
     #[arg(value_name = "NAME", value_parser = profinet::name)]
     name: String,
-    /// Only until the station is switched off
+    /// Keep the name only until the station is switched off
     #[arg(long)]
     temporary: bool,
 }
 
-/// Sets the IP address of the station (DCP Set). The station keeps the address after power-off, unless --temporary is
-/// used.
+/// Sets the IP address of the station (DCP Set). The station keeps the address after power-off, unless you give
+/// --temporary.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "An address that another device has (ARP check) is rejected. A target with ip= sets the address at \
-                  each connection and needs no set-ip."
+    after_help = "armctl rejects an address that another device has (ARP check). A target with ip= sets the address \
+                  at each connection and needs no set-ip."
 )]
 pub struct SetIp {
-    /// New address with the mask length: 192.168.0.10/24
+    /// New address with the mask length, for example 192.168.0.10/24
     #[arg(value_name = "ADDRESS/BITS", value_parser = suite)]
     address: IpSuite,
-    /// Router to other networks
+    /// Address of the router to other networks
     #[arg(long, value_name = "ADDRESS")]
     gateway: Option<Ipv4Addr>,
-    /// Only until the station is switched off
+    /// Keep the address only until the station is switched off
     #[arg(long)]
     temporary: bool,
 }
@@ -62,18 +62,18 @@ pub struct SetIp {
 /// Deletes the name and the IP address of the station (DCP Reset to factory, communication parameters).
 #[derive(Debug, Args)]
 #[command(
-    after_help = "The station then has no name: use its MAC address, as in profinet://02:00:00:00:00:01@eth0. Data and \
-                  programs of the robot do not change."
+    after_help = "The station then has no name: use its MAC address, such as profinet://02:00:00:00:00:01@eth0. Data \
+                  and programs of the robot do not change."
 )]
 pub struct Reset {}
 
 fn suite(text: &str) -> Result<IpSuite, String> {
-    let short = || format!("the mask length is missing, as in {text}/24");
+    let short = || format!("the mask length is missing; type {text}/24, for example");
     text.contains('/').then_some(()).ok_or_else(short)?;
     profinet::suite(text).map_err(|why| why.trim_start_matches("ip: ").to_owned())
 }
 
-/// A value to set.
+/// A value to set at the station.
 struct Task<C: Fn(&Found) -> Change> {
     id: &'static str,
     risk: Risk,
@@ -85,35 +85,35 @@ struct Task<C: Fn(&Found) -> Change> {
     is_so: Box<dyn Fn(&Station) -> bool + Send>,
 }
 
-/// Sets the value after `check` and a confirmation of what is overwritten. A dry run notes the frames.
+/// Runs `check`, asks the user to confirm what is overwritten, then sets the value. A dry run notes the frames.
 async fn set<C: Fn(&Found) -> Change>(
     context: Context<'_, Yrcx>,
     task: Task<C>,
     check: impl AsyncFnOnce(&Board, &Found) -> Result<(), Failure>,
 ) -> Result<Found, Failure> {
     let Context { robot, link, authority, .. } = context;
-    link.no_unit(NO_UNIT)?;
+    link.no_unit_of::<Board>()?;
     plan_search(link, robot).known()?;
     let hex = frame_for(&station_of(robot)?, &task.block);
     link.plan_frame(json!({ "hex": hex, "about": task.what }))?;
     let found = {
-        let board: &Board = board_of(link)?;
+        let board: &Board = link.board()?;
         let found = board.station().await?;
         check(board, &found).await?;
         found
     };
     authority.confirm(&(task.change)(&found)).await?;
     link.authorize(task.id, task.risk)?;
-    board_of(link)?.set(&found, task.what, task.block, task.is_so).await
+    link.board::<Board>()?.set(&found, task.what, task.block, task.is_so).await
 }
 
-/// A permanent value overwrites the old one.
+/// Returns the risk of setting a value: a permanent value overwrites the old value.
 const fn risk(temporary: bool) -> Risk {
     if temporary { Risk::Write } else { Risk::Destroy }
 }
 
 const fn kept(temporary: bool) -> &'static str {
-    if temporary { " until it is switched off" } else { "" }
+    if temporary { " until the station is switched off" } else { "" }
 }
 
 impl Command for Blink {
@@ -230,10 +230,10 @@ impl Command for SetIp {
     }
 }
 
-/// Failure: another station has the name or address.
+/// Returns the failure for a name or address that another device has.
 fn taken(what: &str, other: &str) -> Failure {
     Failure::new(Kind::ConditionNotMet, format!("{what} is in use by {other}"))
-        .hint("nothing was set; `armctl robots discover --interface IFACE` lists names and addresses")
+        .hint("use `armctl robots discover --interface IFACE` to list names and addresses; nothing was set")
 }
 
 impl Command for Reset {

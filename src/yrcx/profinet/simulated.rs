@@ -18,8 +18,8 @@ use armctl_transport::profinet::wire::record::Im0;
 
 /// Default name of a simulated station.
 pub(super) const NAME: &str = "yrcx-sim";
-/// Modules of a simulated device, 48 bytes in each direction. The numbers are placeholders, because those of the
-/// manufacturer are not public.
+/// Modules of a simulated device, 48 bytes in each direction. The numbers are placeholders, because the numbers of the
+/// real device are not public.
 const MODULES: (u32, u32) = (0x101, 0x102);
 
 /// In-process network with a simulator, with the faults of the URL.
@@ -35,7 +35,8 @@ pub fn in_process(sim: &Sim) -> Result<Network, Failure> {
     Ok(Network::new(device, faults.link))
 }
 
-/// Faults by name. Frames with a checksum are lost and not corrupted.
+/// Names of the simulated faults. There is no fault that corrupts frames: frames have a checksum, so a corrupted frame
+/// would be lost.
 const FAULTS: FaultNames<Fault> =
     FaultNames { link: &["drop", "dup", "delay", "reorder", "seed"], device: &Fault::ALL };
 
@@ -49,7 +50,7 @@ pub fn layout() -> Layout {
     Layout::two_modules(MODULES.0, MODULES.1)
 }
 
-/// Configuration of a simulated device, with unassigned vendor and device ids.
+/// Returns the configuration of a simulated device. Its vendor and device ids are not assigned to a manufacturer.
 pub fn setup(name: &str, layout: Layout) -> Setup {
     let id = (0xFFFF, 1);
     Setup {

@@ -7,20 +7,20 @@ use armctl_frame::output::view::{Cell, Tone};
 use armctl_transport::profinet::commission::Found;
 use armctl_transport::profinet::wire::dcp;
 
-/// A station. Its texts are untrusted.
+/// A station. Do not trust its texts.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Station {
     /// Station name; empty if there is none.
     pub station: String,
     /// MAC address.
     pub mac: String,
-    /// Station type.
+    /// Type of the station, as the station reports it.
     pub kind: String,
-    /// As in `0x0123`.
+    /// Vendor id, for example `0x0123`.
     pub vendor: Option<String>,
-    /// As in `0x0001`.
+    /// Device id, for example `0x0001`.
     pub device: Option<String>,
-    /// `device`, `controller`, `multidevice`, `supervisor`.
+    /// Roles of the station: `device`, `controller`, `multidevice`, `supervisor`.
     pub roles: Vec<&'static str>,
     /// IP address; null if there is none.
     pub ip: Option<String>,
@@ -28,7 +28,7 @@ pub struct Station {
     pub mask: Option<String>,
     /// Gateway; null if there is none.
     pub gateway: Option<String>,
-    /// Problems, such as duplicate names and addresses.
+    /// Problems, for example a name or address that another station has too.
     pub remarks: Vec<String>,
 }
 
@@ -63,7 +63,7 @@ impl From<&Found> for Station {
 }
 
 impl Station {
-    /// Converts all stations of a network, with a remark on duplicate names and addresses.
+    /// Converts all stations of a network. Adds a remark if several stations have the same name or address.
     pub fn all(found: &[Found]) -> Vec<Self> {
         let mut all: Vec<Self> = found.iter().map(Self::from).collect();
         for at in 0..all.len() {
@@ -73,7 +73,7 @@ impl Station {
             let address = others().find(|other| one.ip.is_some() && other.ip == one.ip);
             let remarks: Vec<String> = [(name, "name"), (address, "address")]
                 .into_iter()
-                .filter_map(|(other, what)| Some(format!("{} has its {what} too", other?.mac)))
+                .filter_map(|(other, what)| Some(format!("{} has the same {what}", other?.mac)))
                 .collect();
             all[at].remarks.extend(remarks);
         }
@@ -98,7 +98,7 @@ impl Station {
         fields
     }
 
-    /// Format: `YRCX simulator, 0xffff:0x0001, 02:00:00:00:00:02`.
+    /// Describes the station in one line, for example `YRCX simulator, 0xffff:0x0001, 02:00:00:00:00:02`.
     pub fn in_a_line(&self) -> String {
         let id = self.vendor.iter().zip(&self.device).map(|(vendor, device)| format!("{vendor}:{device}"));
         let mut parts: Vec<String> =
@@ -127,9 +127,9 @@ mod tests {
     fn what_two_stations_share_is_remarked_at_both() {
         let all = Station::all(&[found(1, "a", 5), found(2, "a", 6), found(3, "", 5), found(4, "", 7)]);
         let remarks: Vec<_> = all.iter().map(|station| station.remarks.join("; ")).collect();
-        assert_eq!(remarks[0], "02:00:00:00:00:02 has its name too; 02:00:00:00:00:03 has its address too");
-        assert_eq!(remarks[1], "02:00:00:00:00:01 has its name too");
-        assert_eq!(remarks[2], "02:00:00:00:00:01 has its address too");
+        assert_eq!(remarks[0], "02:00:00:00:00:02 has the same name; 02:00:00:00:00:03 has the same address");
+        assert_eq!(remarks[1], "02:00:00:00:00:01 has the same name");
+        assert_eq!(remarks[2], "02:00:00:00:00:01 has the same address");
         assert_eq!(remarks[3], "", "no name is not the same name");
     }
 
@@ -137,12 +137,8 @@ mod tests {
     fn numbers_and_roles_are_told() {
         let station = Station::from(&found(1, "a", 5));
         assert_eq!(station.roles, ["device", "supervisor"]);
-        assert_eq!(
-            (station.ip.as_deref(), station.gateway),
-            (Some("192.168.0.5"), None),
-            "its own address is not a \
-            duplicate"
-        );
+        let (ip, gateway) = (station.ip.as_deref(), station.gateway);
+        assert_eq!((ip, gateway), (Some("192.168.0.5"), None), "its own address is not a duplicate");
         assert_eq!(station.vendor.as_deref(), Some("0x0123"));
     }
 }

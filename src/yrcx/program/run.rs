@@ -19,9 +19,10 @@ use armctl_frame::cycle::{Cycle, Repeat, Runs};
 use armctl_frame::dry_run::unknown;
 use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::output::view::{Section, View};
-use armctl_frame::robot::alarm::AlarmEntry;
+use armctl_frame::robot::alarm::{AlarmEntry, hint_after};
 use armctl_frame::robot::program::{Program, ProgramState};
 use armctl_frame::settings::duration;
+use armctl_frame::settings::target::Family;
 use armctl_frame::wait_arguments::ProgramEnd;
 use armctl_frame::{Command, Context, Report};
 
@@ -29,7 +30,8 @@ use armctl_frame::{Command, Context, Report};
 #[derive(Debug, Args)]
 #[command(
     after_help = "--wait waits until no program runs (SO(13), as in `yrcx io get program-running`). `yrcx stop` stops \
-                  programs, and so does the end of the connection. A program must be in a task: `yrcx program select`."
+                  programs. The end of the connection also stops programs. A program must be in a task: use `yrcx \
+                  program select`."
 )]
 pub struct Run {
     #[command(flatten)]
@@ -40,7 +42,8 @@ pub struct Run {
     repeat: Repeat,
 }
 
-/// Time for a program to start running. A program that was not seen by then has already ended.
+/// Time in which a program must start to run. If armctl does not see the program running in this time, the program may
+/// have ended already.
 const BEGIN_WITHIN: Duration = Duration::from_secs(1);
 
 impl Command for Run {
@@ -91,7 +94,8 @@ impl Command for Run {
             if seen {
                 runs.add(elapsed_ms);
             } else if self.repeat.repeat.is_some() {
-                // It is unknown whether the program ended or did not start, so it is not started again.
+                // The program may have ended, or may not have started. Because armctl does not know which, it does not
+                // start the program again.
                 return Err(early(not_seen(&what)));
             }
         }
@@ -100,13 +104,14 @@ impl Command for Run {
 }
 
 impl Run {
-    /// Notes in a dry run what follows a start.
+    /// Notes what follows a start, in a dry run.
     fn plan(&self, link: &mut Link) -> Failure {
         link.then(
-            "the signals are read until SO(13) shows that no program is running, then the latest alarm is read again",
+            "armctl reads the signals until SO(13) shows that no program is running, then reads the latest alarm \
+             again",
         );
         if let Some(count) = self.repeat.repeat {
-            link.then(&format!("after each end the program is started again, {count} starts in total"));
+            link.then(&format!("after each end, armctl starts the program again, {count} starts in total"));
         }
         unknown()
     }
@@ -115,17 +120,20 @@ impl Run {
 fn not_seen(what: &str) -> Failure {
     let limit = duration::display(BEGIN_WITHIN);
     let message = format!(
-        "{what} was started but did not report running within {limit}: it may have ended at once or not started"
+        "{what} was started, but the controller reported no running program within {limit}: the program ended at \
+         once, or did not start"
     );
     Failure::new(Kind::ConditionNotMet, message).hint("check the program with `yrcx info tasks` and `yrcx info line`")
 }
 
-/// Waits until no program runs. Returns whether one was seen running.
+/// Waits until no program runs. Returns whether a program was seen running.
 async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duration>) -> Result<bool, Failure> {
     let lost = |failure: Failure| {
-        let message = format!("{what} was started, but its end was not reported: {}", failure.message);
-        Failure { kind: Kind::OutcomeUnknown, message, ..failure }
-            .hint("do not send it again; `yrcx status` shows the result. A controller stops when the connection ends")
+        let message = format!("{what} was started, but armctl could not read its end: {}", failure.message);
+        Failure { kind: Kind::OutcomeUnknown, message, ..failure }.hint(
+            "do not send the command again; use `yrcx status` to see the result. A controller stops when the \
+             connection ends",
+        )
     };
     let is_over = |image: &_| output::ALARM.is_on(image) || output::EMERGENCY_STOP.is_on(image);
     let begins = link.look_until(|image| output::PROGRAM_RUNNING.is_on(image) || is_over(image));
@@ -140,27 +148,28 @@ async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duratio
         Some(rest) => timeout(rest, ends).await.map_err(|_| {
             let limit = duration::display(limit.unwrap_or_default());
             Failure::new(Kind::ConditionNotMet, format!("{what} is still running after {limit}"))
-                .hint("`yrcx info line` shows the current line; the end of this connection stops the program")
+                .hint("use `yrcx info line` to see the current line; the end of this connection stops the program")
         })?,
     };
     image.map_err(lost).map(|_| seen)
 }
 
-/// Fails if an emergency stop or an alarm ended the program. An error in a program stops it without SO(03): then only
-/// the history, compared with its state `before` the start, shows that it did not reach its end.
+/// Fails if an emergency stop or an alarm ended the program. An error in a program stops it without SO(03). Then only
+/// the alarm history shows that the program did not reach its end; `before` is its latest entry before the start.
 async fn alarmed(link: &mut Link, what: &str, before: Option<&AlarmEntry<Part>>) -> Result<(), Failure> {
     let image = link.look().await?;
     let latest = alarm::latest(link).await?;
     let is_new = latest.as_ref().is_some_and(|latest| before != Some(latest));
     let (why, hint) = if output::EMERGENCY_STOP.is_on(&image) {
-        ("the emergency stop was triggered".to_owned(), "release it, then `yrcx recover`")
+        (
+            "the emergency stop was triggered".to_owned(),
+            "release the emergency stop, then use `yrcx recover`".to_owned(),
+        )
     } else if output::ALARM.is_on(&image) || is_new {
         let alarm = latest.as_ref().and_then(|latest| Some((latest.alarm.code.as_ref()?, latest.alarm.text.as_ref()?)));
         let why = alarm.map_or_else(|| "an alarm".to_owned(), |(code, text)| format!("alarm {code} ({text})"));
-        (
-            format!("{why} occurred"),
-            "`yrcx alarm history` shows the alarm; remove the cause, then use `yrcx alarm reset`",
-        )
+        let code = latest.as_ref().and_then(|latest| latest.alarm.code.as_deref());
+        (format!("{why} occurred"), hint_after(Family::Yrcx, code))
     } else {
         return Ok(());
     };
@@ -171,20 +180,20 @@ async fn alarmed(link: &mut Link, what: &str, before: Option<&AlarmEntry<Part>>)
 /// Result of a program start.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Ran {
-    /// The controller accepted the start.
+    /// Whether the controller accepted the start.
     accepted: bool,
     #[serde(flatten)]
     program: Program<Started>,
 }
 
-/// Selection of the started program.
+/// Which programs were started.
 #[derive(Debug, Default, Serialize, JsonSchema)]
 struct Started {
-    /// Task, if the program was selected by its task.
+    /// Task, if the user selected the program by its task.
     task: Option<i64>,
-    /// All registered programs.
+    /// Whether all registered programs were started.
     all_programs: bool,
-    /// Description of the selection.
+    /// Description of the programs.
     #[serde(skip)]
     words: String,
 }

@@ -1,5 +1,6 @@
-//! Every example line of the help against a controller that records requests: on a read-only robot, without
-//! confirmation, and in a dry run, nothing dangerous is sent, on any link, directly or through a session.
+//! Runs every example line of the help with a controller that records requests. On a read-only robot, without a
+//! confirmation, and in a dry run, no dangerous request may be sent. This is tested on every link, directly and through
+//! a session.
 
 #[cfg(target_os = "linux")]
 mod network;
@@ -15,16 +16,16 @@ use armctl_controller::Risk;
 use super::desk::{CommandResult, Workspace, result_of};
 use crate::support::terminal::Terminal;
 
-/// Effect of the recorded requests: the most severe one.
+/// Effect of a recorded request. A later variant is more severe.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Effect {
-    /// A link opens or closes, without a request: a session process does so by itself.
+    /// A link opens or closes without a request. A session process does this by itself.
     Link,
     /// Nothing changes.
     Read,
     /// The robot stops.
     Stop,
-    /// A setting changes that can be set again.
+    /// A setting changes, but it can be set again.
     Write,
     /// User data is overwritten or deleted, or something moves.
     Danger,
@@ -32,18 +33,18 @@ pub enum Effect {
 
 /// A controller that records requests.
 pub trait Recorder {
-    /// Family of its lines.
+    /// Family of the controller.
     fn family(&self) -> &'static str;
-    /// Its target URL.
+    /// Target URL of the controller.
     fn url(&self) -> &str;
-    /// Effect of the requests since the last call.
+    /// Effects of the requests since the last call, each with the request as text.
     fn take_effect(&mut self) -> Vec<(Effect, String)>;
 }
 
 const STOPS: [&str; 7] =
     ["stop", "yerc hold on", "yerc job stop", "yerc stop", "yrcx emergency-stop", "yrcx stop", "toyo stop"];
 
-/// A help line as run here.
+/// An example line of the help, in the form in which this test runs it.
 #[derive(Debug)]
 struct Line {
     words: Vec<String>,
@@ -51,8 +52,9 @@ struct Line {
     is_stop: bool,
 }
 
-/// Lines of a family, with a limit for endless ones, and without their robots and formats: all lines that change
-/// something, and one of each read command. Stops are last, because the controller refuses much after them.
+/// Lines of a family: all lines that change something, and one line of each read command. Endless lines get a limit,
+/// and names of robots and formats are removed. Stops are last, because the controller refuses many requests after a
+/// stop.
 fn lines(family: &str) -> Vec<Line> {
     let mut seen = BTreeSet::new();
     let mut lines = Vec::new();
@@ -71,7 +73,7 @@ fn lines(family: &str) -> Vec<Line> {
     lines
 }
 
-/// Words of a line, with quotes.
+/// Words of a line. A quoted text is one word.
 fn split(line: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut is_quoted = false;
@@ -85,7 +87,7 @@ fn split(line: &str) -> Vec<String> {
     words
 }
 
-/// Without `-r`, `-t`, `--all` and `--dry-run`, and limited by time or count if endless.
+/// Removes `-r`, `-t`, `--all` and `--dry-run`. An endless line gets a limit of its time or count.
 fn bounded(words: &[String]) -> Vec<String> {
     let mut bounded: Vec<String> = Vec::new();
     let mut rest = words.iter();
@@ -106,7 +108,7 @@ fn bounded(words: &[String]) -> Vec<String> {
     bounded
 }
 
-/// State of the robot, and kind of connection.
+/// How the lines are run: on a read-only robot, without a confirmation, or as a dry run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum RunMode {
     ReadOnly,
@@ -123,13 +125,14 @@ impl RunMode {
         }
     }
 
-    /// Whether a line is skipped in this run. A station that gets another name or address would not be found again.
+    /// Whether a line belongs to this run. A line that temporarily gives a station another name or address is left out,
+    /// because the station would not be found again.
     fn has(self, line: &Line) -> bool {
         let is_renamed = || line.words.iter().any(|word| word == "--temporary");
         self != Self::WithoutYes || line.risk > Risk::Read && !is_renamed()
     }
 
-    /// The highest risk that a line may have.
+    /// The most severe effect that a line may have; `None` if it may have no effect.
     fn declared_risk(self, line: &Line, in_session: bool) -> Option<Effect> {
         match self {
             Self::DryRun => in_session.then_some(Effect::Link),
@@ -141,7 +144,7 @@ impl RunMode {
     }
 }
 
-/// An environment with a robot whose complete backup `press` differs from the controller.
+/// An environment with a robot. Its backup `press` differs from the controller.
 pub struct Bench<'a> {
     desk: Workspace,
     recorder: &'a mut dyn Recorder,
@@ -164,12 +167,12 @@ impl<'a> Bench<'a> {
 
     fn run(&self, words: &[&str]) -> CommandResult {
         let mut command = self.desk.command("-r cell --timeout 500ms");
-        // Restores the file after an edit command.
+        // This editor does not change the file, and it ends at once.
         command.env("EDITOR", "true");
         result_of(&command.args(words).output().expect("armctl starts"))
     }
 
-    /// Runs a command that must succeed before the test.
+    /// Runs a command that prepares the test and must succeed.
     #[track_caller]
     pub fn prepare(&mut self, line: &str) {
         let result = self.run(&line.split(' ').collect::<Vec<_>>());
@@ -177,12 +180,12 @@ impl<'a> Bench<'a> {
         self.recorder.take_effect();
     }
 
-    /// Creates a file that lines use.
+    /// Creates a file that the lines use.
     pub fn write(&self, name: &str, text: &str) {
         std::fs::write(self.desk.folder.path().join(name), text).expect("the file is written");
     }
 
-    /// Runs all lines in one mode; `by` selects the robot.
+    /// Runs all lines in one mode. `by` names the kind of connection.
     fn run_mode(&mut self, pass: RunMode, by: &str, in_session: bool) {
         self.is_read_only(pass == RunMode::ReadOnly);
         for line in lines(self.recorder.family()).iter().filter(|line| pass.has(line)) {
@@ -197,7 +200,7 @@ impl<'a> Bench<'a> {
         self.is_read_only(false);
     }
 
-    /// Checks the recorded effect of a line.
+    /// Checks that no recorded effect of a line is more severe than `most`. Returns the mistake, if any.
     fn check_effect(&mut self, most: Option<Effect>, came: &CommandResult) -> Option<String> {
         let sent = self.recorder.take_effect();
         let is_known = came.exit.is_some_and(|exit| (0..=9).contains(&exit));
@@ -207,7 +210,7 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Runs `setup` and `teach`, which ask at a terminal.
+    /// Runs `setup` and `teach`, which ask questions on a terminal.
     fn run_panels(&mut self, by: &str) {
         let url = self.recorder.url().to_owned();
         for pass in [RunMode::ReadOnly, RunMode::WithoutYes, RunMode::DryRun] {
@@ -215,7 +218,7 @@ impl<'a> Bench<'a> {
             let words = [&["teach"], pass.max_effect()].concat();
             let came = self.run(&words);
             let wrong = self.check_effect(Some(Effect::Read).filter(|_| pass != RunMode::DryRun), &came);
-            // There is no terminal.
+            // There is no terminal, so `teach` must end with exit code 2.
             if let Some(wrong) = wrong.or_else(|| (came.exit != Some(2)).then(|| format!("{came:?}"))) {
                 writeln!(self.wrong, "{by}, {pass:?}: teach: {wrong}").expect("text grows");
             }
@@ -240,10 +243,10 @@ impl<'a> Bench<'a> {
         setup.press("\r");
         setup.wait_for_text("a URL:");
         setup.press(&format!("{url}\r"));
-        // A failed layer, for example because a session holds the port, causes a question.
+        // If a layer fails, for example because a session holds the port, `setup` asks a question.
         for _ in 0..8 {
             match setup.wait_for_one_of(&["What now?", "Name [", "Which controller"]) {
-                // The third entry of the list; each key draws it again.
+                // The keys select the third entry of the list. Each key draws the list again.
                 0 => {
                     setup.press("\x1b[B\x1b[B\r");
                     setup.wait_for_text("What now?: continue anyway");
@@ -272,10 +275,10 @@ impl<'a> Bench<'a> {
         for by in ["directly", "in a session"] {
             let in_session = by == "in a session";
             if in_session {
-                // A watch has opened a session by itself, if the link accepts one client.
+                // If the link accepts only one client, a watch in an earlier run has opened a session by itself.
                 self.desk.run("session close --all");
                 self.prepare("session open --background --yes");
-                // By then its first image has arrived.
+                // When this read has ended, the session has received its first image.
                 let read = if self.recorder.family() == "yrcx" { "yrcx io get" } else { "status" };
                 self.prepare(read);
             }
@@ -292,10 +295,10 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// Checks the refusal of a line: a change of a read-only robot, or a motion, ends with exit code 7. A command of
-/// another fieldbus is a usage error, and so is a missing file.
+/// Checks that a line is refused if it must be: a change of a read-only robot, and a motion, end with exit code 7. A
+/// command of another fieldbus is a usage error. A missing file is also accepted as a reason.
 fn refusal(pass: RunMode, line: &Line, came: &CommandResult) -> Option<String> {
-    // On a read-only robot, such commands read only what needs no selection.
+    // On a read-only robot, `backup` and `diff` are not refused: they read the data that needs no selection.
     let depends = line.words.iter().any(|word| ["backup", "diff"].contains(&word.as_str()));
     let must = match pass {
         RunMode::ReadOnly => line.risk > Risk::Read && !line.is_stop && !depends,

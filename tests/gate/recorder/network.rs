@@ -1,11 +1,11 @@
-//! PROFINET: the same test between two network namespaces.
+//! PROFINET: the same test, with the two ends in two network namespaces.
 
 use std::process::Command;
 
 use super::yrcx::{Controller, hold_all};
 use crate::support::namespaces::{SKIPPED, run};
 
-/// Command in the second network namespace.
+/// Environment variable with the command prefix that runs a program in the second network namespace.
 const DEVICE_ADDRESS: &str = "THERE";
 
 #[test]

@@ -1,4 +1,4 @@
-//! Yaskawa and Toyo controllers: a relay for a simulated one that records requests.
+//! Yaskawa and Toyo controllers: a relay before a simulated controller records the requests.
 
 use std::io::{Read as _, Write as _};
 use std::net::{SocketAddr, TcpListener, TcpStream, UdpSocket};
@@ -35,14 +35,14 @@ impl Recorder for Relay {
         let effect = |bytes: &[u8]| match ((self.is_harmless)(bytes), (self.is_stop)(bytes)) {
             (_, true) => Effect::Stop,
             (true, false) => Effect::Read,
-            // The tests of the family distinguish these two.
+            // Here, a write and a dangerous request are not distinguished. The tests of each family do this.
             (false, false) => Effect::Write,
         };
         sent.iter().map(|bytes| (effect(bytes), String::from_utf8_lossy(bytes).into_owned())).collect()
     }
 }
 
-/// Relays datagrams to a port, and answers to the last sender.
+/// Relays datagrams to a port. Sends the answers to the last sender.
 fn datagrams(to: SocketAddr, sent: &Sent) -> SocketAddr {
     let bind = || UdpSocket::bind("127.0.0.1:0").expect("a port");
     let (front, back) = (bind(), bind());
@@ -57,7 +57,7 @@ fn datagrams(to: SocketAddr, sent: &Sent) -> SocketAddr {
         while let Ok((len, from)) = front.recv_from(&mut buffer) {
             *client.lock().expect("no relay panics") = Some(from);
             sent.lock().expect("no relay panics").push(buffer[..len].to_vec());
-            // The controller may have ended.
+            // The controller may have ended already.
             let _ = back.send(&buffer[..len]);
         }
     });
@@ -72,7 +72,7 @@ fn datagrams(to: SocketAddr, sent: &Sent) -> SocketAddr {
     address
 }
 
-/// Relays connections, and records complete lines.
+/// Relays TCP connections, and records complete lines.
 fn lines(to: SocketAddr, sent: &Sent) -> SocketAddr {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let address = listener.local_addr().expect("an address");
@@ -148,7 +148,7 @@ fn toyo_commands_send_only_authorized_lines() {
         url,
         sent,
         is_harmless: toyo::passing::only_reads_or_stops,
-        // The end of a jog needs host control.
+        // A stop of a jog needs host control, so switching the host is allowed.
         is_stop: |bytes| {
             [&b"@STOP"[..], b"@HSON", b"@HSOF", b"@JGST X=SP Y=SP Z=SP R=SP"].iter().any(|stop| bytes.starts_with(stop))
         },

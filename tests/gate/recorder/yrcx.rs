@@ -1,4 +1,4 @@
-//! YRCX controllers: the images that the simulated controller reports.
+//! YRCX controllers: the simulated controller reports the images that it receives.
 
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::process::{Child, ChildStderr, Command, Stdio};
@@ -11,7 +11,7 @@ use armctl_frame::settings::target::bus::simulators;
 
 use super::{Bench, Effect, Recorder};
 
-/// Only the data that the lines overwrite, so that a complete backup is fast.
+/// The state has only the data that the lines overwrite, so that a complete backup is fast.
 const STATE: &str = r#"
 stock = false
 [points]
@@ -33,7 +33,7 @@ stock = false
 1 = { robot = 1, data = [1, 2, 3, 0] }
 "#;
 
-/// A simulated controller on one of its fieldbuses.
+/// A simulated controller that uses one of its fieldbuses.
 pub struct Controller {
     process: Child,
     output: BufReader<ChildStderr>,
@@ -43,7 +43,7 @@ pub struct Controller {
 }
 
 impl Controller {
-    /// Starts a controller; `armctl` begins the command line.
+    /// Starts a controller on this bus. `armctl` is a command of the binary without arguments.
     pub fn start(mut armctl: Command, bus: &str, more: &[&str]) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let state = folder.path().join("state.toml");
@@ -60,7 +60,7 @@ impl Controller {
         Self { process, output, url, last_image: resting(), _state: folder }
     }
 
-    /// Replaces a part of the URL.
+    /// Replaces a part of the URL, because the client needs another interface than the controller.
     pub fn url_of_bus(mut self, from: &str, to: &str) -> Self {
         self.url = self.url.replace(from, to);
         self
@@ -77,10 +77,10 @@ impl Controller {
         line.trim_end().to_owned()
     }
 
-    /// Effect of an image after the previous one.
+    /// Effect of the changes in an image since the previous image.
     fn effect(&mut self, entry: &str) -> Effect {
         let Some((command, signals)) = entry.strip_prefix("WI ").and_then(|entry| entry.split_once(" SI ")) else {
-            // The next master begins with a resting image.
+            // A line that is not an image reports a change of the link. The next master starts with a resting image.
             self.last_image = resting();
             return Effect::Link;
         };
@@ -150,12 +150,12 @@ impl Drop for Controller {
     }
 }
 
-/// Runs all lines with a controller.
+/// Runs all lines in all modes with a controller.
 pub fn hold_all(mut controller: Controller) {
     let mut bench = Bench::new(&mut controller);
     bench.prepare("session open --background --yes");
     bench.prepare("yrcx backup press");
-    // So the backup differs from the controller.
+    // These changes make the controller differ from the backup.
     for line in ["point set 7 --mm 9,9,9,9", "comment set 100 OTHER", "shift-data set 1 9 9 9 9"] {
         bench.prepare(&format!("yrcx {line} --yes"));
     }
@@ -182,7 +182,7 @@ fn profibus_commands_send_only_authorized_frames() {
     hold_all(Controller::start(armctl(), "profibus", &[]));
 }
 
-/// Add a test for each new fieldbus here.
+/// Checks that every fieldbus has a test in this file. Add a test here for each new fieldbus.
 #[test]
 fn every_fieldbus_has_its_recorder() {
     let buses: std::collections::BTreeSet<&str> = simulators().map(|(_, bus)| bus).collect();

@@ -22,11 +22,11 @@ use armctl_frame::{AnyCommand, Command, ConnectMode, Context, Report, SchemaEntr
 /// Alarms of all robots.
 #[derive(Debug, Subcommand)]
 pub enum Alarm {
-    /// Show the present alarms of robots
+    /// Show the active alarms of robots
     List(List),
     /// Alarm history, newest first
     History,
-    /// Print alarms as they come and go
+    /// Print alarms as they appear and disappear
     Watch(Watch),
     /// Reset the alarms of robots
     Reset,
@@ -41,7 +41,7 @@ pub struct Watch {
 }
 
 impl Alarm {
-    /// Whether it only reads. Without a selection it then applies to all robots.
+    /// Whether the command only reads. Such a command applies to all robots if none is selected.
     pub fn reads(&self) -> bool {
         !matches!(self, Self::Reset)
     }
@@ -49,7 +49,7 @@ impl Alarm {
     /// Command for robots of any family.
     ///
     /// # Errors
-    /// A family without this verb; a test excludes that.
+    /// If a family does not have this verb, which a test excludes.
     pub fn command(&self) -> Result<Box<dyn AnyCommand>, Failure> {
         Ok(match self {
             Self::List(_) => Box::new(List {}),
@@ -65,7 +65,7 @@ pub fn schemas() -> [SchemaEntry; 4] {
     [
         SchemaEntry::of::<Present>("alarm.list"),
         SchemaEntry::of::<AllAlarms>("alarm.history"),
-        SchemaEntry::of::<Changes>("alarm.watch"),
+        SchemaEntry::of::<Changes<bool>>("alarm.watch"),
         SchemaEntry::of::<Done>("alarm.reset"),
     ]
 }
@@ -111,7 +111,7 @@ impl Command for List {
     }
 }
 
-/// The alarms that are present.
+/// The active alarms.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Present {
     #[serde(flatten)]

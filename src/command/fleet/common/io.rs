@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 
 use super::line::SharedLine;
 use armctl_frame::failure::Failure;
-use armctl_frame::robot::io::{Filter, Signals};
+use armctl_frame::robot::io::{Filter, IoValue, Signals};
 use armctl_frame::settings::duration;
 use armctl_frame::watch::Changes;
 use armctl_frame::{AnyCommand, SchemaEntry};
@@ -66,6 +66,6 @@ pub fn schemas() -> [SchemaEntry; 3] {
     [
         SchemaEntry::of::<Signals>("io.get"),
         SchemaEntry::of::<Signals>("io.list"),
-        SchemaEntry::of::<Changes>("io.watch"),
+        SchemaEntry::of::<Changes<IoValue>>("io.watch"),
     ]
 }

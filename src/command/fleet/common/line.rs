@@ -31,11 +31,11 @@ use armctl_frame::{AnyCommand, AnyReport, ConnectMode, Driver, Outcome, Report};
 /// A parsed command, or the error.
 type Parsed = Result<Box<dyn AnyCommand>, Failure>;
 
-/// A read command in words that all families have, or the first of several that a family has.
+/// A read command that all families have. Of several commands, each family uses the first one that it has.
 pub struct SharedLine {
     id: &'static str,
     lines: Vec<Vec<String>>,
-    /// Whether reports are reduced to what the families have in common.
+    /// Whether reports are reduced to the common fields of the families.
     is_reduced: bool,
     /// Commands by family, with placeholder addresses for names.
     usual: Vec<(Family, Parsed)>,
@@ -49,7 +49,7 @@ impl SharedLine {
         Self::parse_first_family(id, vec![words], false)
     }
 
-    /// Reads a value by its name or label, whatever it is: `NOUN get NAME` with the first noun that has it.
+    /// Reads a value of any kind by its name or label: `NOUN get NAME` with the first noun that has the name.
     pub fn reading(id: &'static str, nouns: &[&str], name: &str) -> Result<Self, Failure> {
         let lines = nouns.iter().map(|noun| [*noun, "get", name].map(ToOwned::to_owned).into());
         Self::parse_first_family(id, lines.collect(), true)
@@ -100,7 +100,7 @@ impl AnyCommand for SharedLine {
     fn connect_mode(&self, robot: &Robot) -> ConnectMode {
         match &*self.of(robot) {
             Ok(command) => command.connect_mode(robot),
-            // It is refused before anything is sent.
+            // The command is refused before anything is sent.
             Err(_) => ConnectMode::Monitor,
         }
     }
@@ -122,7 +122,7 @@ impl AnyCommand for SharedLine {
     }
 }
 
-/// Value that was read, whatever it is.
+/// A value of any kind that was read.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Reading {
     items: Vec<ReadItem>,
@@ -196,7 +196,7 @@ fn parse_first(family: Family, lines: &[Vec<String>]) -> Parsed {
         let name = lines.first().and_then(|words| words.last()).map_or("", String::as_str);
         let message = format!("'{name}' is not a signal, variable, counter or other value of {family}");
         Failure::usage(message)
-            .hint("`armctl names list` shows your names, `armctl status --json` the keys of a status")
+            .hint("use `armctl names list` to list your names, and `armctl status --json` to see the keys of a status")
     }))
 }
 

@@ -1,4 +1,4 @@
-//! Data behind the metrics: the newest sample of each robot, and counters since it appeared.
+//! Data behind the metrics: the newest sample of each robot, and counters since the robot appeared.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

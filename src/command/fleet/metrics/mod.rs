@@ -41,8 +41,8 @@ use armctl_transport::http::{Answer, Request, Server, Status};
     after_help = "GET /metrics answers with OpenMetrics, or with the older Prometheus text format if the client asks \
                   for it. GET /healthz answers while armctl runs. --watch INTERVAL sets how often armctl polls the \
                   robots (1s). Without -r, --tag, --sim or -t, armctl polls all robots in the inventory, and follows \
-                  its changes. It cannot move a robot or change anything. There is no password: every client that \
-                  reaches the port can read."
+                  its changes. The command cannot move a robot or change anything. There is no password: every client \
+                  that reaches the port can read."
 )]
 pub struct Metrics {
     /// Address to listen on
@@ -59,7 +59,7 @@ const MIN_INTERVAL: Duration = Duration::from_millis(50);
 /// Address of the metrics server.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Listening {
-    /// The URL to read them from.
+    /// URL of the metrics.
     url: String,
     /// Number of robots at the start.
     robots: usize,
@@ -152,11 +152,11 @@ fn answer(request: &Request<'_>, board: &RefCell<Board>) -> Answer {
     }
 }
 
-/// Rejects options that make no sense here.
+/// Rejects options that do not apply to this command.
 fn check_globals(run: &Run, every: Duration) -> Result<(), Failure> {
     let invalid = |what: &str, hint: &str| Err(Failure::usage(format!("serve metrics {what}")).hint(hint));
     if run.repeat.count.is_some() || run.repeat.until.is_some() {
-        return invalid("runs until Ctrl-C or SIGTERM", "`armctl status --until FILTER` waits for a condition");
+        return invalid("runs until Ctrl-C or SIGTERM", "use `armctl status --until FILTER` to wait for a condition");
     }
     if run.trace.is_some() {
         return invalid("does not record its traffic", "use --trace with `armctl status --watch`");
@@ -176,8 +176,8 @@ fn address(text: &str) -> Result<SocketAddr, String> {
 
 fn bind_failure(on: SocketAddr, error: &io::Error) -> Failure {
     let hint = match error.kind() {
-        io::ErrorKind::AddrInUse => "another program uses this port; set another one with --listen 127.0.0.1:9465",
-        io::ErrorKind::PermissionDenied => "ports below 1024 need special rights; set a higher one with --listen",
+        io::ErrorKind::AddrInUse => "set another port with --listen 127.0.0.1:9465: another program uses this port",
+        io::ErrorKind::PermissionDenied => "set a higher port with --listen: ports below 1024 need special rights",
         _ => "set an address of this computer with --listen",
     };
     Failure::new(Kind::NoAnswer, format!("cannot listen on {on}: {}", plain(error))).hint(hint)

@@ -18,7 +18,7 @@ use armctl_frame::names;
 use armctl_frame::settings::Robot;
 use armctl_frame::settings::target::Family;
 
-/// An extra command. Two with the same text are the same.
+/// An extra command. Two extra commands with the same text are equal.
 pub struct Extra {
     text: Arc<str>,
     family: Family,
@@ -31,13 +31,13 @@ pub struct Extra {
 /// A parsed command, or the error.
 pub type Read = Result<Box<dyn AnyCommand>, Failure>;
 
-const EXAMPLE: &str = "examples: 'yerc var get B0..B9', 'toyo counter get'";
+const EXAMPLE: &str = "type a command such as 'yerc var get B0..B9' or 'toyo counter get'";
 
 impl Extra {
     /// Parses a command; its first word is the family.
     ///
     /// # Errors
-    /// The text is not a command, does more than read, or does not end by itself.
+    /// If the text is not a command, does more than read, or does not end by itself.
     pub fn parse(text: &str) -> Result<Self, Failure> {
         let wrong = |why: &str, hint: &str| Err(invalid(text, why, hint));
         let Some(words) = shlex::split(text) else { return wrong("has an unclosed quote", EXAMPLE) };
@@ -50,7 +50,7 @@ impl Extra {
         let (command, is_named) = names::detect_names(|| read(text, family, &words));
         let command = command?;
         if command.intent(None).risk > Risk::Read {
-            return wrong("does more than read", "monitoring only reads; use a command that reads");
+            return wrong("does more than read", "use a command that only reads, because monitoring only reads");
         }
         if command.driver().is_none() {
             return wrong("does not read from a robot", EXAMPLE);
@@ -59,12 +59,15 @@ impl Extra {
             return Err(check_files(text));
         }
         if command.is_endless() {
-            return wrong("does not end by itself", "use the command that reads once; armctl repeats it at each poll");
+            return wrong(
+                "does not end by itself",
+                "use the command that reads once, because armctl repeats the command at each poll",
+            );
         }
         Ok(Self { text: text.into(), family, command, is_named })
     }
 
-    /// The command for one robot if it contains names; `None` if it is the same for all robots.
+    /// The command for one robot, if the text contains names; `None` if the command is the same for all robots.
     pub fn of(&self, robot: &Robot) -> Option<Read> {
         let words = shlex::split(&self.text).filter(|_| self.is_named)?;
         Some(names::with_names(self.family, slice::from_ref(robot), || read(&self.text, self.family, &words)))
@@ -125,8 +128,8 @@ impl fmt::Debug for Extra {
     }
 }
 
-/// Whether the command or one of its subcommands uses a path, typed or by default. A file would be read or written
-/// again and again.
+/// Whether the command or one of its subcommands uses a path, typed or by default. Each poll would read or write the
+/// file again.
 fn accepts_file(command: &clap::Command, matches: &ArgMatches) -> bool {
     let is_path = |arg: &Arg| arg.get_value_parser().type_id() == TypeId::of::<PathBuf>();
     let is_given = |arg: &Arg| {

@@ -64,8 +64,8 @@ impl RobotId {
 /// Event for consumers.
 #[derive(Debug, Clone)]
 pub enum Event {
-    /// Polling of a robot starts. It is the first event of the robot. After a change of its entry, it comes again,
-    /// following [`Event::Gone`].
+    /// Polling of a robot starts. This is the first event of the robot. After a change of the inventory entry, it
+    /// follows [`Event::Gone`].
     Appeared(Arc<Robot>),
     /// A poll succeeded.
     Polled(Arc<PollResult>),
@@ -80,11 +80,11 @@ pub enum Event {
         /// Traffic on the link since the last event.
         traffic: Traffic,
     },
-    /// Polling of a robot has ended, because its inventory entry was removed or changed. It is the last event of the
+    /// Polling of a robot has ended, because its inventory entry was removed or changed. This is the last event of the
     /// robot.
     Gone(Arc<Robot>),
-    /// The inventory has changed and is in use; or it cannot be read, and the previous one stays in use. Each change is
-    /// reported once.
+    /// The inventory has changed and is in use, or it cannot be read and the previous inventory stays in use. Each
+    /// change is reported once.
     Inventory(Result<(), Failure>),
 }
 
@@ -99,13 +99,13 @@ pub struct PollResult {
     pub took: Duration,
     /// Polls omitted before this one, because the previous one took longer than the interval.
     pub missed: u64,
-    /// Whether it went through a session.
+    /// Whether the poll went through a session.
     pub through_session: bool,
     /// Traffic on the link since the last event.
     pub traffic: Traffic,
     /// Results of the extra commands, each with its text.
     pub extras: Vec<(Arc<str>, Result<Value, Failure>)>,
-    /// Error of `alarms.toml`, if the fault could not be explained because of it.
+    /// Error of `alarms.toml`, if it prevented an explanation of the fault.
     pub unexplained: Option<Failure>,
 }
 
@@ -125,7 +125,7 @@ impl PollResult {
     }
 }
 
-/// Subscription of a consumer. The poller stops when all are dropped.
+/// Subscription of a consumer. The poller stops when all subscriptions are dropped.
 #[derive(Debug)]
 pub struct Subscription {
     events: mpsc::Receiver<Event>,
@@ -163,8 +163,8 @@ pub struct Poll {
 }
 
 impl Poll {
-    /// Creates a poller for the robots that flags, environment and inventory select; at least one. It follows changes
-    /// of the inventory.
+    /// Creates a poller for the robots that flags, environment and inventory select; at least one. The poller follows
+    /// changes of the inventory.
     pub fn new(sources: &Sources, screen: Screen) -> Result<Self, Failure> {
         Ok(Self { roster: Roster::new(sources.clone())?, screen, consumers: Vec::new() })
     }
@@ -269,8 +269,8 @@ struct Active {
 }
 
 impl Fleet {
-    /// Starts and stops tasks to match the roster. A new robot waits until the removed ones have closed their links,
-    /// because it can be the same controller with another name.
+    /// Starts and stops tasks to match the roster. A new robot waits until the removed robots have closed their links,
+    /// because the new robot can be the same controller with another name.
     async fn match_roster(&mut self, is_start: bool) {
         let expected: BTreeMap<RobotId, &Robot> =
             self.roster.robots().iter().map(|robot| (RobotId::for_robot(robot), robot)).collect();
@@ -291,7 +291,7 @@ impl Fleet {
             .filter(|robot| !self.active.contains_key(&RobotId::for_robot(robot)))
             .cloned()
             .collect();
-        // Spread the robots over the interval. Ticks have no drift, so they stay spread.
+        // Spread the robots over the interval. Ticks have no drift, so the robots stay spread.
         let share = self.requests.borrow().every / u32::try_from(new.len().max(1)).unwrap_or(u32::MAX);
         for (at, given) in (0_u32..).zip(new) {
             let id = RobotId::for_robot(&given);

@@ -199,9 +199,14 @@ impl RobotTask {
             Some(Err(failure)) => return Err(failure.clone()),
         };
         if matches!(command.entry(&self.robot), Entry::Stops(_)) {
-            let message = format!("'{}' needs a command connection, and its end would stop the robot", extra.text());
-            return Err(Failure::new(Kind::Rejected, message)
-                .hint(format!("open a session: `armctl session open -r {}`; later polls use it", self.robot.name)));
+            let message = format!(
+                "'{}' needs a command connection, and the end of that connection would stop the robot",
+                extra.text()
+            );
+            return Err(Failure::new(Kind::Rejected, message).hint(format!(
+                "open a session with `armctl session open -r {}`; later polls use the session",
+                self.robot.name
+            )));
         }
         let report = link.watch.ask(command, &self.robot, &self.screen).await?;
         report.data()

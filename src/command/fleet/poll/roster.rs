@@ -22,7 +22,7 @@ pub(super) struct Roster {
     sources: Option<Sources>,
     /// Inventory file to follow; `None` if the robots are fixed.
     file: Option<PathBuf>,
-    /// File state at the last read and at the last check.
+    /// State of the file when it was last read. `last_stamp` is the state at the last check.
     read: Option<Stamp>,
     last_stamp: Option<Stamp>,
     next: Instant,
@@ -31,7 +31,7 @@ pub(super) struct Roster {
 impl Roster {
     /// The selected robots; at least one.
     pub fn new(sources: Sources) -> Result<Self, Failure> {
-        // Before the file is read, so that no change is missed.
+        // The file state is read before the inventory, so that no change is missed.
         let file = sources.inventory.path.as_deref().filter(|_| sources.follows_inventory());
         let file = file.map(Path::to_owned);
         let stamp = file.as_deref().and_then(Stamp::of);
@@ -53,7 +53,7 @@ impl Roster {
     pub fn identify(&self, robot: &Robot) -> Robot {
         let mut robot = robot.clone();
         if let Some(sources) = &self.sources {
-            // A robot that does not answer is polled without them, and the poll reports the failure.
+            // A robot that does not answer is polled without other addresses, and the poll reports the failure.
             let _ = identify(sources, families::of(robot.family).driver(), &mut robot, false);
         }
         robot

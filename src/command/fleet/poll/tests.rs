@@ -133,7 +133,7 @@ async fn unreachable_robot_does_not_delay_others() {
         ("a", "yerc", "sim:"),
         ("b", "yrcx", "sim:"),
         ("c", "toyo", "sim:"),
-        // All traffic to it is lost.
+        // All traffic to this robot is lost.
         ("d", "yerc", "sim:?fault=drop%3D100%25"),
     ]);
     let start = Instant::now();

@@ -29,7 +29,7 @@ pub struct Url {
     pub host: String,
     /// TCP port.
     pub port: u16,
-    /// Whether it uses TLS.
+    /// Whether the connection uses TLS.
     pub is_secure: bool,
 }
 
@@ -56,7 +56,7 @@ impl FromStr for Url {
         let rest = rest.strip_suffix('/').unwrap_or(rest);
         if rest.contains('@') {
             return Err(format!(
-                "remove user and password from the URL, where others can read them: use --user NAME, and \
+                "remove user and password from the URL, because other users can read the URL; use --user NAME, and \
                  --password-file FILE or {PASSWORD}"
             ));
         }
@@ -77,7 +77,7 @@ impl FromStr for Url {
     }
 }
 
-/// Which MQTT.
+/// Version of MQTT.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Protocol {
     /// MQTT 3.1.1
@@ -107,13 +107,14 @@ pub struct Login {
     /// File with the password (or ARMCTL_MQTT_PASSWORD)
     #[arg(long, value_name = "FILE", requires = "user", help_heading = "Broker")]
     password_file: Option<PathBuf>,
-    /// Certificate of the authority that signed the broker's certificate (PEM); default: those of this computer
+    /// Certificate of the authority that signed the broker's certificate (PEM); default: the certificate authorities of
+    /// this computer
     #[arg(long, value_name = "FILE", help_heading = "Broker")]
     ca: Option<PathBuf>,
     /// Certificate of this client (PEM)
     #[arg(long, value_name = "FILE", requires = "key", help_heading = "Broker")]
     cert: Option<PathBuf>,
-    /// Its private key (PEM)
+    /// Private key of this client (PEM)
     #[arg(long, value_name = "FILE", requires = "cert", help_heading = "Broker")]
     key: Option<PathBuf>,
     /// Send the password without TLS, without a warning
@@ -152,8 +153,8 @@ impl Broker {
     pub fn new(url: &Url, login: &Login) -> Result<Self, Failure> {
         let has_tls_words = login.ca.is_some() || login.cert.is_some();
         if has_tls_words && !url.is_secure {
-            return Err(Failure::usage("--ca, --cert and --key are for TLS")
-                .hint(format!("for TLS, write mqtts://{}:8883", url.host)));
+            return Err(Failure::usage("--ca, --cert and --key need TLS")
+                .hint(format!("write mqtts://{}:8883 for TLS", url.host)));
         }
         let tls = if url.is_secure {
             let trust = match &login.ca {

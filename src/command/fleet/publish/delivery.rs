@@ -55,7 +55,7 @@ pub trait Broker {
 pub trait Uplink {
     /// Waits for the next event. Cancel safe.
     async fn next(&mut self) -> Event;
-    /// Sends a message. Returns the number of its acknowledgement, if it gets one.
+    /// Sends a message. Returns the number of the acknowledgement, if the message gets one.
     fn publish(&mut self, message: &Message) -> Result<Option<u64>, SendError>;
     /// Subscribes to topics.
     fn subscribe(&mut self, topics: &[String]) -> Result<(), SendError>;
@@ -82,8 +82,8 @@ impl Backoff {
         Self { next: BACKOFF_RANGE[0], random: fastrand::Rng::with_seed(seed) }
     }
 
-    /// Next pause: twice the last one, up to a minute, with a random factor. So clients that lost a broker together do
-    /// not return together.
+    /// Next pause: twice the last one, up to a minute, with a random factor. Clients that lost the broker at the same
+    /// time therefore do not all connect again at the same time.
     pub fn pause(&mut self) -> Duration {
         let pause = self.next.mul_f64(0.75 + self.random.f64() / 2.0);
         self.next = (self.next * 2).min(BACKOFF_RANGE[1]);
@@ -99,7 +99,7 @@ impl Backoff {
 pub trait Listener {
     /// A message for the log.
     fn log(&self, level: Level, text: &str);
-    /// The broker accepted this client, or is gone.
+    /// The broker accepted this client, or the connection was lost.
     fn set_connected(&self, is_there: bool);
 }
 
@@ -149,7 +149,7 @@ impl<U> Open<U> {
         }
     }
 
-    /// Notes progress. Returns whether the connection counts as stable.
+    /// Records progress. Returns whether the connection counts as stable.
     fn note_progress(&mut self) -> bool {
         self.progress = Instant::now();
         self.progress - self.since >= STABLE_AFTER
@@ -226,7 +226,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
     /// Runs until it is stopped, or until `found` has ended and everything has arrived. Call [`end`](Self::end) next.
     ///
     /// # Errors
-    /// A bounded run without a broker, or the broker refuses this client.
+    /// If a bounded run finds no broker, or if the broker refuses this client.
     pub async fn run(
         &mut self,
         mut found: impl AsyncFnMut() -> Option<Found>,
@@ -352,7 +352,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         let messages = if waiting == 1 { "message" } else { "messages" };
         let buffered = match (waiting, on_disk) {
             (0, 0) => String::new(),
-            // The first polls run while it connects, so some records always wait.
+            // The first polls run while the client connects, so some records always wait.
             (_, 0) if !again => String::new(),
             (waiting, 0) => format!("; {waiting} {messages} in the buffer"),
             (0, bytes) => format!("; {} KiB in the buffer on disk", bytes.div_ceil(1024)),
@@ -409,8 +409,8 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         self.fail(error_text::refusal(self.url, refusal))
     }
 
-    /// Waits before the next attempt, for any failure: even a refusal or a certificate error can be over a minute
-    /// later. Only a bounded run gives up.
+    /// Waits before the next attempt after any failure: even the cause of a refusal or of a certificate error can be
+    /// gone a minute later. Only a bounded run gives up.
     fn fail(&mut self, failure: Failure) -> Result<(), Failure> {
         if self.ends_without_broker {
             self.connection = ConnectionState::Waiting(Instant::now());
@@ -422,7 +422,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
             .last_failure
             .as_ref()
             .is_some_and(|(said, at)| *said == failure.message && at.elapsed() < REMINDER_INTERVAL);
-        // If it worked before, the settings are probably right, unless the broker reports an error in them.
+        // If the connection worked before, the settings are probably right, unless the broker reports an error in them.
         let is_setting = failure.kind == Kind::Usage || !self.was_accepted;
         let hint = failure.hint.filter(|_| is_setting).map(|hint| format!(" ({hint})")).unwrap_or_default();
         let level = if is_known { Level::Detail } else { Level::Warning };
@@ -511,7 +511,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
             if is_confirmed_by_ping {
                 open.unconfirmed.push_back(ticket);
             } else if !is_under_way {
-                // No message of it could be sent, so it is removed.
+                // No message of the record could be sent, so the record is removed.
                 self.outbox.acknowledge(ticket);
                 self.counts.refused += u64::from(failed.is_some());
             }
@@ -522,7 +522,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
     }
 
     /// Ends the run: sends queued records within a time limit, then a last message, and leaves the rest for the next
-    /// process. It always takes less than [`END_TIMEOUT`]. After a failure it reports less.
+    /// process. The end always takes less than [`END_TIMEOUT`]. After a failure it reports less.
     pub async fn end(mut self, has_failed: bool) -> Counts {
         let now = Instant::now();
         let told = async {

@@ -4,47 +4,47 @@ use super::broker::Url;
 use super::uplink::{Loss, Refusal, TlsError, Version};
 use armctl_frame::failure::{Failure, Kind};
 
-/// Return codes of MQTT 3.1.1, section 3.2.2.3: meaning, hint, and whether it concerns a setting.
+/// Return codes of MQTT 3.1.1, section 3.2.2.3: meaning, hint, and whether a setting causes the refusal.
 const RETURN_CODES: [(u8, &str, &str, bool); 5] = [
     (
         1,
-        "it does not support this version of MQTT",
+        "the broker does not support this version of MQTT",
         "try --protocol 5, or look up the versions that the broker supports",
         true,
     ),
-    (2, "it does not accept the name of this client", "set another name with --node", true),
-    (3, "it is not available at the moment", "check the broker", false),
+    (2, "the broker does not accept the name of this client", "set another name with --node", true),
+    (3, "the broker is not available at the moment", "check the broker", false),
     (4, "wrong user name or password", "check --user and the password", true),
     (5, "not authorized to connect", "check --user, the password, and the rights of this user at the broker", true),
 ];
 
 /// Reason codes of MQTT 5, section 3.2.2.2.
 const REASON_CODES: [(u8, &str, &str, bool); 20] = [
-    (0x80, "it gives no reason", "see the log of the broker", false),
-    (0x81, "it reports a malformed CONNECT", "try --protocol 3.1.1", true),
-    (0x82, "it reports a protocol error in CONNECT", "try --protocol 3.1.1", true),
-    (0x83, "for a reason that MQTT does not define", "see the log of the broker", false),
-    (0x84, "it does not support this version of MQTT", "try --protocol 3.1.1", true),
-    (0x85, "it does not accept the name of this client", "set another name with --node", true),
+    (0x80, "the broker gives no reason", "see the log of the broker", false),
+    (0x81, "the broker reports a malformed CONNECT", "try --protocol 3.1.1", true),
+    (0x82, "the broker reports a protocol error in CONNECT", "try --protocol 3.1.1", true),
+    (0x83, "the reason is not defined in MQTT", "see the log of the broker", false),
+    (0x84, "the broker does not support this version of MQTT", "try --protocol 3.1.1", true),
+    (0x85, "the broker does not accept the name of this client", "set another name with --node", true),
     (0x86, "wrong user name or password", "check --user and the password", true),
     (0x87, "not authorized to connect", "check --user, the password, and the rights of this user at the broker", true),
-    (0x88, "it is not available at the moment", "check the broker", false),
-    (0x89, "it is busy", "check its load and its limits", false),
+    (0x88, "the broker is not available at the moment", "check the broker", false),
+    (0x89, "the broker is busy", "check the load and the limits of the broker", false),
     (0x8a, "this client is banned", "ask the administrator of the broker", true),
-    (0x8c, "it needs another login method", "use a user with a password, or a client certificate", true),
-    (0x90, "it does not accept the topic of the last will", "set another --prefix", true),
-    (0x95, "CONNECT is too large for it", "set a shorter --prefix and --node", true),
-    (0x97, "a quota is used up", "check its limits", false),
-    (0x99, "it does not accept the last will", "see the log of the broker", true),
+    (0x8c, "the broker needs another login method", "use a user with a password, or a client certificate", true),
+    (0x90, "the broker does not accept the topic of the last will", "set another --prefix", true),
+    (0x95, "CONNECT is too large for the broker", "set a shorter --prefix and --node", true),
+    (0x97, "a quota is used up", "check the limits of the broker", false),
+    (0x99, "the broker does not accept the last will", "see the log of the broker", true),
     (
         0x9a,
-        "it stores no retained messages, but this command needs them",
+        "the broker stores no retained messages, but this command needs them",
         "allow retained messages at the broker",
         true,
     ),
-    (0x9b, "it does not acknowledge messages (QoS 1)", "allow QoS 1 at the broker", true),
-    (0x9c, "it redirects clients to another broker", "use the address of that broker", true),
-    (0x9d, "it has a new address", "use its new address", true),
+    (0x9b, "the broker does not acknowledge messages (QoS 1)", "allow QoS 1 at the broker", true),
+    (0x9c, "the broker redirects clients to another broker", "use the address of that broker", true),
+    (0x9d, "the broker has a new address", "use the new address of the broker", true),
 ];
 
 /// Failure for a refused CONNECT.
@@ -55,7 +55,7 @@ pub fn refusal(url: &Url, refusal: &Refusal) -> Failure {
         Version::V5 => &REASON_CODES,
     };
     let found = codes.iter().find(|(known, ..)| known == code);
-    let (_, why, advice, is_setting) = found.copied().unwrap_or((0, "with an undefined code", "", false));
+    let (_, why, advice, is_setting) = found.copied().unwrap_or((0, "the code is not defined", "", false));
     let text = reason.as_ref().map(|reason| format!(" ({reason})")).unwrap_or_default();
     let other_server = server.as_ref().map(|server| format!(": {server}")).unwrap_or_default();
     let kind = if is_setting { Kind::Usage } else { Kind::NoAnswer };
@@ -95,8 +95,8 @@ pub fn certificate_hint(url: &Url, error: &TlsError) -> Failure {
         TlsError::Revoked | TlsError::Certificate(_) => ("give the broker a valid certificate", Kind::Usage),
         TlsError::NoTls => ("use the TLS port of the broker, usually 8883, or mqtt:// without TLS", Kind::Usage),
         TlsError::Rejected(_) => ("set a certificate that the broker trusts: --cert FILE --key FILE", Kind::Usage),
-        TlsError::NothingInCommon(_) => ("the broker must support TLS 1.2 or 1.3", Kind::Usage),
-        TlsError::Setup(_) => ("PEM files begin with -----BEGIN; see --ca, --cert and --key", Kind::Usage),
+        TlsError::NothingInCommon(_) => ("use a broker that supports TLS 1.2 or 1.3", Kind::Usage),
+        TlsError::Setup(_) => ("use PEM files, which begin with -----BEGIN; see --ca, --cert and --key", Kind::Usage),
         TlsError::Other(_) => ("see the log of the broker", Kind::NoAnswer),
     };
     Failure::new(kind, format!("{url}: {error}")).hint(hint)
@@ -123,7 +123,7 @@ mod tests {
             Refusal { version: Version::V5, code: 0x9d, reason: Some("sorry".into()), server: Some("b:1".into()) };
         assert_eq!(
             refusal(&url(), &refused).message,
-            "mqtt://broker:1883 refuses this client: it has a new address (sorry): b:1"
+            "mqtt://broker:1883 refuses this client: the broker has a new address (sorry): b:1"
         );
     }
 

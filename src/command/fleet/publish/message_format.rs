@@ -1,5 +1,5 @@
 //! Trait for a message format: plain topics ([`PlainFormat`](super::plain_format::PlainFormat)), or a Sparkplug node
-//! ([`Node`](super::sparkplug::Node)). Its input is poller events and broker messages. It knows no connection and no
+//! ([`Node`](super::sparkplug::Node)). Its input is poller events and broker messages. It has no connection and no
 //! clock.
 
 use super::uplink::{Message, Will};

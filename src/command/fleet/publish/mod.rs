@@ -1,5 +1,5 @@
-//! `armctl publish`: publishes robot data to an MQTT broker as it changes. It only reads robots. Nothing from the
-//! broker reaches a robot.
+//! `armctl publish`: publishes robot data to an MQTT broker when the data changes. It only reads robots. Nothing from
+//! the broker reaches a robot.
 //!
 //! | file | contents |
 //! |---|---|
@@ -69,12 +69,13 @@ use armctl_frame::{Report, SchemaEntry};
 /// Publish changes of robots to an MQTT broker.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Without -r, --tag, --sim or -t, armctl publishes all robots in the inventory. --watch INTERVAL \
-                  sets how often it polls them (1s). Topics are PREFIX/ROBOT/status and so on. They are retained, \
-                  with the envelope of --json as payload; PREFIX/NODE/state is online or offline. Messages from the \
-                  broker cannot move a robot or change anything. publish runs until Ctrl-C or SIGTERM (exit code 0), \
-                  and connects again if the broker is away. With --count N it ends after N polls of each robot, or \
-                  with exit code 4 if there is no broker. See docs/monitoring/mqtt.md."
+    after_help = "Without -r, --tag, --sim or -t, armctl publishes all robots in the inventory. --watch INTERVAL sets \
+                  how often armctl polls the robots (1s). The topics are PREFIX/ROBOT/status and so on. Messages are \
+                  retained, and their payload is the envelope of --json. PREFIX/NODE/state is online or offline. \
+                  Messages from the broker cannot move a robot or change anything. publish runs until Ctrl-C or \
+                  SIGTERM (exit code 0), and connects again after the broker was away. With --count N, publish ends \
+                  after N polls of each robot, or with exit code 4 if there is no broker. See \
+                  docs/monitoring/mqtt.md."
 )]
 pub struct Publish {
     // Not parsed by clap, whose message would show the password in a wrong URL.
@@ -85,7 +86,7 @@ pub struct Publish {
     /// What to publish of each robot
     #[arg(long, value_name = "KIND", value_delimiter = ',', default_value = "status,alarms,position")]
     kinds: Vec<Kind>,
-    /// A command line that reads, whose answer is told too, such as 'yerc var get B0..B9' or 'parts=toyo counter get 1'
+    /// A read command whose answer is also published, such as 'yerc var get B0..B9' or 'parts=toyo counter get 1'
     /// (repeatable)
     #[arg(long, value_name = "LINE")]
     also: Vec<String>,
@@ -114,7 +115,7 @@ struct SparkplugArguments {
     /// Sparkplug group of this node
     #[arg(long, value_name = "GROUP", requires = "is_wanted", value_parser = topic::identifier, help_heading = "Sparkplug")]
     group: Option<String>,
-    /// The primary host; while it is offline, armctl stores the data and sends it later as history
+    /// The primary host; while this host is offline, armctl stores the data and sends it later as history
     #[arg(long, value_name = "ID", requires = "is_wanted", value_parser = topic::identifier, help_heading = "Sparkplug")]
     host: Option<String>,
 }
@@ -126,7 +127,7 @@ struct BufferArguments {
     /// Memory limit of the buffer
     #[arg(long = "buffer-memory", value_name = "SIZE", default_value = "16M", value_parser = memory_size, help_heading = "While the broker is away")]
     memory: u64,
-    /// Disk limit of the buffer, used when its memory is full; 0 for none
+    /// Disk limit of the buffer, used when the memory of the buffer is full; 0 for no disk
     #[arg(long = "buffer-disk", value_name = "SIZE", default_value = "256M", value_parser = disk_size, help_heading = "While the broker is away")]
     disk: u64,
     /// Folder of the buffer on disk; default: the state folder
@@ -168,11 +169,11 @@ fn disk_size(text: &str) -> Result<u64, String> {
 /// Published data of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Kind {
-    /// Its state, as in `armctl status`
+    /// State, as in `armctl status`
     Status,
-    /// Its alarms and errors
+    /// Alarms and errors
     Alarms,
-    /// Its position
+    /// Position
     Position,
 }
 
@@ -210,9 +211,9 @@ pub fn schemas() -> Vec<SchemaEntry> {
 /// Report of `publish` at its end.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 struct Published {
-    /// Where.
+    /// URL of the broker.
     broker: String,
-    /// As whom.
+    /// Name of this publisher at the broker.
     node: String,
     /// Number of robots at the start.
     robots: usize,
@@ -251,7 +252,7 @@ impl Publish {
         self.check_globals(run, interval)?;
         let also = ExtraTopic::all(&self.also)?;
         let url: Url = self.broker.parse().map_err(|why: String| {
-            Failure::usage(format!("this is not the URL of a broker: {why}")).hint("example: mqtt://192.168.1.5")
+            Failure::usage(format!("this is not a valid broker URL: {why}")).hint("example: mqtt://192.168.1.5")
         })?;
         let broker = Broker::new(&url, &self.login)?;
         let node = topic::level(&self.node.clone().unwrap_or_else(this_machine))?;
@@ -305,19 +306,19 @@ impl Publish {
         run.local("publish", &Published { broker, node, robots, published, refused, dropped, undelivered, reconnects })
     }
 
-    /// Rejects options that make no sense here.
+    /// Rejects options that do not apply to this command.
     fn check_globals(&self, run: &Run, interval: Duration) -> Result<(), Failure> {
         let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("publish {what}")).hint(hint));
         if run.filter.is_some() || run.repeat.until.is_some() {
             return wrong(
                 "prints only a report at its end",
-                "`armctl status --until FILTER` waits for a condition, and takes --jq",
+                "use `armctl status --until FILTER` to wait for a condition, also with --jq",
             );
         }
         if run.gate.dry_run {
             return wrong(
                 "has no dry run: it sends only reads to robots",
-                "see some of its reads: `armctl status --dry-run`",
+                "use `armctl status --dry-run` to see some of the reads",
             );
         }
         if run.trace.is_some() {
@@ -331,7 +332,7 @@ impl Publish {
         }
         if run.repeat.count.is_some() && self.sparkplug.host.is_some() {
             return wrong(
-                "cannot have --count with --host: it waits for the host without a limit",
+                "cannot have --count with --host, because --host waits without a limit",
                 "remove --count or --host",
             );
         }
@@ -353,7 +354,7 @@ impl Publish {
         let usual = || Some(service_state_folder()?.join("publish").join(format!("{way}-{node}")));
         let Some(folder) = path.clone().or_else(usual) else {
             return Err(Failure::usage("armctl finds no folder for the buffer on disk")
-                .hint("set one with --buffer-dir, or use no disk: --buffer-disk 0"));
+                .hint("set a folder with --buffer-dir, or use no disk: --buffer-disk 0"));
         };
         let spool = Spool::open(&folder, *disk).map_err(|error| {
             if spool::is_locked(&error) {
@@ -386,7 +387,7 @@ impl Publish {
                 let bd_seq = text.and_then(|text| text.trim().parse().ok()).unwrap_or_default();
                 let remember = Box::new(move |next: u8| {
                     if let Some(file) = &file {
-                        // The number must only differ from the last one. Without a file it starts with 0.
+                        // The new number must only differ from the last one. Without a file, the numbers start with 0.
                         let _kept = files::replace(file, next.to_string().as_bytes());
                     }
                 });

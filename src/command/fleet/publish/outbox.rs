@@ -1,4 +1,4 @@
-//! Queue of unsent records, in order: first in memory, then on disk, both limited. It knows no broker and no clock.
+//! Queue of unsent records, in order: first in memory, then on disk, both limited. It has no broker and no clock.
 //!
 //! A record is removed after its acknowledgement. Records in memory are older than those on disk. When both are full,
 //! the oldest record that is not in transit is dropped and counted.
@@ -11,7 +11,7 @@ use super::spool::{Spool, SpoolError};
 /// A record to publish.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Record {
-    /// Type of the record; its meaning belongs to the message format.
+    /// Type of the record; the message format defines the meaning.
     pub kind: u8,
     /// Time of the data, in ms since 1970.
     pub time_ms: u64,
@@ -19,7 +19,7 @@ pub struct Record {
     pub key: String,
     /// Content.
     pub body: Vec<u8>,
-    /// Number of the birth before it; 0 if it was read from disk.
+    /// Number of the birth message before the record; 0 if the record was read from disk.
     pub epoch: u64,
 }
 
@@ -192,8 +192,8 @@ impl Outbox {
         self.disk_error.take()
     }
 
-    /// Writes records that are only in memory to the disk, before those already there, for the next process. Returns
-    /// the number of records that did not fit.
+    /// Writes the records that are only in memory to the disk, before the records that are already there. The next
+    /// process sends them. Returns the number of records that did not fit.
     pub fn save_all(mut self) -> (u64, Option<io::Error>) {
         let only_memory = self.memory.drain(..).filter(|held| held.segment.is_none());
         let records: Vec<Record> = only_memory.map(|held| held.record).collect();
@@ -224,7 +224,8 @@ impl Outbox {
         }
     }
 
-    /// Drops the oldest record that is not in transit, otherwise the oldest; `false` if the queue is empty.
+    /// Drops the oldest record that is not in transit; if all records are in transit, the oldest one. Returns `false`
+    /// if the queue is empty.
     fn drop_oldest(&mut self) -> bool {
         let waiting = self.memory.iter().position(|held| held.state == State::Waiting);
         let Some(at) = waiting.or((!self.memory.is_empty()).then_some(0)) else { return false };

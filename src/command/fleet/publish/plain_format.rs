@@ -2,7 +2,7 @@
 //! payload.
 //!
 //! A message is sent after a change, and at the latest after a given time. If a robot does not answer, all its topics
-//! report that. So an old position is never taken for the current one.
+//! report that. An old position therefore never appears as the current one.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -29,16 +29,16 @@ use armctl_frame::settings::Robot;
 /// The alarms and errors of a robot.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Alarms {
-    /// The active ones, newest first.
+    /// Active alarms, newest first.
     alarms: Vec<Alarm>,
 }
 
 /// Position of a robot.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Position {
-    /// In base coordinates; null if it was not read, or the controller has none.
+    /// Position in base coordinates; null if it was not read, or if the controller has none.
     position: Option<PositionMm>,
-    /// Why it was not read; null if it was.
+    /// Reason why the position was not read; null if it was read.
     not_asked: Option<&'static str>,
 }
 

@@ -20,7 +20,7 @@ const LARGEST: usize = 1 << 20;
 const SEGMENT: u64 = 1 << 20;
 /// Number of segments at the smallest total limit.
 const SEGMENTS: u64 = 8;
-/// Number of the first segment, high enough that others can be placed before it.
+/// Number of the first segment. It is high, so that other segments can be placed before the first one.
 const FIRST: u64 = 1 << 40;
 const SUFFIX: &str = "spool";
 /// Length and checksum.
@@ -195,8 +195,8 @@ impl Spool {
         }
     }
 
-    /// Writes records before all others. If there is not enough room, the newest are written. Returns the number of
-    /// those that were not.
+    /// Writes records before all others. If there is not enough room, only the newest records are written. Returns the
+    /// number of records that were not written.
     pub fn prepend(&mut self, records: &[Record]) -> (u64, Option<io::Error>) {
         let mut room = self.limit.saturating_sub(self.bytes());
         let mut kept = 0;
@@ -288,7 +288,7 @@ fn encode(record: &Record) -> Vec<u8> {
     bytes
 }
 
-/// Decodes all records up to the first damaged one. Also returns 1 if there is one.
+/// Decodes all records up to the first damaged one. Also returns 1 if there is a damaged record.
 fn decode_all(mut bytes: &[u8]) -> (VecDeque<Record>, u64) {
     let mut records = VecDeque::new();
     while !bytes.is_empty() {

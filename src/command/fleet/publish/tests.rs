@@ -58,7 +58,7 @@ pub fn silence(robot: &Arc<Robot>) -> Found {
     Found::Failed { robot: Arc::clone(robot), failure, pause: Duration::from_secs(1), traffic: Traffic::default() }
 }
 
-/// Behaviour of the broker.
+/// Behavior of the broker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Mood {
     Works,
@@ -352,7 +352,7 @@ async fn pauses_grow_as_well_where_each_connection_begins_well() {
     counts.unwrap();
     let attempts = fake.attempts.borrow();
     assert!((12..22).contains(&attempts.len()), "{attempts:?}");
-    assert!(said.iter().any(|line| line.contains("it breaks the MQTT protocol: noise")), "{said:?}");
+    assert!(said.iter().any(|line| line.contains("it does not follow the MQTT protocol: noise")), "{said:?}");
 }
 
 #[tokio::test(start_paused = true)]
@@ -391,7 +391,7 @@ async fn a_broker_that_acknowledges_nothing_is_left() {
     .await;
     assert_eq!(fake.places("press"), (0..100).map(f64::from).collect::<Vec<_>>());
     assert!(counts.unwrap().reconnects >= 1);
-    assert!(said.iter().any(|line| line.contains("does not answer any more")), "{said:?}");
+    assert!(said.iter().any(|line| line.contains("does not answer any longer")), "{said:?}");
 }
 
 const REFUSALS: [(Mood, &str); 4] = [

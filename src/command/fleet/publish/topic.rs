@@ -1,8 +1,8 @@
 //! Names as topic levels.
 //!
-//! A level is the name. Characters with a special meaning in topics, or that are not allowed, are written as `%` and
-//! the hex digits of each byte, as in URLs: `+`, `#`, `/`, `%`, control characters, and a leading `$`. So two names
-//! never have the same topic, and the name can be decoded.
+//! A level is the name of a robot or node. Characters with a special meaning in topics, and characters that are not
+//! allowed, are written as `%` and the hex digits of each byte, as in URLs: `+`, `#`, `/`, `%`, control characters, and
+//! a leading `$`. Two names therefore never have the same topic, and the name can be decoded.
 
 use std::collections::BTreeSet;
 
@@ -54,7 +54,7 @@ pub fn level(name: &str) -> Result<String, Failure> {
         let shown: String = name.chars().take(40).collect();
         let why = if level.is_empty() { "is empty" } else { "is too long for a topic" };
         return Err(Failure::usage(format!("the name '{shown}' {why}"))
-            .hint(format!("a name has 1 to {LONGEST} bytes in a topic; change it in robots.toml")));
+            .hint(format!("change the name in robots.toml: a name in a topic has 1 to {LONGEST} bytes")));
     }
     Ok(level)
 }

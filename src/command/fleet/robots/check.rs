@@ -15,11 +15,11 @@ use armctl_frame::output::view::View;
 use armctl_frame::settings::{Robot, target};
 use armctl_frame::{Access, Command, ConnectMode, Context, Family, Report};
 
-/// Checks each layer of the connection between this computer and the robot, and says what to set. Changes nothing. Exit
-/// code 8 if a layer failed.
+/// Checks each layer of the connection between this computer and the robot, and shows which settings to change. Changes
+/// nothing. Exit code 8 if a layer failed.
 #[derive(Debug, Args)]
 pub struct Check {
-    /// A robot in the inventory, or a target URL; default: the robots of -r, -t and others
+    /// A robot in the inventory, or a target URL; default: the robots that -r, -t and other flags select
     #[arg(value_name = "NAME|URL", add = ValueKind::RobotOrUrl)]
     pub name: Option<String>,
 }
@@ -66,7 +66,7 @@ impl Command for Check {
         let access = context.link.clone();
         if access.dry_run {
             return Err(Failure::usage("a check has no dry run: its requests depend on the answers")
-                .hint("run it without --dry-run; it only reads"));
+                .hint("run the command without --dry-run; a check only reads"));
         }
         let mut layers = families::of(robot.family).check(robot, access, screen).await?;
         layers.extend(layers::drafts());
@@ -91,7 +91,7 @@ impl Report for CheckReport {
         let (layer, found) = layers::first_failed(&self.layers)?;
         Some(
             Failure::new(Kind::ConditionNotMet, format!("{layer}: {found}"))
-                .hint(format!("for the settings of the controller, see `armctl help {}-setup`", self.family)),
+                .hint(format!("see `armctl help {}-setup` for the settings of the controller", self.family)),
         )
     }
 }

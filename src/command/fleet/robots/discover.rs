@@ -51,7 +51,7 @@ impl Discover {
     pub(super) async fn run(self, run: &Run) -> Result<(), RunError> {
         if run.gate.dry_run {
             return Err(Failure::usage("discover has no dry run")
-                .hint("run it without --dry-run; it only reads")
+                .hint("run the command without --dry-run; discover only reads")
                 .into());
         }
         run.local("robots.discover", &self.find(run).await?)

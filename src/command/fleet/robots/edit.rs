@@ -37,7 +37,7 @@ pub fn edit(run: &Run) -> Result<(), RunError> {
         let robots = Inventory::parse(&before, &place())?.robots.len();
         return run.local("robots.edit", &Edited { file: place(), changed: false, robots });
     }
-    // With the name of the copy, so that line and column in an error belong to the file in the editor.
+    // The file name in an error is the name of the copy, so that line and column belong to the file in the editor.
     let parsed = Inventory::parse(&after, &copy.display().to_string()).and_then(|_| {
         file::replace(path, |now| {
             if now == before {
@@ -56,7 +56,7 @@ pub fn edit(run: &Run) -> Result<(), RunError> {
         Err(failure) => {
             let message = copy.keep().map_err(|error| Failure::io(place(), &error.error))?;
             let why = failure.hint.map_or_else(String::new, |hint| format!("{hint}; "));
-            let hint = format!("{why}the inventory is unchanged; your text is in {}", message.display());
+            let hint = format!("{why}correct your text, which is in {}; the inventory is unchanged", message.display());
             Err(Failure { hint: Some(hint), ..failure }.into())
         }
     }
@@ -68,7 +68,7 @@ pub struct Edited {
     file: String,
     /// Whether the file was changed.
     changed: bool,
-    /// Number of robots in it.
+    /// Number of robots in the file.
     robots: usize,
 }
 
@@ -90,7 +90,7 @@ pub fn path(run: &Run) -> Result<(), RunError> {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct InventoryPath {
     file: String,
-    /// Whether it exists; `robots add` and `setup` create it.
+    /// Whether the file exists; `robots add` and `setup` create it.
     exists: bool,
 }
 

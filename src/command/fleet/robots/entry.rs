@@ -22,12 +22,12 @@ use armctl_frame::{Candidate, Report, ValueKind};
 /// Arguments of `robots add`.
 #[derive(Debug, Args)]
 pub struct Add {
-    /// Its name
+    /// Name of the new robot
     name: String,
-    /// Its URL, such as udp://192.168.1.31?model=dx200 or serial:///dev/ttyUSB0
+    /// URL of the robot, such as udp://192.168.1.31?model=dx200 or serial:///dev/ttyUSB0
     #[arg(add = ValueKind::Url)]
     url: TargetArgument,
-    /// Its family, if armctl cannot infer it from the URL
+    /// Family of the robot, if armctl cannot infer it from the URL
     #[arg(long, add = ValueKind::Family)]
     family: Option<Family>,
     /// Accept only reads and stops
@@ -39,7 +39,7 @@ pub struct Add {
     /// A tag for --tag (repeatable)
     #[arg(long = "with-tag", value_name = "TAG", add = ValueKind::Tag)]
     tags: Vec<String>,
-    /// Make it the default robot
+    /// Make this robot the default robot
     #[arg(long)]
     default: bool,
 }
@@ -99,7 +99,7 @@ impl Add {
         };
         target
             .check(family)
-            .map_err(|why| Failure::usage(why).hint("for the URLs of each family, see `armctl help targets`"))?;
+            .map_err(|why| Failure::usage(why).hint("see `armctl help targets` for the URLs of each family"))?;
         let Self { name, read_only, hold, tags, default: is_default, .. } = self;
         NewRobot { name, target, family, read_only, hold, tags, is_default }.add(run, "robots.add")
     }
@@ -108,7 +108,7 @@ impl Add {
 /// Arguments of `robots remove`.
 #[derive(Debug, Args)]
 pub struct Remove {
-    /// Its name
+    /// Name of the robot
     #[arg(add = ValueKind::Robot)]
     name: String,
 }
@@ -127,7 +127,7 @@ impl Remove {
                         pulses_per_degree=S,L,U,R,B,T (yerc), tags=A,B. Names: names.NAME=ADDRESS, such as \
                         names.clamp=27010.")]
 pub struct Set {
-    /// Its name
+    /// Name of the robot
     #[arg(add = ValueKind::Robot)]
     name: String,
     /// A setting and its value, such as read_only=off or timeout=5s
@@ -150,7 +150,9 @@ const SETTINGS: [(&str, &str, Parse); 10] = [
     }),
     ("read_only", "on or off: accept only reads and stops", |text, _| Ok(switch(text)?.into())),
     ("hold", "on or off: open a session automatically (yrcx)", |text, _| Ok(switch(text)?.into())),
-    ("encoding", "of names and texts on the controller", |text, _| Ok(parsed::<Encoding>(text)?.to_string().into())),
+    ("encoding", "encoding of names and texts on the controller", |text, _| {
+        Ok(parsed::<Encoding>(text)?.to_string().into())
+    }),
     ("timeout", "longest wait for an answer, per try, such as 5s", |text, _| {
         let timeout = duration::parse_some(text).map_err(|why| invalid(why, "example: timeout=5s"))?;
         Ok(duration::display(timeout).into())
@@ -231,7 +233,7 @@ pub fn set(run: &Run, id: &'static str, robot: String, settings: &[String]) -> R
     changes_text(run.local(id, &WasSet { name: robot, changes, file }))
 }
 
-/// Address of a name; a number if it looks like one, as in a hand-written file.
+/// Address of a name, as a number if the text is a number, as in a hand-written file.
 fn address(text: &str, family: Family) -> Result<Value, Failure> {
     named(family, "any", text)?;
     Ok(text.parse::<i64>().map_or_else(|_| text.into(), Value::from))
@@ -240,7 +242,8 @@ fn address(text: &str, family: Family) -> Result<Value, Failure> {
 /// Splits a typed setting into its key and text, and finds its parser.
 fn assignments(setting: &str) -> Result<(&str, &str, Parse), Failure> {
     let Some((key, text)) = setting.split_once('=') else {
-        return Err(Failure::usage(format!("'{setting}' is not KEY=VALUE")).hint("examples: read_only=off, timeout=5s"));
+        return Err(Failure::usage(format!("'{setting}' is not KEY=VALUE"))
+            .hint("type settings such as read_only=off or timeout=5s"));
     };
     if key.strip_prefix("names.").is_some_and(|name| !name.is_empty()) {
         return Ok((key, text.trim(), address));
@@ -250,7 +253,7 @@ fn assignments(setting: &str) -> Result<(&str, &str, Parse), Failure> {
     }
     let failure = Failure::usage(format!("a robot has no setting '{key}'"));
     Err(match (key, nearest(key, SETTINGS.iter().map(|(known, ..)| *known))) {
-        ("name", _) => failure.hint("rename it with `armctl robots rename OLD NEW`"),
+        ("name", _) => failure.hint("rename the robot with `armctl robots rename OLD NEW`"),
         ("default", _) => failure.hint("set the default with `armctl robots default NAME`"),
         (_, Some(near)) => failure.hint(format!("did you mean '{near}'?")),
         (_, None) => failure.hint(format!("known: {}", SETTINGS.map(|(known, ..)| known).join(", "))),
@@ -312,10 +315,10 @@ impl Report for WasSet {
 /// Arguments of `robots rename`.
 #[derive(Debug, Args)]
 pub struct Rename {
-    /// Its name
+    /// Current name of the robot
     #[arg(add = ValueKind::Robot)]
     old: String,
-    /// Its new name
+    /// New name of the robot
     new: String,
 }
 
@@ -353,7 +356,7 @@ impl Report for Renamed {
 /// Arguments of `robots default`.
 #[derive(Debug, Args)]
 pub struct Default {
-    /// Its name
+    /// Name of the robot
     #[arg(add = ValueKind::Robot)]
     name: String,
 }
@@ -385,7 +388,7 @@ pub struct WasChosen {
 
 impl Report for WasChosen {
     fn view(&self) -> View {
-        View::text(format!("{} is the default ({})", self.new, self.target))
+        View::text(format!("{} is the default robot ({})", self.new, self.target))
     }
 }
 
@@ -403,7 +406,8 @@ pub fn check_new(inventory: &Inventory, name: &str) -> Result<(), Failure> {
     }
     if inventory.robots.iter().any(|robot| robot.name == name) {
         return Err(Failure::usage(format!("robot '{name}' already exists")).hint(format!(
-            "change it with `armctl robots set {name} KEY=VALUE`, or remove it with `armctl robots remove {name}`"
+            "change the robot with `armctl robots set {name} KEY=VALUE`, or remove it with `armctl robots remove \
+             {name}`"
         )));
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! Write access to `robots.toml`; the only place that changes the file.
+//! Write access to `robots.toml`; only this module changes the file.
 
 use std::path::Path;
 

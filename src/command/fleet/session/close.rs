@@ -24,7 +24,7 @@ use armctl_transport::session::wire::Info;
 /// Arguments of `session close`.
 #[derive(Debug, Args)]
 pub struct Close {
-    /// Robots whose sessions to close, by name or target URL; -r, -t and --all select them too
+    /// Robots whose sessions to close, by name or target URL; -r, -t and --all also select robots
     #[arg(add = ValueKind::Session)]
     names: Vec<String>,
     /// Close even while a motion runs; the controller then stops the motion
@@ -83,7 +83,9 @@ impl Close {
         names.extend(chosen.as_deref());
         if names.is_empty() && !selection.all {
             return Err(Failure::usage("no session selected")
-                .hint("name a robot, or close all with --all; `armctl session list` shows the sessions")
+                .hint(
+                    "select a robot, or close all sessions with --all; use `armctl session list` to list the sessions",
+                )
                 .into());
         }
         let mut selected = if target.is_some() { run.sources.robots(None).unwrap_or_default() } else { Vec::new() };
@@ -104,7 +106,7 @@ impl Close {
                 let failure = Failure::usage(format!("no session of '{name}' is open"));
                 return Err(match nearest(name, open_names) {
                     Some(near) => failure.hint(format!("did you mean '{near}'?")),
-                    None => failure.hint("`armctl session list` shows the open sessions"),
+                    None => failure.hint("use `armctl session list` to list the open sessions"),
                 }
                 .into());
             }
@@ -143,8 +145,8 @@ fn still_open(label: &str, error: &AttachError) -> Failure {
     match error {
         AttachError::Refused(why) => Failure::new(Kind::Rejected, format!("{label}: the session stays open: {why}"))
             .hint(
-                "wait for the end of the motion, or stop it; with --force the session closes now, and the controller \
-                 stops the motion",
+                "wait for the end of the motion, or stop the robot; with --force the session closes now, and the \
+                 controller stops the motion",
             ),
         _ => attach_failure(label, error),
     }

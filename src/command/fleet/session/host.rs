@@ -133,7 +133,7 @@ pub struct ManagerThread {
 }
 
 impl ManagerThread {
-    /// Closes all links, and waits for it.
+    /// Closes all links, and waits until the thread has ended.
     pub async fn end(self) {
         let (done, is_done) = oneshot::channel();
         // A thread that has ended holds no link.
@@ -205,7 +205,7 @@ async fn hold(
         Ok(Some(OpenResult::NoPlace(why))) => (Ok(HeldBy::None(why)), None),
         Err(failure) => (Err(failure), None),
     };
-    // The caller can be interrupted already. The link is there for the next line.
+    // The caller may already be interrupted. The link stays open for the next line.
     let _ = done.send(by);
     let Some(mut holding) = holding else { return };
     held.borrow_mut().insert(key.clone());

@@ -55,13 +55,13 @@ struct Session {
     pid: u32,
     /// `up`, `down` (armctl reconnects), `silent` (the process does not answer) or `dead` (the process was killed).
     link: &'static str,
-    /// Reason if it is not `up`.
+    /// Reason if the link is not `up`.
     why: Option<String>,
-    /// Time of its start.
+    /// Start time of the session.
     since: Option<String>,
     /// Number of reconnections.
     reopenings: u32,
-    /// Processes that use it now.
+    /// Processes that use the session now.
     clients: Vec<Client>,
     /// Process that moves the robot.
     motion: Option<Client>,
@@ -85,7 +85,7 @@ struct Client {
 struct Left {
     #[serde(flatten)]
     client: Client,
-    /// Whether it died; otherwise it ended without a wait, as requested.
+    /// Whether the process died. Otherwise it ended without a wait, as requested.
     died: bool,
 }
 
@@ -95,7 +95,8 @@ impl Session {
             Ok(Some(status)) => return Self::living(status),
             Ok(None) => (
                 "dead",
-                "remove it with `armctl session close`, or open it again with `armctl session open`".to_owned(),
+                "remove the session with `armctl session close`, or open it again with `armctl session open`"
+                    .to_owned(),
             ),
             Err(error) => ("silent", error.to_string()),
         };
@@ -107,7 +108,7 @@ impl Session {
 
     fn living(status: Status) -> Self {
         let foreign = (status.version != VERSION)
-            .then(|| "opened by another version of armctl; close it and open it again".to_owned());
+            .then(|| "opened by another version of armctl; close the session and open it again".to_owned());
         Self {
             robot: status.info.robot,
             family: status.info.family,
@@ -137,7 +138,7 @@ impl Session {
             remarks.push("a motion runs".to_owned());
         }
         if let Some(Left { client, died }) = &self.leftover {
-            let how = if *died { "has died" } else { "did not wait" };
+            let how = if *died { "has died" } else { "did not wait for the end" };
             remarks.push(format!("process {} {how}: {}", client.pid, client.command));
         }
         remarks.join("; ")

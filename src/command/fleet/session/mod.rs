@@ -25,12 +25,12 @@ pub enum Session {
 }
 
 impl Session {
-    /// Whether it opens a link, and needs all settings of a robot.
+    /// Whether the command opens a link, and therefore needs all settings of a robot.
     pub fn opens(&self) -> bool {
         matches!(self, Self::Open(_))
     }
 
-    /// Whether it runs until it is closed.
+    /// Whether the command runs until the session is closed.
     pub fn stays(&self) -> bool {
         matches!(self, Self::Open(open) if open.stays())
     }

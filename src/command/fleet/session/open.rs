@@ -12,9 +12,8 @@ use jiff::Timestamp;
 
 use super::host::{OpenResult, SessionHost};
 use crate::command::families;
-use armctl_frame::ValueKind;
 use armctl_frame::attach::{folder_failure, format_since, identify, session_key};
-use armctl_frame::background::{self, Opened, Start};
+use armctl_frame::background::{self, DETACHED, Opened, Start};
 use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::interrupt::{catch_interrupts, interruptible};
 use armctl_frame::output::Screen;
@@ -23,7 +22,7 @@ use armctl_frame::repeat_limiter::{Line, RepeatLimiter};
 use armctl_frame::run::{Run, RunError};
 use armctl_frame::settings::target::Family;
 use armctl_frame::settings::{Robot, duration};
-use armctl_frame::{Access, ConnectMode};
+use armctl_frame::{Access, ConnectMode, ValueKind};
 use armctl_transport::session::client::status;
 use armctl_transport::session::host::EndReason;
 use armctl_transport::session::leave_terminal;
@@ -38,7 +37,7 @@ pub struct Open {
     /// Close the session after this time without a command
     #[arg(long, value_name = "TIME", value_parser = duration::parse_some)]
     idle: Option<Duration>,
-    /// The family, if armctl cannot infer it from the target
+    /// Family of the robot, if armctl cannot infer it from the target
     #[arg(long, add = ValueKind::Family)]
     family: Option<Family>,
     /// This is the process that `--background` has started.
@@ -65,8 +64,8 @@ impl Open {
             let message = format!("{} is read-only, but a session takes control of the controller", robot.label());
             return Err(Failure::new(Kind::Rejected, message)
                 .hint(
-                    "read without a session: `yrcx status`, `yrcx io get`, if the fieldbus allows more than one \
-                     client",
+                    "read without a session, if the fieldbus allows more than one client: `yrcx status`, `yrcx io \
+                     get`",
                 )
                 .into());
         }
@@ -83,7 +82,7 @@ impl Open {
         catch_interrupts();
         if self.background {
             let words = std::env::args_os().skip(1);
-            let words = words.map(|word| if word == "--background" { "--detached".into() } else { word });
+            let words = words.map(|word| if word == "--background" { DETACHED.into() } else { word });
             return run.local("session.open", &background::start(robot, words).await?);
         }
         if !self.detached {
@@ -145,8 +144,11 @@ async fn in_use_failure(robot: &Robot, location: &SessionPath) -> Failure {
         (_, Some(owner)) => format!("process {}, which does not answer", owner.pid),
         (_, None) => "a process that does not answer".to_owned(),
     };
-    Failure::new(Kind::NoAnswer, format!("{}: a session is already open: {who}", robot.label()))
-        .hint(format!("commands use it automatically; close it with `armctl session close {}`", robot.name))
+    Failure::new(Kind::NoAnswer, format!("{}: a session is already open: {who}", robot.label())).hint(format!(
+        "run commands as usual, because they use the session automatically; close the session with `armctl session \
+         close {}`",
+        robot.name
+    ))
 }
 
 /// Log of a session: on the terminal, or in a file.

@@ -6,7 +6,7 @@ use std::time::SystemTime;
 use armctl_frame::settings::inventory::{Inventory, Location};
 use armctl_frame::settings::{Robot, Sources};
 
-/// Inventory entry that is read again after each change of the file. Once the robot is read-only, it stays so.
+/// Inventory entry that is read again after each change of the file. Once the robot is read-only, it stays read-only.
 pub struct WatchedEntry {
     robot: Robot,
     /// Version of the file that was read last.
@@ -37,8 +37,9 @@ impl WatchedEntry {
 
     fn update(&mut self, path: PathBuf) -> Result<(), String> {
         // A deleted file changes nothing.
-        let inventory = Inventory::load(&Location::Default(path))
-            .map_err(|failure| format!("cannot read again whether {} is read-only: {failure}", self.robot.name))?;
+        let inventory = Inventory::load(&Location::Default(path)).map_err(|failure| {
+            format!("armctl could not check again whether {} is read-only: {failure}", self.robot.name)
+        })?;
         let sources = Sources { inventory, ..Sources::default() };
         self.robot.read_only.value =
             sources.read_only(self.robot.family).any(|(_, entry)| entry.name == self.robot.name);

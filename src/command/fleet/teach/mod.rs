@@ -1,5 +1,5 @@
 //! `armctl teach`: a panel that moves a robot by single steps and teaches points. Every key runs a command line, as if
-//! it were typed; `crate::app` executes it.
+//! the user had typed it; `crate::app` executes the line.
 //!
 //! | file | contents |
 //! |---|---|
@@ -31,7 +31,7 @@ use armctl_frame::settings::target::Family;
                   see `armctl help safety`. The screen shows the keys, `?` explains them, `q` ends."
 )]
 pub struct Teach {
-    /// The family, if armctl cannot infer it from the robot
+    /// Family of the robot, if armctl cannot infer it
     #[arg(value_name = "FAMILY")]
     pub family: Option<Family>,
     /// Largest step of a key, in mm, degrees, or the unit of the axes
@@ -44,7 +44,7 @@ pub struct Teach {
 
 fn parse_positive(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("'{text}' is not a number"))?;
-    if value.is_finite() && value > 0.0 { Ok(value) } else { Err("it must be above 0".to_owned()) }
+    if value.is_finite() && value > 0.0 { Ok(value) } else { Err("the number must be above 0".to_owned()) }
 }
 
 impl Teach {

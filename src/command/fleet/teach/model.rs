@@ -1,5 +1,5 @@
 //! State of the teach panel: selection, motion in progress, past commands and their results. Its input is keys and
-//! results. It knows no terminal, no link and no clock.
+//! results. It has no terminal, no link and no clock.
 
 use std::collections::VecDeque;
 

@@ -31,9 +31,9 @@ const MAX_BACKOFF: Duration = Duration::from_secs(1);
 enum LoopEvent {
     /// Content of a point.
     Found(u32, Result<Value, Failure>),
-    /// A command with this number; `true` if others wait for it.
+    /// Result of the command with this number; `true` if other commands wait for it.
     Line(u64, bool, Result<(), Failure>),
-    /// A step, with its command line, if there was one.
+    /// Result of a step, with its command line, if there was one.
     Step(u64, Vec<String>, Result<(), Failure>),
 }
 
@@ -94,7 +94,7 @@ struct TeachScreen<'a, L> {
     is_real_controller: bool,
     lines: &'a L,
     start: Instant,
-    /// Result of the panel; it ends when no command is in progress.
+    /// Result of the panel, after the user quits. The panel ends when no command is in progress.
     is_leaving: Option<Result<(), Failure>>,
 }
 
@@ -149,7 +149,7 @@ impl<'a, L: CommandRunner> TeachScreen<'a, L> {
         self.terminal.draw(|frame| draw(frame, model, &robot, palette))
     }
 
-    /// Starts the command of an action. To quit during a motion, it first stops the robot.
+    /// Starts the command of an action. To quit during a motion, the panel first stops the robot.
     fn execute(
         &mut self,
         wish: PanelCommand,
@@ -187,7 +187,7 @@ impl<'a, L: CommandRunner> TeachScreen<'a, L> {
         Ok(Some(line))
     }
 
-    /// Runs a command; with `waits`, others wait for it.
+    /// Runs a command; with `waits`, other commands wait until it ends.
     fn line(&mut self, words: Vec<String>, waits: bool) -> LocalBoxFuture<'a, LoopEvent> {
         let number = self.model.begin(&words);
         self.model.is_moving |= waits;

@@ -69,7 +69,7 @@ fn stores_a_point_after_a_read_and_a_yes() {
     assert_eq!(model.prompt, Some(Prompt::Overwrite(PointUse::Store, 5, "pulse:s=1".to_owned())));
     assert_eq!(typed(&mut model, "y"), Some(PanelCommand::Store(5)));
 
-    // Any other key is a no.
+    // Any other key means no.
     model.handle_key(KeyAction::Go);
     typed(&mut model, "7");
     model.point_read(7, Ok(json!({"points": [{"point": 7, "x_mm": 1.5, "y_mm": null, "ok": true}]})));

@@ -98,10 +98,10 @@ fn question(model: &Model, asked: &Prompt) -> String {
         }
         Prompt::PointNumber(PointUse::Go, typed) => format!("Move to: {typed}_  (number, Enter; Esc)"),
         Prompt::Overwrite(PointUse::Store, number, old) => {
-            format!("y stores it as {}, Esc cancels; now: {old}", point(*number))
+            format!("y stores the position as {}, Esc cancels; now: {old}", point(*number))
         }
         Prompt::Overwrite(PointUse::Go, number, place) => {
-            format!("y moves to {} in one motion, Esc cancels; it is {place}", point(*number))
+            format!("y moves to {} in one motion, Esc cancels; the point is {place}", point(*number))
         }
         Prompt::Release => "y releases the hold, Esc cancels; a stopped motion may continue".to_owned(),
     }

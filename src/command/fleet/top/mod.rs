@@ -35,16 +35,16 @@ use armctl_frame::run::{Run, RunError};
 #[derive(Debug, Args)]
 #[command(
     after_help = "Without -r, --tag, --sim or -t, top shows all robots in the inventory. --watch INTERVAL sets how \
-                  often it polls them (500ms). `?` explains the keys. top cannot move a robot or change anything: it \
-                  sends only reads. To a YRCX without a session it sends only messages. `q` ends with exit code 0, \
-                  Ctrl-C with 130."
+                  often top polls the robots (500ms). `?` explains the keys. top cannot move a robot or change \
+                  anything, because it sends only reads. To a YRCX without a session, top sends only messages. `q` \
+                  ends with exit code 0, Ctrl-C with 130."
 )]
 pub struct Top {}
 
 /// Default and minimum polling interval.
 const DEFAULT_INTERVAL: Duration = Duration::from_millis(500);
 const MIN_INTERVAL: Duration = Duration::from_millis(50);
-/// Minimum and maximum time between two screen updates. Elapsed times are shown as well.
+/// Minimum and maximum time between two screen updates. The maximum keeps displayed elapsed times current.
 const FRAME_INTERVAL: Duration = Duration::from_millis(100);
 const TICK: Duration = Duration::from_secs(1);
 /// Longest backoff of a robot that does not answer. It is short, because a user is waiting.
@@ -59,7 +59,7 @@ impl Top {
         let mut poll = Poll::new(&run.sources, run.screen.silenced())?;
         let screen = run.screen;
         if !screen.can_fill() {
-            return Err(Failure::usage("top needs a terminal, and stdout is not a suitable one")
+            return Err(Failure::usage("top needs a terminal, but stdout is not a suitable terminal")
                 .hint("use `armctl status --watch`; for programs, add -o jsonl")
                 .into());
         }
@@ -88,11 +88,11 @@ impl Top {
     }
 }
 
-/// Rejects options that make no sense on a screen.
+/// Rejects options that do not apply to a screen.
 fn check_globals(run: &Run, every: Duration) -> Result<(), Failure> {
     let invalid = |what: &str, hint: &str| Err(Failure::usage(format!("top {what}")).hint(hint));
     if run.screen.format != Format::Table || run.filter.is_some() {
-        return invalid("is interactive and prints no data", "in programs, use `armctl status --watch -o jsonl`");
+        return invalid("is interactive and prints no data", "use `armctl status --watch -o jsonl` in programs");
     }
     if run.repeat.count.is_some() || run.repeat.until.is_some() {
         return invalid(
@@ -101,7 +101,7 @@ fn check_globals(run: &Run, every: Duration) -> Result<(), Failure> {
         );
     }
     if run.gate.dry_run {
-        return invalid("has no dry run: it only reads", "see some of its reads: `armctl status --dry-run`");
+        return invalid("has no dry run: it only reads", "use `armctl status --dry-run` to see some of the reads");
     }
     if run.trace.is_some() {
         return invalid("does not record its traffic", "use --trace with `armctl status --watch`");

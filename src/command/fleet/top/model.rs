@@ -1,5 +1,5 @@
 //! State of a live view: robots with their newest samples and a limited history, and the selection. Its input is
-//! samples, keys and the time. It knows no terminal, no link and no clock.
+//! samples, keys and the time. It has no terminal, no link and no clock.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -45,7 +45,7 @@ pub struct Model {
     pub every: Duration,
     /// Selected robot.
     pub cursor: usize,
-    /// Whether its screen is open.
+    /// Whether the screen of the selected robot is open.
     pub is_open: bool,
     /// Selected axis.
     pub axis: usize,
@@ -103,7 +103,7 @@ pub struct RobotRow {
     /// Target URL.
     pub place: String,
     tags: Vec<String>,
-    /// Whether it answers.
+    /// Whether the robot answers.
     pub contact: Contact,
     /// Newest sample and its time.
     pub last: Option<(Moment, Sample)>,
@@ -118,7 +118,7 @@ pub struct RobotRow {
 pub enum Contact {
     /// Not polled yet, or no answer yet.
     Waiting,
-    /// It answers.
+    /// The robot answers.
     Reachable,
     /// The last poll failed.
     Unreachable(Failure),

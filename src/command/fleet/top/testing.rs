@@ -84,7 +84,7 @@ pub fn sample(position: f64) -> Sample {
     Sample { line, answered_in: Some(Duration::from_micros(4200)), alarms: Vec::new(), full: Some(whole) }
 }
 
-/// The same with two alarms, whose text contains terminal control characters.
+/// The same sample with two alarms, whose text contains terminal control characters.
 pub fn with_alarm() -> Sample {
     let mut alarmed = sample(0.0);
     alarmed.line.state.running = Some(false);

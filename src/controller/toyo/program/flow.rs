@@ -1,11 +1,11 @@
-//! Control-flow checks of a program: missing end, unreachable steps, jumps with a target that is only known at run
-//! time.
+//! Control-flow checks of a program: missing end, unreachable steps, and jumps whose target is known only at run time.
 
 use super::tags::Resolved;
 use crate::findings::{Findings, SourceLocation};
 use crate::toyo::table::{Instruction, Op};
 
-/// Reports suspicious control flow of a valid program. A part of a program may continue after its last step.
+/// Reports suspicious control flow of a valid program. If the text is a part of a program, the program may continue
+/// after its last step.
 pub(super) fn check(resolved: &Resolved, is_part: bool, findings: &mut Findings) {
     let steps = || resolved.program.steps.iter().zip(&resolved.places).map(|(step, at)| (step.instruction, *at));
     let mut previous: Option<Op> = None;
@@ -20,7 +20,7 @@ pub(super) fn check(resolved: &Resolved, is_part: bool, findings: &mut Findings)
                 None,
             );
         }
-        // A NOP or END after a jump is padding.
+        // NOPs after a jump are padding: the step after them is checked as if it came directly after the jump.
         if !(row.op == Op::Nop && previous.is_some_and(ends_flow)) {
             previous = Some(row.op);
         }
@@ -38,14 +38,14 @@ pub(super) fn check(resolved: &Resolved, is_part: bool, findings: &mut Findings)
     }
     let unknown: Vec<_> = steps().filter(|(row, _)| has_computed_target(row.op)).collect();
     if let Some((row, at)) = unknown.first() {
-        let more = if unknown.len() > 1 { format!("; {} steps are like this", unknown.len()) } else { String::new() };
+        let more = if unknown.len() > 1 { format!("; this applies to {} steps", unknown.len()) } else { String::new() };
         findings
             .note(*at, format!("the target of {} depends on counters and inputs, and is not checked{more}", row.word));
     }
     limits(steps(), findings);
 }
 
-/// Reports instructions that only some controllers have, each once.
+/// Reports instructions that only some controllers have. Reports each of these instructions only once.
 fn limits<'s>(steps: impl Iterator<Item = (&'s Instruction, SourceLocation)>, findings: &mut Findings) {
     let mut reported: Vec<Op> = Vec::new();
     for (row, at) in steps.filter(|(row, _)| !row.only_on.is_empty()) {
@@ -56,12 +56,12 @@ fn limits<'s>(steps: impl Iterator<Item = (&'s Instruction, SourceLocation)>, fi
     }
 }
 
-/// Whether the next step never runs directly after it.
+/// Whether the next step never runs directly after this instruction.
 const fn ends_flow(op: Op) -> bool {
     matches!(op, Op::Jmp | Op::Ret | Op::End | Op::Loop)
 }
 
-/// Whether the jump target is not in the instruction.
+/// Whether the jump target is not written in the instruction.
 const fn has_computed_target(op: Op) -> bool {
     matches!(op, Op::Brac | Op::Psel)
 }

@@ -34,7 +34,7 @@ pub(super) struct Draft {
 }
 
 impl Draft {
-    /// Placeholder for an instruction with errors, so that the step count stays right.
+    /// Placeholder for an instruction with errors. It keeps the step count right.
     pub fn empty(at: SourceLocation) -> Self {
         Self { instruction: Op::Nop.row(), values: Vec::new(), tags: Vec::new(), at }
     }
@@ -54,12 +54,12 @@ pub(super) struct Cursor<'t> {
     at: usize,
 }
 
-/// Whether a field refers to a tag that must exist.
+/// Whether a field refers to a tag. Such a tag must be defined.
 pub(super) fn is_tag(field: &Field) -> bool {
     matches!(field.name, "tag" | "then" | "else")
 }
 
-/// Whether a word can be a label: a letter or `_`, then also digits and `-`.
+/// Whether a word can be a label: it begins with a letter or `_`, and continues with letters, digits, `_` and `-`.
 pub(super) fn is_label(word: &str) -> bool {
     word.starts_with(|c: char| c.is_alphabetic() || c == '_')
         && word.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-')
@@ -121,7 +121,7 @@ pub(super) fn read(cursor: &mut Cursor<'_>, known: &Names, findings: &mut Findin
     (findings.errors() == errors_before).then_some(draft)
 }
 
-/// RSMV always passes its point, whatever is printed (ambiguity R4).
+/// Replaces POST by PASS: RSMV always passes its point, whatever the listing says (ambiguity R4).
 fn pass_fixed(draft: &mut Draft, findings: &mut Findings) {
     if draft.instruction.op != Op::Rsmv {
         return;
@@ -178,7 +178,7 @@ fn unknown_short(row: &Instruction, text: &str, known: &Names) -> Option<(String
     (is_label(text) && !is_first).then(|| unknown_name(point, text, known)).flatten()
 }
 
-/// Number of a named point, counter or timer; `None` if the field does not have this name.
+/// Number of a named point, counter or timer. `None` if no object of the field's kind has this name.
 fn by_name(field: &Field, text: &str, known: &Names) -> Result<Option<i32>, String> {
     let Some((kind, _)) = names::of_field(field.name) else { return Ok(None) };
     match known.find(&[kind], text) {
@@ -202,7 +202,7 @@ fn named_value(field: &Field, text: &str, known: &Names) -> Result<Value, (Strin
     })
 }
 
-/// Error and hint for an unknown name; `None` if the field cannot have a name.
+/// Error and hint for an unknown name. `None` if the field does not accept names.
 fn unknown_name(field: &Field, text: &str, known: &Names) -> Option<(String, String)> {
     let (kind, prefix) = names::of_field(field.name).filter(|_| is_label(text))?;
     let candidates = known.iter().filter(|name| name.kind == kind).map(|name| name.name.as_str());
@@ -232,7 +232,7 @@ pub(super) fn excerpt(text: &str) -> &str {
 const BLANKS: [char; 2] = [' ', '\t'];
 
 impl<'t> Cursor<'t> {
-    /// At the first character of a line without its comment.
+    /// A cursor at the first character of a line. The line has no comment.
     pub fn new(line: &'t str, number: usize) -> Self {
         let mut cursor = Self { line, number, at: 0 };
         cursor.skip();
@@ -290,7 +290,7 @@ impl<'t> Cursor<'t> {
         self.at += rest.len() - rest.trim_start_matches(BLANKS).len();
     }
 
-    /// Skips the words before a field. A name needs no key: `JMPC TAG=next parts>=5`.
+    /// Skips the words before a field. A name needs no key before it: `JMPC TAG=next parts>=5`.
     fn pass_to(&mut self, words: &str, field: Option<&Field>, known: &Names) -> Result<(), String> {
         if let Some(field) = field
             && let Some((_, prefix)) = names::of_field(field.name)
@@ -304,7 +304,7 @@ impl<'t> Cursor<'t> {
         self.pass(words)
     }
 
-    /// Skips words, in any case and with any blanks. Does not move if others are found.
+    /// Skips words, in any case and with any number of blanks. Does not move if the text has other words.
     fn pass(&mut self, words: &str) -> Result<(), String> {
         let start = self.at;
         for expected in words.chars().filter(|c| *c != ' ') {

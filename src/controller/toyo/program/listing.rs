@@ -1,4 +1,4 @@
-//! Listing of a controller's program as text, which [`check`](super::check) parses.
+//! Listing of a controller's program as text. [`check`](super::check) can parse this text.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -12,7 +12,7 @@ use crate::toyo::table::{Op, Parameter};
 /// Table rows by table id and number, for comments.
 pub type Rows = BTreeMap<(&'static str, i32), Record>;
 
-/// A program as text.
+/// Text of a program.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Listing {
     /// One step per line, with line ends.
@@ -32,7 +32,7 @@ pub struct Style {
     pub is_numbered: bool,
 }
 
-/// Comment of a step that is not in the manual; the step is kept as received.
+/// Comment after a step that is not in the manual. The step is kept as received.
 pub const NOT_IN_MANUAL: &str = "not in the manual";
 
 /// Instruction fields that refer to a table row, with the table id.
@@ -47,7 +47,7 @@ pub fn uses(steps: &[Record]) -> BTreeSet<(&'static str, i32)> {
 /// Placeholder of a step that was not read. It is not an instruction, so the text is not a valid program.
 pub const NOT_READ: &str = "?";
 
-/// Reasons of steps that were not read, by index. Their records are [`not_read`].
+/// Why steps were not read, by the index of the step. The record of each of these steps is [`not_read`].
 pub type Unread = BTreeMap<usize, String>;
 
 /// Record of a step that was not read.
@@ -60,7 +60,7 @@ pub fn listing(steps: &[Record], style: Style, rows: &Rows) -> Listing {
     listing_with(steps, &Unread::new(), style, rows)
 }
 
-/// Formats steps of which some were not read. The header and the places of these steps say so.
+/// Formats a program of which some steps were not read. The header and a comment at each of these steps report this.
 pub fn listing_with(steps: &[Record], unread: &Unread, style: Style, rows: &Rows) -> Listing {
     listing_named(steps, unread, style, rows, &Names::default())
 }
@@ -80,7 +80,7 @@ pub fn listing_named(steps: &[Record], unread: &Unread, style: Style, rows: &Row
     }
     for (index, (record, own)) in listed.iter().zip(&texts).enumerate() {
         if let Some(why) = unread.get(&index) {
-            // Consecutive steps with the same reason have one comment.
+            // Consecutive steps that were not read for the same reason have one comment.
             if index.checked_sub(1).and_then(|before| unread.get(&before)) != Some(why) {
                 let last = (index..end).take_while(|index| unread.get(index) == Some(why)).last().unwrap_or(index);
                 let _ = match (index + first, last + first) {
@@ -106,7 +106,7 @@ pub fn listing_named(steps: &[Record], unread: &Unread, style: Style, rows: &Row
     Listing { text, left_out }
 }
 
-/// Comments about the objects of an instruction.
+/// Comments about the objects that an instruction uses.
 fn comments(record: &Record, tags: &BTreeMap<i32, usize>, rows: &Rows, known: &Names) -> Vec<String> {
     if !record.is_listed() {
         return vec![NOT_IN_MANUAL.to_owned()];
@@ -158,7 +158,7 @@ pub fn used(steps: &[Record]) -> usize {
     steps.iter().rposition(|record| !is_nop(record)).map_or(0, |last| last + 1)
 }
 
-/// The step of each tag, counted from `first`; the first one of a duplicate.
+/// Step number of each tag, counted from `first`. If a tag is defined twice, the first definition counts.
 pub fn tags(steps: &[Record], first: usize) -> BTreeMap<i32, usize> {
     let mut tags = BTreeMap::new();
     for (index, record) in steps.iter().enumerate().filter(|(_, record)| record.layout() == Op::Tag.row().layout) {

@@ -54,20 +54,20 @@ pub struct Program {
 pub struct Step {
     /// Row of the instruction table.
     pub instruction: &'static Instruction,
-    /// Its values.
+    /// Values of the step.
     pub record: Record,
     /// Line of the file, from 1.
     pub line: usize,
 }
 
-/// A name of a tag.
+/// A name for a tag.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Label {
-    /// Spelling of the definition.
+    /// Name as spelled in its definition.
     pub name: String,
     /// Tag number, 1 to 999.
     pub tag: i32,
-    /// Its TAG step, from 1.
+    /// Number of the TAG step of the label, from 1.
     pub step: usize,
     /// Line of the file, from 1.
     pub line: usize,
@@ -101,11 +101,11 @@ impl Checked {
 pub struct Part {
     /// First step, from 1.
     pub first: usize,
-    /// Tags outside the part; `None` if they are unknown.
+    /// Tags in the program outside of the part; `None` if they are unknown.
     pub tags: Option<BTreeSet<i32>>,
 }
 
-/// Detects a file of another type, and the command for it.
+/// Detects a file of another type. Returns this type, and the command for it.
 fn foreign(text: &[u8]) -> Option<(&'static str, &'static str)> {
     let first = text.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii).find(|line| !line.is_empty())?;
     let first = first.strip_prefix("\u{FEFF}".as_bytes()).unwrap_or(first).to_ascii_lowercase();
@@ -125,7 +125,7 @@ pub fn check(text: &[u8], room: usize) -> Checked {
     check_named(text, room, None, &Names::default())
 }
 
-/// Parses a whole [`listing()`]. Steps that are marked as not in the manual are kept and never sent.
+/// Parses a whole [`listing()`]. Steps that are marked as not in the manual are kept, and are never sent.
 pub fn check_kept(text: &[u8], room: usize) -> Checked {
     let mut kept = BTreeMap::new();
     let mut lines = Vec::new();
@@ -153,12 +153,12 @@ pub fn check_part(text: &[u8], room: usize, part: &Part) -> Checked {
     check_named(text, room, Some(part), &Names::default())
 }
 
-/// Parses a program or a part of one, with these names.
+/// Parses a program or a part of a program, with these names.
 pub fn check_named(text: &[u8], room: usize, part: Option<&Part>, names: &Names) -> Checked {
     check_known(text, room, part, names, &Known::default())
 }
 
-/// Parses a program, and also checks it against known data of the controller.
+/// Parses a program or a part of a program, and compares it with known data of the controller.
 pub fn check_known(text: &[u8], room: usize, part: Option<&Part>, names: &Names, known: &Known) -> Checked {
     let mut findings = Findings::default();
     if let Some((what, hint)) = foreign(text) {

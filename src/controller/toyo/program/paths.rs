@@ -1,7 +1,7 @@
 //! Checks along all execution paths: subroutines, arcs, points, MVM groups.
 //!
-//! The results of conditions are unknown, so both branches are followed. A finding may never happen at run time, so
-//! it is a warning.
+//! The results of conditions are unknown, so the checks follow both branches. A problem that the checks find may never
+//! occur at run time, so it is a warning.
 
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
@@ -24,7 +24,7 @@ const DEPTH: usize = 16;
 /// The last internal port that can be read (TO 2-8, MNIN; ambiguity R18).
 const INTERNAL_PORTS: i32 = 4;
 
-/// Reports problems on any path. The steps outside a part are unknown.
+/// Reports problems on any path. If the text is a part of a program, the steps outside are unknown.
 pub(super) fn check(resolved: &Resolved, is_part: bool, known: &Known, findings: &mut Findings) {
     let steps = &resolved.program.steps;
     let mut finder = Finder { steps, places: &resolved.places, findings };
@@ -43,7 +43,7 @@ struct Finder<'a> {
     findings: &'a mut Findings,
 }
 
-/// Successors of a step: the index of the next step, of a jump target, of a subroutine.
+/// Successors of a step: the indexes of the next step, of a jump target, and of a subroutine.
 #[derive(Default)]
 struct Successors {
     next: bool,
@@ -62,7 +62,7 @@ impl Finder<'_> {
         self.steps.get(step).map(|step| step.instruction.op)
     }
 
-    /// Missing points, and invalid rows.
+    /// Reports missing points, and row 0 without a counter.
     fn points(&mut self, known: &Known) {
         for (index, record) in self.steps.iter().map(|step| &step.record).enumerate() {
             let (Some(point), Some(counter)) = (record.number("point"), record.number("counter")) else { continue };
@@ -72,13 +72,13 @@ impl Finder<'_> {
                 self.warn(
                     index,
                     format!("point {point} is not in the given points"),
-                    "teach it, or write it with `toyo point set`",
+                    "teach the point, or write it with `toyo point set`",
                 );
             }
         }
     }
 
-    /// Internal ports that a controller cannot report.
+    /// Reports internal ports that may not exist.
     fn ports(&mut self) {
         for index in 0..self.steps.len() {
             let port = self.steps[index].record.number("port").filter(|port| *port > INTERNAL_PORTS);
@@ -92,7 +92,7 @@ impl Finder<'_> {
         }
     }
 
-    /// An arc takes two steps.
+    /// Reports incomplete arcs. An arc consists of two steps.
     fn arcs(&mut self) {
         let is_arc = |op: Option<Op>| matches!(op, Some(Op::Mvc | Op::Mvcp));
         let mut index = 0;
@@ -103,7 +103,8 @@ impl Finder<'_> {
                 } else {
                     self.warn(
                         index,
-                        "an arc needs two steps, a point on the arc and its end, but the next step is not MVC or MVCP",
+                        "an arc needs two steps (a point on the arc, and its end), but the next step is not MVC or \
+                         MVCP",
                         "a controller stops with error A5",
                     );
                 }
@@ -112,7 +113,7 @@ impl Finder<'_> {
         }
     }
 
-    /// Groups without MINI: their counters are 0, which is not a position.
+    /// Reports MVM groups without MINI. The counters of such a group are 0, which is not a position.
     fn groups(&mut self) {
         let group = |step: &Step, op: Op| (step.instruction.op == op).then(|| step.record.number("group")).flatten();
         let begun: BTreeSet<i32> = self.steps.iter().filter_map(|step| group(step, Op::Mini)).collect();
@@ -131,7 +132,7 @@ impl Finder<'_> {
         }
     }
 
-    /// RET without a call, recursion, and calls nested too deep.
+    /// Reports RET without a call, recursion, and calls that are nested too deep.
     fn subroutines(&mut self) {
         let records: Vec<Record> = self.steps.iter().map(|step| step.record.clone()).collect();
         let tags: BTreeMap<i32, usize> = listing::tags(&records, 0);
@@ -210,7 +211,7 @@ const STOPS_AT_TABLE: &str = "a controller stops with error B6";
 #[derive(Default)]
 struct Reach {
     steps: BTreeSet<usize>,
-    /// Calls and their first steps.
+    /// Calls, each with the first step of its subroutine.
     calls: BTreeMap<usize, usize>,
 }
 
@@ -223,7 +224,7 @@ enum Depth {
     Endless(usize),
 }
 
-/// Nesting of calls from one subroutine on.
+/// Depth of nested calls from a subroutine on.
 fn depth(
     entry: usize,
     bodies: &BTreeMap<usize, Reach>,

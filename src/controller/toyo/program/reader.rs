@@ -19,9 +19,9 @@ pub(super) struct ParsedLines {
 #[derive(Debug)]
 pub(super) struct LabelDefinition {
     pub name: String,
-    /// Explicit tag number.
+    /// Tag number that the text gives the label.
     pub tag: Option<i32>,
-    /// Its TAG step, from 0.
+    /// Index of the TAG step of the label, from 0.
     pub step: usize,
     pub at: SourceLocation,
 }
@@ -48,7 +48,7 @@ pub(super) fn read(
         if before <= room && room < after {
             let at = reader.read.steps[room].at;
             let message =
-                format!("step {} does not fit: the task has at most {} steps", start + room, start + room - 1);
+                format!("step {} does not fit: the task can have at most {} steps", start + room, start + room - 1);
             reader.findings.error(
                 at,
                 message,
@@ -115,7 +115,7 @@ impl Reader<'_> {
         self.read.steps.push(draft);
     }
 
-    /// Whether the code has only valid characters. A file that is not UTF-8 was reported before.
+    /// Whether the code has only valid characters. A file that is not UTF-8 was already reported.
     fn is_clean(&mut self, code: &str, line: usize) -> bool {
         let Some((column, wrong)) = code.chars().enumerate().find(|(_, c)| is_wrong(*c)) else { return true };
         if wrong != char::REPLACEMENT_CHARACTER {
@@ -141,7 +141,7 @@ impl Reader<'_> {
         if number != expected {
             let message = format!("step number {number} must be {expected:04}: step numbers increase by one");
             self.findings.error(at, message, Some("instructions need no step numbers".to_owned()));
-            // The following numbers are compared with this one.
+            // The next step numbers are compared with this step number.
             self.first = Some(number.saturating_sub(steps));
         } else if is_first && first != self.start {
             let start = self.start;

@@ -19,7 +19,8 @@ pub(super) struct Resolved {
 
 const MOST: usize = 999;
 
-/// Assigns tags to labels, and to the steps that use them. The program is valid only without errors.
+/// Assigns tags to labels, and to the steps that use the labels. The result is a valid program only if there are no
+/// errors.
 pub(super) fn resolve(read: ParsedLines, part: Option<&Part>, findings: &mut Findings) -> Resolved {
     let mut tags = Tags { part, ..Tags::default() };
     tags.collect_labels(&read.labels, findings);
@@ -85,7 +86,7 @@ impl Tags<'_> {
         }
     }
 
-    /// Numbers the labels without a tag: from 1, without any number in the file.
+    /// Assigns tag numbers to labels without one. Numbers begin at 1; numbers that occur in the file are not used.
     fn assign_tags(&mut self, read: &ParsedLines, findings: &mut Findings) {
         let mut taken = vec![false; MOST + 1];
         let uses = read.steps.iter().flat_map(|draft| &draft.tags);
@@ -108,18 +109,18 @@ impl Tags<'_> {
         }
     }
 
-    /// Collects the positions of the tags; each must be unique.
+    /// Collects the positions of the tags. Each tag must be unique.
     fn collect_positions(&mut self, steps: &[Draft], findings: &mut Findings) {
         self.defined = vec![None; MOST + 1];
         for draft in steps.iter().filter(|draft| draft.instruction.op == Op::Tag) {
             let Some(used) = draft.tags.first() else { continue };
             let Some(tag) = self.tag_of(&used.target) else { continue };
-            // A duplicate label was reported before.
+            // A duplicate label was already reported.
             if self.label_of(&used.target).is_some_and(|label| label.at != draft.at) {
                 continue;
             }
             if self.outside_tags().is_some_and(|tags| tags.contains(&tag)) {
-                let message = format!("tag {tag:03} already exists in a step before or after these");
+                let message = format!("tag {tag:03} already exists in a step before or after the steps of this file");
                 findings.error(used.at, message, Some("a controller stops with error A2".to_owned()));
             }
             let Some(place) = usize::try_from(tag).ok().and_then(|tag| self.defined.get_mut(tag)) else { continue };
@@ -156,7 +157,7 @@ impl Tags<'_> {
         Some(Step { instruction, record: instruction.layout.record(values).ok()?, line: at.line })
     }
 
-    /// A jump uses a label, or needs an existing tag number.
+    /// Marks the label of a jump as used, or checks that the tag number exists.
     fn check_jump(&mut self, tag: i32, target: &Target, at: SourceLocation, findings: &mut Findings) {
         match target {
             Target::Label(name) => {
@@ -193,10 +194,11 @@ impl Tags<'_> {
         self.by_name.get(&name.to_lowercase()).map(|index| &self.list[*index])
     }
 
-    /// Reports unused labels. A label with an explicit number may be used from elsewhere.
+    /// Reports unused labels. A label with an explicit number is not reported, because another program may use this
+    /// number.
     fn report_unused(&self, findings: &mut Findings) {
         for label in self.list.iter().filter(|label| !label.used && !label.has_explicit_tag) {
-            let hint = format!("if another program uses its tag, write the tag: {}=10:", label.name);
+            let hint = format!("if another program uses the tag of this label, write the tag: {}=10:", label.name);
             findings.warning(label.at, format!("no step jumps to label {}", label.name), Some(hint));
         }
     }

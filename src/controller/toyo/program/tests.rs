@@ -12,7 +12,7 @@ fn findings(text: impl AsRef<[u8]>) -> Vec<String> {
     check(text.as_ref(), MOST_STEPS).findings.iter().map(ToString::to_string).collect()
 }
 
-/// The only finding of this line, followed by END.
+/// The only finding for a program of this line and END.
 fn finding(line: &str) -> String {
     let found = findings(format!("{line}\nEND\n"));
     assert_eq!(found.len(), 1, "{found:?}");
@@ -107,7 +107,10 @@ fn errors_have_a_position_and_a_suggestion() {
         ("CNT CN1=", "line 1, column 9: error: count is missing: a number, 0 to 9999 (write CNT CN<counter>=<count>)"),
         ("HOME now", "line 1, column 6: error: unexpected text 'now' (write HOME)"),
         ("SVON W", "line 1, column 6: error: axes: 'W' is not ALL, X, Y, Z or R"),
-        ("OUT STN=0 PN1=.......2", "line 1, column 15: error: data: '.......2' is not eight of 0, 1 and ."),
+        (
+            "OUT STN=0 PN1=.......2",
+            "line 1, column 15: error: data: '.......2' is not eight characters, each 0, 1 or .",
+        ),
         ("JMP TAG=", "line 1, column 9: error: tag is missing: a number, 1 to 999, or a label (write JMP TAG=<tag>)"),
         ("JMP TAG=7", "line 1, column 9: error: the program has no tag 007 (a controller stops with error A1)"),
         ("JMP TAG=7x", "line 1, column 9: error: tag: '7x' is neither a valid tag (001 to 999) nor a label"),
@@ -183,7 +186,8 @@ fn suspicious_text_is_a_warning() {
     assert_eq!(findings("a: NOP\nJMP TAG=a"), [] as [&str; 0]);
     assert_eq!(
         findings("a: END\n"),
-        ["line 1, column 1: warning: no step jumps to label a (if another program uses its tag, write the tag: a=10:)",]
+        ["line 1, column 1: warning: no step jumps to label a (if another program uses the tag of this label, write \
+          the tag: a=10:)",]
     );
     assert_eq!(
         findings("a=5: SPD V=1\n"),
@@ -197,8 +201,8 @@ fn suspicious_text_is_a_warning() {
         findings("DEC D=1\nDEC D=2\nBRAC CN=1 OFS=10\nPSEL"),
         [
             "line 1, column 1: note: only KCA-25-M10, KCA-25-M40, KCA-25-M80 have DEC",
-            "line 3, column 1: note: the target of BRAC depends on counters and inputs, and is not checked; 2 steps \
-             are like this",
+            "line 3, column 1: note: the target of BRAC depends on counters and inputs, and is not checked; this \
+             applies to 2 steps",
         ]
     );
 }
@@ -213,8 +217,8 @@ fn a_program_must_fit_its_task() {
     assert_eq!(messages_for(4), [] as [&str; 0]);
     assert_eq!(
         messages_for(3),
-        ["line 3, column 7: error: step 4 does not fit: the task has at most 3 steps (the machine parameter E22 \
-          (task-steps) sets this number)",]
+        ["line 3, column 7: error: step 4 does not fit: the task can have at most 3 steps (the machine \
+          parameter E22 (task-steps) sets this number)",]
     );
     assert_eq!(messages_for(0).len(), 1);
     let much = check("NOP\n".repeat(20_000).as_bytes(), usize::MAX);
@@ -274,7 +278,7 @@ fn a_listing_reads_back() {
         let program = check(listing.text.as_bytes(), MOST_STEPS).program.unwrap();
         assert_eq!(program.steps.len(), steps.len() - 2);
         let same = program.steps.iter().zip(&steps).filter(|(step, record)| step.record == **record).count();
-        // All except RSMV, which always passes.
+        // All steps are equal except RSMV, whose arrival mode is always PASS.
         assert_eq!(same, program.steps.len() - 1);
     }
 }
@@ -348,7 +352,7 @@ fn a_part_is_checked_with_the_tags_outside_it() {
     let around = |tags: Option<&[i32]>| Part { first: 100, tags: tags.map(|tags| tags.iter().copied().collect()) };
     let part = |text: &str, tags| check_part(text.as_bytes(), 10, &around(tags));
     let text = "here: CAL TAG=5\nJMP TAG=here\n";
-    // No finding about a missing END, which is outside the part.
+    // The findings contain no missing END, because the END is outside the part.
     let checked = part(text, Some(&[1, 2, 5]));
     assert_eq!(checked.findings, []);
     let program = checked.program.unwrap();
@@ -362,14 +366,14 @@ fn a_part_is_checked_with_the_tags_outside_it() {
     );
     assert_eq!(
         messages(part("TAG TAG=5", Some(&[5]))),
-        ["line 1, column 9: error: tag 005 already exists in a step before or after these (a controller stops with \
-          error A2)"]
+        ["line 1, column 9: error: tag 005 already exists in a step before or after the steps of this file (a \
+          controller stops with error A2)"]
     );
     assert!(part("JMP TAG=7\nTAG TAG=8", None).program.is_some(), "any tag may be around");
     assert_eq!(
         messages(check_part(b"0100 NOP\n0101 NOP", 1, &around(None))),
-        ["line 2, column 6: error: step 101 does not fit: the task has at most 100 steps (the machine parameter E22 \
-          (task-steps) sets this number)"]
+        ["line 2, column 6: error: step 101 does not fit: the task can have at most 100 steps (the \
+          machine parameter E22 (task-steps) sets this number)"]
     );
     assert!(messages(part("0001 NOP", None))[0].ends_with("its first instruction becomes step 100"));
 }

@@ -2,7 +2,7 @@
 
 use crate::toyo::request::MOST;
 
-/// Finds blocks among other characters.
+/// Finds blocks in a stream of characters.
 #[derive(Debug, Default)]
 pub struct Framer {
     text: String,
@@ -19,7 +19,7 @@ pub enum Framed {
     Block(String),
     /// A damaged block.
     Garbled {
-        /// Its text.
+        /// Text of the block.
         text: String,
         /// The damage.
         why: &'static str,
@@ -27,7 +27,7 @@ pub enum Framed {
 }
 
 impl Framer {
-    /// Takes a character. Returns a completed block, and the number of noise characters.
+    /// Processes a character. Returns a completed block, and the number of noise characters.
     pub fn push(&mut self, byte: u8) -> (Option<Framed>, u32) {
         match byte {
             b'\r' | b'\n' => return (self.conclude(), 0),
@@ -59,7 +59,7 @@ impl Framer {
         match broken {
             Some(why) => Some(Framed::Garbled { text, why }),
             None if !text.is_empty() => Some(Framed::Block(text)),
-            // Two stray characters may be a damaged line end; more are a block without its start.
+            // Two stray characters may be a damaged line end. More than two are a block without its start.
             None if stray > 2 => Some(Framed::Garbled { text, why: "its beginning is missing" }),
             None => None,
         }

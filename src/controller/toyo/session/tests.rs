@@ -36,7 +36,7 @@ fn an_answer_in_pieces_ends_the_exchange() {
 #[test]
 fn the_time_for_an_answer_begins_after_the_last_character() {
     let mut line = sent("@HOME", false);
-    // Seven characters of 1.146 ms, then one second.
+    // Transmission of seven characters of 1.146 ms each, then the timeout of one second.
     assert_eq!(line.poll(ms(1)), Step::Wait(Duration::from_micros(7 * 1146) + SECOND));
 }
 
@@ -89,7 +89,7 @@ fn an_ng_during_the_next_read_refutes_an_ok() {
     let mut line = sent("@SPST 0001", false);
     line.handle(ms(20), b"@OK\r\n");
     assert_eq!(line.poll(ms(20)), answered("@OK"));
-    // A value that is read back needs no wait.
+    // An order whose value is read back needs no wait.
     let mut line = sent("@WOVR OV=050", false);
     line.handle(ms(20), b"@OK\r\n");
     assert_eq!(line.poll(ms(20)), answered("@OK"));
@@ -114,7 +114,7 @@ fn an_ng_before_the_next_answer_refutes_an_ok() {
     assert_eq!(order.text(), "@HOME");
     assert!(matches!(ended, ExchangeResult::InvalidAnswer { why, .. } if why.contains("both")));
     assert!(line.take_refuted().is_none(), "it is reported once");
-    // Nothing follows: the read was refused, as by a busy controller.
+    // No other block follows, so the `@NG` is the answer to the read. A busy controller refuses a read in this way.
     let mut line = accepted();
     assert_eq!(line.poll(ms(80) + LATE_ANSWER_WAIT), answered("@NG"));
     assert!(line.take_refuted().is_none());
@@ -130,7 +130,7 @@ fn an_order_is_open_until_a_read_is_answered() {
             let now = ms(20) + QUIET_TIME;
             assert_eq!(line.poll(now), answered(first), "{order}");
             assert!(line.is_open());
-            // The state holds for any time without a poll.
+            // The order stays open however long the session is not polled.
             let now = now + SECOND;
             line.begin(&request("@STAS SNO=0"), true);
             assert!(matches!(line.poll(now), Step::Send(_)));
@@ -167,7 +167,7 @@ fn a_late_ok_is_not_the_answer_to_the_next_order() {
     line.begin(&request("@SVON"), false);
     let settled = waits(&mut line, deadline);
     assert_eq!(settled, deadline + SECOND);
-    // The late answer is discarded; the next order is sent as soon as the line is quiet.
+    // The late answer is discarded. The next order is sent as soon as the line is quiet.
     line.handle(deadline + ms(300), b"@OK\r\n");
     assert_eq!(line.poll(deadline + ms(300)), Step::Wait(deadline + ms(350)));
     let now = deadline + ms(350);
@@ -189,7 +189,7 @@ fn the_answer_of_an_abandoned_exchange_is_discarded() {
 #[test]
 fn an_urgent_stop_does_not_wait_for_pending_answers() {
     let mut line = sent("@SPST 0001", false);
-    // The answer to the start is pending or lost: the stop is sent at once, and both answers are discarded.
+    // The answer to the start is pending or lost. The stop is sent at once, and both answers are discarded.
     assert_eq!(line.begin_urgent(ms(5), &request("@STOP")), Some(b"@STOP\r\n".to_vec()));
     line.begin(&request("@STOP"), true);
     assert!(matches!(line.poll(ms(5)), Step::Wait(_)), "the line settles first");
@@ -253,7 +253,7 @@ fn an_echo_is_not_an_answer() {
     line.handle(ms(5), b"@STAS SNO=0\r\n@STAS SNO=0 ST1=00 ST2=00\r\n");
     assert_eq!(line.poll(ms(5)), answered("@STAS SNO=0 ST1=00 ST2=00"));
     assert!(line.echoes());
-    // The echo is known now, so an answer that equals its request is recognized.
+    // The session knows now that the line echoes, so it recognizes an answer that equals its request.
     line.begin(&request("@TYPE AX1 RTYP=000001"), false);
     assert!(matches!(line.poll(ms(6)), Step::Send(_)));
     line.handle(ms(7), b"@TYPE AX1 RTYP=000001\r\n");
@@ -295,7 +295,7 @@ fn an_order_waits_a_limited_time_for_a_quiet_line_and_a_stop_does_not_wait() {
     line.handle(ms(0), b"@OK\r\n");
     line.begin(&request("@SVON"), false);
     assert_eq!(line.poll(ms(10)), Step::Wait(ms(50)));
-    // Other blocks arrive continually.
+    // Blocks of another client arrive continually.
     for at in (40..500).step_by(40) {
         line.handle(ms(at), b"@OK\r\n");
         assert!(matches!(line.poll(ms(at)), Step::Wait(_)), "{at}");
@@ -318,7 +318,7 @@ fn an_answer_outside_the_manual_is_accepted_when_it_repeats() {
     line.handle(again + ms(10), b"@RPAR E17 E=I\r\n");
     assert_eq!(line.poll(again + ms(10)), answered("@RPAR E17 E=I"));
 
-    // Damage differs each time.
+    // The damage is different each time.
     let mut line = sent("@RPAR E17", true);
     line.handle(ms(10), b"@RPAR E17 E=I\r\n");
     let again = waits(&mut line, ms(10));

@@ -27,7 +27,7 @@ pub(super) enum Action {
         tag: usize,
         when: Test,
     },
-    /// BRAC: to the tag with the sum of a counter and a number.
+    /// BRAC: jumps to the tag whose number is the sum of a counter and a number.
     Branch {
         counter: usize,
         offset: usize,
@@ -39,7 +39,7 @@ pub(super) enum Action {
         change: Change,
     },
     ClearCounters,
-    /// TIMP: the timer continues from this number of tenths of a second.
+    /// TIMP: the timer counts up from this value in tenths of a second.
     StartTimer {
         timer: usize,
         tenths: u32,
@@ -70,12 +70,13 @@ pub(super) enum Action {
         at_least: bool,
         place: f64,
     },
-    /// CANS; task 0 is the task itself.
+    /// CANS: cancels the outputs of a task. Task 0 is the task that executes the instruction.
     CancelOutputs {
         task: usize,
     },
     Move(Move),
-    /// MVC, MVCP: with the next step, three points of a circle.
+    /// MVC, MVCP: this step and the next step define an arc. The arc goes from the current position through the first
+    /// point to the second point.
     Arc(Move),
     BeginGroup {
         group: i32,
@@ -142,9 +143,9 @@ pub(super) enum Choice {
 pub(super) struct Move {
     pub(super) to: Target,
     pub(super) incremental: bool,
-    /// Whether the speed is the path speed, instead of that of the axis with the longest way.
+    /// Whether the speed is the path speed. Otherwise it is the speed of the axis with the longest distance.
     pub(super) line: bool,
-    /// Row of the speed table; 0 is the last setting.
+    /// Row of the speed table; 0 means the row of the last SPD.
     pub(super) speed: i32,
     pub(super) pass: bool,
     /// Whether the escape input ends the move.
@@ -171,7 +172,7 @@ pub(super) enum Target {
     Host,
 }
 
-/// TLMV: torque limit of the next move of an axis.
+/// TLMV: torque limit for the next move of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a field of the instruction")]
 pub(super) struct Torque {
@@ -258,7 +259,7 @@ pub(super) fn action(row: &Instruction, record: &Record) -> Action {
         Op::Mov => Action::Move(fields.motion(fields.coordinates())),
         Op::Movp | Op::Mve => Action::Move(Move { escape: row.op == Op::Mve, ..fields.motion(fields.row()) }),
         Op::Mvb => Action::Move(fields.motion(Target::Back)),
-        // Always a pass point (ambiguity R4).
+        // RSMV always passes its point (ambiguity R4).
         Op::Rsmv => Action::Move(Move { pass: true, ..fields.motion(Target::Host) }),
         Op::Mvm => {
             let group = Target::Group { group: fields.number("group"), approach: fields.is("target", "APPR") };
@@ -290,7 +291,7 @@ pub(super) fn action(row: &Instruction, record: &Record) -> Action {
     }
 }
 
-/// Axis index of a letter in the protocol: X is the first axis.
+/// Index of an axis by its letter in the protocol: X is the first axis.
 pub(super) fn axis(letter: &str) -> Option<usize> {
     ["X", "Y", "Z", "R"].iter().position(|other| *other == letter)
 }
@@ -362,7 +363,7 @@ impl Fields<'_> {
         }
     }
 
-    /// Chosen by the fields: a comparison tests a counter or a timer, a mask a port.
+    /// Returns the condition that the fields define: a comparison tests a counter or a timer, a mask tests a port.
     fn test(&self) -> Test {
         let any = self.is("logic", "OR");
         if let Some(word) = self.0.word("compare") {

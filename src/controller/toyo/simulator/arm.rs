@@ -1,16 +1,16 @@
 //! Axes: positions, moves and obstacles.
 //!
-//! The commanded position is the goal of all moves minus the remaining way of each. So moves add up: a pass point is
-//! rounded because the next move begins during the deceleration of the last one.
+//! The commanded position is the goal of all moves minus the remaining distance of each move. With this rule, moves add
+//! up: a pass point is rounded because the next move begins during the deceleration of the last move.
 
 use super::motion::{AXES, Coordinates, Drive, Path, Segment, minus, plus};
 use crate::Now;
 
 /// Owner of moves without a task: JOG and return to origin by the host.
 pub(super) const HOST: usize = 4;
-/// Number of sections of each phase of constant acceleration in the search for a crossing.
+/// Number of parts into which the search for a crossing divides each phase of constant acceleration.
 const PIECES: u32 = 16;
-/// Bisection steps, for a resolution of about 1 ns.
+/// Number of bisection steps, for a resolution of about 1 ns.
 const HALVINGS: u32 = 40;
 /// Tolerance in mm for equal positions.
 const SAME: f64 = 1e-6;
@@ -45,7 +45,7 @@ pub(super) struct Arm {
 pub(super) struct Homing {
     pub(super) owner: usize,
     pub(super) axes: [bool; AXES],
-    /// Whether it is the search of synchronized axes.
+    /// Whether the homing is the origin search of synchronized axes.
     pub(super) together: bool,
 }
 
@@ -53,7 +53,7 @@ pub(super) struct Homing {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Wall {
     at: f64,
-    /// Whether the axis is below it.
+    /// Whether the axis is below the obstacle.
     below: bool,
 }
 
@@ -62,7 +62,7 @@ struct Wall {
 struct InterruptedMoves {
     owner: usize,
     remaining: Vec<RemainingMove>,
-    /// Their target.
+    /// Target of the moves.
     target: Coordinates,
 }
 
@@ -88,7 +88,7 @@ impl Arm {
         })
     }
 
-    /// End of all moves.
+    /// Position at the end of all moves.
     pub(super) const fn goal(&self) -> Coordinates {
         self.goal
     }
@@ -127,7 +127,7 @@ impl Arm {
         self.changes
     }
 
-    /// Counts a change of the moves, so that crossings are searched again.
+    /// Counts a change of the moves, so that the crossings are computed again.
     pub(super) const fn touch(&mut self) {
         self.changes += 1;
     }
@@ -150,7 +150,7 @@ impl Arm {
         self.segments.iter().map(Segment::ends).min()
     }
 
-    /// Adds a move. It begins where the last move of the owner ends.
+    /// Adds a move. The move begins where the last move of the owner ends.
     pub(super) fn begin(&mut self, segment: &Segment) {
         self.touch();
         self.goal = plus(&self.goal, &segment.displacement());
@@ -165,7 +165,7 @@ impl Arm {
         }
     }
 
-    /// Decelerates all moves; an axis at an obstacle stops at once. [`Arm::resume`] continues the rest.
+    /// Decelerates all moves. An axis at an obstacle stops at once. [`Arm::resume`] continues the rest.
     pub(super) fn brake(&mut self, now: Now) {
         (0..=HOST).for_each(|owner| self.brake_owner(owner, now));
     }
@@ -196,7 +196,8 @@ impl Arm {
         self.interrupted.retain(|interrupted| interrupted.owner != owner);
     }
 
-    /// Continues the interrupted moves of an owner. If the axes were moved since, they go straight to the target.
+    /// Continues the interrupted moves of an owner. If the axes were moved in the meantime, they move straight to the
+    /// target.
     pub(super) fn resume(&mut self, owner: usize, now: Now) {
         let Some(index) = self.interrupted.iter().position(|interrupted| interrupted.owner == owner) else { return };
         let interrupted = self.interrupted.remove(index);
@@ -250,7 +251,7 @@ impl Arm {
         owner == HOST || self.owners[axis] == owner
     }
 
-    /// Ends the moves of an owner, with or without a ramp. Their end becomes the goal.
+    /// Stops the moves of an owner, with or without a ramp. The position where they stop becomes the goal.
     fn halt(&mut self, owner: usize, now: Now, ramp: bool) {
         self.touch();
         let (position, target) = (self.position(now), self.goal);
@@ -272,7 +273,7 @@ impl Arm {
             remaining.push(RemainingMove { path: segment.path, done, drive: segment.drive });
         }
         if !ramp {
-            // An axis at an obstacle stays there.
+            // An axis at an obstacle stays at the obstacle.
             let commanded = self.commanded(now);
             for axis in 0..AXES {
                 if self.belongs_to(axis, owner) {
@@ -294,7 +295,7 @@ impl Wall {
     }
 }
 
-/// Finds the time between two at which `condition` becomes true.
+/// Finds the time between `before` and `after` at which `condition` becomes true.
 fn narrow(mut before: Now, mut after: Now, condition: impl Fn(Now) -> bool) -> Now {
     for _ in 0..HALVINGS {
         let middle = before + after.saturating_sub(before) / 2;
@@ -332,7 +333,7 @@ mod tests {
     fn moves_add_up() {
         let mut arm = Arm::default();
         to(&mut arm, [100.0, 0.0, 0.0, 0.0], ms(0));
-        // 100 mm take 1.1 s; the second move begins with the deceleration.
+        // 100 mm take 1.1 s. The second move begins with the deceleration of the first move.
         to(&mut arm, [100.0, 100.0, 0.0, 0.0], ms(1000));
         assert!(near(arm.commanded(ms(1000)), [95.0, 0.0, 0.0, 0.0]));
         assert!(near(arm.commanded(ms(1050)), [98.75, 1.25, 0.0, 0.0]), "the corner is rounded");

@@ -50,12 +50,12 @@ impl Card {
         self.transfer.map(|(_, at)| at)
     }
 
-    /// Copies the content of the controller to the card, as if it was written before.
+    /// Copies the content of the controller to the card, as if the controller had written it earlier.
     pub(super) fn fill(&mut self, content: &Content) {
         self.content = Some(Box::new(content.clone()));
     }
 
-    /// Starts a write; `false` without a card.
+    /// Starts a write. Returns `false` without a card.
     pub(super) fn write(&mut self, now: Now) -> bool {
         if self.inserted {
             self.transfer = Some((Transfer::Write, now.saturating_add(self.time)));
@@ -63,7 +63,7 @@ impl Card {
         self.inserted
     }
 
-    /// Starts a read; `false` without a card with content.
+    /// Starts a read. Returns `false` without a card with content.
     pub(super) fn read(&mut self, now: Now) -> bool {
         let is_readable = self.inserted && self.content.is_some();
         if is_readable {
@@ -91,7 +91,7 @@ impl World {
         self.card.inserted = inserted;
     }
 
-    /// Ends a transfer that is due.
+    /// Ends a transfer whose time is over.
     pub(super) fn card_done(&mut self) {
         let Some((transfer, _)) = self.card.transfer.take_if(|(_, at)| *at <= self.now) else { return };
         match transfer {

@@ -26,7 +26,7 @@ pub(super) fn answer(world: &mut World, block: &str) -> String {
     })
 }
 
-/// Parses a block that must be exact to the character, stricter than the codec.
+/// Parses a block. This parser is stricter than the codec: every character must be exact.
 fn parse(block: &str) -> Result<Request, String> {
     let text = |error: BlockError| error.to_string();
     let request = Request::parse(block).map_err(text)?;
@@ -118,7 +118,7 @@ fn execute(world: &mut World, request: &Request) -> Result<Reply, String> {
     }
 }
 
-/// Sets a known robot type. The answer is the current one.
+/// Sets the robot type if it is a known type. The answer contains the type that is set now.
 fn robot_type(world: &mut World, axis: usize, robot_type: i32) -> Reply {
     if world.robot_types.contains(&robot_type) {
         world.memory.set_robot_type(axis, robot_type);
@@ -129,7 +129,7 @@ fn robot_type(world: &mut World, axis: usize, robot_type: i32) -> Reply {
     Reply::Data(0, vec![Value::Number(number), Value::Number(world.memory.content.robot_types[axis])])
 }
 
-/// Sets the bits of a port, or of the port that M12 assigns.
+/// Sets the bits of a port, or the bit that M12 assigns.
 fn direct(world: &mut World, request: &Request) -> Result<(), Refusal> {
     if world.switches.machine_changed {
         return Err("parameter 2 was changed: power must be cycled first");

@@ -23,7 +23,7 @@ const HELP: &[(&str, &str)] = &[
     ("estop [off]", "press or release the emergency stop"),
     ("error CODE", "raise an error: error 28"),
     ("power cycle", "switch the controller off and on"),
-    ("card in|out", "insert or take out the memory card"),
+    ("card in|out", "insert or remove the memory card"),
     ("obstacle AXIS PLACE|off", "block an axis at a position in mm, or free it"),
     ("slave on|off", "set whether slave units are ready"),
     ("battery low|ok", "set the battery state"),
@@ -34,10 +34,10 @@ const HELP: &[(&str, &str)] = &[
 pub(super) enum ConsoleLine {
     Help,
     State,
-    /// The last refusal.
+    /// Shows the last refusal.
     Why,
     Input(Port, Mask),
-    /// Bits of SY01.
+    /// Sets bits of SY01.
     System(u8, bool),
     Press(Button),
     StartAt(usize),
@@ -62,7 +62,7 @@ pub(super) enum Button {
     Reset,
 }
 
-/// Functions of the rising edges of SY01.
+/// Buttons that the rising edges of the bits of SY01 press.
 const BUTTONS: [(u8, Button); 4] =
     [(0b0001, Button::Home), (0b0010, Button::Start), (0b0100, Button::Stop), (0b1000, Button::Reset)];
 
@@ -151,7 +151,7 @@ fn input(place: &str, value: &str) -> Result<ConsoleLine, String> {
         }
         [station, port] => {
             let bits = u8::from_str_radix(value, 2).ok().filter(|_| value.len() == 8);
-            let bits = bits.ok_or_else(|| expected(value, "eight of 0 and 1"))?;
+            let bits = bits.ok_or_else(|| expected(value, "eight digits, each 0 or 1"))?;
             Ok(ConsoleLine::Input(existing(station, port)?, Mask::all(bits)))
         }
         _ => Err(expected(place, "an address such as 0/01/3 or 0/01")),
@@ -186,7 +186,7 @@ fn press(world: &mut World, button: Button) -> Result<(), String> {
     Ok(())
 }
 
-/// While the host is ON, only the host can start programs (TO 2-2, HSON).
+/// Refuses while the host is ON: then only the host can start programs (TO 2-2, HSON).
 fn host_off(world: &World) -> Result<(), String> {
     if world.switches.host { Err("the host is ON: only the host starts programs".into()) } else { Ok(()) }
 }
@@ -199,7 +199,7 @@ fn set_input(world: &mut World, port: Port, mask: Mask) -> Result<(), String> {
     if servo == previous_inputs { Ok(()) } else { world.servo(servo).map_err(str::to_owned) }
 }
 
-/// Sets bits of SY01. A button that cannot act now is ignored; `why` shows the reason.
+/// Sets bits of SY01. A button is ignored if it is not allowed in the current state; `why` shows the reason.
 fn set_system(world: &mut World, mask: u8, on: bool) {
     let previous_inputs = world.ports.system;
     world.ports.system = if on { previous_inputs | mask } else { previous_inputs & !mask };
@@ -211,7 +211,7 @@ fn set_system(world: &mut World, mask: u8, on: bool) {
     }
 }
 
-/// One line with all states that decide about refusals.
+/// One line with all states on which refusals depend.
 fn summary(world: &World) -> String {
     let always = [
         match world.kind() {

@@ -1,4 +1,4 @@
-//! Content of a new controller. The manual has samples but no initial values; these are plausible.
+//! Content of a new controller. The manual has samples but no initial values. These values are plausible.
 
 use super::memory::TABLES;
 use crate::toyo::field::Value;
@@ -6,7 +6,7 @@ use crate::toyo::layout::Record;
 use crate::toyo::table::Parameter;
 use crate::toyo::table::parameters::PARAMETERS;
 
-/// Values of parameters in the protocol format; a shorter list repeats.
+/// Values of parameters in the protocol format. If there are fewer values than fields, the values repeat.
 const VALUES: [(&str, &str); 76] = [
     ("M01", "0 01 0"),
     ("M02", "0 01 0"),
@@ -82,12 +82,12 @@ const VALUES: [(&str, &str); 76] = [
     ("U03", "005"),
     ("U21", "000.0"),
     ("U22", "000.00"),
-    // Tables with equal rows.
+    // Tables whose rows are all equal.
     ("T5", "3.00"),
     ("T4.S1", "001 000 000 000"),
 ];
 
-/// Speeds of the first rows in 0.1 mm/s; further rows have the last value.
+/// Speeds of the first rows in 0.1 mm/s. Each further row has the last of these values.
 const SPEEDS: [i32; 10] = [100, 200, 500, 1000, 2000, 3000, 4000, 5000, 8000, 10_000];
 
 /// Values of a parameter, or of a row of a table.
@@ -128,7 +128,7 @@ pub(super) fn singles() -> Vec<Record> {
     singles.map(|parameter| parameter.layout.record(values(parameter, 0)).expect("a value for every field")).collect()
 }
 
-/// All rows of the tables except T1, by id and row.
+/// All rows of the tables except T1, by table id and row.
 pub(super) fn rows() -> impl Iterator<Item = ((&'static str, i32), Vec<Value>)> {
     let tables = PARAMETERS.iter().filter(|parameter| TABLES.contains(&parameter.id));
     tables.flat_map(|parameter| {

@@ -43,7 +43,7 @@ pub(super) fn execute(world: &mut World, request: &Request) -> Result<Reply, Str
             world.memory.set_easy(fields.index("to"), easy).map_err(no_room)?;
         }
         Command::Sstg => world.search_tag(fields.index("tag"))?,
-        other => return Err(format!("{other:?} changes nothing that is stored")),
+        other => return Err(format!("{other:?} does not change stored data")),
     }
     world.apply_memory_changes();
     Ok(Reply::Done)
@@ -52,7 +52,7 @@ pub(super) fn execute(world: &mut World, request: &Request) -> Result<Reply, Str
 /// The parameter, instruction or record of a request.
 fn content(request: &Request) -> Result<Record, String> {
     let content = request.content().map_err(|error| error.to_string())?;
-    content.ok_or_else(|| "it has no data to store".to_owned())
+    content.ok_or_else(|| "the request has no data to store".to_owned())
 }
 
 fn write_parameter(world: &mut World, request: &Request) -> Result<(), String> {
@@ -77,7 +77,7 @@ pub(super) fn write_step(world: &mut World, step: usize, record: Record) -> Resu
     world.memory.set_step(task, step, record).map_err(|NoRoom| format!("task {} has {size} steps (E22)", task + 1))
 }
 
-/// MINT: except for `everything`, only data of the current task is cleared.
+/// Executes MINT. It clears only data of the current task, except with `everything`.
 fn clear(world: &mut World, what: &str) -> Result<(), NoRoom> {
     let task = world.current;
     let memory = &mut world.memory;

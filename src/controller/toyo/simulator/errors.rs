@@ -1,9 +1,9 @@
-//! Current error and error history.
+//! The current error, and the error history.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Entries of the history (TO 2-8, EHTR).
+/// Number of entries of the history (TO 2-8, EHTR).
 const ENTRIES: usize = 99;
 
 /// Error codes of the simulator (TO 4-1).
@@ -34,13 +34,13 @@ pub(super) mod code {
     pub(in super::super) const TASK: u8 = 0xBA;
     pub(in super::super) const CARD: u8 = 0xE0;
 
-    /// Whether an error switches servo power off and stops everything at once: errors of machine and axes, except soft
-    /// limits.
+    /// Whether an error switches servo power off and stops everything at once. Errors of the machine and of the axes do
+    /// so, except soft limit errors.
     pub(in super::super) const fn takes_power(code: u8) -> bool {
         code < 0x20 || (code < 0x60 && !matches!(code & 0xF, 0x8 | 0x9))
     }
 
-    /// An axis error, by its second digit.
+    /// Code of an axis error, by its second digit.
     fn of_axis(axis: usize, digit: u8) -> u8 {
         0x20 + 0x10 * u8::try_from(axis.min(AXES)).unwrap_or_default() + digit
     }
@@ -57,17 +57,17 @@ pub(super) mod code {
         of_axis(axis, 7)
     }
 
-    /// Beyond a soft limit during a move.
+    /// Code of the error that an axis is beyond a soft limit during a move.
     pub(in super::super) fn beyond(axis: usize, upwards: bool) -> u8 {
         of_axis(axis, if upwards { 8 } else { 9 })
     }
 
-    /// A target beyond a soft limit.
+    /// Code of the error that a target is beyond a soft limit.
     pub(in super::super) fn target(axis: usize, upwards: bool) -> u8 {
         0xC0 + 2 * u8::try_from(axis.min(AXES)).unwrap_or_default() + u8::from(!upwards)
     }
 
-    /// The axis of an encoder error, whose origin is lost.
+    /// The axis that loses its origin because of an encoder error. `None` for other errors.
     pub(in super::super) fn loses_origin(code: u8) -> Option<usize> {
         let axis = usize::from(code >> 4).checked_sub(2).filter(|axis| *axis < AXES)?;
         matches!(code & 0xF, 0x6 | 0xC | 0xD).then_some(axis)
@@ -94,7 +94,7 @@ impl Errors {
         self.current
     }
 
-    /// Raises an error. The first one stays current until it is cancelled; the history contains all.
+    /// Raises an error. The first error stays the current one until it is cancelled; the history contains all errors.
     pub(super) fn raise(&mut self, code: u8, at: Duration) {
         self.current = self.current.or(Some(code));
         self.record(Entry::Error { code, at });

@@ -9,7 +9,7 @@ use super::watch::NEAR;
 use super::world::{Jog, World};
 use crate::Now;
 
-/// Distance in mm from the origin sensor before the slow approach.
+/// Distance in mm from the origin sensor at which the slow approach begins.
 const BACK_OFF: f64 = 1.0;
 /// Mechanical end of an axis in mm.
 const END: f64 = 8000.0;
@@ -17,8 +17,8 @@ const END: f64 = 8000.0;
 impl World {
     /// Begins the return to origin of some axes, in the order of P07.
     ///
-    /// An axis with a known origin first moves close to it at high speed (E13). Then it searches the sensor at middle
-    /// speed, backs off, and approaches it slowly.
+    /// An axis with a known origin first moves close to the origin at high speed (E13). Then the axis searches its
+    /// sensor at middle speed, backs off, and approaches the sensor slowly.
     pub(super) fn begin_homing(&mut self, owner: usize, axes: &[usize]) {
         let mut begin = self.now;
         for rank in 1..=4 {
@@ -37,7 +37,7 @@ impl World {
         self.arm.homing = Some(Homing { owner, axes, together: false });
     }
 
-    /// Adds the moves of one axis; returns their end.
+    /// Adds the moves of one axis, and returns the time at which they end.
     fn seek_origin(&mut self, owner: usize, axis: usize, begin: Now) -> Now {
         let [slow, middle, fast] = self.machine.origin[axis];
         let sensor = self.arm.sensors[axis];
@@ -78,7 +78,8 @@ impl World {
         self.record_event(What::Origin);
     }
 
-    /// Aborts a return to origin, which cannot be continued. A task that continues repeats it.
+    /// Aborts a return to origin. It cannot be continued: a task that continues later starts the return to origin
+    /// again.
     pub(super) fn abort_homing(&mut self, owner: usize) {
         if self.arm.homing.take_if(|homing| homing.owner == owner).is_some() {
             self.arm.discard_interrupted(owner);
@@ -104,7 +105,7 @@ impl World {
         if inches && limit.is_some() {
             self.within(&[axis], &path, code::target)?;
         }
-        // At a limit there is no way left.
+        // At a limit, the axis cannot move farther in this direction.
         if limit.is_some_and(|(bound, _)| sign * (from[axis] - bound) > -NEAR) && !inches {
             return Err(code::beyond(axis, upwards));
         }

@@ -6,14 +6,14 @@ use crate::toyo::layout::Record;
 
 /// Number of stations: the controller itself and four more.
 pub(super) const STATIONS: usize = 5;
-/// Input and output ports of the controller itself (TO 2-8).
+/// Number of input ports and of output ports of the controller itself (TO 2-8).
 const OWN: (usize, usize) = (23, 18);
-/// Input and output ports of another station.
+/// Number of input ports and of output ports of another station.
 const OTHER: (usize, usize) = (3, 2);
-/// Internal ports that fit the one digit of an instruction; MNIN reports the first four.
+/// Number of internal ports: one digit in an instruction. MNIN reports only the first four.
 const INTERNAL: usize = 9;
 
-/// A port address, which may not exist.
+/// Address of a port. The port may not exist.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Port {
     pub(super) station: usize,
@@ -28,7 +28,7 @@ pub(super) struct PortBit {
     pub(super) bit: u8,
 }
 
-/// Pending output at a position (OUTS).
+/// An output that is switched when an axis reaches a position (OUTS).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct OutputAt {
     pub(super) task: usize,
@@ -56,7 +56,8 @@ impl Default for Ports {
 }
 
 impl PortBit {
-    /// From a parameter whose fields end in `suffix`; `None` if no bit is assigned.
+    /// Reads a bit address from a parameter. The names of its fields end in `suffix`. Returns `None` if no bit is
+    /// assigned.
     pub(super) fn from_record(record: &Record, suffix: &str) -> Option<Self> {
         let field = |name: &str| record.number(&format!("{name}{suffix}")).map(index);
         let bit = u8::try_from(field("bit")?).ok().filter(|bit| *bit > 0)?;
@@ -77,27 +78,27 @@ impl Ports {
         at(&self.outputs, port)
     }
 
-    /// Sets bits of an input port; `false` if it does not exist.
+    /// Sets bits of an input port. Returns `false` if the port does not exist.
     pub(super) fn set_input(&mut self, port: Port, mask: Mask) -> bool {
         set(&mut self.inputs, port, mask)
     }
 
-    /// Sets bits of an output port; `false` if it does not exist.
+    /// Sets bits of an output port. Returns `false` if the port does not exist.
     pub(super) fn set_output(&mut self, port: Port, mask: Mask) -> bool {
         set(&mut self.outputs, port, mask)
     }
 
-    /// Whether an input is on; `false` if it does not exist.
+    /// Whether an input is on; `false` if the input does not exist.
     pub(super) fn is_on(&self, bit: Option<PortBit>) -> bool {
         bit.is_some_and(|bit| self.input(bit.port).is_some_and(|port| port & bit.mask() != 0))
     }
 
-    /// Number in the bits of a port, from this bit on.
+    /// The number that the bits of a port form, from this bit up.
     pub(super) fn number(&self, bit: PortBit) -> u8 {
         self.input(bit.port).unwrap_or_default() >> (bit.bit - 1)
     }
 
-    /// Switches an output; no effect if it does not exist.
+    /// Switches an output. Has no effect if the output does not exist.
     pub(super) fn switch(&mut self, bit: PortBit, on: bool) {
         let care = bit.mask();
         self.set_output(bit.port, Mask { care, bits: if on { care } else { 0 } });

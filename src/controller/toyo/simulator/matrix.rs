@@ -6,7 +6,7 @@ use super::motion::{Coordinates, minus};
 use super::world::World;
 use crate::toyo::field::Value;
 
-/// Linear axes of a matrix; the last axis rotates.
+/// Number of linear axes of a matrix: axes 1 to 3. Axis 4 (`TURN`) rotates.
 const SPACE: usize = 3;
 const TURN: usize = 3;
 
@@ -37,7 +37,7 @@ impl Matrix {
         Ok(place)
     }
 
-    /// The next piece; the first direction counts fastest. `None` after the last.
+    /// The next piece. The first direction changes fastest. Returns `None` after the last piece.
     pub(super) fn next(&self, mut piece: [u16; SPACE]) -> Option<[u16; SPACE]> {
         for direction in 0..SPACE {
             if piece[direction] < self.pieces[direction] {
@@ -73,7 +73,8 @@ impl World {
         }
     }
 
-    /// Advances the counters of a group. Returns `false` after the last position, with the counters at the first.
+    /// Advances the counters of a group. After the last position, returns `false` and sets the counters to the first
+    /// position.
     pub(super) fn next_of_group(&mut self, group: i32) -> bool {
         let counters = self.counters_of(group);
         let matrix = Matrix {
@@ -88,7 +89,7 @@ impl World {
         next.is_some()
     }
 
-    /// A group; its corners are rows of the coordinate table of the task.
+    /// An MVM group. Its corners are rows of the coordinate table of the task.
     fn group(&self, task: usize, group: i32) -> Result<Matrix, u8> {
         let pieces = self.pieces_of(group);
         let [origin, rows @ ..] = self.memory.content.numbers::<4>("T4.S1", group);

@@ -11,19 +11,19 @@ use crate::toyo::table::parameters::PARAMETERS;
 use crate::toyo::table::{Group, Instruction, Op, Pallet, Parameter};
 
 pub(super) const TASKS: usize = 4;
-/// Rows of the coordinate table of each task.
+/// Number of rows in the coordinate table of each task.
 pub(super) const POINTS: usize = 999;
 /// Maximum total of steps of all tasks (TO 2-4, E22).
 pub(super) const MOST_STEPS: usize = 5000;
-/// Total of steps above which easy programs have no room (TO 2-4, E22).
+/// Easy programs have no room if the total of steps is above this number (TO 2-4, E22).
 pub(super) const STEPS_WITH_EASY: usize = 2000;
 const PALLETS: usize = 16;
 pub(super) const EASY: usize = 8;
 const TAGS: usize = 1000;
-/// Tables except T1, which exists per task.
+/// Tables except T1. Each task has its own T1.
 pub(super) const TABLES: [&str; 8] = ["T2", "T3", "T4.S1", "T4.S2", "T4.S3", "T4.S4", "T4.S5", "T5"];
 
-/// A unit of EEPROM writes.
+/// A part of the memory whose EEPROM writes are counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Cell {
     /// A parameter by its id.
@@ -113,7 +113,7 @@ pub(super) struct Easy {
     pub(super) end: i32,
 }
 
-/// Content that a memory card also holds.
+/// Content that is also stored on a memory card.
 #[derive(Debug, Clone)]
 pub(super) struct Content {
     axes: usize,
@@ -131,7 +131,7 @@ pub(super) struct Content {
 pub(super) struct Memory {
     pub(super) content: Content,
     pub(super) wear: Wear,
-    /// Steps of the tags by task, as of the last program start.
+    /// Step of each tag by task, as of the last program start.
     tags: Vec<Vec<u16>>,
 }
 
@@ -187,7 +187,7 @@ impl Content {
         content
     }
 
-    /// Gives each task the number of steps in E22; further steps are lost.
+    /// Gives each task the number of steps in E22. Steps beyond this number are lost.
     fn fit_steps(&mut self) {
         let sizes = self.sizes();
         for (steps, size) in self.steps.iter_mut().zip(sizes) {
@@ -206,7 +206,7 @@ impl Content {
     /// A parameter without rows.
     ///
     /// # Panics
-    /// If it does not exist: an error of the caller.
+    /// If the parameter does not exist, which is an error of the caller.
     pub(super) fn single(&self, id: &str) -> &Record {
         let place = PARAMETERS.iter().filter(|row| row.row().is_none()).position(|row| row.id == id);
         &self.singles[place.expect("a parameter of the table")]
@@ -283,7 +283,7 @@ impl Memory {
         }
     }
 
-    /// Step of a tag, by the last [`Memory::index_tags`].
+    /// Step of a tag, as of the last [`Memory::index_tags`].
     pub(super) fn tag(&self, task: usize, tag: usize) -> TagLookup {
         match self.tags[task].get(tag) {
             None | Some(0) => TagLookup::Nowhere,
@@ -292,7 +292,7 @@ impl Memory {
         }
     }
 
-    /// The first step with a tag, also if there are more.
+    /// The first step with a tag, even if more steps have the same tag.
     pub(super) fn search(&self, task: usize, tag: usize) -> Option<usize> {
         self.content.steps[task].iter().position(|step| step.tag() == Some(tag)).map(|place| place + 1)
     }
@@ -365,7 +365,7 @@ impl Memory {
         Ok(())
     }
 
-    /// Inserts a step; the last step must be empty.
+    /// Inserts a step. The last step must be empty, because the steps move down.
     pub(super) fn insert_step(&mut self, task: usize, step: usize) -> Result<(), NoRoom> {
         let size = self.size(task);
         let last = self.content.steps[task].last().ok_or(NoRoom)?;
@@ -377,7 +377,7 @@ impl Memory {
         self.replace(task, step, rest)
     }
 
-    /// Deletes steps; the following ones move up.
+    /// Deletes steps. The steps after them move up.
     pub(super) fn delete_steps(&mut self, task: usize, first: usize, last: usize) -> Result<(), NoRoom> {
         let size = self.size(task);
         if first > last || last > size {
@@ -388,7 +388,7 @@ impl Memory {
         self.replace(task, first, rest)
     }
 
-    /// Copies steps over others, also to another task.
+    /// Copies steps over other steps, also to another task.
     pub(super) fn copy_steps(&mut self, from: (usize, usize, usize), to: (usize, usize)) -> Result<(), NoRoom> {
         let (source, first, last) = from;
         let (task, top) = to;
@@ -399,7 +399,7 @@ impl Memory {
         self.replace(task, top, steps)
     }
 
-    /// Writes only steps that differ.
+    /// Replaces steps, but writes only the steps that differ.
     fn replace(&mut self, task: usize, top: usize, steps: Vec<Step>) -> Result<(), NoRoom> {
         for (number, step) in (top..).zip(steps) {
             if self.step(task, number) != Some(&step.record) {
@@ -509,12 +509,12 @@ fn combination() -> &'static Parameter {
     Parameter::named("E19").expect("E19 is in the table")
 }
 
-/// Index from a number; 0 for a negative one.
+/// Index from a number; 0 if the number is negative.
 pub(super) fn index(number: i32) -> usize {
     usize::try_from(number).unwrap_or_default()
 }
 
-/// Last row of a table, from the field of the row number.
+/// Last row of a table, from the field for the row number.
 pub(super) fn last_row(field: &Field) -> i32 {
     if let Form::Number(number) = field.form { number.most } else { 0 }
 }

@@ -1,8 +1,8 @@
 //! Simulated Toyo controller: answers the host, moves, and runs programs, without a line and without a clock.
 //!
-//! The caller passes bytes and the time, and sends the answers. The simulator shares the tables with the client, but
-//! is stricter. A block must be exact to the character, and the state must allow the command. `why` on the console
-//! shows the reason of the last refusal.
+//! The caller passes bytes and the time, and sends the answers. The simulator shares the tables with the client, but is
+//! stricter: every character of a block must be exact, and the state must allow the command. `why` on the console shows
+//! the reason for the last refusal.
 //!
 //! Modules:
 //!
@@ -18,42 +18,45 @@
 //! | `commands`, `edit`, `monitor`, `operate`, `reply` | host commands |
 //! | `console`, `trace` | operator actions, and events |
 //!
-//! The manual specifies the protocol, but hardly the behaviour. These are the assumptions:
+//! The manual specifies the protocol, but says little about the behavior of a controller. The simulator makes these
+//! assumptions:
 //!
 //! - Coordinates X, Y, Z, R are axes 1 to 4, regardless of their letters (E01) and tasks.
 //! - A move reaches the speed of T2, lowered by override and E06, in the ramp times of T3. A short move has the same
-//!   accelerations. With S the speed is that of the axis with the longest distance. With T it is the path speed in the
-//!   plane or space of the task. All axes start and stop together. A move is in position when it ends, without lag.
-//! - At a pass point, the next move begins during the deceleration of the last move. PASS is the share of that ramp.
-//!   P05 is not used.
-//! - SPST starts task 1; TSTR starts the others at their first step. A task ends at its END; programs are in
-//!   execution while any task runs. Tags belong to their task. Calls nest up to 16 levels. Every instruction takes
+//!   accelerations and does not reach this speed. With S, the speed is the speed of the axis with the longest distance.
+//!   With T, it is the path speed in the plane or space of the task. All axes start and stop together. A move is in
+//!   position when it ends, without lag.
+//! - At a pass point, the next move begins during the deceleration of the last move. PASS is the share of this
+//!   deceleration. P05 is not used.
+//! - SPST starts task 1. TSTR starts the other tasks at their first step. A task ends at its END. Programs are in
+//!   execution while any task runs. Each task has its own tags. Calls nest up to 16 levels. Every instruction takes
 //!   `instruction_us`.
-//! - STOP, the pause input and STOP instructions decelerate moves along their path; SPST 0000 continues. After an
-//!   error the other tasks have ended. SPST 0000 then continues with task 1, and completes its interrupted move
-//!   first. PPST and SESY continue a stopped program.
-//! - A start without origin is accepted; its first move is error 61, without servo power 62. A target beyond a soft
-//!   limit is error C0 to C7 before any motion. If only the offset or a JOG leads beyond the limit, it is an
-//!   error from 28 on.
-//! - MRSS supplies one move (RSMV) of a task, before or while it waits. V=00 is the row of the step.
-//! - TLMV limits the next move of its axis. At an obstacle the torque is at its limit; after the judgement time the
-//!   axis is locked. The move ends then, with TE or LE. It ends on arrival with AE, or if neither TE nor LE is on.
-//! - An axis that pushes farther than E03 has an overflow. An axis that pushes for a second without torque limit has
-//!   an overload.
+//! - STOP, the pause input and STOP instructions decelerate moves along their path; SPST 0000 continues the programs.
+//!   An error ends all tasks except task 1. SPST 0000 then continues task 1, and completes its interrupted move first.
+//!   PPST and SESY continue a stopped program.
+//! - The simulator accepts a start without a known origin or without servo power. The first move then raises error 61
+//!   (origin) or 62 (servo power). A target beyond a soft limit raises error C0 to C7 before any motion. If only the
+//!   offset or a JOG leads beyond the limit, the error is 28, 29 for axis 1, 38, 39 for axis 2, and so on.
+//! - MRSS supplies one move (RSMV) of a task, before the step or while the step waits. V=00 means the row of the step.
+//! - TLMV limits the torque of the next move of its axis. At an obstacle the torque is at its limit, and after the
+//!   judgement time the axis is locked. With TE or LE, the move ends then. The move ends on arrival if AE is on, or if
+//!   neither TE nor LE is on.
+//! - An axis that pushes farther than E03 has an overflow. An axis that pushes for a second without torque limit has an
+//!   overload.
 //! - MVB returns to the start of the last move. An arc has two steps, and lies in the first two or three axes of the
 //!   task.
 //! - OUTP inverts its bits again after its time. Timers count up from the value of TIMP. A counter below 0 or above
-//!   9999 is error A7. PSEL reads the tag number from the bits of the port of M05, from its bit on.
-//! - MVM counters count from 1; LOOP jumps to THEN while positions are left.
-//! - Palletizing moves above the position, moves down, runs the hand program, and moves up. It does so at the source,
-//!   then at the destination. An easy program calls its START tag LOOP times, at least once, then its END tag.
-//! - After a return to origin the coordinate is P06. HOME resets programs.
+//!   9999 raises error A7. PSEL reads the tag number from the bits of the port of M05, starting at the bit of M05.
+//! - MVM counters count from 1. LOOP jumps to THEN while positions are left.
+//! - Palletizing moves above the position, moves down, runs the hand program, and moves up: first at the source, then
+//!   at the destination. An easy program calls its START tag LOOP times, at least once, and then its END tag.
+//! - After a return to origin, the coordinate is P06. HOME resets programs.
 //! - JOG uses the first row of T3, without override.
-//! - These parameters are stored without effect: M20, M22, M23, P03 to P05, P17, P18, E02, E04, and those of cables
-//!   and fieldbuses.
+//! - These parameters are stored without effect: M20, M22, M23, P03 to P05, P17, P18, E02, E04, and the parameters of
+//!   cables and fieldbuses.
 //! - Any write of parameter 2 counts as a change. E22 changes the memory at once.
 //! - SY01 of the inputs has origin, start, stop and reset. SY01 of the outputs has error, positioned, origin and ready.
-//! - Power off clears outputs, counters and timers, and with incremental encoders the origin.
+//! - Power off clears outputs, counters and timers. With incremental encoders, it also clears the origin.
 
 mod action;
 mod arm;
@@ -96,7 +99,7 @@ use super::request::MOST;
 use crate::Now;
 use crate::simulator::answers::{Answers, Busy};
 
-/// Limit of pending answers.
+/// Maximum number of pending answers.
 const MAX_WAITING: usize = 64;
 
 /// A simulated controller.
@@ -111,9 +114,9 @@ pub struct Simulator {
 /// A partly received block.
 #[derive(Debug, Clone, Default)]
 struct IncomingBlock {
-    /// Bytes from the `@` on; empty before it.
+    /// Bytes from the `@` on; empty before the `@`.
     bytes: Vec<u8>,
-    /// Whether a part of it was damaged.
+    /// Whether a part of the block was damaged.
     damaged: bool,
 }
 
@@ -135,7 +138,7 @@ pub struct State {
     pub host: bool,
     /// Servo power ON.
     pub servo: bool,
-    /// State of each task: whether it runs, and its step.
+    /// State of each task: whether the task runs, and its step.
     pub tasks: [(bool, usize); 4],
 }
 
@@ -150,7 +153,7 @@ impl Simulator {
         }
     }
 
-    /// Takes bytes from the host, in any pieces. CR ends a block; a following LF is ignored.
+    /// Processes bytes from the host, in pieces of any size. CR ends a block; a following LF is ignored.
     pub fn receive(&mut self, now: Now, bytes: &[u8]) {
         self.advance(now);
         for &byte in bytes {
@@ -158,16 +161,17 @@ impl Simulator {
                 b'@' => self.incoming = IncomingBlock { bytes: vec![byte], damaged: false },
                 b'\r' => self.take_block(),
                 b'\n' if self.incoming.bytes.is_empty() => {}
-                // Characters before a block are noise. Of a block that is too long, enough is kept to refuse it.
+                // Characters before a block are noise. A block that is too long is kept only up to the length at which
+                // it is refused.
                 _ if self.incoming.bytes.is_empty() || self.incoming.bytes.len() > MOST => {}
                 _ => self.incoming.bytes.push(byte),
             }
         }
-        // The blocks may have started something that is due at once.
+        // The blocks may have started actions that are due at once.
         self.advance(now);
     }
 
-    /// Reports a parity or framing error: the current block gets no answer.
+    /// Reports a parity or framing error. The current block then gets no answer.
     pub fn damaged(&mut self, now: Now) {
         self.advance(now);
         self.incoming.damaged = true;
@@ -184,7 +188,7 @@ impl Simulator {
         [self.answers.due(), self.world.next()].into_iter().flatten().min()
     }
 
-    /// Changes the share of requests that it refuses with `@NG`, 0.0 to 1.0.
+    /// Sets the share of requests that the simulator refuses with `@NG`, 0.0 to 1.0.
     pub fn set_busy(&mut self, share: f64) {
         self.busy.set_share(share);
     }
@@ -208,12 +212,12 @@ impl Simulator {
         self.world.advance(now);
     }
 
-    /// Switches the recording of events for [`Simulator::take_trace`].
+    /// Switches the recording of events for [`Simulator::take_trace`] on or off.
     pub fn record_trace(&mut self, on: bool) {
         self.world.trace.watch(on);
     }
 
-    /// Takes the events since the last call. An observer calls it at every [`Simulator::wake`]; only the last 65,536
+    /// Takes the events since the last call. Call this function at every [`Simulator::wake`]: only the last 65,536
     /// events are kept.
     pub fn take_trace(&mut self) -> Vec<Event> {
         self.world.trace.take()

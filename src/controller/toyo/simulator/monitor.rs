@@ -1,4 +1,4 @@
-//! Read commands.
+//! Commands that read data.
 
 use super::errors::Entry;
 use super::io::Port;
@@ -11,9 +11,9 @@ use crate::toyo::layout::Record;
 use crate::toyo::request::Request;
 use crate::toyo::table::{Command, Pallet};
 
-/// Answer of MERP (ambiguity C5).
+/// Answer to MERP without a point (ambiguity C5).
 const NO_POINT: &str = "         ";
-/// Ports per screen.
+/// Number of ports per screen.
 const SCREEN: i32 = 4;
 /// The last screen with ports of the controller's own inputs (ambiguity C8).
 const LAST_INPUT_SCREEN: i32 = 6;
@@ -80,7 +80,7 @@ pub(super) fn answer(world: &World, request: &Request) -> Result<Reply, String> 
             bus(world, form)
         }
         Command::Ehtr => history(world, fields.number("number")),
-        other => return Err(format!("{other:?} is not a question")),
+        other => return Err(format!("{other:?} does not read data")),
     };
     Ok(Reply::Data(form, values))
 }
@@ -90,7 +90,7 @@ fn system(world: &World) -> Vec<Value> {
     let language = Value::Word(if world.settings.japanese { "J" } else { "E" });
     let mut values = vec![Value::Number(world.memory.content.robot_types[0]), Value::Number(world.version), language];
     values.extend_from_slice(letters);
-    // The manual does not explain it (ambiguity C11).
+    // The manual does not explain this value (ambiguity C11).
     values.push(Value::Text("N".to_owned()));
     values
 }
@@ -100,7 +100,7 @@ fn parameter(world: &World, request: &Request) -> Result<Record, String> {
     if !world.supports(parameter.only_on) {
         return Err(format!("a {} does not have {}", world.model, parameter.id));
     }
-    let key = request.content().map_err(|error| error.to_string())?.ok_or("it contains no parameter")?;
+    let key = request.content().map_err(|error| error.to_string())?.ok_or("the request contains no parameter")?;
     world.memory.parameter(parameter, &key, world.current).ok_or_else(|| "no such row".to_owned())
 }
 

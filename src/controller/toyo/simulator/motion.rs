@@ -7,9 +7,9 @@ use crate::Now;
 
 /// Maximum number of axes.
 pub(super) const AXES: usize = 4;
-/// Axes that a circle can lie in.
+/// Number of axes in which a circle can lie.
 const SPACE: usize = 3;
-/// Minimum area in mm² of the parallelogram of three points; below it they lie on a line.
+/// Minimum area in mm² of the parallelogram of three points. Below it, the points lie on a line.
 const FLAT: f64 = 1e-6;
 
 /// Coordinates of all axes in mm.
@@ -42,9 +42,9 @@ struct Phase {
 /// A path in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Path {
-    /// A line; all axes move in proportion.
+    /// A line. All axes move in proportion.
     Line { from: Coordinates, to: Coordinates, length: f64 },
-    /// An arc; axes outside its plane move in proportion.
+    /// An arc. Axes outside of its plane move in proportion.
     Arc(Arc),
 }
 
@@ -54,7 +54,7 @@ pub(super) struct Arc {
     to: Coordinates,
     center: Coordinates,
     radius: f64,
-    /// Unit vectors of its plane; the first points to the start.
+    /// Unit vectors of the plane. The first vector points to the start.
     basis: [Coordinates; 2],
     angle: f64,
 }
@@ -64,12 +64,12 @@ pub(super) struct Arc {
 pub(super) struct Segment {
     pub(super) owner: usize,
     pub(super) path: Path,
-    /// Length of the path before the start.
+    /// Length of the path that lies before the start.
     skip: f64,
     pub(super) drive: Drive,
     profile: Profile,
     began: Now,
-    /// End position; after a deceleration it lies before the end of the path.
+    /// End position. After a deceleration, it lies before the end of the path.
     end: Coordinates,
 }
 
@@ -80,7 +80,8 @@ impl Drive {
 }
 
 impl Profile {
-    /// Accelerates, runs, decelerates. A short way has the same accelerations and a lower speed.
+    /// A profile that accelerates, runs at constant speed, and decelerates. A short path has the same accelerations and
+    /// a lower speed.
     pub(super) fn trapezoid(length: f64, drive: Drive) -> Self {
         let ramps = drive.speed * (drive.up + drive.down) / 2.0;
         let share = if length < ramps { (length / ramps).sqrt() } else { 1.0 };
@@ -94,7 +95,7 @@ impl Profile {
         }
     }
 
-    /// Decelerates from a speed.
+    /// A profile that decelerates from a speed to rest.
     fn stop(speed: f64, deceleration: f64) -> Self {
         let rest = Phase { seconds: 0.0, from: 0.0, to: 0.0 };
         Self { phases: [rest, rest, Phase { seconds: speed / deceleration, from: speed, to: 0.0 }] }
@@ -127,14 +128,14 @@ impl Profile {
         (distance, 0.0)
     }
 
-    /// Seconds until the deceleration.
+    /// Seconds from the start to the deceleration.
     fn steady(&self) -> f64 {
         self.phases[0].seconds + self.phases[1].seconds
     }
 }
 
 impl Path {
-    /// A line; `length` counts the axes that decide about the speed.
+    /// A line. `length` is the distance of the axes that determine the speed.
     pub(super) fn line(from: Coordinates, to: Coordinates, length: f64) -> Self {
         Self::Line { from, to, length }
     }
@@ -153,7 +154,7 @@ impl Path {
         }
     }
 
-    /// Position after a part of the length.
+    /// Position after this length of the path.
     pub(super) fn at(&self, distance: f64) -> Coordinates {
         let share = if self.length() > 0.0 { (distance / self.length()).clamp(0.0, 1.0) } else { 1.0 };
         match self {
@@ -186,7 +187,7 @@ impl Path {
 impl Arc {
     /// An arc through `via` to `to`; `None` if the points lie on a line.
     ///
-    /// `round` selects the axes of the circle: the first two or three in it.
+    /// `round` contains the axes in which the circle lies: two or three axes.
     pub(super) fn through_points(
         from: Coordinates,
         via: Coordinates,
@@ -207,7 +208,7 @@ impl Arc {
         let center: Coordinates = std::array::from_fn(|axis| p2[axis] + center_offset[axis] / (2.0 * area));
         let start_vector = minus(&p0, &center);
         let radius = dot(&start_vector, &start_vector).sqrt();
-        // The plane is oriented so that the way through the middle point turns in the positive sense.
+        // The plane is oriented so that the arc through the middle point turns in the positive direction.
         let axis = cross(&minus(&p1, &p0), &minus(&p2, &p1));
         let size = dot(&axis, &axis).sqrt();
         let first = start_vector.map(|part| part / radius);
@@ -233,7 +234,7 @@ impl Arc {
         })
     }
 
-    /// Maximum distance of an axis from the center.
+    /// Maximum distance from the center in the direction of an axis.
     fn extent(&self, axis: usize) -> f64 {
         self.radius * self.basis[0][axis].hypot(self.basis[1][axis])
     }
@@ -254,7 +255,7 @@ impl Arc {
 }
 
 impl Segment {
-    /// A move that begins at a time, perhaps in the future.
+    /// A move that begins at a given time, which may be in the future.
     pub(super) fn new(owner: usize, path: Path, skip: f64, drive: Drive, began: Now) -> Self {
         let profile = Profile::trapezoid((path.length() - skip).max(0.0), drive);
         Self { owner, path, skip, drive, profile, began, end: path.end() }
@@ -264,13 +265,13 @@ impl Segment {
         self.began.saturating_add(duration(self.profile.seconds()))
     }
 
-    /// Time during the deceleration at which a share of that ramp is left.
+    /// Time during the deceleration at which `share` of the deceleration is left.
     pub(super) fn handover_time(&self, share: f64) -> Now {
         let ramp = self.profile.seconds() - self.profile.steady();
         self.began.saturating_add(duration(self.profile.seconds() - share * ramp))
     }
 
-    /// Remaining way.
+    /// Remaining displacement of each axis.
     pub(super) fn remaining_displacement(&self, now: Now) -> Coordinates {
         if now >= self.ends() {
             return [0.0; AXES];
@@ -282,7 +283,7 @@ impl Segment {
         self.end
     }
 
-    /// Way from start to end.
+    /// Displacement of each axis from start to end.
     pub(super) fn displacement(&self) -> Coordinates {
         minus(&self.end, &self.path.at(self.skip))
     }
@@ -292,7 +293,7 @@ impl Segment {
         self.skip + self.distance(now)
     }
 
-    /// The move with deceleration from now on, unless it already decelerates.
+    /// The same move, but with a deceleration from now on, unless it already decelerates.
     pub(super) fn braked(self, now: Now) -> Self {
         let (distance, speed) = self.profile.at(self.elapsed(now));
         if self.elapsed(now) >= self.profile.steady() {

@@ -1,4 +1,4 @@
-//! Moves of programs: target, speed, and checks.
+//! Moves of programs: targets, speeds and checks.
 
 use super::action::{Move, Target, Torque};
 use super::errors::code;
@@ -7,13 +7,13 @@ use super::task::{Flow, Wait};
 use super::watch::NEAR;
 use super::world::World;
 
-/// Rows of the coordinate table.
+/// Number of rows in the coordinate table.
 const LAST_POINT: i32 = 999;
 /// Maximum radius of a circle in mm. The manual has no value.
 const MOST_RADIUS: f64 = 8000.0;
 
 impl World {
-    /// Begins a move; the task continues with step `next` after it.
+    /// Begins a move. After the move, the task continues with step `next`.
     pub(super) fn begin_move(&mut self, index: usize, order: Move, next: usize) -> Result<Flow, u8> {
         let order = match (order.to, self.tasks[index].supplied) {
             (Target::Host, None) => return Ok(Flow::Wait(Wait::Host(order), next)),
@@ -38,7 +38,7 @@ impl World {
         Ok(self.begin_path(index, path, &order, next))
     }
 
-    /// Begins an arc through the position of this step to that of the next.
+    /// Begins an arc through the position of this step to the position of the next step.
     pub(super) fn begin_arc(&mut self, index: usize, step: usize, first: Move) -> Result<Flow, u8> {
         let Some(super::action::Action::Arc(second)) = self.memory.action(index, step + 1) else {
             return Err(code::ARC_DATA);
@@ -74,14 +74,14 @@ impl World {
         Ok(())
     }
 
-    /// Coordinates of the row with the sum of a number and a counter.
+    /// Coordinates of the row whose number is the sum of `point` and a counter.
     pub(super) fn row(&self, index: usize, point: i32, counter: usize) -> Result<Coordinates, u8> {
         let row = point + if counter == 0 { 0 } else { self.counters[counter].into() };
         let row = Some(row).filter(|row| (1..=LAST_POINT).contains(row));
         row.and_then(|row| self.memory.content.point(index, row)).ok_or(code::TABLE)
     }
 
-    /// Whether a path stays within the soft limits. An axis outside may move inwards.
+    /// Checks that a path stays within the soft limits. An axis that is already outside may move inward.
     pub(super) fn within(&self, axes: &[usize], path: &Path, code: fn(usize, bool) -> u8) -> Result<(), u8> {
         let from = path.at(0.0);
         for &axis in axes {
@@ -96,7 +96,7 @@ impl World {
         Ok(())
     }
 
-    /// Targets of a move without and with the offset. Axes of other tasks stay.
+    /// Targets of a move: without the offset, and with the offset. The axes of other tasks stay in place.
     fn resolve_target(&self, index: usize, order: &Move, from: &Coordinates) -> Result<(Coordinates, Coordinates), u8> {
         let axes = &self.machine.tasks[index].axes;
         if !axes.iter().all(|&axis| self.arm.known[axis]) {
@@ -112,7 +112,7 @@ impl World {
         let own = |place: Coordinates| -> Coordinates {
             let mut own = *from;
             for &axis in axes {
-                // A driven axis follows its drive axis.
+                // A driven axis moves together with its drive axis.
                 own[axis] = match self.machine.driver[axis] {
                     Some(driver) => from[axis] + own[driver] - from[driver],
                     None => place[axis],
@@ -123,7 +123,7 @@ impl World {
         Ok((own(base), own(to)))
     }
 
-    /// A line; its length is that of the longest axis, or the one in space.
+    /// A line. Its length is the distance in space, or the distance of the axis that moves farthest.
     fn line(&self, index: usize, from: Coordinates, to: Coordinates, in_space: bool) -> Path {
         let way = minus(&to, &from);
         let axes = &self.machine.tasks[index];
@@ -150,7 +150,7 @@ impl World {
         Flow::Wait(wait, next)
     }
 
-    /// Speed and ramps for a path; row 0 is the last SPD.
+    /// Speed and ramps for a path. Row 0 means the row of the last SPD.
     fn drive(&self, index: usize, row: i32, path: &Path) -> Drive {
         let task = &self.tasks[index];
         let [speed] = self.memory.content.numbers("T2", if row == 0 { task.speed } else { row });
@@ -165,7 +165,7 @@ impl World {
         Drive { speed, up, down }
     }
 
-    /// Seconds of a row of the acceleration table.
+    /// Seconds in a row of the acceleration table.
     pub(super) fn ramp(&self, row: i32) -> f64 {
         let [hundredths] = self.memory.content.numbers("T3", row);
         f64::from(hundredths.max(1)) / 100.0

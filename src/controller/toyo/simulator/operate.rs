@@ -1,6 +1,6 @@
 //! Operations of host and operator: starts, stops, power, errors.
 //!
-//! A refusal has a reason; in the protocol it is `@NG`.
+//! A refusal has a reason here; the protocol sends it only as `@NG`.
 
 use super::arm::HOST;
 use super::errors::code;
@@ -27,7 +27,7 @@ impl World {
         if self.errors.current().is_some() { Err("an error is active: cancel it first") } else { Ok(()) }
     }
 
-    /// Refuses execution after a change of parameter 2.
+    /// Refuses execution if parameter 2 was changed.
     fn unchanged(&self) -> Result<(), Refusal> {
         if self.switches.machine_changed { Err("parameter 2 was changed: power must be cycled first") } else { Ok(()) }
     }
@@ -144,7 +144,7 @@ impl World {
         self.check_startable()?;
         self.powered_axes()?;
         if !self.machine.driver.contains(&Some(drive)) {
-            return Err("that axis has no driven axis (E26)");
+            return Err("this axis has no driven axis (E26)");
         }
         self.reset_program();
         self.jog_ready = false;
@@ -166,7 +166,7 @@ impl World {
         if words.contains(&"RS") {
             return Err("all other axes must be stopped (SP)");
         }
-        // A repetition changes nothing.
+        // A repetition of the same JOG changes nothing.
         if self.jog.is_some_and(|jog| jog.axis == axis && jog.word == *word && !word.ends_with('C')) {
             return Ok(());
         }
@@ -175,7 +175,7 @@ impl World {
             return Err("JOG was not reset (RS)");
         }
         if axis >= self.axes {
-            return Err("that axis is not fitted");
+            return Err("this axis is not fitted");
         }
         if !self.switches.servo[axis] {
             return Err("servo power is off");
@@ -230,7 +230,7 @@ impl World {
         Ok(())
     }
 
-    /// Switches the teach pendant; it takes control from the host.
+    /// Switches the teach pendant. When it is ON, it takes control from the host.
     pub(super) fn pendant(&mut self, on: bool) {
         self.switches.pendant = on;
         if on {
@@ -266,7 +266,7 @@ impl World {
         Ok(())
     }
 
-    /// Stores coordinates for a move of a task; only one set can wait.
+    /// Stores coordinates for a move of a task. Only one set of coordinates can wait.
     pub(super) fn store_coordinates(&mut self, task: usize, place: [f64; 4], speed: i32) -> Result<(), Refusal> {
         let slot = &mut self.tasks[task].supplied;
         if slot.is_some() {
@@ -290,7 +290,7 @@ impl World {
         Ok(())
     }
 
-    /// Applies changes of the memory: settings, and programs that no longer fit.
+    /// Applies changes of the memory: updates settings, and ends programs that no longer fit.
     pub(super) fn apply_memory_changes(&mut self) {
         self.settings = super::settings::Settings::from_content(&self.memory.content);
         for index in 0..TASKS {

@@ -21,7 +21,7 @@ pub(super) enum Routine {
         row: i32,
         begun: bool,
     },
-    /// An easy program, with the current repetition from 1.
+    /// An easy program, with the number of the current repetition, from 1.
     Easy {
         program: usize,
         round: i32,
@@ -42,7 +42,7 @@ pub(super) enum EasyPart {
 pub(super) struct Palletizing {
     pub(super) program: usize,
     pub(super) mode: &'static str,
-    /// 0 is the start program, then source, destination, end program.
+    /// Current phase: 0 is the start program, then come source, destination and end program.
     phase: usize,
     begun: bool,
     start: i32,
@@ -60,13 +60,13 @@ pub(super) struct Side {
     /// From 1.
     pub(super) piece: [u16; 3],
     approach: Move,
-    /// Approach point: Z and R, and whether they are relative.
+    /// Approach point: Z and R, and whether these values are relative.
     height: [f64; 2],
     turn: f64,
     tag: i32,
 }
 
-/// Phases of a side: above the position, down, hand program, up.
+/// Phases of a side: move above the position, move down, run the hand program, move up.
 const DOWN: usize = 1;
 const HAND: usize = 2;
 const LAST_OF_SOURCE: usize = 4;
@@ -91,7 +91,7 @@ impl EasyPart {
 }
 
 impl Routine {
-    /// An easy program; `None` if it has no tags.
+    /// An easy program; `None` if the program has no tags.
     pub(super) fn easy(program: usize, easy: Easy) -> Option<Self> {
         (easy.start != 0 || easy.end != 0).then_some(Self::Easy { program, round: 0, part: EasyPart::Start })
     }
@@ -127,7 +127,7 @@ impl World {
         }
     }
 
-    /// Selected palletizing program: the inputs of M06 if they are not 0.
+    /// Number of the selected palletizing program. If the number at the inputs of M06 is not 0, it has priority.
     pub(super) fn chosen_pallet(&self) -> Result<usize, u8> {
         let number = |bit: PortBit| usize::from(self.ports.number(bit));
         match self.settings.palletizing.map_or(0, number) {
@@ -181,7 +181,7 @@ impl World {
 }
 
 impl Palletizing {
-    /// The current or last side.
+    /// The current side, or the last side.
     pub(super) fn side(&self) -> &Side {
         &self.sides[usize::from(self.phase > LAST_OF_SOURCE)]
     }
@@ -226,7 +226,7 @@ impl Palletizing {
         }
     }
 
-    /// Counts a piece; `false` after the last.
+    /// Counts a piece. Returns `false` after the last piece.
     fn count(&mut self) -> bool {
         let mut more = true;
         for side in self.sides.iter_mut().filter(|side| side.is_matrix) {
@@ -245,7 +245,7 @@ impl Side {
         self.matrix.pieces
     }
 
-    /// Move to the position, or to its approach point.
+    /// A move to the position, or to its approach point.
     fn order(&self, down: bool) -> Result<Move, u8> {
         let piece = if self.is_matrix { self.piece } else { [1; 3] };
         let mut place = self.matrix.place(piece)?;
@@ -269,7 +269,7 @@ fn point(row: i32, begun: &mut bool) -> RoutineStep {
     RoutineStep::Move(Move { to, incremental: false, line: false, speed: 0, pass: false, escape: false })
 }
 
-/// Start program, repeated at least once; then the end program.
+/// Repeats the start program, at least once. Then runs the end program.
 fn easy(easy: Easy, round: &mut i32, part: &mut EasyPart) -> RoutineStep {
     if *part == EasyPart::Start {
         if easy.start != 0 && *round < easy.times.max(1) {

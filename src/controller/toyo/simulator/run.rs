@@ -11,11 +11,11 @@ use crate::toyo::field::Mask;
 
 /// Maximum nesting of subroutines. The manual has no limit.
 pub(super) const DEPTH: usize = 16;
-/// Maximum of a counter.
+/// Maximum value of a counter.
 const MOST_COUNT: i32 = 9999;
 
 impl World {
-    /// Executes the steps that are due.
+    /// Executes all steps that are due.
     pub(super) fn run_tasks(&mut self) {
         if !self.is_running() {
             return;
@@ -67,7 +67,7 @@ impl World {
         let task = &mut self.tasks[index];
         let moved = matches!(task.wait, Wait::Motion | Wait::Pass(_));
         if single && matches!(task.wait, Wait::Pass(_)) {
-            // In single operation every move ends at rest.
+            // In single operation, every move ends at rest, also at a pass point.
             task.wait = Wait::Motion;
             return;
         }
@@ -133,7 +133,7 @@ impl World {
         }
     }
 
-    /// Ends the program of a task, or the part that a routine called.
+    /// Ends the program of a task, or the part of the program that a routine called.
     pub(super) fn end(&mut self, index: usize) {
         let at = self.now.saturating_add(self.tick);
         let task = &mut self.tasks[index];
@@ -227,10 +227,10 @@ impl World {
         Ok(Flow::Next)
     }
 
-    /// Evaluates a condition; an error if its port does not exist.
+    /// Evaluates a condition. Returns an error if the port of the condition does not exist.
     pub(super) fn is_met(&self, test: Test) -> Result<bool, u8> {
         let matches = |bits: u8, mask: Mask, any: bool| {
-            // Without relevant bits the condition is true.
+            // A condition without relevant bits is true.
             if any && mask.care != 0 { !(bits ^ mask.bits) & mask.care != 0 } else { mask.matches(bits) }
         };
         match test {
@@ -247,7 +247,7 @@ impl World {
         }
     }
 
-    /// The step of a tag.
+    /// Returns the step of a tag.
     pub(super) fn find(&self, index: usize, tag: usize) -> Result<usize, u8> {
         if !(1..=999).contains(&tag) {
             return Err(code::TAG_NUMBER);
@@ -278,7 +278,7 @@ impl World {
         }
     }
 
-    /// Jump to the tag number at the selection inputs; 0 means none.
+    /// Jumps to the tag whose number is at the selection inputs. With number 0, continues with the next step.
     fn select(&self, index: usize, step: usize) -> Result<Flow, u8> {
         match self.settings.selection.map_or(0, |bit| self.ports.number(bit)) {
             0 => Ok(Flow::To(step + 1)),
@@ -314,7 +314,7 @@ impl World {
         }
         if let Some(time) = time {
             let back = Mask { care: mask.care, bits: !mask.bits & mask.care };
-            // The same pulse again restarts its time.
+            // If the same pulse is already running, its time starts again.
             self.pulses.retain(|(_, other, mask)| (*other, mask.care) != (port, back.care));
             self.pulses.push((self.now.saturating_add(time), port, back));
         }
@@ -372,7 +372,7 @@ impl World {
                 self.tasks[other].reset();
             }
         }
-        // A task that cancels itself is at its first step.
+        // A task that cancels itself has been reset to its first step.
         Ok(if other == index && order == TaskOrder::Cancel { Flow::End } else { Flow::Next })
     }
 

@@ -18,7 +18,7 @@ pub(super) enum Signal {
     Load(usize),
     Limit(usize),
     Locked(usize),
-    /// Depends on the position of an axis.
+    /// On while the position of an axis is in its area.
     Area(usize),
 }
 
@@ -30,7 +30,7 @@ pub(super) enum Special {
     Point,
 }
 
-/// Parameters with immediate effect: M and P.
+/// Parameters that take effect at once: M and P.
 #[derive(Debug, Clone)]
 pub(super) struct Settings {
     pub(super) single: Option<PortBit>,
@@ -52,25 +52,25 @@ pub(super) struct Settings {
     /// mm/s, low and high.
     pub(super) jog: [[f64; 2]; AXES],
     pub(super) inch: Coordinates,
-    /// Position of each area, and whether the area is above it.
+    /// Whether each area is above its position, and this position.
     pub(super) areas: [(bool, f64); AXES],
 }
 
-/// Parameters with effect after power on: E.
+/// Parameters that take effect after power on: E.
 #[derive(Debug, Clone)]
 pub(super) struct Machine {
     pub(super) tasks: [Axes; TASKS],
     pub(super) top: Coordinates,
     /// mm/s: low, middle, high.
     pub(super) origin: [[f64; 3]; AXES],
-    /// First target of a fast return to origin.
+    /// First target of a return to origin at high speed.
     pub(super) fast: Coordinates,
     /// Whether the origin is in plus direction.
     pub(super) upwards: [bool; AXES],
     /// Position error in mm that counts as overflow.
     pub(super) overflow: Coordinates,
     pub(super) absolute: bool,
-    /// Execution order of tasks with simultaneous actions (E20).
+    /// Order in which tasks with simultaneous actions are executed (E20).
     pub(super) order: [usize; TASKS],
     /// Drive axis of each driven axis.
     pub(super) driver: [Option<usize>; AXES],
@@ -174,14 +174,14 @@ impl Machine {
     }
 }
 
-/// Tasks by priority, lowest number first.
+/// Tasks in the order of their priority, lowest number first.
 fn order(priority: [i32; TASKS]) -> [usize; TASKS] {
     let mut order = std::array::from_fn(|task| task);
     order.sort_by_key(|&task| priority[task]);
     order
 }
 
-/// Axes of each task: one digit per task, axes in order (TO 2-4, E19).
+/// Axes of each task. Each digit is for one task; the tasks divide the axes in order (TO 2-4, E19).
 fn tasks(digits: &str) -> [Axes; TASKS] {
     let mut next = 0;
     let mut digits = digits.bytes();
@@ -241,7 +241,7 @@ mod tests {
         assert!(settings.signals.is_empty());
         let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
         assert!(near(settings.plus[3], 1000.0) && near(settings.jog[2][1], 50.0));
-        // 20,000 pulses of 20 mm / 8,000.
+        // E03: 20,000 pulses of 20 mm / 8,000.
         assert!(near(machine.overflow[0], 50.0) && near(machine.origin[0][1], 20.0));
     }
 }

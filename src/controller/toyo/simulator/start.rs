@@ -1,7 +1,7 @@
 //! Start state from TOML.
 //!
-//! All keys have defaults: an empty file is a new KCA-25-M10 with four axes in one task, just powered on. An error
-//! gives its line.
+//! All keys have defaults: an empty file is a new KCA-25-M10 with four axes in one task, directly after power on. An
+//! error message gives the line.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -39,7 +39,7 @@ pub struct Start {
     pub(super) busy: f64,
 }
 
-/// A start state with all keys; each is optional.
+/// A start state with all keys. Each key is optional.
 pub const EXAMPLE: &str = r#"model = "KCA-25-M10"            # or KCA-20-M00 and so on, or "other": without the extras of some models
 version = "4.00"
 robot_types = [0]               # valid for TYPE; the first one is active
@@ -85,7 +85,7 @@ impl Default for Start {
 }
 
 impl Start {
-    /// Parses a start state. An error gives the problem and the line.
+    /// Parses a start state. An error message gives the problem and the line.
     pub fn parse(text: &str) -> Result<Self, String> {
         build(&start::parse(text)?, text)
     }
@@ -102,7 +102,7 @@ impl Start {
         Self { busy: busy.clamp(0.0, 1.0), ..self }
     }
 
-    /// Adds a program to a task, 1 to 4. The task gets the required number of steps (E22).
+    /// Adds a program to a task, 1 to 4. The task gets as many steps as the program needs (E22).
     pub fn with_program(mut self, task: usize, steps: Vec<Record>) -> Result<Self, String> {
         program(&mut self.world, task, steps)?;
         Ok(self.stored())
@@ -114,7 +114,7 @@ impl Start {
         Ok(self.stored())
     }
 
-    /// Treats the content as written before power on.
+    /// Treats the content as written before the last power on.
     fn stored(mut self) -> Self {
         self.world.memory.wear.reset();
         self.world.load();
@@ -223,7 +223,8 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
     programs(&mut world, entries, source)?;
     tables(&mut world, entries, source)?;
     source.each(&entries.write, |line| write(&mut world, line))?;
-    // The content existed before: it has not worn the EEPROM, and parameters 2 are in effect.
+    // The content was written before the start. For this reason it has not worn the EEPROM, and parameters 2 are in
+    // effect.
     world.memory.wear = Wear::new(Some(entries.eeprom_limit).filter(|limit| *limit > 0));
     world.power_up();
     world.switches.mode = entries.mode;
@@ -269,7 +270,7 @@ fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
         return Err(source.error(&entries.axes, "axes must be from 1 to 4"));
     }
     let version = source.read(&entries.version, |version| {
-        hundredths(version).ok_or_else(|| "write a version as in \"4.00\"".to_owned())
+        hundredths(version).ok_or_else(|| "write a version, for example \"4.00\"".to_owned())
     })?;
     let types = entries.robot_types.get_ref();
     if types.is_empty() || types.iter().any(|number| !(0..=999_999).contains(number)) {
@@ -284,7 +285,7 @@ fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
         return Err(source.error(&entries.position, "coordinates must be within 8000 mm"));
     }
     let mut arm = Arm::default();
-    // Without a known origin an axis counts from its position.
+    // Without a known origin, an axis counts from its position at power on.
     arm.set_position(if entries.origin { position } else { [0.0; AXES] });
     arm.sensors = if entries.origin { [0.0; AXES] } else { position.map(|place| -place) };
     arm.known = [entries.origin; AXES];
@@ -358,14 +359,15 @@ fn step(line: &str) -> Result<Record, String> {
     Ok(record)
 }
 
-/// Stores a program in a task, which gets the required number of steps.
+/// Stores a program in a task. The task gets as many steps as the program needs.
 fn program(world: &mut World, task: usize, steps: Vec<Record>) -> Result<(), String> {
     if !(1..=TASKS).contains(&task) {
         return Err("tasks must be from 1 to 4".to_owned());
     }
     let mut sizes: [usize; TASKS] = std::array::from_fn(|index| world.memory.size(index));
     sizes[task - 1] = sizes[task - 1].max(steps.len());
-    // Task 1 has all steps at first. The other tasks take their steps from it, not from the easy programs.
+    // At first, task 1 has all steps. The steps of the other tasks are taken from task 1, and not from the easy
+    // programs.
     let others: usize = sizes[1..].iter().sum();
     sizes[0] = sizes[0].min(STEPS_WITH_EASY.saturating_sub(others)).max(world.memory.used(0));
     if task == 1 {
@@ -402,7 +404,7 @@ fn tables(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<()
         .each_of(&entries.ramps, |number, ramp| write(world, &format!("WPAR T3 A{:02}={ramp:04.2}", row(number, 20)?)))
 }
 
-/// A numeric key from 1.
+/// Parses a numeric key, from 1.
 fn row(key: &str, most: usize) -> Result<usize, String> {
     console::number(key, 1..=most)
 }
@@ -427,11 +429,11 @@ fn errors(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<()
             }
             _ => None,
         };
-        world.errors.record(entry.ok_or("an entry has a code from 01 to FF, or power_cut")?);
+        world.errors.record(entry.ok_or("an entry must have a code from 01 to FF, or power_cut")?);
         Ok(())
     })?;
     source.each(&entries.error, |error| {
-        world.fail(code(error).ok_or("an error has a code from 01 to FF")?);
+        world.fail(code(error).ok_or("an error must have a code from 01 to FF")?);
         Ok(())
     })
 }
@@ -441,7 +443,7 @@ fn port(name: &str, bits: &str) -> Result<(Port, Mask), String> {
     let parts = name.split_once('/').and_then(|(station, port)| Some((station.parse().ok()?, port.parse().ok()?)));
     let (station, port) = parts.ok_or_else(|| format!("'{name}' is not a valid port, such as 0/01"))?;
     let eight = u8::from_str_radix(bits, 2).ok().filter(|_| bits.len() == 8);
-    Ok((Port { station, port }, Mask::all(eight.ok_or("a port must have eight digits of 0 and 1")?)))
+    Ok((Port { station, port }, Mask::all(eight.ok_or("a port must have eight digits, each 0 or 1")?)))
 }
 
 /// Parses a version such as `4.00` to hundredths.

@@ -8,31 +8,31 @@ use crate::Now;
 /// Wait condition of a running task.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Wait {
-    /// Execution of its step at this time.
+    /// Executes its step at this time.
     Ready(Now),
-    /// A time.
+    /// Waits until this time.
     Until(Now),
-    /// A pass point: the time at which the next step begins during the deceleration.
+    /// Moves to a pass point. The next step begins at this time during the deceleration.
     Pass(Now),
-    /// End of its move.
+    /// Waits for the end of its move.
     Motion,
-    /// End of its move, then end of the program.
+    /// Waits for the end of its move, then ends the program.
     End,
     Test(Test),
-    /// Coordinates from the host.
+    /// Waits for coordinates from the host.
     Host(Move),
 }
 
-/// Continuation after a step.
+/// How a task continues after a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Flow {
     /// The next step.
     Next,
-    /// This step.
+    /// A certain step.
     To(usize),
-    /// This step, after a wait.
+    /// A certain step, after a wait.
     Wait(Wait, usize),
-    /// Stop; the next step after a restart.
+    /// Stops. After a restart, the next step follows.
     Stop,
     End,
 }
@@ -46,10 +46,10 @@ pub(super) struct Task {
     pub(super) stopped: bool,
     /// From 1.
     pub(super) step: usize,
-    /// Step after the wait.
+    /// Step that follows the wait.
     pub(super) next: usize,
     pub(super) wait: Wait,
-    /// Return steps.
+    /// Steps to which the subroutines return.
     pub(super) stack: Vec<usize>,
     /// Row of the speed table.
     pub(super) speed: i32,
@@ -60,16 +60,16 @@ pub(super) struct Task {
     pub(super) offset: Coordinates,
     /// Start of the last move.
     pub(super) from: Option<Coordinates>,
-    /// Limit of the next move.
+    /// Torque limit of the next move.
     pub(super) torque: Option<Torque>,
-    /// Limit of the current move.
+    /// Torque limit of the current move.
     pub(super) limited: Option<Torque>,
     /// Whether the escape input ends the current move.
     pub(super) escape: bool,
-    /// Unused coordinates from the host, and a row of the speed table.
+    /// Coordinates from the host that no move has used yet, and a row of the speed table.
     pub(super) supplied: Option<(Coordinates, i32)>,
     pub(super) routine: Option<Routine>,
-    /// Whether the routine has called the program.
+    /// Whether the routine has called a part of the program.
     pub(super) called: bool,
 }
 
@@ -98,7 +98,7 @@ impl Default for Task {
 }
 
 impl Task {
-    /// State before the first start.
+    /// Resets the task to its state before the first start.
     pub(super) fn reset(&mut self) {
         let mut stack = std::mem::take(&mut self.stack);
         stack.clear();

@@ -6,7 +6,7 @@ use super::io::Port;
 use super::motion::Coordinates;
 use crate::Now;
 
-/// Limit of stored events; the oldest are dropped.
+/// Maximum number of stored events. The oldest events are dropped.
 const MOST: usize = 1 << 16;
 
 /// A timed event.
@@ -75,7 +75,7 @@ impl Trace {
         events.push_back(Event { at, position, what });
     }
 
-    /// Records output ports that have changed since the last call; initially all are off.
+    /// Records output ports that have changed since the last call. Initially, all outputs are off.
     pub(super) fn outputs(&mut self, at: Now, position: Coordinates, outputs: impl Iterator<Item = (Port, u8)>) {
         for (port, bits) in outputs {
             if self.shown.insert(port, bits).unwrap_or_default() != bits {

@@ -14,7 +14,7 @@ use crate::Now;
 
 /// Tolerance in mm for equal positions.
 pub(super) const NEAR: f64 = 1e-6;
-/// Time that a motor can push with full force.
+/// Time for which a motor can push with full force.
 const OVERLOAD_AFTER: Duration = Duration::from_secs(1);
 
 impl World {
@@ -25,10 +25,11 @@ impl World {
         }
     }
 
-    /// Sets outputs when an axis passes a position, or at once if it has passed.
+    /// Sets outputs when an axis passes a position. If the axis has already passed the position, sets the outputs at
+    /// once.
     pub(super) fn output_at(&mut self, output: OutputAt) -> Result<(), u8> {
         self.ports.output(output.port).ok_or(code::PORT)?;
-        // A repeated request of a loop counts once.
+        // A request that a loop repeats counts only once.
         self.outputs_at.retain(|other| *other != output);
         self.outputs_at.push(output);
         self.follow_outputs();
@@ -147,12 +148,12 @@ impl World {
         }
     }
 
-    /// Whether the axes of a task are in position, and the move may end there.
+    /// Whether the axes of a task are in position, and whether the move may end there.
     fn has_arrived(&self, index: usize) -> bool {
         if self.machine.tasks[index].axes.iter().any(|&axis| self.arm.push(axis, self.now) > 0.0) {
             return false;
         }
-        // A move with torque or lock end does not end on arrival, unless AE allows it.
+        // A move that ends by torque or lock does not end on arrival, unless AE allows this.
         self.tasks[index].limited.is_none_or(|torque| torque.arrival_end || !(torque.torque_end || torque.lock_end))
     }
 
@@ -195,7 +196,7 @@ impl World {
         }
     }
 
-    /// Finds the next position event after a change of the moves.
+    /// Finds the time of the next position event after a change of the moves.
     pub(super) fn watch(&mut self) {
         if self.watched == self.arm.changes() {
             return;
@@ -203,7 +204,7 @@ impl World {
         self.watched = self.arm.changes();
         self.crossing = None;
         if !self.arm.is_moving(self.now) {
-            // An obstacle at an axis at rest is not pushed.
+            // When the axes are at rest, an axis that is not commanded beyond its obstacle does not push.
             (0..AXES).filter(|&axis| self.arm.push(axis, self.now) <= 0.0).for_each(|axis| self.presses[axis] = None);
             return;
         }
@@ -233,7 +234,7 @@ impl World {
     }
 }
 
-/// Whether a coordinate is on a side of a position, or at it.
+/// Whether a coordinate is at a position, or on the given side of it.
 fn is_beyond(coordinate: f64, at_least: bool, place: f64) -> bool {
     if at_least { coordinate >= place - NEAR } else { coordinate <= place + NEAR }
 }

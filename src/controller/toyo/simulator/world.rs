@@ -25,7 +25,7 @@ const MOST_TENTHS: u32 = 9999;
 /// In hundredths.
 const VERSION_3_36: i32 = 336;
 
-/// States that operator or host can switch.
+/// States that the operator or the host can switch.
 #[derive(Debug, Clone)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent switch")]
 pub(super) struct Switches {
@@ -62,7 +62,7 @@ pub(super) enum Kind {
 pub(super) struct Jog {
     pub(super) axis: usize,
     pub(super) word: &'static str,
-    /// Limit coordinate, and whether it is upwards.
+    /// Coordinate of the soft limit, and whether it is the upper limit.
     pub(super) limit: Option<(f64, bool)>,
 }
 
@@ -71,7 +71,7 @@ pub(super) struct Jog {
 pub(super) struct World {
     pub(super) now: Now,
     pub(super) model: String,
-    /// In hundredths.
+    /// Version in hundredths.
     pub(super) version: i32,
     pub(super) axes: usize,
     pub(super) robot_types: Vec<i32>,
@@ -92,14 +92,14 @@ pub(super) struct World {
     pub(super) stopped: bool,
     /// Whether the pause input holds programs.
     pub(super) pausing: bool,
-    /// Remaining steps of task 1 in step mode.
+    /// Number of steps that task 1 may still execute in step mode.
     pub(super) allowance: Option<u32>,
     pub(super) jog: Option<Jog>,
-    /// Whether JOG was reset, which is required once.
+    /// Whether JOG was reset. JOG is refused before a reset.
     pub(super) jog_ready: bool,
     /// The current task of host commands.
     pub(super) current: usize,
-    /// The selected palletizing and easy program.
+    /// Selected palletizing program and easy program.
     pub(super) pallet: usize,
     pub(super) easy: usize,
     pub(super) counters: [u16; COUNTERS],
@@ -107,12 +107,12 @@ pub(super) struct World {
     pub(super) timers: [Option<(Now, u32)>; TIMERS],
     pub(super) errors: Errors,
     pub(super) card: Card,
-    /// Pending ends of output pulses.
+    /// Running output pulses: the time at which each pulse ends, and the bits that are then set.
     pub(super) pulses: Vec<(Now, Port, Mask)>,
     pub(super) outputs_at: Vec<OutputAt>,
     /// Axes that push against an obstacle.
     pub(super) presses: [Option<Press>; AXES],
-    /// Time of the next position event, and the arm state that it was computed for.
+    /// Time of the next position event, and the number of changes of the arm for which it was computed.
     pub(super) crossing: Option<Now>,
     pub(super) watched: u64,
     pub(super) events: Timeline,
@@ -145,7 +145,7 @@ impl World {
     /// Handles the events that are due.
     fn handle_due_events(&mut self) {
         while let Some(line) = self.events.take(self.now) {
-            // An impossible line is ignored; `why` and the trace report it.
+            // A line that is not possible in the current state is ignored; `why` and the trace report it.
             if let Err(why) = console::execute(self, &line) {
                 self.record_event(What::Console(format!("{line}: {why}")));
                 self.refusal = Some((line, why));
@@ -159,7 +159,7 @@ impl World {
         self.settle();
     }
 
-    /// Handles consequences of a change: finished waits, outputs, position events.
+    /// Handles consequences of a change: waits that have ended, outputs, position events.
     pub(super) fn settle(&mut self) {
         self.follow_pause();
         self.arrivals();
@@ -168,7 +168,7 @@ impl World {
         self.watch();
     }
 
-    /// Switches power off and on.
+    /// Switches the power off and on again.
     pub(super) fn power_cycle(&mut self) {
         self.arm.freeze(self.now);
         self.errors.power_cut();
@@ -194,7 +194,7 @@ impl World {
         self.settle();
     }
 
-    /// Applies all stored parameters, including those of the machine.
+    /// Applies all stored parameters, including the parameters of the machine.
     pub(super) fn load(&mut self) {
         self.machine = Machine::from_content(&self.memory.content);
         self.settings = Settings::from_content(&self.memory.content);
@@ -242,7 +242,7 @@ impl World {
         }
         self.end_host_motion();
         for (index, task) in self.tasks.iter_mut().enumerate() {
-            // Task 1 keeps its step and can continue; the others have ended.
+            // Task 1 keeps its step and can continue. The other tasks end.
             if index == 0 {
                 task.running = false;
             } else {
@@ -255,7 +255,7 @@ impl World {
         self.outputs_at.clear();
     }
 
-    /// Stops programs so that they can continue.
+    /// Stops programs in such a way that they can continue.
     pub(super) fn stop(&mut self) {
         self.arm.brake(self.now);
         self.end_host_motion();
@@ -283,7 +283,7 @@ impl World {
         }
     }
 
-    /// Ends motion without a program: JOG and return to origin.
+    /// Ends motions that no program started: JOG and return to origin.
     pub(super) fn end_host_motion(&mut self) {
         self.arm.discard_interrupted(HOST);
         self.jog = None;
@@ -292,7 +292,7 @@ impl World {
         }
     }
 
-    /// Discards all programs; the next start is at the first step.
+    /// Discards all programs. The next start begins at the first step.
     pub(super) fn reset_program(&mut self) {
         self.tasks.iter_mut().for_each(Task::reset);
         (0..TASKS).for_each(|task| self.arm.discard_interrupted(task));
@@ -331,7 +331,7 @@ impl World {
         }
     }
 
-    /// Whether this controller supports a feature of some models.
+    /// Whether this controller supports a feature that only some models have.
     pub(super) fn supports(&self, only_on: Models) -> bool {
         only_on.is_empty()
             || only_on.contains(&self.model.as_str())

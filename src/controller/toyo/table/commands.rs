@@ -19,24 +19,25 @@ pub struct Row {
     pub word: &'static str,
     /// Effect.
     pub about: &'static str,
-    /// Risk of the command; a JOG that moves no axis has a lower one.
+    /// Risk of the command. A JOG that moves no axis has a lower risk.
     pub risk: Risk,
-    /// Whether it requires host ON (TO 2-1, note 1; ambiguities C13 and C14).
+    /// Whether the command requires host ON (TO 2-1, note 1; ambiguities C13 and C14).
     pub needs_host: bool,
-    /// Whether it writes the EEPROM: it is refused while a program runs, and wears the EEPROM (TO 2-1, note 2).
+    /// Whether the command writes the EEPROM. Such a command is refused while a program runs, and it wears the EEPROM
+    /// (TO 2-1, note 2).
     pub writes_eeprom: bool,
     /// Forms of the request, without `@`.
     pub requests: &'static [Layout],
-    /// Forms of the answer; empty for `@OK`. The first that fits counts.
+    /// Forms of the answer; empty if the answer is `@OK`. The first form that fits is used.
     pub answers: &'static [Layout],
-    /// Controllers that support it; empty for all.
+    /// Controllers that support the command; empty for all controllers.
     pub only_on: Models,
     /// Section of the manual.
     pub section: &'static str,
 }
 
 impl Row {
-    /// The row of a word. HTSK is another name of CTSK in the list of commands (ambiguity C1).
+    /// The row of a command word. HTSK is another name of CTSK in the list of commands (ambiguity C1).
     pub fn named(word: &str) -> Option<&'static Self> {
         let word = if word == "HTSK" { "CTSK" } else { word };
         ROWS.iter().find(|row| row.word == word)
@@ -119,10 +120,10 @@ const LANGUAGE: Field = words("language", &[word("J", "Japanese"), word("E", "En
 const VERSION: Field = fixed("version", (2, 2), 0, 9999, "version");
 const ROBOT_TYPE: Field = digits("robot_type", 6, 0, 999_999, "robot type");
 const AXIS_NUMBER: Field = digits("axis", 1, 1, 4, "axis");
-const BODY: Field = Field::new("body", Form::Text, "what it is about, and its values");
+const BODY: Field = Field::new("body", Form::Text, "the parameter, row or data, with its values");
 const INSTRUCTION: Field = Field::new("text", Form::Text, "instruction");
-/// 0 is the step in execution (ambiguity C4).
-const STEP_OR_CURRENT: Field = digits("step", 4, 0, 5000, "step, 0 for the current one");
+/// Step 0 is the step in execution (ambiguity C4).
+const STEP_OR_CURRENT: Field = digits("step", 4, 0, 5000, "step, 0 for the current step");
 const PALLET: Field = digits("program", 2, 1, 16, "palletizing program");
 const RECORD: Field = digits("record", 2, 1, 16, "record");
 const EASY: Field = digits("program", 2, 1, 8, "easy program");
@@ -172,7 +173,7 @@ const fn port(name: &'static str) -> Field {
 }
 
 const fn jog(name: &'static str) -> Field {
-    words(name, JOGS, "what the axis does")
+    words(name, JOGS, "jog action of the axis")
 }
 
 const fn letter(name: &'static str) -> Field {
@@ -187,7 +188,7 @@ const fn starred(name: &'static str, width: u8, most: i32, about: &'static str) 
     digits(name, width, 0, most, about).starred()
 }
 
-/// The answer numbers its ports, and so do the field names.
+/// The answer has numbered ports, so the field names have the same numbers.
 const P1: (Field, Field) = (port("port1"), bits("bits1", "bits 8 to 1"));
 const P2: (Field, Field) = (port("port2"), bits("bits2", "bits 8 to 1"));
 const P3: (Field, Field) = (port("port3"), bits("bits3", "bits 8 to 1"));
@@ -202,8 +203,8 @@ commands! {
                 Field::new("tail", Form::Text, "undocumented (ambiguity C11)"),
             ],
         )]);
-    Hson "HSON" Write "2-2" "host ON: the host commands, the start input does not";
-    Hsof "HSOF" Write "2-2" "host OFF: the start input commands again";
+    Hson "HSON" Write "2-2" "host ON: the host has control, and the start input is disabled";
+    Hsof "HSOF" Write "2-2" "host OFF: the start input is enabled again";
     Mpro "MPRO" Write "2-2" "program mode".host();
     Mstp "MSTP" Write "2-2" "step mode".host();
     Maut "MAUT" Write "2-2" "automatic mode".host();
@@ -222,14 +223,14 @@ commands! {
     Cver "CVER" Read "2-2" "version of a station"
         .asks(&[one("CVER NO={}", &[STATION])])
         .answers(&[one("CVER NO={} VER={}", &[STATION, VERSION])]);
-    Type "TYPE" Destroy "2-2" "set the robot type of an axis; the answer is the type in force"
+    Type "TYPE" Destroy "2-2" "set the robot type of an axis; the answer contains the active type"
         .asks(&[one("TYPE AX{} RTYP={}", &[AXIS_NUMBER, ROBOT_TYPE])])
         .answers(&[one("TYPE AX{} RTYP={}", &[AXIS_NUMBER, ROBOT_TYPE.named("in_force")])]);
     Wpar "WPAR" Destroy "2-4" "write a parameter or a row of a table".asks(&[one("WPAR {}", &[BODY])]).host().eeprom();
     Rpar "RPAR" Read "2-4" "read a parameter or a row of a table"
         .asks(&[one("RPAR {}", &[BODY.named("key")])]).answers(&[one("RPAR {}", &[BODY])]);
     Mint "MINT" Destroy "2-3" "clear memory"
-        .asks(&[one("MINT PR={}", &[words("what", CLEARS, "what to clear")])]).host().eeprom();
+        .asks(&[one("MINT PR={}", &[words("what", CLEARS, "the data to clear")])]).host().eeprom();
     Cpss "CPSS" Destroy "2-3" "copy steps of a sequential program, also between tasks"
         .asks(&[one(
             "CPSS TASK={} STA={} END={} TASK={} TOP={}",
@@ -238,15 +239,16 @@ commands! {
         .host().eeprom();
     Istx "ISTX" Destroy "2-3" "insert a step".asks(&[one("ISTX {}", &[STEP])]).host().eeprom();
     Dstx "DSTX" Destroy "2-3" "delete a step".asks(&[one("DSTX {}", &[STEP])]).host().eeprom();
-    Sstg "SSTG" Write "2-3" "search a tag; the current step goes there".asks(&[one("SSTG TAG={}", &[TAG])]).host();
+    Sstg "SSTG" Write "2-3" "search for a tag, and make its step the current step"
+        .asks(&[one("SSTG TAG={}", &[TAG])]).host();
     Dstl "DSTL" Destroy "2-3" "delete steps"
         .asks(&[one("DSTL STA={} END={}", &[STEP.named("first"), STEP.named("last")])]).host().eeprom();
     Cppl "CPPL" Destroy "2-3" "copy a palletizing program"
         .asks(&[one("CPPL STA={} TOP={}", &[PALLET.named("from"), PALLET.named("to")])]).host().eeprom();
     Cesy "CESY" Destroy "2-3" "copy an easy program"
         .asks(&[one("CESY STA={} TOP={}", &[EASY.named("from"), EASY.named("to")])]).eeprom();
-    Wmca "WMCA" Destroy "2-3" "write all to the memory card";
-    Rmca "RMCA" Destroy "2-3" "read all from the memory card, over what is there";
+    Wmca "WMCA" Destroy "2-3" "write all data to the memory card";
+    Rmca "RMCA" Destroy "2-3" "read all data from the memory card; this overwrites the stored data";
     Wesy "WESY" Destroy "2-3" "write an easy program"
         .asks(&[one(
             "WESY PNO={} ST={} START={} LOOP={} END={}",
@@ -267,30 +269,30 @@ commands! {
         )]);
     Wstx "WSTX" Destroy "2-5" "write a step of the sequential program"
         .asks(&[one("WSTX {} {}", &[STEP, INSTRUCTION])]).host().eeprom();
-    Rstx "RSTX" Read "2-5" "read a step of the sequential program; 0000 is the current one"
+    Rstx "RSTX" Read "2-5" "read a step of the sequential program; 0000 is the current step"
         .asks(&[one("RSTX {}", &[STEP_OR_CURRENT])]).answers(&[one("RSTX {} {}", &[STEP, INSTRUCTION])]);
     Wplt "WPLT" Destroy "2-6" "write a record of a palletizing program"
         .asks(&[one("WPLT {} SNO={} {}", &[PALLET, RECORD, BODY])]).host().eeprom();
     Rplt "RPLT" Read "2-6" "read a record of a palletizing program"
         .asks(&[one("RPLT {} SNO={}", &[PALLET, RECORD])]).answers(&[one("RPLT {} SNO={} {}", &[PALLET, RECORD, BODY])]);
     Home "HOME" Motion "2-7" "return to the origin".host();
-    Spst "SPST" Motion "2-7" "start the sequential program; 0000 goes on at the current step"
+    Spst "SPST" Motion "2-7" "start the sequential program; 0000 continues at the current step"
         .asks(&[one("SPST {}", &[STEP_OR_CURRENT])]).host();
-    Spln "SPLN" Write "2-7" "choose the palletizing program".asks(&[one("SPLN PR={}", &[PALLET])]).host();
+    Spln "SPLN" Write "2-7" "select the palletizing program".asks(&[one("SPLN PR={}", &[PALLET])]).host();
     Ppst "PPST" Motion "2-7" "start palletizing".host();
     Sesy "SESY" Motion "2-7" "start the easy program";
-    Rpld "RPLD" Read "2-7" "how far palletizing is"
+    Rpld "RPLD" Read "2-7" "progress of palletizing"
         .answers(&[one(
             "RPLD {} {} PR={} PC1={} PN1={} PC2={} PN2={} PC3={} PN3={} TAG={} STP={}",
             &[
-                MODE, words("state", STATES, "what is executed"), PALLET,
+                MODE, words("state", STATES, "the part that is executed"), PALLET,
                 pieces("done1", "current piece in direction 1"), pieces("pieces1", "pieces in direction 1"),
                 pieces("done2", "current piece in direction 2"), pieces("pieces2", "pieces in direction 2"),
                 pieces("done3", "current piece in direction 3"), pieces("pieces3", "pieces in direction 3"),
                 digits("tag", 3, 0, 999, "tag of the hand program"), digits("step", 4, 0, 5000, "step being executed"),
             ],
         )]);
-    Stop "STOP" Write "2-7" "stop what runs";
+    Stop "STOP" Write "2-7" "stop the running program or jog";
     Jgst "JGST" Motion "2-7" "JOG one axis"
         .asks(&[one("JGST X={} Y={} Z={} R={}", &[jog("x"), jog("y"), jog("z"), jog("r")])]).host();
     Dout "DOUT" Write "2-7" "set outputs directly"
@@ -299,7 +301,7 @@ commands! {
             one("DOUT {}", &[digits("direct", 1, 1, 4, "direct output F1 to F4")]),
         ])
         .host();
-    Wovr "WOVR" Write "2-7" "write the override; it counts while no program runs"
+    Wovr "WOVR" Write "2-7" "write the override; it takes effect while no program runs"
         .asks(&[one("WOVR OV={}", &[digits("override", 3, 1, 100, "override").unit("%")])]).host().eeprom();
     Rovr "ROVR" Read "2-7" "read the override"
         .answers(&[one("ROVR OV={}", &[digits("override", 3, 1, 100, "override").unit("%")])]);
@@ -309,8 +311,8 @@ commands! {
         .asks(&[one("EXTP PT={}", &[digits("point", 3, 1, 999, "row of the coordinate table")])]).host();
     Svon "SVON" Motion "2-7" "servo power on".host();
     Svof "SVOF" Motion "2-7" "servo power off".host();
-    Sesn "SESN" Write "2-7" "choose the easy program".asks(&[one("SESN PR={}", &[EASY])]);
-    Resd "RESD" Read "2-7" "how far the easy program is"
+    Sesn "SESN" Write "2-7" "select the easy program".asks(&[one("SESN PR={}", &[EASY])]);
+    Resd "RESD" Read "2-7" "progress of the easy program"
         .answers(&[one(
             "RESD PR={} ST={} SQS={} SUB={} LOOP={}",
             &[
@@ -319,7 +321,7 @@ commands! {
                 digits("tag", 3, 0, 999, "tag of the hand program"), digits("loop", 4, 0, 9999, "repetitions"),
             ],
         )]);
-    Ctsk "CTSK" Write "2-7" "choose the current task".asks(&[one("CTSK TASK={}", &[TASK])]);
+    Ctsk "CTSK" Write "2-7" "select the current task".asks(&[one("CTSK TASK={}", &[TASK])]);
     Sorg "SORG" Motion "2-7" "search the origin of synchronized axes"
         .asks(&[one("SORG {}", &[digits("axis", 1, 1, 3, "drive axis")])]).host().on(KCA20);
     Minp "MINP" Read "2-8" "a screen of input ports"
@@ -340,16 +342,16 @@ commands! {
     Mnin "MNIN" Read "2-8" "the internal ports"
         .asks(&[one("MNIN SNO={} GN={}", &[digits("station", 1, 0, 0, "always 0"), digits("screen", 1, 1, 1, "always 1")])])
         .answers(&[one("MNIN SNO={} GN={} PN{}={} PN{}={} PN{}={} PN{}={}", &[STATION, SCREEN, P1.0, P1.1, P2.0, P2.1, P3.0, P3.1, P4.0, P4.1])]);
-    Mpst "MPST" Read "2-8" "the present position".answers(&[one("MPST X={} Y={} Z={} R={}", ALL_AXES)]);
-    Moff "MOFF" Read "2-8" "the present offset".answers(&[one("MOFF X={} Y={} Z={} R={}", ALL_AXES)]);
-    Mrss "MRSS" Motion "2-8" "supply coordinates, to which a waiting RSMV moves"
+    Mpst "MPST" Read "2-8" "the current position".answers(&[one("MPST X={} Y={} Z={} R={}", ALL_AXES)]);
+    Moff "MOFF" Read "2-8" "the current offset".answers(&[one("MOFF X={} Y={} Z={} R={}", ALL_AXES)]);
+    Mrss "MRSS" Motion "2-8" "send coordinates to a waiting RSMV step"
         .asks(&[one("MRSS TASK={} X={} Y={} Z={} R={} V={}", &[TASK, X, Y, Z, R, SPEED])]);
     Mcnt "MCNT" Read "2-8" "a counter"
         .asks(&[one("MCNT CN={}", &[COUNTER])]).answers(&[one("MCNT CN{}={}", &[COUNTER, COUNT])]);
     Mtmr "MTMR" Read "2-8" "a timer"
         .asks(&[one("MTMR TN={}", &[TIMER])]).answers(&[one("MTMR TN{}={}", &[TIMER, TIME])]);
     Mcst "MCST" Write "2-8" "set a counter".asks(&[one("MCST CN{}={}", &[COUNTER, COUNT])]);
-    Merp "MERP" Read "2-8" "the point where the error came up"
+    Merp "MERP" Read "2-8" "the point where the error occurred"
         .answers(&[one("MERP{}", &[Field::new("point", Form::Text, "opaque (ambiguity C5)")])]);
     Mtsk "MTSK" Read "2-8" "the current task".answers(&[one("MTSK TASK={}", &[TASK])]);
     Mbus "MBUS" Read "2-8" "CC-Link"

@@ -1,8 +1,8 @@
-//! Fields and words of several tables.
+//! Fields and words that several tables use.
 
 use crate::toyo::field::{Field, Form, Number, Word};
 
-/// A word that is its own description.
+/// A word whose text is its own description.
 pub const fn plain(text: &'static str) -> Word {
     Word { text, about: text }
 }
@@ -17,7 +17,7 @@ pub const fn digits(name: &'static str, width: u8, least: i32, most: i32, about:
     Field::new(name, Form::Number(Number::digits(width, least, most)), about)
 }
 
-/// A number with decimals; the range counts the last one.
+/// A number with decimals. The range counts units of the last decimal.
 pub const fn fixed(name: &'static str, shape: (u8, u8), least: i32, most: i32, about: &'static str) -> Field {
     Field::new(name, Form::Number(Number::fixed(shape.0, shape.1, least, most)), about)
 }
@@ -60,16 +60,15 @@ pub const TIME: Field = fixed("time", (3, 1), 0, 9999, "time").unit("s");
 pub const GROUP: Field = digits("group", 2, 1, 32, "MVM group");
 pub const POINT: Field = digits("point", 3, 1, 999, "row of the coordinate table");
 /// 0 means the counter value alone (ambiguity R7).
-pub const POINT_OR_COUNTER: Field = digits("point", 3, 0, 999, "row of the coordinate table, 0 for the counter alone");
-/// 0 means the speed of the last SPD (ambiguity R7); rows above 10 have no notation (R6).
-pub const SPEED: Field = digits("speed", 2, 0, 10, "row of the speed table, 0 for that of the last SPD");
-pub const MASK: Field = Field::new("data", Form::Mask, "bits 8 to 1; a dot leaves its bit alone");
+pub const POINT_OR_COUNTER: Field = digits("point", 3, 0, 999, "row of the coordinate table, 0 for the counter only");
+/// 0 means the speed of the last SPD (ambiguity R7). Rows above 10 have no notation (ambiguity R6).
+pub const SPEED: Field = digits("speed", 2, 0, 10, "row of the speed table, 0 for the row of the last SPD");
+pub const MASK: Field = Field::new("data", Form::Mask, "bits 8 to 1; a dot leaves the bit unchanged");
 
 pub const AIM: Field = words("aim", &[word("a", "absolute"), word("i", "incremental")], "absolute or incremental");
-pub const COURSE: Field =
-    words("course", &[word("S", "axis speed"), word("T", "line speed")], "what the speed is that of");
+pub const COURSE: Field = words("course", &[word("S", "axis speed"), word("T", "line speed")], "type of the speed");
 pub const ARRIVAL: Field =
-    words("arrival", &[word("POST", "stop there"), word("PASS", "pass by")], "whether to stop at the place");
+    words("arrival", &[word("POST", "stop there"), word("PASS", "pass by")], "whether to stop at the position");
 pub const SWITCH: &[Word] = &[word("ON", "on"), word("OFF", "off")];
 pub const AXIS: &[Word] = &[plain("X"), plain("Y"), plain("Z"), plain("R")];
 pub const VALID: &[Word] = &[word("I", "invalid"), word("E", "valid")];

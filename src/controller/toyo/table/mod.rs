@@ -1,6 +1,6 @@
 //! Protocol tables: commands, parameters, instructions, palletizing records.
 //!
-//! They are the single source for encoder, decoder, simulator, `raw`, `decode`, `explain`, help and completion.
+//! These tables are the single source for encoder, decoder, simulator, `raw`, `decode`, `explain`, help and completion.
 
 pub mod commands;
 mod fields;
@@ -13,10 +13,10 @@ pub use instructions::{Instruction, Op};
 pub use palletizing::Pallet;
 pub use parameters::{Group, Parameter};
 
-/// Controllers that a row is limited to, with the names of the manual.
+/// Names of the controllers that have a row, as in the manual.
 pub type Models = &'static [&'static str];
 
-/// No limit.
+/// All controllers.
 pub const EVERY: Models = &[];
 /// The newer two-axis synchronous series.
 pub const KCA20: Models = &["KCA-20-M00", "KCA-20-M01"];

@@ -30,12 +30,12 @@ impl Pallet {
     }
 }
 
-/// Which side has a matrix of positions (ambiguity of the words: source and destination).
+/// Which side has a matrix of positions. The manual uses the words source and destination ambiguously.
 pub const MODE: Field = words(
     "mode",
     &[
-        word("M-1", "from a matrix to one place"),
-        word("1-M", "from one place to a matrix"),
+        word("M-1", "from a matrix to one position"),
+        word("1-M", "from one position to a matrix"),
         word("M-M", "matrix to matrix"),
     ],
     "which side is a matrix",

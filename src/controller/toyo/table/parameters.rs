@@ -18,7 +18,7 @@ pub enum Group {
     Mode,
     /// `P`, parameter 1: axes.
     Axis,
-    /// `E`, parameter 2: machine. After a change only communication works until a power cycle.
+    /// `E`, parameter 2: machine. After a change, only communication works until a power cycle.
     Machine,
     /// `U`, parameter 3: not for normal use.
     Special,
@@ -44,15 +44,15 @@ impl Group {
 pub struct Parameter {
     /// Id of the manual: `P01`, `T1`; a sheet of the MVM table is `T4.S1`.
     pub id: &'static str,
-    /// Name for user input: `soft-limit-plus`.
+    /// Name for user input, such as `soft-limit-plus`.
     pub name: &'static str,
-    /// Content.
+    /// Description of the content.
     pub about: &'static str,
     /// Text of a write, after `WPAR`.
     pub layout: Layout,
     /// Text of a read, after `RPAR`: the id and, for a table, the row.
     pub key: Layout,
-    /// Controllers that support it; empty for all.
+    /// Controllers that support the parameter; empty for all controllers.
     pub only_on: Models,
 }
 
@@ -68,12 +68,12 @@ impl Parameter {
         PARAMETERS.iter().find(|row| {
             let id = row.key.text.split(" {}").next().and_then(|text| text.split("{}").next()).unwrap_or_default();
             let mut words = text.split(' ').filter(|word| !word.is_empty());
-            // `T2 V` and similar ids end in letters followed directly by a number, or in a key.
+            // Ids such as `T2 V` end in letters that a number or a key follows directly.
             id.split(' ').all(|word| words.next().is_some_and(|words| words == word || is_key(word, words)))
         })
     }
 
-    /// What it belongs to.
+    /// Group of the parameter.
     pub fn group(&self) -> Group {
         match self.id.as_bytes()[0] {
             b'M' => Group::Mode,
@@ -84,17 +84,17 @@ impl Parameter {
         }
     }
 
-    /// Field of the row number, for tables.
+    /// Field of the row number; `None` for a parameter without rows.
     pub const fn row(&self) -> Option<&'static Field> {
         self.key.fields.first()
     }
 
-    /// Values, without the row number.
+    /// Fields of the values, without the row number.
     pub fn fields(&self) -> &'static [Field] {
         &self.layout.fields[self.key.fields.len()..]
     }
 
-    /// Layout of the values only, for dumps and messages: `AX1=… AX2=…`.
+    /// Layout of the values without the id, for dumps and messages: `AX1=… AX2=…`.
     pub fn body(&self) -> Layout {
         let text = self.layout.text.strip_prefix(self.key.text).unwrap_or(self.layout.text);
         Layout { text: text.trim_start_matches([' ', '=']), fields: self.fields() }
@@ -168,15 +168,15 @@ const PLACE: Form = Form::Number(Number::signed(4, 2, -800_000, 800_000));
 const PLACES: &[Field] = &axes(PLACE, "mm", "coordinate");
 const OFFSETS: &[Field] = &axes(PLACE, "mm", "offset");
 const GAINS: &[Field] = &axes(Form::Number(Number::digits(2, 0, 15)), "", "gain");
-/// The manual gives neither range nor unit (ambiguity R13).
+/// The manual gives neither a range nor a unit (ambiguity R13).
 const PASS_AREAS: &[Field] = &axes(Form::Number(Number::digits(4, 0, 9999)), "", "pass area");
-const RANKS: &[Field] = &axes(Form::Number(Number::digits(1, 1, 4)), "", "when in the sequence");
+const RANKS: &[Field] = &axes(Form::Number(Number::digits(1, 1, 4)), "", "rank in the sequence");
 const JOG_SPEEDS: &[Field] = &[speed("low", "low speed"), speed("high", "high speed")];
 const ORIGIN_SPEEDS: &[Field] =
     &[speed("low", "low speed"), speed("middle", "middle speed"), speed("high", "high speed")];
 const INCHES: &[Field] = &axes(Form::Number(Number::fixed(2, 2, 0, 6500)), "mm", "distance");
 const AREA: &[Field] = &[SIDE, place("place", "coordinate"), STATION, PORT, BIT];
-/// The template has two decimals, the range three (ambiguity R8).
+/// The template has two decimals, but the range has three (ambiguity R8).
 const SYNC_OFFSETS: &[Field] = &axes(Form::Number(Number::signed(3, 2, -99_990, 99_990).with_spare(1)), "mm", "offset");
 const SYNC_ERRORS: &[Field] = &axes(Form::Number(Number::fixed(2, 2, 100, 9999)), "mm", "allowed error");
 const LETTERS: &[Field] = &axes(Form::Word(AXIS), "", "letter of the axis");
@@ -209,7 +209,8 @@ const TASK_STEPS: &[Field] = &[
     digits("task3", 4, 0, 5000, "steps"),
     digits("task4", 4, 0, 5000, "steps"),
 ];
-/// Axes per task, one digit each: 0 none, 1 and 2 that number, 3 three in a plane, 4 three in space, 5 four.
+/// Axes per task, one digit for each task: 0 is none, 1 and 2 are this number of axes, 3 is three axes in a plane, 4 is
+/// three in space, 5 is four.
 const COMBINATIONS: &[Word] = &[
     plain("1000"),
     plain("1100"),
@@ -281,7 +282,7 @@ pub static PARAMETERS: [Parameter; 83] = [
         "M11",
         "clear-outputs-on-reset",
         "M11 {}",
-        &[words("use", VALID, "whether they are cleared")],
+        &[words("use", VALID, "whether the outputs are cleared")],
         "whether a reset clears general-purpose outputs",
     ),
     single(
@@ -334,8 +335,8 @@ pub static PARAMETERS: [Parameter; 83] = [
         "M20",
         "external-point-number-output",
         "M20 {}",
-        &[words("use", VALID, "whether it is put out")],
-        "whether external point mode puts the row it moves to out",
+        &[words("use", VALID, "whether the row number is output")],
+        "whether external point mode outputs the number of its target row",
     )
     .on(KCA),
     single("M21", "servo-on-input", "M21 {}/{}/{}", PORT_BIT, "input bit for servo on").on(KCA),
@@ -344,7 +345,7 @@ pub static PARAMETERS: [Parameter; 83] = [
         "M23",
         "external-point-base",
         "M23 {}",
-        &[digits("base", 1, 0, 4, "base; the manual does not say what each value is")],
+        &[digits("base", 1, 0, 4, "base; the manual does not explain the values")],
         "base of the coordinate table in external point mode",
     )
     .on(KCA25),
@@ -376,7 +377,7 @@ pub static PARAMETERS: [Parameter; 83] = [
     single("P02", "soft-limit-minus", "P02 AX1={} AX2={} AX3={} AX4={}", PLACES, "soft limit in minus direction"),
     single("P03", "position-gain", "P03 AX1={} AX2={} AX3={} AX4={}", GAINS, "servo gain of the position loop"),
     single("P04", "speed-gain", "P04 AX1={} AX2={} AX3={} AX4={}", GAINS, "servo gain of the speed loop"),
-    single("P05", "pass-area", "P05 AX1={} AX2={} AX3={} AX4={}", PASS_AREAS, "how near pass points are passed"),
+    single("P05", "pass-area", "P05 AX1={} AX2={} AX3={} AX4={}", PASS_AREAS, "how close the axes pass pass points"),
     single("P06", "origin-offset", "P06 AX1={} AX2={} AX3={} AX4={}", OFFSETS, "offset of the origin"),
     single(
         "P07",
@@ -390,32 +391,38 @@ pub static PARAMETERS: [Parameter; 83] = [
     single("P10", "jog-speed-3", "P10 L={} H={}", JOG_SPEEDS, "JOG speeds of axis 3"),
     single("P11", "jog-speed-4", "P11 L={} H={}", JOG_SPEEDS, "JOG speeds of axis 4"),
     single("P12", "inching-distance", "P12 AX1={} AX2={} AX3={} AX4={}", INCHES, "distance of an inching JOG"),
-    single("P13", "area-output-1", "P13 AX1{}{} {}/{}/{}", AREA, "output bit by the place of axis 1"),
-    single("P14", "area-output-2", "P14 AX2{}{} {}/{}/{}", AREA, "output bit by the place of axis 2"),
-    single("P15", "area-output-3", "P15 AX3{}{} {}/{}/{}", AREA, "output bit by the place of axis 3"),
-    single("P16", "area-output-4", "P16 AX4{}{} {}/{}/{}", AREA, "output bit by the place of axis 4"),
+    single("P13", "area-output-1", "P13 AX1{}{} {}/{}/{}", AREA, "output bit that depends on the position of axis 1"),
+    single("P14", "area-output-2", "P14 AX2{}{} {}/{}/{}", AREA, "output bit that depends on the position of axis 2"),
+    single("P15", "area-output-3", "P15 AX3{}{} {}/{}/{}", AREA, "output bit that depends on the position of axis 3"),
+    single("P16", "area-output-4", "P16 AX4{}{} {}/{}/{}", AREA, "output bit that depends on the position of axis 4"),
     single("P17", "sync-offset", "P17 AX1={} AX2={} AX3={} AX4={}", SYNC_OFFSETS, "offset of synchronized axes")
         .on(KCA20),
     single("P18", "sync-error", "P18 AX1={} AX2={} AX3={} AX4={}", SYNC_ERRORS, "allowed error of synchronized axes")
         .on(KCA20),
     single("E01", "axis-letters", "E01 AX1={} AX2={} AX3={} AX4={}", LETTERS, "letters that the teach pendant shows"),
-    single("E02", "in-position", "E02 AX1={} AX2={} AX3={} AX4={}", IN_POSITION, "how near counts as in position"),
+    single(
+        "E02",
+        "in-position",
+        "E02 AX1={} AX2={} AX3={} AX4={}",
+        IN_POSITION,
+        "distance to the target that counts as in position",
+    ),
     single("E03", "overflow", "E03 AX1={} AX2={} AX3={} AX4={}", PULSES, "position error that counts as overflow"),
     single("E04", "feed-forward", "E04 AX1={} AX2={} AX3={} AX4={}", PULSES, "feed forward"),
     single("E05", "motor-direction", "E05 AX1={} AX2={} AX3={} AX4={}", DIRECTIONS, "direction of the motor"),
-    single("E06", "max-speed", "E06 AX1={} AX2={} AX3={} AX4={}", TOP_SPEEDS, "greatest speed of the axis"),
+    single("E06", "max-speed", "E06 AX1={} AX2={} AX3={} AX4={}", TOP_SPEEDS, "maximum speed of the axis"),
     single("E07", "origin-speed-1", "E07 L={} M={} H={}", ORIGIN_SPEEDS, "speeds of the return to origin of axis 1"),
     single("E08", "origin-speed-2", "E08 L={} M={} H={}", ORIGIN_SPEEDS, "speeds of the return to origin of axis 2"),
     single("E09", "origin-speed-3", "E09 L={} M={} H={}", ORIGIN_SPEEDS, "speeds of the return to origin of axis 3"),
     single("E10", "origin-speed-4", "E10 L={} M={} H={}", ORIGIN_SPEEDS, "speeds of the return to origin of axis 4"),
-    single("E11", "origin-method", "E11 AX1={} AX2={} AX3={} AX4={}", METHODS, "how the origin is found"),
+    single("E11", "origin-method", "E11 AX1={} AX2={} AX3={} AX4={}", METHODS, "method of the return to origin"),
     single("E12", "origin-sensor-logic", "E12 AX1={} AX2={} AX3={} AX4={}", LOGICS, "logic of the origin sensor"),
     single(
         "E13",
         "fast-origin-position",
         "E13 AX1={} AX2={} AX3={} AX4={}",
         PLACES,
-        "where a fast return to origin goes",
+        "target of a fast return to origin",
     ),
     single("E14", "lead", "E14 AX1={} AX2={} AX3={} AX4={}", LEADS, "pulse rate: lead"),
     single("E15", "pulses-per-turn", "E15 AX1={} AX2={} AX3={} AX4={}", DIVISIONS, "pulse rate: division"),
@@ -438,8 +445,13 @@ pub static PARAMETERS: [Parameter; 83] = [
         "E19",
         "task-axes",
         "E19 {}",
-        &[words("axes", COMBINATIONS, "a digit a task: 0 no axes, 1, 2, 3 in a plane, 4 three in space, 5 four")],
-        "which task has which axes",
+        &[words(
+            "axes",
+            COMBINATIONS,
+            "one digit per task: 0 no axes, 1 one axis, 2 two axes, 3 three axes in a plane, 4 three axes in space, 5 \
+             four axes",
+        )],
+        "axes of each task",
     ),
     single("E20", "task-priority", "E20 TASK01={} TASK02={} TASK03={} TASK04={}", TASK_RANKS, "priority of tasks"),
     single(
@@ -456,8 +468,14 @@ pub static PARAMETERS: [Parameter; 83] = [
         TASK_STEPS,
         "steps of each task's program",
     ),
-    single("E23", "ba-io-mode", "E23 {}", &[words("use", VALID, "whether it is on")], "BA I/O compatibility mode")
-        .on(FROM_3_36),
+    single(
+        "E23",
+        "ba-io-mode",
+        "E23 {}",
+        &[words("use", VALID, "whether the mode is on")],
+        "BA I/O compatibility mode",
+    )
+    .on(FROM_3_36),
     single("E24", "origin-direction", "E24 AX1={} AX2={} AX3={} AX4={}", SIGNS, "direction of the return to origin")
         .on(KCA),
     single("E25", "dynamic-brake", "E25 AX1={} AX2={} AX3={} AX4={}", BRAKES, "dynamic brake, which stays invalid")
@@ -560,7 +578,7 @@ pub static PARAMETERS: [Parameter; 83] = [
             &[
                 LIMIT_ROW,
                 fixed("limit", (1, 2), 1, 999, "torque limit"),
-                fixed("load", (1, 2), 1, 999, "torque from which on the load output is on"),
+                fixed("load", (1, 2), 1, 999, "torque at which the load output switches on"),
             ],
         ),
         "torque limit table",

@@ -35,7 +35,7 @@ impl Notes<'_> {
         self.frame.get(super::ACK_AT) == Some(&0)
     }
 
-    /// Adds one element. It may end early between fields: controllers omit missing axes.
+    /// Adds one element. An element may end early between fields, because controllers omit missing axes.
     fn element(&mut self, fields: &[Field], prefix: &str) {
         let mut known = Meaning::default();
         for field in fields {
@@ -64,7 +64,8 @@ fn words(kind: Kind, bytes: &[u8], known: &mut Meaning) -> String {
         Kind::F32 => f32::from_bits(word).to_string(),
         Kind::Bits(bits) => flags(bits, word),
         Kind::Choice(choices) => {
-            // A choice sets the unit of the following fields: the data type of a position, the speed class of a move.
+            // Two fields set the unit of the fields after them: the data type of a position, and the speed class of a
+            // move.
             known.kind = Some(PositionKind::from_word(word));
             known.speed_class = Some(word);
             let meaning = choices.iter().find(|choice| choice.0 == word).map_or("not defined", |choice| choice.1);
@@ -82,7 +83,7 @@ fn words(kind: Kind, bytes: &[u8], known: &mut Meaning) -> String {
             _ => word.to_string(),
         },
         Kind::Reserved => "reserved, 0".to_owned(),
-        Kind::FileName if is_backup(bytes) => format!("{} (makes or fetches the batch backup)", text(bytes)),
+        Kind::FileName if is_backup(bytes) => format!("{} (creates or reads the batch backup)", text(bytes)),
         Kind::Text(_) | Kind::FileName | Kind::Filter => text(bytes),
     }
 }
@@ -91,7 +92,7 @@ fn in_unit(unit: Unit, value: i32) -> String {
     format!("{} {}", unit.show(value), unit.symbol)
 }
 
-/// Text up to the first NUL, with other bytes than printable ASCII escaped.
+/// Text up to the first NUL. Bytes other than printable ASCII are escaped.
 fn text(bytes: &[u8]) -> String {
     let end = bytes.iter().position(|&byte| byte == 0).unwrap_or(bytes.len());
     format!("\"{}\"", bytes[..end].escape_ascii())

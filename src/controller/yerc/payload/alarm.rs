@@ -12,16 +12,16 @@ pub struct AlarmTexts {
     pub source: Text<16>,
     /// Sub-code as displayed on the pendant.
     pub sub_code: Text<96>,
-    /// One `0` or `1` per character of the text: 1 is displayed reversed.
+    /// One `0` or `1` for each character of the text. The pendant displays a character with 1 reversed.
     pub reversed: Text<96>,
 }
 
-/// An alarm; all zero in an empty slot.
+/// An alarm. In an empty slot, all values are zero.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct Alarm {
     /// 1 to 9999; 0 for no alarm.
     pub code: u32,
-    /// Sub-code; its format depends on `kind`.
+    /// Sub-code. Its format depends on `kind`.
     pub data: u32,
     /// Format of `data`.
     pub kind: AlarmKind,
@@ -29,7 +29,7 @@ pub struct Alarm {
     pub time: Text<16>,
     /// Name in the pendant language.
     pub name: Text<32>,
-    /// Only in answers to 0x30A and 0x30B.
+    /// Additional texts. Only answers to 0x30A and 0x30B have them.
     pub texts: Option<AlarmTexts>,
 }
 
@@ -82,7 +82,7 @@ impl Alarm {
         self.code == 0
     }
 
-    /// Readable sub-code. The texts of 0x30A are better where a controller has them.
+    /// Readable sub-code. If the controller has the texts of 0x30A, these are better.
     pub fn sub_code(&self, model: Model) -> SubCode {
         subcode::render(self.kind, self.data, model)
     }

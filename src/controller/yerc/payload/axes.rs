@@ -8,7 +8,7 @@ use super::text::Text;
 /// Maximum number of axes of a control group.
 pub const MAX_AXES: usize = 8;
 
-/// One signed word per axis in an answer; controllers send only fitted axes.
+/// One signed word per axis in an answer. A controller sends only the words of fitted axes.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Axes {
     values: [i32; MAX_AXES],
@@ -21,14 +21,14 @@ impl Axes {
         Self { values, count: MAX_AXES }
     }
 
-    /// The first axes of a group; `None` for more than eight.
+    /// The values of the first axes of a group; `None` for more than eight values.
     pub fn new(values: &[i32]) -> Option<Self> {
         let mut axes = Self { values: [0; MAX_AXES], count: values.len() };
         axes.values.get_mut(..values.len())?.copy_from_slice(values);
         Some(axes)
     }
 
-    /// Parses all whole words, at most eight (torque 3.3.8, position error 3.3.7).
+    /// Parses all complete words, at most eight (torque 3.3.8, position error 3.3.7).
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         if data.len() < 4 {
             return Err(PayloadError::Short { what: "axis values", needed: 4, found: data.len() });
@@ -36,7 +36,7 @@ impl Axes {
         Ok(Self::take(data))
     }
 
-    /// All whole words of `data`, perhaps none.
+    /// Takes all complete words of `data`. There may be none.
     pub(super) fn take(data: &[u8]) -> Self {
         let mut axes = Self::default();
         let mut reader = Reader::new("axis values", data);
@@ -48,19 +48,19 @@ impl Axes {
         axes
     }
 
-    /// Encodes the existing words.
+    /// Encodes the words that exist.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(4 * self.count);
         push_words(&mut out, self.as_slice().iter().copied());
         out
     }
 
-    /// Existing values.
+    /// Values that exist.
     pub fn as_slice(&self) -> &[i32] {
         &self.values[..self.count]
     }
 
-    /// Eight values, with zeros for missing ones.
+    /// Eight values, with zeros for missing axes.
     pub const fn padded(&self) -> [i32; MAX_AXES] {
         self.values
     }
@@ -72,7 +72,7 @@ impl fmt::Debug for Axes {
     }
 }
 
-/// Axis names; unused ones are empty (FS and DX 3.3.5).
+/// Axis names. Names of unused axes are empty (FS and DX 3.3.5).
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct AxisNames {
     /// Up to four bytes each.
@@ -80,7 +80,7 @@ pub struct AxisNames {
 }
 
 impl AxisNames {
-    /// Parses eight names; missing ones are empty.
+    /// Parses eight names. Missing names are empty.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         if data.len() < 4 {
             return Err(PayloadError::Short { what: "axis names", needed: 4, found: data.len() });

@@ -6,11 +6,11 @@ use super::text::Text;
 /// Current job of a task.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct JobInfo {
-    /// Without `.JBI`.
+    /// Job name without `.JBI`.
     pub name: Text<32>,
     /// 0 to 9999.
     pub line: u32,
-    /// 1 to 9998; 0 without execution.
+    /// Step number, 1 to 9998; 0 if no job is executed.
     pub step: u32,
     /// Unit 0.01 %.
     pub speed_override: u32,
@@ -66,7 +66,8 @@ impl ManagementTime {
     }
 }
 
-/// Parses `H:MM'SS` with any number of hour digits and surrounding blanks. Seconds may be missing, or follow a colon.
+/// Parses `H:MM'SS` with any number of hour digits and surrounding blanks. The seconds may be missing, or follow a
+/// colon instead of the `'`.
 pub fn elapsed_seconds(text: &[u8]) -> Option<u64> {
     let text = std::str::from_utf8(text).ok()?.trim();
     let mut parts = text.split([':', '\'']).map(|part| {
@@ -88,7 +89,7 @@ pub fn elapsed_seconds(text: &[u8]) -> Option<u64> {
 /// Versions and names.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct SystemInfo {
-    /// System software version, the same for every instance.
+    /// System software version. It is the same for every instance.
     pub version: Text<24>,
     /// Robot model, or application name.
     pub name: Text<16>,

@@ -10,7 +10,7 @@ pub enum SpeedClass {
     Percent,
     /// 0.1 mm/s; straight moves.
     Linear,
-    /// 0.1 degree/s; straight moves by rotation.
+    /// 0.1 degree/s; straight moves with a rotation speed.
     Angular,
     /// A number that is not in the manuals.
     Other(u32),
@@ -41,10 +41,10 @@ impl SpeedClass {
 /// Layout of a cartesian move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum MoveLayout {
-    /// 26 words with two reserved: the DX200 manual, and known use on an FS100.
+    /// 26 words, two of them reserved: as in the DX200 manual. An FS100 is known to use it too.
     #[default]
     Words26,
-    /// 25 words with one reserved: the FS100 manual.
+    /// 25 words, one of them reserved: as in the FS100 manual.
     Words25,
 }
 
@@ -75,7 +75,7 @@ pub struct CartesianMove {
     pub coordinate: PositionKind,
     /// X, Y, Z in 0.001 mm, then Tx, Ty, Tz in 0.0001 degree.
     pub target: [i32; 6],
-    /// Reserved, 0; the 25-word layout has only the first.
+    /// Reserved words, 0. The 25-word layout has only the first word.
     pub reserved: [i32; 2],
     /// Form of the arm.
     pub form: Form,
@@ -92,7 +92,7 @@ pub struct CartesianMove {
 }
 
 impl CartesianMove {
-    /// Parses either layout, distinguished by size.
+    /// Parses either layout. The size of the data distinguishes the layouts.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         let layout = if data.len() < MoveLayout::Words26.size() { MoveLayout::Words25 } else { MoveLayout::Words26 };
         let mut reader = Reader::new("cartesian move", data);
@@ -134,7 +134,7 @@ impl CartesianMove {
     }
 }
 
-/// A move to pulses, in protocol units.
+/// A move to a position in pulses, in protocol units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct PulseMove {
     /// Robot number from 1; 0 if a station moves.

@@ -54,7 +54,7 @@ impl PositionKind {
         matches!(self, Self::Base | Self::Robot | Self::User | Self::Tool)
     }
 
-    /// Unit of an axis of a robot position, counted from 0; raw if undefined.
+    /// Unit of an axis of a robot position, counted from 0; raw numbers if the kind is undefined.
     pub fn unit(self, axis: usize) -> Unit {
         match axis {
             0..=2 if self.is_cartesian() => units::MILLIMETRE,
@@ -71,12 +71,12 @@ macro_rules! flag_word {
         pub struct $name(pub u32);
 
         impl $name {
-            /// Names of all defined bits, for their current states.
+            /// Names for the current states of all defined bits.
             pub fn words(self) -> impl Iterator<Item = &'static str> {
                 $bits.iter().map(move |bit| bit.word(self.0))
             }
 
-            /// Bits without a meaning.
+            /// Bits that have no defined meaning.
             pub fn reserved(self) -> u32 {
                 self.0 & !$bits.iter().fold(0, |mask, bit| mask | 1 << bit.bit)
             }
@@ -85,7 +85,7 @@ macro_rules! flag_word {
 }
 
 flag_word! {
-    /// Form of the arm at a position; reserved bits are kept.
+    /// Form of the arm at a position. Reserved bits are kept.
     Form, FORM_BITS
 }
 flag_word! {
@@ -93,7 +93,7 @@ flag_word! {
     ExtendedForm, EXTENDED_FORM_BITS
 }
 
-/// A robot position: 13 words, or fewer if the controller omits missing axes.
+/// A robot position: 13 words, or fewer words if the controller omits missing axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Position {
     /// Coordinate system of `axes`.
@@ -106,7 +106,7 @@ pub struct Position {
     pub user: u32,
     /// Extended form.
     pub extended: ExtendedForm,
-    /// Pulses; or 0.001 mm for the first three and 0.0001 degree for the next four axes.
+    /// Pulses; or 0.001 mm for the first three axes and 0.0001 degree for the next four.
     pub axes: Axes,
 }
 
@@ -127,13 +127,13 @@ impl Position {
         })
     }
 
-    /// Encodes all 13 words, as in variables.
+    /// Encodes all 13 words, as variables have them.
     pub fn emit(&self) -> Vec<u8> {
         let full = Self { axes: Axes::full(self.axes.padded()), ..*self };
         full.emit_fitted()
     }
 
-    /// Encodes five words and the existing axes, as in the answer of a controller.
+    /// Encodes five words and the words of the existing axes, as a controller answers.
     pub fn emit_fitted(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(Self::SIZE);
         push_u32s(&mut out, [self.kind.word(), self.form.0, self.tool, self.user, self.extended.0]);

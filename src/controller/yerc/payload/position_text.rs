@@ -1,6 +1,6 @@
 //! Text format of positions:
 //! `base:x=100.000,y=0.000,z=0.000,rx=180.0000,ry=0.0000,rz=0.0000,tool=1,user=0,form=back+upper+flip` and
-//! `pulse:s=0,l=0,u=0,r=0,b=0,t=0`. It needs no quotes in a shell.
+//! `pulse:s=0,l=0,u=0,r=0,b=0,t=0`. The text needs no quotes in a shell.
 
 use std::fmt;
 use std::str::FromStr;
@@ -16,7 +16,7 @@ use crate::yerc::table::{Bit, EXTENDED_FORM_BITS, FORM_BITS};
 const PULSE_AXES: [&str; MAX_AXES] = ["s", "l", "u", "r", "b", "t", "e", "8"];
 const CARTESIAN_AXES: [&str; MAX_AXES] = ["x", "y", "z", "rx", "ry", "rz", "re", "8"];
 const NUMBERED_AXES: [&str; MAX_AXES] = ["1", "2", "3", "4", "5", "6", "7", "8"];
-/// Mandatory axes of a robot position, so that a forgotten one does not become 0.
+/// Number of axes that a robot position must have, so that a forgotten axis does not become 0.
 const REQUIRED_AXES: usize = 6;
 
 /// An axis in the text format.
@@ -30,13 +30,13 @@ pub struct NamedAxis {
     pub value: i32,
 }
 
-/// An invalid position text.
+/// Why a position text is invalid.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum PositionTextError {
-    /// Without kind and colon.
-    #[error("a position must begin with its type and a colon, e.g. 'base:x=...' or 'pulse:s=...'")]
+    /// The text has no kind with a colon.
+    #[error("a position must begin with its type and a colon, for example 'base:x=...' or 'pulse:s=...'")]
     NoKind,
-    /// A kind that this variable does not have.
+    /// The variable does not have this kind.
     #[error("'{found}' is not a valid position type here; use {allowed}")]
     Kind {
         /// The invalid text.
@@ -50,7 +50,7 @@ pub enum PositionTextError {
         /// The invalid text.
         found: String,
     },
-    /// A key that this kind does not have.
+    /// The kind does not have this key.
     #[error("'{found}' is not a part of this position; use {allowed}")]
     Key {
         /// The invalid text.
@@ -58,19 +58,19 @@ pub enum PositionTextError {
         /// Valid keys.
         allowed: String,
     },
-    /// A duplicate key.
+    /// A key occurs twice.
     #[error("'{key}' appears twice")]
     Twice {
         /// The key.
         key: String,
     },
-    /// A missing axis.
+    /// An axis is missing.
     #[error("axis '{axis}' is missing")]
     Missing {
-        /// Its key.
+        /// Key of the axis.
         axis: &'static str,
     },
-    /// An invalid value of an axis.
+    /// The value of an axis is invalid.
     #[error("{key}: {error}")]
     Axis {
         /// The key.
@@ -78,7 +78,7 @@ pub enum PositionTextError {
         /// The problem.
         error: UnitError,
     },
-    /// An invalid value of tool, user coordinate or form.
+    /// The value of tool, user coordinate or form is invalid.
     #[error("{key}: '{found}' is not {expected}")]
     Value {
         /// The key.
@@ -127,12 +127,12 @@ impl fmt::Display for Position {
 }
 
 impl Position {
-    /// All eight axes; 0 for missing ones.
+    /// All eight axes, with 0 for missing axes.
     pub fn named_axes(&self) -> [NamedAxis; MAX_AXES] {
         named(axis_names(self.kind), self.axes, |axis| self.kind.unit(axis))
     }
 
-    /// Number of axes in the text format: six, or up to the last nonzero one.
+    /// Number of axes in the text format: up to the last axis that is not 0, and at least six.
     pub fn shown_axes(&self) -> usize {
         shown_axes(&self.axes.padded(), REQUIRED_AXES)
     }
@@ -141,12 +141,13 @@ impl Position {
 macro_rules! nine_word_text {
     ($name:ident, $kinds:expr, $units:expr) => {
         impl $name {
-            /// All eight axes; 0 for missing ones.
+            /// All eight axes, with 0 for missing axes.
             pub fn named_axes(&self) -> [NamedAxis; MAX_AXES] {
                 named(group_axis_names(self.kind), self.axes, |_| $units(self.kind))
             }
 
-            /// Number of axes in the text format: up to the last nonzero one, and x, y, z of a base.
+            /// Number of axes in the text format: up to the last axis that is not 0. In base coordinates, at least x, y
+            /// and z.
             pub fn shown_axes(&self) -> usize {
                 shown_axes(&self.axes.padded(), if self.kind == PositionKind::Base { 3 } else { 1 })
             }
@@ -193,7 +194,7 @@ fn axis_names(kind: PositionKind) -> [&'static str; MAX_AXES] {
     }
 }
 
-/// Bases and external axes have no S, L, U letters; a base has X, Y, Z in base coordinates.
+/// Bases and external axes have no S, L, U letters. In base coordinates, a base has X, Y, Z.
 fn group_axis_names(kind: PositionKind) -> [&'static str; MAX_AXES] {
     match kind {
         PositionKind::Base => ["x", "y", "z", "4", "5", "6", "7", "8"],
@@ -201,7 +202,7 @@ fn group_axis_names(kind: PositionKind) -> [&'static str; MAX_AXES] {
     }
 }
 
-/// A kind without a name has the form `type7:`.
+/// A kind that has no name is written as `type7:`.
 fn split_kind<'a>(
     text: &'a str,
     kinds: &[(PositionKind, u32, &str)],
@@ -260,14 +261,14 @@ impl<'a> Parts<'a> {
         Ok(())
     }
 
-    /// All eight axes. The first `required` must be given, and the first six without a gap.
+    /// All eight axes. The text must contain the first `required` axes; the first six axes must have no gap.
     fn axes(&self, required: usize) -> Result<Axes, PositionTextError> {
         let named = self.axes.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
         let mut values = [0; MAX_AXES];
         for (axis, value) in self.axes.iter().enumerate() {
             match value {
                 Some(value) => values[axis] = *value,
-                // Axes after the sixth are optional and independent.
+                // The axes after the sixth are optional and independent of each other.
                 None if axis < required || axis < named.min(REQUIRED_AXES) => {
                     return Err(PositionTextError::Missing { axis: self.names[axis] });
                 }
@@ -291,7 +292,7 @@ fn number(key: &'static str, text: Option<&str>) -> Result<u32, PositionTextErro
     })
 }
 
-/// Parses words joined by `+`; unnamed bits as one hexadecimal number.
+/// Parses words joined by `+`. Bits without a name are written as one hexadecimal number.
 fn flags(key: &'static str, text: Option<&str>, bits: &[Bit]) -> Result<u32, PositionTextError> {
     let (mut value, mut given) = (0_u32, 0_u32);
     for word in text.into_iter().flat_map(|text| text.split('+')).map(str::trim) {
@@ -325,7 +326,7 @@ fn named(keys: [&'static str; MAX_AXES], axes: Axes, unit: impl Fn(usize) -> Uni
     std::array::from_fn(|axis| NamedAxis { key: keys[axis], unit: unit(axis), value: values[axis] })
 }
 
-/// Number of axes up to the last nonzero one, at least `least`.
+/// Number of axes up to the last axis that is not 0, and at least `least`.
 fn shown_axes(axes: &[i32; MAX_AXES], least: usize) -> usize {
     axes.iter().rposition(|&value| value != 0).map_or(0, |last| last + 1).max(least)
 }
@@ -350,7 +351,7 @@ fn write_axes(
     Ok(())
 }
 
-/// Formats the first `always` bits for both states, the others only if set.
+/// Formats the first `always` bits in both states, and the other bits only if they are set.
 fn write_flags(f: &mut fmt::Formatter<'_>, key: &str, value: u32, bits: &[Bit], always: usize) -> fmt::Result {
     let known = bits.iter().fold(0, |mask, bit| mask | 1 << bit.bit);
     let mut words: Vec<String> = bits

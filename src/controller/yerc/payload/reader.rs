@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::text::Text;
 
-/// Invalid answer data.
+/// Why the data of an answer is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum PayloadError {
     /// Too few bytes.
@@ -37,7 +37,7 @@ pub(in crate::yerc) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// A reader of `data`; `what` is the name in its errors.
+    /// A reader of `data`. `what` is the name of the payload in error messages.
     pub(in crate::yerc) fn new(what: &'static str, data: &'a [u8]) -> Self {
         Self { what, whole: data.len(), rest: data }
     }

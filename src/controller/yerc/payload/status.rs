@@ -67,7 +67,7 @@ impl StatusBit {
         self.row().1.set
     }
 
-    /// Word and table row.
+    /// Status word and table row.
     fn row(self) -> (usize, &'static Bit) {
         let index = self as usize;
         match index.checked_sub(DATA_1_BITS.len()) {
@@ -99,7 +99,7 @@ impl CycleMode {
     }
 }
 
-/// Both status words; bits without a meaning are kept.
+/// Both status words. Bits without a meaning are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct ControllerStatus {
     /// Data 1 and data 2.
@@ -120,7 +120,7 @@ impl ControllerStatus {
         out
     }
 
-    /// Whether a condition holds.
+    /// Whether a condition is set.
     pub fn has(self, bit: StatusBit) -> bool {
         let (word, &Bit { bit, .. }) = bit.row();
         self.words[word] >> bit & 1 == 1

@@ -8,18 +8,18 @@ use thiserror::Error;
 #[derive(Clone, PartialEq, Eq, Hash, Default)]
 pub struct Text<const N: usize>(Vec<u8>);
 
-/// Bytes that do not fit a text field.
+/// Why bytes do not fit a text field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum TextError {
     /// Longer than the field.
-    #[error("the text has {len} bytes in the controller's encoding; at most {most} fit")]
+    #[error("the text has {len} bytes in the controller's encoding; it can have at most {most}")]
     TooLong {
         /// Length in bytes.
         len: usize,
         /// Size of the field in bytes.
         most: usize,
     },
-    /// A NUL would end the text early.
+    /// The bytes contain a NUL, which would end the text early.
     #[error("the text contains a NUL byte at position {at}")]
     Nul {
         /// Offset of the first NUL.
@@ -28,7 +28,7 @@ pub enum TextError {
 }
 
 impl<const N: usize> Text<N> {
-    /// Takes bytes that fit the field.
+    /// Creates a text from bytes that must fit the field.
     pub fn new(bytes: &[u8]) -> Result<Self, TextError> {
         if bytes.len() > N {
             return Err(TextError::TooLong { len: bytes.len(), most: N });
@@ -39,7 +39,7 @@ impl<const N: usize> Text<N> {
         }
     }
 
-    /// Parses a field: up to the first NUL, or its whole width.
+    /// Parses a field. The text ends at the first NUL, or at the end of the field.
     pub fn cut(field: &[u8]) -> Self {
         let field = &field[..field.len().min(N)];
         let end = field.iter().position(|&byte| byte == 0).unwrap_or(field.len());
@@ -51,7 +51,7 @@ impl<const N: usize> Text<N> {
         &self.0
     }
 
-    /// Whether the field is all zero.
+    /// Whether the text is empty.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

@@ -11,11 +11,11 @@ use crate::yerc::table::service;
 const FULL_SPEED: u32 = 10_000;
 /// Maximum tool and user coordinate number.
 const LAST_FRAME: u32 = 63;
-/// Maximum length of a message in bytes; the field has two more that the pendant does not display.
+/// Maximum length of a message in bytes. The field has two more bytes, which the pendant does not display.
 const MAX_MESSAGE: usize = 30;
 /// Maximum line number.
 const LAST_LINE: u32 = 9999;
-/// Form bits of a move; 6 and 7 are reserved.
+/// Form bits that a move uses; bits 6 and 7 are reserved.
 const MOVE_FORM: u32 = 0b11_1111;
 const MOVE_EXTENDED_FORM: u32 = 0b1_1111;
 
@@ -37,7 +37,7 @@ macro_rules! order {
     };
 }
 
-/// 1 is on, 2 is off.
+/// Switches an instance: 1 is on, 2 is off.
 fn switch(instance: u16, on: bool) -> Request {
     let word: u32 = if on { 1 } else { 2 };
     write_one(0x83, instance, word.to_le_bytes())
@@ -83,7 +83,7 @@ pub struct Say {
 }
 
 impl Say {
-    /// At most 30 bytes in the pendant encoding; empty clears the message.
+    /// A message of at most 30 bytes in the pendant encoding. An empty message clears the display.
     pub fn new(text: &[u8]) -> Result<Self, QueryError> {
         Text::<MAX_MESSAGE>::new(text).map_err(|error| QueryError::Text { what: "the message", error })?;
         Ok(Self { text: Text::cut(text) })
@@ -96,15 +96,15 @@ impl WriteQuery for Say {
     }
 }
 
-/// Purpose of a selected job.
+/// Purpose for which a job is selected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Selection {
-    /// For execution, from a line on.
+    /// The job is executed from a line on.
     Execute {
         /// 0 to 9999.
         line: u32,
     },
-    /// As the master job of a task, 0 to 5 on FS100, to 15 on DX200.
+    /// The job becomes the master job of a task, 0 to 5 on FS100, 0 to 15 on DX200.
     Master {
         /// The task.
         task: u8,
@@ -120,7 +120,7 @@ pub struct SelectJob {
 }
 
 impl SelectJob {
-    /// A name of 1 to 32 bytes in the pendant encoding, without `.JBI`.
+    /// Selects a job by its name of 1 to 32 bytes in the pendant encoding, without `.JBI`.
     pub fn new(model: Model, name: &[u8], selection: Selection) -> Result<Self, QueryError> {
         if name.is_empty() {
             return Err(QueryError::Empty { what: "the job name" });
@@ -149,7 +149,7 @@ pub enum MoveKind {
     Link,
     /// Straight line to a position.
     Straight,
-    /// Straight line by a distance; cartesian only.
+    /// Straight line by a distance, only in cartesian coordinates.
     Incremental,
 }
 
@@ -200,7 +200,7 @@ pub struct MovePulse {
 }
 
 impl MovePulse {
-    /// Checks groups, speed and tool. There is no incremental pulse move.
+    /// Checks groups, speed and tool. A pulse move cannot be incremental.
     pub fn new(model: Model, kind: MoveKind, target: PulseMove) -> Result<Self, QueryError> {
         check_group(model, target.robot, target.station)?;
         check_speed(kind, target.class, target.speed)?;
@@ -219,7 +219,7 @@ fn moving(command: u16, kind: MoveKind, data: Vec<u8>) -> Request {
     Request { command, instance: kind.instance(), attribute: 1, service: service::SET_ALL, data }
 }
 
-/// Requires exactly one of robot and station; controllers refuse both with B008.
+/// Requires either a robot or a station. Controllers refuse a move with both (B008).
 fn check_group(model: Model, robot: u32, station: u32) -> Result<(), QueryError> {
     let (robots, _, stations) = Group::counts(model);
     match (robot, station) {

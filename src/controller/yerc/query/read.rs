@@ -97,7 +97,7 @@ pub struct ReadAlarmHistory {
 }
 
 impl ReadAlarmHistory {
-    /// Number 1 to 100. Texts need a DX200 or FS1.14.
+    /// Entry `number` of the history, 1 to 100. Texts need a DX200 or FS1.14.
     pub fn new(class: AlarmClass, number: u8, texts: bool) -> Result<Self, QueryError> {
         in_range("alarm number", number.into(), 1, 100)?;
         Ok(Self { class, number, texts })
@@ -123,7 +123,7 @@ pub struct ReadJob {
 }
 
 impl ReadJob {
-    /// Task 0 is the master; sub tasks are 1 to 5 on FS100, 1 to 15 on DX200.
+    /// Task 0 is the master task. Sub tasks are 1 to 5 on FS100, 1 to 15 on DX200.
     pub fn new(model: Model, task: u8) -> Result<Self, QueryError> {
         Ok(Self { task: known_task(model, task)? })
     }
@@ -141,7 +141,7 @@ impl Query for ReadJob {
     }
 }
 
-/// Pulses or cartesian coordinates.
+/// Coordinates of a position: pulses or cartesian.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Coordinates {
     /// By axis.
@@ -168,7 +168,7 @@ pub struct ReadAxes {
 }
 
 impl ReadAxes {
-    /// A robot or base in either coordinates, or a station in pulses.
+    /// Accepts a robot or base in either coordinates, and a station in pulses.
     pub fn new(model: Model, group: Group, coordinates: Coordinates) -> Result<Self, QueryError> {
         Ok(Self { instance: instance(model, group, coordinates)? })
     }
@@ -193,7 +193,7 @@ pub struct ReadPosition {
 }
 
 impl ReadPosition {
-    /// Any group in pulses, or a robot in base coordinates.
+    /// Accepts any group in pulses, and a robot in base coordinates.
     pub fn new(model: Model, group: Group, coordinates: Coordinates) -> Result<Self, QueryError> {
         let instance = instance(model, group, coordinates)?;
         match (group, coordinates) {
@@ -226,7 +226,7 @@ macro_rules! read_axes {
         }
 
         impl $name {
-            /// Any group of the model.
+            /// Accepts any group of the model.
             pub fn new(model: Model, group: Group) -> Result<Self, QueryError> {
                 Ok(Self { group: known_group(model, group)? })
             }
@@ -260,13 +260,13 @@ read_axes! {
 pub enum TimeCounter {
     /// Control power on.
     ControlPower,
-    /// Servo power on, of a robot or station, or in total.
+    /// Time with servo power on, of a robot or station, or in total.
     Servo(Option<Group>),
-    /// Playback, of a robot or station, or in total.
+    /// Time of playback, of a robot or station, or in total.
     Playback(Option<Group>),
-    /// Motion, of a robot or station, or in total.
+    /// Time of motion, of a robot or station, or in total.
     Motion(Option<Group>),
-    /// Operation of an application, 1 to 8.
+    /// Operating time of an application, 1 to 8.
     Application(u8),
 }
 
@@ -277,7 +277,7 @@ pub struct ReadManagementTime {
 }
 
 impl ReadManagementTime {
-    /// Bases have no counters.
+    /// Refuses bases, which have no counters.
     pub fn new(model: Model, counter: TimeCounter) -> Result<Self, QueryError> {
         let of = |base: u16, group: Option<Group>| match group {
             None => Ok(base + 10),
@@ -328,7 +328,7 @@ pub struct ReadSystemInfo {
 }
 
 impl ReadSystemInfo {
-    /// Bases have no entry.
+    /// Refuses bases, which have no entry.
     pub fn new(model: Model, part: SystemPart) -> Result<Self, QueryError> {
         let instance = match part {
             SystemPart::Group(group @ Group::Base(_)) => {
@@ -353,7 +353,7 @@ impl Query for ReadSystemInfo {
     }
 }
 
-/// Counters and versions number robots from 11 and stations from 21.
+/// Offset of a group: counters and versions number robots from 11 and stations from 21.
 const fn counter_offset(group: Group) -> u16 {
     match group {
         Group::Robot(number) => 10 + number as u16,
@@ -371,7 +371,7 @@ pub struct ReadField {
 }
 
 impl ReadField {
-    /// Attributes count from 1, as in the table.
+    /// Attribute numbers count from 1, as in the table.
     pub fn new(model: Model, command: u16, instance: u16, attribute: u8) -> Result<Self, QueryError> {
         let request = reading(command, instance, attribute, service::GET_SINGLE);
         request.check(model)?;

@@ -1,4 +1,4 @@
-//! I/O groups of eight signals, and registers (0x78, 0x79, 0x300, 0x301).
+//! I/O groups, each of eight signals, and registers (0x78, 0x79, 0x300, 0x301).
 
 use super::{Query, QueryError, WriteQuery, checked, elements, read_plural, reading, write_one, write_plural};
 use crate::yerc::Model;
@@ -42,7 +42,7 @@ macro_rules! signals {
         }
 
         impl $read_many {
-            /// A range of the model that fits a frame.
+            /// Reads a range that exists on the model and fits a frame.
             pub fn new(model: Model, first: u16, count: u16) -> Result<Self, QueryError> {
                 checked(model, Self { first, count })
             }
@@ -70,7 +70,7 @@ macro_rules! signals {
         }
 
         impl $write {
-            /// A number that is writable on the model.
+            /// Writes a number that is writable on the model.
             pub fn new(model: Model, number: u16, value: $value) -> Result<Self, QueryError> {
                 checked(model, Self { number, value })
             }
@@ -90,7 +90,7 @@ macro_rules! signals {
         }
 
         impl $write_many {
-            /// A writable range of the model that fits a frame.
+            /// Writes a range that is writable on the model and fits a frame.
             pub fn new(model: Model, first: u16, values: Vec<$value>) -> Result<Self, QueryError> {
                 checked(model, Self { first, values })
             }

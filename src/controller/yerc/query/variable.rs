@@ -1,4 +1,4 @@
-//! Queries of one or several variables (0x7A to 0x81, 0x8C, 0x302 to 0x309, 0x30C).
+//! Queries that read or write one or several variables (0x7A to 0x81, 0x8C, 0x302 to 0x309, 0x30C).
 
 use super::{
     Query, QueryError, WriteQuery, checked, elements, read_all, read_plural, reading, write_one, write_plural,
@@ -18,7 +18,7 @@ pub struct ReadVariable {
 }
 
 impl ReadVariable {
-    /// Any number; extended ones exist only with the parameters of the controller.
+    /// Accepts any number. Extended variables exist only if the parameters of the controller provide them.
     pub const fn new(kind: VariableKind, number: u16) -> Self {
         Self { kind, number }
     }
@@ -50,8 +50,8 @@ pub struct ReadVariables {
 }
 
 impl ReadVariables {
-    /// The count must fit a frame; for B variables it must be even. Standard and extended numbers may be combined.
-    /// [`VariableKind::string_form`] selects the string form for the model.
+    /// The count must fit a frame; for B variables, it must also be even. Standard and extended numbers may be
+    /// combined. [`VariableKind::string_form`] selects the string form for the model.
     pub fn new(kind: VariableKind, first: u16, count: u16) -> Result<Self, QueryError> {
         checked(Model::Dx200, Self { kind, first, count })
     }
@@ -77,7 +77,7 @@ pub struct WriteVariable {
 }
 
 impl WriteVariable {
-    /// The kind of the value is that of the variable.
+    /// The kind of the value determines the kind of the variable.
     pub fn new(number: u16, value: Value) -> Result<Self, QueryError> {
         checked(Model::Dx200, Self { number, value })
     }
@@ -103,7 +103,7 @@ pub struct WriteVariables {
 }
 
 impl WriteVariables {
-    /// The count must fit a frame; for B variables it must be even.
+    /// The count must fit a frame; for B variables, it must also be even.
     pub fn new(first: u16, values: Vec<Value>) -> Result<Self, QueryError> {
         let kind = values.first().map(Value::kind).ok_or(QueryError::MixedKinds)?;
         if values.iter().any(|value| value.kind() != kind) {
@@ -130,7 +130,7 @@ pub struct WriteField {
 }
 
 impl WriteField {
-    /// Attributes count from 1, as in the table: 1 is the data type.
+    /// Attribute numbers count from 1, as in the table: 1 is the data type.
     pub fn new(kind: VariableKind, number: u16, attribute: u8, word: [u8; 4]) -> Result<Self, QueryError> {
         checked(Model::Dx200, Self { kind, number, attribute, word })
     }

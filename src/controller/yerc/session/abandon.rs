@@ -1,9 +1,10 @@
 //! Abort of a transfer.
 //!
-//! The manuals have no request for it. A controller keeps a transfer open until its timer expires (DX 5, E28B), and
-//! refuses others as busy until then. It also refuses a block or an ACK with a wrong number (E4A1, E4A2), and a
-//! refusal ends the transfer. So this session sends a wrong number on purpose, without data and without the
-//! last-block bit. It cannot be mistaken for content or for the end of the file.
+//! The manuals have no request that aborts a transfer. A controller keeps a transfer open until its timer expires (DX
+//! 5, E28B), and refuses other transfers as busy until then. But a controller also refuses a block or an ACK with a
+//! wrong number (E4A1, E4A2), and a refusal ends the transfer. For this reason, the session sends a wrong number on
+//! purpose, without data and without the last-block bit. The controller cannot mistake such a frame for content or for
+//! the end of the file.
 
 use std::time::Duration;
 
@@ -19,7 +20,7 @@ const EVERY: Duration = Duration::from_millis(200);
 /// Number of attempts.
 const TRIES: u32 = 3;
 
-/// Aborts a transfer at the controller. The outcome is whether the controller confirmed it.
+/// Aborts a transfer at the controller. The outcome is whether the controller confirmed the abort.
 #[derive(Debug, Clone)]
 pub struct Abandon {
     frame: Vec<u8>,
@@ -30,15 +31,15 @@ pub struct Abandon {
 }
 
 impl Abandon {
-    /// The session to abort the transfer in which `last` was the last frame sent. `None` if that frame neither opens
-    /// nor continues one.
+    /// Creates the session that aborts the transfer whose last sent frame was `last`. Returns `None` if that frame
+    /// neither opens nor continues a transfer.
     pub fn after(last: &[u8]) -> Option<Self> {
         let last = RequestFrame::parse(last).ok()?;
         let is_transfer = matches!(last.service, service::LOAD | service::SAVE | service::LIST);
         let is_end = last.ack && last.block & LAST_BLOCK != 0;
         (is_transfer && !is_end).then(|| Self {
             frame: RequestFrame { ack: true, block: NO_BLOCK, data: &[], ..last }.emit(),
-            // A block or an ACK is only sent after an answer of the controller.
+            // The client sends a block or an ACK only after an answer of the controller.
             is_open: last.ack,
             tries: 0,
             next: Now::ZERO,
@@ -46,12 +47,12 @@ impl Abandon {
         })
     }
 
-    /// Records an answer of the controller, so the transfer is open there.
+    /// Records that the controller answered, so that the transfer is open there.
     pub fn answered(&mut self) {
         self.is_open = true;
     }
 
-    /// Whether the transfer is open at the controller, by its answers.
+    /// Whether the transfer is open at the controller, according to its answers.
     pub fn is_open(&self) -> bool {
         self.is_open
     }

@@ -8,10 +8,10 @@ use super::super::wire::{AnswerFrame, LAST_BLOCK, RequestFrame, Status};
 use super::{Counters, Due, Ids, Inbox, Pace, Policy, count, is_busy};
 use crate::{Now, Session, Step};
 
-/// Maximum repeats of a lost final ACK.
+/// Maximum number of times that the final ACK is repeated after it was lost.
 const MOST_LINGERS: u32 = 8;
 
-/// A protocol violation in a transfer. The session ends, because continuing would mean guessing the content.
+/// A protocol violation in a transfer. The session ends, because it would have to guess the content to continue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum Violation {
     /// A block is missing.
@@ -22,15 +22,15 @@ pub enum Violation {
         /// Received number without the last-block bit.
         found: u32,
     },
-    /// An empty block that is not the last: the transfer might never end.
+    /// An empty block that is not the last block. With such blocks, the transfer might never end.
     #[error("block {block} is empty but not the last")]
     EmptyBlock {
-        /// Its number.
+        /// Number of the block.
         block: u32,
     },
 }
 
-/// Outcome of a download. `bytes` counts the data returned as [`Step::Data`] before.
+/// Outcome of a download. `bytes` counts the data that was returned as [`Step::Data`] before.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum DownloadEnd {
     /// All blocks up to the last one.
@@ -44,37 +44,38 @@ pub enum DownloadEnd {
     Finished,
     /// Success with an added status and without data: the file is missing or empty (E29C), or the list is empty (E2A7).
     Nothing(Status),
-    /// The controller refused, at the start or later.
+    /// The controller refused the transfer, at the start or later.
     Refused {
-        /// The reason; a busy code if it was busy to the end.
+        /// The status of the refusal. It is a busy code if the controller was busy until the time limit.
         status: Status,
-        /// Bytes received until then.
+        /// Bytes received before the refusal.
         bytes: u64,
     },
     /// The controller violated the protocol.
     Violated {
         /// The violation.
         violation: Violation,
-        /// Bytes received until then.
+        /// Bytes received before the violation.
         bytes: u64,
     },
-    /// The next block would exceed the limit of the caller.
+    /// The next block would exceed the limit that the caller set.
     TooLarge {
         /// The limit.
         limit: u64,
-        /// Bytes received until then.
+        /// Bytes received before this block.
         bytes: u64,
     },
     /// No answer.
     NoAnswer {
-        /// Bytes received until then. If 0, the request itself may be lost.
+        /// Bytes received before. If 0, the request itself may be lost.
         bytes: u64,
         /// What was received instead.
         counters: Counters,
     },
 }
 
-/// A transfer from the controller. Returns each block once and in order as [`Step::Data`]; holds at most one.
+/// A transfer from the controller. It returns each block once and in order as [`Step::Data`], and buffers at most one
+/// block.
 #[derive(Debug, Clone)]
 pub struct Download {
     inbox: Inbox,
@@ -84,27 +85,27 @@ pub struct Download {
     started: bool,
     /// The last frame sent: the request or an ACK.
     last_sent: Vec<u8>,
-    /// Whether `last_sent` was not sent yet.
+    /// Whether `last_sent` must still be sent.
     unsent: bool,
-    /// A block that was not returned yet.
+    /// A received block that was not returned yet.
     held: Option<Vec<u8>>,
     /// Number of the next block.
     expected: u32,
     /// Block number of the last ACK, with the last-block bit.
     acknowledged: u32,
     bytes: u64,
-    /// The latest answer, if it was a busy refusal.
+    /// The latest answer, if it is a busy refusal.
     busy: Option<Status>,
-    /// Whether the last frame was refused as busy and must be repeated later.
+    /// Whether the controller refused the last frame as busy, so that the frame must be repeated later.
     pausing: bool,
-    /// ACKs repeated after the end.
+    /// Number of repeated ACKs after the end.
     lingered: u32,
     ended: Option<DownloadEnd>,
 }
 
 impl Download {
-    /// Sends `request` (save or list) with an id from `ids` instead of its own. Refuses a file of more than `limit`
-    /// bytes.
+    /// Creates a session that sends `request` (save or list). The id of the request is replaced by an id from `ids`. A
+    /// file of more than `limit` bytes is refused.
     ///
     /// # Panics
     /// If the data of `request` is too long for a frame.
@@ -128,8 +129,8 @@ impl Download {
         }
     }
 
-    /// Sets the time limit of the first answer, without repeats. The batch backup answers after about ten minutes, and
-    /// a second request might start a second one.
+    /// Sets the time limit of the first answer, and disables repeats until then. The batch backup answers after about
+    /// ten minutes, and a second request might start a second backup.
     #[must_use]
     pub fn with_first_wait(mut self, wait: Duration) -> Self {
         self.first_wait = Some(wait);
@@ -146,9 +147,11 @@ impl Download {
         self.bytes
     }
 
-    /// After a complete download: the ACK to repeat if `bytes` is a repeat of the last block, which means that the ACK
-    /// was lost. Otherwise the controller would keep the transfer open until its timer expires. Limited, because a
-    /// server that repeats the block after each ACK would never end.
+    /// Returns the ACK that must be repeated after a complete download, because `bytes` is a repeat of the last block:
+    /// the controller did not receive the ACK. Without the repeated ACK, the controller would keep the transfer open
+    /// until its timer expires.
+    ///
+    /// The number of repeats is limited, because a server that repeats the block after each ACK would never end.
     pub fn linger(&mut self, bytes: &[u8]) -> Option<Vec<u8>> {
         let Some(DownloadEnd::Complete { .. }) = self.ended else { return None };
         let answer = self.inbox.current(bytes)?;
@@ -214,7 +217,7 @@ impl Download {
         }
     }
 
-    /// The outcome of a frame without a block, if it ends the transfer.
+    /// Outcome of the transfer if a frame without a block ends it.
     fn end_without_block(&self, answer: &AnswerFrame<'_>) -> Option<DownloadEnd> {
         let (status, bytes) = (answer.status, self.bytes);
         if !status.is_ok() {
@@ -235,7 +238,7 @@ impl Download {
         let last = answer.block & LAST_BLOCK != 0;
         let number = answer.block & !LAST_BLOCK;
         let (expected, bytes) = (self.expected, self.bytes);
-        // Some controllers number the only block of a file 0 instead of 1.
+        // Some controllers give the only block of a file the number 0 instead of 1.
         let lone = last && number == 0 && !self.transferring();
         if number < expected && self.transferring() {
             return count(&mut self.inbox.counters.duplicated);
@@ -279,7 +282,8 @@ impl Session for Download {
             self.last_sent.clone_from(&self.inbox.request);
             return self.send(now);
         }
-        // The ACK is sent first: the controller prepares its next block while this one is written.
+        // The ACK is sent before the block is returned, so that the controller prepares its next block while the caller
+        // writes this one.
         if self.unsent {
             self.unsent = false;
             return self.send(now);
@@ -306,7 +310,7 @@ impl Session for Download {
         if !self.started {
             return count(&mut self.inbox.counters.foreign);
         }
-        // A frame that arrives before the last one was sent cannot be its answer.
+        // A frame that arrives before the last frame was sent cannot be its answer.
         if self.ended.is_some() || self.unsent || self.held.is_some() {
             return count(&mut self.inbox.counters.duplicated);
         }
@@ -343,7 +347,7 @@ mod tests {
         AnswerFrame { division: Division::File, ack: true, id, block, service: 0x96, status, data }.emit()
     }
 
-    /// Passes a block and returns the ACK and the data.
+    /// Passes a block, and returns the ACK and the data.
     fn exchange(session: &mut Download, now: Now, frame: &[u8]) -> (Vec<u8>, Vec<u8>) {
         session.handle(now, frame);
         let ack = sent(session, now);
@@ -353,15 +357,16 @@ mod tests {
         }
     }
 
-    /// The header of the first block in section 3.2.3 with other data: the manual has no example with 479 bytes.
+    /// A full block with the header of the first block in section 3.2.3 and other data. The manual has no example with
+    /// 479 bytes.
     fn full_block(head: &str, fill: u8) -> Vec<u8> {
         [hex(head), vec![fill; 479]].concat()
     }
 
     #[test]
     fn save_as_in_section_3_2_3() {
-        // The example of the manual increments the id with every ACK (02, 03, 04). Here a transfer keeps its id, and
-        // the controller copies it.
+        // In the example of the manual, every ACK increments the id (02, 03, 04). Here a transfer keeps its id, and the
+        // controller copies the id.
         let mut session = start(&SAVE, 2);
         assert_eq!(
             sent(&mut session, ms(0)),

@@ -6,7 +6,7 @@ use super::super::wire::{AnswerFrame, RequestFrame, Status};
 use super::{Counters, Due, Ids, Inbox, Pace, Policy, count, is_busy, is_damaged};
 use crate::{Now, Session, Step};
 
-/// Answer of a controller; a refusal is an answer.
+/// Answer of a controller. A refusal is also an answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reply {
     /// Result code.
@@ -26,7 +26,7 @@ pub enum Ended {
     Answered(Reply),
     /// No answer to a request that can be repeated without harm.
     NoAnswer(Counters),
-    /// No answer to a change: it may or may not have been carried out.
+    /// No answer to a request that changes something. The controller may or may not have carried it out.
     OutcomeUnknown(Counters),
 }
 
@@ -38,15 +38,16 @@ pub struct Exchange {
     repeatable: bool,
     started: Option<Now>,
     attempts: u32,
-    /// The last refusal that causes a repeat.
+    /// The last refusal that is a reason to repeat the request.
     busy: Option<Reply>,
-    /// Whether the last attempt was refused in this way, and the next one is due later.
+    /// Whether the last attempt was refused for such a reason, so that the next attempt is due later.
     pausing: bool,
     ended: Option<Ended>,
 }
 
 impl Exchange {
-    /// Sends `request` with an id from `ids` instead of its own. If `repeatable`, it is repeated after a timeout.
+    /// Creates a session that sends `request`. The id of the request is replaced by an id from `ids`. A `repeatable`
+    /// request is repeated after a timeout.
     ///
     /// # Panics
     /// If the data of `request` is too long for a frame.
@@ -137,8 +138,8 @@ impl Session for Exchange {
         }
         let damaged = self.repeatable && is_damaged(answer.status);
         if !damaged && !is_busy(answer.status) {
-            // An answer to an earlier id also counts: the network duplicated the request, and the other copy was
-            // carried out.
+            // An answer to an earlier id also counts. In this case the network duplicated the request, and the
+            // controller carried out the other copy.
             self.ended = Some(Ended::Answered(self.reply(now, &answer)));
         } else if answer.id != self.inbox.id {
             count(&mut self.inbox.counters.late);
@@ -257,7 +258,7 @@ mod tests {
         let second = sent(&mut session, ms(110));
         assert_eq!((first[11], second[11]), (0, 1));
         assert_eq!((&first[..11], &first[12..]), (&second[..11], &second[12..]));
-        // The third copy of the old refusal must not cause a third request.
+        // The third copy of the earlier refusal must not cause a third request.
         session.handle(ms(111), &busy);
         assert_eq!(session.poll(ms(111)), Step::Wait(ms(3110)));
         session.handle(ms(120), &answer(&START, 1, Status::OK, &[]));
@@ -306,7 +307,8 @@ mod tests {
                     other => panic!("{other:?}"),
                 }
             };
-            // Pauses of 100, 200, 400, 800 ms and three of 1 s. Another second would leave no time for an answer.
+            // Pauses of 100, 200, 400 and 800 ms and three pauses of 1 s. Another pause of 1 s would leave no time for
+            // an answer.
             assert_eq!((sends, now), (8, ms(4500)));
             let Ended::Answered(reply) = outcome else { panic!("not answered") };
             assert_eq!((reply.status, reply.attempts), (Status::refused(0xE444), 8));

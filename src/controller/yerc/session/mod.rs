@@ -1,22 +1,22 @@
 //! Protocol sessions: a request with its answer, a download of a file or list, an upload of a file.
 //!
-//! Datagrams may be lost, duplicated, late or damaged; the manuals do not cover that. These rules apply:
+//! Datagrams may be lost, duplicated, late or damaged. The manuals do not cover these cases, so these rules apply:
 //!
-//! - **Reads repeat, changes do not.** A change is sent once. Without an answer its outcome is unknown and reported
-//!   as such. The exception is a busy refusal, which states that nothing was done.
+//! - **Reads are repeated, changes are not.** A change is sent once. Without an answer, the outcome of the change is
+//!   unknown and is reported as unknown. The exception is a busy refusal, which states that the controller did nothing.
 //! - **A damaged read is repeated** like a lost one.
-//! - **A request is repeated under a new id after a busy refusal.** So a second copy of the old refusal cannot be
-//!   mistaken for a refusal of the repeat, which may have been carried out.
-//! - **A transfer keeps one id** and is stop-and-wait. A session repeats its last frame only after a timeout, never
-//!   after a duplicate: two sides that answer each copy with a copy would multiply the traffic until the end of the
+//! - **After a busy refusal, a request is repeated under a new id.** The controller may carry out the repeat. With the
+//!   old id, the session could mistake a late copy of the old refusal for a refusal of the repeat.
+//! - **A transfer keeps one id** and is stop-and-wait. A session repeats its last frame only after a timeout, and never
+//!   after a duplicate. If both sides answered each copy with a copy, the traffic would multiply until the end of the
 //!   file.
 //! - **Blocks must arrive in order.** A gap ends a transfer.
-//! - **An aborted transfer is ended at the controller too.** Otherwise the controller refuses others until its timer
-//!   expires.
+//! - **An aborted transfer is ended at the controller too.** Otherwise the controller refuses other transfers until its
+//!   timer expires.
 //! - Frames that belong to no open request are counted by class ([`Counters`]) and ignored.
 //!
-//! The driver must check the sender of a datagram: only frames from the address and port of the controller may be
-//! passed.
+//! The driver must check the sender of each datagram. It may pass only frames from the address and port of the
+//! controller.
 
 use std::fmt;
 use std::sync::Arc;
@@ -37,19 +37,20 @@ pub use download::{Download, DownloadEnd, Violation};
 pub use exchange::{Ended, Exchange, Reply};
 pub use upload::{Upload, UploadEnd};
 
-/// Pause after the first busy refusal; it doubles with each refusal, up to [`LONGEST_PAUSE`].
+/// Pause after the first busy refusal. It doubles with each further refusal, up to [`LONGEST_PAUSE`].
 const FIRST_PAUSE: Duration = Duration::from_millis(100);
 const LONGEST_PAUSE: Duration = Duration::from_secs(1);
 
-/// An id at most this far behind the id of a session belongs to an earlier session; its frame is late.
+/// If the id of a frame is at most this far behind the id of a session, the frame belongs to an earlier session and is
+/// late.
 const LATE_WINDOW: u8 = 32;
 
-/// Whether the controller refused only because it was busy.
+/// Whether the controller refused a request only because it was busy.
 pub fn is_busy(result: Status) -> bool {
     !result.is_ok() && status::is_busy(result.added)
 }
 
-/// Whether the controller refused a damaged frame: size of the header, identifier, stated size (DX 5).
+/// Whether the controller refused a damaged frame: wrong header size, identifier or stated size (DX 5).
 pub fn is_damaged(result: Status) -> bool {
     !result.is_ok() && matches!(result.added, 0xE4A5..=0xE4A7)
 }
@@ -57,19 +58,19 @@ pub fn is_damaged(result: Status) -> bool {
 /// Time limits and number of attempts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Policy {
-    /// Time limit of an attempt. Only the last attempt uses all of it.
+    /// Time limit of an attempt. Only the last attempt waits for all of this time.
     pub timeout: Duration,
-    /// Time until the first repeat, if shorter.
+    /// Time until the first repeat, if it is shorter than `timeout`.
     pub attempt: Duration,
-    /// Whether that time doubles with each repeat, up to `timeout`.
+    /// Whether the time until a repeat doubles with each repeat, up to `timeout`.
     pub doubles: bool,
     /// Maximum number of repeats after a timeout.
     pub retries: u32,
 }
 
 impl Default for Policy {
-    /// A controller answers within 20 ms. With these values a frame is sent after 0, 0.3, 0.9 and 2.1 s, and given up
-    /// after 5.1 s.
+    /// A controller answers within 20 ms. With these values a frame is sent after 0, 0.3, 0.9 and 2.1 s, and the
+    /// session ends after 5.1 s.
     fn default() -> Self {
         Self { timeout: Duration::from_secs(3), attempt: Duration::from_millis(300), doubles: true, retries: 3 }
     }
@@ -82,7 +83,7 @@ impl Policy {
         Self { timeout, retries, ..self }
     }
 
-    /// Total time for a repeatable frame: at most `timeout` times (`retries` + 1).
+    /// Total time for a repeatable frame. It is at most `timeout` times (`retries` + 1).
     pub fn patience(&self) -> Duration {
         // After 32 doublings the time no longer grows.
         let growing = self.retries.min(u32::BITS);
@@ -110,7 +111,7 @@ impl Ids {
 
     /// Id of the next command.
     pub fn next_id(&self) -> u8 {
-        // An atomic addition wraps around, as the ids do.
+        // An atomic addition wraps around, just as the ids do.
         self.0.fetch_add(1, Ordering::Relaxed)
     }
 }
@@ -120,7 +121,7 @@ impl Ids {
 pub struct Counters {
     /// Frames that answer an earlier request of this client.
     pub late: u32,
-    /// Frames that answer no request of this client: other id, service or server, or not an answer.
+    /// Frames that answer no request of this client: another id, service or server, or not an answer at all.
     pub foreign: u32,
     /// Duplicates of accepted frames.
     pub duplicated: u32,
@@ -158,19 +159,19 @@ impl Counters {
         self.named().iter().map(|&(count, _)| u64::from(count)).sum()
     }
 
-    /// Whether datagrams arrived that were no answers: a peer exists.
+    /// Whether any datagrams arrived. They were no answers, but they show that a peer exists.
     pub fn heard_something(&self) -> bool {
         self.named().iter().any(|&(count, name)| count > 0 && name != "repeated")
     }
 
-    /// Whether datagrams arrived that are no answers of this protocol.
+    /// Whether datagrams arrived that are not answers in this protocol.
     pub fn is_garbage(&self) -> bool {
         [self.garbage, self.truncated, self.oversized, self.foreign].iter().any(|&count| count > 0)
     }
 }
 
 impl fmt::Display for Counters {
-    /// Nonzero counters, as in "2 foreign, 1 truncated"; "nothing" if all are 0.
+    /// The counters that are not zero, as in "2 foreign, 1 truncated"; "nothing" if all are 0.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut separator = "";
         for (count, name) in self.named().into_iter().filter(|&(count, _)| count > 0) {
@@ -181,13 +182,13 @@ impl fmt::Display for Counters {
     }
 }
 
-/// A copy of a frame with another id.
+/// Copies a frame and replaces its id.
 fn with_id(frame: &[u8], id: u8) -> Vec<u8> {
     let frame = RequestFrame::parse(frame).expect("sessions build their frames with emit");
     RequestFrame { id, ..frame }.emit()
 }
 
-/// Adds one; a flood must not overflow a counter.
+/// Adds one. The counter saturates, so that many datagrams cannot overflow it.
 fn count(counter: &mut u32) {
     *counter = counter.saturating_add(1);
 }
@@ -198,7 +199,7 @@ struct Inbox {
     request: Vec<u8>,
     ids: Ids,
     id: u8,
-    /// Earlier ids of this session, newest last.
+    /// Earlier ids of this session, newest id last.
     former: Vec<u8>,
     counters: Counters,
 }
@@ -207,7 +208,7 @@ struct Inbox {
 const FORMER_IDS: usize = 8;
 
 impl Inbox {
-    /// Takes answers to `request`, whose id is replaced by one from `ids`.
+    /// Creates a filter for the answers to `request`. The id of the request is replaced by an id from `ids`.
     fn new(request: &RequestFrame<'_>, ids: &Ids) -> Self {
         let id = ids.next_id();
         let request = RequestFrame { id, ..*request }.emit();
@@ -218,7 +219,7 @@ impl Inbox {
         RequestFrame::parse(&self.request).expect("the inbox built this frame with emit")
     }
 
-    /// Assigns a new id; answers to the old one are late from now on.
+    /// Assigns a new id. From now on, answers to the old id are late.
     fn renew(&mut self) {
         if self.former.len() == FORMER_IDS {
             self.former.remove(0);
@@ -228,7 +229,7 @@ impl Inbox {
         self.request = with_id(&self.request, self.id);
     }
 
-    /// Parses an answer to the current or an earlier id; counts everything else.
+    /// Parses an answer to the current id or an earlier id. Any other datagram is counted.
     fn answer<'a>(&mut self, bytes: &'a [u8]) -> Option<AnswerFrame<'a>> {
         let counters = &mut self.counters;
         let answer = match AnswerFrame::parse(bytes) {
@@ -255,7 +256,7 @@ impl Inbox {
         None
     }
 
-    /// [`Inbox::answer`] for the current id only.
+    /// Like [`Inbox::answer`], but only for the current id.
     fn current<'a>(&mut self, bytes: &'a [u8]) -> Option<AnswerFrame<'a>> {
         let answer = self.answer(bytes)?;
         if answer.id == self.id {
@@ -270,12 +271,12 @@ impl Inbox {
 #[derive(Debug, Clone)]
 struct Pace {
     policy: Policy,
-    /// Deadline of a frame with all its repeats.
+    /// Deadline of a frame, including all its repeats.
     patience: Now,
     /// End of the current wait.
     deadline: Now,
     repeat_at: Option<Now>,
-    /// Repeats of the current frame after a timeout.
+    /// Number of repeats of the current frame after a timeout.
     repeats: u32,
     pause: Duration,
 }
@@ -301,14 +302,14 @@ impl Pace {
         self.pause = FIRST_PAUSE;
     }
 
-    /// Records a sent frame. It has further attempts only if `repeatable`.
+    /// Records that a frame was sent. It is sent again after a timeout only if it is `repeatable`.
     fn sent(&mut self, now: Now, repeatable: bool) {
         let more = repeatable && self.repeats < self.policy.retries;
         self.repeat_at = more.then(|| now.saturating_add(self.policy.silence(self.repeats)));
         self.deadline = if repeatable { self.patience } else { now.saturating_add(self.policy.timeout) };
     }
 
-    /// Records a sent frame without repeats, whose answer may take `wait`.
+    /// Records that a frame was sent. It is not repeated, and its answer may take as long as `wait`.
     fn sent_for(&mut self, now: Now, wait: Duration) {
         self.repeat_at = None;
         self.deadline = now.saturating_add(wait);
@@ -319,7 +320,7 @@ impl Pace {
         self.repeats = self.repeats.saturating_add(1);
     }
 
-    /// Schedules a pause before a repeat; `false` if no time would be left for an answer.
+    /// Schedules a pause before a repeat. Returns `false` if the pause would leave no time for an answer.
     fn pause(&mut self, now: Now) -> bool {
         let resume = now.saturating_add(self.pause);
         if resume.saturating_add(self.policy.silence(0)) > self.patience {
@@ -364,7 +365,7 @@ mod testing {
         data: b"TESTJOB.JBI",
     };
 
-    /// An answer with another id, for examples of the manual that increment it within a transfer.
+    /// Copies an answer and replaces its id. The examples of the manual increment the id within a transfer.
     pub(super) fn under_id(frame: &[u8], id: u8) -> Vec<u8> {
         let frame = AnswerFrame::parse(frame).unwrap();
         AnswerFrame { id, ..frame }.emit()

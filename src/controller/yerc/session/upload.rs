@@ -4,7 +4,7 @@ use super::super::wire::{LAST_BLOCK, MAX_DATA, RequestFrame, Status};
 use super::{Counters, Due, Ids, Inbox, Pace, Policy, count, is_busy};
 use crate::{Now, Session, Step};
 
-/// Outcome of an upload. `sent` counts the bytes of the blocks sent, `taken` those of the acknowledged blocks.
+/// Outcome of an upload. `sent` counts the bytes in the sent blocks, `taken` the bytes in the acknowledged blocks.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum UploadEnd {
     /// The controller acknowledged every block up to the last one.
@@ -14,36 +14,37 @@ pub enum UploadEnd {
         /// Number of blocks.
         blocks: u32,
     },
-    /// The controller acknowledged all blocks, but the last one without its number, as `0x80000000`. That is most
-    /// likely the end; only a check at the controller can confirm it.
+    /// The controller acknowledged all blocks, but the ACK of the last block has no number: it is `0x80000000`. This is
+    /// most likely the end of the upload. Only a check at the controller can confirm it.
     Unnumbered {
         /// Total size.
         bytes: u64,
         /// Number of blocks.
         blocks: u32,
     },
-    /// The file is empty; nothing was sent. A transfer ends with a data block with the last-block bit, and the manuals
-    /// have none without data. The controller would be left with an open transfer or a partial file.
+    /// The file is empty, and nothing was sent. A transfer ends with a data block that has the last-block bit, and the
+    /// manuals have no such block without data. An upload could leave an open transfer or a partial file on the
+    /// controller.
     Empty,
     /// The file needs more blocks than there are block numbers.
     TooLong {
         /// Bytes sent before the numbers ran out.
         sent: u64,
     },
-    /// The controller refused, at the start or later.
+    /// The controller refused the transfer, at the start or later.
     Refused {
-        /// The reason; a busy code if it was busy to the end.
+        /// The status of the refusal. It is a busy code if the controller was busy until the time limit.
         status: Status,
         /// Bytes sent.
         sent: u64,
         /// Bytes acknowledged.
         taken: u64,
-        /// Whether an earlier attempt of the refused frame had no answer. That attempt may have been accepted; if it
-        /// was the last block, the file may exist despite the refusal.
+        /// Whether an earlier attempt of the refused frame had no answer. The controller may have accepted that
+        /// attempt. If the frame was the last block, the file may exist despite the refusal.
         repeated: bool,
     },
-    /// No answer: the controller may have nothing, a part, or after the last block the whole file. After the request
-    /// (`sent` is 0) the controller may be waiting for data.
+    /// No answer. The controller may have nothing, a part of the file, or, after the last block, the whole file. After
+    /// the request (`sent` is 0), the controller may be waiting for data.
     OutcomeUnknown {
         /// Bytes sent.
         sent: u64,
@@ -54,10 +55,10 @@ pub enum UploadEnd {
     },
 }
 
-/// The frame that waits for an acknowledgement.
+/// The frame that waits for its acknowledgement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Stage {
-    /// None: the next block is being collected.
+    /// No frame: the next block is being collected.
     Gather,
     /// The request.
     Request,
@@ -65,8 +66,8 @@ enum Stage {
     Block { last: bool },
 }
 
-/// A transfer to the controller. It requests content with [`Step::Feed`] before it sends anything, so that an empty
-/// or unreadable source has no effect.
+/// A transfer to the controller. It requests content with [`Step::Feed`] before it sends anything, so that an empty or
+/// unreadable file has no effect.
 #[derive(Debug, Clone)]
 pub struct Upload {
     inbox: Inbox,
@@ -76,22 +77,22 @@ pub struct Upload {
     buffer: Vec<u8>,
     source_ended: bool,
     stage: Stage,
-    /// Block number in the acceptance of the request.
+    /// Block number in the answer that accepted the request.
     accepted: Option<u32>,
     last_sent: Vec<u8>,
     /// Number of the last block sent; 0 before the first.
     block: u32,
     sent: u64,
     taken: u64,
-    /// Whether an earlier attempt of the last frame had no answer.
+    /// Whether an earlier attempt to send the last frame had no answer.
     repeated: bool,
-    /// Busy refusal of the last frame, which is repeated later.
+    /// Busy refusal of the last frame. The frame is repeated later.
     busy: Option<Status>,
     ended: Option<UploadEnd>,
 }
 
 impl Upload {
-    /// Sends `request` (load) with an id from `ids` instead of its own.
+    /// Creates a session that sends `request` (load). The id of the request is replaced by an id from `ids`.
     ///
     /// # Panics
     /// If the data of `request` is too long for a frame.
@@ -114,7 +115,7 @@ impl Upload {
         }
     }
 
-    /// Sets the block size instead of 479 bytes. Other clients are known to use 400.
+    /// Sets the block size instead of 479 bytes. Other clients are known to use 400 bytes.
     ///
     /// # Panics
     /// If `size` is not 1 to 479.
@@ -125,8 +126,8 @@ impl Upload {
         self
     }
 
-    /// Answer to [`Step::Feed`]: the next piece of the file, of any size, and whether the file ends with it. The last
-    /// piece may be empty. Data after the end is ignored.
+    /// Answers [`Step::Feed`] with the next piece of the file, of any size. `last` marks the last piece of the file,
+    /// which may be empty. Data after it is ignored.
     pub fn feed(&mut self, data: &[u8], last: bool) {
         if self.source_ended {
             return;
@@ -152,7 +153,7 @@ impl Upload {
 
     /// The next frame, or a request for more content.
     fn next_frame(&mut self, now: Now) -> Step<UploadEnd> {
-        // A full block is known not to be the last one only after another byte.
+        // Only one more byte shows that a full block is not the last block.
         if !self.source_ended && self.buffer.len() <= self.block_size {
             return Step::Feed;
         }
@@ -185,7 +186,7 @@ impl Upload {
     }
 
     fn send(&mut self, now: Now) -> Step<UploadEnd> {
-        // A controller recognizes a repeated block by its number. The request has no number.
+        // A controller recognizes a repeated block by its number. The request has no number, so it is not repeated.
         self.pace.sent(now, self.stage != Stage::Request);
         Step::Send(self.last_sent.clone())
     }
@@ -232,9 +233,9 @@ impl Upload {
     }
 
     fn take_ack(&mut self, block: u32) {
-        // An acknowledgement of the last block without its mark also counts.
+        // An acknowledgement of the last block also counts without the last-block bit.
         let number = block & !LAST_BLOCK;
-        // If the request was accepted with this number too, a late copy of that answer looks the same.
+        // If the controller accepted the request with the same number, this ACK may be a late copy of that answer.
         let is_unnumbered = block == LAST_BLOCK && self.accepted != Some(LAST_BLOCK);
         if is_unnumbered && self.stage == (Stage::Block { last: true }) {
             self.taken = self.sent;
@@ -288,7 +289,8 @@ impl Session for Upload {
         if is_busy(status) {
             self.take_busy(now, status);
         } else if !status.is_ok() || status.added != 0 {
-            // In a read, success with an added status means missing data; here it is not an acknowledgement.
+            // After a read, success with an added status means that data is missing. After a block, it is not an
+            // acknowledgement.
             self.ended = Some(self.refused(status));
         } else {
             self.take_ack(answer.block);
@@ -323,7 +325,7 @@ mod tests {
 
     #[test]
     fn load_as_in_section_3_2_4() {
-        // The example of the manual increments the id with every block (05, 06, 07); here a transfer keeps its id.
+        // In the example of the manual, every block increments the id (05, 06, 07). Here a transfer keeps its id.
         let content = [&[0x41; 479][..], b"   END\r\n"].concat();
         let mut session = start(&content);
         assert_eq!(
@@ -342,7 +344,7 @@ mod tests {
         assert_eq!(session.counters(), Counters::default());
     }
 
-    /// Blocks of an upload without faults: fed in pieces, with the end separate or in the last piece.
+    /// Blocks of an upload without faults. The file is fed in pieces; its end comes with the last piece, or separately.
     fn blocks(length: usize, piece: usize, block_size: usize, end_apart: bool) -> Vec<(u32, usize)> {
         let content = vec![9; length];
         let mut session = Upload::new(&LOAD, Policy::default(), &Ids::starting_at(5)).with_block_size(block_size);
@@ -456,7 +458,7 @@ mod tests {
             session
         };
         assert_eq!(done(&mut to_last_block(0), ms(30)), UploadEnd::Unnumbered { bytes: 958, blocks: 2 });
-        // If the request was accepted with this number, it may be a late copy of that answer.
+        // If the request was accepted with this number, the ACK may be a late copy of that answer.
         assert!(matches!(to_last_block(LAST_BLOCK).poll(ms(30)), Step::Wait(_)));
     }
 

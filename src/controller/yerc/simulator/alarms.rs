@@ -1,4 +1,4 @@
-//! Alarms: up to four active ones, and a history of five classes (DX 3.3.1, 3.3.2, 3.3.37, 3.3.38).
+//! Alarms: up to four active alarms, and a history of five classes (DX 3.3.1, 3.3.2, 3.3.37, 3.3.38).
 
 use std::collections::VecDeque;
 
@@ -8,9 +8,10 @@ use crate::yerc::Model;
 use crate::yerc::payload::{Alarm, AlarmKind, AlarmTexts, Text};
 
 pub(super) const ACTIVE: usize = 4;
-/// Entries per class of the history.
+/// Number of entries in each class of the history.
 const HISTORY: usize = 100;
-/// Instance numbers of a class start at multiples of this, plus 1.
+/// Difference between the first instance numbers of two classes. Each class begins at a multiple of this number, plus
+/// 1.
 const CLASS_STEP: u16 = 1000;
 
 /// Class of the history.
@@ -25,7 +26,7 @@ pub(super) enum Class {
 }
 
 impl Class {
-    /// The class of an alarm number: 0001-3999 stop the controller; 8000 and above are raised by jobs and ladder.
+    /// Class of an alarm number. Alarms 0001-3999 stop the controller; jobs and the ladder raise alarms from 8000 on.
     pub(super) fn from_code(code: u32) -> Self {
         match code {
             0..=3999 => Self::Major,
@@ -36,7 +37,7 @@ impl Class {
     }
 }
 
-/// An alarm with the texts for its code, sub-code and type; `name` replaces the usual name.
+/// An alarm with the texts for its code, sub-code and type. `name` replaces the default name.
 pub(super) fn alarm(code: u32, data: u32, kind: u32, time: &str, name: Option<&str>) -> Alarm {
     let alarm = Alarm {
         code,
@@ -81,7 +82,7 @@ impl AlarmLog {
         !self.active.is_empty()
     }
 
-    /// Whether an alarm is active that only a restart clears.
+    /// Whether an alarm is active that is cleared only by a restart.
     pub(super) fn major_is_active(&self) -> bool {
         self.active.iter().any(|alarm| Class::from_code(alarm.code) == Class::Major)
     }
@@ -94,7 +95,7 @@ impl AlarmLog {
         self.active.iter()
     }
 
-    /// Instances 1 to 4, newest first; other instances do not exist. An empty slot is all zeros.
+    /// Instances 1 to 4, newest alarm first. Other instances do not exist. An empty slot is all zeros.
     pub(super) fn current(&self, instance: u16) -> Option<Vec<u8>> {
         let place = usize::from(instance).checked_sub(1).filter(|&place| place < ACTIVE)?;
         Some(bytes_or_zeros(self.active.get(place)))
@@ -112,7 +113,7 @@ fn bytes_or_zeros(alarm: Option<&Alarm>) -> Vec<u8> {
     alarm.map_or_else(|| vec![0; Alarm::SIZE_WITH_TEXTS], Alarm::emit)
 }
 
-/// Text in the encoding of a Japanese controller.
+/// Encodes a text for a Japanese controller.
 pub(super) fn sjis(text: &str) -> Vec<u8> {
     SHIFT_JIS.encode(text).0.into_owned()
 }
@@ -133,8 +134,8 @@ fn known_name(code: u32) -> &'static str {
     }
 }
 
-/// Text and reverse-video map of a sub-code by alarm type (DX 3.3.1). The assignment of bits to axes is specific to
-/// this simulator.
+/// Text of a sub-code by alarm type, and the characters that are displayed in reverse video (DX 3.3.1). The assignment
+/// of bits to axes is specific to this simulator.
 fn sub_code(alarm: &Alarm) -> (String, String) {
     const ROBOT: &[&str] = &["S", "L", "U", "R", "B", "T"];
     let names = match alarm.kind.0 {
@@ -163,14 +164,14 @@ fn sub_code(alarm: &Alarm) -> (String, String) {
     axes(names, alarm.data)
 }
 
-/// Sub-code of type 21 in the layout of this simulator: axes at the lower limit, axes at the upper limit, robot
+/// Sub-code of type 21 in the layout of this simulator: axes at the lower limit, axes at the upper limit, and the robot
 /// number.
 pub(super) fn limit_data(robot: u16, axis: usize, upper: bool) -> u32 {
     let bit = 1u32 << axis.min(7);
     u32::from(robot) << 16 | if upper { bit << 8 } else { bit }
 }
 
-/// Names in brackets; names with a set bit are displayed reversed.
+/// Names in brackets. The pendant displays names whose bit is set in reverse video.
 fn axes(names: &[&str], bits: u32) -> (String, String) {
     let (mut text, mut reverse) = (String::from("["), String::from("0"));
     for (bit, name) in names.iter().enumerate() {

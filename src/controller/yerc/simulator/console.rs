@@ -10,9 +10,9 @@ use crate::yerc::payload::CycleMode;
 const HELP: &[(&str, &str)] = &[
     ("alarm CODE [DATA [TYPE]] [NAME]", "raise an alarm: alarm 4315 1 2 COLLISION DETECT"),
     ("alarm clear", "remove all alarms"),
-    ("error on|off", "show an error, or none"),
+    ("error on|off", "show an error, or clear it"),
     ("mode teach|play", "turn the mode key"),
-    ("remote on|off", "accept remote commands, or not (CMD REMOTE)"),
+    ("remote on|off", "accept remote commands, or reject them (CMD REMOTE)"),
     ("servo on|off", "switch servo power"),
     ("cycle step|once|continuous", "select how jobs run"),
     ("hold pendant|external on|off", "press or release a HOLD"),
@@ -114,7 +114,7 @@ fn servo(world: &mut World, on: bool) -> Result<(), String> {
     Ok(())
 }
 
-/// HLOCK locks the pendant, except the emergency stop (DX 3.3.20).
+/// Refuses while HLOCK is on. HLOCK locks the pendant, except its emergency stop (DX 3.3.20).
 fn unlocked(world: &World) -> Result<(), String> {
     if world.switches.hlock { Err("the pendant is locked by HLOCK".into()) } else { Ok(()) }
 }
@@ -142,7 +142,7 @@ fn register(world: &mut World, register: &str, value: &str) -> Result<String, St
     }
 }
 
-/// One line with all states that decide about refusals.
+/// One line with all states on which refusals depend.
 fn summary(world: &World) -> String {
     let switches = &world.switches;
     let always = [

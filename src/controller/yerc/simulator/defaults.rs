@@ -8,8 +8,8 @@ use crate::yerc::Model;
 use crate::yerc::names::written;
 use crate::yerc::payload::{Axes, BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind};
 
-/// System software, robot model, application and parameter version (examples of FS and DX 3.3.26). The letters of the
-/// software version are those that [`Model::from_software`] recognizes.
+/// System software, robot model, application and parameter version (examples of FS and DX 3.3.26).
+/// [`Model::from_software`] recognizes the letters of the software version.
 pub(super) const fn versions(model: Model) -> [&'static str; 4] {
     match model {
         Model::Fs100 => ["FS1.14.00A(JP/US)-00", "MPP0003-A0*", "GENERAL", "12.34"],
@@ -40,7 +40,8 @@ JUMP *AGAIN IF B000<3",
 /// Taught positions of all jobs above.
 const POSITIONS: &str = "C00000=0,0,0,0,0,0\nC00001=0,0,-300000,0,0,0\nC00002=68000,100000,0,0,-30000,0";
 
-/// Data, parameter, system and list files. `VAR.DAT` and the lists of names are generated when they are read.
+/// Data, parameter, system and list files. `VAR.DAT` and the lists of names are not here: they are generated when they
+/// are read.
 const FILES: [(&str, &str); 12] = [
     ("VAR.DAT", "//VAR"),
     ("POSITION.DAT", "//POSITION\n///ABSO"),
@@ -59,9 +60,9 @@ const FILES: [(&str, &str); 12] = [
     ("VARNAME.LST", "//VARNAME"),
 ];
 
-/// Lines of the signal sections: the first 128 signals of each.
+/// Number of lines in the signal sections. They contain the first 128 signals of each kind.
 const SIGNAL_LINES: usize = 32;
-/// Lines of the sections of variables and registers.
+/// Number of lines in the sections of variables and registers.
 const LINES: usize = 100;
 
 /// Files with user-defined names; see [`crate::yerc::names`].
@@ -106,7 +107,7 @@ pub(super) fn name_files() -> Vec<(&'static str, Vec<u8>)> {
     .into()
 }
 
-/// A section of empty lines, except for these.
+/// A section whose lines are empty, except for the named lines.
 fn section(lines: usize, nothing: &str, named: &[(usize, &str)]) -> Vec<String> {
     let line = |at| named.iter().find(|(line, _)| *line == at).map_or(nothing, |(_, text)| text).to_owned();
     (0..lines).map(line).collect()

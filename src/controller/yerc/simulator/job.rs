@@ -1,4 +1,4 @@
-//! Job files (JBI): checks of a load, and the program.
+//! Job files (JBI): checks when a file is loaded, and the program in the file.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -6,11 +6,11 @@ use std::time::Duration;
 use super::memory::Kind;
 use super::motion::{AXES, Pulses};
 
-/// Added status: NOP at the start or END at the end is missing, or lines do not end in CR LF.
+/// Added status: NOP is missing at the start, END is missing at the end, or lines do not end in CR LF.
 const NOP_OR_END_MISSING: u16 = 0x5130;
 /// Added status: the file does not start as a job.
 const FORMAT: u16 = 0x5170;
-/// Added status: the name in the file differs.
+/// Added status: the job name in the file is not the name of the file.
 const JOB_RECORD: u16 = 0x5390;
 /// Added status: a known instruction with wrong syntax.
 const SYNTAX: u16 = 0x5110;
@@ -25,9 +25,9 @@ pub(super) struct Program {
 }
 
 impl Program {
-    /// Parses a job file. An error is the added status with which a controller refuses it.
+    /// Parses a job file. An error is the added status with which a controller refuses the file.
     ///
-    /// `stem` is the file name without `.JBI`; the name in the job must be equal.
+    /// `stem` is the file name without `.JBI`. It must be equal to the job name in the file.
     pub(super) fn parse(stem: &[u8], text: &[u8]) -> Result<Self, u16> {
         let lines = lines(text)?;
         if lines.first() != Some(&b"/JOB".as_slice()) {
@@ -48,13 +48,13 @@ impl Program {
         self.lines.iter().position(|line| matches!(line, Instruction::Label(label) if label == name))
     }
 
-    /// Step number of a line: the motions up to and including it.
+    /// Step number of a line: the number of motions up to this line, including it.
     pub(super) fn step(&self, line: usize) -> usize {
         self.lines.iter().take(line + 1).filter(|line| matches!(line, Instruction::Move(_))).count()
     }
 }
 
-/// The lines of the file; each must end in CR LF, except the last.
+/// Lines of the file. Each line must end in CR LF, except the last.
 fn lines(text: &[u8]) -> Result<Vec<&[u8]>, u16> {
     let mut lines = Vec::new();
     let mut rest = text;
@@ -78,7 +78,7 @@ pub(super) enum Target {
     Base([f64; 7]),
 }
 
-/// The `C00000=…` lines, in the format of the preceding `///POSTYPE`.
+/// Reads the `C00000=…` lines, in the format of the `///POSTYPE` line before them.
 fn positions(lines: &[&[u8]]) -> BTreeMap<u32, Target> {
     let mut base = false;
     let mut found = BTreeMap::new();
@@ -129,7 +129,7 @@ pub(super) enum Comparison {
 }
 
 impl Comparison {
-    /// Longer operators first.
+    /// Comparison operators. Longer operators come first, so that a prefix search finds them.
     const SIGNS: [(&str, Self); 6] = [
         ("<>", Self::NotEqual),
         ("<=", Self::LessOrEqual),
@@ -174,7 +174,7 @@ pub(super) enum MoveTarget {
 pub(super) struct Move {
     pub(super) straight: bool,
     pub(super) to: MoveTarget,
-    /// Percent for a joint motion, mm/s for a straight one.
+    /// Percent for a joint motion, mm/s for a straight motion.
     pub(super) speed: f64,
 }
 
@@ -192,12 +192,12 @@ pub(super) enum Instruction {
     Jump(Vec<u8>, Option<Condition>),
     Call(Vec<u8>, Option<Condition>),
     Label(Vec<u8>),
-    /// Comments, NOP, and instructions without effect in this simulator.
+    /// Comments, NOP, and instructions that have no effect in this simulator.
     Pass,
 }
 
 impl Instruction {
-    /// Parses one line. An unknown instruction passes; a malformed known one is a syntax error.
+    /// Parses one line. An unknown instruction has no effect. A known instruction that is malformed is a syntax error.
     fn parse(line: &[u8]) -> Result<Self, u16> {
         if let Some(label) = line.strip_prefix(b"*") {
             return Ok(Self::Label(label.to_vec()));
@@ -277,7 +277,7 @@ fn duration(text: &str) -> Option<Duration> {
     (0.0..=655.35).contains(&seconds).then(|| Duration::from_secs_f64(seconds))
 }
 
-/// Parses `*LABEL IF B000=1` and `JOB:NAME IF …`; names may contain any bytes except blanks.
+/// Parses `*LABEL IF B000=1` and `JOB:NAME IF …`. Names may contain any bytes except blanks.
 fn jump(rest: &[u8], mark: &[u8]) -> Option<(Vec<u8>, Option<Condition>)> {
     let rest = rest.strip_prefix(mark)?;
     let end = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());

@@ -1,6 +1,8 @@
-//! `IONAME.LST` and `VARNAME.LST`, the lists of names: generated from the files with names when they are read.
+//! `IONAME.LST` and `VARNAME.LST`, the lists of names. The simulator generates them from the files with names when a
+//! client reads them.
 //!
-//! No known source shows these files. Their rows, `OT#(1) GRIPPER` and `B050 PARTS_DONE`, are in the notation of jobs.
+//! No known source shows these files. Their rows, such as `OT#(1) GRIPPER` and `B050 PARTS_DONE`, use the notation of
+//! jobs.
 
 use super::alarms::sjis;
 use super::storage::Storage;
@@ -8,15 +10,15 @@ use crate::names::Name;
 use crate::text::Encoding;
 use crate::yerc::names;
 
-/// Lists, the files that they follow, and their first lines.
+/// List files, the files with names from which they are generated, and their first lines.
 const LISTS: [(&[u8], &str, &str); 2] =
     [(b"IONAME.LST", "IONAME.DAT", "//IONAME"), (b"VARNAME.LST", "VARNAME.DAT", "//VARNAME")];
-/// Signals: first number of the protocol, and their notation in jobs.
+/// Signals: first signal number in the protocol, and notation in jobs.
 const SIGNALS: [(u32, &str); 2] = [(10, "IN"), (10_010, "OT")];
-/// Signals per number of the first.
+/// Size of the range of signal numbers that follows each first number.
 const EACH: u32 = 10_000;
 
-/// A list that agrees with its file; `None` for other files, and without a readable file.
+/// Generates a list from its file. Returns `None` for other files, and if the file with names is missing or invalid.
 pub(super) fn written(files: &Storage, list: &[u8]) -> Option<Vec<u8>> {
     let (_, file, head) = LISTS.into_iter().find(|(name, ..)| *name == list)?;
     let content = files.get(file.as_bytes())?;
@@ -28,7 +30,7 @@ pub(super) fn written(files: &Storage, list: &[u8]) -> Option<Vec<u8>> {
     Some(lines.iter().flat_map(|line| [sjis(line), b"\r\n".to_vec()].concat()).collect())
 }
 
-/// An address in the notation of jobs: `OT#(1)` for #10010, `B050` for B50.
+/// Converts an address to the notation of jobs: `OT#(1)` for #10010, `B050` for B50.
 fn of_jobs(address: &str) -> Option<String> {
     if let Some(number) = address.strip_prefix('#') {
         let number: u32 = number.parse().ok()?;

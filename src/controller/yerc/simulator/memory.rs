@@ -1,17 +1,17 @@
 //! Variables, I/O and registers, stored in protocol format.
 //!
-//! Protocol and banks are little-endian, so the bytes of an element are the same for single and plural commands.
+//! Protocol and memory are little-endian, so the bytes of an element are the same for single and plural commands.
 
 use crate::yerc::Model;
 use crate::yerc::table::{Row, Span};
 
-/// Number of byte, integer, double, real and string variables each (DX 3.3.11 to 3.3.15).
+/// Number of variables of each of these kinds: byte, integer, double, real and string (DX 3.3.11 to 3.3.15).
 const SCALARS: usize = 100;
 /// Number of position variables of each kind (DX 3.3.16 to 3.3.18).
 const POSITIONS: usize = 128;
-/// Registers 0 to 999 (DX 3.3.10).
+/// Number of registers: 0 to 999 (DX 3.3.10).
 const REGISTERS: usize = 1000;
-/// The command with the I/O classes as instances.
+/// The command whose instances are the I/O classes.
 const SINGLE_IO: u16 = 0x78;
 /// One more than the highest I/O instance of any model.
 const IO_END: usize = 8221;
@@ -35,7 +35,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// All kinds; longer names first, so that a prefix search finds `BP` before `B`.
+    /// All kinds. Longer names come first, so that a prefix search finds `BP` before `B`.
     pub(super) const BY_NAME: [(&'static str, Self); 8] = [
         ("BP", Self::Bp),
         ("EX", Self::Ex),
@@ -59,7 +59,7 @@ impl Kind {
         }
     }
 
-    /// Position variables are undefined until they are written.
+    /// Whether variables of this kind are undefined until they are written. Position variables are.
     pub(super) const fn starts_undefined(self) -> bool {
         matches!(self, Self::P | Self::Bp | Self::Ex)
     }
@@ -101,7 +101,8 @@ pub(super) struct Memory {
     banks: [Bank; 8],
     io: Vec<u8>,
     registers: Vec<u16>,
-    /// Registers that the ladder program writes in each cycle: a write is accepted but does not last.
+    /// Registers that the ladder program writes in each cycle. A client can write such a register, but the value does
+    /// not last.
     pub(super) ladder: Vec<u16>,
 }
 
@@ -117,19 +118,19 @@ impl Memory {
         }
     }
 
-    /// The bytes of an element; `None` while it is undefined.
+    /// The bytes of an element; `None` while the element is undefined.
     ///
     /// # Panics
-    /// If `index` is out of range, which callers check first.
+    /// If `index` is out of range. The callers check the range first.
     pub(super) fn element(&self, kind: Kind, index: usize) -> Option<&[u8]> {
         let bank = &self.banks[kind as usize];
         bank.defined[index].then(|| &bank.bytes[index * bank.size..][..bank.size])
     }
 
-    /// Writes an element; bytes after `value` are cleared (a 16-byte text in a 32-byte variable).
+    /// Writes an element. Bytes after `value` are cleared (a 16-byte text in a 32-byte variable).
     ///
     /// # Panics
-    /// If `index` or the length is out of range, which callers check first.
+    /// If `index` or the length is out of range. The callers check them first.
     pub(super) fn store(&mut self, kind: Kind, index: usize, value: &[u8]) {
         let bank = &mut self.banks[kind as usize];
         let place = &mut bank.bytes[index * bank.size..][..bank.size];
@@ -141,7 +142,7 @@ impl Memory {
     /// Makes a position variable undefined.
     ///
     /// # Panics
-    /// If `index` is out of range, which callers check first.
+    /// If `index` is out of range. The callers check the range first.
     pub(super) fn forget(&mut self, kind: Kind, index: usize) {
         let bank = &mut self.banks[kind as usize];
         bank.defined[index] = !kind.starts_undefined();
@@ -159,7 +160,7 @@ impl Memory {
         }
     }
 
-    /// Writes a numeric variable; `false` if the value does not fit.
+    /// Writes a numeric variable. Returns `false` if the value does not fit.
     #[expect(clippy::cast_possible_truncation, reason = "the ranges are checked first; R holds single precision")]
     pub(super) fn store_number(&mut self, kind: Kind, index: usize, value: f64) -> bool {
         let whole = value.trunc() as i64;
@@ -173,7 +174,7 @@ impl Memory {
         bytes.map(|bytes| self.store(kind, index, &bytes)).is_some()
     }
 
-    /// The byte of an existing I/O instance.
+    /// Byte of an I/O instance that exists.
     pub(super) fn io(&self, instance: u16) -> u8 {
         self.io.get(usize::from(instance)).copied().unwrap_or(0)
     }
@@ -184,12 +185,12 @@ impl Memory {
         }
     }
 
-    /// Whether a signal is on; digits 8 and 9 do not exist.
+    /// Whether a signal is on. The last digit of a number cannot be 8 or 9.
     pub(super) fn signal(&self, number: u32) -> bool {
         signal_place(number).is_some_and(|(instance, bit)| self.io(instance) & bit != 0)
     }
 
-    /// Switches a signal; `false` if it does not exist on this model.
+    /// Switches a signal. Returns `false` if the signal does not exist on this model.
     pub(super) fn set_signal(&mut self, number: u32, on: bool) -> bool {
         let Some((instance, bit)) =
             signal_place(number).filter(|&(instance, _)| io_class(self.model, instance).is_some())
@@ -205,14 +206,14 @@ impl Memory {
         self.registers.get(usize::from(number)).copied()
     }
 
-    /// Write by a client: the ladder has priority in its own registers.
+    /// Writes a register for a client. In registers of the ladder, the value of the ladder has priority.
     pub(super) fn write_register(&mut self, number: u16, value: u16) {
         if !self.ladder.contains(&number) {
             self.force_register(number, value);
         }
     }
 
-    /// Write by the ladder or the console; `false` if the register does not exist.
+    /// Writes a register for the ladder or the console. Returns `false` if the register does not exist.
     pub(super) fn force_register(&mut self, number: u16, value: u16) -> bool {
         self.registers.get_mut(usize::from(number)).map(|register| *register = value).is_some()
     }

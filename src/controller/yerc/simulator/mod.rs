@@ -1,8 +1,8 @@
 //! Simulated FS100, DX100, DX200 or YRC1000, without sockets and without a clock.
 //!
 //! A server passes datagrams and the time, and sends the answers. The simulator shares the command table and the
-//! payload types with the client, but validates everything independently, and more strictly than a real controller is
-//! known to.
+//! payload types with the client. It validates everything independently, and more strictly than real controllers are
+//! known to do.
 //!
 //! | module | content |
 //! |---|---|
@@ -45,18 +45,18 @@ use super::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, Req
 use crate::Now;
 use crate::simulator::answers::{Answers, Busy};
 
-/// Limit of pending answers.
+/// Maximum number of pending answers.
 const MAX_WAITING: usize = 4096;
-/// Offsets in the raw request that the answer to a malformed one needs.
+/// Offsets in a malformed request. The answer to it needs these bytes.
 const ID_AT: usize = 11;
 const SERVICE_AT: usize = 29;
 
 /// A datagram of the controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Outgoing {
-    /// Sending port.
+    /// Port from which the datagram is sent.
     pub division: Division,
-    /// Receiver: the token of its request.
+    /// Receiver: the token of the client that sent the request.
     pub peer: u64,
     /// Content.
     pub bytes: Vec<u8>,
@@ -87,7 +87,8 @@ impl Simulator {
         }
     }
 
-    /// Takes a datagram that arrived at `now` on the robot or file port. `peer` is the caller's token of the client.
+    /// Handles a datagram that arrived at `now` on the robot or file port. `peer` is a token by which the caller
+    /// identifies the client.
     pub fn receive(&mut self, now: Now, division: Division, peer: u64, bytes: &[u8]) {
         self.advance(now);
         let now = self.world.now;
@@ -106,7 +107,7 @@ impl Simulator {
             Err(_) => None,
         };
         self.post(division, reply);
-        // The request may have started something that is due at once.
+        // The request may have started actions that are due at once.
         self.advance(now);
     }
 
@@ -121,7 +122,7 @@ impl Simulator {
         [self.answers.due(), self.world.wake(), self.files.wake()].into_iter().flatten().min()
     }
 
-    /// Changes the share of requests that it refuses as busy (D8FA), 0.0 to 1.0.
+    /// Sets the share of requests that the simulator refuses as busy (D8FA), 0.0 to 1.0.
     pub fn set_busy(&mut self, share: f64) {
         self.busy.set_share(share);
     }
@@ -170,7 +171,7 @@ impl Simulator {
     }
 }
 
-/// The code for an invalid frame; `None` if it is too short for an answer.
+/// The code for an invalid frame; `None` if the frame is too short to be answered.
 fn malformed(error: &WireError) -> Option<u16> {
     match error {
         WireError::Truncated { .. } => None,

@@ -1,9 +1,10 @@
 //! Mechanics: control groups, simplified kinematics, and motion over time.
 //!
-//! The kinematics is a cylinder, so that joint and straight paths differ and both end points are exact: S rotates
-//! about the vertical, L is the reach, U the height, and R, B and T rotate the tool. Positions are stored as
-//! fractional pulses, which are finer than 0.001 mm and 0.0001 degrees of the protocol. So a target in either form is
-//! reported as it was commanded. A base moves its robot along X.
+//! The kinematics is a cylinder, so that joint and straight paths differ and both end points are exact. S rotates about
+//! the vertical, L is the reach, U the height, and R, B and T rotate the tool. A base moves its robot along X.
+//!
+//! Positions are stored as fractional pulses, which are finer than the 0.001 mm and 0.0001 degrees of the protocol.
+//! Because of this, the controller reports a target in pulses or coordinates exactly as it was commanded.
 
 use std::time::Duration;
 
@@ -11,7 +12,7 @@ use crate::Now;
 
 /// Maximum number of axes in the protocol.
 pub(super) const AXES: usize = 8;
-/// Stopping time of a held group.
+/// Time in which a group stops after a hold.
 pub(super) const STOP_TIME: Duration = Duration::from_millis(100);
 /// Maximum speed of a straight motion.
 pub(super) const MAX_LINEAR_MM_S: f64 = 1500.0;
@@ -77,7 +78,7 @@ const STATION: [Axis; 2] = [axis(-1_000_000.0, 1_000_000.0, 180_000.0); 2];
 #[derive(Debug, Clone)]
 pub(super) struct Group {
     pub(super) family: Family,
-    /// 1 for R1.
+    /// Group number: 1 for R1.
     pub(super) number: u16,
     pub(super) axes: usize,
     pub(super) pulses: Pulses,
@@ -87,7 +88,7 @@ pub(super) struct Group {
 }
 
 impl Group {
-    /// Parses `R1`, `B2`, `S3`. A robot has 6 axes, or 7 according to `robot_axes`.
+    /// Parses `R1`, `B2`, `S3`. A robot has 6 or 7 axes, depending on `robot_axes`.
     pub(super) fn parse(name: &str, robot_axes: usize) -> Option<Self> {
         let (letter, number) = (name.chars().next()?, name.get(1..)?.parse().ok().filter(|&number| number > 0)?);
         let (family, axes) =
@@ -109,7 +110,7 @@ impl Group {
         }
     }
 
-    /// The first axis outside its range.
+    /// Index of the first axis outside its range.
     fn beyond_limit(&self, pulses: &Pulses) -> Option<usize> {
         // Tolerance for rounding errors.
         let outside = |(axis, &pulse): (&Axis, &f64)| pulse < axis.min - 1e-6 || pulse > axis.max + 1e-6;
@@ -143,7 +144,7 @@ pub(super) fn forward(pulses: &Pulses) -> Pose {
     ]
 }
 
-/// Pulses of a pose, with the turn of each wrist axis nearest to `near`.
+/// Pulses for a pose. Of the possible turns of each wrist axis, the turn nearest to `near` is used.
 pub(super) fn inverse(pose: &Pose, near: &Pulses) -> Pulses {
     let reach = pose[0].hypot(pose[1]);
     let turn = if reach < 1e-6 { near[0] / S_PULSES_PER_DEG } else { pose[1].atan2(pose[0]).to_degrees() };
@@ -160,14 +161,14 @@ pub(super) fn inverse(pose: &Pose, near: &Pulses) -> Pulses {
     ]
 }
 
-/// Normalizes degrees to -180 (excluded) to 180.
+/// Normalizes degrees to the range from -180 (excluded) to 180.
 pub(super) fn wrap(degrees: f64) -> f64 {
     let rotated = degrees.rem_euclid(360.0);
     // The tolerance keeps a value slightly above 180 from becoming -180.
     if rotated > 180.0 + 1e-9 { rotated - 360.0 } else { rotated }
 }
 
-/// The angle equivalent to `degrees` that is nearest to `near`.
+/// The angle that is equivalent to `degrees` and nearest to `near`.
 fn nearest(degrees: f64, near: f64) -> f64 {
     near + wrap(degrees - near)
 }
@@ -184,7 +185,7 @@ pub(super) struct Leg {
     pub(super) group: usize,
     from: Pulses,
     to: Pulses,
-    /// Start and end of a straight line of the tool.
+    /// Start and end of a straight line of the tool, if the motion is straight.
     line: Option<(Pose, Pose)>,
 }
 
@@ -214,19 +215,19 @@ pub(super) struct Motion {
     legs: Vec<Leg>,
     begun: Now,
     length: Duration,
-    /// Fraction at which an axis reaches its soft limit, with group and axis.
+    /// Fraction at which an axis reaches its soft limit, with the group and the axis.
     limit: Option<(f64, usize, usize)>,
-    /// Start time and fraction of the deceleration.
+    /// Start time of the deceleration, and the completed fraction at this time.
     braking: Option<(Now, f64)>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
-    /// Target reached.
+    /// The target was reached.
     Arrived,
-    /// Stopped by a hold.
+    /// A hold stopped the motion.
     Stopped,
-    /// Group and axis at a soft limit.
+    /// An axis of a group reached its soft limit.
     Limit(usize, usize),
 }
 
@@ -284,7 +285,7 @@ impl Arm {
         self.motion.as_ref().map(Motion::end)
     }
 
-    /// Travel of the base of robot `number` in mm.
+    /// Distance in mm that the base of robot `number` has moved.
     pub(super) fn base_offset(&self, number: u16) -> f64 {
         self.find(Family::Base, number).map_or(0.0, |base| self.groups[base].pulses[0] / PULSES_PER_MM)
     }
@@ -304,7 +305,7 @@ impl Arm {
         self.begin(now, legs, Duration::from_secs_f64(seconds / share.max(1e-4)));
     }
 
-    /// Starts a straight motion; the first target is the robot with the tool.
+    /// Starts a straight motion. The first target is the robot that carries the tool.
     pub(super) fn straight(&mut self, now: Now, targets: &[(usize, Pulses)], speed: Speed) {
         let legs: Vec<_> = targets.iter().map(|&(group, to)| self.leg(group, to, true)).collect();
         let line = legs.iter().find_map(|leg| leg.line);
@@ -338,7 +339,7 @@ impl Arm {
         self.motion = Some(Motion { legs, begun: now, length, limit, braking: None });
     }
 
-    /// Searches the first limit in small steps, then by bisection.
+    /// Searches the first limit on the path, in small steps and then by bisection.
     fn first_limit(&self, legs: &[Leg]) -> Option<(f64, usize, usize)> {
         const STEPS: u32 = 128;
         let violation = |fraction: f64| {
@@ -356,20 +357,20 @@ impl Arm {
         violation(outside).map(|(group, axis)| (inside, group, axis))
     }
 
-    /// Decelerates the motion; [`Arm::advance`] reports its end.
+    /// Decelerates the motion. [`Arm::advance`] reports the end of the motion.
     pub(super) fn brake(&mut self, now: Now) {
         if let Some(motion) = self.motion.as_mut().filter(|motion| motion.braking.is_none()) {
             motion.braking = Some((now, motion.fraction(now)));
         }
     }
 
-    /// Stops at once, as brakes do without servo power.
+    /// Stops the motion at once, as brakes do without servo power.
     pub(super) fn halt(&mut self, now: Now) {
         self.place(now);
         self.motion = None;
     }
 
-    /// Updates the positions to `now`; returns the end of a motion.
+    /// Updates the positions to `now`. Returns how the motion ended, if it has ended.
     pub(super) fn advance(&mut self, now: Now) -> Option<End> {
         self.place(now);
         let motion = self.motion.as_ref()?;
@@ -414,7 +415,7 @@ pub(super) enum Speed {
 }
 
 impl Speed {
-    /// Duration of the motion, extended if the other part of the movement needs longer.
+    /// Duration of the motion. The slower of the linear part and the rotation decides.
     fn seconds(self, from: &Pose, to: &Pose) -> f64 {
         let way = |range: std::ops::Range<usize>| range.map(|i| (to[i] - from[i]).powi(2)).sum::<f64>().sqrt();
         let (distance, turn) = (way(0..3), way(3..7));

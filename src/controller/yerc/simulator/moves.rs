@@ -1,28 +1,28 @@
 //! Move commands: checks, coordinate systems, start of the motion (DX 3.3.39, 3.3.40).
 //!
-//! The checks are in the order of the request words. User frames have an origin and a rotation about Z; tool
-//! increments use the orientation of the tool.
+//! The checks are in the order of the words in the request. User frames have an origin and a rotation about Z.
+//! Increments in tool coordinates use the orientation of the tool.
 
 use super::motion::{AXES, Family, MAX_ANGULAR_DEG_S, MAX_LINEAR_MM_S, Pose, Pulses, Speed, forward, inverse};
 use super::world::{Refusal, World, code};
 use crate::yerc::Model;
 use crate::yerc::payload::{CartesianMove, MoveLayout, PositionKind, PulseMove, SpeedClass};
 
-/// Instances of the moves.
+/// Instances of the move commands.
 const LINK: u16 = 1;
 const INCREMENT: u16 = 3;
 /// Maximum tool and user frame number.
 const LAST_NUMBER: u32 = 63;
-/// Form bits of a move; the others are reserved in the manuals.
+/// Form bits of a move. The manuals reserve the other bits.
 const FORM_BITS: u32 = 0x3F;
 const EXTENDED_FORM_BITS: u32 = 0x1F;
-/// Maximum straight speed in guarded operation.
+/// Maximum speed of a straight motion in guarded operation.
 const GUARDED_MM_S: f64 = 250.0;
 
 impl World {
-    /// Command 0x8A.
+    /// Executes command 0x8A.
     pub(super) fn move_cartesian(&mut self, instance: u16, data: &[u8]) -> Result<(), Refusal> {
-        // Only the FS100 manual has 25 words, and FS100s are known to accept 26.
+        // Only the FS100 manual has 25 words, but FS100s are known to accept 26 words too.
         let layouts = match self.model {
             Model::Fs100 => &[MoveLayout::Words25, MoveLayout::Words26][..],
             Model::Dx100 | Model::Dx200 | Model::Yrc1000 => &[MoveLayout::Words26],
@@ -70,7 +70,7 @@ impl World {
         Ok(())
     }
 
-    /// Command 0x8B.
+    /// Executes command 0x8B.
     pub(super) fn move_pulse(&mut self, instance: u16, data: &[u8]) -> Result<(), Refusal> {
         if data.len() != PulseMove::SIZE {
             return Err(Refusal::Added(code::REQUEST_SIZE));
@@ -98,7 +98,7 @@ impl World {
             Ordered::Share(share) => self.arm.joint(self.now, targets, share),
             Ordered::Speed(speed) => {
                 if targets.iter().any(|&(group, _)| self.arm.groups[group].family == Family::Station) {
-                    // A station rotates and cannot move along a line.
+                    // A station only rotates, so it cannot move along a line.
                     return Err(Refusal::Added(code::WRONG_GROUP));
                 }
                 let speed = match speed {
@@ -111,7 +111,7 @@ impl World {
         Ok(())
     }
 
-    /// The moving group: exactly one fitted robot or station.
+    /// The group to move. The request must name exactly one fitted robot or station.
     fn moved_group(&self, robot: u32, station: u32) -> Result<usize, Refusal> {
         let (family, number) = match (robot, station) {
             (1.., 0) => (Family::Robot, robot),
@@ -122,7 +122,7 @@ impl World {
         number.and_then(|number| self.arm.find(family, number)).ok_or(Refusal::Added(code::GROUP))
     }
 
-    /// Pulses of a group; words of missing axes must be 0.
+    /// Pulses of a group. Words of missing axes must be 0.
     fn pulses(&self, group: usize, words: &[i32]) -> Result<Pulses, Refusal> {
         let axes = self.arm.groups[group].axes;
         check_unused(words.get(axes..).unwrap_or_default())?;
@@ -141,7 +141,7 @@ impl World {
         Ok((group, to))
     }
 
-    /// Target of the robot base in pulses (one per 0.001 mm); `None` for a robot without base.
+    /// Target of the robot base in pulses (one pulse is 0.001 mm); `None` for a robot without a base.
     fn base_target(&self, robot: u16, words: &[f64; 3], increment: bool) -> Result<Option<(usize, Pulses)>, Refusal> {
         let base = self.arm.find(Family::Base, robot);
         let axes = base.map_or(0, |base| self.arm.groups[base].axes);
@@ -157,7 +157,7 @@ impl World {
         }))
     }
 
-    /// Origin and rotation of the user frame, if one is required.
+    /// Origin and rotation of the user frame, if the coordinate system needs one.
     fn user_frame(&self, coordinate: PositionKind, number: u32) -> Result<[f64; 4], Refusal> {
         if number > LAST_NUMBER || coordinate == PositionKind::User && number == 0 {
             return Err(Refusal::Added(code::USER_FRAME));
@@ -178,7 +178,7 @@ enum Ordered {
     Speed(Speed),
 }
 
-/// Validates the speed: its class must fit the instance, its value the limits of the robot.
+/// Validates the speed: its class must fit the instance, and its value must be within the limits of the robot.
 fn speed_of(instance: u16, class: SpeedClass, speed: u32) -> Result<Ordered, Refusal> {
     let (scale, most) = match class {
         SpeedClass::Percent if instance == LINK => (0.01, 100.0),
@@ -197,7 +197,7 @@ fn speed_of(instance: u16, class: SpeedClass, speed: u32) -> Result<Ordered, Ref
     })
 }
 
-/// Words of missing axes must be 0.
+/// Checks that the words of missing axes are 0.
 fn check_unused(words: &[i32]) -> Result<(), Refusal> {
     if words.iter().all(|&word| word == 0) { Ok(()) } else { Err(Refusal::Added(code::RANGE)) }
 }

@@ -5,18 +5,18 @@ use super::world::{Mode, Refusal, World, code};
 use crate::yerc::payload::{CycleMode, Text};
 use crate::yerc::table::Row;
 
-/// Usable length of a message; the field has two more bytes.
+/// Usable length of a message in bytes. The field has two more bytes.
 const MESSAGE_LEN: usize = 30;
 const MESSAGE_FIELD: usize = 32;
-/// Name and line of a selection.
+/// Size of a selection: name and line.
 const SELECTION: usize = 36;
 const NAME_FIELD: usize = 32;
-/// Instance that selects the job to execute; others select master jobs.
+/// Instance that selects the job to execute. Other instances select master jobs.
 const EXECUTE: u16 = 1;
 const FIRST_MASTER: u16 = 10;
 
 impl World {
-    /// Executes a command other than a read or write of data.
+    /// Executes a command that does not read or write data.
     pub(super) fn operate(&mut self, row: &Row, instance: u16, data: &[u8]) -> Answer {
         match row.number {
             command::RESET => self.reset(instance, data),
@@ -36,7 +36,7 @@ impl World {
         execute_word(data)?;
         self.may_command()?;
         if instance == 1 {
-            // An alarm that stops the whole controller persists until a restart.
+            // An alarm that stops the whole controller stays active until a restart.
             if self.alarms.major_is_active() {
                 return Err(Refusal::Added(code::ALARM));
             }
@@ -140,7 +140,7 @@ pub(super) fn word(data: &[u8]) -> Result<u32, Refusal> {
     data.try_into().map(u32::from_le_bytes).map_err(|_| Refusal::Added(code::REQUEST_SIZE))
 }
 
-/// The word 1 of reset and start requests.
+/// Checks the only word of a reset or start request, which must be 1.
 fn execute_word(data: &[u8]) -> Result<(), Refusal> {
     if word(data)? == 1 { Ok(()) } else { Err(Refusal::Added(code::RANGE)) }
 }

@@ -11,14 +11,14 @@ use super::world::World;
 use crate::Now;
 use crate::yerc::payload::{CycleMode, JobInfo, Text};
 
-/// Duration of a line without motion or wait.
+/// Duration of a line without a motion or a wait.
 const LINE_TIME: Duration = Duration::from_millis(2);
 const MAX_CALLS: usize = 12;
 /// Signal number of general-purpose output 1.
 const FIRST_OUTPUT: u32 = 10010;
 /// Signal number of general-purpose input 1.
 const FIRST_INPUT: u32 = 10;
-/// 100 % in the unit of 0x73.
+/// An override of 100 % in the unit of 0x73.
 const FULL_OVERRIDE: u32 = 10_000;
 
 /// A job and its next line.
@@ -38,7 +38,7 @@ enum State {
     Due(Now),
     /// The line ends with the motion.
     Moving,
-    /// The line ends when the condition is true, or at this time.
+    /// The line ends when the condition is true, or at this time if there is one.
     Waiting(Condition, Option<Now>),
 }
 
@@ -68,12 +68,12 @@ impl Player {
         }
     }
 
-    /// Stops at the current line; a start continues there.
+    /// Stops at the current line. A later start continues at this line.
     pub(super) fn stop(&mut self) {
         self.state = State::Stopped;
     }
 
-    /// Selects the job to execute; `false` if the line does not exist.
+    /// Selects the job to execute. Returns `false` if the line does not exist.
     pub(super) fn select(&mut self, name: &[u8], program: Program, line: usize) -> bool {
         if line >= program.lines.len() {
             return false;
@@ -95,7 +95,7 @@ impl Player {
         self.state = State::Due(now + LINE_TIME);
     }
 
-    /// Answer of 0x73 for the master task.
+    /// Answer to 0x73 for the master task.
     pub(super) fn info(&self) -> JobInfo {
         let Some(cursor) = &self.cursor else {
             return JobInfo { speed_override: FULL_OVERRIDE, ..JobInfo::default() };
@@ -118,7 +118,7 @@ impl Player {
     }
 }
 
-/// A line that cannot be executed: alarm number and sub-code.
+/// Why a line cannot be executed: alarm number and sub-code.
 struct Fault(u32, u32);
 
 const UNDEFINED_POSITION: Fault = Fault(4448, 1);
@@ -127,7 +127,7 @@ const TOO_MANY_CALLS: Fault = Fault(4417, 1);
 const OUT_OF_RANGE: Fault = Fault(4446, 1);
 
 impl World {
-    /// The motion of the current line has reached its target.
+    /// Handles that the motion of the current line has reached its target.
     pub(super) fn motion_done(&mut self) {
         if matches!(self.player.state, State::Moving) {
             self.line_done(self.now);
@@ -147,7 +147,7 @@ impl World {
         }
     }
 
-    /// Continues with the next line, unless the cycle mode is step.
+    /// Continues with the next line, unless the cycle mode is step mode.
     fn line_done(&mut self, at: Now) {
         self.player.next_line(at);
         if self.switches.cycle == CycleMode::Step {
@@ -244,7 +244,7 @@ impl World {
         Ok(())
     }
 
-    /// END or RET: returns to the caller. At the end of the master job the cycle mode decides.
+    /// Handles END and RET: returns to the caller. At the end of the master job, the cycle mode decides what follows.
     fn end_of_job(&mut self) {
         let soon = self.now + LINE_TIME;
         if let Some(caller) = self.player.callers.pop() {
@@ -281,7 +281,7 @@ impl World {
         Ok(())
     }
 
-    /// A P variable as a target; user and tool frames are not supported in jobs here.
+    /// A P variable as a target. Jobs in this simulator do not support user frames and tool frames.
     fn position_variable(&self, index: usize) -> Option<Target> {
         let words: Vec<i32> = self
             .memory
@@ -299,7 +299,7 @@ impl World {
                 let mut pose: Pose =
                     std::array::from_fn(|i| f64::from(axes[i]) / if i < 3 { 1000.0 } else { 10_000.0 });
                 if kind == 17 {
-                    // Robot coordinates move with the base.
+                    // Robot coordinates move together with the base.
                     pose[0] += self.arm.base_offset(1);
                 }
                 Some(Target::Base(pose))
@@ -323,7 +323,7 @@ impl World {
     }
 }
 
-/// Signal number of general-purpose input or output `number`, from 1: eight per ten numbers.
+/// Signal number of general-purpose input or output `number`, counted from 1. Of ten signal numbers, only eight exist.
 fn signal(first: u32, number: u32) -> u32 {
     let place = number.saturating_sub(1);
     first.saturating_add((place / 8).saturating_mul(10)).saturating_add(place % 8)

@@ -1,4 +1,4 @@
-//! Read commands.
+//! Commands that read data.
 
 use super::motion::{AXES, Family, Group, MAX_LINEAR_MM_S, whole};
 use super::robot::{Answer, Store, command};
@@ -9,17 +9,17 @@ use crate::yerc::payload::{
 };
 use crate::yerc::table::Row;
 
-/// Instances of groups: robots from 1, bases from 11, stations from 21; cartesian robots and bases from 101.
+/// First instances of groups: robots from 1, bases from 11, stations from 21. Cartesian robots and bases begin at 101.
 const FIRST_BASE: u16 = 11;
 const FIRST_STATION: u16 = 21;
 const CARTESIAN: u16 = 100;
-/// Axes of the usual robot.
+/// Number of axes of the usual robot.
 const SIX: usize = 6;
-/// The only running task.
+/// Instance of the only task that can run.
 const MASTER_TASK: u16 = 1;
-/// Servo lag in pulses per (pulse per second).
+/// Servo lag: pulses of lag at a speed of one pulse per second.
 const SERVO_LAG_S: f64 = 0.02;
-/// Axis names (DX 3.3.5); the seventh cartesian one is misprinted there.
+/// Axis names (DX 3.3.5). The manual misprints the seventh cartesian name.
 const ROBOT_AXES: [&str; 7] = ["S", "L", "U", "R", "B", "T", "E"];
 const CARTESIAN_AXES: [&str; 7] = ["X", "Y", "Z", "Rx", "Ry", "Rz", "Re"];
 const OTHER_AXES: [&str; 7] = ["1", "2", "3", "4", "5", "6", "7"];
@@ -44,12 +44,13 @@ impl World {
             command::TORQUE => Ok(self.torque(instance)?.emit()),
             command::TIMES => Ok(self.management_time(instance)?.emit()),
             command::SYSTEM => Ok(self.system(instance).emit()),
-            // Tasks that are not set up answer like this on a controller; so do instances that cannot be read.
+            // A controller answers like this for tasks that are not set up. Here, instances that cannot be read have
+            // the same answer.
             _ => Err(Refusal::Added(code::INSTANCE)),
         }
     }
 
-    /// The fitted group of an instance, and whether the request is cartesian.
+    /// The fitted group for an instance, and whether the request is for cartesian coordinates.
     fn group(&self, instance: u16) -> Result<(usize, bool), Refusal> {
         let (place, cartesian) = match instance.checked_sub(CARTESIAN) {
             Some(place) if place > 0 => (place, true),
@@ -98,7 +99,8 @@ impl World {
         })
     }
 
-    /// Axis words of a group. Some controllers answer only existing axes, some a word for each possible axis.
+    /// Axis words of a group. Some controllers answer only the words of existing axes; others answer a word for each
+    /// possible axis.
     fn answered(&self, group: &Group, values: &[i32; AXES]) -> Axes {
         let is_trimmed = self.trim_axes.unwrap_or(group.family != Family::Robot || group.axes != SIX);
         if is_trimmed {
@@ -107,14 +109,15 @@ impl World {
         Axes::full(std::array::from_fn(|axis| if axis < group.axes { values[axis] } else { 0 }))
     }
 
-    /// Lag of each moving axis.
+    /// Servo lag of each moving axis.
     fn position_error(&self, instance: u16) -> Result<Axes, Refusal> {
         let (index, _) = self.group(instance)?;
         let lag = self.arm.velocity(index, self.now).map(|speed| whole(speed * SERVO_LAG_S));
         Ok(self.answered(&self.arm.groups[index], &lag))
     }
 
-    /// Holding torque plus a part for the speed; 0 without servo power, because the brakes hold.
+    /// Holding torque, plus a part that depends on the speed. It is 0 without servo power, because the brakes hold the
+    /// axes.
     fn torque(&self, instance: u16) -> Result<Axes, Refusal> {
         const HOLDING: [f64; AXES] = [0.0, 14.0, 9.0, 1.0, 2.0, 0.0, 0.0, 0.0];
         const FULL_SPEED: f64 = MAX_LINEAR_MM_S * 1000.0;
@@ -131,13 +134,13 @@ impl World {
     }
 
     fn management_time(&self, instance: u16) -> Result<ManagementTime, Refusal> {
-        /// Hundreds select the counter, the rest the group; 10 is the total.
+        /// The hundreds of the instance select the counter; the rest selects the group. 10 is the total.
         const TOTAL: u16 = 10;
         let (kind, place) = (instance / 100, instance % 100);
         let counted = if instance == 1 || kind == 3 || place == TOTAL {
             true
         } else {
-            // Robots are counted from 11 here; in positions that is the first base.
+            // Here robots are counted from 11. In position instances, 11 is the first base.
             let (family, number) = match place {
                 FIRST_STATION.. => (Family::Station, place - FIRST_STATION + 1),
                 _ => (Family::Robot, place.saturating_sub(TOTAL)),
@@ -150,7 +153,7 @@ impl World {
             (1, _) => self.meters.control,
             (_, 0) => self.meters.servo,
             (_, 2) => self.meters.motion,
-            // Application 1 runs with jobs; no other is installed.
+            // Application 1 runs with jobs. No other application is installed.
             (_, 1) | (301, _) => self.meters.playback,
             _ => Now::ZERO,
         };
@@ -160,7 +163,7 @@ impl World {
         })
     }
 
-    /// A missing group answers with empty names instead of a refusal (DX 3.3.26).
+    /// For a missing group, the answer has empty names instead of a refusal (DX 3.3.26).
     fn system(&self, instance: u16) -> SystemInfo {
         let (name, parameters) = match instance {
             101 => (self.application.as_str(), ""),
@@ -177,7 +180,7 @@ impl World {
     }
 }
 
-/// Without the sub-code texts.
+/// An alarm without the sub-code texts.
 fn short(alarm: Option<Vec<u8>>) -> Answer {
     let mut bytes = alarm.ok_or(Refusal::Instance)?;
     bytes.truncate(Alarm::SIZE);

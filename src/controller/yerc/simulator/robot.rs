@@ -11,7 +11,7 @@ use crate::yerc::wire::RequestFrame;
 /// Answer data, or a refusal.
 pub(super) type Answer = Result<Vec<u8>, Refusal>;
 
-/// First FS100 software with the newer commands.
+/// First FS100 software version with the newer commands.
 const FS_FULL_SOFTWARE: (u32, u32) = (1, 14);
 
 pub(super) fn answer(world: &mut World, frame: &RequestFrame<'_>) -> Answer {
@@ -35,7 +35,7 @@ pub(super) fn answer(world: &mut World, frame: &RequestFrame<'_>) -> Answer {
     }
 }
 
-/// Whether this controller supports a feature of some controllers.
+/// Whether this controller supports a feature that only some controllers have.
 pub(super) fn has(world: &World, availability: Availability) -> bool {
     match (availability, world.model) {
         (Availability::Fs114, Model::Fs100) => software(&world.software) >= FS_FULL_SOFTWARE,
@@ -52,13 +52,14 @@ fn software(version: &str) -> (u32, u32) {
 }
 
 fn check_attribute(row: &Row, service: &Service, attribute: u8) -> Result<(), Refusal> {
-    // The manuals require 1 for a variable; real clients send 0 with either pair of services.
+    // The manuals require attribute 1 for a variable. Real clients send 0, with either pair of services.
     let lenient = row.services.iter().any(|service| service.attribute == Attribute::OneOrZero);
     let known = match service.attribute {
         Attribute::Zero => attribute == 0,
         Attribute::One if !lenient => attribute == 1,
         Attribute::One | Attribute::OneOrZero => attribute <= 1,
-        // The single services with attribute 0 also read and write whole position variables; one client does that.
+        // With attribute 0, the single services also read and write whole position variables. One client is known to
+        // use this.
         Attribute::Field => {
             usize::from(attribute) <= row.fields.len() && (attribute != 0 || row.service(service::SET_ALL).is_some())
         }
@@ -71,7 +72,7 @@ fn check_attribute(row: &Row, service: &Service, attribute: u8) -> Result<(), Re
     }
 }
 
-/// The requested part of a payload. Missing axes have no field.
+/// The requested part of a payload. Missing axes have no field, so they are refused.
 fn field<'a>(row: &Row, service: &Service, attribute: u8, payload: &'a [u8]) -> Result<&'a [u8], Refusal> {
     let Some(index) = field_index(service, attribute) else { return Ok(payload) };
     let from = total(row.fields.get(..index).unwrap_or_default());
@@ -79,7 +80,7 @@ fn field<'a>(row: &Row, service: &Service, attribute: u8, payload: &'a [u8]) -> 
     payload.get(from..from + size).ok_or(Refusal::Added(code::ATTRIBUTE))
 }
 
-/// The field of a single read or write; `None` for all.
+/// Index of the field of a single read or write; `None` for all fields.
 fn field_index(service: &Service, attribute: u8) -> Option<usize> {
     match service.attribute {
         Attribute::Field => usize::from(attribute).checked_sub(1),
@@ -87,7 +88,7 @@ fn field_index(service: &Service, attribute: u8) -> Option<usize> {
     }
 }
 
-/// Command numbers that are used by name; the table has everything else.
+/// Command numbers that the code uses by name. The table has all other numbers.
 pub(super) mod command {
     pub(in super::super) const ALARM: u16 = 0x70;
     pub(in super::super) const HISTORY: u16 = 0x71;
@@ -155,7 +156,7 @@ impl Store {
 }
 
 impl World {
-    /// The bytes of an element in the size of the command: complete, or the first 16 of a long string.
+    /// The bytes of an element, as many as the command has: all bytes, or the first 16 bytes of a long string.
     pub(super) fn read_element(&self, store: Store, instance: u16, size: usize) -> Answer {
         let bytes = match store {
             Store::Io => vec![self.io(instance)],
@@ -185,7 +186,7 @@ impl World {
     }
 }
 
-/// Count and elements of a plural read.
+/// Reads the elements of a plural request. The answer contains the count and the elements.
 fn read_several(world: &World, row: &Row, plural: Plural, first: u16, last: u16, data: &[u8]) -> Answer {
     let store = Store::from_number(row.number).ok_or(Refusal::Command)?;
     let Ok(count) = <[u8; 4]>::try_from(data) else { return Err(Refusal::Added(code::REQUEST_SIZE)) };
@@ -221,7 +222,7 @@ fn write_several(world: &mut World, row: &Row, plural: Plural, first: u16, last:
     Ok(Vec::new())
 }
 
-/// Instances of a plural request, which must be in the range of the first one.
+/// Instances of a plural request. All must be in the range of the first instance.
 fn plural_range(
     plural: Plural,
     count: u32,
@@ -247,7 +248,7 @@ fn write_one(world: &mut World, row: &Row, service: &Service, frame: &RequestFra
     let (instance, data) = (frame.instance, frame.data);
     let element = match field_index(service, frame.attribute) {
         None => whole_element(row, data)?,
-        // One word of a position: only a defined position has the other words.
+        // This request writes one word of a position. The other words exist only if the position is defined.
         Some(index) => {
             let Ok(value) = <[u8; 4]>::try_from(data) else { return Err(Refusal::Added(code::REQUEST_SIZE)) };
             let mut element = world.read_element(store, instance, row.size())?;
@@ -262,7 +263,8 @@ fn write_one(world: &mut World, row: &Row, service: &Service, frame: &RequestFra
     Ok(Vec::new())
 }
 
-/// The bytes of an element from request data: its own size, or four bytes with a value in range.
+/// The bytes of an element from the data of a request. The data has the size of the element, or four bytes whose value
+/// is in range.
 fn whole_element(row: &Row, data: &[u8]) -> Answer {
     let size = row.size();
     if data.len() == size {
@@ -277,7 +279,7 @@ fn whole_element(row: &Row, data: &[u8]) -> Answer {
     if fits { Ok(value.to_vec()) } else { Err(Refusal::Added(code::RANGE)) }
 }
 
-/// The signed variables with fewer than four bytes.
+/// The command of the only signed variables with fewer than four bytes.
 const INTEGER: u16 = 0x7B;
 
 fn check_writable(world: &World, row: &Row, instance: u16) -> Result<(), Refusal> {
@@ -287,7 +289,8 @@ fn check_writable(world: &World, row: &Row, instance: u16) -> Result<(), Refusal
     }
 }
 
-/// Validates a position: known type, tool, frame and forms (DX 3.3.16 to 3.3.18). Other elements may have any value.
+/// Validates a position: type, tool, frame and forms must be valid (DX 3.3.16 to 3.3.18). Other elements may have any
+/// value.
 fn check_value(store: Store, element: &[u8]) -> Result<(), Refusal> {
     let word = |index: usize| {
         let bytes = element.get(4 * index..4 * index + 4).and_then(|bytes| <[u8; 4]>::try_from(bytes).ok());

@@ -1,7 +1,7 @@
 //! Start state from TOML.
 //!
-//! All keys have defaults: an empty file is a DX200 in play mode with command remote and servo power. The file adds
-//! to the content of a new controller. An error gives its line.
+//! All keys have defaults: an empty file is a DX200 in play mode with command remote and servo power. The file adds to
+//! the content of a new controller. An error message gives the line.
 
 use std::time::Duration;
 
@@ -35,7 +35,7 @@ pub struct Start {
     pub(super) idle_limit: Duration,
 }
 
-/// A start state with all keys; each is optional.
+/// A start state with all keys. Each key is optional.
 pub const EXAMPLE: &str = r#"model = "dx200"                 # or "fs100", "dx100", "yrc1000"
 mode = "play"                   # or "teach"
 remote = true                   # command remote (#82015)
@@ -113,14 +113,14 @@ impl Start {
         build(&entries, "", &mut |_| Err(String::new())).expect("the defaults are correct")
     }
 
-    /// Parses a start state. `read` loads the files that entries refer to by `path`.
+    /// Parses a start state. `read` loads the files that entries name with `path`.
     ///
-    /// An error gives the problem and the line.
+    /// An error message gives the problem and the line.
     pub fn parse(text: &str, mut read: impl FnMut(&str) -> Result<Vec<u8>, String>) -> Result<Self, String> {
         build(&start::parse(text)?, text, &mut read)
     }
 
-    /// The model it describes.
+    /// Model of the controller in the start state.
     pub fn model(&self) -> Model {
         self.world.model
     }
@@ -161,7 +161,7 @@ struct Entries {
     parameter_version: Option<String>,
     /// Control groups, `R1` first.
     groups: Vec<Spanned<String>>,
-    /// 6 or 7.
+    /// Number of axes of a robot: 6 or 7.
     robot_axes: Spanned<usize>,
     trim_axes: Option<bool>,
     hours: Hours,
@@ -188,7 +188,7 @@ struct Entries {
     history: Option<Vec<AlarmEntry>>,
     #[serde(rename = "file")]
     files: Vec<Spanned<FileEntry>>,
-    /// Whether to add files, variables and alarms of a new controller.
+    /// Whether to add the files, variables and alarms of a new controller.
     stock: bool,
     #[serde(rename = "event")]
     events: Vec<Spanned<Event>>,
@@ -266,7 +266,7 @@ enum Value {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PositionEntry {
-    /// pulse, base, robot, user or tool.
+    /// `pulse`, `base`, `robot`, `user` or `tool`.
     #[serde(rename = "type")]
     kind: String,
     axes: Vec<i32>,
@@ -335,7 +335,7 @@ fn build(
         world.player.select(&name, program, 0);
         Ok(())
     })?;
-    // A copy, so that the world keeps its start state.
+    // This is a copy, so that the world keeps its start state.
     let mut copy = world.clone();
     world.events = source.timeline(&entries.events, |line| console::execute(&mut copy, line))?;
     Ok(Start {
@@ -490,10 +490,12 @@ fn position(kind: Kind, entry: &PositionEntry) -> Result<Vec<u8>, String> {
         _ => known == PositionKind::Pulse,
     };
     let Some((word, ..)) = named.filter(|(known, ..)| allowed(*known)) else {
-        return Err(format!("a type '{}' is not possible here", entry.kind));
+        return Err(format!("the type '{}' is not possible here", entry.kind));
     };
     if entry.axes.len() > AXES || entry.tool > 63 || entry.user > 63 || entry.extended_form > 0x1F {
-        return Err("at most 8 axes, tool and user 0 to 63, extended_form 0 to 31".into());
+        return Err(
+            "a position can have at most 8 axes, tool and user from 0 to 63, and extended_form from 0 to 31".into()
+        );
     }
     let mut values = [0; AXES];
     values.iter_mut().zip(&entry.axes).for_each(|(value, axis)| *value = *axis);
@@ -537,7 +539,7 @@ fn file(
     world.files.install(&name, content);
     let stem = name.strip_suffix(b".JBI");
     if stem.is_some_and(|stem| world.files.program(stem).is_none()) {
-        return Err(format!("'{}' does not contain a job of that name", entry.name));
+        return Err(format!("'{}' does not contain a job with this name", entry.name));
     }
     Ok(())
 }

@@ -1,13 +1,14 @@
 //! File server: block transfers (DX 3.2.3 to 3.2.6, 3.4).
 //!
-//! The manual does not cover loss. Here a repeated frame is answered again: a repeated ACK or request by the block
-//! that waits for its ACK, a repeated data block by its ACK. A repeat shortly after the last frame counts as a
-//! network echo and gets no answer, so that copies do not multiply. Only one transfer is open at a time. It is
-//! dropped after a timeout (E28B) and after a change of mode (FFFE).
+//! The manual does not cover lost frames. The simulator answers a repeated frame again. The answer to a repeated ACK or
+//! request is the block that waits for its ACK; the answer to a repeated data block is its ACK. A repeat shortly after
+//! the last frame counts as a network echo and gets no answer, so that copies do not multiply. Only one transfer is
+//! open at a time. It is dropped after a timeout (E28B) and after a change of mode (FFFE).
 //!
-//! The batch backup has the same service and path as fetching its file, and the manuals do not specify the
-//! difference. Here the first request creates a backup, and is answered without data when it is complete. The next
-//! request fetches the file. After a complete fetch, another request creates a new backup.
+//! The same request (service and path) creates the batch backup and fetches the backup file. The manuals do not specify
+//! how a controller distinguishes the two. In this simulator, the first request creates a backup, and is answered
+//! without data when the backup is complete. The next request fetches the file. After the file was fetched completely,
+//! another request creates a new backup.
 
 use std::time::Duration;
 
@@ -19,7 +20,7 @@ use crate::yerc::Model;
 use crate::yerc::table::{BATCH_BACKUP_PATH, Row, service};
 use crate::yerc::wire::{AnswerFrame, Division, LAST_BLOCK, MAX_DATA, RequestFrame, Status};
 
-/// A repeat within this time after the last frame is an echo.
+/// A repeat within this time after the last frame is a network echo.
 const ECHO: Duration = Duration::from_millis(20);
 /// A request within this time after the last frame of a transfer is a copy of its first request.
 const COPY: Duration = Duration::from_millis(500);
@@ -27,15 +28,15 @@ const COPY: Duration = Duration::from_millis(500);
 /// State of a transfer.
 #[derive(Debug, Clone)]
 enum Stage {
-    /// Sending blocks; `block` waits for its ACK.
+    /// Sends blocks. `block` waits for its ACK.
     Sending { content: Content, block: u32, is_backup: bool },
-    /// Receiving blocks; `received` blocks so far.
+    /// Receives blocks. `received` is the number of blocks so far.
     Receiving { name: Vec<u8>, bytes: Vec<u8>, received: u32 },
-    /// Writing the backup.
+    /// Writes the backup until this time.
     BackingUp { done: Now },
-    /// Complete; the last frame can still be repeated.
+    /// The transfer is complete. The last frame can still be repeated.
     Finished { block: u32 },
-    /// Dropped; the next frame is refused with this code.
+    /// The transfer was dropped. The next frame is refused with this code.
     Dropped(u16),
 }
 
@@ -46,14 +47,14 @@ struct Transfer {
     service: u8,
     /// Id and data of the first request.
     request: (u8, Vec<u8>),
-    /// Id of the transfer before this one: a first frame with it is a late copy.
+    /// Id of the transfer before this one. A first frame with that id is a late copy.
     previous: Option<u8>,
-    /// Id of the latest frame, used in answers.
+    /// Id of the latest frame. The answers use it.
     id: u8,
     stage: Stage,
     last_frame: Vec<u8>,
     sent: Now,
-    /// Time of the last frame of the peer.
+    /// Time at which the last frame of the peer arrived.
     heard: Now,
     mode_changes: u64,
 }
@@ -63,8 +64,8 @@ impl Transfer {
         matches!(self.stage, Stage::Sending { .. } | Stage::Receiving { .. } | Stage::BackingUp { .. })
     }
 
-    /// Whether a request is a late copy of the one that has just loaded a file. A new transfer would break the repeat
-    /// of the last block by a client that missed its ACK.
+    /// Whether a request is a late copy of the request that has just loaded a file. If such a copy started a new
+    /// transfer, a client that missed the ACK of the last block could not repeat this block.
     fn loaded_by(&self, peer: u64, request: &RequestFrame<'_>, now: Now) -> bool {
         matches!(self.stage, Stage::Finished { .. })
             && (self.peer, self.service, service::LOAD) == (peer, request.service, request.service)
@@ -73,7 +74,7 @@ impl Transfer {
             && now < self.heard + COPY
     }
 
-    /// Whether no block is acknowledged yet.
+    /// Whether no block has been acknowledged yet.
     fn at_start(&self) -> bool {
         match self.stage {
             Stage::Sending { block, .. } => block == 1,
@@ -82,7 +83,8 @@ impl Transfer {
         }
     }
 
-    /// Whether other transfers are refused. After the last block only its ACK is missing, which may be lost.
+    /// Whether other transfers are refused. They are not refused after the last block, because then only its ACK is
+    /// missing, and the ACK may be lost.
     fn is_busy(&self) -> bool {
         match &self.stage {
             Stage::Sending { content, block, .. } => !is_last(content, *block),
@@ -166,7 +168,7 @@ impl FileServer {
             let same =
                 transfer.peer == peer && transfer.service == request.service && transfer.request.1 == request.data;
             if same && matches!(transfer.stage, Stage::BackingUp { .. }) {
-                // A repeated request while the backup is written.
+                // The client repeats its request while the backup is written.
                 transfer.id = request.id;
                 return None;
             }
@@ -181,7 +183,7 @@ impl FileServer {
         Some(result.unwrap_or_else(|refused| refusal(world, request, refused))).filter(|bytes| !bytes.is_empty())
     }
 
-    /// Starts a transfer; returns an empty frame if the answer comes later.
+    /// Starts a transfer. Returns an empty frame if the answer is sent later.
     fn open(&mut self, world: &mut World, now: Now, peer: u64, request: &RequestFrame<'_>) -> Result<Vec<u8>, Refusal> {
         let row =
             Row::of_file(request.service, request.data).filter(|_| request.command == 0).ok_or(Refusal::Command)?;
@@ -253,7 +255,7 @@ impl FileServer {
     fn continues(&mut self, world: &mut World, now: Now, peer: u64, request: &RequestFrame<'_>) -> Option<Vec<u8>> {
         let known = |transfer: &&mut Transfer| transfer.peer == peer && transfer.service == request.service;
         let Some(transfer) = self.transfer.as_mut().filter(known) else {
-            // An unexpected ACK is a late copy; an unexpected data block is an error.
+            // An unexpected ACK is a late copy. An unexpected data block is an error.
             let stray = request.service == service::LOAD;
             return stray.then(|| refusal(world, request, Refusal::Added(code::ACK)));
         };
@@ -275,7 +277,7 @@ impl FileServer {
             }
             Stage::Sending { content, block, is_backup } => {
                 let current = if is_last(content, *block) { *block | LAST_BLOCK } else { *block };
-                // One client omits the top bit in its last ACK.
+                // One known client omits the top bit in its last ACK.
                 if request.block == current || request.block == *block {
                     if current & LAST_BLOCK != 0 {
                         if *is_backup {
@@ -306,7 +308,7 @@ impl FileServer {
     }
 }
 
-/// Handles a data block of a load; returns the reply, and whether the transfer continues.
+/// Handles a data block of a load. Returns the answer, and whether the transfer continues.
 fn take_block(
     transfer: &mut Transfer,
     world: &mut World,
@@ -349,7 +351,7 @@ fn take_block(
     (Some(transfer.last_frame.clone()), true)
 }
 
-/// Repeats the last frame with the id of the request; `None` for an echo.
+/// Repeats the last frame with the id of the request. Returns `None` if the request is an echo.
 fn repeat(transfer: &mut Transfer, now: Now, id: u8) -> Option<Vec<u8>> {
     if now < transfer.sent + ECHO {
         return None;

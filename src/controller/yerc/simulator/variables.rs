@@ -1,7 +1,7 @@
-//! `VAR.DAT`, the file of all variables: generated when it is read, and applied when it is loaded.
+//! `VAR.DAT`, the file of all variables. It is generated when a client reads it, and applied when a client loads it.
 //!
-//! No known source shows the whole file. Head and B rows are those of controllers. Positions are rows of protocol
-//! words, a format that is specific to the simulator.
+//! No known source shows the whole file. The head and the B rows are as on real controllers. Positions are rows of
+//! protocol words; this format is specific to the simulator.
 
 use super::memory::{AXIS_WORDS, Kind, Memory, POSITION_WORDS};
 
@@ -9,7 +9,7 @@ use super::memory::{AXIS_WORDS, Kind, Memory, POSITION_WORDS};
 pub(super) const NAME: &[u8] = b"VAR.DAT";
 /// First lines.
 const HEAD: [&[u8]; 2] = [b"//VAR", b"///SHARE"];
-/// Sections in order.
+/// Sections in the order of the file.
 const SECTIONS: [(&str, Kind); 8] = [
     ("////B", Kind::B),
     ("////I", Kind::I),
@@ -20,7 +20,7 @@ const SECTIONS: [(&str, Kind); 8] = [
     ("////BP", Kind::Bp),
     ("////EX", Kind::Ex),
 ];
-/// Numbers per row.
+/// Number of values per row.
 const ROW: usize = 10;
 
 /// A value in a loaded file.
@@ -47,8 +47,8 @@ pub(super) fn written(memory: &Memory) -> Vec<u8> {
     lines.into_iter().flat_map(|line| [line, b"\r\n".to_vec()].concat()).collect()
 }
 
-/// Applies the variables of a file; `false`, and no change, if it is invalid. Positions that are missing in its
-/// sections become undefined.
+/// Applies the variables of a file. Returns `false` if the file is invalid; then nothing changes. Positions that are
+/// missing in their section become undefined.
 pub(super) fn load(memory: &mut Memory, file: &[u8]) -> bool {
     let Some((sections, settings)) = read(file) else { return false };
     for kind in sections.into_iter().filter(|kind| kind.starts_undefined()) {
@@ -75,7 +75,7 @@ fn read(file: &[u8]) -> Option<(Vec<Kind>, Vec<Setting>)> {
         }
         let Some(kind) = sections.last().copied() else { continue };
         if kind == Kind::S {
-            // The last line end of the file does not start a text.
+            // The last line end of the file does not begin another text.
             if next < kind.count() {
                 settings.push((kind, next, line.get(..line.len().min(32))?.to_vec()));
             }

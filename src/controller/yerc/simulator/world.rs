@@ -84,12 +84,12 @@ pub(super) enum Refusal {
     Attribute,
     /// Unknown instance.
     Instance,
-    /// An added status.
+    /// A refusal with an added status.
     Added(u16),
 }
 
 impl Refusal {
-    /// Status of a model. The FS100 manual has only status 0x1F, so that model answers with A000 to A002.
+    /// Status that a model answers. The FS100 manual has only status 0x1F, so an FS100 answers with A000 to A002.
     pub(super) fn status(self, model: Model) -> Status {
         let plain = |code| Status { code, ..Status::OK };
         match (self, model) {
@@ -120,7 +120,7 @@ pub(super) struct Holds {
 }
 
 impl Holds {
-    /// Added status of the source.
+    /// Added status for the source of the HOLD.
     fn refusal(self) -> Option<u16> {
         [(self.pendant, code::HOLD_PENDANT), (self.external, code::HOLD_EXTERNAL), (self.command, code::HOLD_COMMAND)]
             .into_iter()
@@ -141,15 +141,15 @@ pub(super) struct Switches {
     pub(super) guard: bool,
     pub(super) hlock: bool,
     pub(super) estop: bool,
-    /// A job is being edited on the pendant.
+    /// Whether a job is being edited on the pendant.
     pub(super) editing: bool,
-    /// A screen is open during which axis names cannot be read (DX 3.3.5).
+    /// Whether a screen is open during which axis names cannot be read (DX 3.3.5).
     pub(super) converting: bool,
-    /// Parameter S2C541: variables and I/O cannot be written in play mode.
+    /// Parameter S2C541: whether variables and I/O are locked against writing in play mode.
     pub(super) play_lock: bool,
-    /// An error (not an alarm) is displayed.
+    /// Whether the pendant displays an error (not an alarm).
     pub(super) error: bool,
-    /// Message of command 0x85.
+    /// Message that command 0x85 displays.
     pub(super) message: Vec<u8>,
 }
 
@@ -170,7 +170,7 @@ pub(super) struct World {
     pub(super) robot_model: String,
     pub(super) application: String,
     pub(super) parameter_version: String,
-    /// Date and time at `Now` zero.
+    /// Date and time when `Now` is zero.
     pub(super) clock: DateTime,
     /// Start of the operating-time counters.
     pub(super) installed: DateTime,
@@ -181,18 +181,18 @@ pub(super) struct World {
     pub(super) arm: Arm,
     pub(super) player: Player,
     pub(super) files: Storage,
-    /// Whether answers omit missing axes. `None`: for all groups except robots with six axes.
+    /// Whether answers omit missing axes. With `None`, answers omit them for all groups except robots with six axes.
     pub(super) trim_axes: Option<bool>,
-    /// Counters, including the time before the start.
+    /// Operating-time counters, including the time before the start.
     pub(super) meters: Meters,
     /// Taught user frames: number, origin, and rotation about Z.
     pub(super) user_frames: Vec<(u32, [f64; 4])>,
     pub(super) events: Timeline,
-    /// Number of changes of mode and remote, each of which drops file transfers.
+    /// Number of changes of mode and of remote. Each change drops file transfers.
     pub(super) mode_changes: u64,
 }
 
-/// Limit of steps per call of [`World::advance`]; the remaining time is one step.
+/// Maximum number of steps in a call of [`World::advance`]. After them, the remaining time is one step.
 const MAX_STEPS: u32 = 1_000_000;
 
 impl World {
@@ -212,7 +212,7 @@ impl World {
         [self.arm.motion_end(), self.player.due(), self.events.due()].into_iter().flatten().min()
     }
 
-    /// Counts the time from `now` to `to`, without changes of switches.
+    /// Advances the time from `now` to `to`, and counts the operating times. No switch changes in this time.
     fn pass(&mut self, to: Now) {
         let span = to.saturating_sub(self.now);
         self.meters.control += span;
@@ -234,7 +234,7 @@ impl World {
             Some(End::Arrived) => self.motion_done(),
             Some(End::Limit(group, axis)) => {
                 let Group { family, number, pulses, .. } = &self.arm.groups[group];
-                // Alarm type 21 contains the robot axes at the lower and upper limit.
+                // Sub-codes of alarm type 21 contain the robot axes at the lower limit and at the upper limit.
                 let (kind, data) = match family {
                     Family::Robot => (21, limit_data(*number, axis, pulses[axis] > 0.0)),
                     Family::Base | Family::Station => (0, 0),
@@ -245,8 +245,8 @@ impl World {
         }
         self.play();
         while let Some(line) = self.events.take(self.now) {
-            // The lines were checked when the start state was parsed; an impossible line has no effect now, as on a
-            // pendant.
+            // The lines were checked when the start state was parsed. A line that is not possible in the current state
+            // has no effect, as on a pendant.
             let _refused = console::execute(self, &line);
         }
     }
@@ -257,7 +257,7 @@ impl World {
         format_time(self.clock.saturating_add(passed))
     }
 
-    /// Raises an alarm: stops everything, and switches power off except for user alarms.
+    /// Raises an alarm. It stops everything, and switches servo power off unless it is a user alarm.
     pub(super) fn raise(&mut self, code: u32, data: u32, kind: u32, name: Option<&str>) {
         self.alarms.raise(alarm(code, data, kind, &self.timestamp(), name));
         if code < 8000 {
@@ -273,7 +273,7 @@ impl World {
         self.player.stop();
     }
 
-    /// Switches servo power off: brakes hold the axes.
+    /// Switches servo power off. The brakes hold the axes.
     pub(super) fn power_off(&mut self) {
         self.switches.servo = false;
         self.arm.halt(self.now);
@@ -308,8 +308,8 @@ impl World {
         .fold(ControllerStatus::default(), |status, (bit, on)| status.with(bit, on))
     }
 
-    /// An I/O byte; system outputs follow the state. Their positions are specific to this simulator, based on the usual
-    /// ladder.
+    /// A byte of I/O. The system outputs follow the state. Their positions are specific to this simulator, and are
+    /// based on the usual ladder.
     pub(super) fn io(&self, instance: u16) -> u8 {
         let Switches { mode, remote, servo, hold, error, .. } = &self.switches;
         let signals: &[(u8, bool)] = match instance {
@@ -326,7 +326,7 @@ impl World {
         signals.iter().fold(self.memory.io(instance), |byte, &(bit, on)| byte & !(1 << bit) | u8::from(on) << bit)
     }
 
-    /// Whether changes are accepted at all.
+    /// Whether the controller accepts changes at all.
     pub(super) fn may_command(&self) -> Result<(), Refusal> {
         if self.switches.remote { Ok(()) } else { Err(Refusal::Added(code::NOT_REMOTE)) }
     }
@@ -374,7 +374,7 @@ impl World {
         Ok(())
     }
 
-    /// Switches mode or remote; stops jobs and drops transfers.
+    /// Switches mode or remote. This stops jobs and drops transfers.
     pub(super) fn set_mode(&mut self, mode: Mode, remote: bool) {
         if (self.switches.mode, self.switches.remote) == (mode, remote) {
             return;

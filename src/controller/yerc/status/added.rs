@@ -57,11 +57,11 @@ pub struct AddedRow {
     pub code: u16,
     /// Subject.
     pub class: Class,
-    /// Models whose manual contains it; empty for the two codes of other sources (0xA100, 0xA102).
+    /// Models whose manual contains the code; empty for the two codes from other sources (0xA100, 0xA102).
     pub models: &'static [Model],
     /// Short name.
     pub name: &'static str,
-    /// What happened, and usual causes.
+    /// What happened, and the usual causes.
     pub cause: &'static str,
     /// Remedy.
     pub remedy: &'static str,
@@ -71,7 +71,7 @@ pub(super) const BOTH: &[Model] = &[Model::Fs100, Model::Dx200];
 pub(super) const DX200: &[Model] = &[Model::Dx200];
 pub(super) const NONE: &[Model] = &[];
 
-/// A row in column order.
+/// Creates a row; the arguments are in column order.
 pub(super) const fn row(
     code: u16,
     class: Class,
@@ -83,7 +83,7 @@ pub(super) const fn row(
     AddedRow { code, class, models, name, cause, remedy }
 }
 
-/// The row of an added status code, if known.
+/// The row of an added status code; `None` if the code is unknown.
 pub fn added(code: u32) -> Option<&'static AddedRow> {
     let code = u16::try_from(code).ok()?;
     [robot::ROWS, link::ROWS].into_iter().find_map(|rows| {
@@ -97,16 +97,16 @@ pub fn all_added() -> impl Iterator<Item = &'static AddedRow> {
     robot::ROWS.iter().chain(link::ROWS)
 }
 
-/// Whether an added status means busy, so that a repeat may succeed soon (DX chapter 5: 0xD8F1, 0xD8FA, 0xE444,
-/// 0xFFF6).
+/// Whether an added status means that the controller is busy, so that a repeat may soon succeed (DX chapter 5: 0xD8F1,
+/// 0xD8FA, 0xE444, 0xFFF6).
 pub fn is_busy(code: u32) -> bool {
     added(code).is_some_and(|row| row.class == Class::Busy)
 }
 
-/// Whether a refusal means that the object does not exist: an unknown instance, or data and groups that the
-/// controller does not have. The manuals do not specify the answer for a group that is not fitted.
+/// Whether a refusal means that an object does not exist: an unknown instance, or data and groups that the controller
+/// does not have. The manuals do not specify the answer for a group that is not fitted.
 pub fn is_absent(status: Status) -> bool {
-    /// Wrong control group or base axis, instance, and data or types that do not exist.
+    /// Wrong control group or base axis, wrong instance, and data or types that do not exist.
     const ABSENT: [u32; 8] = [0x3370, 0x3380, 0xA001, 0xB002, 0xB004, 0xB005, 0xB007, 0xB008];
     match (status.code, status.added) {
         (0x00, _) => false,

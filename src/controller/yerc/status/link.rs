@@ -3,14 +3,14 @@
 use super::added::{AddedRow, BOTH, Class, DX200, NONE, row};
 
 const SYSTEM_REMEDY: &str =
-    "Clear the alarm and try again; if it stays, keep a CMOS.BIN backup and call the service with this code.";
-const FILE_INTERNAL: &str =
-    "An internal error of the controller, numbered among its file errors; no cause is published.";
-const LINK_INTERNAL: &str =
-    "An internal error of the controller, numbered among its link errors; no cause is published.";
-const BUSY_CAUSE: &str = "The controller still processes another command, from this or a different host.";
-const BUSY_REMEDY: &str = "Repeat after a moment. If it stays, find the other host that talks to this controller.";
-const FRAME_REMEDY: &str = "armctl never sends such a frame: record the exchange with --trace and report it. In other software, correct it there.";
+    "Clear the alarm and try again. If the error stays, make a CMOS.BIN backup and call the service with this code.";
+const FILE_INTERNAL: &str = "An internal error of the controller, in its group of file errors; no cause is published.";
+const LINK_INTERNAL: &str = "An internal error of the controller, in its group of link errors; no cause is published.";
+const BUSY_CAUSE: &str = "The controller still processes another command, from this host or another host.";
+const BUSY_REMEDY: &str = "Repeat after a moment. If the error stays, find the other host that sends commands to this \
+                           controller.";
+const FRAME_REMEDY: &str = "armctl never sends such a frame: record the exchange with --trace and report it. If other \
+                            software sent the frame, correct that software.";
 
 /// In ascending order. Columns: code, class, models, name, cause, remedy.
 #[rustfmt::skip] // Eight lines per row would hide the table.
@@ -22,22 +22,22 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The memory card, USB stick or RAM disk is full.",
         "Free space on the device, or use a larger one."),
     row(0x6030, Class::Backup, BOTH, "device cannot be accessed",
-        "The device is not there, not formatted, write-protected or broken. For the batch backup the RAM disk may \
-         be missing.",
-        "Check or change the device. For the batch backup set S2C680 = 1 and restart the controller, so that it \
-         makes the RAM disk."),
+        "The device is missing, not formatted, write-protected or broken. For the batch backup the RAM disk may be \
+         missing.",
+        "Check or change the device. For the batch backup, set S2C680 = 1 and restart the controller to create the \
+         RAM disk."),
     row(0x6040, Class::Backup, BOTH, "unexpected auto-backup request",
         "The controller did not expect a backup request in this state.",
         "Check the AUTO BACKUP SET screen on the pendant, then repeat."),
     row(0x6050, Class::Backup, BOTH, "CMOS size exceeds the RAM area",
-        "The CMOS data are larger than the area kept for the backup.",
-        "Have the RAM area enlarged by the service, or save CMOS on the pendant to a card."),
+        "The CMOS data are larger than the area reserved for the backup.",
+        "Ask the service to enlarge the RAM area, or save CMOS to a card at the pendant."),
     row(0x6060, Class::Backup, BOTH, "no memory allocated at power-on",
-        "The memory for the backup was not set aside when the controller started.",
+        "The memory for the backup was not allocated when the controller started.",
         "Set S2C680 = 1 (RAM disk at start-up), switch the controller off and on, and repeat."),
     row(0x6070, Class::Backup, BOTH, "cannot access backup file information",
         "The list of backup files on the device cannot be read.",
-        "Check the device and its folder on the pendant; format or change it if it stays."),
+        "Check the device and its folder on the pendant. If the error stays, format or change the device."),
     row(0x6080, Class::Backup, BOTH, "sorting backup files failed (remove)",
         "An old backup file could not be removed.",
         "Check whether the device is write-protected or full, delete old backups by hand, and repeat."),
@@ -48,65 +48,63 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The name of the backup drive is longer than allowed.",
         "Correct the drive in the backup settings on the pendant."),
     row(0x6110, Class::Backup, BOTH, "wrong device",
-        "The device chosen cannot be used for this.",
-        "Reset all alarms, because an active alarm blocks the change. Then select the right device in the AUTO \
+        "The selected device cannot be used for this function.",
+        "Reset all alarms, because an active alarm blocks the change. Then select the correct device in the AUTO \
          BACKUP SET screen (for the batch backup, the RAM disk)."),
     row(0x6120, Class::Backup, BOTH, "system error",
         "An internal error of the controller, in the backup function.",
         SYSTEM_REMEDY),
     row(0x6130, Class::Backup, BOTH, "auto backup not available",
         "The backup function is switched off or not installed.",
-        "Set S2C680 = 1 and set the backup up on the AUTO BACKUP SET screen, then restart the controller."),
+        "Set S2C680 = 1, set up the backup on the AUTO BACKUP SET screen, then restart the controller."),
     row(0x6140, Class::Backup, BOTH, "cannot back up while auto backup is running",
-        "The controller is making a backup already; the whole batch takes about ten minutes.",
-        "Wait until it has ended, then repeat."),
+        "The controller is already making a backup; the whole batch takes about ten minutes.",
+        "Wait until the backup has ended, then repeat."),
     row(0xA000, Class::Address, BOTH, "undefined command",
-        "The controller does not know this command number. Some commands came with later software (FS100: 0x30A, \
-         0x30B, 0x8A, 0x8B) or only exist on DX200.",
-        "Check the model of the robot and the software version (`armctl yerc info`); use another command where \
-         there is one."),
+        "The controller does not support this command number. Some commands need later software (FS100: 0x30A, 0x30B, \
+         0x8A, 0x8B) or exist only on a DX200.",
+        "Check the model of the robot and the software version (`armctl yerc info`), or use another command."),
     row(0xA001, Class::Address, BOTH, "instance error",
-        "The thing addressed does not exist: a task, group, variable, signal or alarm number beyond what this \
-         controller has.",
+        "The address does not exist: a task, group, variable, signal or alarm number is beyond the range of this \
+         controller.",
         "Check the number against the controller's ranges and the set model; `armctl yerc axes` lists the control \
          groups."),
     row(0xA002, Class::Address, BOTH, "attribute error",
-        "The requested field does not exist in this command. Some controllers need 0 although the manual lists 1.",
+        "The requested field does not exist in this command. Some controllers need 0, although the manual lists 1.",
         "With `armctl yerc raw`, try --attribute 0. Otherwise check the model and report the exchange with --trace."),
     row(0xA100, Class::Address, NONE, "answer data size error (hardware limit)",
         "The answer would not fit into one frame (hint: only Yaskawa's own packet dissector lists this code).",
-        "Ask for fewer elements at a time."),
+        "Request fewer elements at a time."),
     row(0xA101, Class::Address, BOTH, "answer data size error",
         "The answer would be larger than allowed (hint: the manuals call it the hardware limit, Yaskawa's packet \
          dissector the software limit).",
-        "Ask for fewer elements at a time, and check the number against the range of the variable."),
+        "Request fewer elements at a time, and check the number against the range of the variable."),
     row(0xA102, Class::Address, NONE, "answer data size error (software limit)",
         "The answer would be larger than allowed (hint: only a third-party client lists this code).",
-        "Ask for fewer elements at a time."),
+        "Request fewer elements at a time."),
     row(0xB001, Class::Data, BOTH, "answer data size error, or position not defined",
-        "The answer would be too large, or (hint: after Yaskawa's packet dissector) the position variable read has \
-         never been set.",
-        "For a P, BP or EX variable: look on the pendant whether it is set. For many elements: ask for fewer."),
+        "The answer would be too large. Or (hint: according to Yaskawa's packet dissector) the position variable that \
+         was read has never been set.",
+        "For a P, BP or EX variable, check on the pendant whether it is set. For many elements, request fewer."),
     row(0xB002, Class::Data, BOTH, "data may not be used",
-        "The data cannot be used by this request: not fitted, protected or not writable from the network.",
-        "Check address and class of the signal, register or variable: only network inputs and registers up to 559 \
-         take writes. Check S2C541 and S2C542 too."),
+        "The data cannot be used by this request: they are not fitted, protected, or not writable from the network.",
+        "Check the address and the class of the signal, register or variable: only network inputs and registers up to \
+         559 can be written. Also check S2C541 and S2C542."),
     row(0xB003, Class::Data, BOTH, "request data size error",
-        "The request carries more or fewer bytes than the command takes; strings and moves differ between the \
-         models.",
-        "Set the right model for this robot. An FS100 that refuses a cartesian move may need the 25 words of its \
+        "The request has more or fewer bytes than the command needs; strings and moves differ between the models.",
+        "Set the correct model for this robot. An FS100 that refuses a cartesian move may need the 25 words of its \
          manual: ?model=fs100&move_words=25. `armctl yerc raw --strict` compares lengths."),
     row(0xB004, Class::Data, BOTH, "outside the data range",
-        "A value sent is outside what the data can hold, or number plus count runs past the end.",
+        "A sent value is outside the range of the data, or number plus count is beyond the end.",
         "Check value, first number and count against the limits of this controller."),
     row(0xB005, Class::Data, BOTH, "data undefined",
-        "The data addressed were never set, such as an untaught position or an empty entry.",
-        "Set or teach it first, or use another address."),
+        "The addressed data were never set, for example an untaught position or an empty entry.",
+        "Set or teach the data first, or use another address."),
     row(0xB006, Class::Data, BOTH, "specified application not registered",
         "The application number does not exist on this controller.",
-        "List the ones that exist with `armctl yerc info` and `armctl yerc hours`, and use one of those."),
+        "List the application numbers with `armctl yerc info` and `armctl yerc hours`, and use one of them."),
     row(0xB007, Class::Data, BOTH, "specified type not registered",
-        "The type asked for does not exist on this controller.",
+        "The requested type does not exist on this controller.",
         "Check the type number; `armctl yerc info` and `armctl yerc axes` show what is fitted."),
     row(0xB008, Class::Data, BOTH, "control group setting error",
         "The control group of a move or position is wrong, or robot and station are both named.",
@@ -114,52 +112,52 @@ pub(super) static ROWS: &[AddedRow] = &[
     row(0xB009, Class::Data, BOTH, "speed setting error",
         "The speed is out of range, or its unit does not match the move. Joint moves need percent, linear moves mm/s \
          or deg/s.",
-        "Correct speed and unit, and start low."),
+        "Correct the speed and the unit, and start with a low speed."),
     row(0xB00A, Class::Data, BOTH, "operating speed not set",
         "The move has no speed.",
-        "Give a speed above zero."),
+        "Set a speed above zero."),
     row(0xB00B, Class::Data, BOTH, "operation coordinate system setting error",
-        "The coordinate system of the move does not exist or does not fit the group.",
+        "The coordinate system of the move does not exist or does not match the group.",
         "Use base, robot, tool or a taught user coordinate system."),
     row(0xB00C, Class::Data, BOTH, "type setting error",
         "The form of a move (its words \"type\" and \"expanded type\") has undefined bits, or the robot cannot reach \
-         it. In a position, the position type does not exist.",
+         the form. In a position, the position type does not exist.",
         "Check --form and --extended-form of the move, or the type of the position (pulse, base, robot, tool, user)."),
     row(0xB00D, Class::Data, BOTH, "tool number setting error",
         "The tool number is out of range or the tool is not set up.",
         "Use a tool that exists on this controller (pendant: ROBOT > TOOL)."),
     row(0xB00E, Class::Data, BOTH, "user coordinate number setting error",
         "The user coordinate number is out of range or the system is not taught.",
-        "Use 1 to 63 and a taught one (pendant: ROBOT > USER COORDINATE)."),
+        "Use the number (1 to 63) of a taught user coordinate system (pendant: ROBOT > USER COORDINATE)."),
     row(0xC001, Class::System, BOTH, "address error",
         "The controller had an internal error in the address of the data (hint: Yaskawa's packet dissector calls it \
          a data area setting error).",
-        "Check the number and count asked for. If they are right: clear the alarm and try again; if it stays, keep \
-         a CMOS.BIN backup and call the service with this code."),
+        "Check the requested number and count. If they are correct, clear the alarm and try again. If the error \
+         stays, make a CMOS.BIN backup and call the service with this code."),
     row(0xC002, Class::System, BOTH, "system error",
-        "An internal error of the controller, in building the answer (hint: after Yaskawa's packet dissector the \
-         answer area was exceeded).",
-        "Ask for fewer elements. If it stays: clear the alarm and try again; if it stays, keep a CMOS.BIN backup \
-         and call the service with this code."),
-    row(0xC003, Class::System, BOTH, "system error",
-        "An internal error of the controller, in handling the data (hint: after Yaskawa's packet dissector an \
-         element size did not match).",
-        "Check the model and the data length. If they are right: clear the alarm and try again; if it stays, keep a \
+        "An internal error of the controller when it built the answer (hint: according to Yaskawa's packet dissector, \
+         the answer area was exceeded).",
+        "Request fewer elements. If the error stays, clear the alarm and try again. If the error comes again, make a \
          CMOS.BIN backup and call the service with this code."),
+    row(0xC003, Class::System, BOTH, "system error",
+        "An internal error of the controller when it handled the data (hint: according to Yaskawa's packet dissector, \
+         an element size did not match).",
+        "Check the model and the data length. If they are correct, clear the alarm and try again. If the error stays, \
+         make a CMOS.BIN backup and call the service with this code."),
     row(0xC800, Class::System, BOTH, "system error",
         "An internal error of the controller; no cause is published.",
         SYSTEM_REMEDY),
     row(0xCFFF, Class::System, BOTH, "other error",
         "The controller refused for a reason without a code.",
-        "Look at the pendant for an alarm or message, and repeat the request once that is cleared."),
+        "Check the pendant for an alarm or message, clear it, and repeat the request."),
     row(0xD8F1, Class::Busy, DX200, "busy: another command is being processed",
         BUSY_CAUSE,
         BUSY_REMEDY),
     row(0xD8FA, Class::Busy, DX200, "busy: transmission exclusive error",
-        "Another host or function holds the connection of the controller at this moment.",
+        "Another host or function uses the connection of the controller at this moment.",
         BUSY_REMEDY),
     row(0xE24F, Class::File, BOTH, "wrong parameter setting for the system backup",
-        "The parameters of the batch backup are not set (FS100 only says that a parameter is wrong).",
+        "The parameters of the batch backup are not set (an FS100 reports only that a parameter is wrong).",
         "Set S2C680 = 1, restart the controller, and check the AUTO BACKUP SET screen."),
     row(0xE250, Class::File, DX200, "backup file could not be created",
         "The controller could not write the backup file, often because it is not in remote mode.",
@@ -171,18 +169,18 @@ pub(super) static ROWS: &[AddedRow] = &[
         FILE_INTERNAL,
         SYSTEM_REMEDY),
     row(0xE28B, Class::File, DX200, "communication closed after a receive timeout",
-        "The controller waited too long for the next block or acknowledgement and dropped the transfer: lost \
-         packets, or a host that was slow.",
-        "Repeat the transfer. If it comes again, check cable, switch and wireless links, and RS034 and RS035 on the \
-         controller."),
+        "The controller waited too long for the next block or acknowledgement and ended the transfer: packets were \
+         lost, or the host was slow.",
+        "Repeat the transfer. If the error comes again, check the cable, the switch and wireless links, and RS034 and \
+         RS035 on the controller."),
     row(0xE28C, Class::File, DX200, "target file cannot be overwritten",
-        "The file exists and may not be replaced: protected, in use, or the selected job.",
-        "Select another job, take the edit lock off, or delete the old file first (save it with `armctl yerc file \
+        "The file exists and may not be replaced: it is protected, in use, or the selected job.",
+        "Select another job, remove the edit lock, or delete the old file first (save it with `armctl yerc file \
          get`)."),
     row(0xE29C, Class::File, DX200, "requested file does not exist or is empty",
         "The file does not exist, or it is empty. This code can come with an answer that otherwise reports success.",
-        "Compare the name with `armctl yerc file list`, with its ending and in upper case; if it is there, it is \
-         empty."),
+        "Compare the name with `armctl yerc file list`, in upper case and with its extension. If the file is in the \
+         list, it is empty."),
     row(0xE29D, Class::File, DX200, "system error",
         FILE_INTERNAL,
         SYSTEM_REMEDY),
@@ -193,40 +191,42 @@ pub(super) static ROWS: &[AddedRow] = &[
         FILE_INTERNAL,
         SYSTEM_REMEDY),
     row(0xE2A0, Class::File, DX200, "wrong path requested",
-        "The path in the file name is not one the controller knows.",
-        "Use the plain file name; a path only for the batch backup (/SPDRV/CMOSBK.BIN)."),
+        "The controller does not have the path in the file name.",
+        "Use the file name without a path; only the batch backup needs a path (/SPDRV/CMOSBK.BIN)."),
     row(0xE2A7, Class::File, DX200, "no file matches the list request",
         "No file of the requested type exists. This code can come with an answer that otherwise reports success.",
-        "Nothing is wrong if there are none; otherwise check the type, such as *.JBI."),
+        "If the controller has no files of this type, nothing is wrong. Otherwise check the type, for example *.JBI."),
     row(0xE2AA, Class::File, DX200, "system error",
         FILE_INTERNAL,
         SYSTEM_REMEDY),
     row(0xE2AF, Class::File, DX200, "this file may not be deleted",
         "The file is protected: a system file, or a job that is selected, running or edit-locked.",
-        "Stop and deselect the job, or take its edit lock off. System files stay."),
+        "Stop and deselect the job, or remove its edit lock. System files cannot be deleted."),
     row(0xE2B0, Class::File, DX200, "system error",
         FILE_INTERNAL,
         SYSTEM_REMEDY),
     row(0xE2B1, Class::File, DX200, "a directory may not be deleted",
-        "The name is that of a folder, and folders cannot be deleted.",
+        "This is the name of a folder, and folders cannot be deleted.",
         "Name a single file."),
     row(0xE2B2, Class::File, DX200, "system error",
-        "An internal error of the controller, in the file server (hint: after Yaskawa's packet dissector, a file \
-         request while remote mode is off).",
-        "Turn the mode key to REMOTE and check #82015 CMD REMOTE SEL. If it stays: clear the alarm and try again; \
-         if it stays, keep a CMOS.BIN backup and call the service with this code."),
+        "An internal error of the controller, in the file server (hint: according to Yaskawa's packet dissector, a \
+         file request while remote mode is off).",
+        "Turn the mode key to REMOTE and check #82015 CMD REMOTE SEL. If the error stays, clear the alarm and try \
+         again. If the error comes again, make a CMOS.BIN backup and call the service with this code."),
     row(0xE2B3, Class::File, BOTH, "file not found",
-        "There is no file of this name on the controller.",
-        "Compare with `armctl yerc file list`: upper case, with its ending, in the right text encoding."),
+        "The controller has no file with this name.",
+        "Compare the name with `armctl yerc file list`: upper case, with its extension, and in the correct text \
+         encoding."),
     row(0xE2B4, Class::File, DX200, "requested path too long",
-        "The file name is longer than the controller takes.",
-        "Shorten it: a job name has at most 32 bytes plus the ending, and a Japanese character takes two."),
+        "The file name is longer than the controller allows.",
+        "Shorten the name: a job name can have at most 32 bytes plus the extension, and a Japanese character needs \
+         two bytes."),
     row(0xE444, Class::Busy, DX200, "busy: another command is being processed",
         BUSY_CAUSE,
         BUSY_REMEDY),
     row(0xE49D, Class::File, DX200, "format: data size is 0",
         "The file request has no usable name. A name that ends in a NUL byte has the same effect.",
-        "Give a file name; with `armctl yerc raw`, leave out the NUL at its end."),
+        "Set a file name; with `armctl yerc raw`, remove the NUL at its end."),
     row(0xE49E, Class::File, DX200, "format: frame too long",
         "The controller received a frame above its size limit (data of at most 479 bytes).",
         FRAME_REMEDY),
@@ -234,16 +234,17 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The controller received a frame without any length.",
         FRAME_REMEDY),
     row(0xE4A1, Class::File, DX200, "format: block number",
-        "A block came in the wrong order: a lost or repeated packet, or two hosts with the same transfer.",
-        "Repeat the transfer, and let only one host talk to the file server. If it comes again, check the network."),
+        "A block came in the wrong order: a packet was lost or repeated, or two hosts use the same transfer.",
+        "Repeat the transfer, and let only one host use the file server. If the error comes again, check the network."),
     row(0xE4A2, Class::File, DX200, "format: ACK",
-        "An acknowledgement did not match the transfer: a lost or repeated packet, or a transfer that had ended.",
-        "Repeat the transfer, and let only one host talk to the file server. If it comes again, check the network."),
+        "An acknowledgement did not match the transfer: a packet was lost or repeated, or the transfer had already \
+         ended.",
+        "Repeat the transfer, and let only one host use the file server. If the error comes again, check the network."),
     row(0xE4A3, Class::File, DX200, "format: processing division",
-        "The controller received a frame whose division is not that of the port (robot 10040, file 10041).",
+        "The controller received a frame whose division does not match the port (robot 10040, file 10041).",
         "Check the ports in the target URL: robot commands go to 10040, files to 10041."),
     row(0xE4A4, Class::File, DX200, "format: access level",
-        "The controller received a frame with an access level it does not allow.",
+        "The controller received a frame with an access level that it does not allow.",
         FRAME_REMEDY),
     row(0xE4A5, Class::File, DX200, "format: header size",
         "The controller received a frame whose header size is not 32.",
@@ -253,7 +254,8 @@ pub(super) static ROWS: &[AddedRow] = &[
         FRAME_REMEDY),
     row(0xE4A7, Class::File, DX200, "format: size in the header differs from the bytes received",
         "The stated size of a frame differs from the number of received bytes; often the network truncated the frame.",
-        "Check switches, VPN and firewall for truncated or split packets; then record with --trace and report it."),
+        "Check switches, VPN and firewall for truncated or split packets; then record the exchange with --trace and \
+         report it."),
     row(0xE4A8, Class::File, DX200, "system error",
         FILE_INTERNAL,
         SYSTEM_REMEDY),
@@ -276,8 +278,8 @@ pub(super) static ROWS: &[AddedRow] = &[
         LINK_INTERNAL,
         SYSTEM_REMEDY),
     row(0xFFF6, Class::Busy, DX200, "busy: too many requests",
-        "The controller received more requests than its queue can hold, from this host or from all hosts together.",
-        "Slow down: longer --watch intervals, and fewer programs that ask the same controller."),
+        "The controller received more requests than its queue can store, from this host or from all hosts together.",
+        "Send fewer requests: use longer --watch intervals, and fewer programs for the same controller."),
     row(0xFFF7, Class::System, DX200, "system error",
         LINK_INTERNAL,
         SYSTEM_REMEDY),
@@ -285,6 +287,6 @@ pub(super) static ROWS: &[AddedRow] = &[
         LINK_INTERNAL,
         SYSTEM_REMEDY),
     row(0xFFFE, Class::System, DX200, "remote mode detected, communication closed",
-        "The remote mode changed while the connection was in use, and the controller dropped it.",
+        "The remote mode changed while the connection was in use, and the controller closed the connection.",
         "Do not turn the mode key during transfers; check the mode with `armctl yerc status` and start again."),
 ];

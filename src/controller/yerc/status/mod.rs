@@ -17,12 +17,12 @@ mod robot;
 
 pub use added::{AddedRow, Class, added, all_added, is_absent, is_busy};
 
-/// A status code. Only the DX200 manual has a list (chapter 4); FS100 is expected to use the same codes.
+/// A status code. Only the DX200 manual has a list (chapter 4); an FS100 probably uses the same codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StatusRow {
     /// The code.
     pub code: u8,
-    /// Models whose manual contains it.
+    /// Models whose manual contains the code.
     pub models: &'static [Model],
     /// Short name.
     pub name: &'static str,
@@ -38,16 +38,16 @@ static STATUSES: [StatusRow; 5] = [
         code: 0x00,
         models: added::BOTH,
         name: "done",
-        cause: "The controller carried the request out.",
+        cause: "The controller carried out the request.",
         remedy: "Nothing to do.",
     },
     StatusRow {
         code: 0x08,
         models: added::DX200,
         name: "command not defined",
-        cause: "The controller does not know this command number.",
-        remedy: "Check the model (fs100 or dx200) and the software version (`armctl yerc info`): some commands are newer, \
-                 some exist on one model only.",
+        cause: "The controller does not support this command number.",
+        remedy: "Check the model (fs100 or dx200) and the software version (`armctl yerc info`): some commands need \
+                 newer software, and some exist on only one model.",
     },
     StatusRow {
         code: 0x09,
@@ -61,8 +61,8 @@ static STATUSES: [StatusRow; 5] = [
         models: added::DX200,
         name: "refused, see the added status",
         cause: "The controller refused; the added status gives the reason.",
-        remedy: "Look up the added status: `armctl explain yerc CODE`. Without an added status, read the pendant and \
-                 `armctl yerc alarm list`.",
+        remedy: "Look up the added status: `armctl explain yerc CODE`. Without an added status, read the display of \
+                 the pendant and `armctl yerc alarm list`.",
     },
     StatusRow {
         code: 0x28,
@@ -74,7 +74,7 @@ static STATUSES: [StatusRow; 5] = [
     },
 ];
 
-/// The row of a status code, if known.
+/// The row of a status code; `None` if the code is unknown.
 pub fn status(code: u8) -> Option<&'static StatusRow> {
     STATUSES.iter().find(|row| row.code == code)
 }
@@ -87,9 +87,10 @@ pub fn all_statuses() -> impl Iterator<Item = &'static StatusRow> {
 /// Description of a code.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Explanation {
-    /// The more specific code in hexadecimal: `0x2060` for an added status, `0x28` for a status without one.
+    /// The more specific code, in hexadecimal: `0x2060` for an added status, `0x28` for a status without an added
+    /// status.
     pub code_text: String,
-    /// Class; `None` for status codes and unknown ones.
+    /// Class of the code; `None` for status codes and for unknown codes.
     pub class: Option<Class>,
     /// Models whose manual contains the code.
     pub models: &'static [Model],
@@ -103,11 +104,11 @@ pub struct Explanation {
     pub remedy: Cow<'static, str>,
 }
 
-/// Describes the result code of an answer, also an unknown one.
+/// Describes the result code of an answer. Unknown codes also have a description.
 ///
-/// An added status is more specific than its status, even than status 0 (DX 3.1: 0xE29C and 0xE2A7 come with 0).
-/// Codes in the manual have 16 bits. Of a two-word added status the lower word is looked up, because the manual does
-/// not define the upper one (DX 3.1).
+/// An added status is more specific than its status, even than status 0 (DX 3.1: 0xE29C and 0xE2A7 come with status 0).
+/// Codes in the manual have 16 bits. If an added status has two words, only the lower word is looked up, because the
+/// manual does not define the upper word (DX 3.1).
 pub fn explain(result: Status) -> Explanation {
     if result.added_size == 0 || result.added == 0 {
         return status(result.code).map_or_else(|| unknown_status(result.code), of_status);
@@ -121,7 +122,8 @@ pub fn explain(result: Status) -> Explanation {
 /// An invalid code.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error(
-    "'{text}' is not a valid code: status codes have one or two hexadecimal digits, added status codes four, as in 0x2060"
+    "'{text}' is not a valid code: status codes have one or two hexadecimal digits, added status codes have four, for \
+     example 0x2060"
 )]
 pub struct NoCode {
     /// The invalid text.
@@ -129,7 +131,7 @@ pub struct NoCode {
 }
 
 /// Looks up a code in user notation: `2060`, `0x2060`, `e29c`, `1F`, `0x1f`. Codes are hexadecimal, with or without
-/// prefix. The result is never empty; it has two entries only if a short code is in both tables.
+/// prefix. The result is never empty. It has two entries only if a short code is in both tables.
 pub fn lookup(text: &str) -> Result<Vec<Explanation>, NoCode> {
     let trimmed = text.trim();
     let code: u32 = typed::code(trimmed).ok_or_else(|| NoCode { text: text.to_owned() })?;
@@ -140,7 +142,7 @@ pub fn lookup(text: &str) -> Result<Vec<Explanation>, NoCode> {
     if found.is_empty() {
         let mut unknown = short.map_or_else(|| unknown_added(code), unknown_status);
         if let Some(row) = trimmed.parse().ok().and_then(added) {
-            let hint = format!(" If {trimmed} was meant as a decimal number, it is 0x{:04X}: {}.", row.code, row.name);
+            let hint = format!(" If {trimmed} is a decimal number, the code is 0x{:04X}: {}.", row.code, row.name);
             unknown.remedy.to_mut().push_str(&hint);
         }
         found.push(unknown);
@@ -180,11 +182,11 @@ fn unknown_status(code: u8) -> Explanation {
         known: false,
         name: "unknown status code".into(),
         cause: "No source lists this status. Any status other than 0x00 means that the request was not carried out as \
-                asked."
+                requested."
             .into(),
         remedy:
-            "Look for a message on the pendant and in `armctl yerc alarm list`. Record the exchange with --trace if \
-                 it comes again."
+            "Look for a message on the pendant and in `armctl yerc alarm list`. If the status comes again, record the \
+             exchange with --trace."
                 .into(),
     }
 }

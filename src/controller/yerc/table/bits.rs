@@ -5,14 +5,14 @@
 pub struct Bit {
     /// Position from the least significant bit.
     pub bit: u8,
-    /// Name of state 0; empty without one.
+    /// Name of state 0; empty if the state has no name.
     pub clear: &'static str,
     /// Name of state 1.
     pub set: &'static str,
 }
 
 impl Bit {
-    /// Name of its state in `value`.
+    /// Name of the state of the bit in `value`.
     pub const fn word(&self, value: u32) -> &'static str {
         if value >> self.bit & 1 == 1 { self.set } else { self.clear }
     }

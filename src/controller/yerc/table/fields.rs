@@ -22,15 +22,15 @@ pub enum Kind {
     F32,
     /// Text of this size in the encoding of the pendant, padded with NUL.
     Text(usize),
-    /// 32 bits with names.
+    /// 32 bits, some of which have names.
     Bits(&'static [Bit]),
     /// 32 bits with one of these values.
     Choice(&'static [(u32, &'static str)]),
     /// 32 bits in a unit.
     Scaled(Unit),
-    /// An axis of a robot position, counted from 0; the data type decides its unit.
+    /// An axis of a robot position, counted from 0. The data type of the position determines its unit.
     Axis(usize),
-    /// An axis of a base position; the data type decides its unit.
+    /// An axis of a base position. The data type of the position determines its unit.
     BaseAxis,
     /// 32 bits in the unit of the speed class.
     Speed,
@@ -78,7 +78,7 @@ macro_rules! numbered {
     };
 }
 
-/// Joins rows of fields to one of `N` fields.
+/// Joins lists of fields into one array of `N` fields.
 const fn join<const N: usize>(parts: &[&[Field]]) -> [Field; N] {
     let mut out = [f("", Kind::Reserved); N];
     let (mut part, mut from) = (0, 0);
@@ -99,7 +99,7 @@ const fn join<const N: usize>(parts: &[&[Field]]) -> [Field; N] {
 /// Pulses of eight axes.
 const PULSES: [Field; 8] = numbered!("axis", _ => Kind::Scaled(units::PULSE); 1 2 3 4 5 6 7 8);
 
-/// Formats of alarm sub-codes (FS and DX 3.3.1); 7, 13 to 19 and 26 are not defined.
+/// Formats of alarm sub-codes (FS and DX 3.3.1). Types 7, 13 to 19 and 26 are not defined.
 pub const ALARM_KINDS: &[(u32, &str)] = &[
     (0, "no sub-code"),
     (1, "unsigned decimal, 16 bits"),

@@ -40,7 +40,8 @@ const fn file(number: u8, meaning: &'static str, action: Action, risk: RiskRule)
 
 const READ_FIELDS: &[Service] = &[get_single(Attribute::Field), get_all(Attribute::Zero)];
 const IO: &[Service] = &[get_single(Attribute::One), set_single(Attribute::One, WRITE)];
-/// Attribute 0 with 0x02 is the form of section 3.2.2; the table of the command has 1 with 0x10.
+/// Service 0x02 with attribute 0 is the form of section 3.2.2. The table of the command has service 0x10 with attribute
+/// 1.
 const REGISTER: &[Service] =
     &[get_single(Attribute::One), set_single(Attribute::One, WRITE), set_all(Attribute::Zero, WRITE)];
 const VARIABLE: &[Service] = &[
@@ -49,7 +50,7 @@ const VARIABLE: &[Service] = &[
     set_single(Attribute::One, WRITE),
     set_all(Attribute::OneOrZero, WRITE),
 ];
-/// Overwrites taught data.
+/// Services of position variables. A write overwrites taught data.
 const POSITION: &[Service] = &[
     get_single(Attribute::Field),
     get_all(Attribute::Zero),
@@ -109,7 +110,7 @@ const fn plural(
     Row { plural: Some(Plural { max, even: false }), ..row(number, section, name, PLURAL, instances, fields) }
 }
 
-/// For taught data.
+/// Makes the write services of a row destructive, because they overwrite taught data.
 const fn taught(row: Row) -> Row {
     Row { services: POSITIONS, ..row }
 }
@@ -187,6 +188,6 @@ pub const ROWS: &[Row] = &[
     files("3.4.2", "file load", &[file(service::LOAD, "PC to controller", Action::Write, DESTROY)], data::FILE_NAME),
     files("3.4.3", "file save", &[file(service::SAVE, "controller to PC", Action::Read, READ)], data::FILE_NAME),
     files("3.4.4", "file list", &[file(service::LIST, "list", Action::Read, READ)], data::FILE_FILTER),
-    // Writes a file on the controller for ten minutes, so it must not be repeated freely.
+    // The controller writes the backup file for ten minutes, so the request must not be repeated freely.
     since_fs114(files(BATCH_BACKUP_SECTION, "batch data backup", &[file(service::SAVE, "make CMOSBK.BIN", Action::Write, WRITE)], data::FILE_NAME)),
 ];

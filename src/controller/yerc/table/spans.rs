@@ -11,16 +11,16 @@ pub struct Span {
     pub last: u16,
     /// Description of the instances.
     pub meaning: &'static str,
-    /// Prefix of the names and number of the first, e.g. `R` and 1.
+    /// Prefix of the instance names, and the number of the first instance, such as `R` and 1.
     pub numbered: Option<(&'static str, u16)>,
     /// Whether write services are valid.
     pub writable: bool,
-    /// Whether they exist only with certain controller parameters.
+    /// Whether the instances exist only with certain controller parameters.
     pub extended: bool,
 }
 
 impl Span {
-    /// Whether the number lies in here.
+    /// Whether the range contains the instance.
     pub const fn contains(&self, instance: u16) -> bool {
         self.first <= instance && instance <= self.last
     }
@@ -44,11 +44,11 @@ impl Span {
 /// Ranges of each model, in ascending order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Instances {
-    /// FS100; empty if the command does not exist.
+    /// Ranges of an FS100; empty if the command does not exist.
     pub fs100: &'static [Span],
-    /// On a DX100.
+    /// Ranges of a DX100.
     pub dx100: &'static [Span],
-    /// DX200 and YRC1000.
+    /// Ranges of a DX200 and a YRC1000.
     pub dx200: &'static [Span],
 }
 
@@ -67,7 +67,7 @@ impl Instances {
         self.for_model(model).iter().find(|span| span.contains(instance))
     }
 
-    /// Last number of the contiguous ranges around an instance.
+    /// Last number of the contiguous ranges that contain an instance.
     pub fn reach(&self, model: Model, instance: u16, only_writable: bool) -> Option<u16> {
         let mut spans = self.for_model(model).iter().filter(|span| span.writable || !only_writable);
         let mut last = spans.find(|span| span.contains(instance))?.last;
@@ -96,17 +96,17 @@ impl Instances {
     }
 }
 
-/// Read-only.
+/// A read-only range.
 const fn ro(first: u16, last: u16, meaning: &'static str) -> Span {
     Span { first, last, meaning, numbered: None, writable: false, extended: false }
 }
 
-/// Writable.
+/// A writable range.
 const fn rw(first: u16, last: u16, meaning: &'static str) -> Span {
     Span { writable: true, ..ro(first, last, meaning) }
 }
 
-/// Read-only, with names from `prefix` and `from` on.
+/// A read-only range whose instances have names: `prefix` with numbers from `from` on.
 const fn no(first: u16, last: u16, meaning: &'static str, prefix: &'static str, from: u16) -> Span {
     Span { numbered: Some((prefix, from)), ..ro(first, last, meaning) }
 }
@@ -115,7 +115,7 @@ const fn both(spans: &'static [Span]) -> Instances {
     Instances { fs100: spans, dx100: spans, dx200: spans }
 }
 
-/// The DX100 is like the DX200.
+/// Ranges that are the same on the DX100 and the DX200.
 const fn each(fs100: &'static [Span], dx200: &'static [Span]) -> Instances {
     Instances { fs100, dx100: dx200, dx200 }
 }
@@ -168,7 +168,8 @@ pub(super) const GROUPS: Instances = each(
     &[no(1, 2, "robot", "R", 1), no(11, 12, "base", "B", 1), no(21, 23, "station", "S", 1)],
     &[no(1, 8, "robot", "R", 1), no(11, 18, "base", "B", 1), no(21, 44, "station", "S", 1)],
 );
-/// The last signal of each class in which models differ, counted from the first, and the first network signals.
+/// For each class in which models differ, the last signal group, counted from the first. For network signals also the
+/// first group.
 struct Signals {
     user: u16,
     external: u16,
@@ -203,9 +204,9 @@ const DX100_SIGNALS: Signals =
     Signals { user: 512, external: 500, system_output: 300, control_status: 128, ..FS100_SIGNALS };
 const DX200_SIGNALS: Signals = Signals { external: 512, network_from: 2701, network: 256, ..DX100_SIGNALS };
 
-/// The numbers of an FS100 class follow from 128 groups each; the manual has different numbers for two of them. A
-/// DX100 has its network signals where an FS100 has them (`WriteSingleIO.srv` of `motoman_msgs`: inputs from 25010
-/// on). Its writable range is that of an FS100, its readable range the largest possible one.
+/// Each FS100 class has 128 groups, and its numbers follow from that; the manual has different numbers for two classes.
+/// A DX100 has its network signals at the same numbers as an FS100 (`WriteSingleIO.srv` of `motoman_msgs`: inputs from
+/// 25010 on). Its writable range is the range of an FS100. Its readable range is the largest possible range.
 pub(super) const IO: Instances =
     Instances { fs100: &signals(&FS100_SIGNALS), dx100: &signals(&DX100_SIGNALS), dx200: &signals(&DX200_SIGNALS) };
 pub(super) const REGISTERS: Instances = both(&[rw(0, 559, "register"), ro(560, 999, "register (read only)")]);

@@ -1,8 +1,8 @@
-//! Minimal set of requests for many variables, registers or I/O groups.
+//! Plans the smallest number of requests for many variables, registers or I/O groups.
 //!
-//! A read may include unrequested elements in a gap: additional bytes of a datagram are cheaper than another round
-//! trip. Positions have no such gaps, because an undefined position refuses the whole answer. A write never includes
-//! unrequested elements.
+//! A read may include elements in a gap that nobody requested: additional bytes of a datagram cost less than another
+//! round trip. Reads of positions have no such gaps, because the controller refuses the whole answer if one position is
+//! undefined. A write never includes elements that were not requested.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::hash::Hash;
@@ -18,14 +18,14 @@ use crate::yerc::query::{
 use crate::yerc::request::Request;
 use crate::yerc::table::{Plural, Row};
 
-/// A range from `first` on.
+/// A range that begins at `first`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Block {
     first: u16,
     count: u16,
 }
 
-/// Single or plural query.
+/// A query for one element, or a plural query.
 #[derive(Debug, Clone, PartialEq)]
 enum Either<S, P> {
     Single(S),
@@ -92,7 +92,8 @@ macro_rules! read_step {
                 let elements = self.query.decode_all(data)?;
                 let number: fn(&$item) -> u16 = $number;
                 let value = |item: &$item| {
-                    elements.get(usize::from(number(item) - self.first)).cloned().expect("blocks hold what is wanted")
+                    let element = elements.get(usize::from(number(item) - self.first));
+                    element.cloned().expect("blocks contain the requested elements")
                 };
                 Ok(self.wanted.iter().map(|item| (*item, value(item))).collect())
             }
@@ -150,7 +151,7 @@ write_step! {
     WriteIoStep, u16, WriteIo, WriteIoGroups
 }
 
-/// Plans the reads of these variables, without duplicates, in any order.
+/// Plans the reads of these variables. The variables can be in any order; duplicates are read once.
 #[expect(clippy::missing_panics_doc, reason = "the planner keeps to the limits of the table")]
 pub fn plan_reads(references: &[Reference]) -> Vec<ReadStep> {
     let mut steps = Vec::new();
@@ -174,7 +175,7 @@ pub fn plan_reads(references: &[Reference]) -> Vec<ReadStep> {
 
 /// Plans the reads of these registers.
 pub fn plan_register_reads(model: Model, numbers: &[u16]) -> Result<Vec<RegisterStep>, QueryError> {
-    // The constructor refuses numbers that do not exist.
+    // The constructor of a query refuses numbers that do not exist.
     let numbers: BTreeSet<u16> = numbers.iter().copied().collect();
     read_blocks(&numbers, limits(0x301), true, |number| run_of(0x301, model, number))
         .into_iter()
@@ -203,7 +204,7 @@ pub fn plan_io_reads(model: Model, groups: &[u16]) -> Result<Vec<IoStep>, QueryE
         .collect()
 }
 
-/// Plans the writes of these values. For a duplicate variable the last value counts.
+/// Plans the writes of these values. If a variable occurs twice, the last value counts.
 pub fn plan_writes(values: &[(u16, Value)]) -> Result<Vec<WriteStep>, QueryError> {
     let mut steps = Vec::new();
     for kind in VariableKind::all() {
@@ -254,8 +255,8 @@ pub fn plan_io_writes(model: Model, values: &[(u16, u8)]) -> Result<Vec<WriteIoS
         .collect()
 }
 
-/// Blocks over sorted numbers, each with its requested numbers. `range` returns the existing elements around a
-/// number, for blocks and for an additional neighbour in an even count.
+/// Forms blocks over sorted numbers, each with its requested numbers. `range` returns the first and last existing
+/// element around a number. It limits the blocks, and shows whether a neighbor exists that makes a count even.
 fn read_blocks(
     numbers: &BTreeSet<u16>,
     Plural { max, even }: Plural,
@@ -280,7 +281,7 @@ fn read_blocks(
             count if !even || count == 1 || count % 2 == 0 => Block { first, count },
             count if last < highest => Block { first, count: count + 1 },
             count if first > lowest => Block { first: first - 1, count: count + 1 },
-            // No neighbour for an even count: the last number gets a single read, and the block ends before it.
+            // No neighbor can make the count even. The last number gets a single read, and the block ends before it.
             _ => {
                 let alone = wanted.pop().into_iter().collect();
                 blocks.push((Block { first: last, count: 1 }, alone));
@@ -295,7 +296,7 @@ fn read_blocks(
     blocks
 }
 
-/// Contiguous blocks. Where counts must be even, the last element of an odd block gets a single write.
+/// Forms contiguous blocks. If counts must be even, the last element of an odd block gets a single write.
 fn write_blocks(numbers: &BTreeSet<u16>, Plural { max, even }: Plural) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
     for &number in numbers {
@@ -333,7 +334,7 @@ fn limits(command: u16) -> Plural {
     Row::from_number(command).and_then(|row| row.plural).expect("registers and I/O groups have a plural command")
 }
 
-/// The contiguous instances around one; only itself if it does not exist.
+/// The contiguous instances around `number`; only `number` itself if it does not exist.
 fn run_of(command: u16, model: Model, number: u16) -> (u16, u16) {
     let spans = Row::from_number(command).map_or(&[][..], |row| row.instances.for_model(model));
     let Some(at) = spans.iter().position(|span| span.contains(number)) else { return (number, number) };

@@ -9,7 +9,7 @@ use crate::typed::{self, RangeError, unsigned};
 use crate::yerc::Model;
 use crate::yerc::table::{Plural, Row};
 
-/// Kind of variable. S variables have 16 bytes on FS100 and 32 on DX200, where both forms can be used.
+/// Kind of variable. S variables have 16 bytes on FS100 and 32 on DX200. On a DX200, both string forms can be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum VariableKind {
     /// Byte.
@@ -32,7 +32,7 @@ pub enum VariableKind {
     Ex,
 }
 
-/// Kind, letters, command, plural command.
+/// Kind, letters, command for one variable, command for several variables.
 const KINDS: [(VariableKind, &str, u16, u16); 9] = [
     (VariableKind::B, "B", 0x7A, 0x302),
     (VariableKind::I, "I", 0x7B, 0x303),
@@ -51,7 +51,7 @@ impl VariableKind {
         KINDS.iter().map(|row| row.0)
     }
 
-    /// Letters, e.g. `BP`; `S` for both string forms.
+    /// Letters, e.g. `BP`; both string forms have `S`.
     pub fn letters(self) -> &'static str {
         KINDS[self as usize].1
     }
@@ -72,24 +72,24 @@ impl VariableKind {
     }
 
     /// Limits of the plural command.
-    #[expect(clippy::missing_panics_doc, reason = "a property of the table, held by a test")]
+    #[expect(clippy::missing_panics_doc, reason = "a property of the table, checked by a test")]
     pub fn plural(self) -> Plural {
         Row::from_number(self.plural_command()).and_then(|row| row.plural).expect("every variable has a plural command")
     }
 
-    /// Last number in factory state: 99, or 127 for positions.
-    #[expect(clippy::missing_panics_doc, reason = "a property of the table, held by a test")]
+    /// Last number in the factory state: 99, or 127 for positions.
+    #[expect(clippy::missing_panics_doc, reason = "a property of the table, checked by a test")]
     pub fn last_standard(self) -> u16 {
         let spans = self.row().instances.dx200;
         spans.iter().find(|span| !span.extended).map(|span| span.last).expect("every variable has standard numbers")
     }
 
-    /// P, BP or EX.
+    /// Whether the kind is P, BP or EX.
     pub const fn is_position(self) -> bool {
         matches!(self, Self::P | Self::Bp | Self::Ex)
     }
 
-    /// The string form for a model: 32 bytes if available, unless `short` requests 16.
+    /// The string form for a model: 32 bytes if the model has it, unless `short` requests 16 bytes.
     #[must_use]
     pub const fn string_form(self, model: Model, short: bool) -> Self {
         match self {
@@ -104,12 +104,12 @@ impl VariableKind {
     }
 }
 
-/// A variable by kind and number; parsed and displayed as `B0`, `P12`, `EX3`.
+/// A variable by kind and number. Parsed and displayed as `B0`, `P12`, `EX3`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Reference {
-    /// Content.
+    /// Kind of variable.
     pub kind: VariableKind,
-    /// From 0.
+    /// Number, from 0.
     pub number: u16,
 }
 
@@ -117,30 +117,30 @@ pub struct Reference {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ReferenceError {
     /// Unknown letters.
-    #[error("'{found}' is not a variable; use B, I, D, R, S, P, BP or EX with a number, e.g. B0 or B0..B99")]
+    #[error("'{found}' is not a variable; use B, I, D, R, S, P, BP or EX with a number, for example B0 or B0..B99")]
     Kind {
         /// The invalid text.
         found: String,
     },
-    /// No number, or one beyond 65535.
+    /// The number is missing, or is above 65535.
     #[error("'{found}' needs a number from 0 to 65535")]
     Number {
         /// The invalid text.
         found: String,
     },
-    /// A range with two different kinds.
-    #[error("'{found}' is not a valid range; both ends must have the same type, the lower one first")]
+    /// The ends of a range have different kinds.
+    #[error("'{found}' is not a valid range; both ends must have the same type, and the lower end must be first")]
     Range {
         /// The invalid text.
         found: String,
     },
-    /// A range with its ends in the wrong order.
+    /// The ends of a range are in the wrong order.
     #[error(transparent)]
     Backwards(#[from] RangeError),
 }
 
 impl Reference {
-    /// A variable.
+    /// Creates a reference.
     pub const fn new(kind: VariableKind, number: u16) -> Self {
         Self { kind, number }
     }
@@ -155,7 +155,7 @@ impl fmt::Display for Reference {
 impl FromStr for Reference {
     type Err = ReferenceError;
 
-    /// `S` is the 32-byte form; see [`VariableKind::string_form`].
+    /// `S` means the 32-byte form; see [`VariableKind::string_form`].
     fn from_str(text: &str) -> Result<Self, ReferenceError> {
         let digits = text.find(|c: char| c.is_ascii_digit()).unwrap_or(text.len());
         let (letters, number) = text.split_at(digits);
@@ -169,7 +169,7 @@ impl FromStr for Reference {
     }
 }
 
-/// Parses `B0`, `B0..B99` or `B0..99`; ranges include both ends.
+/// Parses `B0`, `B0..B99` or `B0..99`. A range includes both ends.
 pub fn parse_references(text: &str) -> Result<Vec<Reference>, ReferenceError> {
     let first: Reference = text.split(['.', '-']).next().unwrap_or_default().parse()?;
     let numbers = typed::range(text, |end| {
@@ -180,7 +180,7 @@ pub fn parse_references(text: &str) -> Result<Vec<Reference>, ReferenceError> {
     Ok(numbers.map(|number| Reference::new(first.kind, number)).collect())
 }
 
-/// Parses `5` or `5..20` for registers and I/O groups; ranges include both ends.
+/// Parses `5` or `5..20` for registers and I/O groups. A range includes both ends.
 pub fn parse_numbers(text: &str) -> Result<Vec<u16>, ReferenceError> {
     typed::range(text, |end| parse_number(end, text)).map(Iterator::collect)
 }

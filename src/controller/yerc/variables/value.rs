@@ -11,27 +11,27 @@ use crate::yerc::payload::{
 /// A typed value of a variable.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// B.
+    /// Byte (B).
     Byte(u8),
-    /// I.
+    /// Integer (I).
     Integer(i16),
-    /// D.
+    /// Double-precision integer (D).
     Double(i32),
-    /// R.
+    /// Real (R).
     Real(f32),
-    /// S, 16-byte form.
+    /// String (S), 16-byte form.
     Short(Text<16>),
-    /// S, 32-byte form.
+    /// String (S), 32-byte form.
     Long(Text<32>),
-    /// P.
+    /// Robot position (P).
     Position(Position),
-    /// BP.
+    /// Base position (BP).
     Base(BasePosition),
-    /// EX.
+    /// External axis position (EX).
     External(ExternalPosition),
 }
 
-/// An invalid value.
+/// Why a value is invalid.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ValueError {
     /// A number out of range.
@@ -51,7 +51,7 @@ pub enum ValueError {
 }
 
 impl Value {
-    /// Parses an element of an answer; only positions may be shorter than their full size.
+    /// Parses an element of an answer. Only positions may be shorter than their full size.
     pub fn parse(kind: VariableKind, data: &[u8]) -> Result<Self, PayloadError> {
         let mut reader = Reader::new("variable", data);
         Ok(match kind {
@@ -97,7 +97,7 @@ impl Value {
         }
     }
 
-    /// Parses user input; strings are in the encoding of the controller.
+    /// Parses user input. Strings are in the encoding of the controller.
     pub fn from_text(kind: VariableKind, text: &[u8]) -> Result<Self, ValueError> {
         let shown = String::from_utf8_lossy(text);
         let number = |expected| ValueError::Number { found: shown.clone().into_owned(), expected };
@@ -108,7 +108,7 @@ impl Value {
                 Self::Double(whole(&shown).ok_or_else(|| number("a number from -2147483648 to 2147483647"))?)
             }
             VariableKind::R => {
-                // Hexadecimal input is an integer that a real can represent.
+                // Hexadecimal input is parsed as an integer that a real can represent exactly.
                 let value = shown.parse().ok().or_else(|| whole::<i16>(&shown).map(f32::from));
                 let value = value.filter(|value: &f32| value.is_finite());
                 Self::Real(value.ok_or_else(|| number("a number that fits 32-bit floating point"))?)
@@ -140,7 +140,7 @@ mod tests {
         assert_eq!(error(VariableKind::R, "nan"), "'nan' is not a number that fits 32-bit floating point");
         assert_eq!(
             error(VariableKind::S16, "12345678901234567"),
-            "the text has 17 bytes in the controller's encoding; at most 16 fit"
+            "the text has 17 bytes in the controller's encoding; it can have at most 16"
         );
         assert_eq!(Value::from_text(VariableKind::D, b"-5"), Ok(Value::Double(-5)));
         assert_eq!(Value::from_text(VariableKind::B, b"0xFF"), Ok(Value::Byte(255)));

@@ -1,4 +1,4 @@
-//! Procedures against a small controller that behaves as the timing charts, in virtual time.
+//! Procedures against a small controller in virtual time. The controller behaves as in the timing charts.
 
 use super::*;
 use crate::testing::ms;
@@ -12,7 +12,7 @@ struct World {
     output: Output,
     shown: Image,
     now: u64,
-    /// Dedicated words at their changes.
+    /// Time and content of the dedicated word at each of its changes.
     edges: Vec<(u64, u16)>,
     /// Scheduled changes of outputs.
     pending: Vec<(u64, Signal, bool)>,
@@ -113,7 +113,7 @@ impl World {
         }
     }
 
-    /// The switched inputs in order, except the resting ones; checks the intervals.
+    /// The inputs that were switched, in order. Also checks the intervals between the edges.
     fn seen(&self) -> Vec<String> {
         assert!(self.edges.windows(2).all(|pair| pair[1].0 - pair[0].0 >= 100), "{:?}", self.edges);
         let mut before = resting().0[DEDICATED_WORD];

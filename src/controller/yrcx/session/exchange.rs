@@ -17,64 +17,65 @@ use crate::{Now, Risk};
 pub struct Outcome {
     /// The row of the command.
     pub row: &'static Row,
-    /// The answer, or the reason of a missing one.
+    /// The answer, or the reason why there is none.
     pub ended: Ended,
     /// WO0 to WO15 with the end status.
     pub words: Option<Words>,
-    /// Time from the first sending to the end status.
+    /// Time from the first sending of the command to the end status.
     pub elapsed: Duration,
-    /// Status before the command, of another master or of an earlier command.
+    /// Status before the command, which another master or an earlier command left.
     pub leftover: Option<Status>,
-    /// Whether the running status was observed; a short command may skip it.
+    /// Whether the running status was received. A short command may skip it.
     pub ran: bool,
     /// Whether the controller is ready again.
     pub released: bool,
-    /// Whether the stop input was left off, because the end of the motion was not observed.
+    /// Whether the stop input was left off, because the end of the motion was not received.
     pub stop_held: bool,
 }
 
 /// Result of an exchange.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Ended {
-    /// An answer, also an alarm.
+    /// The controller answered. An alarm is also an answer.
     Answered(Answer),
-    /// The command was not sent. Nothing was done.
+    /// The command was not sent, so the controller did nothing.
     NotSent(NotSentReason),
-    /// Continuous output was ended on request.
+    /// The user ended continuous output.
     Stopped,
     /// No answer to a command that can be repeated without harm.
     NoAnswer(Silence),
-    /// No answer to a command that changes something: it may or may not have been carried out, or may still run.
+    /// No answer to a command that changes something. The controller may or may not have carried it out, or may still
+    /// execute it.
     OutcomeUnknown(Silence),
 }
 
 /// Why a command was not sent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NotSentReason {
-    /// No image received.
+    /// No image was received.
     NoImage,
-    /// The link was lost, or sends nothing.
+    /// The link was lost, or the driver does not send images.
     LinkLost,
-    /// The controller was not ready: it runs another command, or keeps another status despite the status reset.
+    /// The controller was not ready: it executes another command, or it keeps another status despite the status reset.
     NotReady(Status),
-    /// The operator interrupted it.
+    /// The user interrupted the exchange.
     Interrupted,
 }
 
-/// Reason of a missing answer.
+/// Why there is no answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Silence {
     /// The link was lost after the command was sent.
     LinkLost,
-    /// The controller stayed ready and ignored the command.
+    /// The controller stayed ready, and ignored the command.
     NotTaken,
-    /// The command still ran at the deadline.
+    /// The command was still running at the deadline.
     TooLong,
     /// The running status ended without an end status.
     Vanished,
-    /// The status is not in the manual.
+    /// The controller has a status that is not in the manual.
     Undocumented(u16),
-    /// The operator interrupted the wait. For a motion, the stop input went off before.
+    /// The user interrupted the wait. For a motion, the stop input was switched off before.
     Interrupted,
 }
 
@@ -83,7 +84,7 @@ impl fmt::Display for NotSentReason {
         match self {
             Self::NoImage => f.write_str("the controller sends no data"),
             Self::LinkLost => f.write_str("the connection is down"),
-            Self::NotReady(status) => write!(f, "the controller is not ready for a command, its status is: {status}"),
+            Self::NotReady(status) => write!(f, "the controller is not ready for a command: its status is {status}"),
             Self::Interrupted => f.write_str("interrupted"),
         }
     }
@@ -93,22 +94,22 @@ impl fmt::Display for Silence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::LinkLost => f.write_str("the connection was lost"),
-            Self::NotTaken => f.write_str("the controller did not start it"),
-            Self::TooLong => f.write_str("it still ran at the end of the wait"),
+            Self::NotTaken => f.write_str("the controller did not start the command"),
+            Self::TooLong => f.write_str("the command still ran at the end of the wait"),
             Self::Vanished => f.write_str("the controller ended the run status without a result"),
             Self::Undocumented(word) => write!(f, "the controller reports the undocumented status {word:#06x}"),
-            Self::Interrupted => f.write_str("its end was not confirmed in the time for a stop"),
+            Self::Interrupted => f.write_str("the end of the command was not confirmed in the time for a stop"),
         }
     }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
-    /// Data words are sent without a command word, until the controller is ready.
+    /// Sends the data words without a command word, until the controller is ready.
     Prepare,
-    /// The command word is sent.
+    /// Sends the command word.
     Command,
-    /// The status reset is sent, since this time.
+    /// Sends the status reset, since this time.
     Release(Now),
     Over,
 }
@@ -124,17 +125,17 @@ pub struct Exchange {
     linked: bool,
     /// Time of the first sending of the command word.
     sent: Option<Now>,
-    /// Time of the last valid status.
+    /// Time at which the status was last valid.
     sane: Now,
     interrupted: Option<Now>,
-    /// Whether the stop input is off because of an interrupt.
+    /// Whether the stop input is off because of an interruption.
     stopping: bool,
     running: Option<Answer>,
     outcome: Outcome,
 }
 
 impl Exchange {
-    /// A session for `order`.
+    /// Creates a session for `order`.
     pub fn new(order: Order, policy: Policy) -> Self {
         let outcome = Outcome {
             row: order.row(),
@@ -162,12 +163,12 @@ impl Exchange {
         }
     }
 
-    /// The order it carries out.
+    /// The order that the session carries out.
     pub fn order(&self) -> &Order {
         &self.order
     }
 
-    /// The answer, available before the controller is ready again.
+    /// The answer. It is available before the controller is ready again.
     pub fn answer(&self) -> Option<&Answer> {
         match (self.phase, &self.outcome.ended) {
             (Phase::Release(_) | Phase::Over, Ended::Answered(answer)) => Some(answer),
@@ -175,12 +176,12 @@ impl Exchange {
         }
     }
 
-    /// Time of the first sending.
+    /// Time of the first sending of the command.
     pub fn sent(&self) -> Option<Now> {
         self.sent
     }
 
-    /// Whether the running status is observed.
+    /// Whether the controller has the running status.
     pub fn is_running(&self) -> bool {
         self.phase == Phase::Command && self.sent.is_some() && self.status() == Some(Status::Running)
     }
@@ -190,13 +191,13 @@ impl Exchange {
         self.running.take()
     }
 
-    /// Time since the first sending; zero before it.
+    /// Time since the first sending of the command; zero before it.
     pub fn elapsed(&self, now: Now) -> Duration {
         self.sent.map_or(Duration::ZERO, |sent| now.saturating_sub(sent))
     }
 
-    /// Interrupts the exchange. An unsent command is dropped. A motion is stopped with SI(06), and its end awaited.
-    /// Continuous output is ended. Any other command ends soon by itself.
+    /// Interrupts the exchange. A command that was not sent is dropped. A motion is stopped with SI(06), and the
+    /// session waits for its end. Continuous output is ended. Any other command ends soon by itself.
     pub fn interrupt(&mut self, now: Now) {
         self.interrupted.get_or_insert(now);
     }
@@ -205,7 +206,8 @@ impl Exchange {
         self.input.map(|image| Status::from_word(image.0[0]))
     }
 
-    /// Sends data words with the status reset, and the command word once the controller is ready and has the data.
+    /// Sends the data words with the status reset. Sets the command word when the controller is ready and the data
+    /// words were sent.
     fn prepare(&mut self, now: Now, output: &mut Output) {
         let mut words = *self.order.words();
         words[0] = Status::Ready.word();
@@ -218,7 +220,7 @@ impl Exchange {
         }
         let data_sent = output.last_sent().is_some_and(|sent| sent.command() == words);
         match self.status() {
-            // The output already contains the status reset.
+            // The status reset was already sent together with the data words.
             Some(Status::Ready) if data_sent && self.order.row().code == STATUS_RESET => {
                 return self.finish(now, output, Ended::Answered(Answer::Done(Values::default())));
             }
@@ -248,13 +250,14 @@ impl Exchange {
             self.sane = now;
         }
         if !self.linked {
-            // The driver may have sent the command without a call of `sent`: it counts as sent.
+            // The driver may have sent the command without a call of `sent`, so the command counts as sent.
             return self.finish(now, output, self.unanswered(Silence::LinkLost));
         }
         let status = self.status().unwrap_or(Status::Ready);
         if self.sent.is_none() {
             if status != Status::Ready || self.interrupted.is_some() {
-                // The status belongs to another command, because this one was not sent. Remove the command word.
+                // The status belongs to another command, because the command of this session was not sent. Its command
+                // word is removed.
                 self.phase = Phase::Prepare;
                 self.prepare(now, output);
             } else if now >= self.deadline() {
@@ -300,11 +303,11 @@ impl Exchange {
         }
     }
 
-    /// Ends the exchange: from now on only the status reset is sent.
+    /// Ends the exchange. From now on, only the status reset is sent.
     fn finish(&mut self, now: Now, output: &mut Output, ended: Ended) {
         let is_jog_at_large = self.order.row().pace == Pace::Jog && matches!(ended, Ended::OutcomeUnknown(_));
         if (self.stopping && !matches!(ended, Ended::Answered(_))) || is_jog_at_large {
-            // The robot may still move, in a jog without end: the stop input stays off.
+            // The robot may still move, for example in a jog without an end. For this reason the stop input stays off.
             input::STOP.set(&mut output.next, false);
             self.outcome.stop_held = true;
             self.stopping = false;
@@ -316,7 +319,7 @@ impl Exchange {
         self.release(now, output);
     }
 
-    /// Waits for the ready status, then switches the stop input on again.
+    /// Waits for the ready status, and then switches the stop input on again.
     fn release(&mut self, now: Now, output: &mut Output) {
         let Phase::Release(since) = self.phase else { return };
         let never_sent = matches!(self.outcome.ended, Ended::NotSent(_));
@@ -364,8 +367,8 @@ impl Exchange {
         self.started.unwrap_or(now)
     }
 
-    /// Deadline of the ready status. After a stop it is the deadline of the stop, but late enough for the edge of the
-    /// stop input.
+    /// Deadline for the ready status. After a stop it is the deadline of the stop, but there must be time for the edge
+    /// of the stop input.
     fn release_until(&self, since: Now) -> Now {
         let over = since.saturating_add(self.policy.release);
         let edge = since.saturating_add(EDGE_INTERVAL * 2);
@@ -384,7 +387,7 @@ impl Exchange {
         }
     }
 
-    /// Next deadline without an image.
+    /// Next deadline if no image arrives.
     fn due(&self, now: Now, output: &Output) -> Now {
         match self.phase {
             Phase::Prepare => self.started_or(now).saturating_add(self.policy.ready),
@@ -425,7 +428,7 @@ impl ImageSession for Exchange {
         if !self.linked || self.phase == Phase::Over {
             return;
         }
-        // The signals also change without a command.
+        // The signals in an image also change without a command, so only the command words are compared.
         let changed = || self.input.map(|known| known.command()) != Some(input.command());
         if self.phase == Phase::Command && self.order.is_continuous() && changed() {
             let running = Answer::parse(&self.order, &input.command());

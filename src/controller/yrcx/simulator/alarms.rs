@@ -1,7 +1,7 @@
 //! Alarms: sources, active alarms, history.
 //!
-//! The remote I/O manual has the numbers of a few alarms and refers to the controller manual for the rest. For an
-//! alarm without a known number, the group is right and the category is specific to this simulator: 900 and above.
+//! The remote I/O manual has the numbers of a few alarms, and refers to the controller manual for the others. If the
+//! number of an alarm is not known, its group is right, but its category is specific to this simulator: 900 and above.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -10,15 +10,15 @@ use crate::yrcx::alarm::Alarm;
 
 pub(super) use crate::yrcx::alarm::{INPUT_FORMAT, STOP_INPUT};
 
-/// From the manual, or known from these controllers.
+/// Numbers from the manual, or known from these controllers.
 pub(super) const SOFT_LIMIT: Alarm = Alarm::new(2, 334);
 pub(super) const UNKNOWN_COMMAND: Alarm = Alarm::new(12, 75);
 pub(super) const NOT_ENABLED: Alarm = Alarm::new(12, 76);
-/// The alarm of EtherNet/IP.
+/// The alarm for a lost link of EtherNet/IP.
 pub(super) const LINK: Alarm = Alarm::new(12, 551);
 pub(super) const EMERGENCY_STOP: Alarm = Alarm::new(12, 600);
 
-/// Specific to this simulator.
+/// Numbers that are specific to this simulator.
 pub(super) const NO_POWER: Alarm = Alarm::new(2, 901);
 pub(super) const NO_ORIGIN: Alarm = Alarm::new(2, 902);
 pub(super) const MOVING: Alarm = Alarm::new(2, 903);
@@ -40,7 +40,7 @@ pub(super) const NO_TASK: Alarm = Alarm::new(6, 903);
 pub(super) const RUNNING: Alarm = Alarm::new(6, 904);
 pub(super) const CALLS: Alarm = Alarm::new(6, 905);
 
-/// Entries of the history (4.7.7).
+/// Number of entries of the history (4.7.7).
 pub(super) const HISTORY: usize = 500;
 
 /// Source of an alarm (4.7.7).
@@ -59,7 +59,7 @@ pub(super) enum AlarmSource {
 }
 
 impl AlarmSource {
-    /// Additional information in two words.
+    /// The additional information about the source, in two words.
     pub(super) fn words(self) -> [u16; 2] {
         let small = |number: usize| u16::try_from(number).unwrap_or_default() & 0xFF;
         match self {
@@ -122,10 +122,10 @@ pub(super) type Entry = (Alarm, AlarmSource);
 /// Active alarms and history.
 #[derive(Debug, Clone, Default)]
 pub(super) struct AlarmLog {
-    /// Active alarms; `true` for those that only a power cycle clears.
+    /// Active alarms. `true` marks the alarms that are cleared only by a power cycle.
     active: Vec<(Alarm, bool)>,
     history: VecDeque<Entry>,
-    /// Latest alarm of a remote command (4.7.17).
+    /// Latest alarm that a remote command caused (4.7.17).
     latest_remote: Option<Entry>,
 }
 
@@ -139,22 +139,22 @@ impl AlarmLog {
         self.record(alarm, place);
     }
 
-    /// Records an event without an active alarm.
+    /// Records an event in the history, without an active alarm.
     pub(super) fn record(&mut self, alarm: Alarm, place: AlarmSource) {
         self.history.push_front((alarm, place));
         self.history.truncate(HISTORY);
     }
 
-    /// Records the refusal or abort of a remote command.
+    /// Records that a remote command was refused or aborted.
     pub(super) fn refuse(&mut self, fault: &Fault) {
         self.latest_remote = Some((fault.alarm, fault.place));
-        // An active alarm that causes a refusal is in the history already.
+        // If an active alarm causes the refusal, the history already contains it.
         if !self.active.iter().any(|(known, _)| *known == fault.alarm) {
             self.record(fault.alarm, fault.place);
         }
     }
 
-    /// Resets all alarms, except those whose cause persists.
+    /// Resets all alarms, except the alarms whose cause still exists.
     pub(super) fn reset(&mut self, still: impl Fn(Alarm) -> bool) {
         self.active.retain(|(alarm, fatal)| *fatal || still(*alarm));
     }
@@ -186,7 +186,7 @@ impl AlarmLog {
         self.latest_remote
     }
 
-    /// Appends an entry as the oldest.
+    /// Appends an entry that is older than all others.
     pub(super) fn fill(&mut self, entry: Entry) {
         if self.history.len() < HISTORY {
             self.history.push_back(entry);

@@ -13,9 +13,9 @@ use crate::yrcx::alarm::Alarm;
 const HELP: &[(&str, &str)] = &[
     ("estop on|off", "press or release the emergency stop"),
     ("mode auto|manual", "turn the mode key"),
-    ("box on|off", "give control to the programming box, or not"),
-    ("inputs on|off", "accept dedicated inputs, or not"),
-    ("warning on|off", "show a warning, or none"),
+    ("box on|off", "give control to the programming box, or take it back"),
+    ("inputs on|off", "enable or disable the dedicated inputs"),
+    ("warning on|off", "show a warning, or clear it"),
     ("alarm GROUP.CATEGORY [fatal]", "raise an alarm: alarm 12.600"),
     ("DI(20)=1, DO2()=255", "set a port or a bit of it"),
     ("obstacle R1A3 PULSES|off", "block an axis of a robot at a position, or free it"),
@@ -61,7 +61,7 @@ pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
     Ok(summary(world))
 }
 
-/// Leaving AUTO mode stops programs.
+/// Sets the mode. Leaving AUTO mode stops programs.
 fn set_mode(world: &mut World, mode: Mode) {
     if world.switches.mode != mode {
         world.switches.mode = mode;
@@ -77,7 +77,8 @@ fn raise(world: &mut World, number: &str, fatal: bool) -> Result<(), String> {
 
 fn set_port(world: &mut World, text: &str) -> Result<String, String> {
     let found = assigned(text).filter(|(port, _)| port.kind != SI);
-    let (port, value) = found.ok_or_else(|| format!("'{text}' is not a port to set; the master sets SI"))?;
+    let (port, value) =
+        found.ok_or_else(|| format!("'{text}' is not a port that can be set here; the master sets SI"))?;
     world.memory.set_output(port, value);
     world.restless = true;
     let byte = world.memory.port(port.kind, port.port);

@@ -1,6 +1,6 @@
-//! Content of a new controller: four robots, and the data for every worked example of the manual.
+//! Content of a new controller: four robots, and the data that the worked examples of the manual need.
 
-/// As a start state.
+/// The content as a start state.
 pub(super) const STOCK: &str = r#"
 [[robot]]                       # X, Y, Z, R
 [[robot]]                       # two arms, height, rotation
@@ -80,7 +80,7 @@ number = 2
 program = 2
 "#;
 
-/// Default of an axis, by its index in a robot.
+/// Default values of an axis, by the index of the axis in its robot.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AxisDefault {
     /// Pulses per mm or degree.
@@ -124,7 +124,7 @@ pub(super) const PARAMETERS: [(u16, i32); 12] = [
     (270, 100),
 ];
 
-/// Words of 4.7.1: V1.08 R0048, V1.001, V1.01 four times.
+/// Words of the example in 4.7.1: V1.08 R0048, V1.001, and V1.01 four times.
 pub(super) const VERSIONS: [u16; 7] = [0x0108, 48, 0x1001, 0x0101, 0x0101, 0x0101, 0x0101];
 /// Slots of controller 1: EtherNet/IP, digital inputs and outputs (4.7.15).
 pub(super) const SLOTS: [u16; 4] = [0x0401, 0x0101, 0x0000, 0x0000];

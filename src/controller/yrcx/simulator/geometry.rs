@@ -1,6 +1,7 @@
-//! Forward and inverse kinematics. Both are exact, so that a target in mm is reported as it was commanded.
+//! Forward and inverse kinematics. Both are exact, so that the controller reports a target in mm exactly as it was
+//! commanded.
 
-/// Pulses, axis positions, or X, Y, Z in mm with R in degrees.
+/// Four values: pulses, axis positions, or X, Y, Z in mm with R in degrees.
 pub(super) type Four = [f64; 4];
 
 /// Protocol steps per mm or degree.
@@ -11,7 +12,7 @@ pub(super) const STEPS: f64 = 1000.0;
 pub(super) enum Kind {
     /// Axes 1 to 4 are X, Y, Z, R.
     Cartesian,
-    /// Two arms with vertical axes, a height, a rotation.
+    /// Two arms with vertical axes, a height axis, and a rotation axis.
     Scara {
         /// Length of the first arm in mm.
         first: f64,
@@ -28,7 +29,7 @@ pub(super) enum Arm {
 }
 
 impl Arm {
-    /// From the code of 4.2.19: 0 right, 1 left.
+    /// The arm side for the code of 4.2.19: 0 is right, 1 is left.
     pub(super) fn from_code(code: i32) -> Self {
         if code == 1 { Self::Left } else { Self::Right }
     }
@@ -37,7 +38,8 @@ impl Arm {
         i32::from(self == Self::Left)
     }
 
-    /// From a hand system: 1 right, 2 left, otherwise none. A different code (4.2.1, 4.3.1).
+    /// The arm side for a hand system: 1 is right, 2 is left, other values have no side. This code differs from the
+    /// code of [`Arm::from_code`] (4.2.1, 4.3.1).
     pub(super) fn of_hand_system(code: i32) -> Option<Self> {
         match code {
             1 => Some(Self::Right),
@@ -90,7 +92,7 @@ impl Geometry {
         }
     }
 
-    /// Pulses for a tool position; `None` if it cannot be reached.
+    /// Pulses for a tool position; `None` if the robot cannot reach it.
     pub(super) fn pulses(&self, pose: &Four, arm: Arm) -> Option<Four> {
         let turn = pose[3];
         let tool = self.tool(turn);
@@ -118,8 +120,8 @@ impl Geometry {
         }
     }
 
-    /// Angle and length of the second arm with a hand that is not on the R axis: data 1 is an offset in pulses, data 2
-    /// a difference in length.
+    /// Angle and length of the second arm. A hand that is not on the R axis changes them: data 1 is an offset in
+    /// pulses, data 2 is added to the length.
     fn second_arm(&self, angle: f64) -> (f64, f64) {
         match (self.kind, self.hand) {
             (Kind::Scara { second, .. }, Some([offset, longer, _, 0])) => {
@@ -130,7 +132,7 @@ impl Geometry {
         }
     }
 
-    /// Offset of the tool from its mount, with the R axis at `r`. Data 4: whether it rotates with that axis.
+    /// Offset of the tool from its mount, with the R axis at `r`. Data 4 is whether the tool rotates with the R axis.
     fn tool(&self, r: f64) -> [f64; 3] {
         let Some([one, two, three, on_r]) = self.hand else { return [0.0; 3] };
         let height = f64::from(three) / STEPS;
@@ -144,7 +146,7 @@ impl Geometry {
     }
 }
 
-/// Normalizes an angle to -180 to 180 degrees.
+/// Normalizes an angle to the range from -180 to 180 degrees.
 fn half_turns(angle: f64) -> f64 {
     if angle > 180.0 {
         angle - 360.0
@@ -160,14 +162,14 @@ fn rotated(x: f64, y: f64, degrees: f64) -> (f64, f64) {
     (x * cos - y * sin, x * sin + y * cos)
 }
 
-/// Converts coordinates of a shift to the robot.
+/// Converts coordinates in a shift to coordinates of the robot.
 pub(super) fn from_shift(shift: &[i32; 4], pose: &Four) -> Four {
     let [x, y, z, r] = shift.map(|step| f64::from(step) / STEPS);
     let (turned_x, turned_y) = rotated(pose[0], pose[1], r);
     [turned_x + x, turned_y + y, pose[2] + z, pose[3] + r]
 }
 
-/// Converts coordinates of the robot to a shift.
+/// Converts coordinates of the robot to coordinates in a shift.
 pub(super) fn to_shift(shift: &[i32; 4], pose: &Four) -> Four {
     let [x, y, z, r] = shift.map(|step| f64::from(step) / STEPS);
     let (turned_x, turned_y) = rotated(pose[0] - x, pose[1] - y, -r);

@@ -1,11 +1,11 @@
-//! Journal of the images of masters, for tests and diagnosis.
+//! Journal of the images that masters sent, for tests and diagnosis.
 
 use crate::yrcx::image::{COMMAND_WORDS, Image};
 
-/// Limit of entries.
+/// Maximum number of entries.
 const MOST: usize = 10_000;
 
-/// Entries since the last read.
+/// Entries since the journal was last read.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Journal {
     entries: Vec<String>,
@@ -28,7 +28,7 @@ impl Journal {
         ));
     }
 
-    /// Removes and returns all entries: their number, then one per line.
+    /// Removes and returns all entries. The first line is their number; each other line is an entry.
     pub(super) fn take(&mut self) -> String {
         let Self { entries, omitted } = std::mem::take(self);
         let more = if omitted == 0 { String::new() } else { format!(", {omitted} more omitted") };
@@ -41,7 +41,7 @@ impl Journal {
     }
 }
 
-/// Words up to the last nonzero one, at least one.
+/// Words up to the last word that is not 0, but at least one word.
 fn words(words: &[u16]) -> String {
     let used = words.iter().rposition(|word| *word != 0).unwrap_or_default();
     words.iter().take(used + 1).map(|word| format!("{word:04X}")).collect::<Vec<_>>().join(",")

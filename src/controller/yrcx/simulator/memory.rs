@@ -10,14 +10,14 @@ pub(super) const POINTS: u16 = 30_000;
 /// Number of pallets and of shifts.
 pub(super) const SHIFTS: usize = 40;
 pub(super) const HANDS: usize = 32;
-/// Variables of each kind.
+/// Number of variables of each kind.
 const VARIABLES: usize = 32;
 /// Number of SGR0 (4.4.1).
 const FIRST_REAL: usize = 256;
-/// Maximum ports per type, and number of types (4.5.1).
+/// Maximum number of ports per type, and number of types (4.5.1).
 const PORTS: usize = 24;
 const PORT_TYPES: usize = 7;
-/// Port types in the image.
+/// Port types that are in the image.
 pub(super) const SI: usize = 5;
 pub(super) const SO: usize = 6;
 pub(super) const PORT_NAMES: [&str; PORT_TYPES] = ["DI", "DO", "MO", "LO", "TO", "SI", "SO"];
@@ -42,7 +42,7 @@ impl PointUnit {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Point {
     pub(super) unit: PointUnit,
-    /// 0 none, 1 right, 2 left.
+    /// Hand system: 0 none, 1 right, 2 left.
     pub(super) hand_system: i32,
     /// Pulses, or steps of 0.001 mm or degrees.
     pub(super) values: [i32; AXES],
@@ -58,14 +58,14 @@ impl Point {
     }
 }
 
-/// A pallet; its five points begin at `first`.
+/// A pallet. Its five points begin with point `first`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Pallet {
     pub(super) counts: [i32; 3],
     pub(super) first: u16,
 }
 
-/// A hand and its robot, counted from 0.
+/// A hand, and the robot that has it, counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Hand {
     pub(super) owner: usize,
@@ -98,7 +98,7 @@ pub(super) enum Operation {
     Divide,
 }
 
-/// A port, or a bit of it.
+/// A port, or a bit of a port.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct PortRef {
     pub(super) kind: usize,
@@ -134,7 +134,7 @@ impl Default for Memory {
 }
 
 impl Memory {
-    /// A defined point.
+    /// Returns a point, which must be defined.
     pub(super) fn point(&self, number: usize) -> Result<Point, Fault> {
         let key = u16::try_from(number).ok();
         key.and_then(|key| self.points.get(&key)).copied().ok_or_else(|| no_point(number))
@@ -146,7 +146,7 @@ impl Memory {
         }
     }
 
-    /// Adds a point to another, or subtracts it (4.4.3).
+    /// Adds another point to a point, or subtracts it (4.4.3).
     pub(super) fn combine_points(&mut self, number: usize, other: usize, sign: i64) -> Result<(), Fault> {
         let (mut point, other) = (self.point(number)?, self.point(other)?);
         if point.unit != other.unit {
@@ -159,7 +159,7 @@ impl Memory {
         Ok(())
     }
 
-    /// Sets an element of a point, counted from 0 (4.4.4).
+    /// Sets an element of a point. Elements count from 0 (4.4.4).
     pub(super) fn set_element(&mut self, number: usize, unit: PointUnit, at: usize, value: i32) -> Result<(), Fault> {
         let mut point = self.point(number)?;
         if point.unit != unit {
@@ -171,13 +171,13 @@ impl Memory {
         Ok(())
     }
 
-    /// A defined pallet.
+    /// Returns a pallet, which must be defined.
     pub(super) fn pallet(&self, number: usize) -> Result<Pallet, Fault> {
         let pallet = self.pallets.get(number).copied().flatten();
         pallet.ok_or_else(|| Fault::new(NO_PALLET, AlarmSource::Controller, format!("pallet {number} is not defined")))
     }
 
-    /// A position on a pallet, from 1: X counts fastest, then Y, then Z.
+    /// A position on a pallet, counted from 1. X changes fastest, then Y, then Z.
     pub(super) fn pallet_point(&self, number: usize, place: i32) -> Result<Point, Fault> {
         let pallet = self.pallet(number)?;
         let [nx, ny, nz] = pallet.counts;
@@ -203,7 +203,7 @@ impl Memory {
         Ok(Point { values, ..origin })
     }
 
-    /// Value of a variable: SGI0 is 0, SGR0 is 256.
+    /// Value of a variable. Number 0 is SGI0, number 256 is SGR0.
     pub(super) fn variable(&self, number: usize) -> Number {
         match number.checked_sub(FIRST_REAL) {
             Some(real) => Number::Real(self.real.get(real).copied().unwrap_or_default()),
@@ -217,7 +217,7 @@ impl Memory {
         self.assign(number, result)
     }
 
-    /// Assigns a value; an integer variable loses the decimals.
+    /// Assigns a value. An integer variable drops the decimals.
     pub(super) fn assign(&mut self, number: usize, value: f64) -> Result<(), Fault> {
         if let Some(real) = number.checked_sub(FIRST_REAL) {
             let value = single(value);
@@ -231,7 +231,7 @@ impl Memory {
         Ok(())
     }
 
-    /// Eight bits of a port, by its octal number.
+    /// Eight bits of a port. The port has an octal number.
     pub(super) fn port(&self, kind: usize, number: usize) -> u8 {
         self.ports.get(kind).and_then(|ports| ports.get(index(number))).copied().unwrap_or_default()
     }
@@ -248,7 +248,7 @@ impl Memory {
         self.set_port(kind, number, if on { old | mask } else { old & !mask });
     }
 
-    /// Sets a port, or a bit of it.
+    /// Sets a port, or a bit of a port.
     pub(super) fn set_output(&mut self, port: PortRef, value: u8) {
         match port.bit {
             Some(bit) => self.set_bit(port.kind, port.port, bit, value == 1),
@@ -269,7 +269,7 @@ pub(super) fn calculate(operation: Operation, first: Number, second: Number) -> 
     }
 }
 
-/// Port 10 follows port 7.
+/// Index of a port. Port 10 follows port 7.
 fn index(number: usize) -> usize {
     number / 10 * 8 + number % 10
 }
@@ -302,7 +302,7 @@ fn too_large() -> Fault {
 
 #[expect(
     clippy::cast_possible_truncation,
-    reason = "real variables have single precision; what is too large is infinite"
+    reason = "real variables have single precision; a value that is too large becomes infinite"
 )]
 fn single(number: f64) -> f32 {
     number as f32

@@ -2,7 +2,7 @@
 //!
 //! A fieldbus adapter passes the images of the master and the time, and sends the images of the controller. The
 //! simulator shares the command table with the client, but decodes and checks words independently, and refuses
-//! everything that must not be sent. `why` on the console shows the reason of the last refusal.
+//! everything that must not be sent. `why` on the console shows the reason for the last refusal.
 //!
 //! | module | content |
 //! |---|---|
@@ -17,35 +17,38 @@
 //! | `console` | operator actions |
 //! | `journal` | images of masters |
 //!
-//! The manual specifies the protocol, and less of the behaviour. These are the assumptions:
+//! The manual specifies the protocol, but less of the behavior of a controller. The simulator makes these assumptions:
 //!
-//! - Words that the manual does not allow cause 4.202, whatever the error. If no source names an alarm, the group is
-//!   right and the category is 900 or above.
-//! - A quick command shows its end in the scan that takes it; with `run_scans`, it shows the running status for some
-//!   scans before. A command that the master removes is carried out to its end, with the running status. Then the
-//!   controller is ready once WI0 is 0. A command without a status reset before it is ignored.
-//! - While the link is lost all inputs are off, the alarm is that of the fieldbus (12.551 on EtherNet/IP), and
-//!   everything has stopped without power. A running command has ended abnormally, and the next master sees that.
-//!   Before the first image the inputs have their resting state.
-//! - An edge of a dedicated input less than 100 ms after another one is ignored, except SI(00) and SI(06) going off.
+//! - Words that the manual does not allow cause alarm 4.202, whatever the error is. If no source has the number of an
+//!   alarm, the group is right and the category is 900 or above.
+//! - A quick command sends its end status in the scan that accepts it. With `run_scans`, it first sends the running
+//!   status for some scans. If the master removes a command, the controller carries it out to its end with the running
+//!   status, and is ready when WI0 is 0. A command that follows another command without a status reset is ignored.
+//! - While the link is lost, all inputs are off, the alarm is the alarm of the fieldbus (12.551 on EtherNet/IP), and
+//!   everything has stopped without power. A running command ends abnormally, and the next master receives this status.
+//!   Before the first image, the inputs have their resting state.
+//! - An edge of a dedicated input is ignored if it comes less than 100 ms after another edge. SI(00) and SI(06) going
+//!   off are never ignored.
 //! - SI(06) off decelerates commands and programs and ends them with 12.400. It also prevents new motion.
-//! - Emergency stop and serious alarms switch power off at once. SI(01) and motor power work again after the alarm
+//! - An emergency stop and serious alarms switch power off at once. SI(01) and motor power work again after the alarm
 //!   reset.
-//! - Under the programming box only references are accepted; without dedicated inputs (a safety setting) no command
-//!   at all. SI(00) and SI(06) still work.
-//! - Speeds: a percentage is multiplied by the automatic speed; 0.01 % and mm/s are not. Jogs have the manual speed,
-//!   which also replaces the automatic one in manual mode. The maximum tool speed is 1000 mm/s.
-//! - An arch moves up, across and down in sequence; its start and end positions do not round it. A path that leaves
-//!   the soft limits is refused before it begins; a jog ends at them with 2.334. Only pushes meet obstacles.
-//! - A push without force or time uses the parameters PSHFRC and PSHTIME; PSHSPD reduces its speed. The others are
-//!   only stored.
+//! - Under the programming box, the controller accepts only references. If dedicated inputs are disabled (a safety
+//!   setting), it accepts no command at all. SI(00) and SI(06) still work.
+//! - A speed in percent is multiplied by the automatic speed. Speeds in 0.01 % and mm/s are not multiplied. Jogs have
+//!   the manual speed. In manual mode, the manual speed also replaces the automatic speed. The maximum tool speed is
+//!   1000 mm/s.
+//! - An arch moves up, across and down in sequence; its start and end positions do not round the path. A path that
+//!   leaves the soft limits is refused before it begins. A jog ends at the soft limits with 2.334. Only pushes meet
+//!   obstacles.
+//! - A push without force or time uses the parameters PSHFRC and PSHTIME. PSHSPD reduces its speed. The other
+//!   parameters are only stored.
 //! - After a stop, MOVEI and DRIVEI continue to their target if the same words follow (`movei_start`).
-//! - A Cartesian robot has no hand system. A shift rotates by its R. A hand is as in 4.3.5; initially none is
+//! - A Cartesian robot has no hand system. A shift rotates by its R. A hand is as in 4.3.5. Initially, no hand is
 //!   selected.
-//! - A program is registered in one task. It runs one line per scan, stops with SI(06) at its line and continues
-//!   there. An error stops all programs. A program that has ended is at its first line.
-//! - An undefined point causes an alarm. A missing comment or alarm is empty, and a missing robot has no axes. A
-//!   variable that would overflow keeps its value.
+//! - A program is registered in one task. It runs one line per scan. SI(06) stops it at its line, and a start continues
+//!   it there. An error stops all programs. A program that has ended is at its first line.
+//! - An undefined point causes an alarm. A missing comment or alarm is answered as empty, and a missing robot as a
+//!   robot without axes. A variable that would overflow keeps its value.
 
 mod alarms;
 mod commands;
@@ -82,7 +85,7 @@ use super::alarm::Alarm;
 use super::image::Image;
 use crate::Now;
 
-/// Limit of scans per call; the remaining time is one scan.
+/// Maximum number of scans per call. After them, the remaining time is one scan.
 const MAX_SCANS: u32 = 1_000_000;
 
 /// Event of the master.
@@ -103,14 +106,14 @@ pub struct Simulator {
     shown: Image,
     /// Master event for the next scan.
     incoming: Option<Master>,
-    /// Time of the first unhandled change.
+    /// Time of the first change that no scan has handled yet.
     touched: Option<Now>,
     /// Time of the last scan.
     scanned: Option<Now>,
 }
 
 impl Simulator {
-    /// A controller in its start state, without a master so far.
+    /// A controller in its start state, before any master.
     pub fn new(start: Start) -> Self {
         let mut simulator = Self {
             world: start.world,
@@ -126,14 +129,14 @@ impl Simulator {
         simulator
     }
 
-    /// Sets the alarm of a lost link for another fieldbus; the default is that of EtherNet/IP.
+    /// Sets the alarm for a lost link of another fieldbus. The default is the alarm of EtherNet/IP.
     #[must_use]
     pub fn with_link_alarm(mut self, alarm: Alarm) -> Self {
         self.world.link_alarm = alarm;
         self
     }
 
-    /// Takes the image of the master from `now` on. `None`: the link is lost, which is an alarm.
+    /// Handles the image of the master from `now` on. `None` means that the link is lost, which is an alarm.
     pub fn input(&mut self, now: Now, image: Option<&Image>) {
         self.advance(now);
         let known = match self.world.link {
@@ -154,7 +157,7 @@ impl Simulator {
         &self.shown
     }
 
-    /// Time of the next scan with a possible change, without external input.
+    /// Time of the next scan that may change something, without an input from outside.
     pub fn wake(&self) -> Option<Now> {
         let due = [self.touched, self.world.due(), self.remote.due(&self.world)].into_iter().flatten().min()?;
         let next = next_scan(due);
@@ -162,7 +165,7 @@ impl Simulator {
         Some(next.max(earliest))
     }
 
-    /// Runs all scans up to `now`, which never runs backwards.
+    /// Runs all scans up to `now`. The time never runs backwards.
     pub fn advance(&mut self, now: Now) {
         for _ in 0..MAX_SCANS {
             let Some(at) = self.wake().filter(|at| *at <= now) else { return };
@@ -178,7 +181,7 @@ impl Simulator {
             return Ok(self.journal.take());
         }
         self.touched.get_or_insert(now);
-        // Robot positions are also exact between scans.
+        // The robot positions are exact also between scans.
         self.world.move_on(now.max(self.world.now));
         console::execute(&mut self.world, line)
     }
@@ -201,7 +204,7 @@ impl Simulator {
     }
 }
 
-/// The first scan at or after a time.
+/// Time of the first scan at or after a time.
 fn next_scan(at: Now) -> Now {
     let (at, scan) = (at.as_nanos(), SCAN.as_nanos());
     let nanos = at.div_ceil(scan).saturating_mul(scan);

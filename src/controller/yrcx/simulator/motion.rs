@@ -7,12 +7,12 @@ use super::alarms::Fault;
 use super::geometry::{Arm, Four, Geometry};
 use crate::Now;
 
-/// Seconds to full speed with a coefficient of 100 %.
+/// Seconds to full speed with an acceleration coefficient of 100 %.
 const ACCELERATION_TIME: f64 = 0.2;
-/// Seconds from full speed to rest in a stop.
+/// Seconds from full speed to rest after a stop.
 const STOP_TIME: f64 = 0.1;
 
-/// Speed over time. Distances are in seconds at full speed, speeds are shares of it.
+/// Speed over time. A distance is the number of seconds it takes at full speed; a speed is a share of full speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Profile {
     /// Acceleration, constant speed, deceleration.
@@ -24,10 +24,10 @@ enum Profile {
 }
 
 impl Profile {
-    /// `share` of full speed; accelerations as shares of the maximum.
+    /// A ramp to `share` of full speed. The accelerations are shares of the maximum.
     fn ramp(way: f64, share: f64, accel: f64, decel: f64) -> Self {
         let (up, down) = (accel / ACCELERATION_TIME, decel / ACCELERATION_TIME);
-        // A short distance does not reach the speed.
+        // A short path does not reach this speed.
         let speed = share.min((2.0 * way * up * down / (up + down)).sqrt());
         if way > 0.0 && speed > 0.0 { Self::Ramp { way, speed, up, down } } else { Self::Rest { seconds: 0.0 } }
     }
@@ -64,16 +64,16 @@ impl Profile {
 /// A path between two positions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Path {
-    /// Joint interpolation: all axes at the same time.
+    /// Joint interpolation: all axes start and end at the same time.
     Joint { from: Four, to: Four },
     /// A straight line of the tool.
     Line { from: Four, to: Four, arm: Arm },
-    /// An arc of the tool about `centre`, from `first` towards `second`.
+    /// An arc of the tool about `centre`, from `first` toward `second`.
     Arc { from: Four, to: Four, centre: [f64; 3], first: [f64; 3], second: [f64; 3], angle: f64, arm: Arm },
 }
 
 impl Path {
-    /// Pulses at a share of the path; `None` if it cannot be reached.
+    /// Pulses at a share of the path; `None` if the robot cannot reach the position.
     pub(super) fn at(&self, share: f64, geometry: &Geometry) -> Option<Four> {
         let between = |from: &Four, to: &Four| std::array::from_fn(|at| from[at] + (to[at] - from[at]) * share);
         match self {
@@ -130,11 +130,11 @@ pub(super) enum Owner {
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum End {
-    /// Target reached.
+    /// The target was reached.
     Arrived,
-    /// Push for the requested time.
+    /// The axis pushed for the requested time.
     Pushed,
-    /// Early end, or end at a limit.
+    /// The motion ended early, or at a limit.
     Stopped(Fault),
 }
 
@@ -146,7 +146,7 @@ pub(super) struct Leg {
 }
 
 impl Leg {
-    /// A path of `way` seconds at full speed, with a share of that speed.
+    /// A path that takes `way` seconds at full speed, at a share of full speed.
     pub(super) fn new(path: Path, way: f64, share: f64, accel: f64, decel: f64) -> Self {
         Self { path, profile: Profile::ramp(way, share, accel, decel) }
     }
@@ -160,7 +160,7 @@ impl Leg {
         Duration::try_from_secs_f64(self.profile.seconds()).unwrap_or(Duration::MAX)
     }
 
-    /// Completed share of the path.
+    /// Completed share of the path, for a completed distance.
     fn share(&self, way: f64) -> f64 {
         match self.profile {
             Profile::Ramp { way: all, .. } => (way / all).clamp(0.0, 1.0),
@@ -176,18 +176,18 @@ pub(super) struct Motion {
     geometry: Geometry,
     legs: VecDeque<Leg>,
     began: Now,
-    /// Reason of the stop, and deceleration from the position of its start.
+    /// Reason for a stop, and the deceleration from the position where the stop began.
     stop: Option<(Fault, Profile)>,
     end: End,
 }
 
 impl Motion {
-    /// Starts now; ends with `end`.
+    /// Starts a motion now. When the path is complete, the motion ends with `end`.
     pub(super) fn new(owner: Owner, geometry: Geometry, legs: Vec<Leg>, end: End, now: Now) -> Self {
         Self { owner, geometry, legs: legs.into(), began: now, stop: None, end }
     }
 
-    /// End of the current segment.
+    /// Time at which the current segment ends.
     pub(super) fn due(&self) -> Now {
         let time = match (&self.stop, self.legs.front()) {
             (Some((_, brake)), _) => Duration::from_secs_f64(brake.seconds()),
@@ -197,7 +197,7 @@ impl Motion {
         self.began.saturating_add(time)
     }
 
-    /// Starts to decelerate. Only the first reason counts.
+    /// Starts to decelerate. If it is called more than once, the first reason counts.
     pub(super) fn stop(&mut self, now: Now, fault: Fault) {
         let Some(leg) = self.legs.front() else { return };
         if self.stop.is_none() {
@@ -208,7 +208,7 @@ impl Motion {
         }
     }
 
-    /// Advances to a time; returns the position and the end, if reached.
+    /// Advances to a time. Returns the position, and how the motion ended if it has ended.
     pub(super) fn advance(&mut self, now: Now) -> (Option<Four>, Option<End>) {
         let mut place = None;
         loop {
@@ -233,7 +233,7 @@ impl Motion {
         }
     }
 
-    /// Distance of each axis in this segment; gives the sign of its torque.
+    /// Distance of each axis in the current segment. Its sign is the sign of the torque.
     pub(super) fn direction(&self) -> Four {
         let ends = self
             .legs
@@ -257,7 +257,7 @@ mod tests {
 
     #[test]
     fn ramps_take_their_time() {
-        // One second at full speed, and half of each of two ramps of 0.2 s.
+        // One second at full speed, plus half of each of the two ramps of 0.2 s.
         let mut motion = to(1000.0, 1.0, 1.0);
         assert_eq!(motion.due(), Duration::from_millis(1200));
         let mut last = -1.0;
@@ -268,9 +268,9 @@ mod tests {
             last = x;
         }
         assert_eq!(motion.advance(Duration::from_millis(1200)), (Some([1000.0, 0.0, 0.0, 0.0]), Some(End::Arrived)));
-        // A tenth of the speed, ten times the distance.
+        // At a tenth of the speed, the distance takes ten times as long.
         assert_eq!(to(1.0, 1.0, 0.1).due(), Duration::from_millis(10_020));
-        // Too short for full speed.
+        // The distance is too short for full speed.
         assert!(to(1.0, 0.05, 1.0).due() < Duration::from_millis(250));
         assert_eq!(to(0.0, 0.0, 1.0).due(), Now::ZERO);
     }

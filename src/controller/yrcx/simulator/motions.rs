@@ -12,7 +12,7 @@ use super::world::World;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Values};
 
-/// Parameters of a push (4.4.2).
+/// Parameters for a push (4.4.2).
 const PUSH_FORCE: u16 = 266;
 const PUSH_TIME: u16 = 267;
 const PUSH_SPEED: u16 = 270;
@@ -70,7 +70,7 @@ fn ready(world: &World, request: &Request) -> Result<(), Fault> {
         | Command::PushPoint
         | Command::PushMm
         | Command::PushPulse => mask(request),
-        // The axes that do not move must hold their position, and a jog along a coordinate may move all of them.
+        // The other axes must hold their position, and a jog along a coordinate may move all axes.
         _ => {
             let named = request.maybe(Key::Axes).and_then(|axes| u8::try_from(axes).ok()).unwrap_or_default();
             world.has_axes(robot, named)?;
@@ -81,7 +81,7 @@ fn ready(world: &World, request: &Request) -> Result<(), Fault> {
     world.at_home(robot)
 }
 
-/// Motion to a target.
+/// Executes a motion to a target.
 fn travel(world: &mut World, request: &Request) -> Result<(), Fault> {
     ready(world, request)?;
     let robot = request.robot();
@@ -109,7 +109,7 @@ fn target(world: &World, request: &Request) -> Result<Four, Fault> {
         Command::MoveCircular => world.point_target(robot, axes, &world.memory.point(request.index(Key::Point2))?),
         Command::MoveMm => {
             let arm = Arm::of_hand_system(request.int(Key::HandSystem));
-            // On a SCARA, axes 1 and 2 always move to the target, even if only others are named (4.2.1).
+            // On a SCARA, axes 1 and 2 always move to the target, even if the command names only other axes (4.2.1).
             let along = if matches!(world.robot(robot)?.kind, Kind::Scara { .. }) { 0b0011 } else { 0 };
             world.pose_target(robot, axes | along, &mm(), arm)
         }
@@ -146,7 +146,7 @@ fn target(world: &World, request: &Request) -> Result<Four, Fault> {
     }
 }
 
-/// Relative motion of one axis.
+/// Target of a relative motion of one axis.
 fn drive_by(world: &World, request: &Request, way: f64, unit: PointUnit) -> Result<Four, Fault> {
     let (robot, axis) = (request.robot(), axis(request));
     let per_unit = match unit {
@@ -184,7 +184,7 @@ fn legs(world: &World, request: &Request, target: &Four) -> Result<Vec<Leg>, Fau
     }
 }
 
-/// Moves towards a position, and pushes an obstacle for the given time (4.2.23).
+/// Moves toward a position, and pushes against an obstacle for the given time (4.2.23).
 fn push(world: &mut World, request: &Request) -> Result<(), Fault> {
     ready(world, request)?;
     let (number, at) = (request.robot(), axis(request));
@@ -226,7 +226,7 @@ fn to_reset_position(world: &World, request: &Request) -> Result<Leg, Fault> {
     }
     let from = robot.pulses();
     let mut to = from;
-    // The next position in that direction, also from an exact one.
+    // The next reset position in this direction, also if the axis is exactly at a reset position.
     let turns = from[at] / RESET_PITCH;
     to[at] = RESET_PITCH * if sign(request) < 0.0 { (turns - 1e-9).floor() } else { (turns + 1e-9).ceil() };
     world.joint_leg(number, &from, &to, Speed { rate: Rate::Manual, ..Speed::default() })
@@ -257,7 +257,7 @@ fn origin(world: &mut World, request: &Request) -> Result<Work, Fault> {
             Ok(true) => moving.push(robot),
             Ok(false) => {}
             Err(fault) => {
-                // All or none: nothing has moved yet.
+                // Either all robots start or none. Nothing has moved yet.
                 for robot in moving {
                     let robot = world.robot_mut(robot)?;
                     robot.motion = None;
@@ -280,7 +280,7 @@ fn speed(request: &Request) -> Speed {
     Speed { rate, accel: request.maybe(Key::Accel), decel: request.maybe(Key::Decel) }
 }
 
-/// The axes of a command; all if it names none.
+/// The axes that a command names; all axes if it names none.
 fn mask(request: &Request) -> u8 {
     let axes = request.maybe(Key::Axes).and_then(|axes| u8::try_from(axes).ok()).unwrap_or(ALL);
     if axes == 0 { ALL } else { axes }

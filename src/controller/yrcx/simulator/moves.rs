@@ -22,7 +22,7 @@ const DECEL: u16 = 258;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Speed {
     pub(super) rate: Rate,
-    /// Percent of the maximum; by default from the parameters.
+    /// Percent of the maximum. Without a value, the parameters decide.
     pub(super) accel: Option<i32>,
     pub(super) decel: Option<i32>,
 }
@@ -75,14 +75,14 @@ impl Homing {
 }
 
 impl World {
-    /// Kinematics of a robot with the selected hand.
+    /// Kinematics of a robot, with the hand that is selected.
     pub(super) fn geometry(&self, number: usize) -> Result<Geometry, Fault> {
         let robot = self.robot(number)?;
         let hand = robot.hand.and_then(|hand| self.memory.hands.get(hand).copied().flatten());
         Ok(robot.geometry(hand.map(|hand| hand.data)))
     }
 
-    /// Tool position of a robot in its shift.
+    /// Tool position of a robot in the coordinates of its shift.
     pub(super) fn pose(&self, number: usize) -> Result<Four, Fault> {
         let robot = self.robot(number)?;
         Ok(to_shift(&self.shift(robot), &self.geometry(number)?.pose(&robot.pulses())))
@@ -92,7 +92,7 @@ impl World {
         self.memory.shifts.get(robot.shift).copied().unwrap_or_default()
     }
 
-    /// Target of a point in pulses for these axes; the others stay.
+    /// Target of a point in pulses for these axes. The other axes stay in place.
     pub(super) fn point_target(&self, number: usize, axes: u8, point: &Point) -> Result<Four, Fault> {
         match point.unit {
             PointUnit::Pulse => self.pulse_target(number, axes, &point.numbers()),
@@ -105,7 +105,7 @@ impl World {
         Ok(chosen(self.robot(number)?, axes, pulses))
     }
 
-    /// Target of shift coordinates in pulses; other coordinates stay.
+    /// Target of shift coordinates in pulses. The other coordinates stay the same.
     pub(super) fn pose_target(&self, number: usize, axes: u8, pose: &Four, arm: Option<Arm>) -> Result<Four, Fault> {
         let now = self.pose(number)?;
         let wanted = std::array::from_fn(|axis| if axes >> axis & 1 == 1 { pose[axis] } else { now[axis] });
@@ -145,7 +145,7 @@ impl World {
         self.pulse_target(number, 1 << axis, &[units * per_unit; 4])
     }
 
-    /// Distances of a point in tool coordinates; only mm are valid.
+    /// Distances of a point in tool coordinates. Only a point in mm is valid.
     pub(super) fn tool_way(point: &Point) -> Result<Four, Fault> {
         match point.unit {
             PointUnit::Mm => Ok(point.numbers()),
@@ -195,7 +195,7 @@ impl World {
         }
         let path = Path::Joint { from: *from, to: *to };
         let (accel, decel) = ramps(robot, from, to, speed);
-        // A speed in mm/s is a share of the maximum tool speed here as well.
+        // A speed in mm/s is a share of the maximum tool speed in joint motions too.
         Ok(Leg::new(path, robot.seconds(from, to), self.share(robot, speed.rate), accel, decel))
     }
 
@@ -206,7 +206,11 @@ impl World {
         robot.check_limits(number, to)?;
         let arm = geometry.arm(&from);
         if arm != geometry.arm(to) {
-            return Err(Fault::new(NO_PATH, AlarmSource::Robot(number), "the hand system cannot change on a line"));
+            return Err(Fault::new(
+                NO_PATH,
+                AlarmSource::Robot(number),
+                "the hand system cannot change during a linear move",
+            ));
         }
         let (start, end) = (geometry.pose(&from), geometry.pose(to));
         let way = start.iter().zip(&end).take(3).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt();
@@ -214,7 +218,7 @@ impl World {
         self.tool_leg(number, path, way, end[3] - start[3], speed)
     }
 
-    /// Arc segment of the tool through a position to another.
+    /// Arc segment of the tool through one position to another position.
     pub(super) fn arc_leg(&self, number: usize, via: &Point, to: &Point, speed: Speed) -> Result<Leg, Fault> {
         let (robot, geometry) = (self.robot(number)?, self.geometry(number)?);
         let all = robot.mask();
@@ -244,7 +248,7 @@ impl World {
         Ok(Leg::new(path, seconds, self.share(robot, speed.rate), accel, decel))
     }
 
-    /// Arch: up, across, down. `height` is the position of the arch axis in pulses.
+    /// Arch: up, across, down. `height` is the position of the arch axis in pulses while the robot moves across.
     pub(super) fn arch_legs(
         &self,
         number: usize,
@@ -264,7 +268,7 @@ impl World {
             .collect()
     }
 
-    /// Segment along an axis to its limit. Ends with the alarm of that axis.
+    /// Segment along an axis to its limit. The motion ends there with the alarm of this axis.
     pub(super) fn jog(&self, number: usize, frame: Frame, axis: usize, sign: f64) -> Result<(Leg, End), Fault> {
         let speed = Speed { rate: Rate::Manual, ..Speed::default() };
         let robot = self.robot(number)?;
@@ -274,7 +278,7 @@ impl World {
             let limits = robot.axes[axis].limits;
             let mut to = from;
             to[axis] = match (robot.is_at_home(), sign < 0.0) {
-                // Without a known origin the limits are not valid.
+                // Without a known origin, the limits are not valid.
                 (false, _) => from[axis] + sign * (limits.1 - limits.0),
                 (true, true) => limits.0,
                 (true, false) => limits.1,
@@ -337,7 +341,7 @@ impl World {
         }
     }
 
-    /// Starts an origin return in several passes. Returns whether anything moves.
+    /// Starts an origin return in several passes. Returns whether any axis moves.
     pub(super) fn begin_origin(&mut self, number: usize, passes: &[Homing], owner: Owner) -> Result<bool, Fault> {
         let robot = self.robot(number)?;
         let mut from = robot.pulses();
@@ -345,7 +349,7 @@ impl World {
         for pass in passes {
             let mut to = from;
             for (at, axis) in robot.axes.iter().enumerate().filter(|(at, axis)| pass.includes(*at, axis)) {
-                // A signal does not move axes of the mark type (chapter 1, SI(17)).
+                // The signal does not move axes of the mark type (chapter 1, SI(17)).
                 if owner == Owner::Input && axis.method == Method::Mark && axis.origin {
                     continue;
                 }
@@ -377,7 +381,7 @@ impl World {
         Ok(())
     }
 
-    /// Share of full speed.
+    /// Converts a speed to a share of full speed.
     pub(super) fn share(&self, robot: &Robot, rate: Rate) -> f64 {
         let percent = |number: i32| f64::from(number) / 100.0;
         let base = percent(if self.switches.mode == Mode::Auto { robot.auto_speed } else { robot.manual_speed });
@@ -391,7 +395,7 @@ impl World {
     }
 }
 
-/// Acceleration and deceleration as shares of the maximum: the minimum of the moving axes.
+/// Acceleration and deceleration as shares of the maximum. Each is the minimum of the moving axes.
 fn ramps(robot: &Robot, from: &Four, to: &Four, speed: Speed) -> (f64, f64) {
     let least = |parameter| {
         let moving = robot.axes.iter().enumerate().filter(|(at, _)| (from[*at] - to[*at]).abs() > 0.0);
@@ -402,7 +406,7 @@ fn ramps(robot: &Robot, from: &Four, to: &Four, speed: Speed) -> (f64, f64) {
     (share(speed.accel, ACCEL), share(speed.decel, DECEL))
 }
 
-/// Replaces the values of these axes; missing axes are 0.
+/// Replaces the values of these axes. Values of missing axes are 0.
 fn chosen(robot: &Robot, axes: u8, numbers: &Four) -> Four {
     let now = robot.pulses();
     std::array::from_fn(|axis| {

@@ -1,4 +1,4 @@
-//! Commands that switch and select (4.2, 4.6, 4.8).
+//! Commands that switch or select something (4.2, 4.6, 4.8).
 
 use std::time::Duration;
 
@@ -49,7 +49,7 @@ pub(super) fn change(world: &mut World, request: &Request) -> Result<(), Fault> 
     let number = request.robot();
     let percent = request.int(Key::SpeedPercent);
     match request.row.command {
-        // WI0 itself resets the status.
+        // WI0 itself resets the status, so the command has no further effect.
         Command::StatusReset => {}
         Command::Teach => return teach(world, request),
         Command::AbsoluteReset => return absolute_reset(world, request),
@@ -94,7 +94,7 @@ fn teach(world: &mut World, request: &Request) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Absolute reset: the current position becomes the origin of an axis of the mark type (4.2.11).
+/// Absolute reset: the current position becomes the origin of an axis. The axis must be of the mark type (4.2.11).
 fn absolute_reset(world: &mut World, request: &Request) -> Result<(), Fault> {
     let (number, at) = (request.robot(), axis(request));
     world.has_axes(number, 1 << at)?;
@@ -111,7 +111,7 @@ fn absolute_reset(world: &mut World, request: &Request) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Fault for an axis of another type.
+/// Fault for an axis that is not of the mark type.
 pub(super) fn no_mark(number: usize, at: usize) -> Fault {
     let why = format!("axis {} is not of the mark type", at + 1);
     Fault::new(NO_ABSOLUTE_RESET, AlarmSource::Axis(number, at), why)
@@ -139,7 +139,7 @@ pub(super) fn program(world: &mut World, request: &Request) -> Result<Values, Fa
     Ok(Values::default())
 }
 
-/// Selected object of a command of category 5.
+/// Object that a command of category 5 selects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Chosen {
     All,
@@ -165,14 +165,15 @@ fn chosen(world: &World, request: &Request) -> Result<Chosen, Fault> {
         0 => return Ok(Chosen::All),
         2 => return Ok(Chosen::Task(u8::try_from(request.int(Key::Task)).unwrap_or_default())),
         1 => u8::try_from(request.int(Key::Program)).ok().filter(|number| world.programs.contains_key(number)),
-        // The whole name. If all 16 characters are given: the lowest program number whose name begins with them.
+        // The name is the whole name. If all 16 characters are given, the program with the lowest number whose name
+        // begins with them is selected.
         _ => world.programs.iter().find(|(_, program)| program.short_name() == name).map(|(number, _)| *number),
     };
     let none = || Fault::new(NO_PROGRAM, AlarmSource::Controller, "no such program");
     found.map(Chosen::Program).ok_or_else(none)
 }
 
-/// Registers a program in a task; 0 means the lowest vacant one (4.6.1).
+/// Registers a program in a task. Task 0 means the lowest vacant task (4.6.1).
 fn register(world: &mut World, request: &Request, program: u8) -> Result<(), Fault> {
     let priority = u8::try_from(request.int(Key::Priority)).unwrap_or_default();
     let taken = |number: u8| world.tasks.iter().find(|task| task.number == number);
@@ -186,7 +187,7 @@ fn register(world: &mut World, request: &Request, program: u8) -> Result<(), Fau
     {
         return Err(Fault::new(super::alarms::RUNNING, AlarmSource::Task(number), "the task or the program runs"));
     }
-    // A program can be in only one task, so that its number identifies the task.
+    // A program can be registered in only one task, so that its number identifies the task.
     world.tasks.retain(|task| task.number != number && task.program != program);
     world.tasks.push(Task::new(number, program, priority));
     Ok(())

@@ -6,13 +6,13 @@ use std::time::Duration;
 use super::memory::{Number, Operation, POINTS, PortRef, is_port, port_kind};
 use super::request::ROBOTS;
 
-/// Maximum number of lines; lines of COMMON are reported from 10000 on (4.6.4).
+/// Maximum number of lines. The lines of COMMON are reported as numbers from 10000 on (4.6.4).
 const MAX_LINES: usize = 9999;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Operand {
     Number(Number),
-    /// A variable: SGI0 is 0, SGR0 is 256.
+    /// A variable. Number 0 is SGI0, number 256 is SGR0.
     Variable(usize),
 }
 
@@ -21,7 +21,7 @@ pub(super) enum Statement {
     /// Empty line, comment or label.
     Nothing,
     Move {
-        /// Counted from 0.
+        /// Index of the robot, from 0.
         robot: usize,
         linear: bool,
         relative: bool,
@@ -49,7 +49,7 @@ pub(super) struct Program {
 }
 
 impl Program {
-    /// Parses a program. An error gives the problem and the line.
+    /// Parses a program. An error message gives the problem and the line.
     pub(super) fn parse(name: &str, text: &str) -> Result<Self, String> {
         let named = |byte: u8| byte.is_ascii_uppercase() || byte.is_ascii_digit() || byte == b'_';
         if name.is_empty() || name.len() > 32 || !name.bytes().all(named) {
@@ -72,7 +72,7 @@ impl Program {
         Ok(program)
     }
 
-    /// The first 16 characters of the name, as in commands.
+    /// The first 16 characters of the name. Commands have only these.
     pub(super) fn short_name(&self) -> &str {
         self.name.get(..16).unwrap_or(&self.name)
     }
@@ -119,7 +119,7 @@ fn motion(word: &str, rest: &str) -> Option<Statement> {
     Some(Statement::Move { robot, linear, relative, point: point.into() })
 }
 
-/// Parses `DO(20)=1` (bit) or `DO2()=255` (port).
+/// Parses `DO(20)=1` (a bit) or `DO2()=255` (a port).
 pub(super) fn assigned(text: &str) -> Option<(PortRef, u8)> {
     let (port, value) = text.split_once('=')?;
     let value = value.trim().parse::<u8>().ok()?;

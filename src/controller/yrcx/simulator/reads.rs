@@ -1,4 +1,4 @@
-//! Read commands (4.7). A robot that does not exist is answered without axes.
+//! Commands that read data (4.7). For a robot that does not exist, the answer has no axes.
 
 use super::alarms::{AlarmSource, Entry, Fault, NO_CONTROLLER};
 use super::commands::not_here;
@@ -11,7 +11,7 @@ use super::world::World;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Values};
 
-/// Value for a missing axis or task.
+/// Value that stands for a missing axis or task.
 const NONE: i32 = 9;
 /// Keys of axis states, including reserved axes.
 const SIX: [Key; 6] = [Key::Axis1, Key::Axis2, Key::Axis3, Key::Axis4, Key::Axis5, Key::Axis6];
@@ -96,13 +96,13 @@ pub(super) fn answer(world: &World, request: &Request) -> Result<Values, Fault> 
     })
 }
 
-/// Current arm side; `None` for a Cartesian robot, which reports right (4.7.10).
+/// Current arm side; `None` for a Cartesian robot, for which the answer is right (4.7.10).
 fn current_arm(world: &World, number: usize) -> Option<Arm> {
     let robot = world.robots.get(number)?;
     world.geometry(number).ok()?.arm(&robot.pulses())
 }
 
-/// State of each axis; two reserved axes have none.
+/// State of each axis. The two reserved axes have the value `none`.
 fn per_axis(robot: Option<&Robot>, none: i32, state: impl Fn(usize, &Axis) -> i32) -> Values {
     let axis = |at: usize| robot.and_then(|robot| robot.axes.get(at)).map_or(none, |axis| state(at, axis));
     SIX.into_iter().enumerate().map(|(at, key)| (key, axis(at))).collect()
@@ -129,7 +129,7 @@ fn per_task(world: &World, request: &Request, none: i32, state: impl Fn(&super::
         .collect()
 }
 
-/// An alarm with its source; zeros without one.
+/// An alarm with its source. Without an alarm, all values are 0.
 fn alarm(entry: Option<Entry>) -> Values {
     let (group, category, [first, second]) =
         entry.map_or((0, 0, [0, 0]), |(alarm, place)| (alarm.group, alarm.category, place.words()));

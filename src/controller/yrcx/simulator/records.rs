@@ -1,4 +1,4 @@
-//! Commands that store, compute and read back (4.3, 4.4, 4.5).
+//! Commands that store data, compute, or read data back (4.3, 4.4, 4.5).
 
 use super::alarms::{AlarmSource, Fault, NO_HAND, PAYLOAD};
 use super::commands::not_here;
@@ -127,7 +127,7 @@ fn set_parameter(world: &mut World, request: &Request) -> Result<(), Fault> {
     let most = world.robot(number)?.max_payload_g;
     let grams = if parameter == WEIGHT_G { value } else { value.saturating_mul(GRAMS) };
     if matches!(parameter, WEIGHT | WEIGHT_G | AXIS_WEIGHT) && grams > most {
-        let why = format!("robot {} carries {most} g at most", number + 1);
+        let why = format!("robot {} can carry at most {most} g", number + 1);
         return Err(Fault::new(PAYLOAD, AlarmSource::Robot(number), why));
     }
     if request.int(Key::Axes) == 0 {
@@ -188,7 +188,7 @@ fn port(world: &mut World, request: &Request) -> Values {
         }
         _ => return [(Key::Value, i32::from(world.memory.port(kind, port)))].into_iter().collect(),
     }
-    // A program may wait for the port.
+    // A program may wait for this port, so another scan is needed.
     world.restless = true;
     Values::default()
 }

@@ -1,4 +1,4 @@
-//! Handshake of remote commands by scan (chapter 2, sections 1 and 2).
+//! Handshake of remote commands, scan by scan (chapter 2, sections 1 and 2).
 
 use super::alarms::{Fault, STOP_INPUT};
 use super::commands::{self, Work};
@@ -25,11 +25,11 @@ const RUN_STATUS: Words = {
 struct Running {
     request: Request,
     work: Work,
-    /// Minimum end of the running status.
+    /// Time at which the running status ends at the earliest.
     not_before: Now,
-    /// Whether the master still sends the command; otherwise its end is not reported.
+    /// Whether the master still sends the command. If not, the end of the command is not reported.
     held: bool,
-    /// Ends of its motions so far.
+    /// Ends of the motions of this command so far.
     ends: Vec<End>,
 }
 
@@ -38,7 +38,7 @@ enum State {
     /// Ready for a command.
     Ready,
     Running(Box<Running>),
-    /// Ended; waits for the status reset.
+    /// The command has ended. The controller waits for the status reset.
     Ended,
 }
 
@@ -47,7 +47,7 @@ enum State {
 pub(super) struct Remote {
     state: State,
     shown: Words,
-    /// Maximum scans with running status for a quick command.
+    /// Maximum number of scans with the running status for a quick command.
     run_scans: u32,
     random: fastrand::Rng,
 }
@@ -61,23 +61,23 @@ impl Remote {
         self.shown
     }
 
-    /// Time of the next action without an event of the master.
+    /// Time of the next action if the master changes nothing.
     pub(super) fn due(&self, world: &World) -> Option<Now> {
         let State::Running(running) = &self.state else { return None };
         match &running.work {
             Work::Power(at, _) => Some(*at),
             Work::Done(_) => Some(running.not_before),
-            // Without motion nothing changes.
+            // Without motion, the values do not change.
             Work::Continuous => {
                 let robot = world.robots.get(running.request.robot())?;
                 robot.motion.is_some().then(|| world.now.saturating_add(SCAN))
             }
-            // The end of a motion causes a scan.
+            // The end of a motion causes a scan by itself.
             Work::Motion(_) => None,
         }
     }
 
-    /// Runs a scan, after all other parts.
+    /// Runs a scan. It must come after the scans of all other parts.
     pub(super) fn scan(&mut self, world: &mut World) {
         let words = (world.link != Link::Down).then(|| world.inputs.command());
         match (&mut self.state, words) {
@@ -129,7 +129,8 @@ impl Remote {
                 self.state = State::Ready;
                 self.shown = NO_WORDS;
             }
-            // Another command replaced this one: the end is not reported, and the new one is ignored.
+            // Another command replaced this command. The end of this command is not reported, and the other command is
+            // ignored.
             (false, false) => self.end(RUN_STATUS),
         }
     }
@@ -181,7 +182,7 @@ fn output(world: &World, request: &Request) -> Words {
     }
 }
 
-/// Words of an abnormal end. A jog that was stopped reports its position (4.2.6).
+/// Words of an abnormal end. If the command is a jog that was stopped, they contain the position (4.2.6).
 fn abnormal_end(world: &mut World, request: &Request, fault: Fault) -> Words {
     let told = request.row.pace == Pace::Jog && fault.alarm == STOP_INPUT;
     let alarm = refusal(world, fault);
@@ -195,7 +196,7 @@ fn abnormal_end(world: &mut World, request: &Request, fault: Fault) -> Words {
     }
 }
 
-/// Words of a refusal; the alarm is recorded.
+/// Words of a refusal. Also records the alarm.
 fn refusal(world: &mut World, fault: Fault) -> Words {
     let mut words = NO_WORDS;
     words[0] = Status::AbnormalEnd.word();

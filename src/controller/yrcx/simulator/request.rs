@@ -1,5 +1,5 @@
-//! Command words, parsed with the table but checked independently of the client, and more strictly than a real
-//! controller is known to.
+//! Command words. They are parsed with the table, but checked independently of the client, and more strictly than real
+//! controllers are known to do.
 
 use super::alarms::{AlarmSource, Fault, UNKNOWN_COMMAND};
 use crate::yrcx::answer::Status;
@@ -48,12 +48,12 @@ impl Request {
         self.values.int(key).unwrap_or_default()
     }
 
-    /// Integer that the layout limits to valid indexes.
+    /// Integer that is a valid index, because the layout limits it.
     pub(super) fn index(&self, key: Key) -> usize {
         usize::try_from(self.int(key)).unwrap_or_default()
     }
 
-    /// Integer of a field in use.
+    /// Integer of a field; `None` if the field is not in use.
     pub(super) fn maybe(&self, key: Key) -> Option<i32> {
         self.values.int(key)
     }
@@ -62,7 +62,7 @@ impl Request {
         self.values.text(key).unwrap_or_default()
     }
 
-    /// Value for a variable: integer or real.
+    /// Value for a variable: an integer or a real number.
     pub(super) fn value(&self) -> Option<&Value> {
         self.values.value(Key::Value)
     }
@@ -71,17 +71,17 @@ impl Request {
         Key::AXES.map(|key| self.int(key))
     }
 
-    /// Robot index from 0; no robot means the first.
+    /// Robot index from 0. A command without a robot means the first robot.
     pub(super) fn robot(&self) -> usize {
         self.index(Key::Robot).saturating_sub(1)
     }
 
-    /// Words of an end or of continuous output, with `values` in their table positions.
+    /// Words of an end status or of continuous output, with `values` at their positions in the table.
     pub(super) fn reply(&self, status: Status, values: &Values) -> Words {
         let mut words = [0; COMMAND_WORDS];
         let look = |key| values.int(key).or_else(|| self.values.int(key)).unwrap_or_default();
         for field in self.row.answer().filter(|field| counts(field, look)) {
-            // Fields of the command are repeated in the answer.
+            // The answer repeats fields of the command.
             if let Some(value) = values.value(field.key).or_else(|| self.values.value(field.key)) {
                 field.write(&mut words, value).expect("the answer of the simulator fits its field");
             }
@@ -99,7 +99,7 @@ impl Request {
                 if (1..=32_767).contains(&places) {
                     return Ok(());
                 }
-                Err(Fault::of_words(format!("a pallet of {places} positions")))
+                Err(Fault::of_words(format!("a pallet cannot have {places} positions")))
             }
             Command::ParamSet | Command::ParamGet => {
                 let parameter = Parameter::from_number(self.int(Key::Parameter));
@@ -118,7 +118,7 @@ impl Request {
     }
 }
 
-/// Value of another field of the command, for conditions.
+/// Value of another field of the command. Conditions of fields depend on it.
 fn raw(row: &Row, key: Key, words: &Words) -> i32 {
     let field = row.request().find(|field| field.key == key);
     match field.map(|field| field.read(words)) {
@@ -127,7 +127,7 @@ fn raw(row: &Row, key: Key, words: &Words) -> i32 {
     }
 }
 
-/// Whether a field is in use, by its condition.
+/// Whether a field is in use, according to its condition.
 fn counts(field: &Field, look: impl Fn(Key) -> i32) -> bool {
     field.when.is_none_or(|when| (when.least..=when.most).contains(&look(when.key)))
 }
@@ -136,7 +136,7 @@ fn wrong(field: &Field, why: &str) -> Fault {
     Fault::of_words(format!("WI{} {}: {why}", field.word, field.key))
 }
 
-/// Decodes a field, and accepts only values that the manual allows.
+/// Decodes a field. Accepts only values that the manual allows.
 fn read(field: &Field, words: &Words) -> Result<Value, String> {
     if let Form::Text(charset) = field.form {
         return text(charset, &words[field.word..field.word + field.size()]).map(Value::Text);
@@ -159,14 +159,14 @@ fn number_is_allowed(field: &Field, number: i32) -> Result<(), String> {
         Show::Choice(choices) => choices.iter().any(|&(code, _)| i32::from(code) == number),
         Show::Set { least, most } => (least..=most).contains(&number.count_ones()),
         Show::Fixed(fixed) => i32::from(fixed) == number,
-        // Invalid decimal digits are decoded as a number above 99.
+        // Invalid decimal digits decode as a number above 99.
         Show::Digits => number < 100,
         Show::Number(_) | Show::Version | Show::Revision | Show::FpgaVersion | Show::Variable | Show::Line => true,
     };
     if fine { Ok(()) } else { Err(format!("{number} is not defined here")) }
 }
 
-/// Decodes a text, which only padding may follow.
+/// Decodes a text. Only padding may follow the text.
 fn text(charset: Charset, words: &[u16]) -> Result<String, String> {
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());

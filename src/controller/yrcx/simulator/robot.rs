@@ -10,15 +10,15 @@ use crate::yrcx::image::Words;
 
 /// Maximum number of axes.
 pub(super) const AXES: usize = 4;
-/// All axes as bits.
+/// All axes, one bit per axis.
 pub(super) const ALL: u8 = 0b1111;
-/// Distance in pulses of absolute reset positions: a quarter turn of a motor with 16384 pulses (4.2.10).
+/// Distance in pulses between two absolute reset positions: a quarter turn of a motor with 16384 pulses (4.2.10).
 pub(super) const RESET_PITCH: f64 = 4096.0;
 /// Maximum torque as a multiple of the rated torque.
 pub(super) const MAX_OF_RATED: i32 = 5;
-/// Percent of the maximum torque, without a limit.
+/// Torque limit if none is set, in percent of the maximum torque.
 pub(super) const FULL_TORQUE: i32 = 100;
-/// Torque of motion in percent of the maximum, in addition to the load.
+/// Additional torque of a moving axis, in percent of the maximum. It is added to the load.
 const MOVING_TORQUE: i32 = 10;
 
 /// Position detector of an axis.
@@ -30,7 +30,7 @@ pub(super) enum Motor {
     SemiAbsolute,
 }
 
-/// Origin detection of an axis.
+/// How the origin of an axis is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Method {
@@ -72,7 +72,7 @@ pub(super) struct Axis {
     pub(super) pulses: f64,
     pub(super) servo: Servo,
     pub(super) origin: bool,
-    /// Percent of the maximum torque, until power off.
+    /// Torque limit in percent of the maximum torque. It is reset at power off.
     pub(super) torque_limit: i32,
     /// Holding torque in percent of the maximum.
     pub(super) load: i32,
@@ -92,7 +92,7 @@ impl Axis {
     }
 }
 
-/// An interrupted motion that the same command continues (4.2.2, 4.2.4).
+/// An interrupted motion that continues if the same command follows (4.2.2, 4.2.4).
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ResumableMotion {
     pub(super) words: Words,
@@ -115,22 +115,22 @@ pub(super) struct Robot {
     pub(super) hand: Option<usize>,
     pub(super) arm: Arm,
     pub(super) motion: Option<Motion>,
-    /// Ended motions, for their originators.
+    /// Motions that have ended, until their owners take the ends.
     pub(super) ended: Vec<(Owner, End)>,
     /// Axis and torque of the last push, in percent of the rated torque.
     pub(super) pushing: Option<(usize, i32)>,
-    /// Axes whose origin is known after the motion, as bits.
+    /// Axes whose origin becomes known when the motion ends, one bit per axis.
     pub(super) homing: u8,
     pub(super) kept: Option<ResumableMotion>,
 }
 
 impl Robot {
-    /// Axis positions; 0 for missing axes.
+    /// Axis positions in pulses; 0 for missing axes.
     pub(super) fn pulses(&self) -> Four {
         std::array::from_fn(|axis| self.axes.get(axis).map_or(0.0, |axis| axis.pulses))
     }
 
-    /// Existing axes as bits.
+    /// Existing axes, one bit per axis.
     pub(super) fn mask(&self) -> u8 {
         (0..self.axes.len()).fold(0, |mask, axis| mask | 1 << axis)
     }
@@ -141,12 +141,12 @@ impl Robot {
         Geometry { kind: self.kind, per_unit, hand }
     }
 
-    /// The first axis outside its soft limits.
+    /// Index of the first axis outside its soft limits.
     pub(super) fn beyond(&self, pulses: &Four) -> Option<usize> {
         self.axes.iter().zip(pulses).position(|(axis, pulses)| !axis.is_within(*pulses))
     }
 
-    /// Refuses a position outside the soft limits. `robot` is the index of this robot.
+    /// Refuses a position outside of the soft limits. `robot` is the index of this robot.
     pub(super) fn check_limits(&self, robot: usize, pulses: &Four) -> Result<(), Fault> {
         match self.beyond(pulses) {
             Some(axis) => Err(over_limit(robot, axis)),
@@ -154,7 +154,7 @@ impl Robot {
         }
     }
 
-    /// Seconds at full speed for the slowest axis.
+    /// Time in seconds that the slowest axis needs at full speed.
     pub(super) fn seconds(&self, from: &Four, to: &Four) -> f64 {
         let ways = self.axes.iter().zip(from.iter().zip(to));
         ways.map(|(axis, (from, to))| (to - from).abs() / (axis.per_unit * axis.speed)).fold(0.0, f64::max)
@@ -184,7 +184,7 @@ impl Robot {
         }
     }
 
-    /// Ends the motion at once, because power is off.
+    /// Ends the motion at once because power is off.
     pub(super) fn halt(&mut self, fault: &Fault) {
         if let Some(motion) = self.motion.take() {
             self.ended.push((motion.owner, End::Stopped(fault.clone())));
@@ -193,7 +193,7 @@ impl Robot {
         self.homing = 0;
     }
 
-    /// Takes the end of a motion of `owner`.
+    /// Removes and returns the end of a motion of `owner`.
     pub(super) fn take_end(&mut self, owner: Owner) -> Option<End> {
         let at = self.ended.iter().position(|(other, _)| *other == owner)?;
         Some(self.ended.remove(at).1)

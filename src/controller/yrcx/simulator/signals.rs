@@ -13,14 +13,14 @@ use crate::Now;
 use crate::yrcx::image::{DEDICATED_WORD, Image};
 use crate::yrcx::signal::{Signal, input, output, resting};
 
-/// Minimum interval of edges; closer ones are ignored (chapter 1, section 3).
+/// Minimum interval between edges. An edge that comes earlier is ignored (chapter 1, section 3).
 const EDGE_INTERVAL: Duration = Duration::from_millis(100);
-/// Delay from an input to its output.
+/// Delay from a change of an input to the change of its output.
 const REACTION: Duration = Duration::from_millis(20);
 /// Ports of eight signals in the image: SI(00) to SI(157).
 const IMAGE_PORTS: usize = 14;
 
-/// Previous dedicated inputs.
+/// Dedicated inputs at the previous scan.
 #[derive(Debug, Clone)]
 pub(super) struct Dedicated {
     last: u16,
@@ -52,7 +52,7 @@ impl Dedicated {
         }
         let too_soon = self.edge.is_some_and(|edge| world.now.saturating_sub(edge) < EDGE_INTERVAL);
         self.edge = Some(world.now);
-        // A stop is never too early.
+        // A stop is accepted without a minimum interval.
         if has(fell, input::EMERGENCY_STOP) || (back && world.emergency()) {
             world.check_emergency();
         }
@@ -61,7 +61,8 @@ impl Dedicated {
         }
         let pulses = PULSES.iter().filter(|(signal, _)| has(rose, *signal));
         for (signal, react) in pulses {
-            // Simultaneous edges have no interval either, and the first image of a master has no edges.
+            // Simultaneous edges have no interval between them, so they are ignored. The first image of a master has no
+            // edges.
             let alone = (rose | fell).is_power_of_two();
             let result = match (world.switches.inputs && !world.switches.boxed, too_soon || !alone || back) {
                 (false, _) => Err(ignored(*signal, "dedicated inputs have no effect now")),
@@ -77,7 +78,7 @@ impl Dedicated {
     }
 }
 
-/// Effect of an input going on.
+/// Effect when an input switches on.
 type Reaction = fn(&mut World) -> Result<(), Fault>;
 
 const PULSES: [(Signal, Reaction); 6] = [
@@ -108,7 +109,7 @@ const PULSES: [(Signal, Reaction); 6] = [
     }),
 ];
 
-/// Starts the origin return of all robots, for axes that support it by signal.
+/// Starts the origin return of all robots, for the axes whose origin return a signal can start.
 fn origin(world: &mut World, passes: &[Homing]) -> Result<(), Fault> {
     for robot in 0..world.robots.len() {
         world.may_move(robot, 0)?;
@@ -159,7 +160,7 @@ fn ignored(signal: Signal, why: &str) -> Fault {
     Fault::new(NOT_ENABLED, AlarmSource::Slot, format!("{signal} was ignored: {why}"))
 }
 
-/// Ports have octal numbers.
+/// Number of a port. Port numbers are octal.
 fn port_number(index: usize) -> usize {
     index / 8 * 10 + index % 8
 }

@@ -1,7 +1,7 @@
 //! Start state from TOML.
 //!
-//! All keys have defaults: an empty file is a controller with four robots and servo power. The file adds to the
-//! content of a new controller, except that its robots replace the default ones. An error gives its line.
+//! All keys have defaults: an empty file is a controller with four robots and servo power. The file adds to the content
+//! of a new controller. Its robots replace the default robots. An error message gives the line.
 
 mod fill;
 
@@ -34,7 +34,7 @@ pub struct Start {
     pub(super) seed: u64,
 }
 
-/// A start state with all keys; each is optional.
+/// A start state with all keys. Each key is optional.
 pub const EXAMPLE: &str = r#"mode = "auto"                   # or "manual"
 servo = true                    # motor power and servos; off at the start of a real controller
 box = false                     # true: the programming box has control
@@ -131,7 +131,7 @@ impl Default for Start {
 }
 
 impl Start {
-    /// Parses a start state. An error gives the problem and the line.
+    /// Parses a start state. An error message gives the problem and the line.
     pub fn parse(text: &str) -> Result<Self, String> {
         build(&start::parse(text)?, text)
     }
@@ -409,7 +409,7 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
     }
     fill::memory(&mut world, entries, source)?;
     fill::check(&world, entries, source)?;
-    // A copy, so that the world keeps its start state.
+    // This is a copy, so that the world keeps its start state.
     let mut copy = world.clone();
     world.events = source.timeline(&entries.events, |line| console::execute(&mut copy, line))?;
     Ok(Start { world, run_scans: entries.run_scans, seed: entries.seed })
@@ -485,11 +485,11 @@ fn versions(entry: &Versions, source: Source<'_>) -> Result<[u16; 7], String> {
     Ok(words)
 }
 
-/// An answer word from its text, by the table.
+/// An answer word, parsed from its text with the table.
 fn word(command: Command, key: Key, text: &str) -> Result<u16, String> {
     let field = command.row().answer().find(|field| field.key == key);
     match field.map(|field| field.parse(text)) {
-        Some(Ok(Value::Int(number))) => u16::try_from(number).map_err(|_| format!("'{text}' does not fit")),
+        Some(Ok(Value::Int(number))) => u16::try_from(number).map_err(|_| format!("'{text}' is out of range")),
         Some(Err(what)) => Err(what),
         _ => Err(format!("'{text}' is not a valid value")),
     }

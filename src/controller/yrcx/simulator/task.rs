@@ -12,7 +12,7 @@ use crate::Now;
 
 const MAX_CALLS: usize = 16;
 pub(super) const TASKS: u8 = 16;
-/// The program whose subroutines all programs can call (4.6.4).
+/// The program whose subroutines every program can call (4.6.4).
 const COMMON: &str = "COMMON";
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,17 +22,17 @@ pub(super) enum State {
     Suspended,
 }
 
-/// End of the execution.
+/// Where the execution of a task ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Until {
     End,
-    /// One line.
+    /// After one line.
     Line,
-    /// One line with its subroutine; holds the call depth at its start.
+    /// After one line, including a subroutine that it calls. The value is the call depth at the start of the line.
     Call(usize),
 }
 
-/// Wait of the current line.
+/// What the current line waits for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Doing {
     Nothing,
@@ -47,7 +47,7 @@ type Spot = (u8, usize);
 #[derive(Debug, Clone)]
 pub(super) struct Task {
     pub(super) number: u8,
-    /// Registered program.
+    /// Number of the registered program.
     pub(super) program: u8,
     pub(super) priority: u8,
     pub(super) state: State,
@@ -55,12 +55,12 @@ pub(super) struct Task {
     calls: Vec<Spot>,
     doing: Doing,
     until: Until,
-    /// Target of an interrupted relative motion.
+    /// Target of an interrupted relative motion, with the line of the motion.
     kept: Option<(Spot, Four)>,
 }
 
 impl Task {
-    /// A stopped task at the first line.
+    /// A stopped task at the first line of its program.
     pub(super) fn new(number: u8, program: u8, priority: u8) -> Self {
         Self {
             number,
@@ -85,12 +85,12 @@ impl Task {
         match (self.state, self.doing) {
             (State::Running, Doing::Nothing) => Some(now),
             (State::Running, Doing::Delay(until)) => Some(until),
-            // Motions and signals cause a scan.
+            // The end of a motion or a change of a signal causes a scan by itself.
             _ => None,
         }
     }
 
-    /// 0 stop, 1 execution, 2 suspend, 3 standby (4.7.5).
+    /// Status code: 0 stop, 1 execution, 2 suspend, 3 standby (4.7.5).
     pub(super) fn status(&self) -> i32 {
         match (self.state, self.doing) {
             (State::Stopped, _) => 0,
@@ -112,7 +112,7 @@ impl Task {
     }
 }
 
-/// Continuation after a line.
+/// How a task continues after a line.
 enum Flow {
     Next,
     Stay,
@@ -126,7 +126,7 @@ impl World {
         self.tasks.iter().any(|task| task.state == State::Running)
     }
 
-    /// Current line of a task, from 1; above 10000 in COMMON (4.6.4).
+    /// Current line of a task, from 1. Lines of COMMON are above 10000 (4.6.4).
     pub(super) fn line_of(&self, task: &Task) -> i32 {
         let (program, line) = task.at;
         let common = self.programs.get(&program).is_some_and(|program| program.name == COMMON);
@@ -174,7 +174,7 @@ impl World {
         Ok(())
     }
 
-    /// Runs one line of a task; `over` includes a called subroutine.
+    /// Runs one line of a task. With `over`, a subroutine that the line calls also runs.
     pub(super) fn step_task(&mut self, at: usize, over: bool) -> Result<(), Fault> {
         self.may_run()?;
         self.none_runs()?;
@@ -201,7 +201,7 @@ impl World {
         if self.is_running() { Err(running()) } else { Ok(()) }
     }
 
-    /// Runs all tasks by priority for this scan.
+    /// Runs all tasks for this scan, in the order of their priority.
     pub(super) fn run_tasks(&mut self) {
         let mut order: Vec<usize> = (0..self.tasks.len()).collect();
         order.sort_by_key(|at| self.tasks.get(*at).map(|task| (task.priority, task.number)));
@@ -270,10 +270,10 @@ impl World {
                     task.state = State::Stopped;
                 }
             }
-            // After the last line a program is at its first line.
+            // After its last line, a program is at its first line again.
             None => task.reset(),
         }
-        // Other tasks may wait for this one.
+        // Other tasks may wait for this task.
         self.restless = true;
     }
 
@@ -337,7 +337,7 @@ impl World {
         point: usize,
     ) -> Result<Flow, Fault> {
         if self.robot(robot)?.motion.is_some() {
-            // Still decelerating after a stop, or moved by another originator.
+            // The robot still decelerates after a stop, or another owner moves it.
             self.restless = true;
             return Ok(Flow::Stay);
         }

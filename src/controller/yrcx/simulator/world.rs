@@ -32,32 +32,32 @@ pub(super) enum Mode {
     Manual,
 }
 
-/// Operator switches and relevant parameters.
+/// Switches of the operator, and parameters that the simulator uses.
 #[derive(Debug, Clone)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent switch")]
 pub(super) struct Switches {
     pub(super) mode: Mode,
-    /// The programming box has control.
+    /// Whether the programming box has control.
     pub(super) boxed: bool,
-    /// A safety setting keeps dedicated inputs, and so remote commands, enabled.
+    /// Whether dedicated inputs stay enabled in a safety setting. Remote commands need the dedicated inputs.
     pub(super) inputs: bool,
-    /// The wired emergency stop is pressed.
+    /// Whether the wired emergency stop is pressed.
     pub(super) estop: bool,
     pub(super) warning: bool,
     pub(super) sequence: bool,
-    /// SI(17) also returns incremental axes ("ABS/ORG").
+    /// Whether SI(17) also starts the origin return of incremental axes ("ABS/ORG").
     pub(super) origin_both: bool,
-    /// An interrupted relative motion keeps its target for a repetition (4.2.2).
+    /// Whether an interrupted relative motion keeps its target, so that a repetition continues to it (4.2.2).
     pub(super) keep: bool,
 }
 
 /// State of the fieldbus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Link {
-    /// No master so far; the inputs have their resting state.
+    /// There was no master yet. The inputs have their resting state.
     Waiting,
     Up,
-    /// Lost; all inputs are off.
+    /// The link is lost. All inputs are off.
     Down,
 }
 
@@ -67,12 +67,12 @@ pub(super) enum Action {
     MotorOn,
     MotorPower,
     MotorOff,
-    /// Servo state for some axes of a robot.
+    /// Sets the servo state for some axes of a robot.
     Servo(usize, u8, Servo),
     AlarmReset,
     ProgramReset,
     AutoStart,
-    /// Power off after an emergency stop.
+    /// Switches power off after an emergency stop.
     PowerLoss,
 }
 
@@ -81,9 +81,9 @@ pub(super) struct World {
     pub(super) now: Now,
     pub(super) switches: Switches,
     pub(super) link: Link,
-    /// Alarm of a lost link, specific to the fieldbus.
+    /// Alarm for a lost link. It depends on the fieldbus.
     pub(super) link_alarm: Alarm,
-    /// Time without a first master after which the link counts as lost.
+    /// Time after which the link counts as lost if there was no master yet.
     pub(super) link_within: Option<Duration>,
     pub(super) inputs: Image,
     pub(super) motor: bool,
@@ -93,17 +93,17 @@ pub(super) struct World {
     pub(super) programs: BTreeMap<u8, Program>,
     pub(super) tasks: Vec<Task>,
     pub(super) reset_done: bool,
-    /// Date and time at a reference time.
+    /// Date and time, and the time of the simulator at which they were set.
     pub(super) clock: (DateTime, Now),
-    /// Words of 4.7.1.
+    /// Words of the answer in 4.7.1.
     pub(super) versions: [u16; 7],
     /// Modules by controller and slot (4.7.15).
     pub(super) slots: BTreeMap<u8, [u16; 4]>,
     pub(super) delayed: Vec<(Now, Action)>,
     pub(super) events: Timeline,
-    /// Last refusal or abort.
+    /// Last refusal or abort, with its reason.
     pub(super) why: Option<Fault>,
-    /// A change that others may wait for: requests another scan.
+    /// Whether something changed for which programs may wait. It requests another scan.
     pub(super) restless: bool,
 }
 
@@ -145,7 +145,8 @@ impl World {
             );
         }
         while let Some(line) = self.events.take(now) {
-            // The lines were checked when the start state was parsed; an impossible line has no effect now.
+            // The lines were checked when the start state was parsed. A line that is not possible in the current state
+            // has no effect.
             let _refused = console::execute(self, &line);
         }
         for at in (0..self.delayed.len()).rev() {
@@ -169,7 +170,9 @@ impl World {
                     self.set_servos(Servo::On);
                 }
             }
-            Action::MotorOff => self.power_off(&Fault::new(NO_POWER, AlarmSource::Controller, "motor power went off")),
+            Action::MotorOff => {
+                self.power_off(&Fault::new(NO_POWER, AlarmSource::Controller, "motor power was switched off"))
+            }
             Action::PowerLoss => self.power_off(&Fault::emergency()),
             Action::Servo(robot, axes, state) => self.set_servo(robot, axes, state)?,
             Action::AlarmReset => {
@@ -196,7 +199,7 @@ impl World {
         !input::STOP.is_on(&self.inputs)
     }
 
-    /// Records a fault without a remote command to report it.
+    /// Records a fault that no remote command reports.
     pub(super) fn note(&mut self, fault: Fault) {
         self.alarms.record(fault.alarm, fault.place);
         self.why = Some(fault);
@@ -341,7 +344,7 @@ impl World {
         then.saturating_add(SignedDuration::try_from(self.now.saturating_sub(at)).unwrap_or(SignedDuration::MAX))
     }
 
-    /// Power cycle: only stored data remains.
+    /// Executes a power cycle. Only stored data remains.
     pub(super) fn power_cycle(&mut self) {
         self.stop_tasks();
         self.delayed.clear();
@@ -379,7 +382,7 @@ impl World {
         }
         let robot = self.robot_mut(number)?;
         if state != Servo::On {
-            robot.halt(&Fault::new(NO_POWER, AlarmSource::Robot(number), "a servo went off"));
+            robot.halt(&Fault::new(NO_POWER, AlarmSource::Robot(number), "a servo was switched off"));
         }
         let chosen = robot.axes.iter_mut().enumerate().filter(|(at, _)| axes == 0 || axes >> at & 1 == 1);
         for (_, axis) in chosen {

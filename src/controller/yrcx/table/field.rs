@@ -15,11 +15,11 @@ pub struct Field {
     pub word: usize,
     /// Format.
     pub form: Form,
-    /// Allowed raw values, as ranges; empty for all.
+    /// Allowed raw values, as ranges; empty if all values are allowed.
     pub spans: &'static [(i32, i32)],
-    /// Condition on another field for this field to be in use; otherwise its words are 0.
+    /// Condition on another field. The field is in use only if the condition is met; otherwise its words are 0.
     pub when: Option<When>,
-    /// Whether it is optional; a missing field is sent as 0.
+    /// Whether the field is optional. A missing field is sent as 0.
     pub need: Presence,
 }
 
@@ -30,7 +30,7 @@ pub enum Presence {
     Required,
     /// Missing values are sent as 0.
     Optional,
-    /// Required if this axis is among those of the command: a missing target would be a move to 0.
+    /// Required if the command names this axis, because a missing target would be a move to 0.
     OfAxis(u8),
 }
 
@@ -43,7 +43,7 @@ pub enum Form {
         low: u8,
         /// Number of bits.
         width: u8,
-        /// Their meaning.
+        /// Meaning of the bits.
         show: Show,
     },
     /// Signed 16 bits.
@@ -63,9 +63,9 @@ pub enum Show {
     Number(Unit),
     /// A constant number.
     Fixed(u16),
-    /// One of these choices.
+    /// A choice: one of these numbers, each with its name.
     Choice(&'static [(u16, &'static str)]),
-    /// A set of axes or elements, from bit 0.
+    /// A set of axes or elements. Bit 0 is the first one.
     Set {
         /// Minimum size.
         least: u32,
@@ -82,29 +82,29 @@ pub enum Show {
     FpgaVersion,
     /// A static variable: SGI0 to SGI31 are 0 to 31, SGR0 to SGR31 are 256 to 287 (4.4.1).
     Variable,
-    /// A program line; lines of the COMMON program begin at 10000 (4.6.4).
+    /// A program line. The lines of the COMMON program begin at 10000 (4.6.4).
     Line,
 }
 
 /// Character set and padding of a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Charset {
-    /// 0x20 to 0x7E; padded with NUL as in the examples of the manual (4.3.2).
+    /// 0x20 to 0x7E, padded with NUL as in the examples of the manual (4.3.2).
     Comment,
-    /// A to Z, 0 to 9, underscore; padded with spaces as in the text of 4.6.1.
+    /// A to Z, 0 to 9 and underscore, padded with spaces as in the text of 4.6.1.
     Program,
 }
 
-/// Condition on another field, of the same words or of the command of an answer.
+/// Condition on another field. The field is in the same words, or in the command that the words answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct When {
-    /// The other field.
+    /// Key of the other field.
     pub key: Key,
     /// Minimum value.
     pub least: i32,
     /// Maximum value.
     pub most: i32,
-    /// Whether this field sets the other field automatically.
+    /// Whether a value for this field also sets the other field.
     pub sets: bool,
 }
 
@@ -176,28 +176,29 @@ impl Field {
         self
     }
 
-    /// In use only if `key` has this value; setting this field also sets `key`.
+    /// Makes the field depend on `key`: it is in use only if `key` has this value. A value for the field also sets
+    /// `key`.
     #[must_use]
     pub const fn sets(mut self, key: Key, value: i32) -> Self {
         self.when = Some(When { key, least: value, most: value, sets: true });
         self
     }
 
-    /// In use only if `key` is in this range.
+    /// Makes the field depend on `key`: it is in use only if `key` is in this range.
     #[must_use]
     pub const fn when(mut self, key: Key, least: i32, most: i32) -> Self {
         self.when = Some(When { key, least, most, sets: false });
         self
     }
 
-    /// Makes it optional.
+    /// Makes the field optional.
     #[must_use]
     pub const fn optional(mut self) -> Self {
         self.need = Presence::Optional;
         self
     }
 
-    /// Makes it optional if the axis does not move.
+    /// Makes the field optional if the axis does not move.
     #[must_use]
     pub const fn of_axis(mut self, axis: u8) -> Self {
         self.need = Presence::OfAxis(axis);
@@ -213,7 +214,7 @@ impl Field {
         }
     }
 
-    /// Bit mask in each of its words.
+    /// Bit mask of the field in each of its words.
     pub const fn mask(&self) -> u16 {
         match self.form {
             Form::Bits { low, width, .. } => (u16::MAX >> (16 - width)) << low,
@@ -221,7 +222,7 @@ impl Field {
         }
     }
 
-    /// Unit; empty without one.
+    /// Symbol of the unit; empty without a unit.
     pub const fn symbol(&self) -> &'static str {
         match self.form {
             Form::Bits { show: Show::Number(unit), .. } | Form::Short(unit) | Form::Long(unit) => unit.symbol,
@@ -229,7 +230,7 @@ impl Field {
         }
     }
 
-    /// Reads the value from any words.
+    /// Reads the value from words with any content.
     pub fn read(&self, words: &[u16; 16]) -> Value {
         let word = |at: usize| words.get(self.word + at).copied().unwrap_or_default();
         let long = || u32::from(word(1)) << 16 | u32::from(word(0));
@@ -239,7 +240,7 @@ impl Field {
                 Value::Int(match (raw >> 4, raw & 0xF) {
                     _ if show != Show::Digits => raw,
                     (tens @ 0..=9, units @ 0..=9) => tens * 10 + units,
-                    // Not decimal digits: returns a number that is never valid.
+                    // These are not decimal digits. The result is a number that is never valid.
                     _ => 100 + raw,
                 })
             }
@@ -257,7 +258,7 @@ impl Field {
         }
     }
 
-    /// Writes a value. An error tells why it does not fit; [`Self::accept`] checks the rest.
+    /// Writes a value. The error is the reason why the value does not fit. [`Self::accept`] checks everything else.
     pub fn write(&self, words: &mut [u16; 16], value: &Value) -> Result<(), String> {
         let mut put = |at: usize, bits: u16| {
             if let Some(word) = words.get_mut(self.word + at) {
@@ -274,10 +275,13 @@ impl Field {
                     _ => *number,
                 };
                 let raw = u16::try_from(raw).ok().filter(|raw| *raw <= self.mask() >> low);
-                put(0, raw.ok_or_else(|| format!("{number} does not fit"))? << low);
+                put(0, raw.ok_or_else(|| format!("{number} does not fit in the field"))? << low);
             }
             (Form::Short(_), Value::Int(number)) => {
-                put(0, i16::try_from(*number).map_err(|_| format!("{number} does not fit"))?.cast_unsigned());
+                put(
+                    0,
+                    i16::try_from(*number).map_err(|_| format!("{number} does not fit in the field"))?.cast_unsigned(),
+                );
             }
             (Form::Long(_), Value::Int(number)) => {
                 for (at, bits) in low_word_first(number.cast_unsigned()).into_iter().enumerate() {
@@ -321,7 +325,7 @@ impl Field {
                         _ => Ok(()),
                     },
                     Form::Bits { show: Show::Fixed(fixed), .. } if i32::from(fixed) != *number => {
-                        Err(format!("{number} instead of the fixed value {fixed}"))
+                        Err(format!("the value must be {fixed}, not {number}"))
                     }
                     _ => Ok(()),
                 }
@@ -373,10 +377,10 @@ impl Field {
         }
     }
 
-    /// Parses user input: a number in the unit of the field, the name of a choice, a list of axes such as `1,3`, or
-    /// SGI5 for a variable, P19 for a point. The complete command is validated later.
+    /// Parses user input: a number in the unit of the field, the name of a choice, or a list of axes such as `1,3`. A
+    /// variable is typed as SGI5, a point as P19. The complete command is validated later.
     pub fn parse(&self, text: &str) -> Result<Value, String> {
-        // Programs write P19 for point 19.
+        // Robot programs write P19 for point 19.
         let is_point = matches!(self.key, Key::Point | Key::Point2 | Key::FirstPoint);
         let number = text.strip_prefix(['P', 'p']).filter(|number| number.bytes().all(|byte| byte.is_ascii_digit()));
         let text = number.filter(|_| is_point).unwrap_or(text);
@@ -431,8 +435,8 @@ impl Show {
                 bits if number == 0 => bits.chain([NOTHING.to_owned()]).collect(),
                 bits => bits.collect::<Vec<_>>().join(","),
             },
-            // The digits in 4.7.1 do not show whether they are binary or decimal. Hexadecimal output is right for
-            // decimal digits, and for binary ones below 10.
+            // The example in 4.7.1 does not show whether the digits are binary or decimal. Hexadecimal output is right
+            // for decimal digits, and for binary digits below 10.
             Self::Version => format!("V{:x}.{:02x}", number >> 8, number & 0xFF),
             Self::Revision => format!("R{number:04}"),
             Self::FpgaVersion => format!("V{:x}.{:03x}", number >> 12, number & 0xFFF),
@@ -453,7 +457,7 @@ impl Show {
 /// Text of an empty set.
 const NOTHING: &str = "none";
 
-/// Line offset of the COMMON program (4.6.4).
+/// Number that is added to the lines of the COMMON program (4.6.4).
 pub const COMMON_LINES: i32 = 10_000;
 
 impl Charset {
@@ -467,7 +471,7 @@ impl Charset {
     const fn allowed(self) -> &'static str {
         match self {
             Self::Comment => "allowed: up to 16 ASCII characters",
-            Self::Program => "allowed: 1 to 16 of A-Z, 0-9 and _",
+            Self::Program => "allowed: 1 to 16 characters from A-Z, 0-9 and _",
         }
     }
 
@@ -481,7 +485,7 @@ impl Charset {
         if fits && text.len() <= TEXT_CHARS {
             Ok(())
         } else {
-            Err(format!("'{}' does not fit; {}", text.chars().take(40).collect::<String>(), self.allowed()))
+            Err(format!("'{}' is not valid; {}", text.chars().take(40).collect::<String>(), self.allowed()))
         }
     }
 }
@@ -492,7 +496,9 @@ fn plain(error: &UnitError) -> String {
         UnitError::Malformed { text, .. } | UnitError::TooFine { text, .. } => {
             format!("'{text}' is not a whole number")
         }
-        UnitError::Range { text, lowest, highest, .. } => format!("{text} is out of range; {lowest} to {highest} fit"),
+        UnitError::Range { text, lowest, highest, .. } => {
+            format!("{text} is out of range; the range is {lowest} to {highest}")
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use crate::yrcx::value::Key;
 
 type Layout = &'static [Field];
 
-// Choices.
+// Names of choices.
 
 const ROBOTS: Show = Show::Choice(&[(0, "none (robot 1)"), (1, "1"), (2, "2"), (3, "3"), (4, "4")]);
 const ROBOTS_OR_ALL: Show = Show::Choice(&[(0, "all"), (1, "1"), (2, "2"), (3, "3"), (4, "4")]);
@@ -68,7 +68,7 @@ pub const ROBOT_OR_ALL: Layout = &[Field::bits(Key::Robot, "robot", 0, 12, 4, RO
 
 // Motion (4.2).
 
-/// All axes, or a selection.
+/// All axes, or some axes.
 pub const AXES: Layout = &[
     Field::bits(Key::AxisFlag, "axes flag", 1, 0, 1, ALL_OR_SOME).optional(),
     Field::bits(Key::Axes, "axes", 2, 0, 4, Show::Set { least: 1, most: 4 }).sets(Key::AxisFlag, 1),
@@ -80,7 +80,7 @@ pub const ONE_AXIS: Layout = &[
 ];
 /// Exactly one axis.
 pub const AXIS: Layout = &[Field::bits(Key::Axes, "axis", 2, 0, 4, ONE)];
-/// One axis, or all axes.
+/// One axis; an empty set means all axes.
 pub const AXIS_OR_ALL: Layout = &[Field::bits(Key::Axes, "axis", 2, 0, 4, Show::Set { least: 0, most: 1 }).optional()];
 /// Plus or minus.
 pub const DIRECTION: Layout = &[Field::bits(Key::Direction, "direction", 2, 7, 1, DIRECTIONS)];
@@ -109,9 +109,9 @@ pub const ACCEL: Layout = &[
     Field::word(Key::Accel, "acceleration", 10, PERCENTS).within(TO_100).sets(Key::AccelFlag, 1),
     Field::word(Key::Decel, "deceleration", 11, PERCENTS).within(TO_100).sets(Key::DecelFlag, 1),
 ];
-/// Unit of the positions in the answer: bit 14 pulse, bit 15 mm, never both.
+/// Unit of the positions in the answer: bit 14 is pulse, bit 15 is mm. Both must not be set.
 pub const REPORT: Layout = &[Field::bits(Key::Report, "position output", 1, 14, 2, REPORTS).optional()];
-/// Target point, or a point with distances.
+/// Target point, or a point that contains distances.
 pub const TO_POINT: Layout = &[Field::number(Key::Point, "point", 4).within(POINTS)];
 /// The points of an arc.
 pub const TO_ARC: Layout = &[
@@ -152,7 +152,7 @@ const fn when(fields: &[Field; 4], key: Key, value: i32) -> [Field; 4] {
 pub const TARGETS_MM: Layout = &of_axes(&per_axis(4, MM));
 /// Targets or distances of the moving axes.
 pub const TARGETS_PULSE: Layout = &of_axes(&per_axis(4, PULSE));
-/// Hand system of coordinates in mm; its coding differs from [`ARM`].
+/// Hand system for coordinates in mm. Its codes differ from the codes of [`ARM`].
 pub const HAND_SYSTEM: Layout = &[Field::bits(Key::HandSystem, "hand system", 1, 3, 2, HAND_SYSTEMS).optional()];
 /// Target of one axis.
 pub const TARGET_MM: Layout = &[Field::long(Key::Target, "target position", 4, MM)];
@@ -187,7 +187,7 @@ pub const INCHING_AMOUNT: Layout = &[Field::number(Key::InchingAmount, "inching 
 /// Point and unit for storing the position.
 pub const TEACH: Layout =
     &[Field::number(Key::Point, "point", 2).within(POINTS), Field::word(Key::Unit, "unit", 3, UNITS)];
-/// Axes of the origin return; at most one of the three bits.
+/// Axes of the origin return. At most one of the three bits may be set.
 pub const ORIGIN_AXES: Layout = &[Field::bits(Key::OriginAxes, "axes", 1, 1, 3, ORIGIN_CHOICES).optional()];
 /// A speed setting.
 pub const SPEED_SETTING: Layout = &[Field::word(Key::SpeedPercent, "speed", 2, PERCENTS).within(TO_100)];
@@ -239,14 +239,15 @@ pub const POINT_DATA_ANSWER: Layout = &[
     Field::bits(Key::Unit, "unit", 3, 0, 1, UNITS),
     Field::bits(Key::HandSystem, "hand system", 3, 1, 2, HAND_SYSTEMS).when(Key::Unit, 1, 1).optional(),
 ];
-/// Coordinates of a point, in its unit.
+/// Coordinates of a point, in the unit of the point.
 pub const COORDINATES: Layout =
     &joined(&when(&per_axis(4, PULSE), Key::Unit, 0), &when(&per_axis(4, MM), Key::Unit, 1));
 /// Comment of a point.
 pub const COMMENT: Layout = &[Field::text(Key::Comment, "comment", 4, Charset::Comment)];
 /// Pallet number.
 pub const PALLET: Layout = &[Field::number(Key::Pallet, "pallet", 2).within(PALLETS)];
-/// Rows, columns, layers, and the first of its five points. In the manual the ranges begin at 0, their product at 1.
+/// Rows, columns, layers, and the number of the first of the five points. In the manual, the ranges begin at 0, but the
+/// product begins at 1.
 pub const PALLET_DATA: Layout = &[
     Field::number(Key::CountX, "places in X", 3).within(&[(0, 32_767)]),
     Field::number(Key::CountY, "places in Y", 4).within(&[(0, 32_767)]),
@@ -257,8 +258,8 @@ pub const PALLET_DATA: Layout = &[
 pub const SHIFT_DATA: Layout = &per_axis(4, MM);
 /// Robot of a hand.
 pub const HAND_OWNER: Layout = &[Field::number(Key::Owner, "robot", 3)];
-/// Data of a hand. The manual has two scales for data 1: none in the text, 1000 in the examples (4.3.5). The raw
-/// value is used.
+/// Data of a hand. The manual has two scales for data 1: no scale in the text, and 1000 in the examples (4.3.5). The
+/// raw value is used.
 pub const HAND_DATA: Layout = &[
     Field::long(Key::Data1, "data 1", 4, PLAIN),
     Field::long(Key::Data2, "data 2", 6, MM),
@@ -272,7 +273,7 @@ pub const HAND_DATA: Layout = &[
 pub const VARIABLE: Layout = &[Field::word(Key::Variable, "variable", 2, Show::Variable).within(VARIABLES)];
 /// Variable on the right side.
 pub const VARIABLE_2: Layout = &[Field::word(Key::Variable2, "variable 2", 4, Show::Variable).within(VARIABLES)];
-/// Value of a variable, by its kind.
+/// Value of a variable. Its format depends on the kind of the variable.
 pub const VARIABLE_VALUE: Layout = &[
     Field::long(Key::Value, "value", 4, PLAIN).when(Key::Variable, 0, 31),
     Field::real(Key::Value, "value", 4).when(Key::Variable, 256, 287),
@@ -301,7 +302,7 @@ pub const VALUE_PULSE: Layout = &[Field::long(Key::Value, "value", 4, PULSE)];
 /// A number in mm.
 pub const VALUE_MM: Layout = &[Field::long(Key::Value, "value", 4, MM)];
 
-// Ports (4.5). A port number has two decimal digits in eight bits; its range depends on the port type.
+// Ports (4.5). A port number is BCD: two decimal digits of four bits each. Its range depends on the port type.
 
 const OUTPUTS: &[(i32, i32)] = &[(2, 7), (10, 17), (20, 27)];
 const INPUTS_OR_OUTPUTS: &[(i32, i32)] = &[(0, 7), (10, 17), (20, 27)];
@@ -346,7 +347,7 @@ const BY_PROGRAM: Field = Field::number(Key::Program, "program", 2).within(PROGR
 const BY_TASK: Field = Field::number(Key::Task, "task", 3).within(TASKS).sets(Key::Selection, 2);
 const BY_NAME: Field = Field::text(Key::ProgramName, "program name", 6, Charset::Program).sets(Key::Selection, 4);
 
-/// Program to register in a task; task 0 means the lowest vacant one.
+/// Program to register in a task. Task 0 means the lowest vacant task.
 pub const DESIGNATION: Layout = &[
     selection(&[SELECT[1], SELECT[3]]),
     BY_PROGRAM,
@@ -395,22 +396,22 @@ pub const ROBOT_TYPE: Layout = &[Field::number(Key::RobotType, "robot type", 2)]
 pub const AXIS_TYPES: Layout = &word_per_axis(4, NUMBER);
 /// Servo state of each axis.
 pub const SERVO_STATUS: Layout = &word_per_axis(2, SERVO_STATES);
-/// Servo state of reserved axes; they always answer 9.
+/// Servo state of the reserved axes. It is always 9.
 pub const RESERVED_SERVO_STATUS: Layout = &[
     Field::word(Key::Axis5, "axis 5 (reserved)", 6, SERVO_STATES).optional(),
     Field::word(Key::Axis6, "axis 6 (reserved)", 7, SERVO_STATES).optional(),
 ];
-/// Whether the output continues until the status reset.
+/// Whether the controller sends the answer continuously until the status reset.
 pub const CONTINUOUS: Layout =
     &[Field::bits(Key::Continuous, "continuous output", 1, 0, 1, Show::Choice(&[(0, "off"), (1, "on")])).optional()];
 /// Current position.
 pub const POSITION_PULSE: Layout = &per_axis(4, PULSE);
 /// Current position.
 pub const POSITION_MM: Layout = &per_axis(4, MM);
-/// Hand system of the position. Bit 0 is unused, although it is 1 in the example of the manual.
+/// Hand system of the position. Bit 0 is not used, although the example of the manual has 1 there.
 pub const POSITION_HAND_SYSTEM: Layout =
     &[Field::bits(Key::HandSystem, "hand system", 3, 1, 2, HAND_SYSTEMS).optional()];
-/// Half of the tasks.
+/// Half of the tasks: the first eight or the last eight.
 pub const TASK_RANGE: Layout = &[Field::word(Key::TaskRange, "tasks", 2, TASK_RANGES)];
 
 const fn per_task(show: Show) -> [Field; 8] {
@@ -428,11 +429,11 @@ const fn per_task(show: Show) -> [Field; 8] {
 
 /// State of eight tasks.
 pub const TASK_STATUS: Layout = &per_task(TASK_STATES);
-/// Lines of eight tasks; 0 means no task.
+/// Current lines of eight tasks; 0 means no task.
 pub const TASK_LINES: Layout = &per_task(Show::Line);
 /// Number in the alarm history.
 pub const HISTORY: Layout = &[Field::number(Key::History, "history number", 2).within(&[(1, 500)])];
-/// An alarm and its place.
+/// An alarm and its source.
 pub const ALARM: Layout = &[
     Field::number(Key::AlarmGroup, "alarm group", 1),
     Field::number(Key::AlarmCategory, "alarm category", 2),
@@ -447,7 +448,7 @@ pub const SPEED_STATUS: Layout = &[
     Field::word(Key::ManualSpeed, "manual speed", 3, PERCENTS),
     Field::word(Key::ProgramSpeed, "program speed", 4, PERCENTS),
 ];
-/// Motor type of the origin; only with a robot.
+/// Motor type whose origin is meant. It is valid only with a robot.
 pub const MOTOR_TYPE: Layout = &[Field::bits(
     Key::MotorType,
     "motor type",
@@ -463,7 +464,7 @@ const fn origin(key: Key, name: &'static str, word: usize) -> Field {
     Field::word(key, name, word, ORIGIN_STATES).when(Key::Robot, 1, 4)
 }
 
-/// Origin status: of the whole system for robot 0, otherwise of each axis.
+/// Origin status. For robot 0 it is the status of the whole system; otherwise it is the status of each axis.
 pub const ORIGIN_STATUS: Layout = &[
     Field::word(Key::System, "whole system", 2, ORIGIN_STATES).when(Key::Robot, 0, 0),
     origin(Key::Axis1, "axis 1", 2),
@@ -473,9 +474,10 @@ pub const ORIGIN_STATUS: Layout = &[
     origin(Key::Axis5, "axis 5 (reserved)", 6).optional(),
     origin(Key::Axis6, "axis 6 (reserved)", 7).optional(),
 ];
-/// Selected axes; empty means all.
+/// Selected axes; an empty set means all axes.
 pub const SOME_AXES: Layout = &[Field::bits(Key::Axes, "axes", 2, 0, 4, Show::Set { least: 0, most: 4 }).optional()];
-/// Torque of each axis, signed by direction. Two's complement is an assumption; the manual does not specify it.
+/// Torque of each axis. The sign is the direction. Two's complement is an assumption, because the manual does not
+/// specify the format.
 pub const TORQUES: Layout = &[
     Field::short(Key::Axis1, "axis 1", 2, PERCENT),
     Field::short(Key::Axis2, "axis 2", 3, PERCENT),
@@ -496,7 +498,7 @@ pub const TIME: Layout = &[
 ];
 /// A controller.
 pub const CONTROLLER: Layout = &[Field::number(Key::Controller, "controller", 2).within(&[(1, 4)])];
-/// Modules in the option slots; the manual has no code for PROFINET.
+/// Modules in the option slots. The manual has no code for PROFINET.
 pub const SLOTS: Layout = &[
     Field::word(Key::Slot1, "option slot 1", 2, MODULES),
     Field::word(Key::Slot2, "option slot 2", 3, MODULES),

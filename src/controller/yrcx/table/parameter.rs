@@ -1,9 +1,9 @@
-//! Parameters that are accessible by remote commands (4.4.2). The manual lists neither 261 nor 263.
+//! Parameters that remote commands can read and write (4.4.2). The manual lists neither 261 nor 263.
 
 /// One parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Parameter {
-    /// Its number.
+    /// Number of the parameter.
     pub number: u16,
     /// Name in the robot language.
     pub name: &'static str,
@@ -11,9 +11,9 @@ pub struct Parameter {
     pub meaning: &'static str,
     /// Unit; empty if the manual has none.
     pub unit: &'static str,
-    /// Whether it belongs to an axis instead of the robot.
+    /// Whether the parameter belongs to an axis. Otherwise it belongs to the robot.
     pub per_axis: bool,
-    /// Range. The maximum payload depends on the robot and is known only to the controller.
+    /// Range. The maximum payload depends on the robot, and only the controller has it.
     pub span: (i32, i32),
 }
 
@@ -33,7 +33,7 @@ pub const PARAMETERS: [Parameter; 14] = [
     robot(1, "WEIGHT", "payload of the robot", "kg"),
     robot(2, "WEIGHTG", "payload of the robot", "g"),
     axis(257, "ACCEL", "acceleration coefficient", "", RATIO),
-    // Spelling of the manual.
+    // The manual uses this spelling.
     axis(258, "DECCEL", "deceleration ratio", "", RATIO),
     axis(259, "TOLE", "tolerance", "pulses", (1, 16_384)),
     axis(260, "OUTPOS", "OUT effective position", "pulses", DISTANCE),

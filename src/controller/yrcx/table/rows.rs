@@ -31,13 +31,13 @@ macro_rules! commands {
 
 const READ: (Risk, Pace) = (Risk::Read, Pace::Quick);
 const WRITE: (Risk, Pace) = (Risk::Write, Pace::Quick);
-/// Overwrites work of a person.
+/// Overwrites data that a person made.
 const DESTROY: (Risk, Pace) = (Risk::Destroy, Pace::Quick);
 /// Power on, power off, or brake release: an axis may drop.
 const POWER: (Risk, Pace) = (Risk::Motion, Pace::Power);
 const MOTION: (Risk, Pace) = (Risk::Motion, Pace::Motion);
 const JOG: (Risk, Pace) = (Risk::Motion, Pace::Jog);
-/// Starts a program; ends when the start is accepted.
+/// Starts a program. The command ends when the controller accepts the start.
 const START: (Risk, Pace) = (Risk::Motion, Pace::Quick);
 
 commands! {
@@ -47,9 +47,9 @@ commands! {
         [ROBOT AXES SPEED ACCEL REPORT TO_POINT] [POSITIONS];
     MoveArch 0x002 "move-arch" "4.2.1" "move to a point in an arch" MOTION
         [ROBOT AXES SPEED REPORT TO_POINT ARCH] [POSITIONS];
-    MoveLinear 0x003 "move-linear" "4.2.1" "move to a point in a line" MOTION
+    MoveLinear 0x003 "move-linear" "4.2.1" "move to a point on a straight line" MOTION
         [ROBOT AXES LINEAR_SPEED ACCEL REPORT TO_POINT] [POSITIONS];
-    MoveCircular 0x004 "move-circular" "4.2.1" "move over two points in an arc" MOTION
+    MoveCircular 0x004 "move-circular" "4.2.1" "move on an arc through two points" MOTION
         [ROBOT LINEAR_SPEED ACCEL REPORT TO_ARC] [POSITIONS];
     MoveMm 0x006 "move-mm" "4.2.1" "move to coordinates in mm, point to point" MOTION
         [ROBOT AXES SPEED HAND_SYSTEM REPORT TARGETS_MM] [POSITIONS];
@@ -57,7 +57,7 @@ commands! {
         [ROBOT AXES SPEED REPORT TARGETS_PULSE] [POSITIONS];
     MoveiPtp 0x009 "movei-ptp" "4.2.2" "move by a point's distances, point to point" MOTION
         [ROBOT AXES SPEED ACCEL REPORT TO_POINT] [POSITIONS];
-    MoveiLinear 0x00A "movei-linear" "4.2.2" "move by a point's distances in a line" MOTION
+    MoveiLinear 0x00A "movei-linear" "4.2.2" "move by a point's distances on a straight line" MOTION
         [ROBOT AXES LINEAR_SPEED ACCEL REPORT TO_POINT] [POSITIONS];
     MoveiMm 0x00E "movei-mm" "4.2.2" "move by distances in mm, point to point" MOTION
         [ROBOT AXES SPEED HAND_SYSTEM REPORT TARGETS_MM] [POSITIONS];
@@ -75,9 +75,9 @@ commands! {
         [ROBOT ONE_AXIS SPEED REPORT DISTANCE_MM] [POSITIONS];
     DriveiPulse 0x017 "drivei-pulse" "4.2.4" "move an axis by a distance in pulses" MOTION
         [ROBOT ONE_AXIS SPEED REPORT DISTANCE_PULSE] [POSITIONS];
-    PalletPtp 0x018 "pallet-ptp" "4.2.5" "move to a place on a pallet, point to point" MOTION
+    PalletPtp 0x018 "pallet-ptp" "4.2.5" "move to a pallet position, point to point" MOTION
         [ROBOT SPEED ACCEL REPORT TO_PALLET] [POSITIONS];
-    PalletArch 0x019 "pallet-arch" "4.2.5" "move to a place on a pallet in an arch" MOTION
+    PalletArch 0x019 "pallet-arch" "4.2.5" "move to a pallet position in an arch" MOTION
         [ROBOT SPEED REPORT TO_PALLET ARCH] [POSITIONS];
     JogPulse 0x020 "jog-pulse" "4.2.6" "jog an axis" JOG [ROBOT AXIS DIRECTION REPORT] [POSITIONS];
     JogCartesian 0x021 "jog-cartesian" "4.2.6" "jog along a Cartesian axis" JOG
@@ -90,7 +90,8 @@ commands! {
         [ROBOT AXIS DIRECTION REPORT] [POSITIONS];
     InchAmountSet 0x027 "inch-amount-set" "4.2.8" "set the inching amount" WRITE [ROBOT INCHING_AMOUNT] [];
     Teach 0x028 "teach" "4.2.9" "store the position in a point" DESTROY [ROBOT TEACH] [];
-    AbsoluteResetMove 0x030 "absolute-reset-move" "4.2.10" "move an axis to where absolute reset is possible" MOTION
+    AbsoluteResetMove 0x030 "absolute-reset-move" "4.2.10" "move an axis to a position where absolute reset is \
+                                                            possible" MOTION
         [ROBOT AXIS DIRECTION] [];
     AbsoluteReset 0x031 "absolute-reset" "4.2.11" "reset the absolute position of an axis" DESTROY [ROBOT AXIS] [];
     OriginRobot 0x032 "origin-robot" "4.2.12" "return to origin, by robot" MOTION [ROBOT_OR_ALL ORIGIN_AXES] [];
@@ -109,7 +110,7 @@ commands! {
     MotorPower 0x043 "motor-pwr" "4.2.20" "switch motor power on" POWER [] [];
     MovetPtp 0x044 "movet-ptp" "4.2.21" "move to a point in tool coordinates, point to point" MOTION
         [ROBOT AXES SPEED ACCEL REPORT TO_POINT] [POSITIONS];
-    MovetLinear 0x045 "movet-linear" "4.2.21" "move to a point in tool coordinates in a line" MOTION
+    MovetLinear 0x045 "movet-linear" "4.2.21" "move to a point in tool coordinates on a straight line" MOTION
         [ROBOT AXES LINEAR_SPEED ACCEL REPORT TO_POINT] [POSITIONS];
     TorqueLimit 0x048 "torque-limit" "4.2.22" "limit the torque of an axis" WRITE [ROBOT TORQUE_LIMIT] [];
     PushPoint 0x04B "push-point" "4.2.23" "push an axis towards a point" MOTION
@@ -131,7 +132,7 @@ commands! {
     HandGet 0x111 "hand-get" "4.3.5" "read a hand" READ [HAND] [HAND HAND_OWNER HAND_DATA];
 
     VarSet 0x200 "var-set" "4.4.1" "set a variable to a number" WRITE [VARIABLE VARIABLE_VALUE] [];
-    VarSetVar 0x201 "var-set-var" "4.4.1" "set a variable to a variable" WRITE [VARIABLE VARIABLE_2] [];
+    VarSetVar 0x201 "var-set-var" "4.4.1" "set a variable to the value of a variable" WRITE [VARIABLE VARIABLE_2] [];
     VarAdd 0x204 "var-add" "4.4.1" "add a number to a variable" WRITE [VARIABLE VARIABLE_VALUE] [];
     VarAddVar 0x205 "var-add-var" "4.4.1" "add a variable to a variable" WRITE [VARIABLE VARIABLE_2] [];
     VarSub 0x208 "var-sub" "4.4.1" "subtract a number from a variable" WRITE [VARIABLE VARIABLE_VALUE] [];
@@ -145,10 +146,10 @@ commands! {
         [ParameterAxis ParameterValue];
     ParamGet 0x224 "param-get" "4.4.2" "read a parameter" READ [ROBOT PARAMETER] [PARAMETER PARAMETER_VALUE]
         [ParameterAxis];
-    PointCopy 0x230 "point-copy" "4.4.3" "set a point to a point" DESTROY [TWO_POINTS] [];
+    PointCopy 0x230 "point-copy" "4.4.3" "copy a point to another point" DESTROY [TWO_POINTS] [];
     PointAdd 0x234 "point-add" "4.4.3" "add a point to a point" DESTROY [TWO_POINTS] [];
     PointSub 0x235 "point-sub" "4.4.3" "subtract a point from a point" DESTROY [TWO_POINTS] [];
-    PointPallet 0x238 "point-pallet" "4.4.3" "set a point to a place on a pallet" DESTROY [POINT PALLET_PLACE] [];
+    PointPallet 0x238 "point-pallet" "4.4.3" "set a point to a pallet position" DESTROY [POINT PALLET_PLACE] [];
     PointElementPulse 0x240 "point-element-pulse" "4.4.4" "set an element of a point in pulses" DESTROY
         [POINT POINT_ELEMENT VALUE_PULSE] [];
     PointElementMm 0x241 "point-element-mm" "4.4.4" "set an element of a point in mm" DESTROY
@@ -164,9 +165,9 @@ commands! {
     ProgramRun 0x402 "program-run" "4.6.2" "run programs" START [PROGRAM_OR_ALL] [];
     ProgramStep 0x403 "program-step" "4.6.2" "run a line of a program" START [PROGRAM] [];
     ProgramSkip 0x404 "program-skip" "4.6.2" "skip a line of a program" START [PROGRAM] [];
-    ProgramNext 0x405 "program-next" "4.6.2" "run a line of a program, subroutines whole" START [PROGRAM] [];
+    ProgramNext 0x405 "program-next" "4.6.2" "run a line of a program, with complete subroutines" START [PROGRAM] [];
     ProgramReset 0x406 "program-reset" "4.6.3" "reset programs" WRITE [PROGRAM_OR_ALL] [];
-    ProgramShow 0x408 "program-show" "4.6.4" "read what a program does" READ [PROGRAM] [PROGRAM_STATE];
+    ProgramShow 0x408 "program-show" "4.6.4" "read the state of a program" READ [PROGRAM] [PROGRAM_STATE];
 
     Versions 0x501 "versions" "4.7.1" "read the software versions" READ [] [VERSIONS];
     System 0x502 "system" "4.7.2" "read the configuration of a robot" READ [ROBOT] [ROBOT_TYPE AXIS_TYPES];
@@ -187,7 +188,7 @@ commands! {
     TorqueOfMax 0x510 "torque-of-max" "4.7.12" "read the torque in % of the maximum" READ [ROBOT SOME_AXES] [TORQUES];
     DateGet 0x511 "date-get" "4.7.13" "read the date" READ [] [DATE];
     TimeGet 0x512 "time-get" "4.7.14" "read the time" READ [] [TIME];
-    Slots 0x513 "slots" "4.7.15" "read what is in the option slots" READ [CONTROLLER] [SLOTS];
+    Slots 0x513 "slots" "4.7.15" "read the contents of the option slots" READ [CONTROLLER] [SLOTS];
     InchAmountGet 0x514 "inch-amount-get" "4.7.16" "read the inching amount" READ [ROBOT] [INCHING_AMOUNT];
     LatestAlarm 0x515 "latest-alarm" "4.7.17" "read the latest alarm of a remote command" READ [] [ALARM];
     TorqueOfRated 0x516 "torque-of-rated" "4.7.18" "read the torque in % of the rated torque" READ [ROBOT SOME_AXES]
@@ -201,7 +202,7 @@ commands! {
 impl Command {
     /// Row of the table.
     pub const fn row(self) -> &'static Row {
-        // The macro keeps rows and variants in the same order.
+        // The macro puts rows and variants into the same order.
         &ROWS[self as usize]
     }
 }

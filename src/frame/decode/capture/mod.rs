@@ -155,7 +155,7 @@ pub struct DecodedMessage<F> {
     pub link: (String, String),
     /// Text, as in a trace.
     pub text: String,
-    /// Packet of the request that it answers.
+    /// Packet of the request that this message answers.
     pub answers: Option<u64>,
     /// Section of the manual.
     pub section: Option<String>,
@@ -163,7 +163,7 @@ pub struct DecodedMessage<F> {
     pub raw: String,
     /// Fields.
     pub fields: Vec<F>,
-    /// Problem found in it.
+    /// Problem found in the message.
     pub problem: Option<String>,
 }
 
@@ -249,7 +249,7 @@ pub fn print<D: CaptureDecoder>(
     // CSV rows are written immediately, except for the fields of one packet.
     let is_whole = run.screen.format != Format::Csv || selection.frame.is_some();
     let Some(capture) = capture.filter(|_| is_whole) else { return stream::print(run, id, &source, decoder) };
-    // Never as an intermediate JSON value, which needs many times the memory.
+    // The report is never an intermediate JSON value, because that needs many times the memory.
     if is_streamed && !run.is_for_people() {
         let failure = capture.failure();
         let whole = ReportEnvelope::new(run, id, &capture, failure.as_ref());
@@ -376,7 +376,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
         let file = (self.open)().with_context(|| self.name.to_owned())?;
         read(file, each).map_err(|error| {
             let hint = match error {
-                OpenError::Compressed => "decompress it first with gunzip or unzstd",
+                OpenError::Compressed => "decompress the file first with gunzip or unzstd",
                 OpenError::Unreadable => "check the disk of the file",
                 OpenError::Other => "use a file from tcpdump, Wireshark or --trace",
             };

@@ -50,7 +50,7 @@ pub struct Link {
 /// A message.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Row<F> {
-    /// Number of the packet that contains its end, as in Wireshark.
+    /// Number of the packet that contains the end of the message, as in Wireshark.
     number: u64,
     /// Time since the first packet of the file.
     time_s: f64,
@@ -61,14 +61,14 @@ pub struct Row<F> {
     to: String,
     /// Text, as in --trace.
     text: String,
-    /// Packet of the request that it answers.
+    /// Packet of the request that this message answers.
     answers: Option<u64>,
     /// Section of the manual, if the command is known.
     section: Option<String>,
     /// Raw data: bytes in hexadecimal, a line, or words.
     raw: String,
     fields: Vec<F>,
-    /// Problem found in it.
+    /// Problem found in the message.
     problem: Option<String>,
 }
 
@@ -156,7 +156,9 @@ impl<F: Field> Report for Capture<F> {
         }
         if let Some(damage) = &self.damage {
             let failure = Failure::local(format!("{}: {damage}", self.file));
-            return Some(failure.hint("the part before the damage is shown; an aborted capture ends like this"));
+            return Some(
+                failure.hint("check whether the capture was aborted; the command shows the part before the damage"),
+            );
         }
         let Problems { all, damaged, first } = &self.problems;
         let (number, problem) = first.as_ref()?;
@@ -166,20 +168,20 @@ impl<F: Field> Report for Capture<F> {
         };
         Some(
             Failure::new(Kind::Malformed, message)
-                .hint("--frame NUMBER shows the fields of a message up to the damage"),
+                .hint("use --frame NUMBER to see the fields of a message up to the damage"),
         )
     }
 }
 
 /// Reason why not all messages are shown.
-pub const FULL: &str = "it has too many messages; only the first ones are shown";
+pub const FULL: &str = "the capture has too many messages; only the first messages are shown";
 
 /// Links of a file, in the order of their first message.
 #[derive(Debug, Default)]
 pub struct Links {
     pub(super) list: Vec<Link>,
     numbers: HashMap<(String, String), usize>,
-    /// Whether rows are of messages that were already counted.
+    /// Whether the rows come from messages that were already counted.
     pub(super) are_counted: bool,
 }
 

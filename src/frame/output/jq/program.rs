@@ -1,4 +1,4 @@
-//! Compiler and interpreter for filters, adapted where the `jaq` library differs from jq.
+//! Compiler and interpreter for filters. They adapt the library `jaq` where it differs from jq.
 
 use std::cell::RefCell;
 
@@ -11,10 +11,10 @@ use jaq_core::{Compiler, Ctx, Cv, Exn, Native, ValXs, Vars, data};
 use jaq_json::{Num, Val};
 use serde_json::{Map, Number, Value};
 
-/// Functions of jq that the library does not have.
+/// Definitions of jq functions that the library does not have.
 const DEFS: &str = r#"
-def row(f): if isarray then . else error("\(type) is no row: an array is expected") end
-  | map(if . == null then "" elif isstring then f elif isarray or isobject then error("\(type) is no cell of a row")
+def row(f): if isarray then . else error("\(type) is not a row: use an array") end
+  | map(if . == null then "" elif isstring then f elif isarray or isobject then error("\(type) cannot be a cell of a row")
         else tostring end);
 def @csv: row("\"" + gsub("\""; "\"\"") + "\"") | join(",");
 def @tsv: row(gsub("\\\\"; "\\\\") | gsub("\t"; "\\t") | gsub("\n"; "\\n") | gsub("\r"; "\\r")) | join("\t");
@@ -23,34 +23,35 @@ def halt_error: halt_error(5);
 def __at($key): if isobject and ($key | isstring | not) then error("cannot index object with \($key | type)")
   else .[$key] end;
 "#;
-/// Names of the filter definition, of its input in paths, and of the function for keys that may not be text.
+/// Names of three definitions: the filter, the input of the filter within paths, and the function for keys that may not
+/// be text.
 const FILTER: &str = "__filter";
 const INPUT: &str = "$__input";
 const AT: &str = "__at";
-/// Limit of nesting of outputs, because JSON parsers have limits.
+/// Maximum nesting depth of outputs. JSON parsers have such limits.
 const MAX_DEPTH: usize = 120;
-/// Length limit of error texts, because some contain the whole input.
+/// Maximum length of error texts, because some error texts contain the whole input.
 const MAX_ERROR_LENGTH: usize = 400;
 
 thread_local! {
-    /// Input of `halt_error`.
+    /// Input that `halt_error` received.
     static HALT_MESSAGE: RefCell<Option<Val>> = const { RefCell::new(None) };
 }
 
-/// Stores the input of `halt_error`; has no output.
+/// Stores the input of `halt_error`. The function has no output.
 fn set_halt_message(cv: Cv<'_, data::JustLut<Val>>) -> ValXs<'_, Val> {
     HALT_MESSAGE.set(Some(cv.1));
     Box::new(std::iter::empty())
 }
 
-/// Reason for an early end of a filter.
+/// Reason why a filter ended early.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// An error.
+    /// The filter failed with this error.
     Failed(String),
-    /// `halt` or `halt_error`.
+    /// The filter called `halt` or `halt_error`.
     Halted {
-        /// Exit code; default 5.
+        /// Exit code. The default is 5.
         exit: u8,
         /// Text to print.
         text: String,
@@ -67,7 +68,7 @@ impl From<String> for Stop {
 pub struct Program(jaq_core::Filter<data::JustLut<Val>>);
 
 impl Program {
-    /// Compiles a filter. The error is a text.
+    /// Compiles a filter. The error is a text for the user.
     pub fn new(text: &str) -> Result<Self, String> {
         let definitions = parse(DEFS, |parser| parser.defs()).ok_or("the definitions cannot be parsed")?;
         let body = parse(text, |parser| parser.term()).ok_or("it cannot be parsed")?;
@@ -86,7 +87,7 @@ impl Program {
         Ok(Self(program))
     }
 
-    /// Passes every output to `take` until it returns `false`, or until an error.
+    /// Runs the filter. Passes every output to `take` until `take` returns `false` or an error occurs.
     pub fn run(&self, input: Val, mut take: impl FnMut(Value) -> bool) -> Result<(), Stop> {
         HALT_MESSAGE.set(None);
         let context = Ctx::<data::JustLut<Val>>::new(&self.0.lut, Vars::new([]));
@@ -96,7 +97,7 @@ impl Program {
                 Err(error) => {
                     return match error.get_err() {
                         Ok(error) => Err(Stop::Failed(shorten(&error_text(error)))),
-                        // Only `halt` produces this.
+                        // Only `halt` and `halt_error` produce this result.
                         Err(halt) => halted(halt),
                     };
                 }
@@ -118,7 +119,7 @@ fn halted(halt: Exn<'_, Val>) -> Result<(), Stop> {
         Some(Val::TStr(text)) => String::from_utf8_lossy(&text).into_owned(),
         Some(other) => format!("{}\n", json(&other, 0).map_err(Stop::Failed)?),
     };
-    // The operating system uses the lowest eight bits.
+    // The operating system uses only the lowest eight bits of an exit code.
     Err(Stop::Halted { exit: code.to_le_bytes()[0], text })
 }
 
@@ -127,7 +128,7 @@ fn shorten_to<'s>(def: Def<&'static str>) -> Def<&'s str> {
     def
 }
 
-/// Text of an error, in the words of jq. An error raised by the filter can be any value.
+/// Returns the text of an error as jq would print it. An error that the filter raises can be any value.
 fn error_text(error: jaq_core::Error<Val>) -> String {
     match error.into_val() {
         Val::TStr(text) => jq_error_text(&String::from_utf8_lossy(&text)),
@@ -135,7 +136,7 @@ fn error_text(error: jaq_core::Error<Val>) -> String {
     }
 }
 
-/// Converts the most common error texts of the library to those of jq.
+/// Converts the most common error texts of the library to the error texts of jq.
 fn jq_error_text(text: &str) -> String {
     let kind = |value: &str| match value.as_bytes().first() {
         Some(b'{') => "object",
@@ -162,10 +163,10 @@ fn shorten(text: &str) -> String {
     }
 }
 
-/// Converts a value to JSON. Numbers that JSON does not support are written as in jq.
+/// Converts a value to JSON. A number that JSON does not support is written like in jq.
 fn json(value: &Val, depth: usize) -> Result<Value, String> {
     if depth > MAX_DEPTH {
-        return Err(format!("it makes a value with more than {MAX_DEPTH} nested levels"));
+        return Err(format!("it makes a value with more than {MAX_DEPTH} levels"));
     }
     Ok(match value {
         Val::Null => Value::Null,
@@ -196,7 +197,7 @@ fn number(number: &Num) -> Value {
     Number::from_f64(float.clamp(f64::MIN, f64::MAX)).map_or(Value::Null, Value::Number)
 }
 
-/// A number with the exactness of JSON numbers here.
+/// Converts a number to a JSON number. Numbers that are not 64-bit integers become floating-point numbers.
 fn long(text: &str) -> Value {
     let whole = text.parse::<u64>().map(Number::from).or_else(|_| text.parse::<i64>().map(Number::from));
     match whole {
@@ -205,8 +206,8 @@ fn long(text: &str) -> Value {
     }
 }
 
-/// Rewrites a filter so that a key that is not text is an error on an object, as in jq. The library supports such keys
-/// and finds nothing.
+/// Rewrites a filter so that it is an error to index an object with a key that is not text, as in jq. The library
+/// accepts such keys and finds nothing.
 fn format_like_jq<'s>(term: Term<&'s str>) -> Term<&'s str> {
     let one = |term: Box<Term<&'s str>>| Box::new(format_like_jq(*term));
     let all = |terms: Vec<Term<&'s str>>| terms.into_iter().map(format_like_jq).collect();
@@ -260,7 +261,7 @@ fn format_pattern(pattern: Pattern<&str>) -> Pattern<&str> {
     }
 }
 
-/// Rewrites `FROM[KEY]…` with a key that may not be text: `. as $__input | FROM | __at($__input | KEY) | …`. The keys
+/// Rewrites `FROM[KEY]…` with a key that may not be text to `. as $__input | FROM | __at($__input | KEY) | …`. The keys
 /// are evaluated on the input of the whole path.
 fn path<'s>(from: Term<&'s str>, parts: Vec<(Part<Term<&'s str>>, Opt)>) -> Term<&'s str> {
     let is_text = |(part, _): &(Part<Term<_>>, _)| !matches!(part, Part::Index(key) if !matches!(key, Term::Str(..)));
@@ -359,7 +360,7 @@ mod tests {
     fn too_deep_nesting_is_an_error() {
         let deep = |levels: usize| outputs(&format!("reduce range({levels}) as $i (0; [.])"), &Value::Null);
         assert!(deep(MAX_DEPTH).is_ok());
-        assert!(deep(MAX_DEPTH + 1).unwrap_err().contains("nested levels"));
+        assert!(deep(MAX_DEPTH + 1).unwrap_err().contains(" levels"));
     }
 
     #[test]
@@ -376,7 +377,7 @@ mod tests {
         assert_eq!(outputs("1, halt, 2", &Value::Null).unwrap(), [json!(1)]);
     }
 
-    /// Compares with jq, if it is installed: outputs and exit code.
+    /// Compares outputs and exit code with jq, if jq is installed.
     #[test]
     fn filters_match_jq() {
         use std::io::Write as _;
@@ -445,7 +446,7 @@ mod tests {
             let said = String::from_utf8(jq_output.stderr).unwrap();
             let (exit, text) = match stop {
                 None => (0, String::new()),
-                // Newer versions of jq have other texts.
+                // Newer versions of jq have other error texts.
                 Some(Stop::Failed(_)) => (5, said.clone()),
                 Some(Stop::Halted { exit, text }) => (i32::from(exit), text),
             };

@@ -1,6 +1,6 @@
-//! Worker process for filters. An endless filter, or one that uses all memory, harms only this process. It is another
-//! instance of this program, which reads requests and writes answers line by line. It ends together with its parent,
-//! even during a filter.
+//! Worker process for filters. A filter that never ends, or that uses all memory, harms only the worker. The worker is
+//! another instance of this program. It reads requests and writes answers line by line. It ends together with its
+//! parent, even while a filter runs.
 
 use std::collections::HashMap;
 use std::ffi::OsString;
@@ -16,27 +16,27 @@ use super::program::{Program, Stop};
 use crate::failure::{Kind, exit_process};
 use armctl_files::this_program;
 
-/// The only argument of a worker.
+/// The only argument of a worker process.
 const WORKER_ARGUMENT: &str = "--filter-worker";
-/// Memory limit, on systems that support it.
+/// Memory limit of the worker, on systems that support such a limit.
 #[cfg(unix)]
 const MEMORY_LIMIT: u64 = 1 << 30;
-/// Stack size for recursive filters.
+/// Stack size, large enough for recursive filters.
 const STACK: usize = 64 << 20;
-/// Size limit of a value in bytes.
+/// Maximum size of a value in bytes.
 const MAX_VALUE_SIZE: u64 = 256 << 20;
-/// Number of compiled filters kept.
+/// Number of compiled filters that are kept.
 const MAX_PROGRAMS: usize = 64;
 
-/// A request.
+/// A request to the worker.
 #[derive(Debug, Serialize)]
 struct Request<'a> {
     filter: &'a str,
-    /// Input of the filter; `None` to only compile it.
+    /// Input of the filter. With `None`, the filter is only compiled.
     input: Option<[&'a Value; 1]>,
 }
 
-/// A request, as read by the worker.
+/// A request in the form that the worker reads.
 #[derive(Deserialize)]
 struct ReceivedRequest {
     filter: String,
@@ -47,7 +47,7 @@ struct ReceivedRequest {
 enum Answer {
     /// An output of the filter.
     Value(Value),
-    /// Last answer: no more outputs.
+    /// Last answer: there are no more outputs.
     Done,
     /// Last answer: the filter does not compile.
     Mistake(String),
@@ -57,18 +57,18 @@ enum Answer {
     Halted(u8, String),
 }
 
-/// Reason for a missing or incomplete result.
+/// Reason why a result is missing or incomplete.
 #[derive(Debug)]
 pub enum FilterError {
     /// The filter does not compile.
     Mistake(String),
     /// The filter failed.
     Failed(String),
-    /// The filter halted with an exit code and a text.
+    /// The filter ended itself, with an exit code and a text.
     Halted {
-        /// Exit code; default 5.
+        /// Exit code. The default is 5.
         exit: u8,
-        /// Text to print; other values as one line of JSON.
+        /// Text to print. A value that is not text is one line of JSON.
         text: String,
     },
 }
@@ -90,7 +90,7 @@ struct Worker {
 
 static WORKER: Mutex<Option<Worker>> = Mutex::new(None);
 
-/// Compiles a filter, and passes its outputs for the input, if there is one, to `take`. `take` returns whether to
+/// Compiles a filter. If there is an input, runs the filter and passes its outputs to `take`. `take` returns whether to
 /// continue.
 pub fn ask(filter: &str, input: Option<&Value>, mut take: impl FnMut(Value) -> bool) -> Result<(), FilterError> {
     let request = Request { filter, input: input.map(|input| [input]) };
@@ -105,7 +105,7 @@ pub fn ask(filter: &str, input: Option<&Value>, mut take: impl FnMut(Value) -> b
         match living.answer() {
             Ok(Some(Answer::Value(value))) => {
                 if !take(value) {
-                    // This worker ends, because its remaining outputs are not needed.
+                    // The worker is dropped here and ends, because its remaining outputs are not needed.
                     return Ok(());
                 }
             }
@@ -130,7 +130,7 @@ impl Worker {
     fn start() -> io::Result<Self> {
         let mut command = Command::new(this_program()?);
         command.arg(WORKER_ARGUMENT).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
-        // Its own process group, so that Ctrl-C does not reach it.
+        // The worker has its own process group, so that Ctrl-C does not reach it.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut child = command.spawn()?;
@@ -140,7 +140,7 @@ impl Worker {
         Ok(Self { child, requests, answers })
     }
 
-    /// The worker, if it is still alive.
+    /// Returns the worker; `None` if its process has ended.
     fn if_alive(mut self) -> Option<Self> {
         matches!(self.child.try_wait(), Ok(None)).then_some(self)
     }
@@ -149,13 +149,13 @@ impl Worker {
         let mut line = serde_json::to_vec(asked)?;
         line.push(b'\n');
         match self.requests.write_all(&line).and_then(|()| self.requests.flush()) {
-            // The worker has ended; the next read reports that.
+            // The worker has ended. The next read reports this.
             Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
             written => written,
         }
     }
 
-    /// Next answer; `None` if the worker has ended.
+    /// Returns the next answer; `None` if the worker has ended.
     fn answer(&mut self) -> io::Result<Option<Answer>> {
         let mut line = Vec::new();
         (&mut self.answers).take(MAX_VALUE_SIZE).read_until(b'\n', &mut line)?;
@@ -171,18 +171,18 @@ impl Worker {
 
 impl Drop for Worker {
     fn drop(&mut self) {
-        // It has ended, or its outputs are not needed.
+        // An error is ignored: the worker may have ended already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// Whether the command line is that of a worker.
+/// Whether the command line is the command line of a worker.
 pub fn is_worker(args: &[OsString]) -> bool {
     matches!(args, [_, word] if word == WORKER_ARGUMENT)
 }
 
-/// Answers requests until stdin ends.
+/// Answers requests until stdin is closed.
 pub fn serve() -> Result<(), Kind> {
     limit();
     let (asked, requests) = mpsc::sync_channel(1);
@@ -190,7 +190,7 @@ pub fn serve() -> Result<(), Kind> {
     let failed = |_| Kind::Local;
     computing.map_err(failed)?;
 
-    // Read on this thread, so that the end of stdin is noticed while a filter runs.
+    // Stdin is read on this thread, so that its end is detected while a filter runs.
     for line in BufReader::new(io::stdin()).split(b'\n') {
         if asked.send(line.map_err(failed)?).is_err() {
             break;
@@ -205,7 +205,7 @@ fn limit() {
 
     for (resource, most) in [(Resource::As, MEMORY_LIMIT), (Resource::Core, 0)] {
         let most = getrlimit(resource).maximum.map_or(most, |maximum| maximum.min(most));
-        // On systems without such a limit, there is none.
+        // An error is ignored: systems without such a limit run without it.
         let _ = setrlimit(resource, Rlimit { current: Some(most), maximum: Some(most) });
     }
 }

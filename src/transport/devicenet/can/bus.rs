@@ -1,4 +1,4 @@
-//! In-process CAN bus with bit timing and arbitration. It has no clock: the caller passes the time.
+//! In-process CAN bus with bit timing and arbitration. The bus has no clock: the caller passes the time.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -12,18 +12,18 @@ pub struct Bus {
     queues: Vec<VecDeque<(Duration, Frame)>>,
     /// Time when the last frame ended.
     free: Duration,
-    /// Frame on the bus: when it ends, its sender, the frame.
+    /// Frame on the bus: time of its end, its sender, the frame.
     current: Option<(Duration, usize, Frame)>,
     /// Total transmission time of all frames.
     busy: Duration,
 }
 
-/// A transmitted frame, for all nodes but its sender.
+/// A transmitted frame. All nodes except the sender receive it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Passed {
-    /// Time of its last bit.
+    /// Time of the last bit of the frame.
     pub at: Duration,
-    /// Node that sent it.
+    /// Node that sent the frame.
     pub from: usize,
     /// The frame.
     pub frame: Frame,
@@ -43,7 +43,7 @@ impl Bus {
         }
     }
 
-    /// Returns the next frame that was complete at `now`. Call it until it returns `None`.
+    /// Returns the next frame that was complete at `now`. The caller repeats the call until it returns `None`.
     pub fn pass(&mut self, now: Duration) -> Option<Passed> {
         self.arbitrate(now);
         let (at, from, frame) = self.current.filter(|(end, ..)| *end <= now)?;
@@ -52,7 +52,7 @@ impl Bus {
         Some(Passed { at, from, frame })
     }
 
-    /// Time when the next frame is complete; `None` if there is none.
+    /// Time when the next frame is complete; `None` if no frame is waiting.
     pub fn wake(&self) -> Option<Duration> {
         let first = || self.queues.iter().filter_map(|queue| queue.front().map(|(at, _)| (*at).max(self.free))).min();
         self.current.map(|(end, ..)| end).or_else(first)
@@ -63,7 +63,7 @@ impl Bus {
         self.busy
     }
 
-    /// Arbitration: of all waiting frames, the lowest identifier is sent first.
+    /// Arbitrates: the waiting frame with the lowest identifier is sent first.
     fn arbitrate(&mut self, now: Duration) {
         if self.current.is_some() {
             return;
@@ -96,7 +96,7 @@ mod tests {
         let all = Duration::from_secs(1);
         let passed: Vec<Passed> = std::iter::from_fn(|| bus.pass(all)).collect();
         let ids: Vec<u16> = passed.iter().map(|passed| passed.frame.id()).collect();
-        // Frame 001 was queued after 3C5 had started.
+        // Frame 001 was queued after the transmission of 3C5 had started.
         assert_eq!(ids, [0x3C5, 0x001, 0x42D]);
         assert_eq!(passed[0].at, frame(0x3C5).time(Bitrate::K500));
         assert_eq!(passed[2].at, bus.busy());

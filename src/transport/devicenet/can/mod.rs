@@ -15,7 +15,7 @@ pub mod socketcan;
 
 pub use self::slcan_port::SlcanPort;
 
-/// Most data bytes of a frame.
+/// Maximum number of data bytes of a frame.
 pub const MOST_DATA: usize = 8;
 /// Highest 11-bit identifier.
 pub const HIGHEST_ID: u16 = 0x7FF;
@@ -70,7 +70,7 @@ impl Frame {
         Duration::from_nanos(u64::from(self.bits()) * 1_000_000_000 / u64::from(bitrate.bits_per_second()))
     }
 
-    /// Encodes the frame for link type 227: identifier (big-endian), length, three zeros, data.
+    /// Encodes the frame for link type 227: identifier (big-endian), length, three zero bytes, data.
     pub fn to_capture(&self) -> Vec<u8> {
         let mut bytes = u32::from(self.id).to_be_bytes().to_vec();
         bytes.extend([self.len, 0, 0, 0]);
@@ -86,7 +86,7 @@ impl Frame {
     }
 
     /// Parses a line of a `candump -l` log, `(1700000000.123456) can0 42D#0102`, or of `candump`, `can0 42D [2] 01 02`.
-    /// Returns the time, if there is one, and the frame.
+    /// Returns the frame, and the time if the line has one.
     pub fn from_candump(line: &str) -> Option<(Option<Duration>, Self)> {
         let mut words = line.split_whitespace().peekable();
         let time = words.next_if(|word| word.starts_with('(')).and_then(|word| {
@@ -111,7 +111,7 @@ impl Frame {
     }
 }
 
-/// The form of candump: `42D#0102`.
+/// Format of candump: `42D#0102`.
 impl fmt::Display for Frame {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:03X}#", self.id)?;
@@ -179,7 +179,7 @@ impl Bitrate {
         }
     }
 
-    /// Label on rotary switches: `125k`.
+    /// Label on the rotary switches of devices, for example `125k`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::K125 => "125k",
@@ -201,9 +201,9 @@ pub enum BusState {
     /// Error active: no problem.
     #[default]
     Active,
-    /// Some errors.
+    /// Error warning: some errors occurred.
     Warning,
-    /// Error passive: many errors. Often no other node is present to acknowledge frames.
+    /// Error passive: many errors occurred. Often no other node is present to acknowledge frames.
     Passive,
     /// Bus-off: the adapter has disconnected from the bus.
     Off,
@@ -214,7 +214,7 @@ pub enum BusState {
 pub struct Health {
     /// Error state.
     pub state: BusState,
-    /// Number of overruns: received frames that the adapter lost.
+    /// Number of received frames that the adapter lost (overruns).
     pub overruns: u64,
     /// Number of frames that the adapter did not accept.
     pub rejected: u64,
@@ -264,8 +264,8 @@ pub enum PortError {
         /// Reason, as text.
         why: String,
     },
-    /// The adapter sends more than a bus can carry.
-    #[error("{path} sends without end; it is not a CAN adapter")]
+    /// The adapter sends more data than a bus can carry.
+    #[error("{path} sends data without a pause; it is not a CAN adapter")]
     Flooded {
         /// Path of the adapter.
         path: String,
@@ -283,10 +283,10 @@ pub type Waiting<'a, T> = Pin<Box<dyn Future<Output = T> + Send + 'a>>;
 
 /// An adapter on a bus: in-process, SLCAN or SocketCAN.
 pub trait CanPort: fmt::Debug + Send {
-    /// Queues a frame. Frames leave in order.
+    /// Queues a frame. Frames are sent in the order of the calls.
     ///
     /// # Errors
-    /// The adapter is disconnected or accepts no more frames.
+    /// The adapter is disconnected, or accepts no more frames.
     fn send(&mut self, frame: &Frame) -> Result<(), PortError>;
 
     /// Waits for the next event. Cancel safe.
@@ -311,7 +311,7 @@ mod tests {
         assert_eq!(frame(0x42F, &[0, 0x7C, 2, 0xEE, 0xFF, 0xC0, 0]).to_string(), "42F#007C02EEFFC000");
     }
 
-    /// A frame has 47 + 8n bits, plus at most (34 + 8n - 1) / 4 stuff bits.
+    /// A frame has 47 + 8n bits for n data bytes, and at most (34 + 8n - 1) / 4 stuff bits.
     #[test]
     fn bits_lie_between_none_and_all_stuffed() {
         for len in 0..=8usize {
@@ -324,7 +324,7 @@ mod tests {
                 }
             }
         }
-        // All 34 bits up to the end of the CRC are zeros: one stuff bit after every five.
+        // All 34 bits up to the end of the CRC are zeros, so a stuff bit follows after every five bits.
         assert_eq!(frame(0, &[]).bits(), 47 + 34 / 5);
     }
 

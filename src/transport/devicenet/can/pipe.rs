@@ -1,4 +1,4 @@
-//! Byte stream with a queue in each direction, so that a write never waits for a read. Behind it is a serial port with
+//! Byte stream with a queue in each direction, so that a write never waits for a read. The stream is a serial port with
 //! two threads, or a TCP connection with two tasks.
 
 use std::io;
@@ -14,10 +14,10 @@ use tokio::sync::mpsc::{Receiver, Sender, UnboundedReceiver, UnboundedSender, ch
 
 use crate::vanished;
 
-/// Limits: bytes per read, and pieces that wait for the reader.
+/// Limits: number of bytes per read, and number of pieces that wait for the reader.
 const PIECE: usize = 4096;
 const PIECES: usize = 64;
-/// Read timeout of a thread. After it, the thread checks whether the pipe still exists.
+/// Timeout of a read. After each timeout, the thread checks whether the pipe still exists.
 const SLICE: Duration = Duration::from_millis(20);
 /// Write timeout of a port.
 const STUCK: Duration = Duration::from_secs(2);
@@ -36,7 +36,7 @@ pub struct Writer {
     waiting: Arc<AtomicUsize>,
 }
 
-/// Ends of the queues at the port.
+/// The other ends of the queues, which the port uses.
 struct End {
     leaving: UnboundedReceiver<Vec<u8>>,
     waiting: Arc<AtomicUsize>,
@@ -81,7 +81,7 @@ impl Pipe {
         });
         tokio::spawn(async move {
             while let Some(bytes) = end.leaving.recv().await {
-                // The reader reports that the connection is closed.
+                // After an error the task ends; the reader reports that the connection is closed.
                 if writer.write_all(&bytes).await.is_err() {
                     return;
                 }
@@ -102,7 +102,7 @@ impl Pipe {
             while !arrived.is_closed() {
                 let mut bytes = vec![0; PIECE];
                 let read = match reader.read(&mut bytes) {
-                    Ok(0) => Err(vanished("it has ended")),
+                    Ok(0) => Err(vanished("the port was closed")),
                     Ok(len) => {
                         bytes.truncate(len);
                         Ok(bytes)
@@ -121,7 +121,7 @@ impl Pipe {
         thread::Builder::new().name("slcan-write".to_owned()).spawn(move || {
             while let Some(bytes) = end.leaving.blocking_recv() {
                 if let Err(error) = writer.write_all(&bytes) {
-                    // The receiver can be gone already.
+                    // The receiver may already be gone.
                     let _ = end.arrived.blocking_send(Err(vanished(error)));
                     return;
                 }
@@ -141,12 +141,12 @@ impl Pipe {
     /// # Errors
     /// The other end has closed the stream.
     pub async fn read(&mut self) -> io::Result<Vec<u8>> {
-        self.arriving.recv().await.unwrap_or_else(|| Err(vanished("it was closed")))
+        self.arriving.recv().await.unwrap_or_else(|| Err(vanished("the connection was closed")))
     }
 }
 
 impl Writer {
-    /// Creates a writer for a queue that the caller drains. The caller reports progress with
+    /// Creates a writer with a queue that the caller must empty. The caller reports progress with
     /// [`written`](Self::written).
     pub fn queue() -> (Self, UnboundedReceiver<Vec<u8>>) {
         let (out, leaving) = unbounded_channel();
@@ -158,7 +158,7 @@ impl Writer {
         self.waiting.fetch_sub(len, Ordering::Relaxed);
     }
 
-    /// Queues bytes. A closed stream is reported by [`Pipe::read`].
+    /// Queues bytes. If the stream is closed, [`Pipe::read`] reports the error.
     pub fn write(&self, bytes: &[u8]) {
         self.waiting.fetch_add(bytes.len(), Ordering::Relaxed);
         let _ = self.out.send(bytes.to_vec());

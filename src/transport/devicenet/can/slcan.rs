@@ -1,12 +1,12 @@
-//! SLCAN, the ASCII protocol of Lawicel CAN adapters. Lines end with CR. This module has both ends of it.
+//! SLCAN, the ASCII protocol of Lawicel CAN adapters. Lines end with CR. This module has both sides of the protocol.
 
 use super::{Bitrate, Frame, MOST_DATA};
 
-/// Ends a line; alone, it is a positive answer.
+/// End of a line. A CR alone is a positive answer.
 pub const CR: u8 = 0x0D;
-/// Ends a line; it is a negative answer.
+/// End of a line that is a negative answer.
 pub const BELL: u8 = 0x07;
-/// Line limit. The longest valid line, an extended frame with a timestamp, is shorter.
+/// Maximum length of a line. The longest valid line, an extended frame with a timestamp, is shorter.
 const MOST_LINE: usize = 32;
 
 /// Status flags of an adapter (answer to `F`).
@@ -34,7 +34,7 @@ pub const fn bitrate_command(bitrate: Bitrate) -> &'static [u8] {
     }
 }
 
-/// Encodes a frame as a line, in either direction.
+/// Encodes a frame as a line. The format is the same in both directions.
 pub fn emit(frame: &Frame) -> Vec<u8> {
     let mut line = format!("t{:03X}{}", frame.id(), frame.data().len());
     for byte in frame.data() {
@@ -55,7 +55,7 @@ pub enum Said {
     Flags(u8),
     /// Version or serial number.
     About(String),
-    /// Positive answer, also to a frame.
+    /// Positive answer. It can also be the answer to a frame.
     Done,
     /// Negative answer.
     No,
@@ -76,7 +76,7 @@ pub enum Command {
     Send(Frame),
     /// Send a frame of a type that DeviceNet does not use.
     SendOther {
-        /// Extended frame; its answer is `Z`.
+        /// Whether the frame is extended. The answer is then `Z`.
         is_extended: bool,
     },
     /// Ask for the version.
@@ -87,7 +87,7 @@ pub enum Command {
     Flags,
     /// Switch timestamps of received frames on or off.
     Timestamps(bool),
-    /// Filters and other settings, which are accepted and ignored.
+    /// Filters and other settings. They are accepted and ignored.
     Setting,
     /// An empty line.
     Empty,
@@ -105,14 +105,14 @@ pub struct Lines {
 /// A complete line. A line that was too long has an empty text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Line {
-    /// The line ended with [`BELL`].
+    /// Whether the line ended with [`BELL`].
     pub is_bell: bool,
     /// Text without the terminator.
     pub text: String,
 }
 
 impl Lines {
-    /// Adds a byte. Returns the line that it completes. LF is ignored, because some devices send CR LF.
+    /// Adds a byte. Returns the line if the byte completes one. LF is ignored, because some devices send CR LF.
     pub fn push(&mut self, byte: u8) -> Option<Line> {
         match byte {
             CR | BELL => {
@@ -145,7 +145,7 @@ impl Line {
             Some(b'F') if text.len() == 3 => u8::from_str_radix(text.get(1..)?, 16).ok().map(Said::Flags),
             Some(b'V' | b'N') => Some(Said::About(text.to_owned())),
             Some(b'T' | b'r' | b'R') => Some(Said::Other),
-            // Text before a frame is the rest of a damaged line.
+            // Text before a frame is the rest of a damaged line, and is skipped.
             _ => text.match_indices('t').find_map(|(at, _)| frame(text.get(at..)?, true)).map(Said::Frame),
         }
     }
@@ -176,7 +176,7 @@ impl Line {
     }
 }
 
-/// Parses `tIIILDD..`; a line from an adapter can end with a timestamp of four digits.
+/// Parses `tIIILDD..`. With `with_time`, four digits of a timestamp may follow, as in lines from an adapter.
 fn frame(text: &str, with_time: bool) -> Option<Frame> {
     let id = u16::from_str_radix(text.get(1..4)?, 16).ok()?;
     let len: usize = text.get(4..5)?.parse().ok()?;

@@ -12,21 +12,21 @@ use super::{Bitrate, BusState, CanPort, Frame, Health, Heard, PortError, Waiting
 use crate::image::tap::{Passage, Tap};
 use crate::tap::Direction;
 
-/// Silence after which all leftovers of an earlier use have been read.
+/// Silence after which all bytes of an earlier use have been read.
 const QUIET: Duration = Duration::from_millis(50);
-/// Time limit for the leftovers. An adapter with a closed channel sends nothing more.
+/// Time limit for reading the bytes of an earlier use. An adapter with a closed channel sends no further bytes.
 const LEFTOVERS: Duration = Duration::from_millis(400);
-/// Limit of bytes per [`WINDOW`]. A full bus of 500 kbit/s makes 250 kB of text per second. After this computer was
-/// suspended, some seconds of it can arrive at once.
+/// Maximum number of bytes per [`WINDOW`]. A full bus of 500 kbit/s produces 250 kB of text per second. After this
+/// computer was suspended, the text of some seconds can arrive at once.
 const MOST_RECEIVED: usize = 8 * 1024 * 1024;
 const WINDOW: Duration = Duration::from_secs(1);
-/// Limit of lines that arrive while a command waits for its answer.
+/// Maximum number of lines that arrive while a command waits for its answer.
 const MOST_SAID: usize = 4096;
 /// Time limit for the answer to a command.
 const ANSWER: Duration = Duration::from_millis(300);
-/// Interval of the status flag request.
+/// Interval of the requests for status flags.
 const FLAGS: Duration = Duration::from_secs(1);
-/// Limit of unwritten bytes. Above it, the adapter counts as stuck.
+/// Maximum number of unwritten bytes. Above it, the adapter counts as blocked.
 const MOST_WAITING: usize = 16 * 1024;
 
 /// An SLCAN adapter.
@@ -37,19 +37,19 @@ pub struct SlcanPort {
     lines: Lines,
     said: VecDeque<Said>,
     health: Health,
-    /// Time of the next status flag request; `None` if the adapter does not support it.
+    /// Time of the next request for status flags; `None` if the adapter does not support the request.
     flags_due: Option<Instant>,
-    /// Start of the current window, and the bytes received in it.
+    /// Start of the current window, and the number of bytes received in it.
     received: (Instant, usize),
-    /// Whether anything came since it was set up anew.
+    /// Whether the adapter has sent anything since its setup.
     hears: bool,
-    /// Records the bytes while the adapter is set up.
+    /// Records the bytes during the setup of the adapter.
     tap: Tap,
 }
 
 impl SlcanPort {
-    /// Sets up an adapter: closes the channel, sets the bit rate, opens the channel (in listen-only mode if `listens`).
-    /// `tap` records the commands and answers.
+    /// Sets up an adapter: closes the channel, sets the bit rate, and opens the channel (in listen-only mode if
+    /// `listens`). `tap` records the commands and answers.
     pub async fn start(path: String, pipe: Pipe, bitrate: Bitrate, listens: bool, tap: Tap) -> Result<Self, PortError> {
         let mut port = Self {
             path,
@@ -62,7 +62,7 @@ impl SlcanPort {
             hears: false,
             tap,
         };
-        // Ends a line that an earlier use left unfinished.
+        // These CRs end a line that an earlier use left incomplete.
         port.write(b"\r\r\r")?;
         port.write(b"C\r")?;
         let begun = Instant::now();
@@ -82,7 +82,7 @@ impl SlcanPort {
         let opened = port.ask(open, |said| *said == Said::Done).await?;
         match (about, rate, opened) {
             (_, _, Some(Said::No)) => {
-                let what = if listens { "listen only" } else { "go on the bus" };
+                let what = if listens { "listen only" } else { "connect to the bus" };
                 return Err(port.wrong(&format!("the adapter refuses to {what}")));
             }
             (None, None, None) if port.hears => {
@@ -99,7 +99,7 @@ impl SlcanPort {
         Ok(port)
     }
 
-    /// Sends a command and waits for its answer, positive or negative. Frames that arrive in between are kept.
+    /// Sends a command and waits for its answer, positive or negative. Frames that arrive before the answer are kept.
     async fn ask(&mut self, command: &[u8], wanted: impl Fn(&Said) -> bool) -> Result<Option<Said>, PortError> {
         let mut before = self.said.len();
         self.write(command)?;
@@ -129,14 +129,14 @@ impl SlcanPort {
             return Err(PortError::Stuck { path: self.path.clone() });
         }
         self.tap.pass(|| Passage::Adapter { direction: Direction::Sent, bytes: bytes.to_vec() });
-        // A closed stream is reported by the next read.
+        // If the stream is closed, the next read reports the error.
         self.pipe.writer().write(bytes);
         Ok(())
     }
 
     /// Reads available bytes. Returns whether bytes arrived in time.
     async fn read(&mut self, until: Instant) -> Result<bool, PortError> {
-        // An adapter that sends without end always has bytes ready, so the time is checked first.
+        // An adapter that sends without end always has bytes ready, so the deadline is checked first.
         if Instant::now() >= until {
             return Ok(false);
         }
@@ -161,7 +161,7 @@ impl SlcanPort {
     }
 
     fn flagged(&mut self, flags: u8) {
-        // SLCAN has no flag for bus-off. An adapter that is bus-off sets all three flags.
+        // SLCAN has no flag for bus-off. An adapter in the state bus-off sets all three of these flags.
         const OFF: u8 = flag::BUS_ERROR | flag::PASSIVE | flag::WARNING;
         self.health.state = match flags {
             _ if flags & OFF == OFF => BusState::Off,
@@ -214,7 +214,7 @@ impl CanPort for SlcanPort {
 }
 
 impl Drop for SlcanPort {
-    /// Closes the channel. An adapter with an open channel continues to acknowledge frames.
+    /// Closes the channel. With an open channel, the adapter would continue to acknowledge frames.
     fn drop(&mut self) {
         self.pipe.writer().write(b"C\r");
     }

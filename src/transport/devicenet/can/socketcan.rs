@@ -1,4 +1,5 @@
-//! Linux SocketCAN interface (`can0`). The administrator sets its bit rate and state.
+//! Linux SocketCAN interface, for example `can0`. The system administrator sets the bit rate and brings the interface
+//! up.
 
 use std::borrow::Cow;
 use std::collections::VecDeque;
@@ -9,7 +10,7 @@ use socketcan::{CanError, CanFrame, EmbeddedFrame as _, Id, SocketOptions as _, 
 
 use super::{BusState, CanPort, Frame, Health, Heard, PortError, Waiting};
 
-/// Limit of frames that wait. Above it, the interface counts as stuck.
+/// Maximum number of frames that wait to be sent. Above it, the interface counts as blocked.
 const MOST_WAITING: usize = 256;
 fn advice(interface: &str) -> Cow<'static, str> {
     format!(
@@ -18,7 +19,7 @@ fn advice(interface: &str) -> Cow<'static, str> {
     )
     .into()
 }
-/// Linux error numbers without an `io::ErrorKind`.
+/// Linux error numbers that have no `io::ErrorKind`.
 const NO_DEVICE: i32 = 19;
 const NO_FAMILY: i32 = 97;
 const IS_DOWN: i32 = 100;
@@ -76,7 +77,8 @@ impl SocketCan {
                     }
                 } => {
                     match written {
-                        // The queue of the interface is full. The frame counts as rejected, as with other adapters.
+                        // The queue of the interface is full. The frame counts as rejected, as it does with other
+                        // adapters.
                         Err(error) if error.raw_os_error() == Some(NO_BUFFER) => self.health.rejected += 1,
                         written => written.map_err(|error| self.gone(&error))?,
                     }

@@ -1,4 +1,4 @@
-//! Allocation of the connections of the predefined set.
+//! Allocation of the connections of the predefined master/slave connection set.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ pub(super) struct Allocation {
     explicit_until: Now,
 }
 
-/// Refusal of an allocation or release: general and additional code.
+/// Refusal of an allocation or release: general code and additional code.
 pub(super) type Refusal = (u8, u8);
 
 const KNOWN: u8 = connection::EXPLICIT | connection::POLL;

@@ -6,7 +6,7 @@ use super::super::wire::Fragment;
 /// A fault of the slave.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum DeviceFault {
-    /// The slave neither sends nor accepts acknowledgements of explicit fragments.
+    /// The slave neither sends acknowledgements of explicit fragments nor accepts them.
     NoAcknowledge,
     /// Every image from the slave lacks its third fragment.
     LostFragment,
@@ -20,7 +20,7 @@ pub enum DeviceFault {
     DuplicateMac,
     /// The slave does not answer.
     Mute,
-    /// The adapters on the bus are bus-off.
+    /// All adapters on the bus are in the state bus-off.
     BusOff,
 }
 
@@ -42,7 +42,7 @@ impl DeviceFault {
 pub(super) fn spoil(fault: Option<DeviceFault>, mut frames: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
     match fault {
         Some(DeviceFault::LostFragment) if frames.len() > 2 => drop(frames.remove(2)),
-        // A single frame has no fragments. Removing a byte has the same effect.
+        // A single frame has no fragments. A missing byte has the same effect.
         Some(DeviceFault::LostFragment) => {
             for frame in &mut frames {
                 frame.truncate(frame.len().saturating_sub(1));

@@ -7,7 +7,7 @@ use super::super::can::Frame;
 use super::super::wire::{Fragment, Header, Id, Kind, Mac};
 
 const PATIENCE: Duration = Duration::from_secs(1);
-/// Longest request that is reassembled, in bytes.
+/// Maximum length of a reassembled request in bytes.
 const ROOM: usize = 64;
 
 /// A complete request.
@@ -55,7 +55,7 @@ impl Messages {
         self.leaving.as_ref().map(|leaving| if leaving.is_due { Now::ZERO } else { leaving.deadline })
     }
 
-    /// Handles a frame. Returns the request that it completes. Acknowledgements go to `out`.
+    /// Handles a frame. Returns the request if the frame completes one. Acknowledgements are added to `out`.
     pub(super) fn take(&mut self, now: Now, bytes: &[u8], out: &mut Vec<Frame>, acknowledges: bool) -> Option<Whole> {
         let (first, body) = bytes.split_first()?;
         let header = Header::parse(*first);

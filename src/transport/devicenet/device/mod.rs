@@ -1,5 +1,6 @@
-//! Simulated DeviceNet slave (group 2 only server) with the objects of the predefined set. It has no sockets and no
-//! clock. It is stricter than real devices, and shares no decoder with the master.
+//! Simulated DeviceNet slave (group 2 only server) with the objects of the predefined master/slave connection set. The
+//! slave has no sockets and no clock. It is stricter than real devices. It shares no decoder with the master, so that
+//! an error in a decoder is noticed.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -28,7 +29,7 @@ const CHECK: Duration = Duration::from_secs(1);
 pub struct Setup {
     /// MAC of the slave.
     pub mac: Mac,
-    /// Bit rate of its bus.
+    /// Bit rate of the bus.
     pub bitrate: Bitrate,
     /// Vendor id.
     pub vendor: u16,
@@ -47,7 +48,7 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// A slave with the identity of an older YAMAHA controller, from its EDS file.
+    /// Returns the configuration of a slave with the identity of an older YAMAHA controller, from its EDS file.
     pub fn stand_in(mac: Mac, bitrate: Bitrate, size: u16) -> Self {
         Self {
             mac,
@@ -63,13 +64,13 @@ impl Setup {
     }
 }
 
-/// Behaviour behind the slave.
+/// Application behind the slave.
 pub trait Application: Send {
     /// Receives a new image from the master.
     fn image_out(&mut self, now: Now, image: &[u8]);
     /// Updates the image to the master. The buffer contains the previous image.
     fn image_in(&mut self, now: Now, image: &mut [u8]);
-    /// The master released the connections or timed out.
+    /// Handles the end of the poll connection: the master released it, or it timed out.
     fn master_gone(&mut self, now: Now);
 }
 
@@ -103,7 +104,7 @@ impl<A> fmt::Debug for Device<A> {
 }
 
 impl<A: Application> Device<A> {
-    /// Creates a slave at power-on. It checks its MAC before it goes on line.
+    /// Creates a slave in its state after power-on. The slave checks its MAC before it goes on line.
     pub fn new(setup: Setup, application: A) -> Self {
         Self {
             image_in: vec![0; setup.size.into()],
@@ -134,7 +135,7 @@ impl<A: Application> Device<A> {
         &self.setup
     }
 
-    /// Activates a fault, or none.
+    /// Activates a fault; `None` deactivates the active fault.
     pub const fn set_fault(&mut self, fault: Option<DeviceFault>) {
         self.fault = fault;
     }
@@ -149,12 +150,12 @@ impl<A: Application> Device<A> {
         self.phase == Phase::OnLine
     }
 
-    /// The master that owns its connections.
+    /// The master that owns the connections of the slave.
     pub const fn master(&self) -> Option<Mac> {
         self.allocation.master()
     }
 
-    /// Returns the next frame to send at `now`. Call it until it returns `None`.
+    /// Returns the next frame to send at `now`. The caller repeats the call until it returns `None`.
     pub fn poll(&mut self, now: Now) -> Option<Frame> {
         match self.phase {
             Phase::Checking(2, due) if now >= due => self.phase = Phase::OnLine,
@@ -172,7 +173,7 @@ impl<A: Application> Device<A> {
         self.outbox.pop_front()
     }
 
-    /// Latest time of the next call.
+    /// Latest time of the next call of [`poll`](Self::poll).
     pub fn wake(&self) -> Option<Now> {
         if !self.outbox.is_empty() {
             return Some(Now::ZERO);
@@ -232,7 +233,7 @@ impl<A: Application> Device<A> {
         }
     }
 
-    /// The explicit connection times out if its master is silent, except while polls arrive.
+    /// Deadline of the explicit connection. There is none while the poll connection is established.
     fn explicit_until(&self) -> Option<Now> {
         let is_polled = self.polled.as_ref().is_some_and(Polled::is_established);
         self.allocation.explicit_until().filter(|_| !is_polled)

@@ -17,12 +17,12 @@ const NO_ATTRIBUTE: Refusal = (general::NO_ATTRIBUTE, owner::NONE);
 const NO_SERVICE: Refusal = (general::NO_SERVICE, owner::NONE);
 
 impl<A: Application> Device<A> {
-    /// Handles a frame with an explicit request or a fragment of one.
+    /// Handles a frame that contains an explicit request or a fragment of a request.
     pub(super) fn request(&mut self, now: Now, bytes: &[u8], is_connected: bool) {
         let Some(first) = bytes.first() else { return };
         let from = Header::parse(*first).mac;
-        // If no master owns the connections, a request on the explicit connection is accepted, because it can be an
-        // allocation. Otherwise only the owner can use that connection.
+        // If no master owns the connections, a request on the explicit connection is accepted, because it may be an
+        // allocation. If a master owns the connections, only this master may use the explicit connection.
         if is_connected && self.allocation.master().is_some() && !self.allocation.is_explicit_of(from) {
             return;
         }
@@ -42,7 +42,7 @@ impl<A: Application> Device<A> {
     }
 
     fn answer(&mut self, now: Now, whole: &Whole, is_explicit: bool) -> Option<Answer> {
-        // Ignore answers.
+        // This is an answer and not a request.
         if whole.body.first().is_none_or(|service| service & service::ANSWER != 0) {
             return None;
         }
@@ -198,7 +198,7 @@ impl<A: Application> Device<A> {
     }
 }
 
-/// Refusal for a wrong length.
+/// Returns the refusal of data with a wrong length.
 const fn length(data: &[u8], wanted: usize) -> Refusal {
     (if data.len() < wanted { general::TOO_SHORT } else { general::TOO_LONG }, owner::NONE)
 }

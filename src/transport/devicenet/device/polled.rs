@@ -10,13 +10,13 @@ use super::{Application, Device};
 
 /// Minimum watchdog time before the first poll.
 const FIRST: Duration = Duration::from_secs(10);
-/// Packet rates are rounded up to a multiple of this, in ms.
+/// Packet rates are rounded up to a multiple of this number of milliseconds.
 const TICK: u16 = 10;
 
 /// Connection state (attribute 1 of the connection object).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum State {
-    /// Allocated. Polls are ignored.
+    /// Allocated, but not established. Polls are ignored.
     Configuring = 1,
     Established = 3,
     /// The watchdog expired.
@@ -37,7 +37,7 @@ pub(super) struct Polled {
     pub(super) rate: u16,
     until: Option<Now>,
     parts: Vec<u8>,
-    /// Number of fragments received of the current image.
+    /// Number of fragments of the current image that were received.
     count: u8,
 }
 
@@ -54,7 +54,7 @@ impl Polled {
         self.until
     }
 
-    /// Sets the packet rate, which establishes the connection. Returns the rounded rate.
+    /// Sets the packet rate. This establishes the connection. Returns the rounded packet rate.
     pub(super) fn set_rate(&mut self, now: Now, rate: u16) -> u16 {
         self.rate = rate.checked_next_multiple_of(TICK).unwrap_or(u16::MAX);
         self.state = State::Established;
@@ -62,7 +62,7 @@ impl Polled {
         self.rate
     }
 
-    /// Whether the watchdog has just expired.
+    /// Closes the connection if its watchdog has expired. Returns whether it has just expired.
     pub(super) fn expire(&mut self, now: Now) -> bool {
         if self.until.is_none_or(|until| now < until) {
             return false;
@@ -76,7 +76,7 @@ impl Polled {
         (self.rate > 0).then(|| Duration::from_millis(self.rate.into()) * 4)
     }
 
-    /// Handles a frame of a poll. Returns the poll that it completes.
+    /// Handles a frame of a poll. Returns the poll if the frame completes it.
     fn take(&mut self, bytes: &[u8], size: usize) -> Option<Poll> {
         let Some((first, part)) = bytes.split_first() else {
             self.count = 0;

@@ -1,8 +1,8 @@
 //! Master side of a connection: allocation, image sizes, polling, loss detection, reopening.
 //!
-//! Each opening starts a new generation, and every image to send names its generation. After a loss, the slave gets the
-//! resting image until a caller that has seen the loss sets another. Therefore no image from before a loss is sent
-//! again.
+//! Each opening of the connection starts a new generation. The caller must name the generation with every image. After
+//! a loss, the master sends the resting image until a caller that has seen the loss sets another image. Therefore the
+//! master never sends an image from before the loss again.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::devicenet::error::Error;
 use crate::devicenet::settings::{Purpose, Settings};
 use crate::devicenet::wire::{Answer, Id, Mac, Request, class, connection, general, owner};
 
-/// Pauses before a lost connection is opened again. The last one repeats.
+/// Pauses before attempts to reopen a lost connection. The last pause repeats.
 const BACKOFF: [Duration; 3] = [Duration::from_secs(1), Duration::from_secs(2), Duration::from_secs(5)];
 /// Keepalive interval. The slave closes an explicit connection after 10 s of silence.
 const KEEP_ALIVE: Duration = Duration::from_secs(3);
@@ -31,24 +31,24 @@ const RATE: &str = "the setting of the packet rate";
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
-    /// Before the master is on line.
+    /// The master is not on line yet.
     New,
-    /// Allocating the connections. `again`: the second attempt, after the owner was read.
+    /// Allocating the connections. `again` is `true` for the second attempt, after the owner was read.
     Allocating {
         again: bool,
     },
     /// Reading which connections this MAC owns.
     AskingOwner,
-    /// Releasing leftovers of this MAC.
+    /// Releasing connections that this MAC still owns from an earlier use.
     Freeing,
     /// Reading the size of the image from the slave.
     AskingProduced,
-    /// Reading the size of the image to the slave. The other size is known.
+    /// Reading the size of the image to the slave. The value is the size of the image from the slave.
     AskingConsumed(u16),
-    /// Setting the packet rate, which establishes the connection.
+    /// Setting the packet rate. This establishes the connection.
     SettingRate,
     Open,
-    /// Releasing the connections. Then the connection ends, or opens again.
+    /// Releasing the connections. After that, the connection ends, or opens again if `again`.
     Releasing {
         again: bool,
     },
@@ -57,7 +57,7 @@ enum Phase {
     Ended,
 }
 
-/// Result of a caller's request.
+/// Result of a request of a caller.
 pub(super) type Reply = (Token, Result<Answer, Error>);
 
 /// A connection to a slave.
@@ -72,9 +72,9 @@ pub(super) struct Connection {
     revision: u64,
     is_over: bool,
     tries: usize,
-    /// Requests of callers that wait.
+    /// Waiting requests of callers.
     asks: VecDeque<(Token, Request)>,
-    /// Request of the caller in progress; `None` for an internal request.
+    /// Token of the request in progress; `None` for an internal request.
     asking: Option<Token>,
     replies: VecDeque<Reply>,
     keep_alive: Now,
@@ -119,7 +119,7 @@ impl Connection {
         self.phase == Phase::Ended && self.replies.is_empty()
     }
 
-    /// Sends this image from the next poll on; see [`Scanner::set_image`](super::Scanner::set_image).
+    /// Sends this image, starting with the next poll; see [`Scanner::set_image`](super::Scanner::set_image).
     pub(super) fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, Error> {
         self.view.check(generation)?;
         if image.len() != self.image.len() {
@@ -131,7 +131,7 @@ impl Connection {
         Ok(self.revision)
     }
 
-    /// Queues an explicit request until the connection is open.
+    /// Queues an explicit request. It is sent when the connection is open.
     pub(super) fn ask(&mut self, token: Token, request: Request) {
         if self.phase == Phase::Ended || self.is_over {
             self.replies.push_back((token, Err(Error::Ended)));
@@ -144,7 +144,7 @@ impl Connection {
         self.replies.pop_front()
     }
 
-    /// Closes the connection: releases the connections of the slave.
+    /// Closes the connection, and releases the connections of the slave.
     pub(super) fn close(&mut self, now: Now) {
         if std::mem::replace(&mut self.is_over, true) {
             return;
@@ -157,12 +157,12 @@ impl Connection {
                 self.requester.cancel();
                 self.release(now, false);
             }
-            // The pending answer comes first.
+            // Wait for the pending answer before the release.
             _ => self.show(State::Closing),
         }
     }
 
-    /// The adapter or the bus failed.
+    /// Handles a failure of the adapter or the bus.
     pub(super) fn fail(&mut self, now: Now, error: Error) {
         self.requester.cancel();
         match self.phase {
@@ -198,7 +198,7 @@ impl Connection {
         }
     }
 
-    /// Does what is due. Frames to send go to `out`.
+    /// Executes the work that is due. Frames to send are added to `out`.
     pub(super) fn poll(&mut self, now: Now, bus: &Bus, out: &mut VecDeque<Frame>) {
         if let Some(outcome) = self.requester.expire(now) {
             self.done(now, outcome, bus);
@@ -225,13 +225,14 @@ impl Connection {
         [own, polling, self.requester.wake()].into_iter().flatten().min()
     }
 
-    /// Polls, keeps the explicit connection alive, and sends requests of callers.
+    /// Sends polls, keepalives of the explicit connection, and requests of callers.
     fn serve(&mut self, now: Now, bus: &Bus, out: &mut VecDeque<Frame>) {
         if let Some(polling) = &mut self.polling {
             if now >= polling.until() {
                 let (mac, after) = (self.settings.slave, polling.patience());
                 let is_bus_alive = bus.is_alive_without(mac, now.saturating_sub(after));
-                // Only the second half counts: frames in the first half can belong to the last complete image.
+                // Only frames in the second half of the timeout count: frames in the first half may belong to the last
+                // complete image.
                 let is_heard = bus.is_heard(mac, now.saturating_sub(after / 2));
                 let state = bus.health.state;
                 return self.retreat(now, Error::Lost { mac, after, is_heard, is_bus_alive, state });
@@ -307,8 +308,8 @@ impl Connection {
             }
             Phase::Releasing { again: true } => self.pause(now),
             Phase::Releasing { again: false } => {
-                // A silent slave releases the connections by its own timeout. This is a warning, not an error of the
-                // link.
+                // If the slave is silent, it releases the connections after its own timeout. The error is then shown as
+                // a warning, not as an error of the link.
                 let error = answer(RELEASE).err().filter(|error| !matches!(error, Error::Refused { .. }));
                 self.finish(error);
             }
@@ -337,7 +338,8 @@ impl Connection {
             Err(Error::Refused { additional: owner::ANOTHER_MASTER, mac, .. }) => {
                 self.give_up(now, Error::Owned { mac }, false);
             }
-            // A process with this MAC died, or the answer to the first attempt was lost.
+            // Either an earlier process with this MAC ended without a release, or the answer to the first attempt was
+            // lost.
             Err(Error::Refused { general: general::ALREADY, .. }) if !again => {
                 let request = Request::get(class::DEVICENET, 1, ALLOCATION_ATTRIBUTE);
                 self.request(now, Phase::AskingOwner, &request);
@@ -346,7 +348,7 @@ impl Connection {
         }
     }
 
-    /// Handles the allocation attribute: {choice, master}.
+    /// Handles the allocation attribute of the slave: {choice, master}.
     fn owned(&mut self, now: Now, answer: &Result<Vec<u8>, Error>) {
         let mac = self.settings.slave;
         match answer.as_deref() {
@@ -356,7 +358,7 @@ impl Connection {
             Ok([_, master, ..]) if Mac::new(*master).is_some() => self.give_up(now, Error::Owned { mac }, false),
             Ok([_, _, ..]) => self.allocate(now, true),
             Ok(_) => self.give_up(now, Error::Senseless { mac, what: OWNER, why: "it is too short" }, false),
-            // The explicit connection timed out, but the poll connection still exists.
+            // The explicit connection has timed out, but the poll connection still exists.
             Err(Error::Silent { .. }) => {
                 self.phase = Phase::Freeing;
                 self.requester.ask(now, &Request::release(connection::POLL), false);
@@ -384,7 +386,7 @@ impl Connection {
         Ok(u16::try_from(images.rate.as_millis()).unwrap_or(u16::MAX))
     }
 
-    /// The connection is established with this packet rate.
+    /// Handles the established connection. `rate` is the packet rate that the slave accepted.
     fn opened(&mut self, now: Now, rate: u16) {
         if self.is_over {
             return self.release(now, false);
@@ -401,7 +403,7 @@ impl Connection {
         self.show(State::Open);
     }
 
-    /// Opening failed. Releases what was allocated.
+    /// Handles a failed opening. Releases the connections that were allocated.
     fn give_up(&mut self, now: Now, error: Error, is_allocated: bool) {
         let again = self.view.generation > 0 && !self.is_over;
         self.set_error(error);
@@ -414,7 +416,7 @@ impl Connection {
         }
     }
 
-    /// The connection is lost. Releases it if possible, and opens it again.
+    /// Handles a lost connection. Releases the connection if possible, and opens it again.
     fn retreat(&mut self, now: Now, error: Error) {
         self.polling = None;
         self.requester.cancel();

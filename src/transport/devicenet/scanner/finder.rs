@@ -1,8 +1,8 @@
 //! Node discovery without connections: every node on line answers a duplicate MAC check of its MAC.
 //!
-//! A node that is about to go on line would take such a check for a conflict and stay off line. The finder therefore
-//! first listens for longer than the interval of a starting node's own checks. It does not check the MACs of starting
-//! nodes.
+//! A node that is about to go on line would interpret such a check as a conflict and stay off line. The finder
+//! therefore listens first, for longer than the interval between the checks of a starting node. It does not check the
+//! MACs of starting nodes.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -12,7 +12,8 @@ use crate::devicenet::Now;
 use crate::devicenet::can::Frame;
 use crate::devicenet::wire::{DuplicateCheck, Id, Mac};
 
-/// A node sends two checks, a second apart, and goes on line a second later.
+/// Time to listen before the first check. A starting node sends two checks, one second apart, and goes on line one
+/// second later.
 const LISTEN: Duration = Duration::from_millis(1200);
 const GOING_ON_LINE: Duration = Duration::from_millis(2200);
 /// Pause between checks, so that a slow adapter can keep up.
@@ -25,13 +26,13 @@ const ROUNDS: u8 = 2;
 /// A node that was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Found {
-    /// Its MAC.
+    /// MAC of the node.
     pub mac: Mac,
     /// Vendor id.
     pub vendor: u16,
-    /// Its serial number.
+    /// Serial number of the node.
     pub serial: u32,
-    /// Whether the node answered. If not, it only sent its own checks.
+    /// Whether the node answered a check. Otherwise only its own checks were received.
     pub is_on_line: bool,
 }
 
@@ -43,7 +44,7 @@ pub(super) struct Finder {
     asked: Now,
     /// MACs still to check, in reverse order.
     left: Vec<Mac>,
-    /// Starting nodes, and the time when they are on line.
+    /// Starting nodes, each with the time when it is on line.
     booting: BTreeMap<Mac, Now>,
     found: BTreeMap<Mac, Found>,
 }
@@ -127,7 +128,7 @@ mod tests {
             assert!(now < MS * 5000);
         }
         let times = |number| asked.iter().filter(|id| **id == Id::Duplicate(mac(number)).emit()).count();
-        // MAC 7 answered at once, MAC 5 was starting, MAC 0 is our own.
+        // MAC 7 has answered already, MAC 5 was starting, and MAC 0 is our own.
         assert_eq!((times(0), times(5), times(7), times(8)), (0, 0, 1, 2));
         let found: Vec<(u8, bool)> =
             finder.found().iter().map(|found| (found.mac.number(), found.is_on_line)).collect();

@@ -1,5 +1,5 @@
-//! DeviceNet master: its own MAC, and connections to any number of slaves on one adapter. It has no sockets and no
-//! clock.
+//! DeviceNet master: its own MAC, and connections to any number of slaves on one adapter. The master has no sockets and
+//! no clock.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
@@ -21,7 +21,7 @@ use self::finder::Finder;
 pub use self::finder::Found;
 pub use self::view::{Details, Input, State, Statistics, View, Views};
 
-/// Interval of the duplicate MAC checks, and the wait after the last one.
+/// Interval of the duplicate MAC checks, and the waiting time after the last check.
 const CHECK: Duration = Duration::from_secs(1);
 /// Number of duplicate MAC checks.
 const CHECKS: u8 = 2;
@@ -29,7 +29,7 @@ const CHECKS: u8 = 2;
 /// Identifies a request of a caller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Token(
-    /// Any number.
+    /// Any number that the caller selects.
     pub u64,
 );
 
@@ -64,12 +64,12 @@ pub(crate) struct Bus {
 }
 
 impl Bus {
-    /// Whether the node has sent a frame since `since`.
+    /// Whether this node has sent a frame since `since`.
     pub(crate) fn is_heard(&self, mac: Mac, since: Now) -> bool {
         self.heard[usize::from(mac.number())].is_some_and(|heard| heard >= since)
     }
 
-    /// Whether any other node has sent a frame since `since`.
+    /// Whether another node than `mac` has sent a frame since `since`.
     pub(crate) fn is_alive_without(&self, mac: Mac, since: Now) -> bool {
         let others = self.heard.iter().enumerate().filter(|(number, _)| *number != usize::from(mac.number()));
         others.filter_map(|(_, heard)| *heard).any(|heard| heard >= since)
@@ -78,16 +78,16 @@ impl Bus {
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Phase {
-    /// Before the first poll, or after the adapter was opened again.
+    /// Before the first poll, or after the adapter was reopened.
     New,
     /// Number of duplicate MAC checks sent, and the time of the next step.
     Checking(u8, Now),
     OnLine,
-    /// Off the bus, with the reason.
+    /// The master is off the bus for this reason.
     Failed(Error),
 }
 
-/// The master.
+/// A DeviceNet master on one adapter.
 #[derive(Debug)]
 pub struct Scanner {
     identity: Identity,
@@ -126,10 +126,10 @@ impl Scanner {
         self.phase == Phase::OnLine
     }
 
-    /// Opens a connection under a new number.
+    /// Opens a connection with a new number.
     ///
     /// # Errors
-    /// The settings are invalid, or the slave is connected already.
+    /// The settings are invalid, or there is already a connection to the slave.
     pub fn open(&mut self, number: u64, settings: Settings) -> Result<(), Error> {
         settings.check(self.identity.mac)?;
         if let Phase::Failed(error) = &self.phase {
@@ -140,18 +140,18 @@ impl Scanner {
         }
         if self.connections.values().any(|connection| connection.slave() == settings.slave) {
             let mac = settings.slave;
-            return Err(Error::Settings(format!("this process has a connection with MAC {mac} already")));
+            return Err(Error::Settings(format!("this process already has a connection with MAC {mac}")));
         }
         self.connections.insert(number, Connection::new(self.identity.mac, settings));
         Ok(())
     }
 
-    /// State of a connection; `None` after it ended and was removed.
+    /// State of a connection; `None` if the connection has ended and was removed.
     pub fn view(&self, number: u64) -> Option<&View> {
         self.connections.get(&number).map(Connection::view)
     }
 
-    /// Connections whose view changed since the last call.
+    /// Returns the connections whose view changed since the last call.
     pub fn changed(&mut self) -> Vec<u64> {
         self.connections
             .iter_mut()
@@ -159,8 +159,8 @@ impl Scanner {
             .collect()
     }
 
-    /// Sends this image from the next poll on. Returns the number of the change. The slave has accepted it when `sent`
-    /// of the view has reached that number.
+    /// Sends this image, starting with the next poll. Returns the number of the change. The slave has accepted the
+    /// image when `sent` of the view has reached this number.
     ///
     /// # Errors
     /// The connection is not open in this generation, or the image has another size.
@@ -195,7 +195,7 @@ impl Scanner {
         self.give_up_search();
     }
 
-    /// Ends discovery if the adapter is bus-off and nothing can be sent.
+    /// Ends the discovery if the adapter is in the state bus-off, because no checks can be sent then.
     fn give_up_search(&mut self) {
         if self.bus.health.state == BusState::Off
             && let Some(finder) = self.finder.take()
@@ -204,7 +204,7 @@ impl Scanner {
         }
     }
 
-    /// Result of the last discovery, once it is complete.
+    /// Returns the result of the last discovery; `None` until the discovery is complete.
     pub fn found(&mut self) -> Option<Vec<Found>> {
         self.found.take()
     }
@@ -217,14 +217,14 @@ impl Scanner {
         }
     }
 
-    /// The adapter was opened. The MAC is checked before anything else.
+    /// Handles the opening of the adapter. The master checks its MAC before anything else.
     pub fn restart(&mut self) {
         self.phase = Phase::New;
         self.bus.health = Health::default();
         self.outbox.clear();
     }
 
-    /// The adapter failed. Open connections wait until it is back.
+    /// Handles a failure of the adapter. Open connections wait until the adapter is open again.
     pub fn fail(&mut self, now: Now, error: &Error) {
         for connection in self.connections.values_mut() {
             connection.fail(now, error.clone());
@@ -269,7 +269,7 @@ impl Scanner {
         }
     }
 
-    /// Returns the next frame to send at `now`. Call it until it returns `None`.
+    /// Returns the next frame to send at `now`. The caller repeats the call until it returns `None`.
     pub fn poll(&mut self, now: Now) -> Option<Frame> {
         if self.outbox.is_empty() {
             self.advance(now);
@@ -277,7 +277,7 @@ impl Scanner {
         self.outbox.pop_front()
     }
 
-    /// Latest time of the next call.
+    /// Latest time of the next call of [`poll`](Self::poll).
     pub fn wake(&self) -> Option<Now> {
         if !self.outbox.is_empty() {
             return Some(Now::ZERO);
@@ -285,7 +285,7 @@ impl Scanner {
         match self.phase {
             Phase::New => Some(Now::ZERO),
             Phase::Checking(_, due) => Some(due),
-            // Wait until the adapter is back on the bus.
+            // Nothing can be sent until the adapter has left the state bus-off.
             Phase::OnLine if self.bus.health.state == BusState::Off => None,
             Phase::OnLine => {
                 let connections = self.connections.values().filter_map(Connection::wake);
@@ -303,7 +303,7 @@ impl Scanner {
         ended
     }
 
-    /// Whether the master has nothing to do: no connection and no discovery, or it is off the bus.
+    /// Whether the master has nothing to do: it has no connection and no discovery, or it is off the bus.
     pub fn is_idle(&self) -> bool {
         let is_off = matches!(self.phase, Phase::Failed(_)) || self.bus.health.state == BusState::Off;
         is_off || self.connections.is_empty() && self.finder.is_none()

@@ -1,4 +1,4 @@
-//! Poll cycle: one image in each direction at a fixed rate without drift.
+//! Poll cycle: exchanges one image in each direction at a fixed rate without drift.
 
 use std::time::Duration;
 
@@ -8,10 +8,10 @@ use crate::devicenet::wire::{Assembler, Id, Mac, Piece, split};
 
 use super::view::Statistics;
 
-/// Number of packet rates without an answer after which a slave counts as lost. The slave gives up the master after the
-/// same time.
+/// Multiple of the packet rate after which a slave without answers counts as lost. After the same time without polls,
+/// the slave closes the connection.
 pub(super) const WATCHDOG: u32 = 4;
-/// Limit of late answers that can still arrive.
+/// Maximum number of abandoned polls whose answers may still arrive.
 const MOST_OWED: u8 = 2;
 
 /// Poll cycle of one generation.
@@ -21,24 +21,25 @@ pub(super) struct Polling {
     cycle: Duration,
     rate: Duration,
     due: Now,
-    /// Time of the poll that waits for its answer.
+    /// Time of the poll that has no answer yet.
     asked: Option<Now>,
-    /// Duration of the last exchange, from the poll to the last frame of its answer.
+    /// Duration of the last exchange, from the poll to the last frame of the answer.
     round_trip: Duration,
-    /// Number of abandoned polls that can still be answered. Such an answer does not confirm a later poll.
+    /// Number of abandoned polls whose answers may still arrive. Such an answer does not confirm a later poll.
     owed: u8,
-    /// Number of the change in the last poll.
+    /// Number of the change that the last poll contained.
     carried: u64,
     assembler: Assembler,
     heard: Now,
 }
 
-/// Effect of a frame.
+/// Effect of a frame of the slave.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Heard {
     /// No complete image.
     Nothing,
-    /// A complete image. If it certainly answers the last poll, the change that the slave has accepted.
+    /// A complete image, and the number of the change that the slave has accepted. The number is present only if this
+    /// image certainly answers the last poll.
     Image(Vec<u8>, Option<u64>),
 }
 
@@ -58,7 +59,7 @@ impl Polling {
         }
     }
 
-    /// Silence after which the slave counts as lost.
+    /// Time without an answer after which the slave counts as lost.
     pub(super) fn patience(&self) -> Duration {
         self.rate * WATCHDOG
     }
@@ -75,7 +76,7 @@ impl Polling {
         given_up.map_or(self.due, |given_up| self.due.max(given_up))
     }
 
-    /// Returns the frames of a poll with this image, if one is due.
+    /// Returns the frames of a poll with this image. The result is empty if no poll is due.
     pub(super) fn poll(&mut self, now: Now, image: &[u8], change: u64, counted: &mut Statistics) -> Vec<Frame> {
         if now < self.next() {
             return Vec::new();
@@ -84,7 +85,7 @@ impl Polling {
             counted.missed += 1;
             self.owed = (self.owed + 1).min(MOST_OWED);
         }
-        // Fragments of an older answer must not be combined with the next one.
+        // Fragments of an older answer must not be combined with fragments of the next answer.
         self.assembler = Assembler::new(image.len());
         self.asked = Some(now);
         self.carried = change;
@@ -98,7 +99,7 @@ impl Polling {
         split(image).iter().filter_map(|bytes| Frame::new(id, bytes)).collect()
     }
 
-    /// Handles a frame of the slave's answer.
+    /// Handles a frame of an answer of the slave.
     pub(super) fn hear(&mut self, now: Now, bytes: &[u8], counted: &mut Statistics) -> Heard {
         match self.assembler.take(bytes) {
             Piece::Part => Heard::Nothing,
@@ -107,7 +108,7 @@ impl Polling {
                 Heard::Nothing
             }
             Piece::Whole(image) => {
-                // A duplicate, or the answer to an abandoned poll. It can be older than the last image.
+                // This image is a duplicate, or the answer to an abandoned poll. It may be older than the last image.
                 let Some(asked) = self.asked.take() else {
                     counted.late += 1;
                     return Heard::Nothing;
@@ -143,12 +144,12 @@ mod tests {
             assert!(matches!(polling.hear(now + MS, &[0; 4], &mut counted), Heard::Image(..)));
         }
         assert_eq!((counted.sent, counted.received, counted.skipped), (6, 6, 0));
-        // After a pause, the rhythm continues. Missed polls are not repeated.
+        // After a pause, polls continue at their old times. Missed polls are not sent later.
         assert_eq!(polling.poll(MS * 190, &[0; 4], 1, &mut counted).len(), 1);
         assert_eq!((polling.due, counted.skipped), (MS * 200, 3));
     }
 
-    /// An answer that can belong to an older poll does not confirm the newest one.
+    /// An answer that may belong to an older poll does not confirm the newest poll.
     #[test]
     fn a_late_answer_confirms_nothing() {
         let (mut polling, mut counted) = polling();
@@ -157,7 +158,7 @@ mod tests {
         assert!(again >= MS * 20);
         polling.poll(again, &[1; 4], 2, &mut counted);
         assert_eq!(polling.hear(again + MS, &[7; 4], &mut counted), Heard::Image(vec![7; 4], None));
-        // The answer to the newest poll and a duplicate look the same.
+        // The answer to the newest poll looks like a duplicate of the late answer.
         assert_eq!(polling.hear(again + MS, &[8; 4], &mut counted), Heard::Nothing);
         let next = polling.next();
         polling.poll(next, &[1; 4], 2, &mut counted);

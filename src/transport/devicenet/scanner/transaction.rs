@@ -7,11 +7,11 @@ use crate::devicenet::Now;
 use crate::devicenet::can::{Frame, MOST_DATA};
 use crate::devicenet::wire::{Answer, Format, Fragment, Header, Id, Kind, Mac, Request};
 
-/// Bytes of a message per fragment, after header and fragment byte.
+/// Bytes of a message per fragment, after the header and the fragment byte.
 const PART: usize = MOST_DATA - 2;
-/// Longest answer that is reassembled.
+/// Maximum length of a reassembled answer in bytes.
 const MOST_ANSWER: usize = 512;
-/// Acknowledge status: fragment accepted.
+/// Status in an acknowledgement: fragment accepted.
 const TAKEN: u8 = 0;
 /// Number of attempts per request or fragment.
 const TRIES: u8 = 2;
@@ -33,7 +33,8 @@ pub(super) struct Requester {
     patience: Duration,
     xid: bool,
     current: Option<Transaction>,
-    /// Last fragment of the last answer. It is repeated if its acknowledgement was lost.
+    /// Count of the last fragment of the last answer. If its acknowledgement was lost, the slave sends this fragment
+    /// again.
     taken: Option<u8>,
     outbox: VecDeque<Frame>,
 }
@@ -48,7 +49,7 @@ struct Transaction {
     sending: Option<usize>,
     tries: u8,
     deadline: Now,
-    /// Received part of the answer, and the count of its last fragment.
+    /// Received part of the answer, and the count of the last fragment of this part.
     answer: Option<(Vec<u8>, u8)>,
 }
 
@@ -61,7 +62,7 @@ impl Requester {
         self.current.is_some()
     }
 
-    /// Sends a request, on the explicit connection or unconnected.
+    /// Sends a request on the explicit connection if `is_connected`, otherwise as an unconnected request.
     pub(super) fn ask(&mut self, now: Now, request: &Request, is_connected: bool) {
         let Some(body) = request.emit(Format::Byte8Byte8) else { return };
         self.xid = !self.xid;
@@ -89,7 +90,7 @@ impl Requester {
         if self.outbox.is_empty() { self.current.as_ref().map(|current| current.deadline) } else { Some(Now::ZERO) }
     }
 
-    /// Repeats a request that timed out, or gives up.
+    /// Repeats a request that timed out. After the last attempt, returns the outcome.
     pub(super) fn expire(&mut self, now: Now) -> Option<Outcome> {
         let current = self.current.as_mut().filter(|current| now >= current.deadline)?;
         current.tries -= 1;
@@ -105,11 +106,11 @@ impl Requester {
         None
     }
 
-    /// Handles a frame of the slave's explicit answers.
+    /// Handles a frame of an explicit answer of the slave.
     pub(super) fn take(&mut self, now: Now, bytes: &[u8]) -> Option<Outcome> {
         let (first, body) = bytes.split_first()?;
         let header = Header::parse(*first);
-        // The transaction id excludes late and duplicate answers to the previous request.
+        // A late or duplicate answer to the previous request has another transaction id.
         if header.mac != self.own || header.xid != self.xid {
             return None;
         }
@@ -130,14 +131,14 @@ impl Requester {
         };
         current.deadline = now + self.patience;
         match &mut current.answer {
-            // A duplicate: its acknowledgement was lost.
+            // This fragment is a duplicate, because its acknowledgement was lost.
             Some((_, last)) if *last == count => {}
             Some((answer, last)) if kind != Kind::First && count == (*last + 1) % 64 => {
                 answer.extend(part);
                 *last = count;
             }
             None if kind == Kind::First && count == 0 => current.answer = Some((part.to_vec(), 0)),
-            // After a gap, the slave repeats the missing fragment or the whole answer.
+            // A fragment is missing. The slave will repeat the missing fragment or the whole answer.
             _ => return None,
         }
         self.acknowledge(count);
@@ -155,7 +156,7 @@ impl Requester {
             self.answered(answer)
         } else {
             self.current = None;
-            Some(Outcome::Senseless("it is not an answer"))
+            Some(Outcome::Senseless("it cannot be decoded"))
         }
     }
 
@@ -175,7 +176,7 @@ impl Requester {
         let index = current.sending.filter(|index| Fragment::of(*index, index + 2).count == count)?;
         if status != TAKEN {
             self.current = None;
-            return Some(Outcome::Senseless("the request is too long for it"));
+            return Some(Outcome::Senseless("the request is too long for this device"));
         }
         (current.tries, current.deadline) = (TRIES, now + self.patience);
         let next = index + 1;
@@ -233,7 +234,7 @@ mod tests {
         std::iter::from_fn(|| requester.send()).map(|frame| frame.to_string()).collect()
     }
 
-    /// A name of ten characters in fragments, each acknowledged.
+    /// A name of ten characters arrives in fragments, and each fragment is acknowledged.
     #[test]
     fn a_long_answer_is_put_together_and_acknowledged() {
         let mut requester = requester();
@@ -246,7 +247,7 @@ mod tests {
         let answer = Outcome::Answer(Answer::Done { service: service::GET, data });
         assert_eq!(requester.take(NOW, &last), Some(answer));
         assert_eq!(sent(&mut requester), ["42C#81C100"]);
-        // The acknowledgement was lost. The fragment comes again and is acknowledged again.
+        // The acknowledgement was lost, so the slave sends the fragment again. It is acknowledged again.
         assert_eq!(requester.take(NOW, &last), None);
         assert_eq!(sent(&mut requester), ["42C#81C100"]);
     }
@@ -260,7 +261,7 @@ mod tests {
         assert_eq!(requester.take(NOW, &first), None);
         assert_eq!(requester.take(NOW, &first), None);
         assert_eq!(sent(&mut requester).len(), 2);
-        // A fragment out of order is not accepted.
+        // A fragment that arrives out of order is not accepted.
         assert_eq!(requester.take(NOW, &[0x81, 0x82, 9]), None);
         assert!(sent(&mut requester).is_empty());
         let Some(Outcome::Answer(Answer::Done { data, .. })) = requester.take(NOW, &[0x81, 0x81, 5, 6, 7]) else {

@@ -6,17 +6,17 @@ use crate::devicenet::error::Error;
 use crate::image::view;
 pub use crate::image::view::{Input, State};
 
-/// State of a connection. A change counts as sent after a poll with it was answered.
+/// State of a connection. A change counts as sent after the slave has answered a poll that contained it.
 pub type View = view::View<Error, Statistics, Details>;
 /// Receiver of state changes.
 pub type Views = view::Views<Error, Statistics, Details>;
 
-/// Counters.
+/// Counters of the polls and frames.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Statistics {
     /// Polls sent.
     pub sent: u64,
-    /// Polls answered with a whole image.
+    /// Polls that the slave answered with a whole image.
     pub received: u64,
     /// Polls without an answer in time.
     pub missed: u64,
@@ -24,14 +24,14 @@ pub struct Statistics {
     pub wrong: u64,
     /// Complete answers that came too late and were dropped.
     pub late: u64,
-    /// Polls omitted because a whole cycle was missed.
+    /// Polls that were not sent, because a whole cycle was missed.
     pub skipped: u64,
 }
 
 /// Details that only DeviceNet has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Details {
-    /// Image size in bytes, the same in both directions, once known.
+    /// Image size in bytes, the same in both directions; `None` until it is known.
     pub size: Option<usize>,
     /// Packet rate that the slave has accepted.
     pub rate: Option<Duration>,

@@ -13,8 +13,8 @@ const KINDS: [Line; 5] = [
     Line { drop: 100, double: 100, late: 100, swap: 100, reorder: 0 },
 ];
 
-/// Sends numbered images for two seconds. As with commands, each image is confirmed before the next one. No image may
-/// be confirmed that the slave did not get.
+/// Sends numbered images for two seconds. Each image is sent only after the previous one is confirmed, as with
+/// commands. The master must not confirm an image that the slave did not receive.
 fn numbered(line: Line, seed: u64, size: u16, context: &str) -> World {
     let mut world = World::linked(size, seed);
     world.line = line;
@@ -44,7 +44,7 @@ fn numbered(line: Line, seed: u64, size: u16, context: &str) -> World {
     world
 }
 
-/// On any bus, the slave gets the images in order, and no image again after a later one.
+/// On any bus, the slave receives the images in order. It receives no image again after a later one.
 #[test]
 fn no_image_comes_twice_or_is_told_wrongly() {
     for (kind, line) in KINDS.iter().enumerate() {
@@ -66,10 +66,10 @@ fn no_image_comes_twice_or_is_told_wrongly() {
     }
 }
 
-/// Frames with the same identifier overtake each other. Within a fragmented image, counts detect this, so no command is
-/// mixed or repeated. Two cases have no mark and cannot be detected. The last fragment of one image can replace that of
-/// the next (six bytes of general-purpose signals). An image in a single frame (4 bytes, no commands) can come back for
-/// one cycle.
+/// Frames with the same identifier overtake each other. Within a fragmented image, the fragment counts reveal this, so
+/// no command is mixed or repeated. Two cases cannot be detected, because nothing distinguishes the frames. The last
+/// fragment of one image can replace the last fragment of the next image (six bytes of general-purpose signals). An
+/// image in a single frame (4 bytes, without commands) can return for one cycle.
 #[test]
 fn frames_of_one_identifier_out_of_order_make_no_command() {
     /// Offset of the last fragment.
@@ -95,7 +95,7 @@ fn frames_of_one_identifier_out_of_order_make_no_command() {
     }
 }
 
-/// Half an hour of polls with 1 % lost frames; less for the small images.
+/// Half an hour of polls with 1 % lost frames; a shorter time for the small images.
 #[test]
 fn half_an_hour_at_one_percent_loses_no_image_and_does_not_drift() {
     polls_at_one_percent(4, SECOND * 180);
@@ -119,7 +119,7 @@ fn polls_at_one_percent(size: u16, time: Duration) {
     let view = world.view();
     assert_eq!((view.state, view.generation), (State::Open, 1), "{:?}", view.trouble);
     assert_eq!(shown, taken);
-    // Except for polls that were late because an answer was missing, there is one poll every 20 ms.
+    // There is one poll every 20 ms, except for polls that were delayed because an answer was missing.
     let all = world.now.saturating_sub(start).as_millis() / 20;
     assert!(
         u128::from(view.statistics.sent + view.statistics.skipped).abs_diff(all) < 10,
@@ -128,7 +128,7 @@ fn polls_at_one_percent(size: u16, time: Duration) {
     );
 }
 
-/// The bus load is what the bits need: 14 frames and the gap between polls.
+/// An exchange takes only the time of its bits: 14 frames and the gap between polls.
 #[test]
 fn an_exchange_takes_hardly_more_than_its_bits() {
     let mut world = World::linked(48, 1);

@@ -1,4 +1,4 @@
-//! Opening, running and closing a connection without losses, and errors of a failed opening.
+//! Tests of opening, running and closing a connection without losses, and of the errors of a failed opening.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ fn frames(world: &World) -> Vec<String> {
 }
 
 /// Master 1 and slave 5 after power-on: every frame up to the first images. The first request of our master has xid 0
-/// and the next one xid 1. Recorded masters always use 0.
+/// and the next request has xid 1. Recorded masters always use xid 0.
 #[test]
 fn a_connection_begins_with_the_known_frames() {
     let mut world = World::new(vec![Device::new(setup(5, 48), Mirror::default())], 1);
@@ -47,7 +47,7 @@ fn a_connection_begins_with_the_known_frames() {
     assert_eq!(got[19], "3C5#0041000000000000");
     let view = world.view();
     assert_eq!((view.details.size, view.details.rate, view.generation), (Some(48), Some(MS * 100), 1));
-    // The first image that the controller gets is the resting image.
+    // The first image that the controller receives is the resting image.
     assert_eq!(world.mirror().history[0].1, resting(48));
     let checked = world.trace.iter().position(|(_, frame)| frame.id() == 0x42E).unwrap();
     assert!(world.trace[checked].0 >= SECOND * 2, "two seconds of checking the MAC");
@@ -120,7 +120,7 @@ fn what_hinders_a_connection_is_told() {
         state: BusState::Active,
     };
     assert_eq!(refused(with(DeviceFault::Mute)), silent);
-    // Another node is present, but not this one.
+    // Another node is present, but not this slave.
     let other = refused(Device::on_line(setup(6, 48), Mirror::default()));
     assert!(matches!(other, Error::Silent { .. }), "{other}");
 }
@@ -138,12 +138,13 @@ fn another_masters_slave_is_not_taken() {
         serial: 8,
     });
     other.scanner.open(LINK, images(5)).unwrap();
-    // The first master is silent and the poll connection times out. The explicit connection lives 10 s.
+    // The first master is silent, so its poll connection times out. Its explicit connection stays open for 10 s.
     other.until(SECOND * 5, |world| world.view().state == State::Closed);
     assert_eq!(other.view().trouble, Some(Error::Owned { mac: mac(5) }));
 }
 
-/// A process with the same MAC was killed. Its connections are released and allocated again.
+/// A process with the same MAC was killed. The master releases the connections of that process and allocates them
+/// again.
 #[test]
 fn what_the_own_mac_left_behind_is_taken_over() {
     let mut world = World::linked(48, 1);
@@ -190,7 +191,7 @@ fn a_slave_that_was_switched_off_is_found_again() {
     world.until(SECOND, |world| world.view().state == State::Lost);
     world.run(SECOND * 20);
     let now = world.now;
-    // The slave restarts and checks its MAC first.
+    // The slave restarts, and checks its MAC first.
     let mut fresh = Device::new(setup(5, 4), Mirror::default());
     while fresh.wake().is_some_and(|wake| wake < now) && !fresh.is_on_line() {
         let _ = fresh.poll(now);

@@ -1,5 +1,5 @@
 //! Tests with other implementations over SLCAN adapters of python-can: a master and a strict slave in Python, and the
-//! master `devicenet-py`. `ARMCTL_DEVICENET_PEERS` names the folder that `peers/install` made.
+//! master `devicenet-py`. `ARMCTL_DEVICENET_PEERS` is the folder that `peers/install` created.
 
 use std::io::{BufRead as _, BufReader, Read as _};
 use std::net::SocketAddr;
@@ -13,7 +13,7 @@ use crate::devicenet::hub::{Hub, Listen};
 use crate::devicenet::network::{Adapter, Network, Place, Tap};
 use crate::devicenet::scanner::Identity;
 
-/// Python with python-can, and the path of a script.
+/// Returns the path of a Python with python-can, and the path of a script.
 fn script(name: &str) -> Option<(PathBuf, PathBuf)> {
     let Some(folder) = std::env::var_os("ARMCTL_DEVICENET_PEERS") else {
         println!("skipped: ARMCTL_DEVICENET_PEERS does not name a folder of devicenet/tests/peers/install");
@@ -23,7 +23,7 @@ fn script(name: &str) -> Option<(PathBuf, PathBuf)> {
     Some((Path::new(&folder).join("bin/python"), scripts.join(name)))
 }
 
-/// TCP first, because our master uses the first endpoint.
+/// Returns the endpoints of the hub. TCP is first, because our master uses the first endpoint.
 fn listen() -> Vec<Listen> {
     let mut listen = vec![Listen::Tcp(SocketAddr::from(([127, 0, 0, 1], 0)))];
     #[cfg(unix)]
@@ -31,7 +31,7 @@ fn listen() -> Vec<Listen> {
     listen
 }
 
-/// Index of each endpoint, with each image size.
+/// Returns the index of each endpoint, combined with each image size.
 fn channels() -> impl Iterator<Item = (usize, u16)> {
     (0..listen().len()).flat_map(|place| [48, 4].map(|size| (place, size)))
 }

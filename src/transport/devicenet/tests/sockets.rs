@@ -1,4 +1,4 @@
-//! Master on its thread, with slaves behind SLCAN adapters on TCP and on a pseudo-terminal.
+//! Tests of the master on its own thread, with slaves behind SLCAN adapters on TCP and on a pseudo-terminal.
 
 use std::net::SocketAddr;
 
@@ -67,7 +67,7 @@ async fn images_travel_over_tcp_and_over_a_pseudo_terminal() {
 async fn several_adapters_share_a_hub_and_one_of_them_listens() {
     let hub = hub(4, &[anywhere()]);
     let master = Network::open(&adapter(place(&hub), 1), Tap::default()).await.unwrap();
-    // Another process would have its own adapter. Here another name for the same endpoint has the same effect.
+    // Another process would have its own adapter. A second name for the same endpoint has the same effect.
     let Place::Tcp { port, .. } = place(&hub) else { panic!() };
     let elsewhere = Place::Tcp { host: "localhost".to_owned(), port };
     let listener = Network::open(&Adapter { identity: None, ..adapter(elsewhere, 0) }, Tap::default()).await.unwrap();
@@ -76,7 +76,7 @@ async fn several_adapters_share_a_hub_and_one_of_them_listens() {
     let sight = listener.listen(mac(5), SECOND * 20).await;
     assert_eq!(sight.output.map(|seen| seen.image), Some(resting(4)));
     assert!(sight.input.is_some());
-    // One adapter has one master.
+    // An adapter has only one master.
     assert!(matches!(Network::open(&adapter(place(&hub), 2), Tap::default()).await, Err(Error::Settings(_))));
     let same = Network::open(&adapter(place(&hub), 1), Tap::default()).await.unwrap();
     assert!(matches!(same.connect(images(5)).await, Err(Error::Settings(_))));
@@ -103,7 +103,7 @@ async fn an_adapter_that_goes_is_a_loss_and_one_that_comes_back_is_used() {
     assert!(matches!(view.trouble, Some(Error::Port(PortError::Gone { .. }))), "{:?}", view.trouble);
     let device = Device::on_line(setup(5, 48), Mirror::default());
     let second = loop {
-        // The system can still hold the port for a moment.
+        // The system may keep the port in use for a short time.
         match Hub::start(Bitrate::K500, Some(device_like(&device)), &[Listen::Tcp(address)], None) {
             Ok(hub) => break hub,
             Err(_) => tokio::task::yield_now().await,
@@ -145,7 +145,7 @@ async fn what_is_no_adapter_is_told() {
     }
 }
 
-/// What answers no command, but sends a byte now and then, however slowly.
+/// The peer answers no command, but sends a byte from time to time, at different speeds.
 #[tokio::test]
 async fn what_sends_something_else_is_no_adapter() {
     for text in ["t4058AABBCCDDEEFF0011\r", "x", "z\r\x07"] {
@@ -191,7 +191,7 @@ async fn the_lines_of_python_can_are_borne() {
     let mut stream = TcpStream::connect(hub.places()[0].as_str()).await.unwrap();
     stream.write_all(b"C\rS6\r\rO\rO\rt42FZ\rt42F700FFFF07000000\r").await.unwrap();
     let mut got = Vec::new();
-    // The slave answers the check of MAC 5.
+    // Read until the slave has answered the check of MAC 5.
     while !got.ends_with(b"t42F7807C02EEFFC000\r") {
         assert!(stream.read_buf(&mut got).await.unwrap() > 0);
     }
@@ -206,6 +206,6 @@ async fn a_forgotten_connection_is_released() {
     let connection = network.connect(settings).await.unwrap();
     assert_eq!(hub.with(|device, _| device.master()), Some(Some(mac(1))));
     drop((connection, network));
-    // Dropping waits until the adapter is closed.
+    // The drop has waited until the adapter was closed.
     assert_eq!(hub.with(|device, _| device.master()), Some(None));
 }

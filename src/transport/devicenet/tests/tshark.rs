@@ -5,7 +5,7 @@ use std::process::Command;
 use crate::devicenet::can::Frame;
 use crate::devicenet::wire::{DuplicateCheck, Id, Mac};
 
-/// A pcap file with link type 227.
+/// Creates a pcap file with link type 227.
 fn capture(frames: &[Frame]) -> Vec<u8> {
     let mut file = Vec::new();
     for word in [0xA1B2_C3D4u32, 2 | 4 << 16, 0, 0, 65_535, 227] {
@@ -22,7 +22,7 @@ fn capture(frames: &[Frame]) -> Vec<u8> {
     file
 }
 
-/// Fields that tshark decodes from each frame; `None` if tshark is not installed.
+/// Returns the fields that tshark decodes from each frame; `None` if tshark is not installed.
 fn fields(frames: &[Frame], names: &[&str]) -> Option<Vec<Vec<String>>> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("devicenet.pcap");
@@ -41,7 +41,7 @@ fn fields(frames: &[Frame], names: &[&str]) -> Option<Vec<Vec<String>>> {
     Some(text.lines().map(|line| line.split('\t').map(str::to_owned).collect()).collect())
 }
 
-/// Name that tshark gives a message.
+/// Name that tshark shows for a message.
 fn name(id: Id) -> Option<&'static str> {
     Some(match id {
         Id::Group1(..) => "Other Group 1 Message",
@@ -57,7 +57,7 @@ fn name(id: Id) -> Option<&'static str> {
         Id::Poll(_) => "Master's I/O Poll Command/COS/Cyclic Messages",
         Id::Unconnected(_) => "Group 2 Only Unconnected Explicit Request Messages",
         Id::Duplicate(_) => "Duplicate MAC ID Check Messages",
-        // tshark shows the name of the service instead.
+        // For these messages, tshark shows the name of the service instead.
         Id::Group3(..) | Id::UnconnectedAnswer(_) | Id::UnconnectedRequest(_) => return None,
         Id::Group4(0x2C) => "Communication Faulted Response Message",
         Id::Group4(0x2D) => "Communication Faulted Request Message",
@@ -85,7 +85,7 @@ fn every_identifier_has_the_name_that_tshark_gives_it() {
             None => assert_eq!(message3.parse::<u16>().unwrap(), (frame.id() - 0x600) >> 6, "{frame}"),
         }
         if let Some(mac) = id.sender() {
-            // The MAC of a multicast poll is a group; the others are nodes.
+            // The MAC of a multicast poll is the MAC of a group. The other MACs are nodes.
             assert_eq!(source.parse::<u8>().unwrap(), mac.number(), "{frame}");
         }
     }

@@ -1,5 +1,6 @@
 //! Test bench: a master and slaves on a bus in virtual time. Frames can be lost, doubled, delayed and reordered on the
-//! way to each receiver. Frames with the same identifier keep their order, because one node sends them in sequence.
+//! way to each receiver. Frames with the same identifier normally keep their order, because one node sends them in
+//! sequence.
 
 use std::collections::HashMap;
 use std::time::Duration;
@@ -23,7 +24,7 @@ pub fn mac(number: u8) -> Mac {
     Mac::new(number).unwrap()
 }
 
-/// Echo application: returns the received image and counts.
+/// Echo application: returns the image that it receives, with a counter.
 #[derive(Debug, Default)]
 pub struct Mirror {
     pub image: Vec<u8>,
@@ -58,7 +59,7 @@ pub fn setup(number: u8, size: u16) -> Setup {
     Setup { serial: 0x00C0_FFEE, name, ..Setup::stand_in(mac(number), Bitrate::K500, size) }
 }
 
-/// A resting image that is not all zeros.
+/// Returns a resting image that is not all zeros.
 pub fn resting(size: usize) -> Vec<u8> {
     let mut image = vec![0; size];
     image[0] = 0x41;
@@ -76,9 +77,10 @@ pub struct Line {
     pub drop: u16,
     pub double: u16,
     pub late: u16,
-    /// Short delays, so that frames with other identifiers overtake.
+    /// Rate of short delays. Delayed frames are overtaken by frames with other identifiers.
     pub swap: u16,
-    /// Delays beyond later frames with the same identifier. No bus does this, but a broken adapter can.
+    /// Rate of long delays. Delayed frames are overtaken by later frames with the same identifier. No bus does this,
+    /// but a faulty adapter can do it.
     pub reorder: u16,
 }
 
@@ -89,14 +91,14 @@ pub struct World {
     pub devices: Vec<Device<Mirror>>,
     pub bus: Bus,
     pub line: Line,
-    /// No frame passes.
+    /// Whether the bus is cut, so that no frame passes.
     pub is_cut: bool,
     pub trace: Vec<(Now, Frame)>,
     pub replies: Vec<Reply>,
     rng: Rng,
     /// Delayed frames: time, receiver, frame.
     arriving: Vec<(Now, usize, Frame)>,
-    /// Arrival of the last frame of an identifier at a node.
+    /// Arrival of the last frame, by node and identifier.
     last: HashMap<(usize, u16), Now>,
 }
 
@@ -118,7 +120,7 @@ impl World {
         }
     }
 
-    /// Slave 5, on line, with images of this size and an open link.
+    /// Creates slave 5 on line with images of this size, and an open link.
     pub fn linked(size: u16, seed: u64) -> Self {
         let mut world = Self::new(vec![Device::on_line(setup(5, size), Mirror::default())], seed);
         world.scanner.open(LINK, images(5)).unwrap();
@@ -189,8 +191,8 @@ impl World {
         let next = wakes.chain(self.arriving.iter().map(|(at, ..)| *at)).min();
         self.now = next.map_or(end, |next| next.clamp(now, end));
         if self.now == now && next.is_some_and(|next| next <= now) {
-            // Immediate work is done at the start of the next step. Advance a little, so that endless immediate work is
-            // detected.
+            // Work that is due at once is done at the start of the next step. The time advances a little, so that
+            // endless immediate work is detected.
             self.now += Duration::from_nanos(100);
         }
     }

@@ -1,9 +1,9 @@
-//! Duplicate MAC check: two requests before a node goes on line, and the answer of a node with the same MAC.
+//! Duplicate MAC check: a node sends two requests before it goes on line, and a node with the same MAC answers.
 
 /// A request or answer of the check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct DuplicateCheck {
-    /// Whether it is an answer.
+    /// Whether the message is an answer.
     pub is_answer: bool,
     /// Physical port number; 0 on DeviceNet.
     pub port: u8,

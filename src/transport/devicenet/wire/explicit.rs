@@ -2,7 +2,7 @@
 
 use super::Mac;
 
-/// Service codes. Answers also have the bit `ANSWER`.
+/// Service codes. In answers, the bit `ANSWER` is added.
 pub mod service {
     /// Restart the node.
     pub const RESET: u8 = 0x05;
@@ -20,7 +20,7 @@ pub mod service {
     pub const HEARTBEAT: u8 = 0x4D;
     /// A node goes off line.
     pub const SHUTDOWN: u8 = 0x4E;
-    /// Bit of the service code in answers.
+    /// Bit that is set in the service code of an answer.
     pub const ANSWER: u8 = 0x80;
 }
 
@@ -79,11 +79,11 @@ pub mod general {
     pub const fn meaning(code: u8) -> &'static str {
         match code {
             NO_RESOURCE => "no resource left",
-            0x04 | NO_PATH => "no such object",
+            0x04 | NO_PATH => "the device has no such object",
             NO_SERVICE => "no such service",
             INVALID_VALUE => "invalid value",
             ALREADY => "it is already in that state",
-            CONFLICT => "not in its present state",
+            CONFLICT => "not possible in its present state",
             NOT_SETTABLE => "not settable",
             0x0F => "no permission",
             0x10 => "its state does not allow this",
@@ -100,7 +100,7 @@ pub mod general {
 
 /// Additional error codes of allocate and release.
 pub mod owner {
-    /// Another master has the connections.
+    /// Another master owns the connections.
     pub const ANOTHER_MASTER: u8 = 0x01;
     /// The choice is not valid.
     pub const INVALID_CHOICE: u8 = 0x02;
@@ -126,7 +126,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// Decodes the message body format of an allocate answer. Code 4 is a path; higher codes are not defined.
+    /// Decodes the message body format in the answer to an allocation. Code 4 is a path; higher codes are not defined.
     pub const fn from_code(code: u8) -> Option<Self> {
         Some(match code {
             0 => Self::Byte8Byte8,
@@ -153,7 +153,7 @@ impl Format {
 pub struct Header {
     /// Whether a fragment byte follows.
     pub is_fragment: bool,
-    /// Transaction id. An answer repeats it.
+    /// Transaction id. The answer has the same transaction id as the request.
     pub xid: bool,
     /// MAC of the other node.
     pub mac: Mac,
@@ -194,24 +194,24 @@ pub struct Request {
 }
 
 impl Request {
-    /// Get_Attribute_Single.
+    /// Creates a request Get_Attribute_Single.
     pub fn get(class: u8, instance: u16, attribute: u8) -> Self {
         Self { service: service::GET, class: class.into(), instance, data: vec![attribute] }
     }
 
-    /// Set_Attribute_Single.
+    /// Creates a request Set_Attribute_Single.
     pub fn set(class: u8, instance: u16, attribute: u8, value: &[u8]) -> Self {
         let data = [&[attribute], value].concat();
         Self { service: service::SET, class: class.into(), instance, data }
     }
 
-    /// Allocates connections for this master.
+    /// Creates a request that allocates connections for this master.
     pub fn allocate(choice: u8, master: Mac) -> Self {
         let data = vec![choice, master.number()];
         Self { service: service::ALLOCATE, class: class::DEVICENET.into(), instance: 1, data }
     }
 
-    /// Releases connections.
+    /// Creates a request that releases connections.
     pub fn release(choice: u8) -> Self {
         Self { service: service::RELEASE, class: class::DEVICENET.into(), instance: 1, data: vec![choice] }
     }
@@ -233,7 +233,7 @@ impl Request {
         Some(bytes)
     }
 
-    /// Decodes a request; `None` if it is too short or an answer.
+    /// Decodes a request; `None` if the message is too short or is an answer.
     pub fn parse(format: Format, bytes: &[u8]) -> Option<Self> {
         let (service, rest) = bytes.split_first()?;
         if service & service::ANSWER != 0 {
@@ -280,7 +280,7 @@ pub enum Answer {
 }
 
 impl Answer {
-    /// Decodes an answer; `None` if it is not one.
+    /// Decodes an answer; `None` if the message is not an answer.
     pub fn parse(bytes: &[u8]) -> Option<Self> {
         let (service, data) = bytes.split_first()?;
         if service & service::ANSWER == 0 {
@@ -324,7 +324,7 @@ mod tests {
         Mac::new(number).unwrap()
     }
 
-    /// Master 1 opens a connection to slave 5; the header is 01.
+    /// Master 1 opens a connection to slave 5. The header byte is 01.
     #[test]
     fn requests_of_a_start_have_the_recorded_bytes() {
         for (request, bytes) in [

@@ -18,12 +18,12 @@ pub enum Kind {
 pub struct Fragment {
     /// Fragment type.
     pub kind: Kind,
-    /// Count from 0, modulo 64.
+    /// Count of the fragment, from 0, modulo 64.
     pub count: u8,
 }
 
 impl Fragment {
-    /// Count of a cyclic fragment that is both first and last.
+    /// Count of a cyclic fragment that is the first and the last fragment.
     pub const ONLY: u8 = 0x3F;
 
     /// Decodes the byte.
@@ -48,7 +48,7 @@ impl Fragment {
         kind << 6 | self.count & 0x3F
     }
 
-    /// Fragment byte of piece `index` of `pieces`.
+    /// Returns the fragment byte of the piece with this index, out of `pieces` pieces.
     pub fn of(index: usize, pieces: usize) -> Self {
         let kind = match index {
             0 => Kind::First,

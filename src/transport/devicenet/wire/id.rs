@@ -11,12 +11,12 @@ impl Mac {
     /// Highest MAC.
     pub const LAST: u8 = 63;
 
-    /// Creates a MAC; `None` above 63.
+    /// Creates a MAC; `None` if the number is above 63.
     pub const fn new(number: u8) -> Option<Self> {
         if number <= Self::LAST { Some(Self(number)) } else { None }
     }
 
-    /// MAC from the lower six bits.
+    /// Creates a MAC from the lower six bits.
     pub const fn from_bits(bits: u16) -> Self {
         Self(bits.to_le_bytes()[0] & Self::LAST)
     }
@@ -54,7 +54,7 @@ impl FromStr for Mac {
 /// Meaning of an 11-bit identifier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Id {
-    /// Other group 1 message, 0 to 11. Not used by the predefined set.
+    /// Other group 1 message, 0 to 11. The predefined master/slave connection set does not use it.
     Group1(u8, Mac),
     /// Slave's multicast poll response.
     MulticastAnswer(Mac),
@@ -119,7 +119,7 @@ impl Id {
         })
     }
 
-    /// Encodes the identifier. Message numbers are limited to their group.
+    /// Encodes the identifier. A message number that is too high for its group is limited.
     pub fn emit(self) -> u16 {
         let group2 = |mac: Mac, message: u16| 0x400 | mac.bits() << 3 | message;
         match self {
@@ -182,7 +182,7 @@ impl Id {
     }
 }
 
-/// Text for traces: `MAC 5: answer to a poll`.
+/// Text for traces, for example `MAC 5: answer to a poll`.
 impl fmt::Display for Id {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (mac, what) = match *self {

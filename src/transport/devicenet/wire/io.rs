@@ -6,7 +6,7 @@ use crate::devicenet::can::MOST_DATA;
 /// Data bytes per fragment.
 const PART: usize = MOST_DATA - 1;
 
-/// Splits an image into frames. Its length must be the size of the connection.
+/// Splits an image into frames. The length of the image must be the size of the connection.
 pub fn split(image: &[u8]) -> Vec<Vec<u8>> {
     if image.len() <= MOST_DATA {
         return vec![image.to_vec()];
@@ -33,12 +33,13 @@ pub enum Piece {
     Wrong,
 }
 
-/// Reassembly for a connection of a known size. A gap drops everything up to the next first fragment.
+/// Reassembly of the images of a connection of known size. After a missing frame, all frames up to the next first
+/// fragment are dropped.
 #[derive(Debug, Clone)]
 pub struct Assembler {
     size: usize,
     parts: Vec<u8>,
-    /// Expected count; `None` before a first fragment.
+    /// Expected count of the next fragment; `None` before a first fragment.
     next: Option<u8>,
 }
 
@@ -65,8 +66,8 @@ impl Assembler {
         let Fragment { kind, count } = Fragment::parse(*first);
         let expected = self.next.take();
         match kind {
-            // A first fragment starts a new image even if the last one is incomplete. But after two first fragments in
-            // a row the order is uncertain: the following fragments can belong to either.
+            // A first fragment starts a new image even if the last image is incomplete. After two first fragments in a
+            // row, however, the order is uncertain: the next fragments may belong to either image.
             Kind::First if count == 0 && part.len() < self.size && expected != Some(1) => {
                 self.parts = part.to_vec();
                 self.next = Some(1);
@@ -105,7 +106,7 @@ mod tests {
         assert_eq!(assembler.take(&frames[6]), Piece::Whole(image));
     }
 
-    /// With a faulty adapter that mixes up frames, the rest would follow an older beginning.
+    /// A faulty adapter may change the order of frames. The rest of an image could then follow an older first fragment.
     #[test]
     fn of_two_beginnings_in_a_row_neither_is_taken() {
         let (older, newer) = (split(&[1; 48]), split(&[2; 48]));
@@ -125,7 +126,7 @@ mod tests {
         assert_eq!(assembler.take(&[]), Piece::Idle);
     }
 
-    /// A lost, doubled or exchanged frame damages its own image and no other.
+    /// A lost, doubled or exchanged frame damages only its own image.
     #[test]
     fn what_is_damaged_is_dropped_and_the_next_is_whole() {
         let image: Vec<u8> = (0..48).collect();

@@ -5,35 +5,35 @@ use super::super::wire::Cyclic;
 /// A fault of the adapter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum AdapterFault {
-    /// Sends only every other image.
+    /// The adapter sends only every other image.
     HalfRate,
-    /// Sends no images.
+    /// The adapter sends no images.
     Stall,
-    /// Sends every image with the sequence numbers of the previous one.
+    /// The adapter sends every image with the sequence numbers of the previous image.
     Stale,
-    /// Sends every image twice.
+    /// The adapter sends every image twice.
     Double,
-    /// Counts backwards.
+    /// The sequence numbers decrease.
     WrongSequence,
-    /// Sends images with an unknown connection id.
+    /// The adapter sends images with an unknown connection id.
     WrongId,
-    /// Sends images that are one byte short.
+    /// The adapter sends images that are one byte too short.
     WrongSize,
-    /// Repeats its first image: the application behind it has stopped.
+    /// The adapter repeats its first image, as if the application behind it had stopped.
     Frozen,
-    /// Refuses to read assemblies with messages.
+    /// The adapter refuses reads of assemblies with messages.
     Unreadable,
-    /// Closes the TCP connection at every request.
+    /// The adapter closes the TCP connection at every request.
     Reset,
-    /// Answers no request.
+    /// The adapter answers no request.
     Mute,
-    /// Closes the TCP connection at every Set_Attribute.
+    /// The adapter closes the TCP connection at every Set_Attribute.
     ResetSet,
-    /// Sends garbage.
+    /// The adapter sends random bytes.
     Garbage,
-    /// Appends a socket address after the counted items of a ForwardOpen reply, as OpENer boards do.
+    /// The adapter appends a socket address after the counted items of a ForwardOpen reply, as OpENer boards do.
     Trailing,
-    /// Does not report an owner in its status, and checks the owner before the sizes, as OpENer boards do.
+    /// The adapter does not report an owner in its status, and checks the owner before the sizes, as OpENer boards do.
     Unowned,
 }
 
@@ -61,7 +61,7 @@ impl AdapterFault {
     ];
 }
 
-/// Applies a fault to image number `number`.
+/// Applies a fault to the image with this number. Returns the datagrams to send.
 pub(super) fn images(fault: Option<AdapterFault>, number: u64, bytes: Vec<u8>) -> Vec<Vec<u8>> {
     let Some(fault) = fault else { return vec![bytes] };
     let changed = |change: fn(&mut Cyclic<'_>)| {
@@ -73,7 +73,7 @@ pub(super) fn images(fault: Option<AdapterFault>, number: u64, bytes: Vec<u8>) -
         AdapterFault::HalfRate if number.is_multiple_of(2) => Vec::new(),
         AdapterFault::Stall => Vec::new(),
         AdapterFault::Stale => changed(|datagram| {
-            // The first image is correct, because there is no previous one.
+            // The first image is correct, because there is no previous image.
             datagram.sequence = datagram.sequence.min(1);
             datagram.count = datagram.count.min(1);
         }),

@@ -1,4 +1,5 @@
-//! Simulated EtherNet/IP adapter with assemblies. It has no sockets and no clock, and is stricter than real devices.
+//! Simulated EtherNet/IP adapter with assemblies. The adapter has no sockets and no clock. It is stricter than real
+//! devices.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -37,14 +38,14 @@ const NOT_ENOUGH_DATA: u8 = 0x13;
 /// Extended status of a refused close.
 const NOT_FOUND: u16 = 0x0107;
 
-/// Use of an assembly, from the originator's view.
+/// Use of an assembly, from the view of the originator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Purpose {
-    /// Produced by the adapter.
+    /// The adapter produces the data.
     Input,
-    /// Consumed by the adapter.
+    /// The adapter consumes the data.
     Output,
-    /// Consumed when a connection opens.
+    /// The adapter consumes the data when a connection opens.
     Configuration,
 }
 
@@ -62,7 +63,7 @@ pub struct Assembly {
 /// Configuration of an adapter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Setup {
-    /// Identity. Its address is the one that the adapter listens on.
+    /// Identity of the adapter. The address in it is replaced by the address on which the adapter listens.
     pub identity: Identity,
     /// Assemblies.
     pub assemblies: Vec<Assembly>,
@@ -72,11 +73,11 @@ pub struct Setup {
     pub listen_only: u32,
     /// Supported intervals (RPI).
     pub rpi: RangeInclusive<Duration>,
-    /// Intervals are rounded up to a multiple of this.
+    /// Requested intervals are rounded up to a multiple of this time.
     pub tick: Duration,
-    /// Connection limit.
+    /// Maximum number of connections.
     pub most_connections: usize,
-    /// Session limit.
+    /// Maximum number of sessions.
     pub most_sessions: usize,
     /// UDP port for images.
     pub io_port: u16,
@@ -84,13 +85,13 @@ pub struct Setup {
     pub group: Ipv4Addr,
 }
 
-/// Behaviour behind the adapter.
+/// Application behind the adapter.
 pub trait Application: Send {
     /// Receives a new image from the owner, with the run/idle bit.
     fn image_out(&mut self, now: Now, instance: u32, image: &[u8], run: bool);
     /// Updates the image to originators. The buffer contains the previous image.
     fn image_in(&mut self, now: Now, instance: u32, image: &mut [u8]);
-    /// A connection was opened or closed.
+    /// Handles the opening or the end of a connection.
     fn event(&mut self, now: Now, event: &Event);
 }
 
@@ -99,7 +100,8 @@ pub trait Application: Send {
 pub enum Event {
     /// The connection was opened.
     Opened(Peer),
-    /// The originator closed it, or the connection that it listened to was closed.
+    /// The originator closed the connection. A listen-only connection also closes with the connection that it depends
+    /// on.
     Closed(Peer),
     /// The originator timed out.
     TimedOut(Peer),
@@ -122,7 +124,7 @@ pub struct Peer {
     pub t_o: Duration,
 }
 
-/// An action for the driver.
+/// An action that the driver must execute.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Output {
     /// Send these bytes to a TCP client.
@@ -148,7 +150,7 @@ struct Held {
     peer: Peer,
     triad: Triad,
     consumer: Consumer,
-    /// `None` if another connection already sends to the same group.
+    /// Sender of the images; `None` if another connection already sends to the same group.
     producer: Option<Producer>,
     t_o_id: u32,
     destination: SocketAddrV4,
@@ -192,13 +194,13 @@ impl<A: Application> Adapter<A> {
         &mut self.application
     }
 
-    /// Sets the address and port after the sockets are bound.
+    /// Sets the address and the image port. The driver calls this function after it has bound the sockets.
     pub const fn listens(&mut self, address: SocketAddrV4, io_port: u16) {
         self.setup.identity.address = address;
         self.setup.io_port = io_port;
     }
 
-    /// Activates a fault, or none.
+    /// Activates a fault; `None` deactivates the active fault.
     pub const fn set_fault(&mut self, fault: Option<AdapterFault>) {
         self.fault = fault;
     }
@@ -208,12 +210,12 @@ impl<A: Application> Adapter<A> {
         self.held.iter().map(|held| &held.peer)
     }
 
-    /// A TCP client connected.
+    /// Handles a new TCP client.
     pub fn connected(&mut self, client: u64, address: Ipv4Addr) {
         self.clients.insert(client, Client { address, frames: Frames::default(), session: None });
     }
 
-    /// A TCP client disconnected. Its I/O connections stay open until they time out.
+    /// Handles the end of a TCP client. Its I/O connections stay open until they time out.
     pub fn hung_up(&mut self, client: u64) {
         self.clients.remove(&client);
     }
@@ -265,7 +267,7 @@ impl<A: Application> Adapter<A> {
         self.application.image_out(now, instance, image, run);
     }
 
-    /// Returns the next action at `now`. Call it until it returns `None`.
+    /// Returns the next action at `now`. The caller repeats the call until it returns `None`.
     pub fn poll(&mut self, now: Now) -> Option<Output> {
         if self.outputs.is_empty() {
             self.expire(now);
@@ -274,7 +276,7 @@ impl<A: Application> Adapter<A> {
         self.outputs.pop_front()
     }
 
-    /// Latest time of the next call.
+    /// Latest time of the next call of [`poll`](Self::poll).
     pub fn wake(&self) -> Option<Now> {
         if !self.outputs.is_empty() {
             return Some(Now::ZERO);
@@ -307,7 +309,7 @@ impl<A: Application> Adapter<A> {
         }
     }
 
-    /// Removes a connection, and the connections that only listen to it.
+    /// Removes a connection, and the listen-only connections that depend on it.
     fn remove(&mut self, now: Now, index: usize) -> Peer {
         let held = self.held.remove(index);
         if held.is_multicast {
@@ -372,7 +374,7 @@ impl<A: Application> Adapter<A> {
         Ok((self.last_session, data.to_vec()))
     }
 
-    /// Data of the answer to a list command.
+    /// Returns the data of the answer to a list command.
     fn listed(&self, command: Command) -> Option<Vec<u8>> {
         match command {
             Command::LIST_IDENTITY => Some(self.identity().emit()),
@@ -382,7 +384,7 @@ impl<A: Application> Adapter<A> {
         }
     }
 
-    /// Identity with the current status (volume 1, 5-2.2.1.5).
+    /// Returns the identity with the current status (volume 1, 5-2.2.1.5).
     fn identity(&self) -> Identity {
         let is_owned = self.held.iter().any(|held| held.peer.role == Role::ExclusiveOwner);
         let is_owned = is_owned && self.fault != Some(AdapterFault::Unowned);
@@ -447,7 +449,7 @@ impl<A: Application> Adapter<A> {
 }
 
 impl Setup {
-    /// An adapter with one input, one output and one empty configuration assembly.
+    /// Creates the configuration of an adapter with one input, one output and one empty configuration assembly.
     pub fn new(identity: Identity, input: (u32, u16), output: (u32, u16), configuration: u32) -> Self {
         let assembly = |instance, purpose, size| Assembly { instance, purpose, size };
         Self {
@@ -457,7 +459,7 @@ impl Setup {
                 assembly(output.0, Purpose::Output, output.1),
                 assembly(configuration, Purpose::Configuration, 0),
             ],
-            // The usual instance numbers of data sheets.
+            // The instance numbers that most data sheets give.
             input_only: 238,
             listen_only: 237,
             rpi: Duration::from_millis(2)..=Duration::from_millis(3200),

@@ -20,7 +20,7 @@ const IDENTITY_REVISION: u16 = 1;
 const ASSEMBLY_REVISION: u16 = 2;
 
 impl<A: Application> Adapter<A> {
-    /// Executes a service. The error is a general status.
+    /// Executes a service. The error value is a general status.
     pub(super) fn object(
         &mut self,
         now: Now,
@@ -50,7 +50,7 @@ impl<A: Application> Adapter<A> {
         }
     }
 
-    /// Class attributes: revision, highest instance, number of instances.
+    /// Returns a class attribute: revision, highest instance, or number of instances.
     fn class_attribute(&self, class: u32, attribute: u32) -> Result<Vec<u8>, u8> {
         let instances = &self.setup.assemblies;
         let (revision, highest, count) = match class {
@@ -80,7 +80,7 @@ impl<A: Application> Adapter<A> {
         })
     }
 
-    /// Sets an output assembly with a message, if no connection owns it.
+    /// Sets the data of an output assembly with a message, if no connection owns the assembly.
     fn set_image(&mut self, now: Now, instance: u32, image: &[u8]) -> Result<Vec<u8>, u8> {
         if self.setup.assembly(instance, Purpose::Output).is_none() {
             return Err(NOT_SETTABLE);
@@ -98,7 +98,7 @@ impl<A: Application> Adapter<A> {
         Ok(Vec::new())
     }
 
-    /// Instance attributes: data and size.
+    /// Returns an instance attribute of an assembly: data or size.
     fn assembly_attribute(&mut self, now: Now, instance: u32, attribute: u32) -> Result<Vec<u8>, u8> {
         if self.fault == Some(AdapterFault::Unreadable) {
             return Err(UNKNOWN_ATTRIBUTE);

@@ -1,4 +1,4 @@
-//! Checks and decisions of a ForwardOpen.
+//! Checks of a ForwardOpen, and the decision whether to accept it.
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
@@ -29,9 +29,9 @@ const SEGMENT: u16 = 0x0315;
 /// General status for an invalid timeout multiplier.
 const INVALID_PARAMETER: u8 = 0x20;
 
-/// Transport class 1, cyclic, originator as client: the only supported one.
+/// Transport class 1, cyclic, originator as client. The adapter supports only this transport.
 const CYCLIC: u8 = 0x01;
-/// Valid heartbeat sizes: empty, a sequence count, or a count and a run/idle header.
+/// Valid heartbeat sizes: empty, a sequence count, or a sequence count with a run/idle header.
 const HEARTBEATS: [u16; 3] = [0, COUNT, COUNT + HEADER];
 const COUNT: u16 = 2;
 const HEADER: u16 = 4;
@@ -40,7 +40,7 @@ const HEADER: u16 = 4;
 pub(super) struct Granted {
     /// Data of the reply.
     pub(super) data: Vec<u8>,
-    /// Image addresses of the adapter and of the originator.
+    /// Addresses of the images to the adapter and to the originator.
     pub(super) addresses: (Option<SocketAddrV4>, Option<SocketAddrV4>),
 }
 
@@ -113,7 +113,7 @@ impl<A: Application> Adapter<A> {
             (id, Some(Producer::new(id, t_o, now)))
         };
         let group = is_multicast.then(|| SocketAddrV4::new(self.setup.group, IO_PORT));
-        // The originator names its port. Its address is the sender of the request.
+        // The request contains the port of the originator. The address of the originator is the sender of the request.
         let port = to.map(|address| address.port()).filter(|port| *port != 0);
         let own = SocketAddrV4::new(from, port.unwrap_or(IO_PORT));
         let header = open.o_t.size >= COUNT + HEADER;
@@ -150,7 +150,7 @@ impl<A: Application> Adapter<A> {
 }
 
 impl Setup {
-    /// Checks everything that does not depend on other connections.
+    /// Checks the conditions that do not depend on other connections.
     fn allows(&self, open: &Open, points: &Points<'_>) -> Result<Role, Status> {
         let refuse = |code| Err(Status::connection(code, &[]));
         if open.transport != CYCLIC {
@@ -207,7 +207,7 @@ impl Setup {
         Ok(())
     }
 
-    /// The requested interval, rounded up to the tick.
+    /// Returns the requested interval, rounded up to a multiple of the tick.
     fn interval(&self, flow: &Flow) -> Duration {
         let tick = self.tick.as_micros().max(1);
         let asked = u128::from(flow.rpi_us).next_multiple_of(tick);
@@ -215,7 +215,7 @@ impl Setup {
     }
 }
 
-/// Path: key, assembly class, optional configuration, output, input, configuration data.
+/// Decodes the path: key, assembly class, optional configuration, output, input, configuration data.
 fn points(open: &Open) -> Result<Points<'_>, Status> {
     let (key, rest) = match &open.path.0[..] {
         [Segment::Key(key), rest @ ..] => (Some(*key), rest),
@@ -239,7 +239,8 @@ fn points(open: &Open) -> Result<Points<'_>, Status> {
     Ok(Points { key, configuration, output, input, data })
 }
 
-/// Checks a size. It must match exactly, even if it is declared variable. A refusal contains the correct size.
+/// Checks a size. The size must match exactly, even if the request declares it as variable. A refusal contains the
+/// correct size.
 fn sized(flow: &Flow, right: u16) -> Result<(), Status> {
     if flow.size == right { Ok(()) } else { Err(Status::connection(SIZE, &[right])) }
 }

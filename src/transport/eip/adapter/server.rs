@@ -1,4 +1,4 @@
-//! Socket server for an adapter: TCP for sessions, UDP on the same port for ListIdentity, UDP for images.
+//! Socket server for an adapter: TCP for sessions, UDP on the same port for ListIdentity, and UDP for images.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -16,11 +16,11 @@ use super::super::{IO_PORT, Now, PORT};
 use super::{Adapter, Application, Output, Setup};
 use crate::fault::Faults;
 
-/// Receive buffer for the largest datagram.
+/// Size of the receive buffer: the size of the largest datagram.
 const BUFFER: usize = 65_536;
-/// Client limit. Further TCP connections are closed at once.
+/// Maximum number of clients. Further TCP connections are closed at once.
 const MOST_CLIENTS: usize = 64;
-/// Attempts to get the same TCP and UDP port when the system chooses the port.
+/// Number of attempts to bind TCP and UDP to the same port, if the system selects the port.
 const TRIES: usize = 16;
 
 /// Pause after a failed accept.
@@ -31,25 +31,26 @@ const PAUSE: Duration = Duration::from_millis(50);
 pub struct Listen {
     /// IP address.
     pub address: Ipv4Addr,
-    /// TCP port of sessions and UDP port of ListIdentity; 0 lets the system choose.
+    /// TCP port of sessions and UDP port of ListIdentity. With 0, the system selects a port.
     pub port: u16,
-    /// UDP port of images; 0 lets the system choose. Some originators ignore the port in the reply and need 2222.
+    /// UDP port of images. With 0, the system selects a port. Some originators ignore the port in the reply and need
+    /// 2222.
     pub io_port: u16,
 }
 
 impl Listen {
-    /// The standard ports.
+    /// Returns this address with the standard ports.
     pub const fn usual(address: Ipv4Addr) -> Self {
         Self { address, port: PORT, io_port: IO_PORT }
     }
 
-    /// Ports that the system chooses.
+    /// Returns this address with ports that the system selects.
     pub const fn anywhere(address: Ipv4Addr) -> Self {
         Self { address, port: 0, io_port: 0 }
     }
 }
 
-/// A running adapter. It stops when it is dropped, and does not close its connections.
+/// A running adapter. When it is dropped, it stops and does not close its connections.
 #[derive(Debug)]
 pub struct Server<A: Application + 'static> {
     inner: Arc<Inner<A>>,
@@ -72,7 +73,7 @@ struct State<A> {
     adapter: Adapter<A>,
     lines: BTreeMap<u64, UnboundedSender<Vec<u8>>>,
     last: u64,
-    /// Fault injection for images: to the adapter, from the adapter.
+    /// Fault injection for images to the adapter and from the adapter.
     faults: Option<(Faults, Faults)>,
     /// Delayed images.
     delayed: Vec<(Now, Delayed)>,
@@ -127,12 +128,12 @@ impl<A: Application> Server<A> {
         self.io_port
     }
 
-    /// Changes the faults of images: to the adapter, from the adapter.
+    /// Changes the faults for images to the adapter and from the adapter.
     pub fn set_faults(&self, faults: Option<(Faults, Faults)>) {
         self.inner.state().faults = faults;
     }
 
-    /// Calls `look` with the adapter.
+    /// Calls `look` with the adapter and the current time.
     pub fn with<T>(&self, look: impl FnOnce(&mut Adapter<A>, Now) -> T) -> T {
         let result = look(&mut self.inner.state().adapter, self.inner.start.elapsed());
         self.inner.alarm.set(Some(Now::ZERO));
@@ -154,7 +155,7 @@ impl<A: Application> Inner<A> {
         self.alarm.set(wake);
     }
 
-    /// Does what is due. Returns the time of the next call.
+    /// Executes the work that is due. Returns the time of the next call.
     fn turn(&self) -> Option<Now> {
         let mut state = self.state();
         let now = self.start.elapsed();
@@ -176,7 +177,7 @@ impl<A: Application> Inner<A> {
             match output {
                 Output::Send(client, bytes) => {
                     if let Some(line) = state.lines.get(&client) {
-                        // If the line is closed, its own task reports it.
+                        // An error means that the TCP connection is closed; the task of the connection reports that.
                         let _ = line.send(bytes);
                     }
                 }
@@ -231,7 +232,7 @@ fn bind(listen: Listen) -> io::Result<(std::net::TcpListener, UdpSocket)> {
 
 async fn accept<A: Application + 'static>(inner: Arc<Inner<A>>, sessions: TcpListener, handle: Handle) {
     loop {
-        // The peer disconnected already, or there are too many open files. Both are temporary.
+        // Either the peer has already disconnected, or there are too many open files. Both are temporary.
         let Ok((stream, SocketAddr::V4(from))) = sessions.accept().await else {
             tokio::time::sleep(PAUSE).await;
             continue;
@@ -258,7 +259,7 @@ async fn serve<A: Application>(
     mut stream: TcpStream,
     mut orders: UnboundedReceiver<Vec<u8>>,
 ) {
-    // Optional: without it, an answer can wait for the acknowledgement of the previous one.
+    // An error is ignored. Without this option, an answer may wait for the acknowledgement of the previous answer.
     let _ = stream.set_nodelay(true);
     let (mut from, mut to) = stream.split();
     let mut buffer = [0; 4096];
@@ -288,7 +289,7 @@ async fn receive<A: Application>(
 ) {
     let mut buffer = vec![0; BUFFER];
     loop {
-        // The error concerns one peer (Windows: port unreachable). The others are not affected.
+        // An error concerns one peer (Windows: port unreachable). The other peers are not affected.
         if let Ok((len, SocketAddr::V4(from))) = socket.recv_from(&mut buffer).await {
             take(&inner, from, &buffer[..len]);
         }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU16, AtomicU32, Ordering};
 use super::super::UNREGISTERED_VENDOR;
 use super::super::wire::Triad;
 
-/// Numbers that are unique in this process, and very likely in the network.
+/// Numbers that are unique in this process, and with high probability in the network.
 #[derive(Debug)]
 pub struct Numbers {
     originator: u32,
@@ -14,12 +14,14 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// Random start values, so that connections left open by an earlier process are not hit.
+    /// Creates numbers with random start values. They should differ from the numbers of connections that an earlier
+    /// process left open.
     pub fn random() -> Self {
         Self::new(fastrand::u32(..), fastrand::u16(..), fastrand::u32(..))
     }
 
-    /// Fixed start values: serial number of the originator, first connection serial number, first connection id.
+    /// Creates numbers with fixed start values: serial number of the originator, first connection serial number, first
+    /// connection id.
     pub const fn new(originator: u32, serial: u16, id: u32) -> Self {
         Self { originator, serial: AtomicU16::new(serial), id: AtomicU32::new(id) }
     }

@@ -12,22 +12,22 @@ pub type View = view::View<EipError, Statistics, Details>;
 /// Receiver of state changes.
 pub type Views = view::Views<EipError, Statistics, Details>;
 
-/// Counters.
+/// Counters of the datagrams.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Statistics {
     /// Datagrams sent.
     pub sent: u64,
-    /// Send times omitted because a whole interval was missed, for example on a busy computer.
+    /// Send times that were omitted because a whole interval was missed, for example on a busy computer.
     pub skipped: u64,
     /// Valid datagrams received.
     pub received: u64,
     /// Missing sequence numbers.
     pub lost: u64,
-    /// Datagrams more than half an interval late.
+    /// Datagrams that arrived more than half an interval late.
     pub late: u64,
-    /// Old and duplicate datagrams, which are dropped.
+    /// Old and duplicate datagrams. They are dropped.
     pub stale: u64,
-    /// Datagrams of a wrong size, which are dropped.
+    /// Datagrams of a wrong size. They are dropped.
     pub misfit: u64,
 }
 
@@ -46,7 +46,7 @@ impl Statistics {
 /// Details that only EtherNet/IP has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Details {
-    /// Run/idle bit to the device.
+    /// Run/idle bit that is sent to the device.
     pub run: bool,
     /// Actual intervals: to the device, from the device.
     pub intervals: Option<(Duration, Duration)>,

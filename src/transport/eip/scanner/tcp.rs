@@ -14,10 +14,10 @@ use super::{EipError, Inner, Slot, Tap, mpsc};
 /// Bytes per read.
 const BUFFER: usize = 4096;
 
-/// Local end. Dropping it closes the connection after all bytes were written.
+/// Local end of the TCP connection. When it is dropped, the connection closes after all bytes were written.
 #[derive(Debug)]
 pub(super) struct Line {
-    /// Sequence number, to identify events of an older connection.
+    /// Number of the TCP connection. It identifies events of an older connection of the slot.
     pub(super) number: u64,
     orders: mpsc::UnboundedSender<Vec<u8>>,
 }
@@ -30,12 +30,12 @@ impl Line {
     }
 
     pub(super) fn send(&self, bytes: Vec<u8>) {
-        // If the connection is closed, its own task reports it.
+        // An error means that the connection is closed; the task of the connection reports that.
         let _ = self.orders.send(bytes);
     }
 }
 
-/// Task: connects, writes queued bytes, delivers received bytes.
+/// Task of a TCP connection: connects, writes queued bytes, and delivers received bytes.
 pub(super) async fn run(
     inner: Arc<Inner>,
     id: u64,
@@ -44,7 +44,7 @@ pub(super) async fn run(
     tap: Tap,
     mut orders: UnboundedReceiver<Vec<u8>>,
 ) {
-    // Ignore events if the slot already has another connection.
+    // Events are ignored if the slot already has another connection.
     let tell = |event: &mut dyn FnMut(&mut Slot, super::Now)| {
         inner.with(id, |slot, now| {
             if slot.line.as_ref().is_some_and(|line| line.number == number) {
@@ -52,7 +52,7 @@ pub(super) async fn run(
             }
         });
     };
-    // Nothing is queued before the connection is open. The end of the queue cancels the attempt.
+    // No bytes are queued before the connection is open. If the queue ends first, the attempt is canceled.
     let connected = tokio::select! {
         connected = connect(*inner.local.ip(), target) => connected,
         _ = orders.recv() => return,
@@ -61,7 +61,7 @@ pub(super) async fn run(
         Ok(stream) => stream,
         Err(error) => return tell(&mut |slot, _| slot.core.hung_up(&EipError::unreachable(&error))),
     };
-    // Optional: without it, a request can wait for the acknowledgement of the previous one.
+    // An error is ignored. Without this option, a request may wait for the acknowledgement of the previous request.
     let _ = stream.set_nodelay(true);
     let Ok(SocketAddr::V4(here)) = stream.local_addr() else { return };
     tell(&mut |slot, now| {
@@ -90,11 +90,13 @@ pub(super) async fn run(
             },
         }
     }
-    // Reported to a caller that waits for the session. After registration, each pending request reports its own error.
+    // This error is for callers that wait for the session. After the registration, each pending request gets its own
+    // error.
     tell(&mut |slot, _| slot.core.hung_up(&EipError::Hangup { what: "RegisterSession" }));
 }
 
-/// Connects from the local address of the image socket, because the device sends images to the sender of the request.
+/// Connects from the local address of the image socket. The device sends its images to the address that sent the
+/// request.
 async fn connect(here: Ipv4Addr, target: SocketAddrV4) -> io::Result<TcpStream> {
     let socket = TcpSocket::new_v4()?;
     if !here.is_unspecified() {

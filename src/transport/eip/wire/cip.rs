@@ -18,7 +18,7 @@ pub mod service {
     pub const FORWARD_OPEN: u8 = 0x54;
     /// LargeForwardOpen, up to 65,535 bytes in each direction.
     pub const LARGE_FORWARD_OPEN: u8 = 0x5B;
-    /// Bit of the service code in replies.
+    /// Bit that is set in the service code of a reply.
     pub const REPLY: u8 = 0x80;
 }
 
@@ -67,12 +67,12 @@ impl Status {
     /// Success.
     pub const OK: Self = Self { general: 0, extended: Vec::new() };
 
-    /// A general status without extended words.
+    /// Creates a general status without extended words.
     pub const fn general(general: u8) -> Self {
         Self { general, extended: Vec::new() }
     }
 
-    /// An extended status of the connection manager (general status 1), followed by more words.
+    /// Creates an extended status of the connection manager (general status 1), followed by more words.
     pub fn connection(extended: u16, more: &[u16]) -> Self {
         Self { general: 1, extended: [&[extended], more].concat() }
     }
@@ -84,7 +84,7 @@ impl Status {
 }
 
 impl fmt::Display for Status {
-    /// Format: "0x01/0x0109 54", which is general status, extended status, further words in decimal.
+    /// Format: "0x01/0x0109 54". This is the general status, the extended status, and the further words in decimal.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:#04x}", self.general)?;
         if let Some((code, more)) = self.extended.split_first() {

@@ -4,12 +4,12 @@ use super::{Path, Reader, Request, WireError, service, words8};
 
 /// Class and instance of the connection manager.
 const MANAGER: (u32, u32) = (6, 1);
-/// Time limit for routers on the path: 249 ticks of 128 ms, the second largest value.
+/// Time limit for routers on the path: 249 ticks of 128 ms. This is the second largest possible value.
 const PATIENCE: [u8; 2] = [7, 249];
-/// Largest connection size of the short ForwardOpen.
+/// Maximum connection size in the short ForwardOpen.
 const MOST_SHORT: u16 = 511;
 
-/// Connection triad, which identifies a connection.
+/// Connection triad. It identifies a connection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Triad {
     /// Connection serial number, unique for the originator.
@@ -108,9 +108,9 @@ impl Flow {
 /// ForwardOpen request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Open {
-    /// O->T connection id. The target ignores it and chooses its own.
+    /// O->T connection id. The target ignores it and selects its own id.
     pub o_t_id: u32,
-    /// T->O connection id, chosen by the originator; ignored for multicast.
+    /// T->O connection id, selected by the originator. The target ignores it for multicast.
     pub t_o_id: u32,
     /// Connection triad.
     pub triad: Triad,
@@ -127,7 +127,7 @@ pub struct Open {
 }
 
 impl Open {
-    /// Encodes the request, in the large form if a size needs it.
+    /// Encodes the request. Uses the large form if a size requires it.
     pub fn emit(&self) -> Vec<u8> {
         let large = self.is_large();
         let mut data = PATIENCE.to_vec();
@@ -143,7 +143,7 @@ impl Open {
         manager(if large { service::LARGE_FORWARD_OPEN } else { service::FORWARD_OPEN }, &data)
     }
 
-    /// Whether a size needs the large form.
+    /// Whether a size requires the large form.
     pub fn is_large(&self) -> bool {
         self.o_t.size.max(self.t_o.size) > MOST_SHORT
     }
@@ -324,8 +324,8 @@ mod tests {
         }
     }
 
-    /// Field by field from volume 1, table 3-5.17. Parameters 4836 and 4832 mean point to point, scheduled, fixed, 54
-    /// and 50 bytes. tshark decodes the same (tests/eip).
+    /// The expected bytes come field by field from volume 1, table 3-5.17. Parameters 4836 and 4832 mean point to
+    /// point, scheduled, fixed, 54 and 50 bytes. tshark decodes these bytes to the same values (tests/eip).
     #[test]
     fn an_open_has_the_printed_layout() {
         let bytes = hex(
@@ -364,7 +364,7 @@ mod tests {
             Segment::Data(vec![0; 8]),
         ];
         assert_eq!(open.path.0, path);
-        // Everything except the time limit for routers is encoded as it was decoded.
+        // The encoded request equals the decoded one, except for the time limit for routers.
         assert_eq!(open.emit()[8..], bytes[2..]);
     }
 
@@ -396,7 +396,7 @@ mod tests {
         assert_eq!(opened.emit(), reply.data);
     }
 
-    /// From the same tests (`fwd_f01_reply`, and without the remaining path `fwd_f01_reply_no_remain`).
+    /// The bytes are from the same tests (`fwd_f01_reply`, and without the remaining path `fwd_f01_reply_no_remain`).
     #[test]
     fn recorded_refusals() {
         let triad = Triad { serial: 0, vendor: 0xFFFF, originator: 0x1234_5678 };
@@ -410,7 +410,7 @@ mod tests {
         }
     }
 
-    /// From the same tests (`fwd_c01_request`).
+    /// The bytes are from the same tests (`fwd_c01_request`).
     #[test]
     fn a_recorded_close() {
         let bytes = hex("4E 02 20 06 24 01 07 F9 0100 4D00 0F7F3D1E 03 00 0100 2002 2401");

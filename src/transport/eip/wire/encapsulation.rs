@@ -13,7 +13,7 @@ pub struct Command(
 );
 
 impl Command {
-    /// NOP; never answered.
+    /// NOP. The device does not answer it.
     pub const NOP: Self = Self(0x00);
     /// List the services of the device.
     pub const LIST_SERVICES: Self = Self(0x04);
@@ -23,7 +23,7 @@ impl Command {
     pub const LIST_INTERFACES: Self = Self(0x64);
     /// Open a session.
     pub const REGISTER_SESSION: Self = Self(0x65);
-    /// Close a session; never answered.
+    /// Close a session. The device does not answer this command.
     pub const UNREGISTER_SESSION: Self = Self(0x66);
     /// An unconnected CIP message or its reply.
     pub const SEND_RR_DATA: Self = Self(0x6F);
@@ -40,19 +40,19 @@ pub struct Frame<'a> {
     pub session: u32,
     /// Status; 0 in requests and successful replies.
     pub status: u32,
-    /// Sender context, which the reply repeats.
+    /// Sender context. The reply contains the sender context of the request.
     pub context: [u8; 8],
     /// Command data, at most 65,535 bytes.
     pub data: &'a [u8],
 }
 
 impl<'a> Frame<'a> {
-    /// A request without data or session.
+    /// Creates a request without data and session.
     pub const fn new(command: Command) -> Self {
         Self { command, session: 0, status: 0, context: [0; 8], data: &[] }
     }
 
-    /// Decodes a complete message, from [`Frames`] or a datagram.
+    /// Decodes a complete message. The bytes come from [`Frames`] or from a datagram.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
         let mut reader = Reader::little(bytes);
         let command = Command(reader.u16("command")?);
@@ -79,18 +79,18 @@ impl<'a> Frame<'a> {
         out
     }
 
-    /// RegisterSession: protocol version 1, no options.
+    /// Returns a RegisterSession request: protocol version 1, no options.
     pub const fn register(context: [u8; 8]) -> Frame<'static> {
         Frame { command: Command::REGISTER_SESSION, session: 0, status: 0, context, data: &[1, 0, 0, 0] }
     }
 
-    /// UnregisterSession.
+    /// Returns an UnregisterSession request.
     pub const fn unregister(session: u32) -> Frame<'static> {
         Frame { command: Command::UNREGISTER_SESSION, session, status: 0, context: [0; 8], data: &[] }
     }
 }
 
-/// Splits a TCP stream into messages. The length field limits the memory.
+/// Splits a TCP stream into messages. The length field of 16 bits limits the memory that a message needs.
 #[derive(Debug, Clone, Default)]
 pub struct Frames {
     bytes: Vec<u8>,
@@ -101,13 +101,13 @@ pub struct Frames {
 impl Frames {
     /// Adds received bytes.
     pub fn push(&mut self, bytes: &[u8]) {
-        // Removed here and not in `pop`, so that each byte moves only once.
+        // Returned bytes are removed here and not in `pop`, so that each byte is moved only once.
         self.bytes.drain(..self.done);
         self.done = 0;
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// Returns the next complete message, header and data.
+    /// Returns the next complete message with its header.
     pub fn pop(&mut self) -> Option<Vec<u8>> {
         let rest = self.bytes.get(self.done..)?;
         let header = rest.get(..HEADER_LEN)?;
@@ -117,7 +117,7 @@ impl Frames {
         Some(message)
     }
 
-    /// Drops all bytes, for a new connection.
+    /// Drops all bytes. The driver calls this function for a new TCP connection.
     pub fn clear(&mut self) {
         self.bytes.clear();
         self.done = 0;
@@ -130,7 +130,7 @@ mod tests {
     use super::*;
     use crate::testing::hex;
 
-    /// Volume 2, 2-4.4. The captures of cpppo contain the same bytes.
+    /// The expected bytes are from volume 2, 2-4.4. The captures of cpppo contain the same bytes.
     #[test]
     fn a_session_begins_as_printed() {
         let bytes = hex("6500 0400 00000000 00000000 0000000000000000 00000000 01000000");

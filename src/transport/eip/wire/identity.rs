@@ -12,7 +12,7 @@ pub const IDENTITY_ITEM: u16 = 0x000C;
 pub const SERVICES_ITEM: u16 = 0x0100;
 /// Version of the encapsulation protocol.
 const VERSION: u16 = 1;
-/// Longest product name (volume 1, 5-2.2).
+/// Maximum length of a product name (volume 1, 5-2.2).
 const LONGEST_NAME: usize = 32;
 
 /// Revision of a product.
@@ -33,7 +33,7 @@ impl fmt::Display for Revision {
 /// Identity of a device.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Identity {
-    /// Reported socket address. It can differ from the real one.
+    /// Socket address that the device reports. It can differ from the real address.
     pub address: SocketAddrV4,
     /// Vendor id.
     pub vendor: u16,
@@ -47,14 +47,14 @@ pub struct Identity {
     pub status: u16,
     /// Serial number, unique for the vendor.
     pub serial: u32,
-    /// Product name without trailing blanks and zeros; bytes that are not ASCII are replaced. Untrusted.
+    /// Product name without trailing blanks and zeros. Bytes that are not ASCII are replaced. Untrusted data.
     pub name: String,
     /// State: 0 nonexistent, 1 self test, 2 standby, 3 operational, 4 and 5 faults, 255 unknown; `None` if omitted.
     pub state: Option<u8>,
 }
 
 impl Identity {
-    /// Decodes the data of a ListIdentity answer; `None` if it has no identity item.
+    /// Decodes the data of a ListIdentity answer; `None` if the data contains no identity item.
     pub fn parse(data: &[u8]) -> Result<Option<Self>, WireError> {
         let items = Item::parse_all(data)?;
         items.iter().find(|item| item.kind == IDENTITY_ITEM).map(|item| Self::parse_item(item.data)).transpose()
@@ -70,7 +70,8 @@ impl Identity {
         Ok(identity)
     }
 
-    /// Decodes all attributes of the identity object. They contain no address, and here no state.
+    /// Decodes all attributes of the identity object. The attributes contain no address and no state: `address` is
+    /// used, and the state is `None`.
     pub fn parse_attributes(bytes: &[u8], address: SocketAddrV4) -> Result<Self, WireError> {
         Ok(Self { address, ..Self::read(&mut Reader::little(bytes))? })
     }
@@ -122,7 +123,7 @@ impl Identity {
 pub struct Services {
     /// Bit 5: CIP over TCP; bit 8: cyclic data over UDP.
     pub flags: u16,
-    /// Name of the service: "Communications". Untrusted.
+    /// Name of the service: "Communications". Untrusted data.
     pub name: String,
 }
 
@@ -151,7 +152,7 @@ impl Services {
     }
 }
 
-/// Text of printable ASCII; other bytes are replaced.
+/// Converts bytes to printable ASCII text; other bytes are replaced.
 fn text(bytes: &[u8]) -> String {
     let end = bytes.iter().rposition(|byte| !matches!(byte, 0 | b' ')).map_or(0, |last| last + 1);
     let shown = |byte: &u8| if (0x20..0x7F).contains(byte) { char::from(*byte) } else { char::REPLACEMENT_CHARACTER };
@@ -164,8 +165,8 @@ mod tests {
     use super::*;
     use crate::testing::hex;
 
-    /// A PowerFlex 753, from cpppo's tests (enip_test.py, `listident_1_rpy`; the test corrects two lengths that the
-    /// device has wrong).
+    /// A PowerFlex 753, from cpppo's tests (enip_test.py, `listident_1_rpy`). The answer of the device contains two
+    /// wrong lengths; this test corrects them.
     #[test]
     fn a_recorded_identity() {
         let bytes =
@@ -185,14 +186,14 @@ mod tests {
         assert_eq!(padded.emit(), frame.data);
     }
 
-    /// A PowerFlex 525 (EIPScanner, TestDiscoveryManager.cpp), without the second, equal item.
+    /// A PowerFlex 525 (EIPScanner, TestDiscoveryManager.cpp). The original has a second, equal item.
     #[test]
     fn another_recorded_identity() {
         let bytes =
             hex("0100 0C00 4200 0100 0002 AF12 C0A8010F 0000000000000000 0100 9600 0900 05 01 3000 92E18D80 1D \
              506F776572466C6578203532352031502031313056202020 2E35304850 000000 FF");
         let identity = Identity::parse(&bytes);
-        // The name is three bytes longer than its length field. These bytes and the state are skipped.
+        // The name is three bytes longer than its length field says. These bytes and the state are skipped.
         let identity = identity.unwrap().unwrap();
         assert_eq!(identity.name, "PowerFlex 525 1P 110V   .50HP");
         assert_eq!(identity.serial, 0x808D_E192);

@@ -12,7 +12,7 @@ pub struct Cyclic<'a> {
     pub id: u32,
     /// Sequence number; increases with every datagram.
     pub sequence: u32,
-    /// Sequence count. By the standard it increases with new data, here with every datagram.
+    /// Sequence count. According to the standard, it increases with new data; here it increases with every datagram.
     pub count: u16,
     /// Run/idle header, if the connection has one, and data.
     pub body: &'a [u8],
@@ -22,7 +22,7 @@ impl<'a> Cyclic<'a> {
     /// Decodes a datagram.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
         let items = Item::parse_all(bytes)?;
-        // Layout: 2 bytes of count, then type and length of each item.
+        // Layout: 2 bytes with the number of items, then the type and length of each item.
         let [address, data] = items[..] else {
             let mut reader = Reader::little(bytes);
             let count = reader.u16("item count")?;
@@ -64,7 +64,7 @@ mod tests {
     use super::*;
     use crate::testing::hex;
 
-    /// A 48-byte image has 72 bytes to the target, 68 bytes to the originator.
+    /// With a 48-byte image, a datagram has 72 bytes to the target and 68 bytes to the originator.
     #[test]
     fn a_datagram_each_way() {
         let image = [0xA5; 48];

@@ -22,7 +22,7 @@ pub mod kind {
     pub const SEQUENCED_ADDRESS: u16 = 0x8002;
 }
 
-/// Limit of items in a packet. No message has more than four.
+/// Maximum number of items in a packet. No message has more than four.
 const MOST_ITEMS: u16 = 16;
 /// Address family of IPv4 in a socket address.
 const AF_INET: u16 = 2;
@@ -42,7 +42,7 @@ impl<'a> Item<'a> {
         Self { kind, data }
     }
 
-    /// Decodes the count and the items. Fails if bytes follow.
+    /// Decodes the count and the items. Fails if bytes follow the items.
     pub fn parse_all(bytes: &'a [u8]) -> Result<Vec<Self>, WireError> {
         Self::read_all(&mut Reader::little(bytes))
     }
@@ -53,7 +53,7 @@ impl<'a> Item<'a> {
         Ok(items)
     }
 
-    /// Decodes the count and the items. More bytes can follow.
+    /// Decodes the count and the items. More bytes may follow the items.
     fn read_counted(reader: &mut Reader<'a>) -> Result<Vec<Self>, WireError> {
         let count = reader.u16("item count")?;
         if count > MOST_ITEMS {
@@ -88,7 +88,7 @@ impl<'a> Item<'a> {
 /// Data of SendRRData: an unconnected message, with optional socket addresses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RrData<'a> {
-    /// Timeout in seconds; 0 means that the message has its own.
+    /// Timeout in seconds; 0 means that the message contains its own timeout.
     pub timeout: u16,
     /// The CIP message.
     pub message: &'a [u8],
@@ -99,7 +99,7 @@ pub struct RrData<'a> {
 }
 
 impl<'a> RrData<'a> {
-    /// A message without socket addresses.
+    /// Creates data with a message and without socket addresses.
     pub const fn new(message: &'a [u8]) -> Self {
         Self { timeout: 0, message, o_t: None, t_o: None }
     }
@@ -114,8 +114,8 @@ impl<'a> RrData<'a> {
         Ok(Self { timeout, message: Self::message(&items, &reader)?, o_t, t_o })
     }
 
-    /// Decodes the data of an answer. Some devices append items that they do not count, such as a socket address after
-    /// a refusal. Such items are used if they can be decoded, and ignored if not.
+    /// Decodes the data of an answer. Some devices append items that the count does not include, for example a socket
+    /// address after a refusal. Such items are used if they can be decoded. Otherwise they are ignored.
     pub fn parse_answer(bytes: &'a [u8]) -> Result<Self, WireError> {
         let mut reader = Reader::little(bytes);
         let timeout = Self::head(&mut reader)?;
@@ -155,7 +155,7 @@ impl<'a> RrData<'a> {
     }
 }
 
-/// Decodes a socket address, which is big-endian (volume 2, 2-6.3.3).
+/// Decodes a socket address. It is big-endian (volume 2, 2-6.3.3).
 pub(super) fn sockaddr(bytes: &[u8]) -> Result<SocketAddrV4, WireError> {
     let mut reader = Reader::little(bytes);
     let family = u16::from_be_bytes(reader.array("address family")?);
@@ -190,7 +190,7 @@ mod tests {
         assert_eq!(RrData::parse(&bytes), Ok(data));
     }
 
-    /// A refusal with two counted items and a socket address after them; then with bytes that are no item.
+    /// A refusal with two counted items and a socket address after them; then a refusal with bytes that are no item.
     #[test]
     fn what_stands_behind_an_answer_is_no_fault() {
         let counted = "00000000 0000 0200 0000 0000 B200 0600 D400 0101 0601";

@@ -7,7 +7,7 @@ use super::{Reader, WireError, words8};
 pub enum Segment {
     /// Class.
     Class(u32),
-    /// Instance; in a connection path with the assembly class, the configuration.
+    /// Instance. In a connection path with the assembly class, this is the configuration.
     Instance(u32),
     /// Attribute.
     Attribute(u32),
@@ -21,12 +21,12 @@ pub enum Segment {
     Port {
         /// Port number; 1 is the backplane.
         port: u16,
-        /// Link address, such as a slot.
+        /// Link address, for example a slot.
         link: Vec<u8>,
     },
 }
 
-/// Electronic key: the device that a connection expects. 0 means any.
+/// Electronic key: the identity of the device that a connection expects. A value of 0 matches any device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Key {
     /// Vendor id.
@@ -39,23 +39,24 @@ pub struct Key {
     pub major: u8,
     /// Minor revision.
     pub minor: u8,
-    /// Whether a compatible later revision is accepted.
+    /// Whether a device with a compatible later revision is accepted.
     pub compatible: bool,
 }
 
 const KEY_FORMAT: u8 = 4;
 const COMPATIBLE: u8 = 0x80;
 
-/// First bytes of segments with an 8-bit value. Add 1 for 16 bits, 2 for 32 bits; then a padding byte follows.
+/// First bytes of segments with an 8-bit value. For a 16-bit value, add 1. For a 32-bit value, add 2. In both cases, a
+/// padding byte follows.
 const CLASS: u8 = 0x20;
 const INSTANCE: u8 = 0x24;
 const POINT: u8 = 0x2C;
 const ATTRIBUTE: u8 = 0x30;
 const KEY: u8 = 0x34;
 const DATA: u8 = 0x80;
-/// Port segment flag: a length byte for the link address follows.
+/// Flag of a port segment: a length byte for the link address follows.
 const LONG_LINK: u8 = 0x10;
-/// Port segment value: a 16-bit port number follows.
+/// Value of a port segment: a 16-bit port number follows.
 const LONG_PORT: u8 = 0x0F;
 
 /// A sequence of segments.
@@ -66,7 +67,7 @@ pub struct Path(
 );
 
 impl Path {
-    /// Path of an instance; instance 0 is the class itself.
+    /// Returns the path of an instance. Instance 0 is the class itself.
     pub fn object(class: u32, instance: u32) -> Self {
         Self(vec![Segment::Class(class), Segment::Instance(instance)])
     }
@@ -76,7 +77,7 @@ impl Path {
         Self(vec![Segment::Class(class), Segment::Instance(instance), Segment::Attribute(attribute)])
     }
 
-    /// Class, instance and attribute of the path, if it has only these.
+    /// Class, instance and attribute of the path; `None` if the path has other segments.
     pub fn object_named(&self) -> Option<(u32, u32, Option<u32>)> {
         match self.0[..] {
             [Segment::Class(class)] => Some((class, 0, None)),
@@ -89,7 +90,7 @@ impl Path {
         }
     }
 
-    /// Decodes a path from all bytes.
+    /// Decodes a path. All bytes must belong to the path.
     pub fn parse(bytes: &[u8]) -> Result<Self, WireError> {
         let mut reader = Reader::little(bytes);
         let mut segments = Vec::new();
@@ -99,7 +100,7 @@ impl Path {
         Ok(Self(segments))
     }
 
-    /// Encodes the path; the length is even.
+    /// Encodes the path. The length in bytes is even.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Vec::new();
         for segment in &self.0 {
@@ -214,7 +215,7 @@ fn logical(first: u8, value: u32, out: &mut Vec<u8>) {
     }
 }
 
-/// Pads to an even length. All earlier segments are even, so the total length decides.
+/// Pads the path to an even length. All earlier segments have an even length, so the total length is checked.
 fn pad(out: &mut Vec<u8>) {
     if out.len() % 2 == 1 {
         out.push(0);
@@ -226,7 +227,7 @@ mod tests {
     use super::*;
     use crate::testing::hex;
 
-    /// Volume 1, C-1.4.2: forms of logical segments; C-1.4.5: electronic key.
+    /// The expected bytes are from volume 1: C-1.4.2 for logical segments, C-1.4.5 for the electronic key.
     #[test]
     fn segments_have_the_printed_forms() {
         let cases = [

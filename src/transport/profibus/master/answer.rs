@@ -1,4 +1,4 @@
-//! Checks of answers.
+//! Checks of the answers of a slave.
 
 use super::super::error::ProfibusError;
 use super::super::request::Answer;

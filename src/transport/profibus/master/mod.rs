@@ -1,7 +1,8 @@
-//! DP master of one slave: diagnosis, parameters, configuration, diagnosis, data exchange. It has no port and no clock.
+//! DP master of one slave. An opening has these steps: diagnosis, parameters, configuration, diagnosis, data exchange.
+//! The master has no port and no clock.
 //!
-//! It never sends Clear, which would be an emergency stop for a robot. The first image after every opening is the
-//! resting image.
+//! The master never sends Clear, which would be an emergency stop for a robot. The first image after every opening is
+//! the resting image.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -26,9 +27,10 @@ pub use view::{Details, Input, State, Statistics, View, Views};
 const READY: Duration = Duration::from_secs(5);
 /// Interval of the diagnosis requests until the slave is ready.
 const PATIENCE: Duration = Duration::from_millis(10);
-/// Pause before a link is opened again.
+/// Pause before a link is reopened.
 const AGAIN: Duration = Duration::from_secs(1);
-/// Default user parameters, tried in order: none, then the three bytes of slaves with acyclic services (DP-V1).
+/// Default user parameters, in the order in which they are tried: none, then the three bytes of slaves with acyclic
+/// services (DP-V1).
 const USUAL_PARAMETERS: [&[u8]; 2] = [&[], &[0, 0, 0]];
 
 /// State of the master.
@@ -36,9 +38,9 @@ const USUAL_PARAMETERS: [&[u8]; 2] = [&[], &[0, 0, 0]];
 enum Step {
     /// Listening for other traffic.
     Listen,
-    /// Looking for the station (FDL status).
+    /// Checking whether the station exists (FDL status).
     Find,
-    /// Reading the diagnosis: state and owner.
+    /// Reading the diagnosis, which contains the state and the owner of the slave.
     Diagnose,
     /// Reading the configuration (Get_Cfg).
     Ask,
@@ -52,11 +54,11 @@ enum Step {
     Data,
     /// Releasing the slave (Set_Prm with unlock).
     Release,
-    /// Closed.
+    /// The link is closed.
     Over,
 }
 
-/// Task in a cycle.
+/// Task within a cycle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Job {
     Exchange,
@@ -87,11 +89,11 @@ pub struct Master {
     jobs: VecDeque<Job>,
     is_diagnosing: bool,
     next_cycle: Now,
-    /// Time of the last Operate telegram to all slaves.
+    /// Time of the last Operate telegram. It is sent to all slaves.
     told: Now,
     image: Vec<u8>,
     changes: u64,
-    /// Change that is not sent yet.
+    /// Number of the change that was not sent yet.
     pending: Option<u64>,
     view: View,
     has_changed: bool,
@@ -147,8 +149,8 @@ impl Master {
         std::mem::take(&mut self.has_changed)
     }
 
-    /// Sends this image from the next cycle on, in this generation. Returns the number of the change. It was sent when
-    /// [`View::sent`] has reached that number.
+    /// Sends this image in this generation, starting with the next cycle. Returns the number of the change. The image
+    /// was sent when [`View::sent`] has reached this number.
     ///
     /// # Errors
     /// [`ProfibusError::Outdated`] if the link was lost in the meantime, [`ProfibusError::Settings`] for a wrong size.
@@ -180,7 +182,7 @@ impl Master {
         }
     }
 
-    /// The port failed. [`Master::port_is_back`] continues.
+    /// Handles a failure of the port. The master continues after [`Master::port_is_back`].
     pub fn port_failed(&mut self, now: Now, error: ProfibusError) {
         match self.view.state {
             State::Closed => {}
@@ -195,14 +197,14 @@ impl Master {
         }
     }
 
-    /// The port is open again. The master listens first, then continues.
+    /// Handles the reopening of the port. The master listens first, then continues.
     pub fn port_is_back(&mut self, now: Now) {
         if self.view.state == State::Lost {
             self.listen_until(now + self.timing.listen);
         }
     }
 
-    /// Time of the next [`Master::poll`]; `None` after the close, or without a port.
+    /// Time of the next [`Master::poll`]; `None` if the link is closed or has no port.
     pub fn due(&self) -> Option<Now> {
         match self.step {
             Step::Over => None,
@@ -274,7 +276,7 @@ impl Master {
     fn work(&mut self, now: Now) -> Option<Vec<u8>> {
         if self.jobs.is_empty() {
             self.jobs.push_back(Job::Exchange);
-            // Missed cycles are not repeated, so there are no bursts.
+            // Missed cycles are not sent later, so there are no bursts.
             let late = now.saturating_sub(self.next_cycle);
             self.next_cycle += self.timing.cycle;
             if late > self.timing.cycle {
@@ -313,7 +315,7 @@ impl Master {
                 let frame = self.requester.request(Service::SendHigh, broadcast, Some(sap::GLOBAL_CONTROL), data);
                 Some(self.requester.tell(now, &Telegram::Frame(frame)))
             }
-            // The token goes to this master itself: the ring has one master.
+            // This master passes the token to itself, because it is the only master of the ring.
             Job::Token => {
                 let here = self.settings.master;
                 Some(self.requester.tell(now, &Telegram::Token { to: here, from: here }))
@@ -389,7 +391,7 @@ impl Master {
                 self.go(now, Step::Check);
             }
             Step::Check => {
-                // A slave that rejects the parameters can refuse the configuration. The diagnosis has the reason.
+                // A slave that rejects the parameters may refuse the configuration. The diagnosis contains the reason.
                 if !matches!(&answer, Answer::Frame(Frame { control: Control::Answer(_, Status::NoService), .. })) {
                     acknowledged(station, asked, &answer)?;
                 }
@@ -407,7 +409,7 @@ impl Master {
         Ok(())
     }
 
-    /// Decodes and stores the diagnosis of an answer.
+    /// Decodes the diagnosis in an answer, and stores it.
     fn diagnosis(&mut self, answer: Answer) -> Result<Diagnosis, ProfibusError> {
         let station = self.settings.station;
         let asked = sap::name(Some(sap::SLAVE_DIAG));
@@ -424,7 +426,7 @@ impl Master {
         Ok(diagnosis)
     }
 
-    /// Checks that it is the expected slave and that no other master has locked it.
+    /// Checks that the diagnosis is from the expected slave, and that no other master has locked the slave.
     fn compare(&mut self, diagnosis: &Diagnosis) -> Result<(), ProfibusError> {
         let station = self.settings.station;
         if let Some(expected) = self.settings.ident.filter(|expected| *expected != diagnosis.ident) {
@@ -438,14 +440,15 @@ impl Master {
         Ok(())
     }
 
-    /// Selects the configuration: that of the settings, or else that of the slave.
+    /// Selects the configuration: from the settings if they contain one, otherwise the configuration that the slave
+    /// reports.
     fn configure(&mut self, now: Now, answer: Answer) -> Result<(), ProfibusError> {
         let station = self.settings.station;
         let asked = sap::name(Some(sap::GET_CFG));
         let wanted = data(station, asked, answer);
         self.wanted = wanted.as_ref().ok().map(|wanted| wanted.1.clone());
         self.view.details.configuration = match (&self.settings.configuration, wanted) {
-            // Before its first configuration, a slave can report a default one.
+            // The settings have priority, because a slave may report a default configuration before its first real one.
             (Some(set), _) => Some(set.clone()),
             (None, wanted) => {
                 let bytes = wanted?.1;
@@ -462,7 +465,7 @@ impl Master {
         Ok(())
     }
 
-    /// Checks whether the slave is ready for data. If not, decides the next attempt.
+    /// Checks whether the slave is ready for data. If the slave is not ready, selects the next attempt.
     fn confirm(&mut self, now: Now, answer: Answer) -> Result<(), ProfibusError> {
         let diagnosis = self.diagnosis(answer)?;
         let station = self.settings.station;
@@ -539,7 +542,7 @@ impl Master {
         Ok(())
     }
 
-    /// Handles an error: the end of an opening, or the loss of an open link.
+    /// Handles an error. The error ends an opening, or means that an open link is lost.
     fn failed(&mut self, now: Now, error: ProfibusError) {
         self.requester.forget(self.settings.station);
         self.requester.wait(now + self.settings.rate.bits(super::rates::SYNC));
@@ -548,17 +551,17 @@ impl Master {
         self.asked_since = None;
         let was_closing = self.view.state == State::Closing;
         let must_be_quiet = matches!(error, ProfibusError::OtherMaster { .. } | ProfibusError::Unreadable { .. });
-        // After a single loss, retry at once. After repeated losses, wait first.
+        // If the slave leaves an open link, the master retries at once. After a repeated loss, it waits first.
         let has_left = self.view.state == State::Open
             && matches!(error, ProfibusError::Left { .. } | ProfibusError::Length { .. });
-        // The first cause of a loss is more useful than the error of a retry.
+        // The first cause of a loss is more useful than the error of a retry, so it is kept.
         let is_known = matches!(self.view.state, State::Lost | State::Closing) && self.view.trouble.is_some();
         if !is_known || must_be_quiet {
             self.view.trouble = Some(error);
         }
         if self.view.state == State::Opening || was_closing {
-            // Release a slave that this master may have locked, unless the release itself failed or other masters are
-            // on the bus.
+            // If this master may have locked the slave, it releases the slave. It does not do this if the release
+            // itself failed, or if other masters are on the bus.
             if self.locked && !was_closing && !must_be_quiet {
                 self.set_state(State::Closing);
                 return self.go(now, Step::Release);

@@ -12,20 +12,20 @@ pub type View = view::View<ProfibusError, Statistics, Details>;
 /// Receiver of state changes.
 pub type Views = view::Views<ProfibusError, Statistics, Details>;
 
-/// Counters.
+/// Counters of the data exchanges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Statistics {
-    /// Data exchanges requested, without repetitions.
+    /// Requests for a data exchange, without repetitions.
     pub sent: u64,
-    /// Data exchanges answered.
+    /// Data exchanges that the slave answered.
     pub received: u64,
     /// Repeated requests.
     pub repeated: u64,
-    /// Bytes that are no telegram.
+    /// Number of bytes that are not part of a telegram.
     pub noise: u64,
-    /// Answers without a request.
+    /// Answers without a pending request.
     pub unexpected: u64,
-    /// Cycles missed, for example on a busy computer.
+    /// Cycles that were missed, for example because the computer was busy.
     pub skipped: u64,
 }
 
@@ -34,9 +34,9 @@ pub struct Statistics {
 pub struct Details {
     /// Last diagnosis of the slave.
     pub diagnosis: Option<Diagnosis>,
-    /// Configuration in use, or reported by the slave.
+    /// Configuration that is in use, or that the slave reports.
     pub configuration: Option<Vec<u8>>,
-    /// Whether the adapter echoes what is sent.
+    /// Whether the adapter echoes the bytes that are sent.
     pub echoes: bool,
     /// Time between two exchanges.
     pub cycle: Duration,

@@ -3,33 +3,33 @@
 /// A fault of the slave.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SlaveFault {
-    /// Does not answer.
+    /// The slave does not answer.
     Mute,
-    /// Omits every fourth answer.
+    /// The slave omits every fourth answer.
     Lose,
-    /// Sends every fourth answer with a wrong checksum.
+    /// The slave sends every fourth answer with a wrong checksum.
     BadFcs,
-    /// Reports that another master has locked it.
+    /// The slave reports that another master has locked it.
     Locked,
-    /// Reports another ident number.
+    /// The slave reports another ident number.
     OtherIdent,
-    /// Requires a configuration with other image sizes.
+    /// The slave requires a configuration with other image sizes.
     OtherSize,
-    /// Rejects every configuration.
+    /// The slave rejects every configuration.
     NoConfiguration,
-    /// Rejects all parameters.
+    /// The slave rejects all parameters.
     NoParameters,
-    /// Never becomes ready.
+    /// The slave never becomes ready.
     NotReady,
-    /// Sends images that are one byte short.
+    /// The slave sends images that are one byte too short.
     WrongSize,
-    /// Refuses every request: service not active.
+    /// The slave refuses every request with the status "service not active".
     Inactive,
-    /// Reports that it is a master.
+    /// The slave reports that it is a master.
     Master,
-    /// Always reports a new diagnosis.
+    /// The slave reports a new diagnosis in every data exchange.
     Diagnosis,
-    /// Sends a token.
+    /// The slave sends a token.
     Token,
 }
 

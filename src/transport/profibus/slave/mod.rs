@@ -1,5 +1,5 @@
-//! Simulated DP slave without line and clock. It is stricter than real slaves with frame counts, lengths, ident number,
-//! configuration, parameters, owner and watchdog.
+//! Simulated DP slave without line and clock. The slave is stricter than real slaves: it checks frame counts, lengths,
+//! ident number, configuration, parameters, owner and watchdog.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -17,7 +17,7 @@ mod fault;
 
 pub use fault::SlaveFault;
 
-/// A pause that always ends a telegram.
+/// Pause after which a telegram has certainly ended.
 const PAUSE: Duration = Duration::from_millis(100);
 /// Shortest delay of an answer, in bits.
 const MIN_TSDR: u32 = 11;
@@ -33,19 +33,19 @@ pub struct Setup {
     pub ident: u16,
     /// The only accepted configuration (identifier bytes).
     pub configuration: Vec<u8>,
-    /// Bytes from the slave.
+    /// Size of the image from the slave in bytes.
     pub input: usize,
-    /// Bytes to the slave.
+    /// Size of the image to the slave in bytes.
     pub output: usize,
     /// Accepted user parameters.
     pub parameters: Vec<Vec<u8>>,
-    /// Bit rate, for the delay of answers.
+    /// Bit rate. The delay of answers depends on it.
     pub rate: Rate,
 }
 
 impl Setup {
-    /// 24 words in each direction, station 5. The ident number is a placeholder, because that of the YRCX board is not
-    /// public.
+    /// Returns the configuration of station 5 with 24 words in each direction. The ident number is a placeholder,
+    /// because the ident number of the YRCX board is not public.
     pub fn stand_in(rate: Rate) -> Self {
         Self {
             station: 5,
@@ -80,9 +80,9 @@ pub struct Slave<P> {
     faults: Vec<Flag>,
     outputs: Vec<u8>,
     is_clear: bool,
-    /// Whether the diagnosis must report the fault as new.
+    /// Whether the slave must report the diagnosis as new.
     has_news: bool,
-    /// Per master: the frame count bit of its last request, and the answer.
+    /// Frame count bit of the last request of each master, and the answer to this request.
     last: BTreeMap<u8, (bool, Option<Telegram>)>,
     stream: Stream,
     heard: Now,
@@ -137,12 +137,12 @@ impl<P: ImagePeer> Slave<P> {
         self.exchanges
     }
 
-    /// Activates a fault, or none.
+    /// Activates a fault; `None` deactivates the active fault.
     pub const fn set_fault(&mut self, fault: Option<SlaveFault>) {
         self.fault = fault;
     }
 
-    /// Restarts the slave (power cycle).
+    /// Restarts the slave, as after a power cycle.
     pub fn restart(&mut self, now: Now) {
         self.leave(now);
         self.last.clear();
@@ -151,7 +151,7 @@ impl<P: ImagePeer> Slave<P> {
         self.faults.clear();
     }
 
-    /// Returns to the state that waits for parameters.
+    /// Leaves data exchange: the slave waits for parameters again.
     fn leave(&mut self, now: Now) {
         if self.state == State::Exchange {
             self.peer.input(now, None);
@@ -198,7 +198,7 @@ impl<P: ImagePeer> Slave<P> {
                     answer
                 }
             }
-            // A request with an invalid frame count, or a service that slaves do not have.
+            // The request has an invalid frame count, or slaves do not have this service.
             _ => Some(self.frame(frame, Status::NoService, Vec::new())),
         };
         if self.owner == Some(frame.from) {
@@ -308,7 +308,8 @@ impl<P: ImagePeer> Slave<P> {
         self.state = State::Exchange;
     }
 
-    /// Handles a data exchange; `None` if the slave leaves data exchange because of it.
+    /// Handles a data exchange. Returns `None` if there is no answer, for example because the slave leaves data
+    /// exchange.
     fn exchange(&mut self, now: Now, frame: &Frame) -> Option<Telegram> {
         if frame.data.len() != self.setup.output {
             self.leave(now);
@@ -392,7 +393,7 @@ impl<P: ImagePeer> Peer for Slave<P> {
     }
 
     fn damaged(&mut self, now: Now, channel: usize) {
-        // A character with a parity error reads as NUL, as from a driver.
+        // A character with a parity error reads as NUL, like from the driver of a serial port.
         self.receive(now, channel, &[0]);
     }
 

@@ -1,4 +1,4 @@
-//! Tests of master and slave on a line in virtual time, with its character timing and faults.
+//! Tests of master and slave on a line in virtual time. The line has character timing and faults.
 
 mod peers;
 mod survey;
@@ -39,7 +39,7 @@ fn image(number: u8) -> Vec<u8> {
     image
 }
 
-/// Echo peer that records every change.
+/// Echo peer that records every change of the image.
 #[derive(Debug, Default)]
 struct Echo {
     image: Option<Vec<u8>>,
@@ -136,7 +136,8 @@ fn a_start_is_the_one_that_others_have_seen_working() {
     let mut world = World::new("500k", "");
     world.slave.set_fault(None);
     world.open();
-    // Get_Cfg is included, so from there on the frame count bit is inverted.
+    // armctl sends Get_Cfg, the other implementations do not. After Get_Cfg, the frame count bit of armctl is therefore
+    // the inverse of theirs.
     let expected = [
         "10 05 02 49 50 16",
         "68 05 05 68 85 82 6D 3C 3E EE 16",
@@ -245,7 +246,7 @@ fn a_slave_lets_go_when_its_master_dies() {
     let mut world = World::new("500k", "");
     world.open();
     let died = world.now;
-    // Time passes only for the line and the slave.
+    // The master does not run: time passes only for the line and the slave.
     world.wire.run(died + 490 * MS, &mut world.slave);
     assert_eq!(world.slave.owner(), Some(2));
     world.wire.run(died + 520 * MS, &mut world.slave);
@@ -278,7 +279,7 @@ fn a_master_says_nothing_where_another_one_speaks() {
         assert_eq!(world.fails(), message);
         assert!(world.sent.is_empty(), "{heard}");
     }
-    // Opening a port can produce a character.
+    // Opening a port can cause a noise character.
     let mut world = World::new("500k", "");
     world.master.handle(MS, &[0]);
     world.open();
@@ -309,7 +310,7 @@ fn adapters_that_hand_back_what_is_sent_do_no_harm() {
     assert!(view.details.echoes);
     let view = world.run(SEC, |view| view.statistics.sent >= 20);
     assert_eq!((view.statistics.repeated, view.statistics.noise, view.statistics.unexpected), (0, 0, 0));
-    // With crossed wires or a dead slave, the echo is not taken for an answer.
+    // With crossed wires or a dead slave, the master must not interpret the echo as an answer.
     let mut world = World::new("500k", "echo");
     world.slave.set_fault(Some(SlaveFault::Mute));
     assert!(world.fails().contains("only the echo of the adapter received"));
@@ -322,7 +323,7 @@ fn cycles_are_kept_without_drift_and_without_bursts() {
     let view = world.run(20 * SEC, |_| false);
     assert!((999..=1001).contains(&view.statistics.sent), "{}", view.statistics.sent);
     assert_eq!(view.statistics.skipped, 0);
-    // The computer is busy for a while. Missed cycles are not repeated.
+    // The computer is busy for some time. Missed cycles are not sent later.
     world.now += 110 * MS;
     world.wire.run(world.now, &mut world.slave);
     let after = world.run(100 * MS, |_| false);
@@ -341,15 +342,15 @@ fn a_full_line_is_within_a_tenth_of_its_bits() {
         let view = world.run(30 * SEC, |view| view.statistics.received >= before + 100);
         assert_eq!(view.statistics.received, before + 100, "{:?}", view.trouble);
         let cycle = world.now.saturating_sub(start) / 100;
-        // Two telegrams of 57 characters, the pause before a request, and the delay of the answer.
+        // An exchange has two telegrams of 57 characters, the pause before a request, and the delay of the answer.
         let bits = rate.pace().time(2 * 57) + rate.bits(33 + 11);
         assert!(cycle <= bits * 11 / 10, "{name}: {cycle:?} for {bits:?}");
         assert!(cycle >= bits, "{name}: {cycle:?} is faster than the line");
     }
 }
 
-/// Sends commands as an image controller expects them: a number, then 0 before the next. Returns which were confirmed
-/// and which the slave saw.
+/// Sends commands as a controller of images expects them: a number, then 0 before the next number. Returns the
+/// confirmed commands and the commands that the slave received.
 fn commands(seed: u64, faults: &str) -> (Vec<u8>, Vec<u8>, View) {
     let settings = Settings { retries: 6, slot: Some(10 * MS), ..Settings::new(5, RATES[5], resting()) };
     let mut world = World::with(settings, &format!("{faults},seed={seed}"));
@@ -368,7 +369,7 @@ fn commands(seed: u64, faults: &str) -> (Vec<u8>, Vec<u8>, View) {
                 is_done = false;
                 break;
             };
-            // The input must come from the slave and from this generation.
+            // The input must be from the slave, and from this generation.
             let view = world.run(5 * SEC, |view| {
                 let is_shown =
                     |input: &super::master::Input| input.generation == generation && input.image[0] == number;
@@ -410,7 +411,7 @@ fn ten_thousand_faulted_cycles_do_no_command_twice_and_none_wrongly() {
 
 #[test]
 fn a_held_back_line_does_not_answer_the_next_request_with_the_last_answer() {
-    // Longer than the slot time, so answers arrive after the repetition of their request.
+    // The delay can be longer than the slot time, so that answers arrive after their request was repeated.
     let (done, executed, view) = commands(3, "delay=0..14ms");
     assert!(executed.windows(2).all(|pair| pair[0] < pair[1]), "{executed:?}");
     assert!(done.iter().all(|number| executed.contains(number)), "{done:?} of {executed:?}");

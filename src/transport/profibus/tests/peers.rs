@@ -60,7 +60,7 @@ fn rate() -> Rate {
     Rate::from_name("500k").unwrap()
 }
 
-/// Runs the `profirust` master for `time`. Returns the last input image if it is in data exchange.
+/// Runs the `profirust` master for `time`. Returns the last input image, if the master is in data exchange.
 fn drive(time: Duration, ident: u16, fault: Option<SlaveFault>) -> (Option<Vec<u8>>, Slave<Echo>) {
     let (mut inputs, mut outputs, mut diagnosis) = ([0; SIZE], [0; SIZE], [0; 16]);
     outputs[0] = 0x5A;

@@ -1,4 +1,4 @@
-//! Tests on a pseudo-terminal, which has no bit rate and no parity.
+//! Tests on a pseudo-terminal. It has no bit rate and no parity.
 
 use std::io::{Read as _, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,7 +18,7 @@ use super::super::slave::{Setup, Slave};
 use super::{Echo, MS, image, resting};
 use crate::sim::Peer as _;
 
-/// A slave behind a pseudo-terminal on a thread, and the path of the other end.
+/// A slave behind a pseudo-terminal, running on a thread, and the path of the other end.
 struct Served {
     slave: Arc<Mutex<Slave<Echo>>>,
     is_over: Arc<AtomicBool>,
@@ -40,7 +40,7 @@ impl Served {
             let start = Instant::now();
             let mut buffer = [0; 256];
             while !over.load(Ordering::SeqCst) {
-                // Reading fails while the other end is closed.
+                // Reads fail while the other end is closed.
                 let len = near.read(&mut buffer).unwrap_or(0);
                 if len == 0 {
                     std::thread::yield_now();
@@ -49,7 +49,7 @@ impl Served {
                 if len > 0 {
                     slave.receive(start.elapsed(), 0, &buffer[..len]);
                 }
-                // 1 ms ahead, so that the delay of the answer is over.
+                // The time is 1 ms ahead, so that the delay of the answer is over.
                 while let Some((_, bytes)) = slave.transmit(start.elapsed() + MS) {
                     let _ = near.write_all(&bytes);
                 }
@@ -68,7 +68,7 @@ impl Drop for Served {
     }
 }
 
-/// Long time limits, because other tests can keep the computer busy.
+/// The time limits are long, because other tests can keep the computer busy.
 fn settings() -> Settings {
     let rate = Rate::from_name("500k").unwrap();
     let slot = Some(Duration::from_millis(500));
@@ -97,7 +97,7 @@ async fn images_go_both_ways_over_a_terminal_and_the_slave_is_free_in_the_end() 
     let slave = served.slave.lock().unwrap();
     assert_eq!(slave.owner(), None);
     assert_eq!(slave.peer().history, [Some(resting()), Some(image(3)), None]);
-    // Whole telegrams in both directions.
+    // The tap recorded whole telegrams in both directions.
     let seen = seen.lock().unwrap();
     assert_eq!(seen[..2], [super::hex("10 05 02 49 50 16"), super::hex("10 02 05 00 07 16")]);
 }
@@ -115,7 +115,7 @@ async fn a_connection_that_is_dropped_sets_the_slave_free() {
 async fn an_adapter_that_is_pulled_out_is_a_loss_and_is_opened_again() {
     let first = Served::new(settings().rate);
     let second = Served::new(settings().rate);
-    // After the adapter is back, the same name leads to another terminal.
+    // When the adapter is connected again, the same name leads to another terminal.
     let (there, back) = (first.path.clone(), second.path.clone());
     let mut count = 0;
     let rate = settings().rate;

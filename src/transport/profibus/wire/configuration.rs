@@ -1,4 +1,4 @@
-//! Codec for configuration identifier bytes (part 8, section 8.3.5.2): modules and bytes per direction.
+//! Codec for the identifier bytes of a configuration (part 8, section 8.3.5.2): modules, and bytes in each direction.
 
 use super::{MAX_DATA, WireError};
 
@@ -9,12 +9,12 @@ pub struct Configuration {
     modules: Vec<Module>,
 }
 
-/// The module of one identifier.
+/// The module that one identifier describes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Module {
-    /// Bytes from the slave.
+    /// Number of bytes from the slave.
     pub input: usize,
-    /// Bytes to the slave.
+    /// Number of bytes to the slave.
     pub output: usize,
 }
 
@@ -22,7 +22,7 @@ impl Configuration {
     /// Decodes identifiers in the general and the special format.
     ///
     /// # Errors
-    /// An identifier is incomplete, or the total does not fit a telegram.
+    /// An identifier is incomplete, or the data of all modules does not fit into a telegram.
     pub fn parse(bytes: &[u8]) -> Result<Self, WireError> {
         let mut modules = Vec::new();
         let (mut at, mut input, mut output) = (0, 0, 0);
@@ -44,23 +44,23 @@ impl Configuration {
         &self.bytes
     }
 
-    /// Modules in order; an empty slot has no bytes.
+    /// Modules in their order. An empty slot is a module without bytes.
     pub fn modules(&self) -> &[Module] {
         &self.modules
     }
 
-    /// Total bytes from the slave.
+    /// Total number of bytes from the slave.
     pub fn input(&self) -> usize {
         self.modules.iter().map(|module| module.input).sum()
     }
 
-    /// Total bytes to the slave.
+    /// Total number of bytes to the slave.
     pub fn output(&self) -> usize {
         self.modules.iter().map(|module| module.output).sum()
     }
 }
 
-/// Size in bytes from a length byte; units have one or two bytes.
+/// Returns the size in bytes that a length byte describes. The units of a length byte have one or two bytes.
 const fn units(byte: u8, mask: u8) -> usize {
     let count = (byte & mask) as usize + 1;
     if byte & 0x40 != 0 { count * 2 } else { count }
@@ -72,7 +72,7 @@ fn general(identifier: u8) -> Module {
     Module { input: if ways & 0x10 == 0 { 0 } else { bytes }, output: if ways & 0x20 == 0 { 0 } else { bytes } }
 }
 
-/// Decodes the special format: a length byte per direction, output first, then manufacturer bytes.
+/// Decodes the special format: a length byte for each direction, output first, then manufacturer bytes.
 fn special(bytes: &[u8], at: usize) -> Result<(Module, usize), WireError> {
     let identifier = bytes[at];
     let mut len = 1;
@@ -93,7 +93,7 @@ fn special(bytes: &[u8], at: usize) -> Result<(Module, usize), WireError> {
     };
     let present = bytes.len().saturating_sub(at + len);
     if present < makers {
-        return Err(WireError::short("maker's bytes of an identifier", at + len, makers, present));
+        return Err(WireError::short("manufacturer data of an identifier", at + len, makers, present));
     }
     Ok((Module { input, output }, len + makers))
 }

@@ -2,7 +2,7 @@
 
 use super::WireError;
 
-/// Bit of requests.
+/// Bit that is set in a request.
 const REQUEST: u8 = 0x40;
 const FCB: u8 = 0x20;
 const FCV: u8 = 0x10;
@@ -57,7 +57,7 @@ impl Service {
         !matches!(self, Self::SendLow | Self::SendHigh)
     }
 
-    /// Whether the service uses the frame count bit, which identifies repeated requests.
+    /// Whether the service uses the frame count bit. This bit distinguishes a repeated request from a new one.
     pub const fn is_counted(self) -> bool {
         matches!(
             self,
@@ -66,14 +66,14 @@ impl Service {
     }
 }
 
-/// Frame count bits (FCB and FCV), which identify a repeated request.
+/// Frame count bits (FCB and FCV). They distinguish a repeated request from a new one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum FrameCount {
     /// Not used.
     None,
     /// First request after a reset.
     First,
-    /// Later request; the bit changes with each new one.
+    /// Later request. The bit changes with every new request.
     Counted(bool),
 }
 
@@ -87,7 +87,7 @@ impl FrameCount {
         }
     }
 
-    /// Value of FCB; `false` if it is not used.
+    /// Value of FCB; `false` if the frame count is not used.
     pub const fn bit(self) -> bool {
         match self {
             Self::None => false,
@@ -129,9 +129,9 @@ pub enum Status {
     NoData,
     /// Data, and the diagnosis is new.
     DataHigh,
-    /// Data, but the request data was not accepted.
+    /// Data. The data of the request was not accepted.
     DataNoResource,
-    /// Data, and the diagnosis is new, but the request data was not accepted.
+    /// Data, and the diagnosis is new. The data of the request was not accepted.
     DataHighNoResource,
 }
 
@@ -148,14 +148,14 @@ const STATUSES: [(u8, Status, &str); 9] = [
 ];
 
 impl Status {
-    /// Short name and meaning.
+    /// Short name of the status and its meaning.
     pub fn text(self) -> &'static str {
         STATUSES.iter().find(|row| row.1 == self).map_or("", |row| row.2)
     }
 }
 
 impl Control {
-    /// Control of a request.
+    /// Creates the function code of a request.
     pub const fn request(service: Service, count: FrameCount) -> Self {
         Self::Request(service, count)
     }

@@ -4,12 +4,12 @@ use std::fmt;
 
 use super::WireError;
 
-/// Bytes before the blocks.
+/// Number of bytes before the blocks.
 const FIXED: usize = 6;
 /// Master address of a slave without a master.
 const NOBODY: u8 = 255;
 
-/// Answer to Slave_Diag.
+/// Diagnosis of a slave, the answer to Slave_Diag.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnosis {
     /// The three status bytes.
@@ -18,24 +18,24 @@ pub struct Diagnosis {
     pub master: Option<u8>,
     /// Ident number.
     pub ident: u16,
-    /// Extended diagnosis.
+    /// Blocks of the extended diagnosis.
     pub blocks: Vec<Block>,
 }
 
 /// A flag of the three status bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Flag {
-    /// Set by a master: the slave does not answer.
+    /// The slave does not answer. A master sets this flag.
     NotExistent,
-    /// Not ready for data.
+    /// The slave is not ready for data.
     NotReady,
     /// Configuration fault.
     ConfigurationFault,
-    /// Extended diagnosis follows.
+    /// An extended diagnosis follows.
     Extended,
     /// A requested function is not supported.
     NotSupported,
-    /// Set by a master: an answer was invalid.
+    /// An answer was invalid. A master sets this flag.
     InvalidAnswer,
     /// Parameter fault.
     ParameterFault,
@@ -43,21 +43,21 @@ pub enum Flag {
     Locked,
     /// The slave needs parameters.
     ParametersWanted,
-    /// No valid data; the master must read the diagnosis again.
+    /// The slave has no valid data; the master must read the diagnosis again.
     Static,
     /// The watchdog is active.
     Watchdog,
-    /// Freeze: the inputs are held.
+    /// Freeze: the inputs keep their values.
     Freeze,
-    /// Sync: the outputs are held.
+    /// Sync: the outputs keep their values.
     Sync,
-    /// Set by a master: the slave is deactivated.
+    /// The slave is deactivated. A master sets this flag.
     Deactivated,
-    /// More diagnosis than fits.
+    /// The slave has more diagnosis data than fits into the answer.
     Overflow,
 }
 
-/// Flags with byte, bit and text.
+/// Flags, each with its byte, bit and text.
 const FLAGS: [(Flag, usize, u8, &str); 15] = [
     (Flag::NotExistent, 0, 0x01, "does not exist"),
     (Flag::NotReady, 0, 0x02, "not ready for data"),
@@ -76,7 +76,7 @@ const FLAGS: [(Flag, usize, u8, &str); 15] = [
     (Flag::Overflow, 2, 0x80, "diagnosis overflow"),
 ];
 
-/// A bit that is always set.
+/// Bit of the second status byte that is always set.
 pub(super) const ALWAYS: u8 = 0x04;
 
 impl Flag {
@@ -89,11 +89,11 @@ impl Flag {
 /// A block of the extended diagnosis.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Block {
-    /// Device-related: manufacturer bytes.
+    /// Device-related diagnosis: bytes defined by the manufacturer.
     Device(Vec<u8>),
-    /// Identifier-related: numbers of the modules with a diagnosis.
+    /// Identifier-related diagnosis: numbers of the modules with a diagnosis.
     Modules(Vec<u16>),
-    /// Channel-related.
+    /// Channel-related diagnosis.
     Channel {
         /// Module number.
         module: u8,
@@ -101,7 +101,7 @@ pub enum Block {
         channel: u8,
         /// Direction: 1 input, 2 output, 3 both.
         way: u8,
-        /// Channel type (bit, byte, word), as numbered by the standard.
+        /// Channel type (bit, byte, word), with the numbers of the standard.
         size: u8,
         /// Error code.
         error: u8,
@@ -110,7 +110,7 @@ pub enum Block {
     Revision(u8),
 }
 
-/// Error codes of channels with texts of the standard.
+/// Error codes of channels, with the texts of the standard.
 const CHANNEL_ERRORS: [(u8, &str); 9] = [
     (1, "short circuit"),
     (2, "undervoltage"),
@@ -172,7 +172,7 @@ impl Diagnosis {
         told.map(|row| row.3)
     }
 
-    /// Status bytes with these flags and the bit that is always set.
+    /// Returns the status bytes with these flags and with the bit that is always set.
     pub fn flags(flags: &[Flag]) -> [u8; 3] {
         let mut bytes = [0, ALWAYS, 0];
         for row in FLAGS.iter().filter(|row| flags.contains(&row.0)) {
@@ -183,7 +183,7 @@ impl Diagnosis {
 }
 
 impl fmt::Display for Diagnosis {
-    /// Format: `not ready for data, needs parameters, no master, ident 0x1234`.
+    /// Format, for example: `not ready for data, needs parameters, no master, ident 0x1234`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for text in self.words() {
             write!(f, "{text}, ")?;
@@ -201,7 +201,7 @@ impl fmt::Display for Diagnosis {
 }
 
 impl Block {
-    /// Decodes a block of at least one byte.
+    /// Decodes a block. The block must have at least one byte.
     fn new(block: &[u8]) -> Self {
         match (block[0] >> 6, block) {
             (0, _) => Self::Device(block[1..].to_vec()),

@@ -1,7 +1,7 @@
-//! PROFIBUS DP codec: telegrams with function codes, and the data of the slave's services.
+//! PROFIBUS DP codec: telegrams with function codes, and the data of the services of a slave.
 //!
-//! The decoder accepts both forms of eight data bytes; the encoder writes one. Sections are those of EN 50170, volume
-//! 2.
+//! There are two forms of a telegram with eight data bytes. The decoder accepts both; the encoder always writes the
+//! same form. Section numbers refer to EN 50170, volume 2.
 
 pub use crate::bytes::{Problem, WireError};
 
@@ -29,7 +29,7 @@ pub mod sap {
     pub const READ_INPUTS: u8 = 56;
     /// Read the output image.
     pub const READ_OUTPUTS: u8 = 57;
-    /// Clear, operate, freeze, sync.
+    /// Send clear, operate, freeze or sync.
     pub const GLOBAL_CONTROL: u8 = 58;
     /// Read the configuration of the slave.
     pub const GET_CFG: u8 = 59;
@@ -40,7 +40,7 @@ pub mod sap {
     /// Check the configuration.
     pub const CHK_CFG: u8 = 62;
 
-    /// Name of the service of a SAP; data exchange has no SAP.
+    /// Name of the service that belongs to a SAP. Data exchange has no SAP.
     pub const fn name(sap: Option<u8>) -> &'static str {
         match sap {
             None => "Data_Exchange",

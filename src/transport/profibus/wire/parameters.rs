@@ -5,15 +5,15 @@ use std::time::Duration;
 
 use super::{MAX_DATA, WireError};
 
-/// Bytes before the user parameters.
+/// Number of bytes before the user parameters.
 const FIXED: usize = 7;
 /// Time base of the watchdog.
 const STEP: Duration = Duration::from_millis(10);
 
-/// Lock request.
+/// Request to lock or unlock a slave.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Lock {
-    /// No change; only the shortest answer delay is set.
+    /// No change of the lock; only the shortest delay of an answer is set.
     Unchanged,
     /// Lock the slave for this master.
     Lock,
@@ -21,14 +21,14 @@ pub enum Lock {
     Unlock,
 }
 
-/// Watchdog time of a slave: 10 ms times two factors.
+/// Watchdog time of a slave: 10 ms multiplied by two factors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Watchdog {
     factors: [u8; 2],
 }
 
 impl Watchdog {
-    /// The shortest watchdog time that is at least `time`; `None` above 650 s.
+    /// Returns the shortest watchdog time that is at least `time`; `None` if `time` is above 650 s.
     pub fn at_least(time: Duration) -> Option<Self> {
         let steps = time.as_nanos().div_ceil(STEP.as_nanos()).max(1);
         // The smallest second factor gives the finest steps.
@@ -37,7 +37,7 @@ impl Watchdog {
         Some(Self { factors: [first, second] })
     }
 
-    /// From the factors; 0 means no watchdog.
+    /// Creates a watchdog time from the two factors. A factor of 0 means no watchdog: `None`.
     pub const fn from_factors(factors: [u8; 2]) -> Option<Self> {
         if factors[0] == 0 || factors[1] == 0 { None } else { Some(Self { factors }) }
     }
@@ -51,7 +51,7 @@ impl Watchdog {
 /// Data of Set_Prm.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Parameters {
-    /// Lock request.
+    /// Request to lock or unlock a slave.
     pub lock: Lock,
     /// Whether the slave must support Sync.
     pub sync: bool,
@@ -70,10 +70,10 @@ pub struct Parameters {
 }
 
 impl Parameters {
-    /// Most bytes of user parameters.
+    /// Maximum number of bytes of user parameters.
     pub const MAX_USER: usize = MAX_DATA - FIXED;
 
-    /// Parameters that release the slave.
+    /// Returns the parameters that release the slave.
     pub const fn unlock(ident: u16) -> Self {
         Self {
             lock: Lock::Unlock,
@@ -92,7 +92,7 @@ impl Parameters {
         let Some((&[station, first, second, min_tsdr, high, low, groups], user)) = data.split_first_chunk() else {
             return Err(WireError::short("parameters", 0, FIXED, data.len()));
         };
-        // Unlock has priority over lock.
+        // If both bits are set, unlock has priority over lock.
         let lock = match station & 0xC0 {
             0 => Lock::Unchanged,
             0x80 => Lock::Lock,
@@ -133,11 +133,11 @@ impl Parameters {
     }
 }
 
-/// Command to all slaves of some groups.
+/// Command to all slaves of one or more groups.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct GlobalControl {
     bits: u8,
-    /// One bit per group; 0 means all slaves.
+    /// Groups to which the command applies, one bit per group; 0 means all slaves.
     pub groups: u8,
 }
 
@@ -164,7 +164,7 @@ impl GlobalControl {
         [self.bits, self.groups]
     }
 
-    /// Whether it clears the outputs.
+    /// Whether the command clears the outputs.
     pub const fn is_clear(self) -> bool {
         self.bits & 0x02 != 0
     }

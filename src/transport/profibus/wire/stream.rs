@@ -1,8 +1,8 @@
-//! Splitter of a character stream into telegrams and noise.
+//! Splitter that divides a character stream into telegrams and noise.
 
 use super::{Parsed, Telegram, WireError};
 
-/// Buffer limit, larger than the longest telegram.
+/// Size limit of the buffer. It is larger than the longest telegram.
 const MOST_KEPT: usize = 512;
 
 /// A piece of the stream.
@@ -14,14 +14,14 @@ pub enum Piece {
     Noise(u8, WireError),
 }
 
-/// The splitter. After noise, it continues with the next byte that can begin a telegram.
+/// Splitter of a character stream. After noise, it continues at the next byte with which a telegram can begin.
 #[derive(Debug, Clone, Default)]
 pub struct Stream {
     bytes: Vec<u8>,
 }
 
 impl Stream {
-    /// Adds received bytes. Take all pieces out before the next call.
+    /// Adds received bytes. The caller must take out all pieces before the next call.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.extend(bytes);
     }
@@ -42,7 +42,7 @@ impl Stream {
         }
     }
 
-    /// Number of bytes that the current telegram still needs, as far as known; 0 if none has begun.
+    /// Number of bytes that the current telegram still needs, if known; 0 if no telegram has begun.
     pub fn missing(&self) -> usize {
         if self.bytes.is_empty() {
             return 0;
@@ -58,7 +58,7 @@ impl Stream {
         self.bytes.is_empty()
     }
 
-    /// Drops a partial telegram, for example after a pause: telegrams have no pauses.
+    /// Drops a partial telegram, for example after a pause. There are no pauses within a telegram.
     pub fn clear(&mut self) {
         self.bytes.clear();
     }

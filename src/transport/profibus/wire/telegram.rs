@@ -8,25 +8,25 @@ const SD3: u8 = 0xA2;
 const SD4: u8 = 0xDC;
 const SC: u8 = 0xE5;
 const ED: u8 = 0x16;
-/// Address bit: a service access point follows.
+/// Bit of an address byte: a service access point follows.
 const EXTENDED: u8 = 0x80;
-/// Destination, source and function code.
+/// Length of destination, source and function code.
 const HEADER: usize = 3;
-/// Data bytes of a fixed-length telegram.
+/// Number of data bytes of a fixed-length telegram.
 const FIXED: usize = 8;
-/// Valid length fields of a variable-length telegram.
+/// Valid values of the length field of a variable-length telegram.
 const LENGTHS: std::ops::RangeInclusive<u8> = 4..=249;
-/// Field name in an error: the first byte begins no telegram.
+/// Field name in an error: no telegram begins with the first byte.
 pub const START: &str = "start delimiter";
 /// Field name in an error: the checksum is wrong.
 pub const CHECKSUM: &str = "frame check sequence";
-/// Most data bytes of a telegram with service access points.
+/// Maximum number of data bytes of a telegram with service access points.
 pub const MAX_DATA: usize = 244;
 
 /// A telegram.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Telegram {
-    /// A token: the right to send.
+    /// A token. Its owner may send requests.
     Token {
         /// New owner of the token.
         to: u8,
@@ -42,7 +42,7 @@ pub enum Telegram {
 /// A telegram with a function code.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Frame {
-    /// Destination: 0 to 125, or 127 for all.
+    /// Destination: 0 to 125, or 127 for all stations.
     pub to: u8,
     /// Source.
     pub from: u8,
@@ -66,10 +66,10 @@ pub enum Parsed {
 }
 
 impl Frame {
-    /// Encodes the frame. Eight data bytes also use the variable-length form.
+    /// Encodes the frame. A frame with eight data bytes also gets the variable-length form.
     ///
     /// # Panics
-    /// If the data is longer than [`MAX_DATA`]. Callers limit it.
+    /// If the data is longer than [`MAX_DATA`]. Callers limit the length of the data.
     pub fn emit(&self) -> Vec<u8> {
         assert!(self.data.len() <= MAX_DATA, "data of telegrams is bounded where they are built");
         let extended = |address: u8, sap: Option<u8>| address | if sap.is_some() { EXTENDED } else { 0 };

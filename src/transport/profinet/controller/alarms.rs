@@ -1,5 +1,5 @@
-//! Alarm state machine of the controller. It delivers each alarm once, acknowledges twice (the frame and the alarm),
-//! and repeats its own frames.
+//! Alarm state machine of the controller. It reports each alarm once. It acknowledges the frame and then the alarm, and
+//! repeats its own frames.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use super::super::wire::alarm::{self, Notification, Pdu, Priority, Rta};
 const PATIENCE: Duration = Duration::from_millis(100);
 /// Number of repetitions.
 const RETRIES: u32 = 3;
-/// Limit of queued acknowledgements. A device has one unacknowledged alarm per channel.
+/// Maximum number of queued acknowledgements. A device has one unacknowledged alarm per channel.
 const MOST: usize = 8;
 
 /// One alarm channel.
@@ -19,9 +19,9 @@ struct Channel {
     priority: Priority,
     /// Sequence number of our last frame; [`alarm::NONE`] before the first.
     sent: u16,
-    /// Sequence number of the device's last frame; [`alarm::NONE`] before the first.
+    /// Sequence number of our last frame; [`alarm::NONE`] before the first frame.
     received: u16,
-    /// Frame that waits for its acknowledgement.
+    /// Sequence number of the last frame of the device; [`alarm::NONE`] before the first frame.
     pending: Option<Pending>,
     waiting: Vec<Vec<u8>>,
 }
@@ -41,10 +41,10 @@ pub struct Alarms {
     channels: [Channel; 2],
 }
 
-/// Result of a frame.
+/// Result of a received frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Heard {
-    /// Nothing to report.
+    /// There is nothing to report.
     Nothing,
     /// A new alarm.
     Alarm(Notification),
@@ -65,7 +65,7 @@ impl Alarms {
         Self { ours, theirs, channels: Priority::ALL.map(channel) }
     }
 
-    /// Handles a frame. Frames to send are appended to `out` with their channel.
+    /// Handles a frame. Frames to send are added to `out` with their channel.
     pub fn handle(
         &mut self,
         now: Now,
@@ -111,7 +111,8 @@ impl Alarms {
         }
     }
 
-    /// Repeats frames that timed out. Returns whether an acknowledgement was given up.
+    /// Repeats frames that timed out. Returns whether the device did not accept an acknowledgement after the last
+    /// repetition.
     pub fn poll(&mut self, now: Now, out: &mut Vec<(Priority, Vec<u8>)>) -> bool {
         let (ours, theirs) = (self.ours, self.theirs);
         let mut is_lost = false;
@@ -135,7 +136,7 @@ impl Alarms {
         self.channels.iter().filter_map(|channel| channel.pending.as_ref()).map(|pending| pending.deadline).min()
     }
 
-    /// Frame that closes the connection.
+    /// Returns the frame that closes the connection.
     pub fn error(&self, status: u32) -> (Priority, Vec<u8>) {
         let low = &self.channels[1];
         (low.priority, low.frame(self.ours, self.theirs, Pdu::Error(status)))
@@ -154,7 +155,7 @@ impl Channel {
         }
     }
 
-    /// Sends the next queued frame if none is in transit.
+    /// Sends the next queued frame, if no frame waits for its acknowledgement.
     fn next(&mut self, now: Now, ours: u16, theirs: u16, out: &mut Vec<(Priority, Vec<u8>)>) {
         if self.pending.is_some() || self.waiting.is_empty() {
             return;
@@ -185,7 +186,7 @@ mod tests {
         (heard, out.into_iter().map(|(_, bytes)| bytes).collect())
     }
 
-    /// notes, alarms: bytes that were sent to a device.
+    /// Bytes that were sent to a device, from the notes on alarms.
     #[test]
     fn an_alarm_is_acknowledged_as_seen_and_told_once() {
         let mut alarms = Alarms::new(1, 0);

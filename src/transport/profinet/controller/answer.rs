@@ -1,4 +1,4 @@
-//! Answers of the device to the calls of a connection, and calls of the device.
+//! Answers of the device to the calls of the controller, and calls of the device.
 
 use std::net::SocketAddrV4;
 
@@ -28,7 +28,7 @@ impl Controller {
         if let Phase::Releasing(trouble) = &self.phase {
             let trouble = trouble.clone();
             let failed = match outcome.blocks(RELEASE) {
-                // The connection was closed before.
+                // The device had already closed the connection, so the release is complete.
                 Err(ProfinetError::Refused { status, .. }) if status.is_unknown_ar() => None,
                 other => other.err(),
             };
@@ -43,7 +43,7 @@ impl Controller {
         };
         match done {
             Ok(()) => {}
-            // The device has no connection to release.
+            // Connect failed, so the device has no connection that must be released.
             Err(trouble @ (ProfinetError::Refused { .. } | ProfinetError::Rejected { .. }))
                 if step == Step::Connect =>
             {
@@ -105,7 +105,7 @@ impl Controller {
             consumer: Consumer::new(&self.settings),
             alarms: Alarms::new(ar.reference, alarm),
         });
-        // The first cyclic frame has priority, because some devices have short time limits.
+        // The first cyclic frame is sent before the parameters, because some devices have short time limits.
         self.produce(now);
         self.write_parameters(now);
         Ok(())
@@ -149,7 +149,7 @@ impl Controller {
         let Ok(blocks) = block::walk(call.blocks) else { return };
         let Some(Ok(control)) = blocks.first().map(Control::parse) else { return };
         let Some(ar) = &mut self.ar else { return };
-        // Only valid after Connect.
+        // The call is valid only after Connect.
         let is_ready = matches!(control.kind, BlockType::APPLICATION_READY | BlockType::PLUG_APPLICATION_READY);
         let fits = control.ar == ar.uuid && control.session_key == ar.session_key;
         if !is_ready || !fits || ar.io.is_none() {
@@ -171,7 +171,7 @@ impl Controller {
         if !mismatches.is_empty() {
             return self.release(now, Some(ProfinetError::Modules(mismatches)));
         }
-        // It can arrive before the answer to PrmEnd, which is then ignored.
+        // If ApplicationReady arrives before the answer to PrmEnd, the controller first waits for this answer.
         if self.ar.as_ref().is_some_and(|ar| ar.step == Step::Ready) {
             self.await_data(now);
         }

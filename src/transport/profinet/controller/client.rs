@@ -1,4 +1,4 @@
-//! RPC client of a device: one call at a time, repeated where that is harmless, with reassembly of answers.
+//! RPC client of a device. It makes one call at a time, repeats calls where this is harmless, and reassembles answers.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -11,7 +11,7 @@ use super::super::wire::{ByteOrder, Uuid, WireError};
 
 /// Time limit for an answer.
 pub const PATIENCE: Duration = Duration::from_secs(2);
-/// Limit of "working" messages of a device during a call.
+/// Maximum number of "working" messages of a device during a call.
 const MOST_WORKING: u32 = 5;
 
 /// Outcome of a call.
@@ -23,15 +23,15 @@ pub enum Outcome {
     Rejected(u32),
     /// The answer cannot be decoded.
     Malformed(WireError),
-    /// No answer within this time.
+    /// There was no answer within this time.
     Silent(Duration),
 }
 
 impl Outcome {
-    /// Blocks of a positive answer.
+    /// Returns the blocks of a positive answer.
     ///
     /// # Errors
-    /// Any other outcome.
+    /// Any other outcome is returned as an error.
     pub fn blocks(self, what: &'static str) -> Result<Vec<u8>, ProfinetError> {
         match self {
             Self::Answer(0, blocks) => Ok(blocks),
@@ -43,10 +43,10 @@ impl Outcome {
     }
 }
 
-/// An action for the driver.
+/// An action that the driver must execute.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Step {
-    /// Send this to the device.
+    /// Send these bytes to the device.
     Send(Vec<u8>),
     /// The call is complete.
     Done(Outcome),
@@ -73,12 +73,12 @@ struct Pending {
 }
 
 impl Client {
-    /// Creates a client for the device with this object UUID. `activity` is its own UUID.
+    /// Creates a client for the device with this object UUID. `activity` is the UUID of the client.
     pub fn new(object: Uuid, activity: Uuid) -> Self {
         Self { object, activity, sequence: 0, pending: None }
     }
 
-    /// Starts a call. An earlier call is dropped. The same bytes are sent at most `tries` times.
+    /// Starts a call and drops an earlier call. The same bytes are sent at most `tries` times.
     pub fn call(&mut self, now: Now, operation: u16, blocks: &[u8], tries: u32) -> Vec<u8> {
         let body = Call { room: rpc::ROOM, blocks }.emit(ByteOrder::Big);
         let header = Header {
@@ -117,7 +117,7 @@ impl Client {
         self.pending.as_ref().map(|pending| pending.deadline)
     }
 
-    /// Returns what is due: a repetition, or the failure of the call.
+    /// Returns the action that is due: a repetition, or the failure of the call.
     pub fn poll(&mut self, now: Now) -> Option<Step> {
         let pending = self.pending.as_mut().filter(|pending| pending.deadline <= now)?;
         if pending.tries == 0 {
@@ -130,7 +130,7 @@ impl Client {
         Some(Step::Send(pending.bytes.clone()))
     }
 
-    /// Handles a datagram of the device that is not a call. Anything but the pending answer is ignored.
+    /// Handles a datagram of the device that is not a call. Only the pending answer is accepted.
     pub fn handle(&mut self, now: Now, datagram: &Datagram<'_>) -> Option<Step> {
         let header = &datagram.header;
         let is_awaited = header.activity == self.activity && header.sequence == self.sequence.wrapping_sub(1);
@@ -186,7 +186,7 @@ impl Pending {
         if there + datagram.body.len() > rpc::MOST {
             return None;
         }
-        // The byte order goes first. It is the same in all fragments of an answer.
+        // The first byte is the byte order, which is the same in all fragments of an answer.
         let mut bytes = vec![u8::from(header.order == ByteOrder::Little)];
         bytes.extend_from_slice(datagram.body);
         self.fragments.insert(header.fragment, bytes);

@@ -15,14 +15,14 @@ pub struct Producer {
     counter: u16,
     due: Now,
     swapped: usize,
-    /// Frames sent.
+    /// Number of frames sent.
     pub sent: u64,
-    /// Frames omitted because their time was missed.
+    /// Number of frames that were omitted, because their time was missed.
     pub skipped: u64,
 }
 
 impl Producer {
-    /// Starts at `now`.
+    /// Creates a sender that starts at `now`.
     pub fn new(settings: &Settings, now: Now) -> Self {
         let step = SEND_CLOCK * settings.ratio().unwrap_or(1);
         Self {
@@ -42,7 +42,7 @@ impl Producer {
         self.due
     }
 
-    /// Returns the payload of a frame, if one is due. Missed frames are omitted and counted, so there is no burst.
+    /// Returns the payload of a frame if one is due. Missed frames are omitted and counted, so there is no burst.
     pub fn poll(&mut self, now: Now, image: &[u8]) -> Option<Vec<u8>> {
         if now < self.due {
             return None;
@@ -82,7 +82,7 @@ impl Producer {
 /// Result of a received frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Verdict {
-    /// Unexpected, or older than the last one.
+    /// The frame is invalid, or older than the last frame.
     Stale,
     /// The device is alive, but its data is not usable.
     Unusable(Unusable),
@@ -94,27 +94,27 @@ pub enum Verdict {
 #[derive(Debug, Clone)]
 pub struct Consumer {
     frame: FrameLayout,
-    /// Submodules whose consumer status must be good: those with output data.
+    /// For each submodule: whether its consumer status must be good. This is so if the submodule has output data.
     fed: Vec<bool>,
     last: Option<u16>,
     swapped: usize,
     /// Time of the last frame.
     pub heard: Option<Now>,
-    /// Frames accepted.
+    /// Number of accepted frames.
     pub received: u64,
-    /// Frames rejected.
+    /// Number of rejected frames.
     pub stale: u64,
 }
 
 impl Consumer {
-    /// Creates a consumer without a frame yet.
+    /// Creates a receiver that has not received a frame yet.
     pub fn new(settings: &Settings) -> Self {
         let frame = settings.layout.frame(Direction::Input);
         let fed = frame.consumers.iter().map(|place| is_fed(&settings.layout, place.slot, place.subslot)).collect();
         Self { frame, fed, last: None, swapped: settings.swapped, heard: None, received: 0, stale: 0 }
     }
 
-    /// Handles a frame with the correct frame id.
+    /// Handles a frame. The caller has checked the frame id.
     pub fn handle(&mut self, now: Now, payload: &[u8]) -> Verdict {
         let cyclic = Cyclic::parse(payload, usize::from(self.frame.length));
         let Some(cyclic) = cyclic.ok().filter(|cyclic| self.last.is_none_or(|last| cyclic.is_after(last))) else {
@@ -139,7 +139,7 @@ impl Consumer {
         for (place, length) in &self.frame.objects {
             let (at, length) = (usize::from(place.offset), usize::from(*length));
             if !is_good(at + length) {
-                // The status of a submodule without data does not matter.
+                // The status of a submodule without data is ignored.
                 if length == 0 {
                     continue;
                 }
@@ -174,7 +174,7 @@ mod tests {
         Settings::new(Station::Name("a".to_owned()), Layout::two_modules(0x101, 0x102))
     }
 
-    /// notes, worked example: the frame to the device.
+    /// Expected frame to the device, from the worked example in the notes.
     #[test]
     fn output_frames_are_those_of_the_example() {
         let mut producer = Producer::new(&settings(), Now::ZERO);

@@ -1,9 +1,9 @@
-//! PROFINET controller of one connection: finds the device, connects, exchanges images, detects a loss, connects again.
-//! It has no sockets and no clock.
+//! PROFINET controller of one connection: finds the device, connects, exchanges images, detects a loss, and connects
+//! again. The controller has no sockets and no clock.
 //!
-//! Each time that the data becomes usable, a new generation starts, and every image to send names its generation. After
-//! a loss, the device gets the resting image until a caller that has seen the loss sets another. Therefore no image
-//! from before a loss is sent again.
+//! Each time that the data becomes usable, a new generation starts. The caller must name the generation with every
+//! image. After a loss, the controller sends the resting image until a caller that has seen the loss sets another
+//! image. Therefore it never sends an image from before the loss again.
 
 use std::collections::VecDeque;
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -34,14 +34,14 @@ mod open;
 mod resolve;
 pub mod view;
 
-/// Pauses before another attempt. The last one repeats.
+/// Pauses before attempts to reconnect. The last pause repeats.
 const BACKOFF: [Duration; 4] =
     [Duration::from_secs(1), Duration::from_secs(2), Duration::from_secs(4), Duration::from_secs(8)];
-/// Lifetime of a connection in the device after its process died.
+/// Time after which a device closes the connection of a process that was killed.
 const OLD_CONNECTION: Duration = Duration::from_secs(2);
-/// Number of waits for such a connection.
+/// Maximum number of waits for the end of such a connection.
 const OLD_TRIES: usize = 3;
-/// Time limit for the start of a device, and for its first usable data.
+/// Time limit for the device to become ready, and for its first usable data.
 const START: Duration = Duration::from_secs(20);
 /// Reason codes of abort messages.
 const WATCHDOG: u8 = 0x05;
@@ -49,15 +49,15 @@ const ALARM_LOST: u8 = 0x08;
 const ABORTED: u8 = 0x0D;
 /// Reason code with which a device confirms a release.
 const RELEASED: u8 = 0x0F;
-/// Limit of alarms in the queue.
+/// Maximum number of alarms in the queue.
 const MOST_ALARMS: usize = 64;
 
-/// An action for the driver.
+/// An action that the driver must execute.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Action {
     /// Send this Ethernet frame.
     Frame(Vec<u8>),
-    /// Send this from UDP port 34964.
+    /// Send these bytes from UDP port 34964.
     Datagram(SocketAddrV4, Vec<u8>),
 }
 
@@ -76,19 +76,19 @@ enum Phase {
     New,
     Resolve(resolve::Search),
     Address(resolve::Address),
-    /// A call of the opening is in progress, or the device must call.
+    /// A call of the opening is in progress, or the controller waits for a call of the device.
     Opening,
     /// Waiting for usable data until this time.
     WaitingForData(Now),
     Data,
-    /// Release was called. Then the connection ends, or opens again after the error.
+    /// Release was called. After that, the connection ends. If there was an error, the connection may open again.
     Releasing(Option<ProfinetError>),
     /// Waiting until the next attempt.
     Waiting(Now),
     Ended,
 }
 
-/// Application relation (AR): one attempt of a connection.
+/// Application relation (AR): one attempt to open the connection.
 #[derive(Debug)]
 struct Ar {
     uuid: Uuid,
@@ -100,7 +100,7 @@ struct Ar {
     /// Time limit for ApplicationReady.
     ready_until: Now,
     is_ready: bool,
-    /// Set by the answer to Connect.
+    /// Cyclic data and alarms; `None` before the answer to Connect.
     io: Option<Io>,
 }
 
@@ -123,9 +123,9 @@ pub struct Controller {
     device: Option<Device>,
     image: Vec<u8>,
     revision: u64,
-    /// The caller has closed the connection.
+    /// Whether the caller has closed the connection.
     is_over: bool,
-    /// Attempts since the data was last good.
+    /// Number of attempts since the data was last usable.
     tries: usize,
     before: Statistics,
     view: View,
@@ -187,7 +187,7 @@ impl Controller {
         std::mem::replace(&mut self.has_changed, false)
     }
 
-    /// Returns the next alarm. If nobody takes them, the oldest ones are dropped.
+    /// Returns the next alarm. If the queue is full, the oldest alarm is dropped.
     pub fn take_alarm(&mut self) -> Option<Notification> {
         self.alarms.pop_front()
     }
@@ -197,8 +197,8 @@ impl Controller {
         matches!(self.phase, Phase::Ended) && self.actions.is_empty()
     }
 
-    /// Sends this image from the next cycle on. Returns the number of the change. It was sent when `sent` of the view
-    /// has reached that number.
+    /// Sends this image, starting with the next cycle. Returns the number of the change. The image was sent when `sent`
+    /// of the view has reached this number.
     ///
     /// # Errors
     /// The connection is not open in this generation, or the image has another size.
@@ -213,7 +213,8 @@ impl Controller {
         Ok(self.revision)
     }
 
-    /// Closes the connection: the resting image, then a release. Cyclic frames continue until its answer.
+    /// Closes the connection: sends the resting image, then releases the connection. Cyclic frames continue until the
+    /// device answers the release.
     pub fn close(&mut self, now: Now) {
         if std::mem::replace(&mut self.is_over, true) {
             return;
@@ -226,7 +227,7 @@ impl Controller {
         }
     }
 
-    /// An action on a local socket failed. The connection continues until it times out.
+    /// Handles a failed action on a local socket. The connection continues until it times out.
     pub fn failed(&mut self, trouble: ProfinetError) {
         self.view.trouble = Some(trouble);
         self.has_changed = true;
@@ -258,7 +259,7 @@ impl Controller {
         [ready, io, ar.client.wake()].into_iter().flatten().min()
     }
 
-    /// Time when the watchdog expires. A device does not have to send before it is ready.
+    /// Time when the watchdog expires; `None` while it is off. A device need not send frames before it is ready.
     fn watchdog(&self, io: &Io) -> Option<Now> {
         let is_on = matches!(self.phase, Phase::Data | Phase::WaitingForData(_));
         io.consumer.heard.filter(|_| is_on).map(|heard| heard + self.settings.watchdog_time())
@@ -388,7 +389,7 @@ impl Controller {
                 self.alarms.push_back(alarm);
                 self.before.alarms += 1;
                 self.has_changed = true;
-                // The device needs its parameters again. A new connection sends them.
+                // The device needs its parameters again. The controller opens a new connection, which sends them.
                 if is_plug && !matches!(self.phase, Phase::Releasing(_)) {
                     self.release(now, Some(ProfinetError::Plugged { slot }));
                 }
@@ -396,11 +397,11 @@ impl Controller {
         }
     }
 
-    /// The device has closed the connection.
+    /// Handles an abort: the device has closed the connection.
     fn aborted(&mut self, now: Now, status: Status) {
         let is_answer = status == Status::abort(RELEASED);
         if let Phase::Releasing(trouble) = &self.phase {
-            // Some devices send this before they answer.
+            // Some devices send the abort before they answer the release.
             let trouble = trouble.clone();
             let trouble = if is_answer { trouble } else { trouble.or(Some(ProfinetError::Aborted(status))) };
             self.released(now, trouble);
@@ -432,7 +433,8 @@ impl Controller {
                 self.view.input = Some(Input { image, at: now, generation: self.view.generation });
             }
             (Phase::Data, Verdict::Unusable(why)) => {
-                // An image from before the fault must not become active by itself when the data is good again.
+                // When the data becomes usable again, an image from before the fault must not become active
+                // automatically.
                 self.rest();
                 self.before.losses += 1;
                 self.phase = Phase::WaitingForData(now + START);
@@ -468,7 +470,7 @@ impl Controller {
         }
     }
 
-    /// Closes the connection with an abort message, without an answer.
+    /// Closes the connection with an abort message. The device does not answer it.
     fn abort(&mut self, now: Now, reason: u8, trouble: ProfinetError) {
         if let Some(io) = self.ar.as_ref().and_then(|ar| ar.io.as_ref()) {
             let error = io.alarms.error(Status::abort(reason).0);
@@ -477,13 +479,14 @@ impl Controller {
         self.lost(now, trouble);
     }
 
-    /// The connection has ended. It is opened again, except after a close or a failed first opening.
+    /// Handles the end of the connection. The connection opens again, except after a close or a failed first opening.
     fn lost(&mut self, now: Now, trouble: ProfinetError) {
         self.drop_ar();
         let is_old = matches!(&trouble, ProfinetError::Refused { status, .. } if status.is_owned());
         let wait = match self.view.generation {
             _ if self.is_over => return self.finish(Some(trouble)),
-            // The connection of a dead process of ours ends by its own timeout.
+            // The device still has the connection of an earlier process that was killed. This connection ends after its
+            // own timeout.
             0 if is_old && self.tries < OLD_TRIES => OLD_CONNECTION,
             0 => return self.finish(Some(trouble)),
             _ if is_old => OLD_CONNECTION,

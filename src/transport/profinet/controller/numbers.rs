@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU16, AtomicU32, Ordering};
 use super::super::wire::Uuid;
 use super::super::wire::frame::id;
 
-/// The allocator.
+/// Allocator for numbers that are unique in this process.
 #[derive(Debug)]
 pub struct Numbers {
     frame_id: AtomicU16,
@@ -15,7 +15,8 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// Random start values, so that connections of an earlier process are not confused with new ones.
+    /// Creates an allocator with random start values, so that connections of an earlier process are not confused with
+    /// new connections.
     pub fn random() -> Self {
         Self {
             frame_id: AtomicU16::new(0),
@@ -25,29 +26,29 @@ impl Numbers {
         }
     }
 
-    /// Frame id of a device, in the range of RT class 1.
+    /// Returns a frame id for a device, in the range of RT class 1.
     pub fn frame_id(&self) -> u16 {
         const MANY: u16 = 0x3000;
         let number = self.frame_id.fetch_add(1, Ordering::Relaxed) % MANY;
         id::RT_CLASS_1.start() + 1 + number
     }
 
-    /// Alarm reference.
+    /// Returns an alarm reference.
     pub fn reference(&self) -> u16 {
         self.reference.fetch_add(1, Ordering::Relaxed).wrapping_add(1)
     }
 
-    /// Session key.
+    /// Returns a session key.
     pub fn session_key(&self) -> u16 {
         self.session_key.fetch_add(1, Ordering::Relaxed)
     }
 
-    /// Xid of a DCP request; never 0, which some devices use in answers.
+    /// Returns an Xid for a DCP request. It is never 0, because some devices use 0 in answers.
     pub fn xid(&self) -> u32 {
         self.xid.fetch_add(1, Ordering::Relaxed).max(1)
     }
 
-    /// A random UUID.
+    /// Returns a random UUID.
     pub fn uuid(&self) -> Uuid {
         Uuid::random()
     }

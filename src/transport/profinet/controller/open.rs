@@ -1,4 +1,4 @@
-//! Opening of a connection: Connect, parameters, PrmEnd, ApplicationReady. Also its release.
+//! Opening of a connection: Connect, parameters, PrmEnd, ApplicationReady. This module also releases a connection.
 
 use super::super::Now;
 use super::super::error::ProfinetError;
@@ -15,13 +15,13 @@ use super::client::Client;
 use super::view::{State, Step};
 use super::{Ar, Controller, Phase, START};
 
-/// Time limit of the device for the next step, in units of 100 ms.
+/// Time limit, in the device, for the next step of the controller, in units of 100 ms.
 const ACTIVITY_TIMEOUT: u16 = 200;
-/// Attempts of calls other than Connect.
+/// Number of attempts of calls other than Connect.
 pub(super) const TRIES: u32 = 3;
 
 impl Controller {
-    /// Calls Connect only once, because a second copy makes some devices start again.
+    /// Calls Connect. The call is sent only once, because some devices start again after a second copy.
     pub(super) fn connect(&mut self, now: Now, instance: u16) {
         let Some(device) = &self.device else { return };
         let (vendor, kind) = device.id;
@@ -115,7 +115,7 @@ impl Controller {
         self.call(now, operation::WRITE, &blocks, TRIES);
     }
 
-    /// Calls PrmEnd. Then the device must call back.
+    /// Calls PrmEnd. After its answer, the device must call ApplicationReady.
     pub(super) fn end_parameters(&mut self, now: Now) {
         self.set_step(Step::PrmEnd);
         self.control(now, BlockType::PRM_END, operation::CONTROL);
@@ -127,7 +127,7 @@ impl Controller {
         self.call(now, operation, &block.emit(), TRIES);
     }
 
-    /// PrmEnd was answered. Waits for ApplicationReady, unless it has already arrived.
+    /// Continues after the answer to PrmEnd: waits for ApplicationReady, unless ApplicationReady has already arrived.
     pub(super) fn await_ready(&mut self, now: Now) {
         self.set_step(Step::Ready);
         if let Some(ar) = &mut self.ar {
@@ -138,21 +138,21 @@ impl Controller {
         }
     }
 
-    /// The device is ready. Waits for its data.
+    /// Continues after ApplicationReady: waits for the data of the device.
     pub(super) fn await_data(&mut self, now: Now) {
         self.set_step(Step::Data);
         self.phase = Phase::WaitingForData(now + START);
-        // Frames from the start phase do not count for the watchdog.
+        // Frames from before ApplicationReady do not count for the watchdog.
         if let Some(io) = self.ar.as_mut().and_then(|ar| ar.io.as_mut()) {
             io.consumer.heard = io.consumer.heard.map(|_| now);
         }
     }
 
-    /// Releases the connection, after an error or finally.
+    /// Releases the connection, either after an error (`trouble`) or because it is closed.
     pub(super) fn release(&mut self, now: Now, trouble: Option<ProfinetError>) {
         self.rest();
         let tries = match trouble {
-            // The device is probably gone.
+            // The device probably does not answer, so one attempt is enough.
             Some(ProfinetError::NoAnswer { .. }) => 1,
             _ => TRIES,
         };
@@ -174,7 +174,7 @@ impl Controller {
         self.call(now, operation::RELEASE, &block.emit(), tries);
     }
 
-    /// The release is complete.
+    /// Handles the end of the release.
     pub(super) fn released(&mut self, now: Now, trouble: Option<ProfinetError>) {
         self.drop_ar();
         match trouble {

@@ -15,13 +15,13 @@ use super::{Action, Controller, Phase};
 /// Time limit per attempt, and the number of attempts.
 const PATIENCE: Duration = Duration::from_secs(1);
 const TRIES: u32 = 3;
-/// Wait after the first answer, to find a second device with the same name.
+/// Waiting time after the first answer. A second device with the same name can answer within this time.
 const TWIN: Duration = Duration::from_millis(250);
-/// Interval and time limit of the check that an address was applied.
+/// Interval and time limit of the checks that an address is active.
 const LOOK: Duration = Duration::from_millis(100);
 const SETTLE: Duration = Duration::from_secs(5);
 
-/// Search for the device.
+/// State of the search for the device.
 #[derive(Debug)]
 pub(super) struct Search {
     xid: u32,
@@ -42,7 +42,7 @@ impl Search {
     }
 }
 
-/// Assignment of an IP address.
+/// State of the assignment of an IP address.
 #[derive(Debug)]
 pub(super) struct Address {
     found: Found,
@@ -50,7 +50,7 @@ pub(super) struct Address {
     xid: u32,
     tries: u32,
     until: Now,
-    /// After the Set answer: time limit for the address to be active.
+    /// Time limit for the address to become active; `None` before the answer to Set.
     settle: Option<Now>,
 }
 
@@ -86,7 +86,7 @@ impl Controller {
         self.actions.push_back(Action::Frame(frame.emit()));
     }
 
-    /// The search has timed out: continues with the device found, or repeats the request.
+    /// Continues after a timeout of the search: uses the device that was found, or repeats the request.
     pub(super) fn search_on(&mut self, now: Now) {
         let Phase::Resolve(search) = &mut self.phase else { return };
         if let Some(found) = search.found.take() {
@@ -159,7 +159,7 @@ impl Controller {
         }
     }
 
-    /// Handles a DCP frame that can be an answer.
+    /// Handles a DCP frame that may be an answer.
     pub(super) fn heard_dcp(&mut self, now: Now, frame: &Frame<'_>) {
         if frame.destination != self.here.mac {
             return;
@@ -187,7 +187,7 @@ impl Controller {
         }
         match &mut self.phase {
             Phase::Resolve(search) if dcp.xid == search.xid => match &search.found {
-                // A MAC address is unique.
+                // A MAC address is unique, so no second device is searched.
                 None if matches!(self.settings.station, Station::Mac(_)) => self.found(now, Found { mac, station }),
                 None => {
                     search.found = Some(Found { mac, station });
@@ -214,7 +214,7 @@ impl Controller {
     }
 
     fn was_set(&mut self, now: Now, mac: Mac, dcp: &Dcp) {
-        // Some devices do not copy the Xid into this answer.
+        // The Xid is not checked, because some devices do not copy it into this answer.
         let Phase::Address(address) = &mut self.phase else { return };
         if mac != address.found.mac || address.settle.is_some() {
             return;
@@ -231,7 +231,7 @@ impl Controller {
         }
     }
 
-    /// The device is found and has its address.
+    /// Continues with the opening: the device was found and has its address.
     fn located(&mut self, now: Now, found: &Found, address: Ipv4Addr) {
         let station = self.station();
         if found.station.ip.is_some_and(|(_, origin)| origin.is_in_conflict()) {

@@ -7,7 +7,7 @@ use super::super::wire::Mac;
 use crate::image::view;
 pub use crate::image::view::{Input, State};
 
-/// State of a connection. It has an input image only while it is open.
+/// State of a connection. The input image is present only while the connection is open.
 pub type View = view::View<ProfinetError, Statistics, Details>;
 /// Receiver of state changes.
 pub type Views = view::Views<ProfinetError, Statistics, Details>;
@@ -15,15 +15,15 @@ pub type Views = view::Views<ProfinetError, Statistics, Details>;
 /// Step of the opening.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Step {
-    /// Looking for the station.
+    /// Searching for the station.
     Resolve,
-    /// Setting its IP address.
+    /// Setting the IP address of the station.
     Address,
-    /// Connect was called.
+    /// Waiting for the answer to Connect.
     Connect,
     /// Writing parameters.
     Parameters,
-    /// PrmEnd was called.
+    /// Waiting for the answer to PrmEnd.
     PrmEnd,
     /// Waiting for ApplicationReady.
     Ready,
@@ -31,7 +31,7 @@ pub enum Step {
     Data,
 }
 
-/// The device.
+/// The device of a connection.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Device {
     /// MAC address.
@@ -44,12 +44,12 @@ pub struct Device {
     pub id: (u16, u16),
 }
 
-/// Counters.
+/// Counters of the frames and alarms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Statistics {
     /// Frames sent.
     pub sent: u64,
-    /// Frames omitted because their time was missed.
+    /// Frames that were omitted, because their time was missed.
     pub skipped: u64,
     /// Frames received.
     pub received: u64,
@@ -57,7 +57,7 @@ pub struct Statistics {
     pub stale: u64,
     /// Alarms received.
     pub alarms: u64,
-    /// Number of losses.
+    /// Number of times that the connection was lost.
     pub losses: u64,
 }
 
@@ -66,6 +66,6 @@ pub struct Statistics {
 pub struct Details {
     /// Step of the opening.
     pub step: Step,
-    /// The device, once found.
+    /// The device; `None` until it is found.
     pub device: Option<Device>,
 }

@@ -1,5 +1,5 @@
-//! Alarm state machine of the simulated device: sends, repeats, and aborts the connection without an acknowledgement.
-//! Both channels work the same.
+//! Alarm state machine of the simulated device: sends alarms and repeats them. Without an acknowledgement, it aborts
+//! the connection. Both channels work in the same way.
 
 use std::time::Duration;
 
@@ -8,11 +8,11 @@ use super::super::wire::alarm::{Acknowledgement, FIRST, NONE, Notification, Pdu,
 
 #[derive(Debug, Default)]
 struct Channel {
-    /// Number of DATA frames sent and accepted.
+    /// Number of DATA frames that were sent, and number of DATA frames that were accepted.
     sent: u16,
     taken: u16,
     on_its_way: Option<(Notification, Now, u16)>,
-    /// The frame was acknowledged, but not yet the alarm.
+    /// Whether the frame was acknowledged, but the alarm in it was not acknowledged yet.
     is_framed: bool,
     waiting: Vec<Notification>,
 }
@@ -27,20 +27,20 @@ pub(super) struct Alarms {
     channels: [Channel; 2],
 }
 
-/// Result of a frame.
+/// Result of a received frame.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Heard {
     Nothing,
-    /// Frames to send, and the alarm that was acknowledged.
+    /// An alarm was acknowledged. The values are the frames to send and this alarm.
     Noted(Vec<Vec<u8>>, Notification),
-    /// Acknowledgement of a repeated frame.
+    /// The frame is a repetition. The value is its acknowledgement.
     Again(Vec<u8>),
     Ended(u32),
-    /// A protocol error.
+    /// The frame violates the protocol.
     Wrong,
 }
 
-/// Sequence number of frame number `count`.
+/// Returns the sequence number of the frame with this count.
 const fn number(count: u16) -> u16 {
     match count {
         0 => NONE,
@@ -49,7 +49,7 @@ const fn number(count: u16) -> u16 {
     }
 }
 
-/// Next count; wraps at the end of the sequence numbers.
+/// Returns the next count. The count wraps at the end of the sequence numbers.
 const fn next(count: u16) -> u16 {
     if number(count) == 0x7FFF { 2 } else { count + 1 }
 }
@@ -87,7 +87,7 @@ impl Alarms {
         self.channels.iter().filter_map(|channel| channel.on_its_way.as_ref()).map(|(_, due, _)| *due).min()
     }
 
-    /// Repeats unacknowledged frames; `None` after the last repetition.
+    /// Repeats unacknowledged frames. Returns `None` if a frame is still unacknowledged after its last repetition.
     pub(super) fn poll(&mut self, now: Now) -> Option<Vec<(Priority, Vec<u8>)>> {
         let mut out = Vec::new();
         for (at, priority) in Priority::ALL.into_iter().enumerate() {

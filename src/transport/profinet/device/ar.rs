@@ -1,4 +1,4 @@
-//! Connection at the simulated device: cyclic frames, alarms, timeouts.
+//! Connection in the simulated device: cyclic frames, alarms, timeouts.
 
 use std::net::SocketAddrV4;
 use std::time::Duration;
@@ -16,7 +16,7 @@ use super::super::wire::{ByteOrder, Mac, Uuid, block};
 use super::alarms::{Alarms, Heard};
 use super::{Action, Application, Device, Event, Fault};
 
-/// Attempts of ApplicationReady, and the time limit of each.
+/// Number of attempts of ApplicationReady, and the time limit of each attempt.
 const READY_TRIES: u32 = 3;
 const READY_PATIENCE: Duration = Duration::from_secs(2);
 /// Unit of the cycle counter.
@@ -28,20 +28,21 @@ const ALARM_LOST: u8 = 8;
 const WRONG_FRAME: u8 = 0x0C;
 const READY_UNANSWERED: u8 = 0x18;
 const ABORTED: u8 = 0x0D;
-/// Time before a one-time fault.
+/// Time from the start of a connection to a fault that happens once.
 const TROUBLE: Duration = Duration::from_secs(1);
-/// Channel diagnosis: line break, for the whole submodule.
+/// Structure identifier of a channel diagnosis. The diagnosis is a line break, for the whole submodule.
 const CHANNEL: u16 = 0x8000;
 const LINE_BREAK: [u8; 6] = [0x80, 0, 0x28, 0, 0, 6];
-/// First alarm with a diagnosis of the submodule.
+/// Alarm specifier: first alarm, with a diagnosis of the submodule.
 const APPEARS: u16 = 0xA800;
 
 /// Stage of the connection.
 #[derive(Debug)]
 pub(super) enum Stage {
-    /// Waiting for the next call until this time.
+    /// The device waits for the next call of the controller until this time.
     Parameters(Now),
-    /// ApplicationReady was called: time of the next attempt, attempts left, sequence number.
+    /// ApplicationReady was called. The values are the time of the next attempt, the number of attempts left, and the
+    /// sequence number.
     Ready { due: Now, tries: u32, sequence: u32 },
     /// Data is exchanged in both directions.
     Running,
@@ -62,7 +63,7 @@ pub(super) struct Ar {
     pub(super) activity_timeout: Duration,
     pub(super) due: Now,
     pub(super) counter: u16,
-    /// Time of a fault that happens once per connection, if one is active.
+    /// Time of a fault that happens once per connection; `None` if no such fault is active.
     pub(super) trouble: Option<Now>,
     /// Cycle counter and time of the last frame from the controller.
     pub(super) heard: Option<(u16, Now)>,
@@ -77,7 +78,7 @@ impl Ar {
         UNIT * u32::from(iocr.send_clock) * u32::from(iocr.ratio)
     }
 
-    /// Time when the watchdog expires; it starts with the first frame of the controller.
+    /// Time when the watchdog expires. The watchdog starts with the first frame of the controller.
     fn watchdog(&self) -> Option<Now> {
         let time = Self::cycle(&self.output) * u32::from(self.output.watchdog);
         self.heard.map(|(_, at)| at + time)
@@ -151,7 +152,7 @@ impl<A: Application> Device<A> {
             }
         }
         let mut data = vec![0; usize::from(ar.input.length)];
-        // The provider status is good only when the device is ready.
+        // The provider status becomes good when the device is ready.
         let is_good = ar.is_running() || matches!(ar.stage, Stage::Ready { .. });
         let good = |is_good: bool| if is_good { GOOD } else { 0 };
         let mut rest = &self.image[..];
@@ -206,7 +207,7 @@ impl<A: Application> Device<A> {
             is_valid &= is_good(at + length);
             image.extend_from_slice(cyclic.data.get(at..at + length).unwrap_or_default());
         }
-        // Some devices reject a controller whose consumer statuses are bad.
+        // Some devices reject the data of a controller if its consumer statuses are bad.
         is_valid &= ar.output.consumers.iter().all(|place| is_good(usize::from(place.offset)));
         self.application.image_out(now, is_valid.then_some(&image[..]));
     }
@@ -252,10 +253,10 @@ impl<A: Application> Device<A> {
         self.actions.push_back(Action::Datagram(to, Datagram { header, body: &body }.emit()));
     }
 
-    /// Starts to call ApplicationReady.
+    /// Becomes ready, and calls ApplicationReady.
     pub(super) fn get_ready(&mut self, now: Now) {
         if self.fault == Some(Fault::NeverReady) {
-            // The activity timeout is off, so the device stays in this stage.
+            // The fault: the device never calls ApplicationReady, and its activity timeout is off.
             if let Some(ar) = &mut self.ar {
                 ar.stage = Stage::Parameters(Now::MAX);
             }

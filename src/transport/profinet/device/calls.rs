@@ -1,4 +1,4 @@
-//! RPC calls at the simulated device: Connect, parameters, control, release, records.
+//! RPC calls that the simulated device answers: Connect, parameters, control, release, records.
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
@@ -19,7 +19,7 @@ use super::{Action, Application, Device, Event, Fault, MOST_ANSWERS, checks};
 const ALARM_REFERENCE: u16 = 0;
 /// Module ident number of [`Fault::WrongModule`].
 pub(super) const WRONG_MODULE: u32 = 0x40;
-/// Sender address of [`Fault::Foreign`].
+/// Sender address of the answers with [`Fault::Foreign`].
 const ELSEWHERE: Ipv4Addr = Ipv4Addr::new(192, 0, 2, 1);
 
 const CONNECT: u8 = 0xDB;
@@ -70,7 +70,7 @@ impl<A: Application> Device<A> {
             Ok(blocks) => (0, &blocks[..]),
             Err(status) => (status.0, &[][..]),
         };
-        // The answer has the device's own byte order.
+        // The device answers in its own byte order, whatever the byte order of the call.
         let mut body = Reply { status, room: call.room, blocks }.emit(ByteOrder::Big);
         if self.fault == Some(Fault::Garbage) {
             for byte in &mut body {
@@ -90,7 +90,7 @@ impl<A: Application> Device<A> {
         }
     }
 
-    /// Sender address of answers, if it must differ from the device's address.
+    /// Sender address of the answers; `None` if it is the address of the device.
     pub fn answers_from(&self) -> Option<Ipv4Addr> {
         (self.fault == Some(Fault::Foreign)).then_some(ELSEWHERE)
     }
@@ -142,7 +142,7 @@ impl<A: Application> Device<A> {
         Ok(responses.iter().flat_map(Response::emit).collect())
     }
 
-    /// Difference to the expected modules.
+    /// Returns the difference between the expected modules and the real modules.
     pub(super) fn difference(&self) -> Option<Response> {
         if self.fault != Some(Fault::WrongModule) {
             return None;

@@ -1,4 +1,4 @@
-//! Field-by-field checks of a Connect, with the error status of each field.
+//! Checks of a Connect, field by field, with the error status of each field.
 
 use super::super::layout::{Direction, Layout};
 use super::super::wire::connect::{ANY_FRAME_ID, AlarmCr, Ar, ExpectedModule, Iocr, Offset, Request};
@@ -23,7 +23,7 @@ const CMRPC: u8 = 0x40;
 const UNKNOWN_BLOCKS: u8 = 1;
 const IOCR_MISSING: u8 = 2;
 const ALARMS_MISSING: u8 = 3;
-/// Limit of watchdog and data hold time, in units of 31.25 us.
+/// Maximum watchdog time and data hold time, in units of 31.25 us.
 const LONGEST_WATCHDOG: u64 = 61_440;
 
 fn no(block: u8, field: u8) -> Result<(), Status> {
@@ -42,7 +42,7 @@ pub(super) fn connect(requests: Vec<Request>, layout: &Layout, shortest: u16) ->
     for (at, request) in requests.into_iter().enumerate() {
         match request {
             Request::Ar(block) if at == 0 => ar = Some(block),
-            // The order of blocks is fixed: AR, IOCRs, alarm CR, expected modules.
+            // The blocks must be in this order: AR, IOCRs, alarm CR, expected modules.
             Request::Iocr(block) if modules.is_empty() && alarms.is_empty() && ar.is_some() => iocrs.push(block),
             Request::AlarmCr(block) if iocrs.len() == 2 => alarms.push(block),
             Request::Expected(block) if iocrs.len() == 2 => modules.extend(block),
@@ -69,7 +69,7 @@ fn connection(ar: &Ar) -> Result<(), Status> {
     check(ar.uuid != Uuid::NIL, AR, 5)?;
     check(!ar.mac.is_group() && ar.mac.0 != [0; 6], AR, 7)?;
     check(ar.object.0.starts_with(&[0xDE, 0xA0, 0, 0, 0x6C, 0x97, 0x11, 0xD1, 0x82, 0x71]), AR, 8)?;
-    // Active state, controller as parameter server; only the startup mode can vary.
+    // The properties must be: active state, and the controller is the parameter server. Only the startup mode may vary.
     check(ar.properties & 0x3FFF_FFFF == 0x11, AR, 9)?;
     check((1..=1000).contains(&ar.activity_timeout), AR, 0x0A)?;
     check(ar.port == ETHER_TYPE, AR, 0x0B)?;
@@ -80,7 +80,7 @@ fn connection(ar: &Ar) -> Result<(), Status> {
 fn data(iocr: &Iocr, kind: u16, is_legacy: bool, shortest: u16, layout: &Layout) -> Result<(), Status> {
     check(iocr.kind == kind, IOCR, 4)?;
     check(iocr.ether_type == ETHER_TYPE, IOCR, 6)?;
-    // The legacy RT class is only valid with legacy startup. Legacy controllers can use either class.
+    // The legacy RT class is valid only with legacy startup. With legacy startup, both classes are valid.
     let range = match iocr.properties {
         1 if is_legacy => id::RT_CLASS_1_LEGACY,
         2 => id::RT_CLASS_1,
@@ -103,7 +103,7 @@ fn data(iocr: &Iocr, kind: u16, is_legacy: bool, shortest: u16, layout: &Layout)
     places(iocr, layout)
 }
 
-/// Every submodule exactly once, in the right place, without overlap.
+/// Checks that every submodule occurs exactly once, in the correct direction, and that the positions do not overlap.
 fn places(iocr: &Iocr, layout: &Layout) -> Result<(), Status> {
     let direction = if iocr.kind == 1 { Direction::Input } else { Direction::Output };
     let mut used = vec![false; usize::from(iocr.length)];
@@ -148,7 +148,7 @@ fn alarm_cr(alarm: &AlarmCr) -> Result<(), Status> {
     check(alarm.tags.1 == TAG_LOW, ALARM, 0x0C)
 }
 
-/// The expected modules and their data match the layout.
+/// Checks that the expected modules and their data match the layout.
 fn expected(modules: &[ExpectedModule], layout: &Layout) -> Result<(), Status> {
     let own = layout.expected();
     for module in modules {

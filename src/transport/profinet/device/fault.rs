@@ -3,39 +3,39 @@
 /// A fault of the device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Fault {
-    /// Never calls ApplicationReady.
+    /// The device never calls ApplicationReady.
     NeverReady,
-    /// Has another module in slot 1 than its layout, and runs anyway.
+    /// The device has another module in slot 1 than its layout, and still runs.
     WrongModule,
-    /// Sends no cyclic frames.
+    /// The device sends no cyclic frames.
     Stall,
-    /// Repeats the cycle counter of the previous frame.
+    /// Every cyclic frame has the cycle counter of the previous frame.
     Stale,
-    /// Sends every cyclic frame twice.
+    /// The device sends every cyclic frame twice.
     Double,
-    /// Sends a bad provider status.
+    /// The device sends a bad provider status.
     BadProvider,
-    /// Sends a bad consumer status.
+    /// The device sends a bad consumer status.
     BadConsumer,
-    /// Reports stop.
+    /// The device reports that it has stopped.
     Stop,
-    /// Marks its data as invalid.
+    /// The device marks its data as invalid.
     Invalid,
-    /// Answers no call.
+    /// The device answers no call.
     Mute,
-    /// Answers calls with garbage.
+    /// The device answers calls with random bytes.
     Garbage,
-    /// Answers calls from another address.
+    /// The device answers calls from another address.
     Foreign,
-    /// Is already connected to another controller.
+    /// The device is already connected to another controller.
     Owned,
-    /// Refuses an IP address.
+    /// The device refuses an IP address.
     KeepsAddress,
-    /// Raises a diagnosis some time after each connect.
+    /// The device raises a diagnosis some time after each Connect.
     Diagnosis,
-    /// Restarts some time after each connect.
+    /// The device restarts some time after each Connect.
     Restart,
-    /// Aborts each connection after some time.
+    /// The device aborts each connection after some time.
     Abort,
 }
 

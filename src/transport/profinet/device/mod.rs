@@ -1,4 +1,4 @@
-//! Simulated PROFINET device with modules. It has no sockets and no clock, and is stricter than real devices.
+//! Simulated PROFINET device with modules. The device has no sockets and no clock. It is stricter than real devices.
 
 use std::collections::VecDeque;
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -32,7 +32,7 @@ pub use fault::Fault;
 pub struct Setup {
     /// MAC address.
     pub mac: Mac,
-    /// Station name; can be empty.
+    /// Station name. It may be empty.
     pub name: String,
     /// Device type, as text.
     pub kind: String,
@@ -40,25 +40,26 @@ pub struct Setup {
     pub id: (u16, u16),
     /// Instance in the object UUID.
     pub instance: u16,
-    /// IP address, if it has one.
+    /// IP address; `None` if the device has no address yet.
     pub ip: Option<IpSuite>,
-    /// Whether DCP can set the IP address. On a real interface, the address is that of the interface.
+    /// Whether DCP can set the IP address. On a real interface, the device uses the address of the interface.
     pub takes_ip: bool,
     /// Modules.
     pub layout: Layout,
-    /// Shortest cycle, in units of 31.25 us.
+    /// Shortest supported cycle, in units of 31.25 us.
     pub shortest: u16,
     /// I&M0 record.
     pub im0: Im0,
 }
 
-/// Behaviour behind the device.
+/// Application behind the device.
 pub trait Application {
-    /// Receives the output image. `None`: no connection, bad provider status, or stop.
+    /// Handles the output image. `None` means that there is no connection, the provider status is bad, or the
+    /// controller has stopped.
     fn image_out(&mut self, now: Now, image: Option<&[u8]>);
     /// Updates the image to the controller. The buffer contains the previous image.
     fn image_in(&mut self, now: Now, image: &mut [u8]);
-    /// Receives an event.
+    /// Handles an event.
     fn event(&mut self, now: Now, event: &Event);
 }
 
@@ -71,17 +72,17 @@ pub enum Event {
     Ready,
     /// A record was written.
     Written(Parameter),
-    /// The connection ended with this reason; `None` after a release.
+    /// The connection ended for this reason; `None` after a release.
     Ended(Option<Status>),
-    /// A controller was refused.
+    /// The device refused a controller.
     Refused(Status),
-    /// An alarm was acknowledged.
+    /// The controller acknowledged an alarm.
     AlarmNoted(Notification),
-    /// The name was set; `true` if permanent.
+    /// The station name was set; `true` means permanently.
     Named(String, bool),
-    /// The IP address was set; `true` if permanent.
+    /// The IP address was set; `true` means permanently.
     Addressed(IpSuite, bool),
-    /// A request to blink.
+    /// The device must blink.
     Blink,
     /// Name and IP address were reset.
     Reset,
@@ -94,7 +95,7 @@ pub struct Device<A> {
     application: A,
     ar: Option<Ar>,
     fault: Option<Fault>,
-    /// The last answers, for repeated calls.
+    /// The last answers. A repeated call gets the same answer.
     answers: VecDeque<(Header, SocketAddrV4, Vec<u8>)>,
     /// Frames to send later, with their times.
     later: Vec<(Now, Vec<u8>)>,
@@ -102,11 +103,11 @@ pub struct Device<A> {
     actions: VecDeque<Action>,
 }
 
-/// Number of answers kept.
+/// Number of answers that are kept.
 const MOST_ANSWERS: usize = 8;
-/// Limit of delayed Identify answers.
+/// Maximum number of delayed Identify answers.
 const MOST_LATER: usize = 32;
-/// Largest spread of Identify answers, in steps.
+/// Maximum delay of an Identify answer that a request can ask for, in steps of 10 ms.
 const MOST_SPREAD: u16 = 6400;
 const SPREAD: Duration = Duration::from_millis(10);
 
@@ -141,7 +142,7 @@ impl<A: Application> Device<A> {
         &mut self.application
     }
 
-    /// Activates a fault, or none.
+    /// Activates a fault; `None` deactivates the active fault.
     pub const fn set_fault(&mut self, fault: Option<Fault>) {
         self.fault = fault;
     }
@@ -151,7 +152,7 @@ impl<A: Application> Device<A> {
         self.ar.as_ref().is_some_and(Ar::is_running)
     }
 
-    /// Restarts the device (power cycle).
+    /// Restarts the device, as after a power cycle.
     pub fn restart(&mut self, now: Now) {
         self.actions.clear();
         self.later.clear();
@@ -167,7 +168,7 @@ impl<A: Application> Device<A> {
         self.drop_ar(now, Some(Status::abort(reason)));
     }
 
-    /// Raises an alarm if a controller is connected. Alarms that wait for an acknowledgement come first.
+    /// Raises an alarm if a controller is connected. Earlier alarms that wait for an acknowledgement are sent first.
     pub fn raise(&mut self, now: Now, alarm: &Notification) {
         let Some(ar) = &mut self.ar else { return };
         let payload = ar.alarms.raise(now, alarm);

@@ -1,4 +1,4 @@
-//! Driver that runs a device on a network interface, in a thread.
+//! Driver that runs a device on a network interface, on its own thread.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,7 +14,7 @@ use super::super::sockets::{BUFFER, Sockets};
 use super::{Application, Device, Setup};
 use crate::local::LocalError;
 
-/// A device that runs until it is dropped. On real hardware, the interface must accept the multicast address: `ip
+/// A device that runs until it is dropped. On a real network card, the interface must accept the multicast address: `ip
 /// maddress add 01:0e:cf:00:00:00 dev IFACE`.
 pub struct Server<A> {
     inner: Arc<Inner<A>>,
@@ -35,8 +35,8 @@ impl<A> fmt::Debug for Server<A> {
 }
 
 impl<A: Application + Send + 'static> Server<A> {
-    /// Starts a device with the MAC and IP address of the interface, instead of those in `setup`. DCP cannot change the
-    /// IP address, because it belongs to the operator.
+    /// Starts a device. The device has the MAC and IP address of the interface, and not the addresses in `setup`. DCP
+    /// cannot change the IP address, because the operator of this computer sets it.
     pub fn start(interface: &Interface, setup: Setup, application: A) -> Result<Self, ProfinetError> {
         let (sockets, ip) = Sockets::open(interface)?;
         let setup = Setup { mac: interface.mac, ip: Some(ip), takes_ip: false, ..setup };
@@ -48,8 +48,9 @@ impl<A: Application + Send + 'static> Server<A> {
         });
         let runs = Arc::clone(&inner);
         let thread = std::thread::Builder::new().name("profinet-device".to_owned());
-        let thread =
-            thread.spawn(move || runs.run()).map_err(|error| LocalError::new("thread of the device", &error))?;
+        let thread = thread
+            .spawn(move || runs.run())
+            .map_err(|error| LocalError::new("cannot start the thread of the device", &error))?;
         Ok(Self { inner, thread: Some(thread) })
     }
 
@@ -66,7 +67,7 @@ impl<A> Drop for Server<A> {
         self.inner.is_over.store(true, Ordering::SeqCst);
         self.inner.sockets.ring();
         if let Some(thread) = self.thread.take() {
-            // A panic of the thread was already printed.
+            // If the thread panicked, the panic was already printed.
             let _ = thread.join();
         }
     }

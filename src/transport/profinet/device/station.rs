@@ -1,4 +1,4 @@
-//! DCP at the simulated device: identity, name, IP address.
+//! DCP in the simulated device: identity, name, IP address.
 
 use super::super::Now;
 use super::super::wire::dcp::{self, Block, Dcp, IpSuite, Kind, Service, Setting};
@@ -36,7 +36,7 @@ impl<A: Application> Device<A> {
         }
     }
 
-    /// Whether all filters of a request match. A delay of 0 is not valid.
+    /// Whether a request is for this device: all its filters match. A request with a delay of 0 is not valid.
     fn is_meant(&self, dcp: &Dcp) -> bool {
         let setup = &self.setup;
         let id = [setup.id.0.to_be_bytes(), setup.id.1.to_be_bytes()].concat();

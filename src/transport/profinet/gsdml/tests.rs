@@ -1,4 +1,4 @@
-//! Tests with files of another author, of our own, and broken files.
+//! Tests with files of another author, with our own files, and with broken files.
 
 use pnio::config::{DeviceConfig, Slot};
 use pnio::data::FieldType;
@@ -21,7 +21,7 @@ fn file(inputs: usize, outputs: usize) -> String {
     render(&config, &meta)
 }
 
-/// The crate `pnio` writes a file for a layout. Parsing it must give the same layout.
+/// The crate `pnio` writes a file for a layout. Parsing this file must result in the same layout.
 #[test]
 fn a_file_that_others_wrote_is_the_layout_it_was_written_for() {
     let gsdml = Gsdml::parse(file(24, 24).as_bytes()).unwrap();
@@ -74,7 +74,7 @@ fn fixed_modules_parameters_and_names_are_read() {
     assert_eq!(head.layout(&chosen).unwrap().to_string(), "0:0x10,1:0x40/0x2:i48o48");
     let data = vec![1, 2, 1, 2, 0x0A, 0xFE, 0, 0];
     assert_eq!(head.parameters(&chosen), Ok(vec![Parameter { slot: 1, subslot: 1, index: 5, data }]));
-    // One byte that is not valid in UTF-8.
+    // The file contains one byte that is not valid in UTF-8.
     let latin: Vec<u8> =
         OWN.replace("&#228;", "\u{1}").bytes().map(|byte| if byte == 1 { 0xE4 } else { byte }).collect();
     assert_eq!(Gsdml::parse(&latin).unwrap(), gsdml);
@@ -110,8 +110,8 @@ fn mistakes_are_named_with_line_and_element() {
         ("FixedInSlots=\"1\"", "FixedInSlots=\"0..65535 0..65535\"", 8, "ModuleItemRef", "more than 4096"),
         ("ID=\"MS\"", "FixedInSubslots=\"1..600\"", 15, "VirtualSubmoduleItem", "at most 512 submodules are possible"),
         ("Data=\"0x01,0x02\"", "Data=\"0x01,0x200\"", 18, "Const", "is not a list of bytes"),
-        ("ByteOffset=\"5\"", "ByteOffset=\"8\"", 20, "Ref", "too long for its record"),
-        ("DefaultValue=\"258\"", "DefaultValue=\"65536000\"", 19, "Ref", "is no Unsigned16"),
+        ("ByteOffset=\"5\"", "ByteOffset=\"8\"", 20, "Ref", "does not fit in the record"),
+        ("DefaultValue=\"258\"", "DefaultValue=\"65536000\"", 19, "Ref", "is not a valid Unsigned16"),
         ("</ModuleList>", "", 24, "file", "not XML"),
     ];
     for (from, to, line, element, problem) in cases {

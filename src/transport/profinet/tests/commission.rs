@@ -1,4 +1,4 @@
-//! Tests of station services without a connection, in virtual time.
+//! Tests of the services that need no connection, in virtual time.
 
 use super::super::commission::{self, Found};
 use super::super::device::{Device, Setup};
@@ -11,7 +11,7 @@ use super::super::wire::dcp::Block;
 use super::world::{Mirror, setup, suite};
 use std::time::Duration;
 
-/// Interface of a network with one device.
+/// Returns the interface of a network with one device.
 fn interface(takes_ip: bool) -> Interface {
     let network =
         Network::new(|mac, ip| Device::new(Setup { mac, ip: Some(ip), takes_ip, ..setup() }, Mirror::default()), None);

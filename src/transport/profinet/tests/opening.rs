@@ -19,7 +19,7 @@ fn image(mark: u8) -> Vec<u8> {
     (0..48).map(|at| mark.wrapping_add(at)).collect()
 }
 
-/// Payloads of the controller's cyclic frames with their times.
+/// Returns the payloads of the cyclic frames of the controller, with their times.
 fn outputs(world: &World) -> Vec<(std::time::Duration, Vec<u8>)> {
     let is_data = |bytes: &[u8]| {
         let frame = Frame::parse(bytes).unwrap();
@@ -264,7 +264,7 @@ fn what_a_device_does_wrong_has_a_name() {
         assert!(world.shown.is_empty(), "{fault:?}");
     }
     let mismatch = ModuleMismatch { slot: 1, subslot: None, found: Some(0x40), expected: Some(0x99) };
-    assert_eq!(mismatch.to_string(), "slot 1 holds module 0x40, but the layout has 0x99");
+    assert_eq!(mismatch.to_string(), "slot 1 has module 0x40, but the layout has 0x99");
 }
 
 #[test]

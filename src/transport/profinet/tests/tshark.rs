@@ -1,5 +1,5 @@
-//! Comparison with `tshark`, if it is installed: all traffic is decoded without a warning and with the intended
-//! meaning.
+//! Comparison with `tshark`, if it is installed. `tshark` must decode all traffic without a warning and with the
+//! intended meaning.
 
 use std::fs;
 use std::process::Command;
@@ -11,7 +11,7 @@ use super::super::wire::alarm::{Notification, Priority};
 use super::super::wire::record::Parameter;
 use super::world::{MS, World, settings, setup, suite};
 
-/// A pcap file of Ethernet frames.
+/// Creates a pcap file of Ethernet frames.
 fn capture(record: &[(std::time::Duration, Vec<u8>)]) -> Vec<u8> {
     let mut out = Vec::new();
     for number in [0xA1B2_C3D4_u32, 0x0002_0004, 0, 0, 65_535, 1] {
@@ -28,7 +28,7 @@ fn capture(record: &[(std::time::Duration, Vec<u8>)]) -> Vec<u8> {
     out
 }
 
-/// A complete connection: address, parameters, data, alarms, a loss, a refusal, a release.
+/// Records a complete connection: address, parameters, data, alarms, a loss, a refusal, a release.
 fn life() -> Vec<(std::time::Duration, Vec<u8>)> {
     let bare = Setup { ip: None, ..setup() };
     let parameter = |index, data: &[u8]| Parameter { slot: 1, subslot: 1, index, data: data.to_vec() };
@@ -63,7 +63,7 @@ fn life() -> Vec<(std::time::Duration, Vec<u8>)> {
     world.run_out();
     assert!(world.device.application().events.contains(&Event::Ended(None)));
     let mut record = world.record.take().unwrap();
-    // Another device; Connect reports that its module is different.
+    // Another device follows. Its answer to Connect reports that its module is different.
     let mut world = World::new(setup(), super::world::settings(), "");
     world.now += std::time::Duration::from_secs(1000);
     world.record = Some(Vec::new());

@@ -31,11 +31,11 @@ pub const fn suite(address: [u8; 4]) -> IpSuite {
     IpSuite { address, mask: Ipv4Addr::new(255, 255, 255, 0), gateway: address }
 }
 
-/// Returns the received image with all bits inverted.
+/// Application that returns the received image with all bits inverted.
 #[derive(Debug, Default)]
 pub struct Mirror {
     pub image: Option<Vec<u8>>,
-    /// Every new image; `None` for an invalid one.
+    /// Every new image; `None` for an invalid image.
     pub history: Vec<Option<Vec<u8>>>,
     pub events: Vec<Event>,
 }
@@ -79,7 +79,7 @@ pub fn settings() -> Settings {
     Settings { resting: resting(), ..Settings::new(station, Layout::two_modules(0x101, 0x102)) }
 }
 
-/// A resting image that is not all zeros.
+/// Returns a resting image that is not all zeros.
 pub fn resting() -> Vec<u8> {
     let mut image = vec![0; 48];
     image[32] = 0x41;
@@ -124,7 +124,7 @@ impl World {
     pub fn new(setup: Setup, settings: Settings, faults: &str) -> Self {
         let faults: FaultSpec = if faults.is_empty() { FaultSpec::default() } else { faults.parse().unwrap() };
         Self {
-            // Not 0, so that no code depends on it.
+            // The time does not start at 0, so that no code can depend on 0.
             now: Duration::from_secs(1000),
             controller: Controller::new(HERE, settings, Arc::new(Numbers::random())).unwrap(),
             device: Device::new(setup, Mirror::default()),
@@ -140,7 +140,7 @@ impl World {
         }
     }
 
-    /// A world with an open connection and data in both directions.
+    /// Creates a world with an open connection and data in both directions.
     pub fn open(setup: Setup, settings: Settings, faults: &str) -> Self {
         let mut world = Self::new(setup, settings, faults);
         world.until_open();
@@ -159,7 +159,7 @@ impl World {
         self.controller.view()
     }
 
-    /// Calls of this operation.
+    /// Returns the calls of this operation.
     pub fn calls(&self, operation: u16) -> Vec<Vec<u8>> {
         let is_one = |bytes: &&Vec<u8>| {
             let header = Datagram::parse(bytes).unwrap().header;
@@ -207,7 +207,7 @@ impl World {
         true
     }
 
-    /// Lets both sides do all that is due now.
+    /// Lets both sides do all work that is due now.
     pub fn settle(&mut self) {
         loop {
             let ours = self.controller.poll(self.now);
@@ -258,7 +258,8 @@ impl World {
         for (at, bytes) in faults.pass(self.now, bytes) {
             let packet = packet(bytes);
             let is_frame = matches!(packet, Packet::FrameOut(_) | Packet::FrameIn(_));
-            // The cycle counter detects old frames up to 128 ms. No switch delays a frame longer.
+            // The cycle counter detects frames as old if they are delayed up to 128 ms. No switch delays a frame
+            // longer.
             if is_frame && at > self.now + LONGEST_HOLD {
                 continue;
             }
@@ -287,7 +288,7 @@ impl World {
     }
 }
 
-/// Wraps a datagram into its frame, without checksums.
+/// Wraps a datagram into an Ethernet frame, without checksums.
 fn ethernet(from: Ipv4Addr, to: Ipv4Addr, bytes: &[u8]) -> Vec<u8> {
     let (here, there) = if from == HERE.ip.address { (HERE.mac, THERE) } else { (THERE, HERE.mac) };
     let length = |header: usize| u16::try_from(header + bytes.len()).unwrap().to_be_bytes();

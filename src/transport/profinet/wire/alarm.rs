@@ -4,7 +4,7 @@ use super::block::{self, Block, BlockType};
 use super::frame::{TAG_HIGH, TAG_LOW, id};
 use super::{Reader, WireError, Writer, count16};
 
-/// Flag of a frame that needs an acknowledgement.
+/// Flag of a frame that requires an acknowledgement.
 const WANTS_ACK: u8 = 0x10;
 /// Window size: one unacknowledged frame.
 const WINDOW: u8 = 1;
@@ -18,7 +18,7 @@ pub const NONE: u16 = 0xFFFE;
 pub enum Priority {
     /// Process alarms.
     High,
-    /// All others.
+    /// All other alarms.
     Low,
 }
 
@@ -59,9 +59,9 @@ pub enum Pdu {
     Data(Vec<u8>),
     /// Negative transport acknowledgement.
     Nack,
-    /// Transport acknowledgement.
+    /// Positive transport acknowledgement.
     Ack,
-    /// Closes the connection with this status.
+    /// Error: closes the connection with this status.
     Error(u32),
 }
 
@@ -84,7 +84,7 @@ impl Rta {
     /// Decodes the payload of a frame.
     ///
     /// # Errors
-    /// Not an RTA frame of version 1, or too short.
+    /// The payload is not an RTA frame of version 1, or is too short.
     pub fn parse(payload: &[u8]) -> Result<Self, WireError> {
         let mut reader = Reader::big(payload);
         let destination = reader.u16("AlarmDstEndpoint")?;
@@ -99,7 +99,7 @@ impl Rta {
             0x11 => Pdu::Data(data.rest().to_vec()),
             0x12 => Pdu::Nack,
             0x13 => Pdu::Ack,
-            // Devices of Siemens append more bytes.
+            // More bytes may follow: devices of Siemens append them.
             0x14 => Pdu::Error(data.u32("PNIOStatus")?),
             other => return Err(WireError { offset: 4, ..reader.wrong("PDUType", 1, other) }),
         };
@@ -192,7 +192,7 @@ impl Notification {
         block::emit(block_type(self.priority), &out.bytes)
     }
 
-    /// Its acknowledgement.
+    /// Returns the acknowledgement of this alarm.
     pub const fn acknowledge(&self) -> Acknowledgement {
         let Self { priority, kind, api, slot, subslot, specifier, .. } = *self;
         Acknowledgement { priority, kind, api, slot, subslot, specifier, status: 0 }
@@ -309,7 +309,7 @@ mod tests {
     use super::*;
     use crate::testing::hex;
 
-    /// notes, alarms: a diagnosis and its answer.
+    /// Bytes of a diagnosis and its answer, from the notes on alarms.
     #[test]
     fn an_alarm_and_its_answers_are_as_seen() {
         let bytes = hex(concat!(

@@ -6,12 +6,13 @@ use super::{Mac, Reader, Writer};
 
 /// EtherType of ARP.
 pub const ETHER_TYPE: u16 = 0x0806;
-/// Ethernet, IPv4, and the lengths of both addresses.
+/// Start of the ARP header: Ethernet, IPv4, and the lengths of both addresses.
 const KIND: [u8; 6] = [0, 1, 8, 0, 6, 4];
 /// Minimum frame length without the checksum.
 const SHORTEST: usize = 60;
 
-/// ARP probe: asks who has an address without claiming one. No host updates its ARP table from it.
+/// Returns an ARP probe. It asks which station uses an IP address, and contains no sender IP address. Therefore no host
+/// updates its ARP table with it.
 pub fn probe(source: Mac, address: Ipv4Addr) -> Vec<u8> {
     let mut out = Writer::default();
     out.put(&[0xFF; 6]);
@@ -26,7 +27,8 @@ pub fn probe(source: Mac, address: Ipv4Addr) -> Vec<u8> {
     out.bytes
 }
 
-/// Sender MAC and IP address of an ARP frame: an answer, or a probe of a host that uses the address.
+/// Returns the MAC and IP address of the sender of an ARP frame. The frame is an answer, or a probe of a host that uses
+/// the address.
 pub fn holder(frame: &[u8]) -> Option<(Mac, Ipv4Addr)> {
     let mut reader = Reader::big(frame);
     reader.take(12, "addresses of cards").ok()?;
@@ -47,7 +49,7 @@ mod tests {
     const HERE: Mac = Mac([2, 0, 0, 0, 0, 1]);
     const ADDRESS: Ipv4Addr = Ipv4Addr::new(192, 168, 78, 2);
 
-    /// RFC 5227, 2.1.1: the sender address is zero, so no host changes its table.
+    /// RFC 5227, 2.1.1: the sender address is zero, so no host changes its ARP table.
     #[test]
     fn a_probe_claims_nothing() {
         let mut bytes = hex("FFFFFFFFFFFF 020000000001 0806 0001 0800 06 04 0001 020000000001 00000000");
@@ -57,7 +59,7 @@ mod tests {
         assert_eq!(holder(&bytes), None);
     }
 
-    /// RFC 826: an answer, and frames that are none.
+    /// An answer according to RFC 826, and frames that are not ARP answers.
     #[test]
     fn an_answer_names_its_sender() {
         let mut bytes = hex("020000000001 020000000002 0806 0001 0800 06 04 0002 020000000002 C0A84E02");

@@ -1,4 +1,4 @@
-//! Codec for blocks, the parts of calls and answers.
+//! Codec for blocks. Calls and answers consist of blocks.
 
 use super::{Reader, Uuid, WireError, Writer, count16};
 
@@ -18,7 +18,7 @@ impl BlockType {
     pub const WRITE: Self = Self(0x0008);
     /// Read a record.
     pub const READ: Self = Self(0x0009);
-    /// Real modules.
+    /// Modules that are really plugged in.
     pub const REAL_IDENTIFICATION: Self = Self(0x0013);
     /// I&M0.
     pub const IM0: Self = Self(0x0020);
@@ -45,7 +45,7 @@ impl BlockType {
     /// Station name of the device.
     pub const AR_SERVER: Self = Self(0x8106);
 
-    /// Type of the answer block.
+    /// Returns the block type of the answer to this block.
     #[must_use]
     pub const fn answer(self) -> Self {
         Self(self.0 | 0x8000)
@@ -69,7 +69,7 @@ pub fn walk(bytes: &[u8]) -> Result<Vec<Block<'_>>, WireError> {
     let mut blocks = Vec::new();
     while reader.left() > 0 {
         blocks.push(read(&mut reader)?);
-        // Answers can be padded to four bytes. No block type starts with a zero byte there.
+        // In answers, blocks may be padded to a multiple of four bytes. No block type starts with a zero byte there.
         let padding = reader.left().min(reader.at.next_multiple_of(4) - reader.at);
         if reader.bytes.iter().skip(reader.at).take(padding).all(|byte| *byte == 0) {
             reader.at += padding;
@@ -112,17 +112,17 @@ pub struct Control {
     pub ar: Uuid,
     /// Session key of the connection.
     pub session_key: u16,
-    /// Command, or 8 for done.
+    /// Number of the command; 8 in an answer means done.
     pub command: u16,
     /// Properties of the command.
     pub properties: u16,
 }
 
 impl Control {
-    /// Command of answers.
+    /// Command in answers: done.
     pub const DONE: u16 = 8;
 
-    /// A call with the command of its type.
+    /// Creates a call. Its command follows from the block type.
     pub const fn call(kind: BlockType, ar: Uuid, session_key: u16) -> Self {
         let command = match kind {
             BlockType::APPLICATION_READY | BlockType::PLUG_APPLICATION_READY => 2,
@@ -132,7 +132,7 @@ impl Control {
         Self { kind, ar, session_key, command, properties: 0 }
     }
 
-    /// The positive answer.
+    /// Returns the positive answer to this call.
     #[must_use]
     pub const fn answer(&self) -> Self {
         Self { kind: self.kind.answer(), command: Self::DONE, properties: 0, ..*self }
@@ -172,7 +172,7 @@ mod tests {
         Uuid(hex("11111111222233334444555555555555").try_into().unwrap())
     }
 
-    /// notes, worked example: PrmEnd, ApplicationReady, Release.
+    /// Bytes of PrmEnd, ApplicationReady and Release, from the worked example in the notes.
     #[test]
     fn controls_are_as_printed() {
         let ar = "11111111222233334444555555555555";

@@ -9,17 +9,17 @@ mod modules;
 pub use self::modules::{DataDescription, ExpectedModule, ExpectedSubmodule, ModuleDiff, SubmoduleDiff};
 use self::modules::{read_diff, read_expected, write_diff, write_expected};
 
-/// ARProperties for advanced startup: active, controller as parameter server.
+/// ARProperties for advanced startup: active state, and the controller is the parameter server.
 pub const ADVANCED: u32 = 0x4000_0011;
-/// ARProperties for legacy startup.
+/// ARProperties for legacy startup: active state, and the controller is the parameter server.
 pub const LEGACY: u32 = 0x0000_0011;
-/// Frame id that lets the device choose.
+/// Frame id with which the device selects the frame id.
 pub const ANY_FRAME_ID: u16 = 0xFFFF;
 
 /// ARBlockReq: the connection.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Ar {
-    /// AR type; 1 for a controller of cyclic data.
+    /// AR type: 1 for a controller with cyclic data.
     pub kind: u16,
     /// UUID of the connection.
     pub uuid: Uuid,
@@ -31,7 +31,7 @@ pub struct Ar {
     pub object: Uuid,
     /// ARProperties; see [`ADVANCED`].
     pub properties: u32,
-    /// Time limit of the device for the next step, in units of 100 ms.
+    /// Time limit, in the device, for the next step of the controller, in units of 100 ms.
     pub activity_timeout: u16,
     /// EtherType of alarm frames.
     pub port: u16,
@@ -50,7 +50,7 @@ pub struct Iocr {
     pub ether_type: u16,
     /// RT class 1 or 2.
     pub properties: u32,
-    /// Length of data, statuses and padding.
+    /// Length of data, statuses and padding in bytes.
     pub length: u16,
     /// Frame id.
     pub frame_id: u16,
@@ -60,17 +60,17 @@ pub struct Iocr {
     pub ratio: u16,
     /// Phase in the cycle.
     pub phase: u16,
-    /// Order of frames in a phase.
+    /// Order of the frame within the phase.
     pub sequence: u16,
-    /// Send offset in the phase; all ones means as soon as possible.
+    /// Send offset within the phase. All ones means as soon as possible.
     pub offset: u32,
-    /// Watchdog in cycles.
+    /// Watchdog time in cycles.
     pub watchdog: u16,
     /// Data hold time in cycles.
     pub hold: u16,
     /// VLAN tag.
     pub tag: u16,
-    /// Multicast address.
+    /// Multicast address of the frames.
     pub group: Mac,
     /// Positions of the data objects.
     pub objects: Vec<Offset>,
@@ -85,7 +85,7 @@ pub struct Offset {
     pub slot: u16,
     /// Subslot of the submodule.
     pub subslot: u16,
-    /// Byte offset.
+    /// Offset in bytes.
     pub offset: u16,
 }
 
@@ -104,7 +104,7 @@ pub struct AlarmCr {
     pub retries: u16,
     /// Alarm reference of the sender.
     pub reference: u16,
-    /// Longest alarm in bytes.
+    /// Maximum length of an alarm in bytes.
     pub most: u16,
     /// VLAN tags of the high and low channel.
     pub tags: (u16, u16),
@@ -279,7 +279,7 @@ fn read_offsets(reader: &mut Reader<'_>, field: &'static str) -> Result<Vec<Offs
 }
 
 impl AlarmCr {
-    /// Usual values: 100 ms, three repetitions, 200 bytes.
+    /// Returns the usual values: 100 ms, three repetitions, 200 bytes.
     pub const fn usual(reference: u16) -> Self {
         Self {
             kind: 1,
@@ -316,7 +316,7 @@ impl AlarmCr {
     }
 }
 
-/// A block of the answer to Connect. A ModuleDiffBlock can also come with ApplicationReady.
+/// A block of the answer to Connect. ApplicationReady can also contain a ModuleDiffBlock.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Response {
     /// The connection.
@@ -341,7 +341,7 @@ pub enum Response {
     AlarmCr {
         /// Alarm reference of the device.
         reference: u16,
-        /// Longest alarm in bytes.
+        /// Maximum length of an alarm in bytes.
         most: u16,
     },
     /// Differences from the expected modules.
@@ -418,7 +418,7 @@ impl Response {
             Self::Name(name) => {
                 out.u16(count16(name.len()));
                 out.put(name.as_bytes());
-                // Answers are padded to four bytes, including the header of six.
+                // Answers are padded to a multiple of four bytes. The header of six bytes counts.
                 out.zeros((4 - (6 + out.bytes.len()) % 4) % 4);
                 BlockType::AR_SERVER
             }

@@ -4,9 +4,9 @@ use super::{Reader, WireError, Writer};
 
 /// Data status of a running provider: primary, valid, run, no problem.
 pub const RUNNING: u8 = 0x35;
-/// Status bits for usable data: primary, valid and run must be set; ignore must not be set.
+/// Status bits for usable data. Primary, valid and run must be set; ignore must not be set.
 const USABLE: (u8, u8) = (0x15, 0x80);
-/// Good provider or consumer status; only the highest bit counts.
+/// Good provider or consumer status. Only the highest bit is checked.
 pub const GOOD: u8 = 0x80;
 /// Largest forward step of the cycle counter. A larger step means an old frame.
 const FORWARD: u16 = 61_440;
@@ -14,18 +14,18 @@ const FORWARD: u16 = 61_440;
 /// Payload of a cyclic frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Cyclic<'a> {
-    /// Data of all submodules, statuses, padding.
+    /// Data and statuses of all submodules, and padding.
     pub data: &'a [u8],
     /// Cycle counter, in units of 31.25 us.
     pub counter: u16,
     /// Data status.
     pub status: u8,
-    /// Transfer status; not 0 if a switch detected damage.
+    /// Transfer status. It is not 0 if a switch detected damage.
     pub transfer: u8,
 }
 
 impl<'a> Cyclic<'a> {
-    /// Decodes a payload with `length` bytes of data.
+    /// Decodes a payload that contains `length` bytes of data.
     pub fn parse(payload: &'a [u8], length: usize) -> Result<Self, WireError> {
         let mut reader = Reader::big(payload);
         Ok(Self {
@@ -46,27 +46,27 @@ impl<'a> Cyclic<'a> {
         out.bytes
     }
 
-    /// Whether the data status allows to use the data.
+    /// Whether the statuses of the frame allow the use of the data.
     pub const fn is_usable(&self) -> bool {
         self.status & USABLE.0 == USABLE.0 && self.status & USABLE.1 == 0 && self.transfer == 0
     }
 
-    /// Whether the frame is newer than the one with counter `last`.
+    /// Whether this frame is newer than the frame with the counter `last`.
     pub const fn is_after(&self, last: u16) -> bool {
         let step = self.counter.wrapping_sub(last);
         step != 0 && step <= FORWARD
     }
 }
 
-/// Reason why a data status does not allow to use the data.
+/// Returns the reason why these statuses do not allow the use of the data.
 pub fn describe_status(status: u8, transfer: u8) -> &'static str {
     match status {
-        _ if transfer != 0 => "a switch marked it as damaged",
-        _ if status & 0x80 != 0 => "it is marked to be ignored",
-        _ if status & 0x04 == 0 => "its data is not valid",
-        _ if status & 0x10 == 0 => "the device is in stop",
+        _ if transfer != 0 => "a switch marked the data as damaged",
+        _ if status & 0x80 != 0 => "the data is marked to be ignored",
+        _ if status & 0x04 == 0 => "the data is not valid",
+        _ if status & 0x10 == 0 => "the device is in the stop state",
         _ if status & 0x01 == 0 => "the device is a backup",
-        _ => "it is good",
+        _ => "the data is good",
     }
 }
 
@@ -80,7 +80,7 @@ mod tests {
             let cyclic = Cyclic { data: &[], counter: 0, status, transfer: 0 };
             let usable = status & 1 != 0 && status & 4 != 0 && status & 0x10 != 0 && status & 0x80 == 0;
             assert_eq!(cyclic.is_usable(), usable, "{status:#x}");
-            assert_eq!(describe_status(status, 0) == "it is good", usable, "{status:#x}");
+            assert_eq!(describe_status(status, 0) == "the data is good", usable, "{status:#x}");
             assert!(!Cyclic { transfer: 1, ..cyclic }.is_usable());
         }
         assert!(Cyclic { data: &[], counter: 0, status: 0x15, transfer: 0 }.is_usable(), "a diagnosis is no stop");

@@ -1,12 +1,12 @@
 //! Codec for DCP: discovery, station names, IP addresses.
 //!
-//! Frames have no VLAN tag. Identify requests are multicast, everything else is unicast.
+//! DCP frames have no VLAN tag. Identify requests are multicast; all other frames are unicast.
 
 use std::net::Ipv4Addr;
 
 use super::{Reader, WireError, Writer, count16, text};
 
-/// Most bytes of blocks in a frame.
+/// Maximum length of the blocks in a frame, in bytes.
 const MOST: usize = 1416;
 
 /// DCP service.
@@ -25,9 +25,9 @@ pub enum Service {
 /// Type of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Kind {
-    /// The question.
+    /// A request.
     Request,
-    /// The answer.
+    /// An answer.
     Response,
     /// The station does not support the service.
     Unsupported,
@@ -57,17 +57,17 @@ impl Setting {
     pub const ROLE: Self = Self(2, 4);
     /// Supported options.
     pub const OPTIONS: Self = Self(2, 5);
-    /// Alias: port name and name of the neighbour.
+    /// Alias: port name and name of the neighbor.
     pub const ALIAS: Self = Self(2, 6);
     /// Instance in the object UUID.
     pub const INSTANCE: Self = Self(2, 7);
-    /// Blinking.
+    /// Makes the station blink.
     pub const SIGNAL: Self = Self(5, 3);
     /// Result of a Set.
     pub const RESPONSE: Self = Self(5, 4);
     /// Reset to factory settings.
     pub const RESET: Self = Self(5, 6);
-    /// All stations, as a filter.
+    /// Filter that matches all stations.
     pub const ALL: Self = Self(255, 255);
 }
 
@@ -85,37 +85,37 @@ impl Block {
         Self { setting, data: parts.concat() }
     }
 
-    /// Filter by station name.
+    /// Returns a filter by station name.
     pub fn name_filter(name: &str) -> Self {
         Self::new(Setting::NAME, &[name.as_bytes()])
     }
 
-    /// Sets the station name, permanently or until power-off.
+    /// Returns a block that sets the station name, permanently or until power-off.
     pub fn set_name(name: &str, permanent: bool) -> Self {
         Self::new(Setting::NAME, &[&[0, u8::from(permanent)], name.as_bytes()])
     }
 
-    /// Sets the IP address, permanently or until power-off.
+    /// Returns a block that sets the IP address, permanently or until power-off.
     pub fn set_ip(suite: &IpSuite, permanent: bool) -> Self {
         Self::new(Setting::IP, &[&[0, u8::from(permanent)], &suite.bytes()])
     }
 
-    /// Blinks for about three seconds.
+    /// Returns a block that makes the station blink for about three seconds.
     pub fn signal() -> Self {
         Self::new(Setting::SIGNAL, &[&[0, 0, 1, 0]])
     }
 
-    /// Resets name and IP address: mode 2, which all stations support.
+    /// Returns a block that resets name and IP address. It uses mode 2, which all stations support.
     pub fn reset() -> Self {
         Self::new(Setting::RESET, &[&[0, 4]])
     }
 
-    /// A value in an answer, with its block info.
+    /// Returns a block with a value and its block info, for an answer.
     pub fn value(setting: Setting, info: u16, value: &[u8]) -> Self {
         Self::new(setting, &[&info.to_be_bytes(), value])
     }
 
-    /// Result of a Set.
+    /// Returns a block with the result of a Set.
     pub fn response(setting: Setting, error: u8) -> Self {
         Self::new(Setting::RESPONSE, &[&[setting.0, setting.1, error]])
     }
@@ -128,39 +128,39 @@ pub struct Dcp {
     pub service: Service,
     /// Type of the frame.
     pub kind: Kind,
-    /// Transaction id; the answer repeats it.
+    /// Transaction id. The answer has the same transaction id as the request.
     pub xid: u32,
-    /// Spread of the Identify answers, in steps of 10 ms; 0 for other services.
+    /// Time within which stations answer Identify, each after its own delay, in steps of 10 ms; 0 for other services.
     pub delay: u16,
     /// Blocks.
     pub blocks: Vec<Block>,
 }
 
 impl Dcp {
-    /// Finds the station with this name, which answers at once.
+    /// Creates a request that finds the station with this name. The station answers at once.
     pub fn identify(xid: u32, name: &str) -> Self {
         let blocks = vec![Block::name_filter(name)];
         Self { service: Service::Identify, kind: Kind::Request, xid, delay: 1, blocks }
     }
 
-    /// Finds all stations. They spread their answers over `delay` steps of 10 ms.
+    /// Creates a request that finds all stations. They answer within `delay` steps of 10 ms, each after its own delay.
     pub fn identify_all(xid: u32, delay: u16) -> Self {
         let blocks = vec![Block { setting: Setting::ALL, data: Vec::new() }];
         Self { service: Service::Identify, kind: Kind::Request, xid, delay, blocks }
     }
 
-    /// Reads settings of a station.
+    /// Creates a request that reads settings of a station.
     pub fn read(xid: u32, settings: &[Setting]) -> Self {
         let blocks = settings.iter().map(|setting| Block { setting: *setting, data: Vec::new() }).collect();
         Self { service: Service::Get, kind: Kind::Request, xid, delay: 0, blocks }
     }
 
-    /// Changes settings of a station.
+    /// Creates a request that changes settings of a station.
     pub fn change(xid: u32, blocks: Vec<Block>) -> Self {
         Self { service: Service::Set, kind: Kind::Request, xid, delay: 0, blocks }
     }
 
-    /// An answer to this request.
+    /// Creates an answer to this request.
     #[must_use]
     pub fn answer(&self, blocks: Vec<Block>) -> Self {
         Self { service: self.service, kind: Kind::Response, xid: self.xid, delay: 0, blocks }
@@ -225,7 +225,7 @@ impl Dcp {
         out.bytes
     }
 
-    /// Station data of an Identify or Get answer, or of a Hello.
+    /// Decodes the station data of an Identify answer, a Get answer or a Hello.
     pub fn station(&self) -> Result<Station, WireError> {
         let mut station = Station::default();
         for block in &self.blocks {
@@ -253,7 +253,7 @@ impl Dcp {
         Ok(station)
     }
 
-    /// Results of a Set, or of settings that could not be read; error 0 means success.
+    /// Decodes the results of a Set, or of settings that could not be read. Error 0 means success.
     pub fn outcomes(&self) -> Vec<(Setting, u8)> {
         let responses = self.blocks.iter().filter(|block| block.setting == Setting::RESPONSE);
         responses
@@ -290,7 +290,7 @@ pub struct IpSuite {
     pub address: Ipv4Addr,
     /// Subnet mask.
     pub mask: Ipv4Addr,
-    /// Gateway; 0.0.0.0 or the station's own address means none.
+    /// Gateway; 0.0.0.0 or the own address of the station means none.
     pub gateway: Ipv4Addr,
 }
 
@@ -315,14 +315,14 @@ impl IpSuite {
         Ok(Self { address: part("IP address")?, mask: part("mask")?, gateway: part("gateway")? })
     }
 
-    /// Whether both addresses are in one network.
+    /// Whether both addresses are in the same network.
     pub fn reaches(&self, other: Ipv4Addr) -> bool {
         let mask = u32::from(self.mask);
         u32::from(self.address) & mask == u32::from(other) & mask
     }
 }
 
-/// Origin of an IP address, from the block info.
+/// Origin of an IP address. It is coded in the block info.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct IpOrigin(
     /// Block info.
@@ -335,7 +335,7 @@ impl IpOrigin {
         self.0 & 0x80 != 0
     }
 
-    /// Whether DHCP assigned it.
+    /// Whether DHCP assigned the address.
     pub const fn is_by_dhcp(self) -> bool {
         self.0 & 3 == 2
     }
@@ -344,7 +344,7 @@ impl IpOrigin {
 /// Data that a station reports about itself.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Station {
-    /// Station name; can be empty.
+    /// Station name. It may be empty.
     pub name: String,
     /// Station type.
     pub kind: String,
@@ -352,7 +352,7 @@ pub struct Station {
     pub id: Option<(u16, u16)>,
     /// Role: bit 0 device, 1 controller, 2 multi-device, 3 supervisor.
     pub role: u8,
-    /// Alias: port name and name of the neighbour.
+    /// Alias: port name and name of the neighbor.
     pub alias: String,
     /// Instance in the object UUID.
     pub instance: Option<u16>,
@@ -363,7 +363,7 @@ pub struct Station {
 }
 
 impl Station {
-    /// IP address, if it has one.
+    /// IP address; `None` if the station has none.
     pub fn address(&self) -> Option<Ipv4Addr> {
         self.ip.map(|(suite, _)| suite.address).filter(|address| !address.is_unspecified())
     }
@@ -375,15 +375,15 @@ pub fn describe_error(error: u8) -> &'static str {
         0 => "done",
         1 => "the station does not have this option",
         2 => "the station does not have this setting, or no value for it",
-        3 => "the station did not take the value",
+        3 => "the station did not accept the value",
         4 => "the station is out of resources",
         5 => "not possible at the moment, for a reason in the station",
-        6 => "not while a controller is connected to the station",
+        6 => "not possible while a controller is connected to the station",
         _ => "an unknown error",
     }
 }
 
-/// Checks a station name. The rules are those of host name labels in lower case.
+/// Checks a station name. The rules are the rules for host name labels in lower case.
 pub fn check_name(name: &str) -> Result<(), String> {
     if name.is_empty() || name.len() > 240 {
         return Err(format!("it has {} characters; 1 to 240 are allowed", name.len()));
@@ -405,12 +405,12 @@ pub fn check_name(name: &str) -> Result<(), String> {
         return Err(format!("'{first}' is reserved for port names"));
     }
     if name.split('.').count() == 4 && name.split('.').all(|label| label.parse::<u16>().is_ok()) {
-        return Err("it looks like an IP address".to_owned());
+        return Err("it has the form of an IP address".to_owned());
     }
     Ok(())
 }
 
-/// `port-NNN` or `port-NNN-NNNNN`.
+/// Whether a label has the form `port-NNN` or `port-NNN-NNNNN`.
 fn is_port(label: &str) -> bool {
     let digits = |text: &str, count| text.len() == count && text.bytes().all(|byte| byte.is_ascii_digit());
     let Some(rest) = label.strip_prefix("port-") else { return false };
@@ -435,7 +435,7 @@ mod tests {
         IpSuite { address, mask: Ipv4Addr::new(255, 255, 255, 0), gateway: address }
     }
 
-    /// notes, worked example: first frame of a connection.
+    /// First frame of a connection, from the worked example in the notes.
     #[test]
     fn a_station_is_looked_for_by_name() {
         let dcp = Dcp::identify(0x0100_0001, "yrcx-sim");
@@ -449,7 +449,7 @@ mod tests {
         assert_eq!(Dcp::parse(Frame::parse(&bytes).unwrap().payload), Ok(dcp));
     }
 
-    /// notes, worked example: the answer.
+    /// Answer of the station, from the worked example in the notes.
     #[test]
     fn a_station_says_who_it_is() {
         let bytes = hex(concat!(
@@ -468,7 +468,7 @@ mod tests {
         assert_eq!(Frame { payload: &dcp.emit(), ..frame }.emit(), bytes);
     }
 
-    /// notes, worked example: Set and Get.
+    /// Set and Get, from the worked example in the notes.
     #[test]
     fn settings_are_set_and_read_as_in_the_example() {
         let cases = [

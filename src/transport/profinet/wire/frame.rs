@@ -10,7 +10,7 @@ const TAGGED: u16 = 0x8100;
 pub const TAG_HIGH: u16 = 0xC000;
 /// VLAN tag: priority 5, VLAN 0, for low-priority alarms.
 pub const TAG_LOW: u16 = 0xA000;
-/// Minimum frame length without tag and checksum.
+/// Minimum length of a frame in bytes, without tag and checksum.
 const SHORTEST: usize = 60;
 
 /// Frame ids.
@@ -35,14 +35,14 @@ pub mod id {
     pub const DCP_IDENTIFIED: u16 = 0xFEFF;
 }
 
-/// A frame.
+/// A PROFINET Ethernet frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Frame<'a> {
     /// Destination.
     pub destination: Mac,
     /// Source.
     pub source: Mac,
-    /// VLAN tag, if present. Drivers can remove it.
+    /// VLAN tag, if present. A driver may have removed it.
     pub tag: Option<u16>,
     /// Frame id.
     pub id: u16,

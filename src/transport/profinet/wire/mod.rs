@@ -1,7 +1,8 @@
 //! PROFINET IO codec: Ethernet frames, DCP, RPC, blocks, records, cyclic data, alarms.
 //!
-//! Numbers are big-endian, except in the RPC header and its five NDR numbers, whose byte order the datagram names. The
-//! decoder accepts what devices send and ignores reserved bytes. The encoder follows IEC 61158-6-10.
+//! Numbers are big-endian, except in the RPC header and its five NDR numbers: their byte order is a field of the
+//! datagram. The decoder accepts the messages of real devices and ignores reserved bytes. The encoder follows IEC
+//! 61158-6-10.
 
 use std::fmt;
 use std::str::FromStr;
@@ -35,7 +36,7 @@ impl Mac {
     /// Multicast address of DCP Hello.
     pub const DCP_HELLO: Self = Self([0x01, 0x0E, 0xCF, 0, 0, 1]);
 
-    /// Whether it is a multicast address.
+    /// Whether this is a multicast address.
     pub const fn is_group(self) -> bool {
         self.0[0] & 1 == 1
     }
@@ -71,7 +72,7 @@ impl FromStr for Mac {
     }
 }
 
-/// UUID, in the byte order of blocks.
+/// UUID, in the byte order that blocks use.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Uuid(
     /// The bytes.
@@ -82,7 +83,7 @@ impl Uuid {
     /// The nil UUID.
     pub const NIL: Self = Self([0; 16]);
 
-    /// Reverses the bytes of its first three fields.
+    /// Returns the UUID with the bytes of its first three fields reversed.
     fn swapped(self) -> Self {
         let mut bytes = self.0;
         bytes[..4].reverse();
@@ -91,7 +92,7 @@ impl Uuid {
         Self(bytes)
     }
 
-    /// A random UUID (version 4).
+    /// Creates a random UUID (version 4).
     pub fn random() -> Self {
         let mut bytes = fastrand::u128(..).to_be_bytes();
         bytes[6] = bytes[6] & 0x0F | 0x40;
@@ -162,17 +163,17 @@ impl Writer {
 /// Encodes a 16-bit length or count.
 ///
 /// # Panics
-/// Above 65535. Callers limit the size of messages.
+/// If the value is above 65535. Callers limit the size of messages.
 fn count16(count: usize) -> u16 {
     u16::try_from(count).expect("lengths of messages are bounded where they are built")
 }
 
-/// Encodes a 32-bit length or count; panics above its range.
+/// Encodes a 32-bit length or count. Panics if the value does not fit.
 fn count32(count: usize) -> u32 {
     u32::try_from(count).expect("lengths of messages are bounded where they are built")
 }
 
-/// Text of a fixed-length field, without trailing blanks and zeros.
+/// Decodes the text of a fixed-length field, without trailing blanks and zeros.
 fn text(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     text.trim_end_matches(['\0', ' ']).chars().filter(|c| !c.is_control()).collect()

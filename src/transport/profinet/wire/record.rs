@@ -1,4 +1,4 @@
-//! Codec for records: numbered parameters and data of a submodule.
+//! Codec for records. A record is a numbered set of parameters or data of a submodule.
 
 use super::block::{self, BlockType};
 use super::{Reader, Uuid, WireError, Writer, count16, count32, text};
@@ -7,7 +7,7 @@ use super::{Reader, Uuid, WireError, Writer, count16, count32, text};
 pub mod index {
     /// I&M0: vendor, order number, serial number, versions.
     pub const IM0: u16 = 0xAFF0;
-    /// Real modules.
+    /// Modules that are really plugged in.
     pub const REAL_IDENTIFICATION: u16 = 0xF000;
     /// Log of ended connections.
     pub const LOGBOOK: u16 = 0xF830;
@@ -15,7 +15,7 @@ pub mod index {
     pub const MULTIPLE_WRITE: u16 = 0xE040;
 }
 
-/// Length of a record block before the data, without its header.
+/// Length of a record block before the data in bytes, without its header.
 const FIXED: usize = 60;
 const BLOCK_HEADER: usize = 4;
 
@@ -24,7 +24,7 @@ const BLOCK_HEADER: usize = 4;
 pub struct Record {
     /// Sequence number in the connection.
     pub sequence: u16,
-    /// UUID of the connection; nil outside of one.
+    /// UUID of the connection; nil without a connection.
     pub ar: Uuid,
     /// API (profile); 0.
     pub api: u32,
@@ -34,12 +34,12 @@ pub struct Record {
     pub subslot: u16,
     /// Record index.
     pub index: u16,
-    /// Length of the record, or of the buffer for it, in bytes.
+    /// Length in bytes of the record, or of the buffer for the record.
     pub length: u32,
 }
 
 impl Record {
-    /// Decodes the first block of a call or answer. Also returns the remaining bytes.
+    /// Decodes the first block of a call or answer. Returns it with the remaining bytes.
     pub fn parse(bytes: &[u8], kind: BlockType) -> Result<(Self, &[u8]), WireError> {
         let mut reader = Reader::big(bytes);
         let found = reader.u16("BlockType")?;
@@ -60,7 +60,7 @@ impl Record {
         Ok((Self { sequence, ar, api, slot, subslot, index, length }, reader.rest()))
     }
 
-    /// Decodes a Read answer. Also returns the record data.
+    /// Decodes a Read answer. Returns it with the record data.
     pub fn parse_answer(bytes: &[u8]) -> Result<(Self, &[u8]), WireError> {
         let (record, rest) = Self::parse(bytes, BlockType::READ.answer())?;
         let length = usize::try_from(record.length).unwrap_or(usize::MAX);
@@ -68,7 +68,7 @@ impl Record {
         Ok((record, rest.get(..length).ok_or(short)?))
     }
 
-    /// Encodes the block and the data. `status` is for Write answers, otherwise 0.
+    /// Encodes the block and the data. `status` is the status of a Write answer, and 0 in all other blocks.
     pub fn emit(&self, kind: BlockType, status: u32, data: &[u8]) -> Vec<u8> {
         let mut out = Writer::default();
         out.u16(self.sequence);
@@ -79,7 +79,7 @@ impl Record {
         out.u16(0);
         out.u16(self.index);
         out.u32(self.length);
-        // Two additional values; the second is the status of a Write answer.
+        // Two additional values follow. In a Write answer, the second value is the status.
         out.u32(0);
         out.u32(status);
         out.zeros(FIXED - 2 - out.bytes.len());
@@ -88,7 +88,7 @@ impl Record {
         bytes
     }
 
-    /// Decodes a Write answer. Also returns its status and the remaining bytes.
+    /// Decodes a Write answer. Returns it with its status and the remaining bytes.
     pub fn write_status(bytes: &[u8]) -> Result<(Self, u32, &[u8]), WireError> {
         let (record, rest) = Self::parse(bytes, BlockType::WRITE.answer())?;
         let mut reader = Reader { at: 44, ..Reader::big(bytes) };
@@ -96,7 +96,7 @@ impl Record {
     }
 }
 
-/// A parameter record to write.
+/// A parameter record that the controller writes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Parameter {
     /// Slot.
@@ -237,13 +237,13 @@ impl Im0 {
         let (prefix, major, minor, patch) = self.software;
         out.put(&[u8::try_from(prefix).unwrap_or(b'V'), major, minor, patch]);
         out.u16(self.revision);
-        // No profile, I&M version 1.1, no I&M1 to I&M4.
+        // The last fields: no profile, I&M version 1.1, no I&M1 to I&M4.
         out.put(&[0, 0, 0, 0, 1, 1, 0, 0]);
         block::emit(BlockType::IM0, &out.bytes)
     }
 }
 
-/// A real module.
+/// A module that is really plugged in.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RealModule {
     /// Slot.
@@ -261,7 +261,7 @@ pub fn parse_identification(record: &[u8]) -> Result<Vec<RealModule>, WireError>
     let found = found.ok_or(Reader::big(record).missing("RealIdentificationData"))?;
     let mut reader = Reader::big(found.body);
     let mut modules = Vec::new();
-    // Version 1.0 has no API numbers.
+    // Blocks of version 1.0 contain no API numbers.
     let apis = if found.version.1 == 0 { 1 } else { reader.u16("NumberOfAPIs")? };
     for _ in 0..apis {
         if found.version.1 != 0 {

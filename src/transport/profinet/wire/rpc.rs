@@ -2,15 +2,15 @@
 
 use super::{ByteOrder, Reader, Uuid, WireError, Writer, count16, count32};
 
-/// UDP port of both sides.
+/// UDP port of both controller and device.
 pub const PORT: u16 = 34964;
 /// Length of the RPC header.
 pub const HEADER_LEN: usize = 80;
 /// Length of the five NDR numbers.
 const NDR_LEN: usize = 20;
-/// Buffer size for an answer; enough for all calls.
+/// Buffer size for an answer. It is large enough for all calls.
 pub const ROOM: u32 = 4096;
-/// Limit of a reassembled answer in bytes.
+/// Maximum size of a reassembled answer in bytes.
 pub const MOST: usize = 65_536;
 
 /// Packet type.
@@ -23,7 +23,7 @@ pub struct Kind(
 impl Kind {
     /// A call.
     pub const REQUEST: Self = Self(0);
-    /// Asks whether a call is in progress.
+    /// Request for the state of a call in progress.
     pub const PING: Self = Self(1);
     /// Answer to a call.
     pub const RESPONSE: Self = Self(2);
@@ -35,9 +35,9 @@ impl Kind {
     pub const NO_CALL: Self = Self(5);
     /// The call is rejected.
     pub const REJECT: Self = Self(6);
-    /// Acknowledges a response.
+    /// Acknowledgement of a response.
     pub const ACK: Self = Self(7);
-    /// Acknowledges a fragment.
+    /// Acknowledgement of a fragment.
     pub const FRAGMENT_ACK: Self = Self(9);
 }
 
@@ -63,7 +63,7 @@ pub mod operation {
     pub const READ: u16 = 2;
     /// Write records.
     pub const WRITE: u16 = 3;
-    /// PrmEnd and ApplicationReady.
+    /// Call PrmEnd or ApplicationReady.
     pub const CONTROL: u16 = 4;
     /// Read a record without a connection.
     pub const READ_IMPLICIT: u16 = 5;
@@ -75,7 +75,7 @@ pub const DEVICE: Uuid = Uuid([0xDE, 0xA0, 0, 1, 0x6C, 0x97, 0x11, 0xD1, 0x82, 0
 pub const CONTROLLER: Uuid =
     Uuid([0xDE, 0xA0, 0, 2, 0x6C, 0x97, 0x11, 0xD1, 0x82, 0x71, 0, 0xA0, 0x24, 0x42, 0xDF, 0x7D]);
 
-/// Object UUID of a station.
+/// Returns the object UUID of a station.
 pub fn object(instance: u16, device: u16, vendor: u16) -> Uuid {
     let [i0, i1] = instance.to_be_bytes();
     let [d0, d1] = device.to_be_bytes();
@@ -90,7 +90,7 @@ pub struct Header {
     pub kind: Kind,
     /// Flags; see [`flag`].
     pub flags: u8,
-    /// Byte order of header and NDR numbers.
+    /// Byte order of the header and the NDR numbers.
     pub order: ByteOrder,
     /// Object UUID of the device.
     pub object: Uuid,
@@ -113,7 +113,7 @@ pub struct Header {
 pub struct Datagram<'a> {
     /// RPC header.
     pub header: Header,
-    /// NDR numbers and blocks, or a fragment of them.
+    /// NDR numbers and blocks, or a fragment of these bytes.
     pub body: &'a [u8],
 }
 
@@ -121,7 +121,7 @@ impl<'a> Datagram<'a> {
     /// Decodes a datagram.
     ///
     /// # Errors
-    /// Not RPC version 4, or too short.
+    /// The datagram is not RPC version 4, or is too short.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
         let mut reader = Reader::big(bytes);
         let version = reader.u8("RPC version")?;
@@ -177,13 +177,13 @@ impl<'a> Datagram<'a> {
 }
 
 impl Header {
-    /// Header of the answer.
+    /// Returns the header of the answer to this call.
     #[must_use]
     pub const fn answer(&self) -> Self {
         Self { kind: Kind::RESPONSE, flags: flag::NO_ACK | flag::LAST_FRAGMENT, fragment: 0, ..*self }
     }
 
-    /// Whether it is the header of a fragment.
+    /// Whether the datagram is a fragment.
     pub const fn is_fragment(&self) -> bool {
         self.flags & flag::FRAGMENT != 0
     }
@@ -228,7 +228,7 @@ impl<'a> Reply<'a> {
         let mut reader = Reader::big(body);
         reader.order = order;
         let status = reader.u32("PNIOStatus")?;
-        // A refusal can end after its status.
+        // A refusal may end after its status.
         if status != 0 && body.len() < NDR_LEN {
             return Ok(Self { status, room: 0, blocks: &[] });
         }
@@ -291,7 +291,7 @@ mod tests {
 
     const BLOCKS: [u8; 394] = [7; 394];
 
-    /// notes, worked example: header of Connect and its NDR numbers.
+    /// Header of Connect and its NDR numbers, from the worked example in the notes.
     #[test]
     fn headers_in_both_orders_are_as_printed() {
         let big = hex(concat!(
@@ -315,7 +315,7 @@ mod tests {
         }
     }
 
-    /// notes, worked example: the answer.
+    /// The answer, from the worked example in the notes.
     #[test]
     fn answers_begin_with_their_status() {
         let body = Reply { status: 0, room: ROOM, blocks: &BLOCKS[..0x56] }.emit(ByteOrder::Big);

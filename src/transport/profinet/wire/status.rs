@@ -1,18 +1,18 @@
-//! PNIOStatus: error codes of a device and their texts.
+//! PNIOStatus: error codes of a device, and the texts of these codes.
 
 use std::fmt;
 
-/// PNIOStatus.
+/// Error code of a device (PNIOStatus).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Status(
-    /// Error code, decode, code 1, code 2, from the highest byte.
+    /// The bytes, from the highest: error code, decode, code 1, code 2.
     pub u32,
 );
 
-/// Fields of a block, by code 2.
+/// Names of the fields of a block, by code 2.
 type Fields = &'static [(u8, &'static str)];
 
-/// Blocks by code 1, with their fields by code 2.
+/// Names of the blocks by code 1, each with its fields by code 2.
 const BLOCKS: [(u8, &str, Fields); 8] = [
     (
         0x01,
@@ -102,9 +102,9 @@ const BLOCKS: [(u8, &str, Fields); 8] = [
             (0x07, "the timeout"),
             (0x08, "the retries"),
             (0x09, "the reference"),
-            (0x0A, "the longest alarm"),
-            (0x0B, "the tag of high priority"),
-            (0x0C, "the tag of low priority"),
+            (0x0A, "the maximum length of an alarm"),
+            (0x0B, "the VLAN tag for high priority"),
+            (0x0C, "the VLAN tag for low priority"),
         ],
     ),
     (0x14, "the control block", &[(0x00, "its type"), (0x04, "ARUUID"), (0x05, "SessionKey"), (0x08, "the command")]),
@@ -120,10 +120,10 @@ const RPC: [(u8, &str); 10] = [
     (0x02, "the cyclic data of one direction is missing"),
     (0x03, "wrong number of alarm channels"),
     (0x04, "no free connection: another controller uses the device, or the last connection has not timed out yet"),
-    (0x05, "unknown connection: it has ended"),
+    (0x05, "the connection is unknown or has ended"),
     (0x06, "the state does not allow this call"),
-    (0x07, "it could not start: not enough memory or timers"),
-    (0x08, "it has no free resources"),
+    (0x07, "the connection could not start: not enough memory or timers"),
+    (0x08, "the device has no free resources"),
     (0x09, "another connection uses its ports"),
 ];
 
@@ -140,7 +140,7 @@ const RECORDS: [(u8, &str); 18] = [
     (0xB2, "no such slot or subslot"),
     (0xB3, "the type does not match"),
     (0xB4, "no such area"),
-    (0xB5, "not in this state"),
+    (0xB5, "not possible in this state"),
     (0xB6, "access is denied"),
     (0xB7, "a value is out of its range"),
     (0xB8, "a parameter is invalid"),
@@ -174,12 +174,16 @@ const REASONS: [(u8, &str); 32] = [
     (0x15, "Connect failed"),
     (0x16, "Read failed"),
     (0x17, "Write failed"),
-    (0x18, "a control call failed: mostly ApplicationReady was not answered (is UDP 34964 open on this machine?)"),
+    (
+        0x18,
+        "a control call failed. Usually, ApplicationReady was not answered: check that UDP port 34964 is open on this \
+         computer",
+    ),
     (0x19, "the device asked for a pull or plug of a module"),
     (0x1A, "the application of the device has ended"),
     (0x1B, "the link is down"),
     (0x1C, "a MAC address could not be resolved"),
-    (0x1D, "synchronisation was lost"),
+    (0x1D, "synchronization was lost"),
     (0x1E, "the ports of the device do not match"),
     (0x1F, "the name or the address of the station was changed"),
     (0x20, "the device was reset to factory settings"),
@@ -191,12 +195,12 @@ impl Status {
         Self(u32::from_be_bytes([code, decode, code1, code2]))
     }
 
-    /// Status of an abort with this reason.
+    /// Returns the status of an abort for this reason.
     pub const fn abort(reason: u8) -> Self {
         Self::new(0xCF, 0x81, 0xFD, reason)
     }
 
-    /// Error code, decode, code 1, code 2.
+    /// Returns error code, decode, code 1 and code 2.
     pub const fn parts(self) -> [u8; 4] {
         self.0.to_be_bytes()
     }
@@ -206,12 +210,12 @@ impl Status {
         matches!(self.parts(), [_, 0x81, 0x40, 0x04])
     }
 
-    /// Whether the device does not know the connection any more.
+    /// Whether the connection does not exist in the device any more.
     pub const fn is_unknown_ar(self) -> bool {
         matches!(self.parts(), [_, 0x81, 0x40, 0x05])
     }
 
-    /// Name of the refused call or alarm.
+    /// Name of the call or alarm that was refused.
     pub const fn call(self) -> &'static str {
         match self.parts()[0] {
             0xDB => "Connect",
@@ -225,12 +229,12 @@ impl Status {
         }
     }
 
-    /// Remedies, if known.
+    /// Remedies; empty if none is known.
     pub const fn remedies(self) -> &'static [&'static str] {
         match self.parts() {
             [_, 0x81, 0x40, 0x04] => &["end the other controller's connection, or wait until its watchdog ends it"],
             [_, 0x81, 0x01 | 0x40, _] => &["connect again"],
-            [_, 0x81, 0x02, 0x07] => &["try startup=legacy in the target"],
+            [_, 0x81, 0x02, 0x07] => &["set startup=legacy in the target"],
             [_, 0x81, 0x02, 0x08 | 0x16..=0x1C] | [_, 0x81, 0x03, _] => {
                 &["compare layout= or gsdml= of the target with the modules of the device"]
             }
@@ -242,7 +246,7 @@ impl Status {
         }
     }
 
-    /// Text without the four codes; `None` if unknown.
+    /// Text of the status, without the four codes; `None` if the status is unknown.
     pub fn meaning(self) -> Option<String> {
         let [_, decode, code1, code2] = self.parts();
         let named = |list: &[(u8, &'static str)], code| list.iter().find(|entry| entry.0 == code).map(|entry| entry.1);
@@ -263,7 +267,7 @@ impl Status {
 }
 
 impl fmt::Display for Status {
-    /// Text and the four codes, because some devices number fields differently.
+    /// Writes the text and the four codes. The codes are included, because some devices number the fields differently.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [code, decode, code1, code2] = self.parts();
         if let Some(meaning) = self.meaning() {
@@ -284,7 +288,7 @@ mod tests {
             (0xDB81_01FF, "it refuses the connection (ARBlockReq): field 0xff (DB 81 01 FF)"),
             (0xDE80_B000, "no such record (DE 80 B0 00)"),
             (0xCF81_FD05, "no cyclic data came in time (watchdog or data hold) (CF 81 FD 05)"),
-            (0xDC81_4005, "unknown connection: it has ended (DC 81 40 05)"),
+            (0xDC81_4005, "the connection is unknown or has ended (DC 81 40 05)"),
             (0x1234_5678, "(12 34 56 78)"),
         ];
         for (status, text) in cases {

@@ -1,4 +1,4 @@
-//! Tests with a connection byte by byte, frames of a real controller, and random bytes.
+//! Tests with a complete connection byte by byte, with frames of a real controller, and with random bytes.
 
 use proptest::prelude::*;
 
@@ -57,7 +57,7 @@ fn module(slot: u16, ident: u32, submodules: Vec<ExpectedSubmodule>) -> Request 
     Request::Expected(vec![ExpectedModule { api: 0, slot, ident, submodules }])
 }
 
-/// notes, worked example: blocks of Connect.
+/// Blocks of Connect, from the worked example in the notes.
 fn example() -> (Vec<Request>, Vec<u8>) {
     let requests = vec![
         Request::Ar(Ar {
@@ -127,7 +127,7 @@ fn the_answer_to_connect_is_as_in_the_example() {
     assert_eq!(responses.iter().flat_map(Response::emit).collect::<Vec<_>>(), bytes);
 }
 
-/// notes, cyclic frames and worked example.
+/// Frames from the worked example and from the section on cyclic frames in the notes.
 #[test]
 fn cyclic_frames_are_as_in_the_example() {
     let image = [7; 48];
@@ -214,7 +214,7 @@ fn writes_of_one_and_of_several_read_as_they_are_written() {
     }
 }
 
-/// A recorded frame.
+/// Reads a recorded frame.
 fn recorded(name: &str) -> Vec<u8> {
     let all = include_str!("pnio-frames.txt");
     let (_, rest) = all.split_once(&format!("= {name}\n")).expect(name);
@@ -302,7 +302,7 @@ fn recorded_calls_are_read_and_written_back() {
                 let (outer, parameters) = record::parse_write(call.blocks).unwrap();
                 assert_eq!((outer.index, parameters.len()), (index::MULTIPLE_WRITE, 4));
                 assert_eq!((parameters[1].slot, parameters[1].index, parameters[1].data.len()), (3, 0x7B, 4));
-                // The length in the outer block is correct, so the encoded call is the same as the recorded one.
+                // The length in the outer block is correct, so the encoded call equals the recorded call.
                 assert_eq!(record::write(outer.ar, outer.sequence, &parameters), call.blocks);
             }
             _ => {
@@ -326,7 +326,7 @@ fn recorded_alarms_are_read_and_written_back() {
         let bytes = recorded(name);
         let frame = Frame::parse(&bytes).unwrap();
         let rta = Rta::parse(frame.payload).unwrap();
-        // Frames of a device are recorded before the network card pads them.
+        // The recording contains the frames of a device before the network card pads them.
         assert_eq!(Frame { payload: &rta.emit(), ..frame }.emit()[..bytes.len()], bytes, "{name}");
         let Pdu::Data(data) = &rta.pdu else { panic!("{name}: {rta:?}") };
         if is_alarm {
@@ -373,7 +373,7 @@ fn recorded_cyclic_frames_and_stations_are_read() {
     }
 }
 
-/// Runs all decoders on any bytes.
+/// Runs all decoders on these bytes.
 fn read_as_everything(bytes: &[u8]) {
     if let Ok(frame) = Frame::parse(bytes) {
         frame.emit();
@@ -414,7 +414,7 @@ proptest! {
         read_as_everything(&bytes);
     }
 
-    /// Real frames with one changed byte or a cut, which decode further than random bytes.
+    /// Real frames with one changed byte, or cut. The decoders process more of them than of random bytes.
     #[test]
     fn damaged_messages_are_read_without_a_panic(at in 0usize..700, value in any::<u8>(), cut in 0usize..700, which in 0usize..5) {
         let name = ["connect_req", "connect_res", "write_req", "alarm_diag_notif", "im0_read_res"][which];

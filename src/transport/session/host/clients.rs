@@ -1,4 +1,4 @@
-//! Clients of a host, with their input and output tasks.
+//! Clients of a host, with the tasks that read and write their sockets.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -11,12 +11,12 @@ use tokio::time::{Instant, timeout_at};
 use crate::session::socket::{ReadHalf, WriteHalf};
 use crate::session::wire::{Change, Control, Frame, Peer, Purpose, Reader};
 
-/// Client and its frame; `None` when it is gone.
+/// Number of a client and a frame of it; `None` when the client is gone.
 pub type ClientFrame = (u64, Option<Frame>);
 
-/// Limit of frames that wait for a client. Above it, the client is dropped.
+/// Maximum number of frames that wait for a client. Above it, the client is removed.
 const MAX_QUEUE: usize = 1024;
-/// Time limit for the hello of a client.
+/// Time limit for the Hello of a client.
 const HELLO_WITHIN: Duration = Duration::from_secs(3);
 /// Time limit for the last frame to a client.
 const LAST_FRAME_WITHIN: Duration = Duration::from_millis(300);
@@ -26,26 +26,26 @@ const LAST_FRAME_WITHIN: Duration = Duration::from_millis(300);
 pub struct Client {
     outbox: Arc<Outbox>,
     reading: JoinHandle<()>,
-    /// Process id, if the system reports it.
+    /// Process id of the client, if the system reports it.
     pid: Option<u32>,
-    /// Process id and command of its hello; `None` before.
+    /// Process id and command from the Hello of the client; `None` before the Hello.
     name: Option<(u32, String)>,
-    /// Purpose of its connection.
+    /// Purpose of the client's connection.
     pub purpose: Purpose,
-    /// Whether it has sent Bye.
+    /// Whether the client has sent Bye.
     pub has_left: bool,
-    /// Last will: change to send if it dies.
+    /// Last will: the change to send if the client is killed.
     pub will: Option<Change>,
-    /// Time of its connection.
+    /// Time when the client connected.
     pub since: Instant,
-    /// Time when it got the line.
+    /// Time when the client got the line.
     pub line_since: Instant,
-    /// Time when it got the right to move the robot.
+    /// Time when the client was allowed to move the robot.
     pub motion_since: Instant,
 }
 
 impl Client {
-    /// Starts the tasks of a connection. Received frames go to `inbox_sender`.
+    /// Creates a client and starts its tasks. Received frames are sent to `inbox_sender`.
     pub fn new(
         id: u64,
         (read, write, pid): (ReadHalf, WriteHalf, Option<u32>),
@@ -69,17 +69,17 @@ impl Client {
         }
     }
 
-    /// Stores the data of its hello.
+    /// Stores the data from the Hello of the client.
     pub fn set_name(&mut self, pid: u32, command: String) {
         self.name = Some((self.pid.unwrap_or(pid), command));
     }
 
-    /// Whether its hello has arrived.
+    /// Whether the Hello of the client has arrived.
     pub fn is_named(&self) -> bool {
         self.name.is_some()
     }
 
-    /// Description for other clients.
+    /// Describes the client for the other clients.
     pub fn peer(&self, since: Instant) -> Peer {
         let (pid, command) = self.name.clone().unwrap_or((self.pid.unwrap_or_default(), String::new()));
         Peer { pid, command, for_ms: milliseconds(since) }
@@ -96,7 +96,7 @@ impl Client {
     /// Sends a last frame. The connection stays open until the client is dropped.
     pub async fn dismiss(&self, control: Control) {
         self.send_control(control);
-        // A client that does not read must not delay the close.
+        // A client that does not read must not delay the end of the session.
         let _ = timeout_at(Instant::now() + LAST_FRAME_WITHIN, self.outbox.wait_until_written()).await;
     }
 }
@@ -116,7 +116,8 @@ pub fn milliseconds(since: Instant) -> u64 {
 async fn read_all(id: u64, mut reader: Reader, inbox_sender: mpsc::Sender<ClientFrame>) {
     let mut is_named = false;
     loop {
-        // After its hello a client can be silent. Before it, the client only blocks a place.
+        // After its Hello, a client may be silent. Before its Hello, a client has a time limit, because it occupies a
+        // place.
         let deadline = Instant::now() + HELLO_WITHIN;
         let frame =
             if is_named { reader.next().await } else { timeout_at(deadline, reader.next()).await.unwrap_or(Ok(None)) };
@@ -138,7 +139,7 @@ async fn write_all(socket: WriteHalf, outbox: Arc<Outbox>) {
             frame.emit(&mut bytes);
         }
         while !bytes.is_empty() {
-            // The reading task notices that the client is gone.
+            // The client is gone; the reading task reports that.
             if socket.writable().await.is_err() {
                 return;
             }
@@ -157,12 +158,12 @@ async fn write_all(socket: WriteHalf, outbox: Arc<Outbox>) {
     }
 }
 
-/// Queue of frames to a client. Of consecutive images, only the newest is sent.
+/// Queue of frames to a client. If several images are queued in a row, only the newest is sent.
 #[derive(Debug, Default)]
 struct Outbox {
     queue: Mutex<Queue>,
     changed: Notify,
-    /// Notified when everything is written.
+    /// Signal that all frames are written.
     empty: Notify,
 }
 

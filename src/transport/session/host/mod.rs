@@ -1,4 +1,4 @@
-//! Session host: holds the link, and gives clients access one at a time.
+//! Session host: owns the link, and gives the line to one client at a time.
 
 mod clients;
 pub mod shared_link;
@@ -19,13 +19,13 @@ use super::wire::{
     Broken, Change, Control, Frame, Hello, Info, Leftover, Peer, Purpose, Status, VERSION, Welcome, shorten,
 };
 
-/// Size of the queue of received frames.
+/// Capacity of the queue of received frames.
 const INBOX_SIZE: usize = 64;
-/// How long the line is reserved for the client that stops the robot.
+/// Time during which the line is reserved for the client that stops the robot.
 const STOP_FIRST: Duration = Duration::from_secs(10);
 const MAX_CLIENTS: usize = 64;
 
-/// A session.
+/// A session with its clients and its link.
 pub struct Host {
     claim: Claim,
     listener: Listener,
@@ -36,7 +36,7 @@ pub struct Host {
     last: u64,
     inbox: mpsc::Receiver<ClientFrame>,
     inbox_sender: mpsc::Sender<ClientFrame>,
-    /// Client with the line, and the queue for it.
+    /// Client that owns the line, and the queue of the clients that wait for it.
     line: Option<u64>,
     queue: VecDeque<(u64, u32)>,
     /// Client that moves the robot.
@@ -46,20 +46,21 @@ pub struct Host {
     leftover: Option<(Leftover, Instant)>,
     started: Instant,
     reopenings: u32,
-    /// Log of events.
+    /// Function that logs an event.
     log: Box<dyn FnMut(&str)>,
     /// Filter for a read-only robot.
     lock: Option<Lock>,
-    /// Stops the robot after the client that moved it died; gets the reason.
+    /// Function that stops the robot after the client that moved it was killed. Its argument is the reason.
     stop: Option<Stop>,
     /// Until this time, only a client that stops the robot gets the line.
     stop_first: Option<Instant>,
-    /// Reports whether a client of another process moves the robot, and the last reported value.
+    /// Function that is called when the need to guard a motion changes, and the last value passed to it.
     guard: Option<GuardSwitch>,
     is_guarded: bool,
     /// Whether the link was lost while a client moved the robot.
     was_lost_in_motion: bool,
-    /// Idle time without clients after which the session ends (`None`: never), and the start of the current one.
+    /// Time without clients after which the session ends (`None`: never), and the time since which there are no
+    /// clients.
     idle: Option<Duration>,
     idle_since: Instant,
 }
@@ -67,36 +68,37 @@ pub struct Host {
 /// Reason for the end of a session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EndReason {
-    /// A client has closed it.
+    /// A client has closed the session.
     Requested,
-    /// No client for the idle time.
+    /// There was no client for the idle time.
     Idle,
 }
 
 /// Filter for a read-only device.
 #[derive(Debug, Clone, Copy)]
 pub struct Guard {
-    /// Whether these bytes can be sent.
+    /// Whether these bytes may be sent.
     pub is_harmless_data: fn(&[u8]) -> bool,
-    /// Whether the second image can replace the first one.
+    /// Whether the second image may replace the first image.
     pub is_harmless_image: fn(&[u8], &[u8]) -> bool,
 }
 
-/// Stops the robot, with the reason.
+/// Function that stops the robot. Its argument is the reason.
 type Stop = Box<dyn FnMut(&str)>;
-/// Reports whether the motion of a client must be stopped when this process ends. The error is a text.
+/// Function that is called with `true` while the motion of a client must be stopped when this process ends. Its error
+/// is a text.
 type GuardSwitch = Box<dyn FnMut(bool) -> Result<(), String>>;
 
-/// Read-only lock, closed or still open.
+/// Read-only filter, and whether it is active.
 struct Lock {
     guard: Guard,
     is_locked: bool,
-    /// Whether it must be closed now.
+    /// Function that checks whether the filter must become active now.
     is_read_only: Box<dyn FnMut() -> Result<bool, String>>,
 }
 
 impl Host {
-    /// Starts to accept clients.
+    /// Creates a session that accepts clients.
     pub fn new(
         claim: Claim,
         key: String,
@@ -134,8 +136,8 @@ impl Host {
         })
     }
 
-    /// Installs a read-only filter. `is_read_only` is called before every frame that changes something. After its first
-    /// `true`, the filter stays active for the rest of the session.
+    /// Installs a read-only filter. `is_read_only` is called before every frame that changes something. After it has
+    /// returned `true` for the first time, the filter stays active for the rest of the session.
     #[must_use]
     pub fn with_read_only_check(
         self,
@@ -145,28 +147,28 @@ impl Host {
         Self { lock: Some(Lock { guard, is_locked: false, is_read_only: Box::new(is_read_only) }), ..self }
     }
 
-    /// Sets the function that stops the robot. It is called after the client that moved the robot died, or when a link
-    /// is open again that was lost during a motion.
+    /// Sets the function that stops the robot. It is called after the client that moved the robot was killed. If the
+    /// link was lost during a motion, the function is called when the link is open again.
     #[must_use]
     pub fn with_stop(self, stop: impl FnMut(&str) + 'static) -> Self {
         Self { stop: Some(Box::new(stop)), ..self }
     }
 
-    /// Sets the function that reports whether the motion of a client from another process must be stopped when this
-    /// process ends.
+    /// Sets the guard function. It is called with `true` while this process must stop the motion of a client of another
+    /// process at its end.
     #[must_use]
     pub fn with_guard(self, guard: impl FnMut(bool) -> Result<(), String> + 'static) -> Self {
         Self { guard: Some(Box::new(guard)), ..self }
     }
 
-    /// Sets the idle time after which the session ends.
+    /// Sets the time without clients after which the session ends.
     #[must_use]
     pub fn with_idle_limit(self, idle: Option<Duration>) -> Self {
         Self { idle, ..self }
     }
 
-    /// Serves clients until one of them closes the session, or until the idle time is over. Cancel safe: [`Host::end`]
-    /// continues from there.
+    /// Serves clients until one of them closes the session, or until the idle time has passed. Cancel safe: the caller
+    /// can continue with [`Host::end`].
     pub async fn serve(&mut self) -> EndReason {
         loop {
             let idle = self.idle.filter(|_| self.clients.is_empty()).map(|idle| self.idle_since + idle);
@@ -188,21 +190,22 @@ impl Host {
         }
     }
 
-    /// Whether the robot moves.
+    /// Whether the robot is moving.
     pub fn is_moving(&mut self) -> bool {
         self.link.images().is_some_and(|images| images.is_moving())
     }
 
-    /// Ends the session: accepts no new clients, informs all clients, closes the link.
+    /// Ends the session: accepts no new clients, informs all clients, and closes the link.
     ///
     /// # Errors
-    /// A text: what was not closed properly.
+    /// A description of what was not closed properly.
     pub async fn end(self, why: &str) -> Result<(), String> {
         self.claim.hide();
         drop(self.listener);
         join_all(self.clients.values().map(|client| client.dismiss(Control::Ended(why.to_owned())))).await;
         let closed = self.link.close().await;
-        // Connections are closed last, because a client that closes the session waits for that.
+        // The connections are closed last, because a client that closes the session waits for the end of its
+        // connection.
         drop(self.claim);
         drop(self.clients);
         closed
@@ -227,7 +230,7 @@ impl Host {
             Frame::Control(Control::Hello(hello)) => self.welcome(id, &hello),
             Frame::Control(Control::Ask) => self.send_status(id),
             Frame::Control(Control::Close { force }) => return self.answer_close(id, force),
-            // All other frames need a hello first.
+            // All other frames are valid only after a Hello.
             _ if !is_named => self.remove_client(id),
             Frame::Control(Control::Bye) => client.has_left = true,
             Frame::Control(Control::Will(will)) => client.will = will,
@@ -244,7 +247,7 @@ impl Host {
                     let change = images.change(change, has_line)?;
                     Some((images.shown != before, images.is_clear(), change))
                 });
-                // A change from before a loss is dropped. The client already knows of the loss.
+                // A change from before a loss is dropped. The client has already received a report of the loss.
                 if let Some((is_new, is_clear, change)) = changed {
                     if is_clear {
                         self.leftover = None;
@@ -262,7 +265,7 @@ impl Host {
                     self.send_error(id, &error);
                 }
             }
-            // Data without the line is dropped, and so are frames that only a host sends.
+            // Data of a client that does not own the line is dropped, and so are frames that only a host may send.
             _ => {}
         }
         false
@@ -275,7 +278,8 @@ impl Host {
         self.is_allowed(|guard| (guard.is_harmless_image)(&before, &after))
     }
 
-    /// Whether a frame can pass: reads and stops always, anything else only if the robot is not read-only.
+    /// Whether a frame may be passed on. Reads and stops always pass; other frames pass only if the robot is not
+    /// read-only.
     fn is_allowed(&mut self, is_harmless: impl Fn(&Guard) -> bool) -> bool {
         let Some(lock) = &mut self.lock else { return true };
         if is_harmless(&lock.guard) {
@@ -291,7 +295,7 @@ impl Host {
         !lock.is_locked
     }
 
-    /// Refuses a frame, because the robot is read-only.
+    /// Refuses a frame of a client, because the robot is read-only.
     fn refuse(&mut self, id: u64) {
         if let Some(client) = self.clients.get(&id) {
             let by = client.peer(client.since);
@@ -334,7 +338,7 @@ impl Host {
         };
         let Some(client) = self.clients.get_mut(&id) else { return };
         if let Some(why) = refused {
-            // The refusal is still sent.
+            // The refusal is sent before the connection closes.
             client.send_control(Control::Refused(why));
             self.remove_client(id);
             return;
@@ -366,7 +370,7 @@ impl Host {
 
     fn serve_queue(&mut self) {
         while self.line.is_none() {
-            // A client that stops the robot is first in the queue.
+            // A client that stops the robot gets the line first, independent of its place in the queue.
             let first = self.queue.front().map(|(id, _)| *id);
             if self.stop_first.is_some() && !first.is_some_and(|id| self.is_stop(id)) {
                 return;
@@ -387,7 +391,7 @@ impl Host {
         self.clients.get(&id).is_some_and(|client| client.purpose == Purpose::Stop)
     }
 
-    /// Starts a stop before any other client gets the line. The current owner loses it.
+    /// Starts a stop of the robot. The current owner loses the line, and only a stop gets the line next.
     fn start_stop(&mut self, why: &str) {
         let Some(stop) = &mut self.stop else { return };
         stop(why);
@@ -400,7 +404,7 @@ impl Host {
         self.serve_queue();
     }
 
-    /// The client releases the line, or loses it.
+    /// Removes the line from a client that releases or loses it, and removes the client from the queue.
     fn release(&mut self, id: u64) {
         self.queue.retain(|(other, _)| *other != id);
         self.link.pause(id);
@@ -429,8 +433,8 @@ impl Host {
         }
     }
 
-    /// Updates the guardian of this process. It is not needed for an image link, because the device stops by itself
-    /// after a loss. A client in this process has its own guardian.
+    /// Updates the guardian of this process. An image link needs no guardian, because the device stops by itself after
+    /// a loss. A client in this process has its own guardian.
     fn update_guard(&mut self) {
         let mover = self.motion.and_then(|id| self.clients.get(&id));
         let is_foreign = |mover: &Client| mover.peer(mover.since).pid != std::process::id();
@@ -447,8 +451,8 @@ impl Host {
         }
     }
 
-    /// Removes a client and releases all it has. Its changes of the image stay, except that its last will is sent if it
-    /// died.
+    /// Removes a client, and releases everything that it owned. Its changes of the image stay. If the client was
+    /// killed, its last will is sent.
     fn remove_client(&mut self, id: u64) {
         let Some(client) = self.clients.remove(&id) else { return };
         self.idle_since = Instant::now();
@@ -462,14 +466,14 @@ impl Host {
         if died {
             let mut events = vec![format!("client {} has died ({})", by.pid, by.command)];
             if self.motion == Some(id) {
-                events.push("it moved the robot".to_owned());
+                events.push("the client moved the robot".to_owned());
             }
             if leaves_command && !leaves_motion {
-                events.push("its command stays active".to_owned());
+                events.push("the command of the client stays active".to_owned());
             }
             let will = client.will.clone().filter(|will| self.is_change_allowed(will));
             if let Some(will) = will.and_then(|will| self.link.images()?.change(will, false)) {
-                events.push("armctl sends its stop signals".to_owned());
+                events.push("armctl sends the stop signals of the client".to_owned());
                 leaves_motion = false;
                 self.others(id).for_each(|other| other.send(Frame::Show(will.clone())));
             }
@@ -493,7 +497,8 @@ impl Host {
         self.serve_queue();
     }
 
-    /// Whether the robot can still move without the client. An image link shows it by the active command.
+    /// Whether the robot may still move without the client. On an image link, this is so if the client left a command
+    /// active.
     fn may_be_moving(&mut self, leaves_command: bool) -> bool {
         leaves_command || self.link.images().is_none()
     }
@@ -556,7 +561,7 @@ impl Host {
             }
             LinkEvent::Image(image) => self.broadcast(|| Frame::Image(image.to_vec())),
             LinkEvent::Data { to, channel, bytes } => {
-                // Data without a request is dropped.
+                // Data that no client expects is dropped.
                 if let Some(client) = to.or(self.line).and_then(|id| self.clients.get(&id)) {
                     client.send(Frame::Data { channel, bytes });
                 }
@@ -566,11 +571,11 @@ impl Host {
                 (self.log)(&format!("the connection was lost: {why}; armctl opens it again"));
                 self.awaiting_sent.clear();
                 let mover = self.motion.and_then(|id| self.clients.get(&id));
-                // A device with an image link stops by itself after a loss.
+                // With an image link, the device stops by itself after a loss.
                 self.was_lost_in_motion |=
                     mover.is_some_and(|mover| mover.purpose != Purpose::LeavesMotion) && self.link.images().is_none();
                 if self.leftover.take().is_some() {
-                    (self.log)("the command that a client left active has ended too");
+                    (self.log)("the command that a client left active has also ended");
                 }
                 self.broadcast(|| Frame::Control(Control::Lost(why.clone())));
             }

@@ -1,4 +1,4 @@
-//! The link that a host holds: images, datagrams or a byte stream.
+//! The link that a host owns: images, datagrams or a byte stream.
 
 use std::collections::BTreeMap;
 use std::future::Future;
@@ -29,37 +29,37 @@ pub enum SharedLink {
 /// Event of the link.
 #[derive(Debug)]
 pub enum LinkEvent {
-    /// All shown images were sent.
+    /// All images of clients were sent.
     Sent,
     /// A new image of the device.
     Image(Arc<[u8]>),
-    /// The link was lost, with the reason.
+    /// The link was lost for this reason.
     Lost(String),
     /// The link is open again.
     Reopened,
-    /// Bytes for a client, or for the owner of the line.
+    /// Received bytes for a client.
     Data {
-        /// The client; `None` for the owner of the line.
+        /// The client; `None` means the owner of the line.
         to: Option<u64>,
         /// Channel of the device.
         channel: u8,
         /// The bytes.
         bytes: Vec<u8>,
     },
-    /// A receive failed.
+    /// Receiving from the device failed.
     Broken {
-        /// The client.
+        /// The client that expects the answer.
         to: u64,
         /// The error.
         error: io::Error,
     },
 }
 
-/// Longer than any wait.
+/// A time longer than any wait.
 const NO_DEADLINE: Duration = Duration::from_secs(3600);
-/// Larger than a frame of any controller, so that oversized datagrams are detected.
+/// Size of the receive buffer: larger than any frame of a controller, so that oversized datagrams are detected.
 const BUFFER: usize = 4096;
-/// Pauses before another attempt to open a stream. The last one repeats.
+/// Pauses before attempts to reopen a stream. The last pause repeats.
 const BACKOFF: [Duration; 5] = [
     Duration::from_millis(250),
     Duration::from_millis(500),
@@ -87,7 +87,7 @@ impl SharedLink {
         }
     }
 
-    /// The image link, if it is one.
+    /// The image link; `None` if the link has no images.
     pub fn images(&mut self) -> Option<&mut Images> {
         match self {
             Self::Images(images) => Some(images),
@@ -95,19 +95,19 @@ impl SharedLink {
         }
     }
 
-    /// A client gets the line. Bytes from before are dropped.
+    /// Prepares the link for the next owner of the line. Bytes that arrived before are dropped.
     pub fn begin(&mut self) {
         if let Self::Stream(Line { stream: Some(stream), .. }) = self {
             stream.discard();
         }
     }
 
-    /// Whether clients can use this channel at the same time. A file transfer must not delay a stop.
+    /// Whether several clients can use this channel at the same time. A file transfer must not delay a stop.
     pub fn is_parallel(&self, channel: u8) -> bool {
         matches!(self, Self::Datagrams(Datagrams { carrier: Carrier::Udp(_), .. })) && channel > 0
     }
 
-    /// The client expects no more answers.
+    /// Stops to receive for a client that expects no more answers.
     pub fn pause(&mut self, client: u64) {
         if let Self::Datagrams(datagrams) = self {
             datagrams.expecting.remove(&client);
@@ -144,7 +144,7 @@ impl SharedLink {
     /// Closes the link.
     ///
     /// # Errors
-    /// A text: what was not closed properly.
+    /// A description of what was not closed properly.
     pub async fn close(self) -> Result<(), String> {
         match self {
             Self::Images(images) => images.link.close().await.map_err(|trouble| trouble.to_string()),
@@ -153,39 +153,41 @@ impl SharedLink {
     }
 }
 
-/// Rules for images, whose meaning the host does not know.
+/// Rules for images. With these rules, the host need not interpret the images.
 #[derive(Debug, Clone)]
 pub struct Rules {
     /// Whether the link can send images.
     pub is_owner: bool,
-    /// Size of the exclusive part: bytes from the start that only the owner of the line can change.
+    /// Size of the exclusive part: the number of bytes, from the start of the image, that only the owner of the line
+    /// can change.
     pub exclusive: usize,
-    /// Size of the command part: bytes from the start that are 0 if no command is active.
+    /// Size of the command part: the number of bytes, from the start of the image, that are 0 while no command is
+    /// active.
     pub command: usize,
     /// First image.
     pub resting: Vec<u8>,
-    /// Image after a loss, computed from the one before.
+    /// Function that computes the image after a loss from the image before the loss.
     pub after_loss: fn(&[u8]) -> Vec<u8>,
-    /// Whether the robot moves, from output and input image.
+    /// Function that returns whether the robot is moving. Its arguments are the output image and the input image.
     pub is_moving: fn(&[u8], &[u8]) -> bool,
 }
 
 /// An image link with its rules.
 pub struct Images {
     link: ImageLink,
-    /// Rules for its images.
+    /// Rules for the images of this link.
     pub rules: Rules,
     /// Image to the device.
     pub shown: Vec<u8>,
     /// Image from the device; `None` while the link is down.
     pub seen: Option<Arc<[u8]>>,
-    /// Number of losses.
+    /// Number of times that the link was lost.
     pub generation: u32,
     down: Option<String>,
 }
 
 impl Images {
-    /// Starts with the resting image.
+    /// Creates the link. If the link can send images, the first image is the resting image.
     pub fn new(mut link: ImageLink, rules: Rules) -> Result<Self, String> {
         if rules.is_owner {
             link.set_output(&rules.resting).map_err(|trouble| trouble.to_string())?;
@@ -193,7 +195,7 @@ impl Images {
         Ok(Self { link, shown: rules.resting.clone(), rules, seen: None, generation: 0, down: None })
     }
 
-    /// Waits for the first image of the device; `false` after a timeout.
+    /// Waits until `until` for the first image of the device. Returns `false` after a timeout.
     pub async fn begin(&mut self, until: Instant) -> bool {
         while self.seen.is_none() {
             match self.link.next(until).await {
@@ -231,8 +233,9 @@ impl Images {
         }
     }
 
-    /// Applies a change of a client. Without the line, the exclusive part is not changed. Returns the actual change;
-    /// `None` if it is from before a loss.
+    /// Applies a change of a client. If the client does not own the line, the exclusive part is not changed. Returns
+    /// the change that was applied. `None` if the change cannot be applied, for example because it is from before a
+    /// loss.
     pub fn change(&mut self, mut change: Change, has_line: bool) -> Option<Change> {
         if change.generation != self.generation || self.down.is_some() || !self.rules.is_owner {
             return None;
@@ -247,7 +250,7 @@ impl Images {
 
     fn set_output(&mut self) {
         if self.rules.is_owner {
-            // The size was checked with the first image. `next` reports a loss.
+            // An error is ignored: the size was checked with the first image, and `next` reports a loss.
             let _ = self.link.set_output(&self.shown);
         }
     }
@@ -257,12 +260,12 @@ impl Images {
         self.shown.iter().take(self.rules.command).all(|byte| *byte == 0)
     }
 
-    /// Whether the robot moves.
+    /// Whether the robot is moving.
     pub fn is_moving(&self) -> bool {
         self.seen.as_ref().is_some_and(|seen| (self.rules.is_moving)(&self.shown, seen))
     }
 
-    /// Image state for a new client.
+    /// Returns the state of the images for a new client.
     pub fn welcome(&self) -> wire::Images {
         wire::Images {
             generation: self.generation,
@@ -273,11 +276,11 @@ impl Images {
     }
 }
 
-/// A datagram link. Each client has its own sockets, so a late answer never reaches another client.
+/// A datagram link. Each client has its own sockets, so a late answer cannot reach another client.
 pub struct Datagrams {
     carrier: Carrier,
     sockets: BTreeMap<u64, Udp>,
-    /// Clients that expect an answer, with the channel.
+    /// Clients that expect an answer, each with the channel of the answer.
     expecting: BTreeMap<u64, u8>,
 }
 
@@ -286,16 +289,16 @@ enum Carrier {
     InProcess(Box<InProcess<Box<dyn Peer>>>),
 }
 
-/// Channels of a device.
+/// Number of channels of a device.
 const CHANNELS: u8 = 2;
 
 impl Datagrams {
-    /// To a network host.
+    /// Creates a link to a network host.
     pub fn udp(udp: Udp) -> Self {
         Self::over(Carrier::Udp(udp))
     }
 
-    /// To an in-process peer.
+    /// Creates a link to an in-process peer.
     pub fn in_process(peer: InProcess<Box<dyn Peer>>) -> Self {
         Self::over(Carrier::InProcess(Box::new(peer)))
     }
@@ -348,7 +351,7 @@ impl Datagrams {
         match received {
             Ok(bytes) => LinkEvent::Data { to: Some(to), channel, bytes },
             Err(error) => {
-                // Nothing more to receive until the next send.
+                // After an error, nothing is received for this client until its next send.
                 self.expecting.remove(&to);
                 LinkEvent::Broken { to, error }
             }
@@ -356,7 +359,7 @@ impl Datagrams {
     }
 }
 
-/// Next datagram of a channel.
+/// Receives the next datagram of a channel.
 async fn datagram(socket: &mut Udp, channel: u8) -> io::Result<Vec<u8>> {
     let mut buffer = vec![0; BUFFER];
     loop {
@@ -367,23 +370,23 @@ async fn datagram(socket: &mut Udp, channel: u8) -> io::Result<Vec<u8>> {
     }
 }
 
-/// An opened stream, or the reason of a failure.
+/// An open stream, or the reason why it could not be opened.
 pub type OpenResult = Result<Stream<Box<dyn Peer + Send>>, String>;
 type Opening = Pin<Box<dyn Future<Output = OpenResult>>>;
 
-/// A byte stream that is opened again after a loss.
+/// A byte stream that is reopened after a loss.
 pub struct Line {
     stream: Option<Stream<Box<dyn Peer + Send>>>,
     open: Box<dyn Fn() -> Opening>,
     opening: Option<Opening>,
-    /// Time of the next attempt, and the number of failed ones.
+    /// Time of the next attempt, and the number of failed attempts.
     due: Instant,
     tries: usize,
     down: Option<String>,
 }
 
 impl Line {
-    /// Wraps an open stream; `open` opens it again.
+    /// Creates a line from an open stream. `open` reopens the stream.
     pub fn new(stream: Stream<Box<dyn Peer + Send>>, open: impl Fn() -> Opening + 'static) -> Self {
         Self { stream: Some(stream), open: Box::new(open), opening: None, due: Instant::now(), tries: 0, down: None }
     }
@@ -407,7 +410,7 @@ impl Line {
                         return LinkEvent::Data { to: None, channel: 0, bytes: buffer[..length].to_vec() };
                     }
                     Err(error) => {
-                        // A local port is only free again after this handle is dropped.
+                        // A serial port of this computer can be opened again only after this handle is dropped.
                         self.stream = None;
                         self.down = Some(error.to_string());
                         (self.tries, self.due) = (0, Instant::now() + BACKOFF[0]);

@@ -87,7 +87,7 @@ fn soon() -> Instant {
     Instant::now() + Duration::from_secs(60)
 }
 
-/// Runs `clients` while the host serves.
+/// Runs the host until `clients` ends.
 async fn served<T>(host: &mut Host, clients: impl Future<Output = T>) -> T {
     tokio::select! {
         _ = host.serve() => panic!("nobody closed it"),
@@ -120,7 +120,7 @@ async fn the_exclusive_part_is_one_clients_and_bits_are_everybodys() {
         assert_eq!(mover.output().unwrap(), [0, 0, 0x41]);
         mover.acquire(soon()).await.unwrap();
         shows(&mut mover, &[7, 8, 0x41]).await;
-        // Without the line, only shared bits are changed.
+        // The client does not own the line, so only shared bits are changed.
         shows(&mut other, &[9, 9, 0x01]).await;
         sees(&mut mover, &[7, 8, 0x01]).await;
         assert_eq!(mover.output().unwrap(), [7, 8, 0x01], "it knows of the bit that went off");
@@ -187,7 +187,7 @@ async fn datagrams_are_for_whoever_has_the_line() {
         let (mut first, mut second) = (client(&location, "first").await, client(&location, "second").await);
         let mut buffer = [0; 16];
         first.acquire(soon()).await.unwrap();
-        // Without the line, nothing is sent.
+        // The client does not own the line, so nothing is sent.
         second.send(0, b"no").await.unwrap();
         first.send(1, b"yes").await.unwrap();
         assert_eq!(first.receive(1, &mut buffer, soon()).await.unwrap(), Some(3));
@@ -227,7 +227,7 @@ async fn a_client_for_another_device_is_sent_away() {
     assert!(refused.unwrap_err().to_string().contains("another device"));
 }
 
-/// Sends frames to the host. Returns all its frames until the connection is closed.
+/// Sends frames to the host. Returns all frames of the host until the connection is closed.
 async fn told(location: &SessionPath, frames: &[Control]) -> Vec<Frame> {
     use tokio::io::AsyncWriteExt as _;
 
@@ -236,7 +236,7 @@ async fn told(location: &SessionPath, frames: &[Control]) -> Vec<Frame> {
     for control in frames {
         Frame::Control(control.clone()).emit(&mut bytes);
     }
-    // The host can close the connection of a refused client early.
+    // The host may close the connection of a refused client early.
     if write.write_all(&bytes).await.is_err() {
         return Vec::new();
     }
@@ -255,7 +255,8 @@ async fn who_does_not_say_who_he_is_takes_up_no_place() {
     served(&mut host, async {
         let silent: Vec<_> = (0..MAX_CLIENTS).map(|_| told(&location, &[])).collect();
         let asking = told(&location, &[Control::Ask]);
-        // The first ones are accepted, then dropped for lack of a hello. Then there is a free place.
+        // The first clients are accepted, and removed later because they send no Hello. After that, there is a free
+        // place.
         let (all, _) = tokio::join!(join_all(silent), async {
             tokio::time::sleep(Duration::from_secs(1)).await;
             asking.await
@@ -322,7 +323,7 @@ async fn after_a_loss_in_motion_the_stop_goes_before_all_else() {
         mover.acquire(soon()).await.unwrap();
         mover.send(0, b"go").await.unwrap();
         line.read_exact(&mut [0; 2]).await.unwrap();
-        // Another client waits for the line when it is lost. The stop comes last.
+        // Another client waits for the line when the link is lost. The client that stops the robot arrives last.
         let read = async {
             reader.acquire(soon()).await.unwrap();
             reader.send(0, b"read").await.unwrap();

@@ -53,15 +53,15 @@ fn a_jog_is_stopped_even_if_an_interrupt_shall_leave_what_moves() {
 
 #[test]
 fn an_end_by_itself_is_told_as_it_is() {
-    // Ended by a soft limit.
+    // A soft limit ends the jog.
     let (outcome, peer) = run_on(Scripted::new([ends(100, &[0x4000, 2, 334])]), &TWO_SECONDS);
     let failure = outcome.unwrap_err();
     assert_eq!((failure.kind, failure.code.as_deref()), (Kind::Refused, Some("2.334")));
     assert_eq!(peer.bits, [REST]);
-    // Ended by the stop input of another client.
+    // Another client ends the jog by the stop input.
     let (outcome, _) = run_on(Scripted::new([Reply::Ends(100, answer("4.2.6-pulse"))]), &TWO_SECONDS);
     assert_eq!(outcome.unwrap_err().code.as_deref(), Some("12.400"));
-    // Ended with the normal reply of the manual.
+    // The jog ends with the normal reply of the manual.
     let (outcome, _) = run_on(Scripted::new([ends(100, &[0x0200, 0, 0, 0, 5])]), &TWO_SECONDS);
     assert_eq!(outcome.unwrap()["position"]["joints"][0]["pulses"], 5);
 }
@@ -75,12 +75,12 @@ fn what_does_not_end_leaves_the_stop_input_off() {
         assert!(failure.message.contains("the stop input SI(06) stays off"), "{failure}");
         assert_eq!(peer.bits, [REST, HELD]);
     };
-    // The axis does not stop with the stop input.
+    // The axis does not stop when the stop input is off.
     stays(ends(u32::MAX, &[0]), &TWO_SECONDS);
-    // The command is not accepted, or its run status disappears.
+    // The controller does not accept the command, or stops reporting that it runs.
     stays(Reply::Ignores, &JOG);
     stays(ends(20, &[0]), &JOG);
-    // The status is invalid.
+    // The controller reports an invalid status.
     stays(ends(20, &[0x1234]), &JOG);
 }
 

@@ -12,7 +12,7 @@ use armctl_frame::robot::state::Mode;
 
 /// Limit of metrics per extra command.
 const MAX_METRICS: usize = 2000;
-/// Limit of nesting in its result.
+/// Limit of nesting levels in the result of an extra command.
 const MAX_DEPTH: usize = 8;
 
 /// Units by name suffix, as in reports.

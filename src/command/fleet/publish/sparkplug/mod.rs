@@ -198,7 +198,7 @@ impl Node {
             metric.timestamp = Some(now_ms);
             let Some(name) = metric.name.clone() else { continue };
             if let Some((_, last)) = device.metrics.get_mut(&name) {
-                // A metric keeps its first type, because hosts know it by that.
+                // A metric keeps its first type, because hosts use the type from the birth.
                 if metric.datatype != last.datatype {
                     continue;
                 }
@@ -254,8 +254,8 @@ impl Node {
             if metric.datatype != last.datatype {
                 continue;
             }
-            // With datatype, although it is optional (tck-id-payloads-metric-datatype-not-req): a decoder that does not
-            // store births needs it.
+            // The datatype is optional (tck-id-payloads-metric-datatype-not-req), but a decoder that does not store
+            // births needs it.
             last_sent.push(Metric {
                 name: None,
                 alias: Some(*alias),
@@ -273,7 +273,7 @@ impl Node {
             messages.extend(self.birth(id, now_ms));
         }
         messages.push(self.device_message(&DeviceMessage::DData, id, last_sent, now_ms));
-        // It has history, but does not answer now.
+        // The device has history, but its robot does not answer now.
         if !is_up {
             messages.extend(self.device_death(id, now_ms));
         }
@@ -292,7 +292,7 @@ impl Node {
             return ignored("an unreadable state of the host");
         };
         if self.host.is_some_and(|(known, _)| state.timestamp < known) {
-            return ignored("a state of the host that is older than the last one");
+            return ignored("a state of the host that is older than the last state");
         }
         self.host = Some((state.timestamp, state.online));
         let name = self.names.host.clone().unwrap_or_default();
@@ -309,7 +309,7 @@ impl Node {
                     messages: vec![self.death(now_ms)],
                     note: Some((
                         Level::Notice,
-                        format!("the primary host {name} is offline: armctl stores the data for it"),
+                        format!("the primary host {name} is offline: armctl stores the data for the host"),
                     )),
                     reconnects: true,
                 }

@@ -203,7 +203,7 @@ fn accepts_only_rebirth_commands() {
     node.first_messages(1);
     send_all(&mut node, &look(&robot("press"), 1.0, &[]), 2);
     let yes = Value::BooleanValue(true);
-    // A second birth so soon would contain the same.
+    // A second birth so soon would contain the same data.
     assert_eq!(node.handle_message(&command("Node Control/Rebirth", yes.clone()), 500).messages, []);
     let reborn = node.handle_message(&command("Node Control/Rebirth", yes.clone()), 5000);
     assert_eq!(headers(&reborn.messages), ["NBIRTH - 0", "DBIRTH press 1"]);
@@ -235,7 +235,7 @@ fn waits_for_the_primary_host() {
     assert!(node.is_ready());
     let history: Vec<Message> = waiting.into_iter().flat_map(|record| node.convert_record(record, 5)).collect();
     assert!(payload(&history[0]).metrics.iter().all(|metric| metric.is_historical == Some(true)));
-    // A STATE message older than the last one is ignored: the host is back since then.
+    // A STATE message older than the last one is ignored, because the host has come back since then.
     assert!(!node.handle_message(&state(false, 99), 6).reconnects && node.is_ready());
     let death = node.handle_message(&state(false, 101), 7);
     assert_eq!(

@@ -38,7 +38,7 @@ pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model, seen: &RobotRo
     format_interval(painter, line, model);
 }
 
-/// Everything else, from the top, as far as there is room.
+/// The rest of the screen, from the top, as far as there is room.
 pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &RobotRow, now: Moment) {
     let Some(sample) = seen.sample() else { return draw_fault(painter, area, seen) };
     let Some(whole) = &sample.full else {
@@ -119,7 +119,7 @@ fn alarms(painter: &mut Painter<'_>, area: Rect, sample: &Sample) -> u16 {
     let line = &sample.line;
     if sample.alarms.is_empty() {
         let (text, style) = match line.fault_text() {
-            Some(what) => (format!(" {what}; the controller does not report which one here"), bad),
+            Some(what) => (format!(" {what}; the controller does not report which alarm"), bad),
             None => (" no alarm".to_owned(), painter.palette.quiet()),
         };
         painter.draw_left(line_of(area, 0), &text, style);

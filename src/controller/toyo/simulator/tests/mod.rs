@@ -31,12 +31,12 @@ impl Bench {
         Self { sim: Simulator::new(start), now: Now::ZERO }
     }
 
-    /// With host ON and known origin.
+    /// A controller with host ON and known origin.
     fn ready(toml: &str) -> Self {
         Self::new(&format!("host = true\norigin = true\n{toml}"))
     }
 
-    /// With a program in task 1.
+    /// A controller with host ON, known origin, and a program in task 1.
     fn with(steps: &[&str], toml: &str) -> Self {
         let steps: Vec<String> = steps.iter().map(|step| format!("\"{step}\"")).collect();
         Self::ready(&format!("steps.1 = [{}]\n{toml}", steps.join(", ")))
@@ -57,7 +57,7 @@ impl Bench {
         assert_eq!(answer, "@OK", "{block}: {:?}", self.sim.console(self.now, "why"));
     }
 
-    /// Asserts a refusal with this reason.
+    /// Asserts that the block is refused for this reason.
     #[track_caller]
     fn ng(&mut self, block: &str, why: &str) {
         assert_eq!(self.ask(block), "@NG", "{block}");
@@ -124,7 +124,7 @@ fn ran(steps: &[&str]) -> Bench {
     bench
 }
 
-/// Asserts the error that ends the program.
+/// Asserts that this error ends the program.
 #[track_caller]
 fn fails(steps: &[&str], code: u8) -> Bench {
     let bench = ran(steps);

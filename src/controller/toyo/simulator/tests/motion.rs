@@ -4,14 +4,15 @@ use std::time::Duration;
 
 use super::{Bench, What, fails};
 
-/// A move of X to 100 mm with speed row 5 (200 mm/s) and ramps of 0.1 s takes 0.6 s: the ramps are 20 mm.
+/// A move of X to 100 mm with speed row 5 (200 mm/s) and ramps of 0.1 s. It takes 0.6 s; the two ramps together are 20
+/// mm long.
 const TO_100: &str = "MOV a X=+0100.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 POST";
 
 fn mov(x: f64, y: f64, tail: &str) -> String {
     format!("MOV a X={x:+08.2} Y={y:+08.2} Z=+0000.00 R=+0000.00 {tail}")
 }
 
-/// Run time of steps, without the instruction time of steps other than moves.
+/// Run time of the steps. Steps other than moves do not count.
 fn time_of(steps: &[&str], toml: &str) -> (Bench, Duration) {
     let mut bench = Bench::with(steps, &format!("instruction_us = 1\n{toml}"));
     bench.run();
@@ -39,15 +40,15 @@ fn a_move_has_a_trapezoid_profile() {
 
 #[test]
 fn speed_and_ramps_come_from_tables_and_override() {
-    // Half the speed, the same ramp: 10 mm of ramps in 0.2 s, 90 mm at 100 mm/s.
+    // At half the speed with the same ramp time: 10 mm of ramps in 0.2 s, and 90 mm at 100 mm/s.
     about(time_of(&[TO_100, "END"], "write = [\"WPAR T2 V05=0100.0\"]").1, 1.1);
     let mut bench = Bench::with(&[TO_100, "END"], "instruction_us = 1");
     bench.ok("@WOVR OV=050");
     bench.run();
     about(bench.now, 1.1);
-    // Ramps of 0.4 s, then 0.2 s: 40 and 20 mm, 40 mm between them.
+    // Ramps of 0.4 s and 0.2 s are 40 mm and 20 mm long, with 40 mm between them.
     about(time_of(&["ACC A=04", "DEC D=02", TO_100, "END"], "").1, 0.8);
-    // Row 0 is the speed of SPD.
+    // Row 0 means the speed of the last SPD.
     about(time_of(&["SPD V=04", &mov(100.0, 0.0, "S V=00 POST"), "END"], "").1, 1.1);
     // An axis never exceeds E06.
     about(time_of(&[TO_100, "END"], "write = [\"WPAR E06 AX1=0100 AX2=1000 AX3=1000 AX4=1000\"]").1, 1.1);
@@ -55,7 +56,7 @@ fn speed_and_ramps_come_from_tables_and_override() {
 
 #[test]
 fn path_speed_is_along_the_line_and_axis_speed_is_of_the_longest_axis() {
-    // 30 and 40 mm: 50 mm along the line. 20 mm of ramps.
+    // 30 mm and 40 mm are 50 mm along the line. The ramps are 20 mm long.
     about(time_of(&[&mov(30.0, 40.0, "T V=05 POST"), "END"], "").1, 0.2 + 30.0 / 200.0);
     about(time_of(&[&mov(30.0, 40.0, "S V=05 POST"), "END"], "").1, 0.2 + 20.0 / 200.0);
     let mut bench = Bench::with(&[&mov(30.0, 40.0, "S V=05 POST"), "END"], "");
@@ -77,7 +78,7 @@ fn override_takes_effect_at_the_next_start() {
 #[test]
 fn pass_points_are_rounded_and_do_not_stop() {
     let (first, second) = (mov(100.0, 0.0, "S V=05 PASS"), mov(100.0, 100.0, "S V=05 POST"));
-    // Two moves of 0.6 s, overlapping by a ramp of 0.1 s.
+    // Two moves of 0.6 s each, which overlap by a ramp of 0.1 s.
     about(time_of(&[&first, &second, "END"], "").1, 1.1);
     about(time_of(&["PASS PASS=050.0", &first, &second, "END"], "").1, 1.15);
     let mut bench = Bench::with(&[&first, "OUT STN=0 PN01=.......1", &second, "END"], "instruction_us = 1");
@@ -89,7 +90,7 @@ fn pass_points_are_rounded_and_do_not_stop() {
     assert!((97.0..98.0).contains(&x) && (2.0..3.0).contains(&y), "{x} {y}");
     bench.rest();
     bench.at([100.0, 100.0, 0.0, 0.0]);
-    // A program ends with its last move.
+    // A program ends when its last move ends.
     about(time_of(&[&first, "END"], "").1, 0.6);
 }
 
@@ -141,7 +142,8 @@ fn arcs_go_through_their_points() {
     let mut bench = Bench::with(&steps, "points.1.1 = [-100.0, 0.0, 0.0, 20.0]");
     bench.ok("@SPST 0001");
     bench.pass(600);
-    // Half a circle of 314.16 mm: 0.1 s, 294.16 mm at 200 mm/s, 0.1 s. In the middle it is at the top.
+    // Half a circle of 314.16 mm: 0.1 s, 294.16 mm at 200 mm/s, 0.1 s. After half the time, the axes are at the top of
+    // the circle.
     let half = f64::midpoint(0.2, (std::f64::consts::PI * 100.0 - 20.0) / 200.0);
     bench.now = Duration::from_secs_f64(0.6 + half);
     bench.sim.advance(bench.now);
@@ -190,7 +192,7 @@ fn soft_limits_are_checked_before_and_during_moves() {
     .at([1000.0, 0.0, 0.0, 0.0]);
     let offset = "OFS X=+0000.00 Y=-0950.00 Z=+0000.00 R=+0000.00";
     fails(&[offset, "MOV a X=+0000.00 Y=-0051.00 Z=+0000.00 R=+0000.00 S V=05 POST", "END"], 0x39).at([0.0; 4]);
-    // An arc between positions within the limits that extends beyond them.
+    // An arc whose points are within the limits, but which extends beyond the limits.
     let mut bench = Bench::with(
         &[
             "MVC a X=+0070.00 Y=+0070.00 Z=+0000.00 R=+0000.00 V=05 POST",
@@ -234,7 +236,7 @@ fn a_start_after_a_stop_continues_the_move() {
     bench.rest();
     bench.at([100.0, 0.0, 0.0, 0.0]);
     assert_eq!(bench.counter(1), 1);
-    // From the first step it is another move.
+    // A start at the first step begins a new move, and does not complete the interrupted one.
     bench.ok("@SPST 0001");
     bench.pass(300);
     bench.ok("@STOP");
@@ -296,11 +298,12 @@ fn the_origin_return_moves_axis_by_axis() {
     bench.at([0.0, 0.0, bench.sim.state().position[2], 0.0]);
     assert!(bench.sim.state().position[2] < -5.0, "Z comes first (P07)");
     bench.rest();
-    // Z: 10 mm at 20 mm/s with ramps is 0.6 s, 1 mm at 2 mm/s twice 1.2 s. Then X: 1.1 s and 1.2 s; Y: 1.2 s.
+    // Z: 10 mm at 20 mm/s take 0.6 s with ramps; two moves of 1 mm at 2 mm/s take 1.2 s. Then X: 1.1 s and 1.2 s; Y:
+    // 1.2 s.
     about(bench.now, 0.6 + 1.2 + 1.1 + 1.2);
     assert_eq!(bench.page(0), 0b0011_0000);
     bench.at([5.0, 0.0, 0.0, 0.0]);
-    // The second time the origin is known: fast to E13, then 5 mm to the sensor.
+    // The second time, the origin is known: the axis moves fast to E13, then 5 mm to the sensor.
     bench.ok("@HOME");
     bench.rest();
     assert_eq!(bench.page(0), 0b0011_0000);
@@ -319,7 +322,7 @@ fn a_stopped_return_to_origin_is_not_complete() {
     bench.rest();
     assert_eq!(bench.page(0), 0b0011_0000);
     bench.at([0.0; 4]);
-    // In a program HOME is repeated.
+    // A program that is stopped in HOME starts the return to origin again when it continues.
     let mut bench = Bench::with(&["HOME", TO_100, "END"], "position = [50.0, 0.0, 0.0, 0.0]");
     bench.ok("@SPST 0001");
     bench.pass(200);
@@ -487,7 +490,7 @@ fn torque_limits_end_moves() {
         bench.ok("@SPST 0001");
         bench
     };
-    // Torque and lock end it at the obstacle, half a second after contact.
+    // With torque end or lock end, the move ends at the obstacle, half a second after contact.
     for limits in ["TE=ON LE=OFF AE=OFF DD=ON", "TE=OFF LE=ON AE=OFF DD=ON"] {
         let mut bench = bench(limits, true);
         bench.pass(700);
@@ -496,7 +499,7 @@ fn torque_limits_end_moves() {
         assert_eq!((bench.error(), bench.counter(1)), (None, 1));
         bench.at([80.0, 0.0, 0.0, 0.0]);
     }
-    // With neither, it pushes on, locked, until the obstacle is removed.
+    // With neither torque end nor lock end, the locked axis pushes until the obstacle is removed.
     let mut bench1 = bench("TE=OFF LE=OFF AE=OFF DD=ON", true);
     bench1.pass(5000);
     assert_eq!((bench1.error(), bench1.counter(1), bench1.port(1)), (None, 0, 0b111));
@@ -504,14 +507,14 @@ fn torque_limits_end_moves() {
     bench1.rest();
     assert_eq!((bench1.error(), bench1.counter(1), bench1.port(1)), (None, 1, 0));
     bench1.at([100.0, 0.0, 0.0, 0.0]);
-    // Without an obstacle it arrives, which ends it only if allowed.
+    // Without an obstacle, the axis arrives. The arrival ends the move only if AE allows this.
     let mut bench2 = bench("TE=ON LE=OFF AE=ON DD=ON", false);
     bench2.rest();
     assert_eq!(bench2.counter(1), 1);
     let mut bench3 = bench("TE=ON LE=OFF AE=OFF DD=ON", false);
     bench3.pass(5000);
     assert_eq!((bench3.counter(1), bench3.page(0) & 0b10), (0, 0b10));
-    // With and without overflow detection.
+    // Runs with and without overflow detection.
     for (watch, code) in [("ON", Some(0x24)), ("OFF", None)] {
         let limits = format!("TE=OFF LE=OFF AE=OFF DD={watch}");
         let steps = [format!("TLMV X TT=01 TM=000.5 {limits}"), TO_100.to_owned(), "END".to_owned()];

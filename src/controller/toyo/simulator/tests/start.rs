@@ -37,8 +37,8 @@ fn a_wrong_value_of_each_key_has_a_clear_error() {
         ("inputs = { \"1\" = \"00000000\" }", "line 1: '1' is not a valid port"),
         ("outputs = { \"0/01\" = \"2\" }", "line 1: a port must have eight"),
         ("write = [\"SPST 0001\"]", "line 1: only WPAR"),
-        ("error = \"00\"", "line 1: an error has a code"),
-        ("history = [{ }]", "line 1: an entry has a code"),
+        ("error = \"00\"", "line 1: an error must have a code"),
+        ("history = [{ }]", "line 1: an entry must have a code"),
         ("robot_types = []", "line 1: robot_types"),
         ("position = [9000.0, 0.0, 0.0, 0.0]", "line 1: coordinates"),
         ("[[event]]\nat_ms = 1\ndo = \"dance\"", "line 1: unknown command: 'dance'"),
@@ -73,7 +73,7 @@ fn events_happen_at_their_times() {
     bench.pass(1000);
     assert!(bench.ask("@MINP SNO=0 GN=1").contains("PN01=00000000"));
     assert_eq!(bench.sim.wake(), None);
-    // A scheduled line that became impossible is reported.
+    // A scheduled line that is no longer possible is reported.
     let mut bench = Bench::new("[[event]]\nat_ms = 1000\ndo = \"servo on\"\n[[event]]\nat_ms = 500\ndo = \"estop\"");
     bench.pass(2000);
     assert_eq!(bench.console("why"), "servo on: an error is active: cancel it first");

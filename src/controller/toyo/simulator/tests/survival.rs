@@ -1,4 +1,4 @@
-//! Random programs.
+//! Random programs: every program must run or end with an error.
 
 use std::time::Duration;
 
@@ -8,7 +8,7 @@ use crate::toyo::layout::Record;
 use crate::toyo::simulator::Simulator;
 use crate::toyo::table::instructions::INSTRUCTIONS;
 
-/// A value in range. Small numbers are frequent, so that counters, tags and ports meet.
+/// A random value in range. Small numbers are frequent, so that the steps often use the same counters, tags and ports.
 fn value(field: &Field, random: &mut fastrand::Rng) -> Value {
     match field.form {
         Form::Number(number) => {

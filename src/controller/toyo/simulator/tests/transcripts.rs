@@ -51,7 +51,7 @@ fn every_printed_request_is_answered_as_printed() {
         let request = Request::parse(&tx).unwrap();
         let mut bench = suitable(&request);
         let reads_back = tx != "@RSTX 0000" && ["@RPAR", "@RSTX", "@RPLT"].iter().any(|word| tx.starts_with(word));
-        // A read follows the write of the same object.
+        // In the manual, this read follows a write of the same object, so the new controller needs the write first.
         if let Some(write) = written.take().filter(|_| reads_back) {
             bench.ok(&write);
         }
@@ -66,7 +66,7 @@ fn every_printed_request_is_answered_as_printed() {
             (Answer::Data(printed), Answer::Data(received)) => assert_eq!(received.layout(), printed.layout(), "{tx}"),
             _ => panic!("{tx}: {answer}, not {rx}: {why}"),
         }
-        // The manual prints E22 with another value than was written (ambiguity R15), and RSMV with POST (R4).
+        // The manual prints E22 with a value other than the written one (ambiguity R15), and RSMV with POST (R4).
         if reads_back && !tx.contains("E22") {
             assert_eq!(answer, rx.trim_end(), "{tx}");
             exact += 1;
@@ -113,7 +113,8 @@ fn the_second_session_jogs_to_a_position() {
         assert_eq!(bench.ask(&tx), rx, "{tx}");
         bench.pass(1000);
     }
-    // X: 1 s at 50 mm/s to the plus side and 1 s at 10 back, ramps included; Y as X; Z at 10; inching there and back.
+    // X moves for 1 s at 50 mm/s in the plus direction and for 1 s back at 10 mm/s, ramps included. Y moves like X, and
+    // Z at 10 mm/s. Inching moves there and back.
     bench.at([50.0 - 10.0, 50.0, 10.0, 0.0]);
     assert_eq!(bench.ask("@MPST"), "@MPST X=+0040.00 Y=+0050.00 Z=+0010.00 R=+0000.00");
 }

@@ -54,7 +54,7 @@ impl Bench {
         std::iter::from_fn(|| self.simulator.transmit(self.now)).map(|outgoing| outgoing.bytes).collect()
     }
 
-    /// Sends a robot request; returns status and data.
+    /// Sends a robot request and returns the status and the data.
     fn ask(&mut self, command: u16, instance: u16, attribute: u8, service: u8, data: &[u8]) -> (Status, Vec<u8>) {
         let frame = RequestFrame {
             division: Division::Robot,
@@ -194,7 +194,7 @@ fn cartesian(instance_speed: (u32, u32), coordinate: u32, target: [i32; 6]) -> C
     }
 }
 
-/// Straight move of Y by +500 mm at 100 mm/s: five seconds.
+/// A straight move of Y by +500 mm at 100 mm/s. It takes five seconds.
 fn five_seconds() -> CartesianMove {
     cartesian((1, 1000), 16, [1_000_000, 500_000, 1_200_000, 1_800_000, 0, 0])
 }

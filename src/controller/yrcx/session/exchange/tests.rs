@@ -11,22 +11,22 @@ use crate::yrcx::value::{Key, Values};
 const STEP: u64 = 5;
 const RPI: u64 = 20;
 
-/// Behaviour of the controller for the next command.
+/// Behavior of the controller for the next command.
 #[derive(Debug, Clone)]
 #[expect(clippy::struct_excessive_bools, reason = "a script is made of switches")]
 struct Script {
-    /// Run time; `None` without end.
+    /// Run time of the command; `None` without an end.
     runs: Option<u64>,
-    /// Whether the running status is visible.
+    /// Whether the controller sends the running status.
     shows_run: bool,
     answer: Words,
-    /// Whether it accepts commands.
+    /// Whether the controller accepts commands.
     takes: bool,
     /// Whether the status reset works.
     resets: bool,
-    /// Output while it runs, from WO1.
+    /// Words from WO1 on while the command runs.
     running: Words,
-    /// Whether it accepts only one command.
+    /// Whether the controller accepts only one command.
     once: bool,
 }
 
@@ -38,18 +38,18 @@ impl Default for Script {
     }
 }
 
-/// A controller, an order, and the observations.
+/// A controller, an order, and what was observed.
 struct World {
     script: Script,
     exchange: Exchange,
     output: Output,
     now: u64,
-    /// Image of the controller, and end time of the command.
+    /// Image that the controller sends, and end time of the command.
     shown: Image,
     started: Option<u64>,
-    /// Changed images that were sent, with their times.
+    /// Images that the master sent, only if they changed, with their times.
     sent: Vec<(u64, Image)>,
-    /// Time of the link loss.
+    /// Time at which the link is lost.
     cut: Option<u64>,
     interrupt: Option<u64>,
     updates: Vec<Values>,
@@ -160,7 +160,7 @@ impl World {
         }
     }
 
-    /// WI0 of each changed image, and whether its data words are those of the order.
+    /// WI0 of each changed image, and whether the data words in the image are the data words of the order.
     fn commands(&self) -> Vec<(u16, bool)> {
         let data = |image: &Image| image.command()[1..] == self.exchange.order().words()[1..];
         let mut seen: Vec<(u16, bool)> = self.sent.iter().map(|(_, image)| (image.0[0], data(image))).collect();
@@ -279,7 +279,7 @@ fn a_running_command_of_another_master_is_left_alone() {
 
 #[test]
 fn an_answer_that_is_not_ours_is_not_taken() {
-    // The status changes between the decision to send and the sending.
+    // The status changes after the decision to send the command and before the sending.
     let mut exchange = Exchange::new(servo_status(), Policy::default());
     let mut output = Output::new(resting());
     output.sent(ms(0));
@@ -332,7 +332,7 @@ fn silence_has_its_reason() {
     let odd = Script { answer, ..Script::default() };
     assert_eq!(ended(move_to_19(), odd).ended, Ended::OutcomeUnknown(Silence::Undocumented(0x1234)));
 
-    // Ready without an end status, and no more commands accepted.
+    // The controller becomes ready without an end status, and accepts no more commands.
     let vanishing = Script { answer: [0; 16], once: true, ..Script::default() };
     assert_eq!(ended(move_to_19(), vanishing).ended, Ended::OutcomeUnknown(Silence::Vanished));
 }

@@ -1,4 +1,4 @@
-//! Robots and memory from a start state.
+//! Robots and memory that a start state defines.
 
 use std::collections::BTreeMap;
 
@@ -108,7 +108,7 @@ fn axis(entry: &RobotEntry, number: usize, power: bool) -> Result<Axis, String> 
         let known = known.ok_or_else(|| format!("'{name}' is not a valid parameter of an axis"))?;
         let Some(value) = values.get(number) else { continue };
         if !(known.span.0..=known.span.1).contains(value) {
-            return Err(format!("{name} is {} to {}", known.span.0, known.span.1));
+            return Err(format!("{name} must be from {} to {}", known.span.0, known.span.1));
         }
         parameters.insert(known.number, *value);
     }
@@ -136,7 +136,7 @@ fn arm(entry: ArmEntry) -> Arm {
     }
 }
 
-/// Adds everything else to the existing content.
+/// Adds everything except the robots to the existing content.
 pub(super) fn memory(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<(), String> {
     let last_point = usize::from(POINTS) - 1;
     source.each_of(&entries.points, |number, entry| {
@@ -155,7 +155,7 @@ pub(super) fn memory(world: &mut World, entries: &Entries, source: Source<'_>) -
         let number = numbered("pallets", number, 0..=SHIFTS - 1)?;
         let places: i64 = counts.iter().map(|count| i64::from(*count)).product();
         if counts.iter().any(|count| *count < 1) || places > 32_767 || first > POINTS - 5 {
-            return Err("a pallet must have 1 to 32767 positions, and its last point is at most 29999".to_owned());
+            return Err("a pallet must have 1 to 32767 positions, and its last point must be at most 29999".to_owned());
         }
         world.memory.pallets[number] = Some(Pallet { counts, first });
         Ok(())
@@ -210,7 +210,9 @@ fn programs(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<
         let program = program.ok_or_else(|| format!("no program {}", task.program))?;
         let fits = (1..=TASKS).contains(&task.number) && (1..=64).contains(&task.priority);
         if !fits || !(1..=program.lines.len()).contains(&task.line) {
-            return Err("tasks must be from 1 to 16, priorities from 1 to 64, and lines in the program".to_owned());
+            return Err(
+                "tasks must be from 1 to 16, priorities from 1 to 64, and lines must exist in the program".to_owned()
+            );
         }
         let mut new = Task::new(task.number, task.program, task.priority);
         new.set_line(task.line - 1);

@@ -1,5 +1,5 @@
-//! All worked examples of the manual against a simulator in the required state. The answers are the printed words, or
-//! the corrected ones after a misprint.
+//! All worked examples of the manual, against a simulator in the required state. The answers are the words that the
+//! manual prints, or the corrected words if the manual has a misprint.
 
 use serde_json::Value as Json;
 
@@ -7,7 +7,7 @@ use super::*;
 
 const EXAMPLES: &str = include_str!("../../../../../tests/data/yrcx-examples.json");
 
-/// Required state of an example, in addition to a new controller.
+/// Start state that an example needs, in addition to a new controller.
 fn state(id: &str) -> String {
     let robot = |keys: &str| format!("[[robot]]\n{keys}\n");
     let points = |rows: &str| format!("[points]\n{rows}\n");
@@ -64,7 +64,7 @@ fn state(id: &str) -> String {
     }
 }
 
-/// Words of an example, corrected if misprinted.
+/// Words of an example. Misprints are corrected.
 fn printed(example: &Json, side: &str) -> Option<Words> {
     let corrected = &example[format!("{side}_corrected")];
     let texts = if corrected.is_array() { corrected } else { &example[side] }.as_array()?;
@@ -80,7 +80,7 @@ pub(super) fn examples() -> Vec<(String, Words, Option<Words>)> {
     examples.iter().map(read).collect()
 }
 
-/// A jog for half a second from a position of axis 1, then a stop.
+/// Jogs for half a second from a position of axis 1, and then stops.
 fn jog(from: i32, words: &Words) -> Words {
     let mut bench = Bench::new(&format!("[[robot]]\nposition = [{from}, -123, 2000, 0]"));
     bench.begin(words);
@@ -96,7 +96,8 @@ fn answers_are_the_printed_words() {
         let Some(answer) = answer else { continue };
         let found = if id.starts_with("4.2.6") {
             jogs += 1;
-            // The stop position depends on the time: start from a position shifted by the distance.
+            // The stop position depends on the duration. So the jog starts from a position that is shifted by the
+            // distance.
             let there = jog(0, &request);
             let there = (u32::from(there[5]) << 16 | u32::from(there[4])).cast_signed();
             jog(12_345 - there, &request)

@@ -105,7 +105,7 @@ fn what_ran_when_the_link_went_is_told_to_whoever_comes() {
     bench.simulator.input(bench.now, None);
     bench.now += Duration::from_secs(1);
     bench.simulator.advance(bench.now);
-    // The next master sends a command at once, which is ignored before a status reset.
+    // The next master sends a command at once. The controller ignores it before a status reset.
     bench.image.set_command(&words(&[0x0503]));
     bench.wait(20);
     assert_eq!(bench.words(), words(&[0x4000, 12, 551]));
@@ -163,7 +163,7 @@ fn scans_are_5_ms_apart_and_none_is_in_vain() {
     // A repeated image changes nothing.
     simulator.input(Duration::from_millis(40), Some(&image));
     assert_eq!(simulator.wake(), None);
-    // A day passes at once.
+    // A day passes in one call.
     simulator.advance(Duration::from_secs(86_400));
     simulator.advance(Now::MAX);
     assert_eq!(simulator.output().0[0], 0x0200);

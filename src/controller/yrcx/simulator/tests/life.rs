@@ -113,7 +113,7 @@ fn the_example_names_every_key() {
         ("mode = \"x\"", "line 1: "),
         ("\nmodel = 1", "line 2: unknown field `model`"),
         ("[[event]]\nat_ms = 1\ndo = \"x\"", "line 1: unknown command"),
-        ("[points]\n30000 = { pulse = [0, 0, 0, 0] }", "line 2: points are 0 to 29999"),
+        ("[points]\n30000 = { pulse = [0, 0, 0, 0] }", "line 2: points must be from 0 to 29999"),
         ("[points]\n1 = { }", "line 2: a point must have either pulse or mm"),
         ("[[robot]]\naxes = 5", "line 1: a robot must have 1 to 4 axes"),
         ("[[robot]]\naxes = 1\nposition = [0, 0]", "line 1: the list is longer than the 1 axes"),

@@ -96,7 +96,7 @@ impl Bench {
         panic!("never over");
     }
 
-    /// Runs a command given in words.
+    /// Runs a command that is given as words.
     fn send(&mut self, words: &Words) -> Words {
         self.begin(words);
         self.end()
@@ -117,7 +117,7 @@ impl Bench {
         }
     }
 
-    /// Asserts a refusal or an abort.
+    /// Asserts that a command is refused or aborted.
     fn refused(&mut self, draft: Draft) -> String {
         match self.ask(draft) {
             Answer::Refused { alarm, .. } => alarm.to_string(),
@@ -136,7 +136,7 @@ impl Bench {
     }
 }
 
-/// Words that begin with these.
+/// Words that begin with `head`; the others are 0.
 fn words(head: &[u16]) -> Words {
     let mut words = [0; 16];
     words[..head.len()].copy_from_slice(head);

@@ -37,7 +37,7 @@ impl Bench {
 fn speeds_are_those_of_the_commands() {
     let mut bench = Bench::new("[points]\n1 = { pulse = [500000, 0, 0, 0] }");
     let near = |found: u128, wanted: u128| found.abs_diff(wanted) <= 15;
-    // 500 mm at 1000 mm/s with ramps of 0.2 s, and about three scans.
+    // 500 mm at 1000 mm/s with ramps of 0.2 s, plus about three scans.
     let full = bench.time(to(1));
     assert!(near(full, 700 + 15), "{full}");
     let half = bench.time(to(0).with(Key::SpeedPercent, 50));
@@ -81,13 +81,14 @@ fn one_axis_of_a_scara_may_take_others_along() {
     let mut bench = Bench::new(SCARA);
     bench.go_to(["200", "100", "0", "0"]);
     let before = bench.pulses(1);
-    // R rotates. X and Y of the command also count although they are not named; here they have their current values.
+    // R rotates. X and Y of the command also count, although the command does not name them. Here they have their
+    // current values.
     let turn = |x, y| Command::MoveMm.order().with(Key::Axes, "4").with(Key::Axis1, x).with(Key::Axis2, y);
     bench.done(turn("200", "100").with(Key::Axis4, "30"));
     assert_eq!(bench.steps(1), [200_000, 100_000, 0, 30_000]);
-    // 0 would be the target: out of reach here.
+    // A value of 0 is a target too, and it is out of reach here.
     assert_eq!(bench.refused(turn("0", "0").with(Key::Axis4, "40")), "2.905");
-    // X alone moves both arms and rotates R back.
+    // A move of X alone moves both arms and rotates R back.
     bench.done(turn("250", "100").with(Key::Axes, "1"));
     assert_eq!(bench.steps(1), [250_000, 100_000, 0, 30_000]);
     assert!(bench.pulses(1).iter().zip(before).all(|(a, b)| *a != b || b == 0));
@@ -163,7 +164,7 @@ fn relative_moves_of_every_kind() {
     bench.done(Command::DriveiMm.order().with(Key::Axes, "3").with(Key::Distance, "-3.007"));
     bench.done(Command::DriveiPulse.order().with(Key::Axes, "4").with(Key::Distance, -8));
     assert_eq!(bench.pulses(1), [10_010, 40_006, 0, 90_000]);
-    // In tool coordinates, rotated by 90 degrees.
+    // The distances are in tool coordinates, which are rotated by 90 degrees.
     bench.done(point(Command::MovetLinear, 1));
     assert_eq!(bench.pulses(1), [-9990, 50_006, 3000, 180_000]);
     assert_eq!(bench.refused(point(Command::MovetPtp, 2)), "4.905", "a point in pulses");
@@ -308,7 +309,7 @@ fn shifts_and_hands_move_the_coordinates() {
     let mut bench = Bench::default();
     bench.go_to(["100", "50", "10", "0"]);
     bench.done(Command::ShiftSelect.order().with(Key::Shift, 5));
-    // Shift 5 is at 10, -20, 5 and rotated by -18 degrees.
+    // The origin of shift 5 is at 10, -20, 5, and the shift is rotated by -18 degrees.
     let [x, y, z, r] = bench.steps(1);
     assert_eq!((z, r), (5000, 18_000));
     assert!((f64::from(x).hypot(f64::from(y)) - 90_000_f64.hypot(70_000.0)).abs() < 2.0);
@@ -362,7 +363,7 @@ fn an_emergency_stop_ends_a_motion_on_the_spot() {
 fn soft_limits_hold_on_the_way_too() {
     let mut bench = Bench::new(SCARA);
     bench.go_to(["-150", "200", "0", "0"]);
-    // The line between these positions passes the middle, where the arms cannot fold.
+    // The line between these positions goes through the middle, which the arms cannot reach.
     let through = Command::MoveiLinear.order().with(Key::Point, 9);
     bench.done(
         Command::PointSet

@@ -1,4 +1,5 @@
-//! Invalid commands are refused by checks that are independent of the client's, with the same result.
+//! Invalid commands are refused. The checks of the simulator and of the client are independent, and must have the same
+//! result.
 
 use fastrand::Rng;
 
@@ -57,7 +58,7 @@ fn both_checks_agree_on_every_word() {
         }
         let (client, simulator) = (Order::parse(&words), Request::read(&words));
         match (&client, &simulator) {
-            // Stricter than the decoder of the client, which never writes mixed padding.
+            // The simulator is stricter here than the decoder of the client. The client never writes mixed padding.
             (Ok(_), Err(fault)) if fault.why.ends_with("characters after the end") => {}
             _ => assert_eq!(
                 client.is_ok(),

@@ -15,7 +15,7 @@ struct MasterLink {
     simulator: Simulator,
     output: Output,
     now: u64,
-    /// Time of the link loss.
+    /// Time at which the link is lost.
     cut: Option<u64>,
     linked: bool,
 }

@@ -1,4 +1,4 @@
-//! Codec for module blocks of Connect: expected modules, and differences.
+//! Codec for the module blocks of Connect: expected modules, and differences from them.
 
 use super::super::{Reader, WireError, Writer, count16};
 
@@ -22,7 +22,7 @@ pub struct ExpectedSubmodule {
     pub subslot: u16,
     /// Ident number.
     pub ident: u32,
-    /// Bits 0 and 1: 0 no data, 1 input, 2 output, 3 both.
+    /// Bits 0 and 1 are the directions of the data: 0 no data, 1 input, 2 output, 3 both.
     pub properties: u16,
     /// Data descriptions.
     pub data: Vec<DataDescription>,
@@ -31,13 +31,13 @@ pub struct ExpectedSubmodule {
 /// Data of a submodule in one direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DataDescription {
-    /// 1 input, 2 output.
+    /// Direction: 1 input, 2 output.
     pub direction: u16,
-    /// Bytes of data.
+    /// Number of data bytes.
     pub length: u16,
-    /// Bytes of the consumer status.
+    /// Number of bytes of the consumer status.
     pub consumer: u8,
-    /// Bytes of the provider status.
+    /// Number of bytes of the provider status.
     pub provider: u8,
 }
 
@@ -95,7 +95,7 @@ pub(super) fn write_expected(modules: &[ExpectedModule], out: &mut Writer) {
     }
 }
 
-/// A module that differs from the expected one.
+/// A module that differs from the expected module.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ModuleDiff {
     /// Slot.
@@ -108,19 +108,20 @@ pub struct ModuleDiff {
     pub submodules: Vec<SubmoduleDiff>,
 }
 
-/// A submodule that differs from the expected one.
+/// A submodule that differs from the expected submodule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SubmoduleDiff {
     /// Subslot.
     pub subslot: u16,
     /// Ident number of the real submodule.
     pub ident: u32,
-    /// State. With bit 15, bits 11 to 14 are 0 proper, 1 substitute, 2 wrong, 3 none.
+    /// State. If bit 15 is set, bits 11 to 14 are: 0 proper, 1 substitute, 2 wrong, 3 none.
     pub state: u16,
 }
 
 impl SubmoduleDiff {
-    /// Bits 11 to 14. Without bit 15, the whole state is 0 none, 1 wrong, 2 proper, 3 substitute, and is converted.
+    /// Returns the state as bits 11 to 14. If bit 15 is not set, the whole state is 0 none, 1 wrong, 2 proper, 3
+    /// substitute. This value is converted.
     const fn ident_info(&self) -> u16 {
         match (self.state & 0x8000 != 0, self.state) {
             (true, state) => (state >> 11) & 0xF,
@@ -131,12 +132,12 @@ impl SubmoduleDiff {
         }
     }
 
-    /// Whether it is the expected submodule or a substitute.
+    /// Whether the submodule is the expected one or a substitute.
     pub const fn is_usable(&self) -> bool {
         self.ident_info() < 2
     }
 
-    /// Whether it is missing.
+    /// Whether the submodule is missing.
     pub const fn is_missing(&self) -> bool {
         self.ident_info() == 3
     }

@@ -1,4 +1,4 @@
-//! Arguments with the set of typed names. An argument that does not fit the other choices is rejected and not
+//! Arguments of a command line with the set of typed names. An argument that does not fit the other choices is rejected and not
 //! ignored.
 
 use clap::parser::ValueSource;
@@ -6,20 +6,20 @@ use clap::{ArgMatches, Args, Command, FromArgMatches, Id};
 
 /// Arguments of a command line, with the names of the typed arguments.
 #[derive(Debug)]
-pub struct Given<A> {
+pub struct TypedArguments<A> {
     /// Values, including defaults.
     pub arguments: A,
     typed: Vec<Id>,
 }
 
-impl<A> Given<A> {
+impl<A> TypedArguments<A> {
     /// Whether the argument was typed.
     pub fn has(&self, argument: &Id) -> bool {
         self.typed.contains(argument)
     }
 }
 
-impl<A: Args> FromArgMatches for Given<A> {
+impl<A: Args> FromArgMatches for TypedArguments<A> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         Self::from_arg_matches_mut(&mut matches.clone())
     }
@@ -36,7 +36,7 @@ impl<A: Args> FromArgMatches for Given<A> {
     }
 }
 
-impl<A: Args> Args for Given<A> {
+impl<A: Args> Args for TypedArguments<A> {
     fn augment_args(command: Command) -> Command {
         A::augment_args(command)
     }
