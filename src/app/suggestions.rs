@@ -190,9 +190,9 @@ fn suggest_place(error: &mut clap::Error, kind: ContextKind, typed: &TypedLine<'
             commands_by_risk.entry(risk).or_default().insert(format!("`armctl {} -h`", noun.join(" ")));
         }
     }
-    let dangerous = commands_by_risk.into_iter().map(|(risk, helps)| {
-        format!("a command that {risk}: see {}", helps.into_iter().collect::<Vec<_>>().join(", "))
-    });
+    let dangerous = commands_by_risk
+        .into_iter()
+        .map(|(risk, helps)| format!("one that {risk}: see {}", helps.into_iter().collect::<Vec<_>>().join(", ")));
     let mut lines: Vec<String> = safe.into_iter().map(|line| line.format_line()).collect();
     lines.extend(dangerous);
     if lines.is_empty() || lines.len() > MAX_SUGGESTIONS {

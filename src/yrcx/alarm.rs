@@ -55,7 +55,7 @@ impl Command for List {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Alarms<Part, Signals>, Failure> {
         let link = context.link;
-        let latest = link.draft(table::Command::AlarmHistory)?.with(Key::History, 1).order()?;
+        let latest = link.draft(table::Command::AlarmHistory)?.with(Key::History, 1).valid_order()?;
         if link.is_dry() {
             link.plan_depending(
                 &latest,
@@ -79,7 +79,7 @@ impl Command for List {
 /// Reads the latest entry of the history; `None` if the history is empty or was not read. An entry has no time, so if
 /// an alarm occurs a second time, its entry is equal to the first entry.
 pub(super) async fn latest(link: &mut Link) -> Result<Option<AlarmEntry<Part>>, Failure> {
-    let latest = link.draft(table::Command::AlarmHistory)?.with(Key::History, 1).order()?;
+    let latest = link.draft(table::Command::AlarmHistory)?.with(Key::History, 1).valid_order()?;
     if link.is_dry() {
         link.plan(&latest, "latest alarm, to recognize a new alarm");
         return Ok(None);
@@ -142,7 +142,7 @@ impl Command for History {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Alarms<Part>, Failure> {
         let Context { link, screen, robot, .. } = context;
         let numbers = Numbers::of(&self.numbers);
-        let order = |number: &i32| Ok(link.draft(table::Command::AlarmHistory)?.with(Key::History, *number).order()?);
+        let order = |number: &i32| link.draft(table::Command::AlarmHistory)?.with(Key::History, *number).valid_order();
         let orders = numbers.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
         let answers = ask_each(link, screen, "reading alarms", &orders).await?;
         let mut alarms = Vec::new();
@@ -179,7 +179,7 @@ impl Command for Reset {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<WasReset, Failure> {
         let Context { link, screen, .. } = context;
-        let order = link.draft(table::Command::AlarmReset)?.order()?;
+        let order = link.draft(table::Command::AlarmReset)?.valid_order()?;
         let old = Old::read(link.look().await.known()?.map(|image| output::ALARM.is_on(&image)));
         link.ask(&order).await?;
         let Some(image) = link.look().await.known()? else { return Err(unknown()) };

@@ -20,7 +20,7 @@ use armctl_frame::settings_report::{OLD_VALUE, Old, nothing_written};
 /// only notes the request.
 pub async fn before(link: &mut Link, order: &Order) -> Result<Old, Failure> {
     let Some(read) = reader(order) else { return Ok(Old::UNREAD) };
-    let values = there(link, &read.order()?, OLD_VALUE).await.map_err(nothing_written)?;
+    let values = there(link, &read.valid_order()?, OLD_VALUE).await.map_err(nothing_written)?;
     Ok(Old::read(values.and_then(|values| told(order, &values))))
 }
 

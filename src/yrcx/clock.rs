@@ -48,7 +48,7 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Reading, Failure> {
         let Context { link, screen, .. } = context;
-        let order = |command| Ok::<_, Failure>(link.draft(command)?.order()?);
+        let order = |command| link.draft(command)?.valid_order();
         let orders = [order(table::Command::DateGet)?, order(table::Command::TimeGet)?];
         let mut outcomes = ask_each(link, screen, "reading the clock", &orders).await?.outcomes.into_iter();
         let mut of_next = || outcomes.next().unwrap_or_else(|| Err(Failure::local("the clock was not read")));
@@ -256,12 +256,12 @@ fn written(name: &str, outcome: Result<String, Failure>, old: Option<String>) ->
 async fn read_before(link: &mut Link, time: bool, date: bool) -> Result<[Option<String>; 2], Failure> {
     let mut found = [None, None];
     if date {
-        let order = link.draft(table::Command::DateGet)?.order()?;
+        let order = link.draft(table::Command::DateGet)?.valid_order()?;
         let values = there(link, &order, OLD_VALUE).await?;
         found[0] = values.and_then(|values| date_of(&values).ok()).map(|date| date.to_string());
     }
     if time {
-        let order = link.draft(table::Command::TimeGet)?.order()?;
+        let order = link.draft(table::Command::TimeGet)?.valid_order()?;
         let values = there(link, &order, OLD_VALUE).await?;
         found[1] = values.and_then(|values| time_of(&values).ok()).as_ref().map(describe);
     }
@@ -271,13 +271,13 @@ async fn read_before(link: &mut Link, time: bool, date: bool) -> Result<[Option<
 fn date_order(link: &Link, date: Date) -> Result<Order, Failure> {
     let numbers = [i32::from(date.year() - CENTURY), i32::from(date.month()), i32::from(date.day())];
     let draft = link.draft(table::Command::DateSet)?;
-    Ok(DATE.into_iter().zip(numbers).fold(draft, |draft, (key, number)| draft.with(key, number)).order()?)
+    DATE.into_iter().zip(numbers).fold(draft, |draft, (key, number)| draft.with(key, number)).valid_order()
 }
 
 fn time_order(link: &Link, time: Time) -> Result<Order, Failure> {
     let numbers = [time.hour(), time.minute(), time.second()].map(i32::from);
     let draft = link.draft(table::Command::TimeSet)?;
-    Ok(TIME.into_iter().zip(numbers).fold(draft, |draft, (key, number)| draft.with(key, number)).order()?)
+    TIME.into_iter().zip(numbers).fold(draft, |draft, (key, number)| draft.with(key, number)).valid_order()
 }
 
 #[cfg(test)]

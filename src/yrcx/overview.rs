@@ -66,7 +66,7 @@ async fn latest_alarm(link: &mut Link) -> Result<Option<Alarm>, Failure> {
 
 /// Request for the latest alarm. The manual does not say that entry 1 of the history is the latest.
 pub(super) fn latest(link: &Link) -> Result<Order, Failure> {
-    Ok(link.draft(Command::AlarmHistory)?.with(Key::History, 1).order()?)
+    link.draft(Command::AlarmHistory)?.with(Key::History, 1).valid_order()
 }
 
 /// Takes the alarm from an answer.

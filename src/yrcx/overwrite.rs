@@ -174,7 +174,7 @@ impl<K: Kind> Overwritten for Numbered<K> {
             Command::Teach => {
                 let is_mm = number(Key::Unit) == 1;
                 let read = if is_mm { Command::PositionMm } else { Command::PositionPulse };
-                let read = read.order().with(Key::Robot, number(Key::Robot)).order()?;
+                let read = read.order().with(Key::Robot, number(Key::Robot)).valid_order()?;
                 let position = there(link, &read, "current position, which the command stores").await?;
                 position.map_or(Err("the current position".to_owned()), |mut position| {
                     position.set(Key::Unit, i32::from(is_mm));
@@ -182,7 +182,7 @@ impl<K: Kind> Overwritten for Numbered<K> {
                 })
             }
             Command::PointCopy | Command::PointAdd | Command::PointSub => {
-                let source = Command::PointGet.order().with(Key::Point, number(Key::Point2)).order()?;
+                let source = Command::PointGet.order().with(Key::Point, number(Key::Point2)).valid_order()?;
                 let about = format!("point {}, a source of the calculation", number(Key::Point2));
                 let source = there(link, &source, &about).await?;
                 computed(command, (number(Key::Point), old), (number(Key::Point2), source.as_ref()))

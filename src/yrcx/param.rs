@@ -77,12 +77,12 @@ impl Parameters {
 
     /// The request that reads a parameter.
     pub fn read_order(&self, key: Setting) -> Result<Order, Failure> {
-        Ok(self.draft_for(table::Command::ParamGet, key).order()?)
+        self.draft_for(table::Command::ParamGet, key).valid_order()
     }
 
     /// The request that writes a parameter.
     pub fn write_order(&self, key: Setting, value: &str) -> Result<Order, Failure> {
-        Ok(self.draft_for(table::Command::ParamSet, key).with(Key::Value, value).order()?)
+        self.draft_for(table::Command::ParamSet, key).with(Key::Value, value).valid_order()
     }
 }
 
@@ -301,7 +301,7 @@ mod tests {
             ("param set TOLE.1 1.5", "value"),
         ]);
         objects([
-            ("param set TOLE 1", "'TOLE' names several parameters"),
+            ("param set TOLE 1", "'TOLE' selects several parameters"),
             ("param set WEIGHT.1 1", "WEIGHT belongs to the robot, not to an axis"),
             ("param set TOLE.1-2 1", "selects several"),
             ("param get TOLL.1", "259 = TOLE"),

@@ -12,17 +12,17 @@ use armctl_frame::failure::{Failure, Kind};
 /// Builds the order of a command line.
 pub trait BuildOrder {
     /// Returns the order. A field that the manual does not allow is an error of the command line.
-    fn order(self) -> Result<Order, Failure>;
+    fn valid_order(self) -> Result<Order, Failure>;
 }
 
 impl BuildOrder for Draft {
-    fn order(self) -> Result<Order, Failure> {
-        self.build().map_err(invalid_words)
+    fn valid_order(self) -> Result<Order, Failure> {
+        self.build().map_err(|error| invalid_words(&error))
     }
 }
 
 /// Failure for words that the manual does not allow: an error of the command line.
-pub fn invalid_words(error: WordError) -> Failure {
+pub fn invalid_words(error: &WordError) -> Failure {
     // The user typed the field, so the message names the field. Only raw words need the word index.
     let message = match error.place.key {
         Some(key) => format!("{key}: {}", error.problem),
@@ -149,7 +149,7 @@ mod tests {
     #[test]
     fn words_that_must_not_be_sent_are_a_mistake_of_the_command_line() {
         let error = Command::MovePtp.order().with(Key::Point, 30_000).build().unwrap_err();
-        let failure = invalid_words(WordError { alarm: Some(INPUT_FORMAT), ..error });
+        let failure = invalid_words(&WordError { alarm: Some(INPUT_FORMAT), ..error });
         assert_eq!(failure.kind, Kind::Usage);
         assert_eq!(failure.message, "point: 30000 is out of range; allowed: 0 to 29999");
         assert_eq!(

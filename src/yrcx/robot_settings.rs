@@ -65,12 +65,12 @@ impl Settings {
         commands.dedup();
         commands
             .into_iter()
-            .map(|command| Ok(command.order().with(Key::Robot, i32::from(self.robot)).order()?))
+            .map(|command| command.order().with(Key::Robot, i32::from(self.robot)).valid_order())
             .collect()
     }
 
     fn write_order(&self, Setting { write: (command, key), .. }: &Setting, text: &str) -> Result<Order, Failure> {
-        Ok(command.order().with(Key::Robot, i32::from(self.robot)).with(*key, text).order()?)
+        command.order().with(Key::Robot, i32::from(self.robot)).with(*key, text).valid_order()
     }
 }
 

@@ -72,7 +72,7 @@ pub(super) use single_command;
 /// Sends the command and reports the result.
 pub async fn run<S: Single>(this: &S, context: Context<'_, Yrcx>) -> Result<S::Report, Failure> {
     let draft = context.link.draft(this.command())?;
-    let order = this.fill(draft).order()?;
+    let order = this.fill(draft).valid_order()?;
     this.report(&overwrite::give(context.link, &context.authority, &order, this.intent()).await?)
 }
 

@@ -49,8 +49,8 @@ impl Command for Status {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<StatusReport, Failure> {
         let Context { link, screen, .. } = context;
-        let servo = link.draft(table::Command::ServoStatus)?.order()?;
-        let place = link.draft(table::Command::PositionMm)?.order()?;
+        let servo = link.draft(table::Command::ServoStatus)?.valid_order()?;
+        let place = link.draft(table::Command::PositionMm)?.valid_order()?;
         let mut orders = vec![servo, place];
         let latest = latest(link)?;
         if link.is_dry() && (self.full || link.commands()) {
@@ -199,7 +199,7 @@ impl Report for StatusReport {
 
 /// Reads the current position. A robot whose origin is unknown refuses to report its position; then returns `None`.
 pub(super) async fn position_mm(link: &mut Link) -> Result<Option<[f64; 4]>, Failure> {
-    let order = link.draft(table::Command::PositionMm)?.order()?;
+    let order = link.draft(table::Command::PositionMm)?.valid_order()?;
     let done = link.try_ask(&order).await?.ok();
     Ok(done.and_then(|done| mm(&done.values)))
 }

@@ -115,7 +115,7 @@ impl Row {
 impl<K: Kind> Numbered<K> {
     /// Request that reads a row.
     pub fn read_order(number: i32) -> Result<Order, Failure> {
-        Ok(K::READ.0.order().with(K::READ.1, number).order()?)
+        K::READ.0.order().with(K::READ.1, number).valid_order()
     }
 
     /// Request that stores a row with these texts.
@@ -127,7 +127,7 @@ impl<K: Kind> Numbered<K> {
             Key::HandSystem if text.is_empty() => draft,
             key => draft.with(*key, text.as_str()),
         });
-        Ok(draft.order()?)
+        draft.valid_order()
     }
 
     /// Values that are read after a request with `values` stored them.
@@ -216,7 +216,7 @@ impl<K: Kind> Store for Numbered<K> {
     }
 
     async fn read(&self, link: &mut Link, screen: &Screen, numbers: &[i32]) -> Result<Answers<Row>, Failure> {
-        let order = |number: &i32| Ok(link.draft(K::READ.0)?.with(K::READ.1, *number).order()?);
+        let order = |number: &i32| link.draft(K::READ.0)?.with(K::READ.1, *number).valid_order();
         let orders = numbers.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
         let answers = ask_each(link, screen, &format!("reading {}", K::WORDS.nouns[1]), &orders).await?;
         let rows = answers.outcomes.into_iter().map(|outcome| outcome.map(|values| Some(Row::new::<K>(values))));

@@ -56,7 +56,7 @@ impl Command for Teach {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Self::Report, Failure> {
         let Context { link, authority, .. } = context;
-        let read = table::Command::PointGet.order().with(Key::Point, self.number()).order()?;
+        let read = table::Command::PointGet.order().with(Key::Point, self.number()).valid_order()?;
         let old = there(link, &read, "current point").await?;
         let unit = self.unit_of_point.or_else(|| old.as_ref().map(unit_of)).unwrap_or(Unit::Mm);
         let order = self.order(link, unit)?;
@@ -64,7 +64,7 @@ impl Command for Teach {
         let other = if self.unit_of_point.is_none() { self.order(link, Unit::Pulse)? } else { self.order(link, unit)? };
         overwrite::give_either(link, &authority, &order, &other).await?;
         let row = if unit == Unit::Mm { table::Command::PositionMm } else { table::Command::PositionPulse };
-        let here = link.draft(row)?.order()?;
+        let here = link.draft(row)?.valid_order()?;
         if link.is_dry() {
             link.plan(&read, "the point after the write");
             link.plan(&here, "current position, for the comparison");
@@ -94,7 +94,7 @@ impl Teach {
 
     fn order(&self, link: &Link, unit: Unit) -> Result<Order, Failure> {
         let draft = link.draft(table::Command::Teach)?.with(Key::Point, self.number());
-        Ok(draft.with(Key::Unit, i32::from(unit == Unit::Mm)).order()?)
+        draft.with(Key::Unit, i32::from(unit == Unit::Mm)).valid_order()
     }
 }
 

@@ -132,8 +132,8 @@ impl Poller {
         let order: Order = match command {
             Command::AlarmHistory => latest(&self.link)?,
             // 0 selects all axes.
-            Command::TorqueOfMax => self.link.draft(command)?.with(Key::Axes, 0).order()?,
-            _ => self.link.draft(command)?.order()?,
+            Command::TorqueOfMax => self.link.draft(command)?.with(Key::Axes, 0).valid_order()?,
+            _ => self.link.draft(command)?.valid_order()?,
         };
         // A refusal is not an error here: a robot whose origin is unknown refuses to report its position.
         let done = self.link.try_ask(&order).await?.ok();

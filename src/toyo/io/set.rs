@@ -290,7 +290,7 @@ mod tests {
             (["io", "set", "1.0=on"], "bits 1 to 8"),
             (["io", "set", "1.1=yes"], "on or off"),
             (["io", "set", "100=........"], "1 to 99"),
-            (["io", "set", "1=.1"], "eight characters, each 0, 1 or ."),
+            (["io", "set", "1=.1"], "eight characters (0, 1 or a dot)"),
             (["io", "set", "1=on"], "OUT1.1=on"),
             (["io", "direct", "5"], "1..=4"),
         ] {

@@ -74,7 +74,7 @@ fn change(encoding: Encoding, lists: Option<&Lists>, files: &[FileName]) -> Chan
         match tell(file) {
             Existence::Yes => items.push(name(file)),
             Existence::Unlisted => {
-                items.push(format!("{} (armctl could not check whether the file exists)", name(file)))
+                items.push(format!("{} (armctl could not check whether the file exists)", name(file)));
             }
             Existence::No => missing.push(name(file)),
         }

@@ -67,12 +67,12 @@ impl About for Controller {
 impl Controller {
     /// Reads the software version and the robots from the controller.
     pub async fn ask(link: &mut Link) -> Result<Self, Failure> {
-        let versions = link.ask(&Command::Versions.order().order()?).await?.values;
+        let versions = link.ask(&Command::Versions.order().valid_order()?).await?.values;
         let told = |key| shown(Command::Versions, &versions, key).unwrap_or_default();
         let software = format!("{} {}", told(Key::HostVersion), told(Key::HostRevision));
         let mut robots = Vec::new();
         for robot in 1..=4_u8 {
-            let Some(servos) = there(link, &of_robot(Command::ServoStatus, robot).order()?, "").await? else {
+            let Some(servos) = there(link, &of_robot(Command::ServoStatus, robot).valid_order()?, "").await? else {
                 continue;
             };
             let has = |(axis, key): (u8, Key)| servos.int(key).filter(|state| *state != NO_AXIS).map(|_| axis);
@@ -80,7 +80,7 @@ impl Controller {
             if axes.is_empty() {
                 continue;
             }
-            let system = link.ask(&of_robot(Command::System, robot).order()?).await?.values;
+            let system = link.ask(&of_robot(Command::System, robot).valid_order()?).await?.values;
             robots.push(Robot { robot, robot_type: system.int(Key::RobotType).unwrap_or_default(), axes });
         }
         Ok(Self { software, robots })
@@ -88,10 +88,10 @@ impl Controller {
 
     /// Notes the requests of [`ask`](Self::ask) in a dry run.
     pub fn plan(link: &mut Link) -> Result<(), Failure> {
-        link.plan(&Command::Versions.order().order()?, "versions");
+        link.plan(&Command::Versions.order().valid_order()?, "versions");
         for robot in 1..=4_u8 {
-            link.plan(&of_robot(Command::ServoStatus, robot).order()?, &format!("axes of robot {robot}"));
-            let (order, about) = (of_robot(Command::System, robot).order()?, format!("type of robot {robot}"));
+            link.plan(&of_robot(Command::ServoStatus, robot).valid_order()?, &format!("axes of robot {robot}"));
+            let (order, about) = (of_robot(Command::System, robot).valid_order()?, format!("type of robot {robot}"));
             plan_if_there(link, &order, &about);
         }
         Ok(())
@@ -262,7 +262,7 @@ pub async fn read_points(
 
 /// Requests of the information.
 fn info_orders() -> Result<[Order; 2], Failure> {
-    Ok([Command::Versions.order().order()?, Command::Slots.order().with(Key::Controller, 1).order()?])
+    Ok([Command::Versions.order().valid_order()?, Command::Slots.order().with(Key::Controller, 1).valid_order()?])
 }
 
 async fn info(link: &mut Link, screen: &Screen, controller: &Controller) -> Result<String, Failure> {

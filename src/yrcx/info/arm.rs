@@ -29,8 +29,8 @@ impl Command for Arm {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Arms, Failure> {
         let link = context.link;
-        let selected = link.draft(table::Command::ArmDesignation)?.order()?;
-        let current = link.draft(table::Command::ArmStatus)?.order()?;
+        let selected = link.draft(table::Command::ArmDesignation)?.valid_order()?;
+        let current = link.draft(table::Command::ArmStatus)?.valid_order()?;
         let answers = ask_each(link, context.screen, "reading hand systems", &[selected, current]).await?;
         let commands = [table::Command::ArmDesignation, table::Command::ArmStatus];
         let mut arms = [None, None];

@@ -33,7 +33,7 @@ impl Command for Origin {
             Some(Key::MotorType) => {
                 Failure::usage("--motor needs one robot").hint("select the robot, such as --unit 1")
             }
-            _ => invalid_words(error),
+            _ => invalid_words(&error),
         })?;
         let values = link.ask(&order).await?.values;
         let state = |key| shown(table::Command::OriginStatus, &values, key);

@@ -63,7 +63,7 @@ impl Command for Where {
             Unit::Mm => table::Command::PositionMm,
             Unit::Pulse => table::Command::PositionPulse,
         };
-        let order = link.draft(command)?.with(Key::Continuous, self.continuous).order()?;
+        let order = link.draft(command)?.with(Key::Continuous, self.continuous).valid_order()?;
         let done = if self.continuous { link.next_output(&order).await? } else { link.ask(&order).await? };
         let place = position(&done.values, self.report).unwrap_or_default();
         let positions = Positions::one(&group(order.values().int(Key::Robot)), place).plotted(self.plot, &self.past);

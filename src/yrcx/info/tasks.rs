@@ -59,7 +59,7 @@ impl Chosen {
         let Context { link, screen, .. } = context;
         let halves: Vec<usize> =
             (0..2).filter(|half| (1..=HALF.len()).any(|place| self.has(half * HALF.len() + place))).collect();
-        let order = |half: &usize| Ok(link.draft(command)?.with(Key::TaskRange, *half == 1).order()?);
+        let order = |half: &usize| link.draft(command)?.with(Key::TaskRange, *half == 1).valid_order();
         let orders = halves.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
         let answers = ask_each(link, screen, "reading tasks", &orders).await?;
         let task = |half: usize, place: usize| half * HALF.len() + place + 1;

@@ -76,12 +76,12 @@ impl Command for AbsReset {
             if self.end.no_wait() {
                 return Err(Failure::usage("--no-wait needs --move").hint("remove --no-wait"));
             }
-            let order = draft.order()?;
+            let order = draft.valid_order()?;
             let done = context.link.ask(&order).await?;
             let words = format!("reset the absolute position of {}", self.axis());
             return Ok(MotionReport::new(words, &order, Some(&done), None));
         };
-        let order = draft.with(Key::Direction, direction.value()).order()?;
+        let order = draft.with(Key::Direction, direction.value()).valid_order()?;
         let way = format!("{} {} to a reset position", self.axis(), direction.describe());
         let done = go(context.link, context.screen, &order, self.end.no_wait(), &format!("moving {way}")).await?;
         let verb = if done.is_some() { "moved" } else { "moving" };

@@ -85,7 +85,7 @@ impl Command for Jog {
         let link = context.link;
         let unit = self.report.unwrap_or(self.system.unit());
         let draft = link.draft(self.command())?.with(Key::Axes, self.axis.as_str());
-        let order = Ending::put(draft.with(Key::Direction, self.direction.value()), Some(unit)).order()?;
+        let order = Ending::put(draft.with(Key::Direction, self.direction.value()), Some(unit)).valid_order()?;
         let object = format!("axis {} {}", self.axis, self.describe());
         let live = Live::new(link, context.screen, &format!("jogging {object}"));
         let done = link.jog(&order, self.within).await;

@@ -161,17 +161,17 @@ impl<M: Motion> Command for Moving<M> {
 /// Adds the current position of `axes` to the command. Without it, a SCARA moves these axes to the target position
 /// although the user did not name them.
 async fn staying(link: &mut Link, draft: Draft, axes: &[usize]) -> Result<Order, Failure> {
-    let order = draft.clone().order()?;
+    let order = draft.clone().valid_order()?;
     if axes.is_empty() {
         return Ok(order);
     }
-    let present = link.draft(table::Command::PositionMm)?.order()?;
+    let present = link.draft(table::Command::PositionMm)?.valid_order()?;
     if link.is_dry() {
         let names = axes.iter().map(usize::to_string).collect::<Vec<_>>().join(" and ");
         link.plan(&present, "current position");
         let one = draft.clone();
         let keys: Vec<Key> = axes.iter().filter_map(|axis| Key::AXES.get(axis - 1).copied()).collect();
-        let other = keys.into_iter().fold(one, |draft, key| draft.with(key, -1)).order()?;
+        let other = keys.into_iter().fold(one, |draft, key| draft.with(key, -1)).valid_order()?;
         let kept = format!("current position of the axes without a target: {names}");
         link.plan_depending(&order, &other, Reason::default().depending_on(&kept));
         return Err(unknown());
@@ -186,7 +186,7 @@ async fn staying(link: &mut Link, draft: Draft, axes: &[usize]) -> Result<Order,
     let place = link.ask(&present).await.map_err(not_moved)?.values.axes();
     let place = place.ok_or_else(|| not_moved(Failure::new(Kind::Malformed, "the answer has no position")))?;
     let keys = axes.iter().filter_map(|axis| Some((*Key::AXES.get(axis - 1)?, *place.get(axis - 1)?)));
-    Ok(keys.fold(draft, |draft, (key, steps)| draft.with(key, steps)).order()?)
+    keys.fold(draft, |draft, (key, steps)| draft.with(key, steps)).valid_order()
 }
 
 /// Executes a motion and waits for its end, unless `--no-wait` is set.

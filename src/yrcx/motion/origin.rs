@@ -88,7 +88,7 @@ impl Command for Origin {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<MotionReport, Failure> {
         let draft = context.link.draft(self.command())?;
         let draft = draft.with_some(Key::Axes, self.axis.clone());
-        let order = draft.with_some(Key::OriginAxes, self.only.map(Kind::value)).order()?;
+        let order = draft.with_some(Key::OriginAxes, self.only.map(Kind::value)).valid_order()?;
         let doing = format!("returning {} to origin", self.describe());
         let done = go(context.link, context.screen, &order, self.end.no_wait(), &doing).await?;
         let has_done = format!("returned {} to origin", self.describe());

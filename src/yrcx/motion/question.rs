@@ -118,7 +118,7 @@ const fn is_distance(command: Command) -> bool {
 /// Reads values; `None` if the controller refuses.
 async fn read(link: &mut Link, command: Command, with: &[(Key, i32)]) -> Result<Option<Values>, Failure> {
     let draft = with.iter().fold(link.draft(command)?, |draft, (key, value)| draft.with(*key, *value));
-    Ok(link.try_ask(&draft.order()?).await?.ok().map(|done| done.values))
+    Ok(link.try_ask(&draft.valid_order()?).await?.ok().map(|done| done.values))
 }
 
 impl Goal {

@@ -61,7 +61,7 @@ impl Command for Run {
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Ran, Failure> {
         let Context { link, screen, .. } = context;
-        let order = self.which.put(link.draft(table::Command::ProgramRun)?).order()?;
+        let order = self.which.put(link.draft(table::Command::ProgramRun)?).valid_order()?;
         let what = self.which.describe();
         let report = |state: ProgramState, elapsed_ms: Option<u64>, cycle: Cycle| {
             let program = self.which.program().or_else(|| self.which.name()).cloned();

@@ -171,7 +171,7 @@ impl World {
                 }
             }
             Action::MotorOff => {
-                self.power_off(&Fault::new(NO_POWER, AlarmSource::Controller, "motor power was switched off"))
+                self.power_off(&Fault::new(NO_POWER, AlarmSource::Controller, "motor power was switched off"));
             }
             Action::PowerLoss => self.power_off(&Fault::emergency()),
             Action::Servo(robot, axes, state) => self.set_servo(robot, axes, state)?,
