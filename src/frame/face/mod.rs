@@ -1,5 +1,5 @@
 //! Family interface for the rest of the program. Each family implements it in `face.rs`;
-//! [`families`](super::families) lists them.
+//! `command/families.rs` lists them.
 
 pub mod explain;
 pub mod family_command;
