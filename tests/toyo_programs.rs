@@ -116,9 +116,9 @@ fn names_replace_numbers_in_program_text() {
         ]
     );
     let inserted = desk.text(&["insert", "2", "MOVP", "pick"]);
-    assert_eq!(inserted, "inserted in task 1: 0002 MOVP a PT=012 CN=00 S V=00 POST\n");
+    assert_eq!(inserted, "inserted in task 1: 0002  MOVP a PT=012 CN=00 S V=00 POST\n");
     let inserted = desk.text(&["insert", "2", "CNT+", "parts=1"]);
-    assert_eq!(inserted, "inserted in task 1: 0002 CNT+ CN03=0001\n");
+    assert_eq!(inserted, "inserted in task 1: 0002  CNT+ CN03=0001\n");
     let wrong = desk.command(&["insert", "2", "MOVP", "pikc"]).output().expect("armctl runs");
     assert_eq!(wrong.status.code(), Some(2));
     assert!(

@@ -339,5 +339,6 @@ fn date_and_time_have_separate_results() {
     assert_eq!((exit, &error["error"]["code"]), (Some(3), &json!("5.1")), "{error}");
     let (exit, clock, _) = told(&[0x602], "set 2026-03-01T08:45:00");
     let data = &clock["data"];
-    assert_eq!((exit, &data["time"], &data["errors"][0]["asked"]), (Some(9), &json!("08:45:00"), &json!("date")));
+    let items = [&data["items"][0]["ok"], &data["items"][1]["ok"], &data["items"][1]["new"]];
+    assert_eq!((exit, items), (Some(9), [&json!(false), &json!(true), &json!("08:45:00")]), "{clock}");
 }

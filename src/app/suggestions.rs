@@ -179,7 +179,8 @@ fn suggest_place(error: &mut clap::Error, kind: ContextKind, typed: &TypedLine<'
         return None;
     }
     // The path without the wrong word leads no further.
-    let lines = lines(&word, typed, whole).into_iter().filter(|line| parse_words(&line.0) != typed.path);
+    let leads_further = |line: &Suggestion| typed.path.is_empty() || parse_words(&line.0) != typed.path;
+    let lines = lines(&word, typed, whole).into_iter().filter(leads_further);
     let (safe, dangerous): (Vec<Suggestion>, Vec<Suggestion>) = lines.partition(|line| risk(&line.0, whole).is_none());
     let mut commands_by_risk: BTreeMap<&str, BTreeSet<String>> = BTreeMap::new();
     for line in &dangerous {

@@ -30,7 +30,7 @@ commands! {
         Get(Get<Numbered<Variables>>),
         /// List the variables that are not 0
         List(List<Numbered<Variables>>),
-        /// Set a variable: SGI1 10000, or SGI1 SGI2
+        /// Set a variable to a number or to another variable: SGI1 10000
         Set(Set),
         /// Print each change of variables
         Watch(Watch<Get<Numbered<Variables>>>),

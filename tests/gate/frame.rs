@@ -51,7 +51,7 @@ fn session_of_a_read_only_robot_passes_reads_and_stops_only() {
 #[test]
 fn read_only_applies_to_an_open_session() {
     for (family, changes, stop, read) in [
-        ("yerc", &["io set 27010=on", "var set B0=1", "servo on --yes", "var set B0=2"][..], "hold on", "var get B0"),
+        ("yerc", &["alarm reset", "io set 27010=on", "servo on --yes", "var set B0=2"][..], "hold on", "var get B0"),
         ("toyo", &["host on", "point set 7 1 2 3 4 --yes", "home --yes", "jog X + inch --yes"], "stop", "status"),
         (
             "yrcx",

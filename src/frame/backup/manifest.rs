@@ -228,7 +228,7 @@ pub fn open_existing<C: About>(folder: &Path) -> Result<Manifest<C>, Failure> {
     read(folder)?.ok_or_else(|| {
         let shown = folder.display();
         let failure = Failure::local(if folder.exists() {
-            format!("{shown} holds no {MANIFEST}")
+            format!("{shown} contains no {MANIFEST}")
         } else {
             format!("there is no folder {shown}")
         });

@@ -35,8 +35,8 @@ pub struct Alarm {
 /// Hint after an alarm that ended a motion or program, with its code if it was read.
 pub fn hint_after(family: Family, code: Option<&str>) -> String {
     let first = match code {
-        Some(code) => format!("`armctl explain {family} {code}` shows what to do"),
-        None => format!("`armctl {family} alarm history` shows the alarm; remove the cause"),
+        Some(code) => format!("use `armctl explain {family} {code}` to see what to do"),
+        None => format!("use `armctl {family} alarm history` to see the alarm; remove the cause"),
     };
     format!("{first}, then use `armctl {family} alarm reset`")
 }

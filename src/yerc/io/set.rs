@@ -217,7 +217,10 @@ impl Writable for Groups {
         match old {
             Some(byte) => Ok(change.apply(*byte)),
             None if change.mask == u8::MAX => Ok(change.value),
-            None => Err(Failure::usage(format!("group {group}: the other signals are unknown"))),
+            None => {
+                let failure = Failure::usage(format!("group {group}: the other signals are unknown"));
+                Err(failure.hint("repeat the command; armctl reads the group before it writes one of its signals"))
+            }
         }
     }
 

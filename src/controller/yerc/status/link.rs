@@ -73,17 +73,17 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The requested field does not exist in this command. Some controllers need 0, although the manual lists 1.",
         "With `armctl yerc raw`, try --attribute 0. Otherwise check the model and report the exchange with --trace."),
     row(0xA100, Class::Address, NONE, "answer data size error (hardware limit)",
-        "The answer would not fit into one frame (hint: only Yaskawa's own packet dissector lists this code).",
+        "The answer would not fit into one frame (not certain: only Yaskawa's own packet dissector lists this code).",
         "Request fewer elements at a time."),
     row(0xA101, Class::Address, BOTH, "answer data size error",
-        "The answer would be larger than allowed (hint: the manuals call it the hardware limit, Yaskawa's packet \
+        "The answer would be larger than allowed (not certain: the manuals call it the hardware limit, Yaskawa's packet \
          dissector the software limit).",
         "Request fewer elements at a time, and check the number against the range of the variable."),
     row(0xA102, Class::Address, NONE, "answer data size error (software limit)",
-        "The answer would be larger than allowed (hint: only a third-party client lists this code).",
+        "The answer would be larger than allowed (not certain: only a third-party client lists this code).",
         "Request fewer elements at a time."),
     row(0xB001, Class::Data, BOTH, "answer data size error, or position not defined",
-        "The answer would be too large. Or (hint: according to Yaskawa's packet dissector) the position variable that \
+        "The answer would be too large. Or (not certain: according to Yaskawa's packet dissector) the position variable that \
          was read has never been set.",
         "For a P, BP or EX variable, check on the pendant whether it is set. For many elements, request fewer."),
     row(0xB002, Class::Data, BOTH, "data may not be used",
@@ -130,17 +130,17 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The user coordinate number is out of range or the system is not taught.",
         "Use the number (1 to 63) of a taught user coordinate system (pendant: ROBOT > USER COORDINATE)."),
     row(0xC001, Class::System, BOTH, "address error",
-        "The controller had an internal error in the address of the data (hint: Yaskawa's packet dissector calls it \
+        "The controller had an internal error in the address of the data (not certain: Yaskawa's packet dissector calls it \
          a data area setting error).",
         "Check the requested number and count. If they are correct, clear the alarm and try again. If the error \
          stays, make a CMOS.BIN backup and call the service with this code."),
     row(0xC002, Class::System, BOTH, "system error",
-        "An internal error of the controller when it built the answer (hint: according to Yaskawa's packet dissector, \
+        "An internal error of the controller when it built the answer (not certain: according to Yaskawa's packet dissector, \
          the answer area was exceeded).",
         "Request fewer elements. If the error stays, clear the alarm and try again. If the error comes again, make a \
          CMOS.BIN backup and call the service with this code."),
     row(0xC003, Class::System, BOTH, "system error",
-        "An internal error of the controller when it handled the data (hint: according to Yaskawa's packet dissector, \
+        "An internal error of the controller when it handled the data (not certain: according to Yaskawa's packet dissector, \
          an element size did not match).",
         "Check the model and the data length. If they are correct, clear the alarm and try again. If the error stays, \
          make a CMOS.BIN backup and call the service with this code."),
@@ -209,7 +209,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "This is the name of a folder, and folders cannot be deleted.",
         "Name a single file."),
     row(0xE2B2, Class::File, DX200, "system error",
-        "An internal error of the controller, in the file server (hint: according to Yaskawa's packet dissector, a \
+        "An internal error of the controller, in the file server (not certain: according to Yaskawa's packet dissector, a \
          file request while remote mode is off).",
         "Turn the mode key to REMOTE and check #82015 CMD REMOTE SEL. If the error stays, clear the alarm and try \
          again. If the error comes again, make a CMOS.BIN backup and call the service with this code."),

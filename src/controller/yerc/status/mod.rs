@@ -69,7 +69,7 @@ static STATUSES: [StatusRow; 5] = [
         models: added::DX200,
         name: "array (instance) number does not exist",
         cause: "The address does not exist: a number above the last variable, signal, group or task, or number plus \
-                count above the end (hint).",
+                count above the end (not certain).",
         remedy: "Check the number against this controller's ranges and the set model.",
     },
 ];

@@ -18,7 +18,7 @@ pub(super) static ROWS: &[AddedRow] = &[
     row(0x1012, Class::Operand, BOTH, "operand value out of range",
         "A sent value is outside the range that this controller accepts: a speed, a number, a mode, or an odd count \
          of bytes.",
-        "Compare each value with its limits on this controller. Bulk reads of B or I/O need an even count (hint: the \
+        "Compare each value with its limits on this controller. Bulk reads of B or I/O need an even count (not certain: the \
          code for odd counts is not documented)."),
     row(0x1013, Class::Operand, BOTH, "operand length error",
         "A value of the request has the wrong length, for example a text longer than its field, or 32 bytes instead \
@@ -52,7 +52,7 @@ pub(super) static ROWS: &[AddedRow] = &[
          or a door switched it off.",
         "Check that the cell is clear and the safety circuit is closed, then run `armctl yerc servo on`."),
     row(0x2080, Class::State, BOTH, "wrong mode",
-        "The mode key does not allow the request. Starts, moves and most writes need remote mode (hint: the codes \
+        "The mode key does not allow the request. Starts, moves and most writes need remote mode (not certain: the codes \
          for writes are not documented).",
         "Turn the mode key of the pendant to REMOTE and repeat; for writes in play mode see also S2C541 and RS029."),
     row(0x2090, Class::State, BOTH, "another function is using the file",
@@ -67,7 +67,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The data are protected at the moment: the controller blocks writes in play mode or under edit lock, or this \
          address is read-only.",
         "Set S2C541 = 0 (play mode) or S2C542 = 0 (edit lock), or write in another mode. Also check the address \
-         (hint: the exact causes of this code are not documented)."),
+         (not certain: the exact causes of this code are not documented)."),
     row(0x2120, Class::State, BOTH, "data may not be loaded",
         "This file cannot be loaded in the current state, for example during playback, under edit lock or at this \
          security level.",
