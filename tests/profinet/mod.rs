@@ -81,7 +81,7 @@ fn commands_a_simulated_device_on_another_network_card() {
         ("--yes session open", "4", &["a session is already open"]),
         ("--yes yrcx info system", "4", &["UDP port 34964", "ss -lunp"]),
         ("session close", "0", &["closed"]),
-        ("--yes yrcx recover", "7", &["read-only", "its address is that of 'line3'"]),
+        ("--yes yrcx recover", "7", &["read-only", "'line3' in robots.toml has the same address"]),
         ("yrcx profinet identify", "0", &["yrcx-sim"]),
         ("session open", "7", &["read-only"]),
         ("--yes yrcx alarm reset", "4", &["02:00:00:00:00:09 was not found"]),
