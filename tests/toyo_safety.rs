@@ -328,7 +328,12 @@ fn serve_connections(mut fault: impl FnMut(&str) -> BlockFault + Send + 'static)
 
 fn toyo(url: &str, state: &std::path::Path, words: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
-    command.env("XDG_STATE_HOME", state).args(["-t", url, "--yes", "toyo"]).args(words.split_ascii_whitespace());
+    // Without the inventory of the user: with an inventory, armctl shares the connection, and connects later.
+    command
+        .env("XDG_STATE_HOME", state)
+        .env("XDG_CONFIG_HOME", state)
+        .args(["-t", url, "--yes", "toyo"])
+        .args(words.split_ascii_whitespace());
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     command
 }

@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::{BufRead as _, BufReader, Read as _, Seek as _, Write as _};
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::process::{Child, ChildStdin, Command, Output, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Image};
 use armctl_controller::yrcx::signal::output;
@@ -30,10 +30,11 @@ struct Simulator {
 
 impl Simulator {
     fn start(arguments: &[&str]) -> Self {
-        Self::start_at("127.0.0.1:0", arguments)
+        Self::start_at("127.0.0.1:0", arguments).unwrap()
     }
 
-    fn start_at(address: &str, arguments: &[&str]) -> Self {
+    /// Starts a simulator at an address, or returns why it did not start.
+    fn start_at(address: &str, arguments: &[&str]) -> Result<Self, String> {
         let mut command = armctl();
         command.args(["sim", "yrcx", "--bind", address, "--console", "--jq", ".data.target"]).args(arguments);
         let errors = tempfile::tempfile().unwrap();
@@ -41,9 +42,9 @@ impl Simulator {
         let mut process = command.spawn().unwrap();
         let mut target = String::new();
         BufReader::new(process.stdout.take().unwrap()).read_line(&mut target).unwrap();
-        assert!(!target.is_empty(), "the simulator did not start: {}", text_of(errors));
         let console = process.stdin.take().unwrap();
-        Self { process, console, target: target.trim_end().to_owned() }
+        let simulator = Self { process, console, target: target.trim_end().to_owned() };
+        if simulator.target.is_empty() { Err(text_of(errors)) } else { Ok(simulator) }
     }
 
     fn run(&self, line: &str) -> Output {
@@ -231,7 +232,14 @@ fn tshark_decodes_the_recording() {
     if std::net::UdpSocket::bind((ADDRESS, 2222)).is_err() {
         return println!("skipped: {ADDRESS} has no free port 2222 here");
     }
-    let simulator = Simulator::start_at(ADDRESS, &[]);
+    // Clients of other tests use UDP port 2222 of all addresses for a short time.
+    let deadline = Instant::now() + Duration::from_secs(60);
+    let simulator = loop {
+        match Simulator::start_at(ADDRESS, &[]) {
+            Ok(simulator) => break simulator,
+            Err(why) => assert!(why.contains("address already in use") && Instant::now() < deadline, "{why}"),
+        }
+    };
     let file = tempfile::NamedTempFile::new().unwrap();
     let read = |line: &str, filter: &str, fields: &[&str]| {
         let output = simulator.run(&format!("{line} --trace {}", file.path().display()));

@@ -349,7 +349,7 @@ fn our_controller() {
             LinkEvent::Lost(error) => Some(error.to_string()),
             _ => None,
         });
-        assert!(lost.unwrap().contains("in stop"));
+        assert!(lost.unwrap().contains("in the stop state"));
         // After a new connection, the link does not show the old inputs again.
         let rest = settings().resting;
         loop {
