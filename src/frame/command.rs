@@ -1,7 +1,7 @@
 //! Command interface: arguments, risk, execution.
 
-use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
+use futures_util::future::{LocalBoxFuture, ready};
+use futures_util::{FutureExt as _, TryFutureExt as _};
 
 use super::authority::Authority;
 use super::connection::{self, Access, ConnectMode, Connection, Driver, Entry, Family};
@@ -191,11 +191,20 @@ pub trait AnyCommand {
     fn sheet(&self) -> Option<Sheet> {
         None
     }
-    /// See [`Command::run`].
-    fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome>;
+    /// See [`Command::run`]. The answers are not settled yet: call [`run`](Self::run).
+    fn run_unsettled<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome>;
 }
 
 impl dyn AnyCommand + '_ {
+    /// Runs the command, then checks that all answers belong to its requests ([`connection::Family::settle`]).
+    pub async fn run(&self, context: AnyContext<'_>) -> Outcome {
+        let AnyContext { robot, connection, screen, several, authority } = context;
+        let context = AnyContext { robot, connection: &mut *connection, screen, several, authority };
+        let report = self.run_unsettled(context).await?;
+        connection.settle().await?;
+        Ok(report)
+    }
+
     /// Family of the command; `None` for commands of all families or without a robot.
     pub fn family(&self) -> Option<target::Family> {
         self.driver()?.family()
@@ -273,13 +282,11 @@ impl<C: Command> AnyCommand for C {
         Some(sheet_of::<C::Report>())
     }
 
-    fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
-        async move {
-            let Context { robot, link, screen, several, authority } = context.of::<C::Family>()?;
-            let report = Command::run(self, Context { robot, link: &mut *link, screen, several, authority }).await?;
-            C::Family::settle(link).await?;
-            Ok(Box::new(report) as Box<_>)
+    fn run_unsettled<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
+        match context.of::<C::Family>() {
+            // Combinators, because a state machine per command is code per command.
+            Ok(context) => Command::run(self, context).map_ok(|report| Box::new(report) as Box<_>).boxed_local(),
+            Err(failure) => ready(Err(failure)).boxed_local(),
         }
-        .boxed_local()
     }
 }

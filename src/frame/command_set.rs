@@ -48,7 +48,7 @@ impl<C: OfflineCommand + clap::Args + 'static> AnyCommand for Offline<C> {
         Some(self.report(screen))
     }
 
-    fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
+    fn run_unsettled<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
         async move { self.report(context.screen) }.boxed_local()
     }
 }

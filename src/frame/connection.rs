@@ -164,6 +164,8 @@ pub trait Connection {
     fn needs_halt(&self) -> bool;
     /// See [`Family::planned`].
     fn planned(&mut self) -> Plan;
+    /// See [`Family::settle`].
+    fn settle(&mut self) -> LocalBoxFuture<'_, Result<(), Failure>>;
     /// See [`Family::close`].
     fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>>;
     /// The link, whose type is [`Family::Link`].
@@ -252,6 +254,10 @@ impl<F: Family> Connection for Borrowed<'_, F> {
         F::planned(self.0)
     }
 
+    fn settle(&mut self) -> LocalBoxFuture<'_, Result<(), Failure>> {
+        F::settle(self.0).boxed_local()
+    }
+
     /// The owner of the link closes it.
     fn close(self: Box<Self>, _screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {
         async { Ok(()) }.boxed_local()
@@ -276,6 +282,10 @@ impl<F: Family> Connection for Connected<F> {
 
     fn planned(&mut self) -> Plan {
         F::planned(&mut self.0)
+    }
+
+    fn settle(&mut self) -> LocalBoxFuture<'_, Result<(), Failure>> {
+        F::settle(&mut self.0).boxed_local()
     }
 
     fn close(self: Box<Self>, screen: &Screen) -> LocalBoxFuture<'_, Result<(), Failure>> {

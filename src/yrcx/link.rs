@@ -324,6 +324,12 @@ impl Link {
         self.client.set_words(changes).await.map_err(|error| self.failure(error))
     }
 
+    /// Current image of the controller, for a command about its signals.
+    pub async fn read_signals(&mut self) -> Result<Image, Failure> {
+        self.no_unit("signals belong to the whole controller")?;
+        self.look().await
+    }
+
     /// Current image of the controller.
     pub async fn look(&mut self) -> Result<Image, Failure> {
         self.client.input_image().await.map_err(|error| self.failure(error))

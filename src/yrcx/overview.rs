@@ -60,13 +60,14 @@ pub(super) async fn alarms(link: &mut Link) -> Result<Vec<Alarm>, Failure> {
 
 /// Reads which alarm is present, because the signal does not identify the alarm.
 async fn latest_alarm(link: &mut Link) -> Result<Option<Alarm>, Failure> {
-    let order = latest(link)?;
+    let order = latest()?;
     Ok(link.try_ask(&order).await?.ok().and_then(|done| alarm(&done.values)))
 }
 
-/// Request for the latest alarm. The manual does not say that entry 1 of the history is the latest.
-pub(super) fn latest(link: &Link) -> Result<Order, Failure> {
-    link.draft(Command::AlarmHistory)?.with(Key::History, 1).valid_order()
+/// Request for the latest alarm of the controller, whatever robot `--unit` selects. The manual does not say that entry 1
+/// of the history is the latest.
+pub(super) fn latest() -> Result<Order, Failure> {
+    Command::AlarmHistory.order().with(Key::History, 1).valid_order()
 }
 
 /// Takes the alarm from an answer.

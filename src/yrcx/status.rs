@@ -52,7 +52,7 @@ impl Command for Status {
         let servo = link.draft(table::Command::ServoStatus)?.valid_order()?;
         let place = link.draft(table::Command::PositionMm)?.valid_order()?;
         let mut orders = vec![servo, place];
-        let latest = latest(link)?;
+        let latest = latest()?;
         if link.is_dry() && (self.full || link.commands()) {
             let noted = plan_each(link, &orders);
             let reason = Reason::about("which alarm").depending_on("the signals: read only if there is an alarm");

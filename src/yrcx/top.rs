@@ -130,7 +130,7 @@ impl Poller {
     /// Sends a read command and stores the result.
     async fn put(&mut self, command: Command) -> Result<(), Failure> {
         let order: Order = match command {
-            Command::AlarmHistory => latest(&self.link)?,
+            Command::AlarmHistory => latest()?,
             // 0 selects all axes.
             Command::TorqueOfMax => self.link.draft(command)?.with(Key::Axes, 0).valid_order()?,
             _ => self.link.draft(command)?.valid_order()?,

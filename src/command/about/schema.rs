@@ -96,12 +96,78 @@ pub fn all() -> Vec<SchemaEntry> {
 /// Name of the file with the common definitions.
 pub const SHARED: &str = "shared.json";
 
-/// The schemas as files. Common definitions are only in [`SHARED`], and the other files refer to it.
+/// Name of the file that maps the name of each report to its schema.
+pub const REPORTS: &str = "reports.json";
+
+/// The schemas as files: one for each title, such as `items.json` for the items of any table, so that a change of a
+/// concept changes one file. [`REPORTS`] maps the reports to them.
 pub fn files() -> BTreeMap<String, Value> {
+    let mut reports: BTreeMap<&str, Value> =
+        all().into_iter().map(|entry| (entry.id, (entry.schema)().to_value())).collect();
+    let shared = extract_shared(&mut reports);
+    let mut variants: BTreeMap<String, Vec<(&str, Value)>> = BTreeMap::new();
+    let mut index = BTreeMap::new();
+    for (id, mut schema) in reports {
+        let title = schema["title"].as_str().unwrap_or(id);
+        let file = format!("{}.json", kebab_case(title));
+        let known = variants.entry(file.clone()).or_default();
+        let first = known.iter().find(|(_, other)| *other == schema).map(|(first, _)| *first);
+        if first.is_none() {
+            known.push((id, schema.take()));
+        }
+        index.insert(id, (file, first.unwrap_or(id)));
+    }
+    let has_one = |file: &str| variants[file].len() == 1;
+    let index: Map<String, Value> = index
+        .into_iter()
+        .map(|(id, (file, first))| {
+            let place = if has_one(&file) { file } else { format!("{file}{LOCAL}{first}") };
+            (id.to_owned(), json!({ "$ref": place }))
+        })
+        .collect();
     let mut files: BTreeMap<String, Value> =
-        all().into_iter().map(|entry| (format!("{}.json", entry.id), (entry.schema)().to_value())).collect();
+        variants.into_iter().map(|(file, variants)| (file, merge_variants(variants))).collect();
+    files.insert(SHARED.to_owned(), shared);
+    files.insert(REPORTS.to_owned(), Value::Object(index));
+    files
+}
+
+/// One schema as it is, or several as definitions named after their first report.
+fn merge_variants(mut variants: Vec<(&str, Value)>) -> Value {
+    if variants.len() == 1 {
+        return variants.swap_remove(0).1;
+    }
+    let title = variants[0].1["title"].clone();
+    let definitions: Map<String, Value> = variants
+        .into_iter()
+        .map(|(id, mut schema)| {
+            map_references(&mut schema, &|path| Some(format!("{LOCAL}{id}/$defs/{}", path.strip_prefix(LOCAL)?)));
+            if let Some(schema) = schema.as_object_mut() {
+                schema.remove("$schema");
+                schema.remove("title");
+            }
+            (id.to_owned(), schema)
+        })
+        .collect();
+    json!({ "$schema": DIALECT, "title": title, "$defs": definitions })
+}
+
+/// `WrittenItems` as `written-items`.
+fn kebab_case(title: &str) -> String {
+    let mut name = String::new();
+    for letter in title.chars() {
+        if letter.is_uppercase() && !name.is_empty() {
+            name.push('-');
+        }
+        name.extend(letter.to_lowercase());
+    }
+    name
+}
+
+/// Moves the definitions that several reports have in common into a schema of their own.
+fn extract_shared(reports: &mut BTreeMap<&str, Value>) -> Value {
     let mut found: BTreeMap<String, Vec<Value>> = BTreeMap::new();
-    for definitions in files.values().filter_map(|schema| schema["$defs"].as_object()) {
+    for definitions in reports.values().filter_map(|schema| schema["$defs"].as_object()) {
         for (name, definition) in definitions {
             found.entry(name.clone()).or_default().push(definition.clone());
         }
@@ -116,25 +182,24 @@ pub fn files() -> BTreeMap<String, Value> {
             break;
         }
     }
-    for schema in files.values_mut() {
+    for schema in reports.values_mut() {
         if let Some(definitions) = schema.get_mut("$defs").and_then(Value::as_object_mut) {
             definitions.retain(|name, _| !found.contains_key(name));
             if definitions.is_empty() {
                 schema.as_object_mut().and_then(|schema| schema.remove("$defs"));
             }
         }
-        replace_reference(schema, &|name| found.contains_key(name));
+        let is_shared = |path: &str| path.strip_prefix(LOCAL).is_some_and(|name| found.contains_key(name));
+        map_references(schema, &|path| is_shared(path).then(|| format!("{SHARED}{path}")));
     }
     let definitions: Map<String, Value> =
         found.into_iter().map(|(name, mut same)| (name, same.swap_remove(0))).collect();
-    let shared = json!({
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
+    json!({
+        "$schema": DIALECT,
         "title": "Shared",
         "description": "What several reports have in common.",
         "$defs": definitions,
-    });
-    files.insert(SHARED.to_owned(), shared);
-    files
+    })
 }
 
 /// Names of the definitions that a schema refers to.
@@ -149,21 +214,23 @@ fn references(schema: &Value) -> Vec<String> {
     }
 }
 
+const DIALECT: &str = "https://json-schema.org/draft/2020-12/schema";
+
 /// Prefix of a reference to a definition in the same schema.
 const LOCAL: &str = "#/$defs/";
 
-/// Replaces references to shared definitions with references to the file of shared definitions.
-fn replace_reference(schema: &mut Value, is_shared: &impl Fn(&str) -> bool) {
+/// Replaces each reference for which `replace` returns another one.
+fn map_references(schema: &mut Value, replace: &impl Fn(&str) -> Option<String>) {
     match schema {
         Value::Object(fields) => {
             if let Some(Value::String(path)) = fields.get_mut("$ref")
-                && path.strip_prefix(LOCAL).is_some_and(is_shared)
+                && let Some(other) = replace(path)
             {
-                path.insert_str(0, SHARED);
+                *path = other;
             }
-            fields.values_mut().for_each(|value| replace_reference(value, is_shared));
+            fields.values_mut().for_each(|value| map_references(value, replace));
         }
-        Value::Array(items) => items.iter_mut().for_each(|value| replace_reference(value, is_shared)),
+        Value::Array(items) => items.iter_mut().for_each(|value| map_references(value, replace)),
         _ => {}
     }
 }

@@ -86,7 +86,7 @@ impl<C: Command<Report: CommonReport>> AnyCommand for CommonCommand<C> {
         Some(sheet_of::<<C::Report as CommonReport>::Core>())
     }
 
-    fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
+    fn run_unsettled<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
         async move {
             let several = context.several;
             let report = Command::run(&self.0, context.of()?).await?;

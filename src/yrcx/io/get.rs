@@ -41,7 +41,7 @@ impl Command for Get {
             .hint("open a session (`armctl session open`) and repeat the command"));
         }
         let given = given.unwrap_or_default();
-        let shown = context.link.look().await?;
+        let shown = context.link.read_signals().await?;
         let image = |side| if side == Side::Input { &given } else { &shown };
         if self.signals.is_empty() {
             let told = Signal::all(Side::Output).filter(|signal| !signal.is_general() || signal.is_on(&shown));

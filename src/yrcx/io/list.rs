@@ -26,7 +26,7 @@ impl Command for List {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Signals, Failure> {
         let names = names::of_robot(context.robot, context.screen);
         let inputs = context.link.output_image().copied();
-        let outputs = context.link.look().await?;
+        let outputs = context.link.read_signals().await?;
         let inputs = inputs.iter().flat_map(|image| Signal::all(Side::Input).map(move |signal| (signal, image)));
         let all = inputs.chain(Signal::all(Side::Output).map(|signal| (signal, &outputs)));
         let rows = all.map(|(signal, image)| row(signal, image, names)).filter(|row| self.filter.lists(row));

@@ -41,7 +41,7 @@ impl Command for Outputs {
         // Report the image that the wait received, so that even a very short change is reported.
         let image = match link.seen.take() {
             Some(image) => image,
-            None => link.look().await?,
+            None => link.read_signals().await?,
         };
         link.told = Some(image);
         let signals = if self.signals.is_empty() { Signal::all(Side::Output).collect() } else { self.signals.clone() };

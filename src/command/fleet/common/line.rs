@@ -109,13 +109,13 @@ impl AnyCommand for SharedLine {
         if self.is_reduced { Some(sheet_of::<Reading>()) } else { self.default_arguments(None)?.sheet() }
     }
 
-    fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
+    fn run_unsettled<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
         async move {
             let parsed = self.of(context.robot);
             let command = (*parsed).as_ref().map_err(Failure::clone)?;
             let AnyContext { robot, connection, screen, several, authority } = context;
             let context = AnyContext { robot, connection: &mut *connection, screen, several, authority };
-            let report = command.run(context).await?;
+            let report = command.run_unsettled(context).await?;
             if self.is_reduced { Ok(Box::new(Reading::new(&*report)?) as Box<_>) } else { Ok(report) }
         }
         .boxed_local()

@@ -66,8 +66,8 @@ impl AnyCommand for Shared {
         self.commands[0].1.sheet()
     }
 
-    fn run<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
-        self.of(context.robot).run(context)
+    fn run_unsettled<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome> {
+        self.of(context.robot).run_unsettled(context)
     }
 }
 

@@ -196,11 +196,11 @@ impl Spool {
     }
 
     /// Writes records before all others. If there is not enough room, only the newest records are written. Returns the
-    /// number of records that were not written.
+    /// number of records that were not written, and the error that ended the writing.
     pub fn prepend(&mut self, records: &[Record]) -> (u64, Option<io::Error>) {
         let mut room = self.limit.saturating_sub(self.bytes());
-        let mut kept = 0;
-        let mut chunks: Vec<Vec<u8>> = Vec::new();
+        // Each chunk with its number of records.
+        let mut chunks: Vec<(u64, Vec<u8>)> = Vec::new();
         let largest = usize::try_from(self.largest_segment()).unwrap_or(usize::MAX);
         for record in records.iter().rev() {
             let bytes = encode(record);
@@ -209,27 +209,30 @@ impl Spool {
                 break;
             }
             room -= len;
-            kept += 1;
-            match chunks.last_mut().filter(|chunk| chunk.len() + bytes.len() <= largest) {
-                Some(chunk) => chunk.splice(..0, bytes).for_each(drop),
-                None => chunks.push(bytes),
+            match chunks.last_mut().filter(|(_, chunk)| chunk.len() + bytes.len() <= largest) {
+                Some((count, chunk)) => {
+                    chunk.splice(..0, bytes).for_each(drop);
+                    *count += 1;
+                }
+                None => chunks.push((1, bytes)),
             }
         }
-        let all = u64::try_from(records.len()).unwrap_or(u64::MAX);
+        let mut missing = u64::try_from(records.len()).unwrap_or(u64::MAX);
         // Newest first: each chunk goes before the one written last.
         let mut number = self.segments.front().map_or(self.next, |first| first.number).saturating_sub(1);
-        for chunk in chunks {
+        for (count, chunk) in chunks {
             let written = self.create(number).and_then(|mut file| {
                 file.write_all(&chunk)?;
                 file.sync_data()
             });
             if let Err(error) = written {
                 self.remove(number);
-                return (all, Some(error));
+                return (missing, Some(error));
             }
+            missing -= count;
             number = number.saturating_sub(1);
         }
-        (all - kept, None)
+        (missing, None)
     }
 
     fn largest_segment(&self) -> u64 {
