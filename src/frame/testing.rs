@@ -12,7 +12,7 @@ use super::report::{AnyReport as _, Outcome};
 use super::settings_report::OLD_VALUE;
 use crate::face::Face;
 use crate::face::family_command::{FamilyLine, ParsedCommand};
-use crate::failure::Failure;
+use crate::failure::{Failure, Kind};
 use crate::flags::Globals;
 use crate::gate::{Gate, Grant};
 use crate::output::Screen;
@@ -106,5 +106,45 @@ pub fn resolve(face: &dyn Face, target: &str, words: &[&str]) -> Result<(Robot, 
     match typed.command {
         ParsedCommand::Command(command) => Ok((robot, command)),
         _ => panic!("{words:?} is not a command"),
+    }
+}
+
+/// Words of a command line as typed in a shell.
+pub fn words_of(line: &str) -> Vec<String> {
+    shlex::split(line).expect("a line whose quotes are closed")
+}
+
+/// Calls `check` with the words of each line, and with what the table expects of this line.
+#[track_caller]
+pub fn for_lines<T>(cases: impl IntoIterator<Item = (&'static str, T)>, check: impl Fn(&str, &[&str], T)) {
+    for (line, expected) in cases {
+        let words = words_of(line);
+        check(line, &words.iter().map(String::as_str).collect::<Vec<_>>(), expected);
+    }
+}
+
+/// Each line is a usage error, of the parser or of the dry run, with this part in its message.
+#[track_caller]
+pub fn rejects(
+    plan: impl Fn(&[&str]) -> Result<Value, Failure>,
+    cases: impl IntoIterator<Item = (&'static str, &'static str)>,
+) {
+    for_lines(cases, |line, words, part| {
+        let failure = plan(words).expect_err(line);
+        assert_eq!(failure.kind, Kind::Usage, "{line}: {failure}");
+        assert!(failure.message.contains(part), "{line}: {failure}");
+    });
+}
+
+/// Whether `data` has everything of `expected`: each key of an object, each element of a list in its place.
+pub fn has_all(data: &Value, expected: &Value) -> bool {
+    match (data, expected) {
+        (Value::Object(data), Value::Object(expected)) => {
+            expected.iter().all(|(key, expected)| data.get(key).is_some_and(|data| has_all(data, expected)))
+        }
+        (Value::Array(data), Value::Array(expected)) => {
+            data.len() == expected.len() && data.iter().zip(expected).all(|(data, expected)| has_all(data, expected))
+        }
+        (data, expected) => data == expected,
     }
 }

@@ -266,17 +266,7 @@ impl Report for PointReport {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{Bench, Fault, blocks, objection};
-
-    #[test]
-    fn each_alarm_command_sends_its_blocks() {
-        assert_eq!(blocks(&["alarm", "list"]).unwrap(), ["@STAS SNO=0", "@STAS SNO=1"]);
-        assert_eq!(blocks(&["alarm", "reset"]).unwrap(), ["@CERR", "@STAS SNO=0"]);
-        assert_eq!(blocks(&["alarm", "point"]).unwrap(), ["@MERP"]);
-        assert_eq!(blocks(&["alarm", "history", "--limit", "2"]).unwrap(), ["@EHTR NO=01", "@EHTR NO=02"]);
-        assert_eq!(blocks(&["alarm", "history"]).unwrap().len(), 20);
-        assert!(objection(&["alarm", "history", "--limit", "100"]).contains("1..=99"));
-    }
+    use crate::testing::{Bench, Fault};
 
     #[test]
     fn alarm_list_shows_an_error_and_alarm_reset_cancels_it() {

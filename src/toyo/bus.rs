@@ -67,13 +67,3 @@ impl Report for CcLink {
         ])
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::testing::all_blocks;
-
-    #[test]
-    fn bus_reads_both_pages() {
-        assert_eq!(all_blocks(&["bus"]).unwrap(), ["@MBUS C1", "@MBUS C2"]);
-    }
-}

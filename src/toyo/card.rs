@@ -119,27 +119,8 @@ impl Report for TransferReport {
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::{Bench, Fault, all_blocks, blocks};
+    use crate::testing::{Bench, Fault};
     use armctl_frame::failure::Kind;
-
-    #[test]
-    fn a_transfer_sends_one_order_and_status_reads() {
-        assert_eq!(
-            all_blocks(&["card", "write"]).unwrap(),
-            [
-                "@STAS SNO=2",
-                "@HSON",
-                "@STAS SNO=0",
-                "@WMCA",
-                "@STAS SNO=3",
-                "@STAS SNO=0",
-                "@STAS SNO=1",
-                "@STAS SNO=0",
-                "@HSOF"
-            ]
-        );
-        assert_eq!(blocks(&["card", "read", "--no-wait"]).unwrap(), ["@RMCA"]);
-    }
 
     #[test]
     fn card_write_waits_for_the_end_of_the_transfer() {

@@ -115,21 +115,7 @@ impl Command for Set {
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::{Bench, Fault, blocks, intent, objection};
-
-    #[test]
-    fn coordinates_are_formatted_and_checked() {
-        let line = ["coordinate", "set", "100", "-20.5", "0", "0", "--task", "2", "--speed-row", "5"];
-        assert_eq!(blocks(&line).unwrap(), ["@MRSS TASK=02 X=+0100.00 Y=-0020.50 Z=+0000.00 R=+0000.00 V=05"]);
-        assert_eq!(
-            intent(&line),
-            "move to X 100 mm, Y -20.5 mm, Z 0 mm, R 0 mm with the next RSMV step of task 2 at the speed of row 5"
-        );
-        assert!(objection(&["coordinate", "set", "1", "2", "3"]).contains("<R>"));
-        assert!(objection(&["coordinate", "set", "8000.01", "0", "0", "0"]).contains("-8000.00 to 8000.00 mm"));
-        assert!(objection(&["coordinate", "set", "0.001", "0", "0", "0"]).contains("has too many decimals"));
-        assert!(objection(&["coordinate", "set", "0", "0", "0", "0", "--speed-row", "11"]).contains("0 to 10"));
-    }
+    use crate::testing::{Bench, Fault};
 
     #[test]
     fn a_waiting_move_goes_to_the_sent_coordinates() {

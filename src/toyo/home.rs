@@ -114,31 +114,8 @@ impl Report for HomeReport {
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::{Bench, Fault, all_blocks, blocks, intent, objection};
+    use crate::testing::{Bench, Fault};
     use armctl_frame::failure::Kind;
-
-    #[test]
-    fn a_dry_run_shows_the_order_and_the_status_reads() {
-        assert_eq!(
-            all_blocks(&["home"]).unwrap(),
-            [
-                "@SYSP",
-                "@RPAR E01",
-                "@STAS SNO=2",
-                "@HSON",
-                "@STAS SNO=0",
-                "@HOME",
-                "@STAS SNO=0",
-                "@MPST",
-                "@STAS SNO=1",
-                "@HSOF"
-            ]
-        );
-        assert_eq!(blocks(&["home", "--no-wait"]).unwrap(), ["@HOME"]);
-        assert_eq!(blocks(&["home", "--sync", "2", "--no-wait"]).unwrap(), ["@SORG 2"]);
-        assert!(objection(&["home", "--sync", "4"]).contains("1..=3"));
-        assert_eq!(intent(&["home"]), "move all axes to their origin");
-    }
 
     #[test]
     fn home_ends_with_all_axes_at_their_origin() {

@@ -54,15 +54,7 @@ impl Command for Host {
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::{Bench, Fault, all_blocks, blocks, intent, objection};
-
-    #[test]
-    fn host_on_sends_only_its_order() {
-        assert_eq!(all_blocks(&["host", "on"]).unwrap(), ["@HSON", "@STAS SNO=2"]);
-        assert_eq!(blocks(&["position"]).unwrap(), ["@MPST"]);
-        assert!(objection(&["host", "maybe"]).contains("maybe"));
-        assert_eq!(intent(&["host", "off"]), "");
-    }
+    use crate::testing::{Bench, Fault};
 
     #[test]
     fn the_status_shows_the_outcome_of_an_unanswered_order() {

@@ -148,14 +148,7 @@ impl Report for About {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::all_blocks;
     use armctl_controller::toyo::request::Answer;
-
-    #[test]
-    fn info_reads_all_identification() {
-        let versions = ["@CVER NO=0", "@CVER NO=1", "@CVER NO=2", "@CVER NO=3", "@CVER NO=4"];
-        assert_eq!(all_blocks(&["info"]).unwrap(), [&["@SYSP"][..], &versions, &["@MTSK", "@ROVR"]].concat());
-    }
 
     #[test]
     fn the_report_describes_the_controller_as_text() {

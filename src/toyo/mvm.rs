@@ -292,29 +292,13 @@ fn named(field: &field::Field, column: &Field) -> field::Field {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{Bench, blocks, objection};
+    use crate::testing::{Bench, blocks};
 
     #[test]
     fn every_value_of_the_sheets_has_a_name() {
         for (index, (_, fields)) in SHEETS.iter().enumerate() {
             assert_eq!(sheet(index).body().fields.len(), fields.len());
         }
-    }
-
-    #[test]
-    fn a_group_is_read_from_five_sheets() {
-        assert_eq!(
-            blocks(&["mvm", "get", "3"]).unwrap(),
-            [
-                "@RPAR T4 S1 GRP=03",
-                "@RPAR T4 S2 GRP=03",
-                "@RPAR T4 S3 GRP=03",
-                "@RPAR T4 S4 GRP=03",
-                "@RPAR T4 S5 GRP=03"
-            ]
-        );
-        assert_eq!(blocks(&["mvm", "get"]).unwrap().len(), 160);
-        assert!(objection(&["mvm", "get", "33"]).contains("33 is out of range"));
     }
 
     #[test]
@@ -337,10 +321,6 @@ mod tests {
             written(&["counter1=1", "counter2=2", "counter3=3"]),
             ["@WPAR T4 S3 GRP=01 P1=01 P2=02 P3=03", "@RPAR T4 S3 GRP=01"]
         );
-        let error = |words: &[&str]| blocks(words).unwrap_err().message;
-        assert_eq!(error(&["mvm", "set", "1", "origin=0"]), "group 1: origin: 0 is out of range (a number, 1 to 999)");
-        assert_eq!(error(&["mvm", "set", "1", "orgin=1"]), "group 1: unknown value 'orgin'; did you mean origin?");
-        assert_eq!(error(&["mvm", "set", "1", "p1=1", "p1=2"]), "group 1: p1 appears twice");
     }
 
     #[test]

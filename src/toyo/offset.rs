@@ -24,13 +24,3 @@ impl Command for Offset {
         Ok(Coordinates::of(&record, letters))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::testing::all_blocks;
-
-    #[test]
-    fn offset_sends_its_block() {
-        assert_eq!(all_blocks(&["offset"]).unwrap(), ["@SYSP", "@RPAR E01", "@MOFF"]);
-    }
-}

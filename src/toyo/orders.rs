@@ -247,45 +247,8 @@ impl Report for StopReport {
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::{Bench, Fault, all_blocks, blocks, intent, objection};
+    use crate::testing::{Bench, Fault};
     use armctl_frame::failure::Kind;
-
-    #[test]
-    fn each_command_sends_one_order_and_reads_the_status() {
-        assert_eq!(
-            all_blocks(&["servo", "on"]).unwrap(),
-            ["@STAS SNO=2", "@HSON", "@STAS SNO=0", "@SVON", "@STAS SNO=3", "@HSOF"]
-        );
-        assert_eq!(blocks(&["servo", "off"]).unwrap(), ["@SVOF", "@STAS SNO=3"]);
-        for (mode, block) in [
-            ("program", "@MPRO"),
-            ("step", "@MSTP"),
-            ("auto", "@MAUT"),
-            ("automatic", "@MAUT"),
-            ("sequential", "@MSEQ"),
-            ("palletizing", "@MPLE"),
-        ] {
-            let all = all_blocks(&["mode", mode]).unwrap();
-            assert_eq!(all, ["@STAS SNO=2", "@HSON", "@STAS SNO=0", block, "@STAS SNO=2", "@HSOF"]);
-        }
-        assert_eq!(blocks(&["reset"]).unwrap(), ["@REST"]);
-        assert!(objection(&["mode", "easy"]).contains("palletizing"));
-        assert!(intent(&["servo", "off"]).contains("may sink"));
-    }
-
-    #[test]
-    fn a_stop_needs_no_host_and_no_fence() {
-        // Sent only if a controller refuses to stop a jog without the host.
-        let host = ["@STAS SNO=2", "@HSON", "@JGST X=SP Y=SP Z=SP R=SP", "@SYSP", "@RPAR E01", "@HSOF"];
-        assert_eq!(
-            all_blocks(&["stop"]).unwrap(),
-            [&["@STOP", "@STAS SNO=0", "@JGST X=SP Y=SP Z=SP R=SP", "@STAS SNO=0", "@MPST"], &host[..]].concat()
-        );
-        assert_eq!(
-            all_blocks(&["stop", "--jog"]).unwrap(),
-            [&["@JGST X=SP Y=SP Z=SP R=SP", "@STAS SNO=0", "@MPST"], &host[..]].concat()
-        );
-    }
 
     #[test]
     fn a_command_ends_when_the_status_shows_its_effect() {

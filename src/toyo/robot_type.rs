@@ -105,15 +105,6 @@ impl Report for RobotTypeReport {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{blocks, intent, objection};
-
-    #[test]
-    fn robot_type_sends_its_block() {
-        assert_eq!(blocks(&["robot-type", "1", "123"]).unwrap(), ["@TYPE AX1 RTYP=000123", "@STAS SNO=0"]);
-        assert!(objection(&["robot-type", "5", "0"]).contains("1 to 4"));
-        assert!(objection(&["robot-type", "1", "1000000"]).contains("999999"));
-        assert!(intent(&["robot-type", "1", "123"]).contains("axis 1 to robot type 000123"));
-    }
 
     #[test]
     fn a_rejected_type_is_a_refusal() {

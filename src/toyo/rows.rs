@@ -458,33 +458,7 @@ fn decimal(record: &Record, name: &str) -> f64 {
 mod tests {
     use serde_json::json;
 
-    use crate::testing::{Bench, blocks, objection};
-
-    #[test]
-    fn rows_are_read_alone_or_all() {
-        assert_eq!(
-            blocks(&["speed-table", "get", "1-2,20"]).unwrap(),
-            ["@RPAR T2 V01", "@RPAR T2 V02", "@RPAR T2 V20"]
-        );
-        assert_eq!(blocks(&["accel-table", "get"]).unwrap().len(), 20);
-        assert_eq!(blocks(&["torque-table", "get"]).unwrap().len(), 8);
-        assert!(objection(&["torque-table", "get", "9"]).contains("9 is out of range (a number, 1 to 8)"));
-    }
-
-    #[test]
-    fn a_row_is_compared_before_it_is_written() {
-        assert_eq!(
-            blocks(&["speed-table", "set", "5", "250"]).unwrap(),
-            ["@RPAR T2 V05", "@WPAR T2 V05=0250.0", "@RPAR T2 V05"]
-        );
-        assert_eq!(blocks(&["accel-table", "set", "5", "time=0.25"]).unwrap()[1], "@WPAR T3 A05=0.25");
-        assert_eq!(blocks(&["torque-table", "set", "3", "2.5", "2"]).unwrap()[1], "@WPAR T5 LIM03 T=2.50 L=2.00");
-        assert_eq!(blocks(&["torque-table", "set", "3", "load=2"]).unwrap()[1], "@WPAR T5 LIM03 T=? L=2.00");
-        assert_eq!(
-            blocks(&["speed-table", "set", "5", "0.5"]).unwrap_err().message,
-            "speed-table row 5: speed: 0.5 is out of range (a number, 1.0 to 9999.9 mm/s)"
-        );
-    }
+    use crate::testing::Bench;
 
     #[test]
     fn a_row_keeps_what_is_not_named() {

@@ -101,15 +101,3 @@ impl Report for Current {
         View::text(current_in_words(self.task))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::testing::{all_blocks, blocks, objection};
-
-    #[test]
-    fn task_commands_send_their_blocks() {
-        assert_eq!(all_blocks(&["task", "get"]).unwrap(), ["@MTSK"]);
-        assert_eq!(blocks(&["task", "set", "4"]).unwrap(), ["@CTSK TASK=04", "@MTSK"]);
-        assert!(objection(&["task", "set", "0"]).contains("1 to 4"));
-    }
-}

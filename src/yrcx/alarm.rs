@@ -263,11 +263,4 @@ mod tests {
         assert_eq!((&data["alarm"], &data["alarms"][0]["code"]), (&json!(true), &json!("12.551")));
         assert_eq!(peer.taken[0][2], 1, "the latest");
     }
-
-    #[test]
-    fn the_example_of_the_manual() {
-        assert_eq!(words(&["alarm", "reset"]).unwrap(), [example("4.8.3-reset")]);
-        let read = read_example("4.8.3-reset", &["alarm", "reset"]);
-        assert_eq!((&read["alarm"], &read["servo_on"]), (&false.into(), &false.into()));
-    }
 }

@@ -240,78 +240,7 @@ enum MotorState {
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::{Scripted, example, intent, objection, run_on, words, written};
-    use armctl_frame::failure::Kind;
-
-    #[test]
-    fn each_speed_has_its_command_and_the_same_range() {
-        assert_eq!(words(&["speed", "auto", "100%", "--unit", "2"]).unwrap()[0][..3], ["0x2039", "0x0000", "0x0064"]);
-        for wrong in ["0", "101", "5.5", "fast"] {
-            let failure = words(&["speed", "manual", wrong]).unwrap_err();
-            assert!(failure.message.contains("speed_percent"), "{wrong}: {failure}");
-        }
-        assert!(objection(&["speed", "jog", "5"]).contains("manual, auto, program"));
-    }
-
-    #[test]
-    fn one_axis_and_a_share() {
-        let sent = words(&["torque-limit", "--axis", "4", "100%", "--unit", "2"]).unwrap();
-        assert_eq!(sent[0][..4], ["0x2048", "0x0000", "0x0008", "0x0064"]);
-        assert!(words(&["torque-limit", "--axis", "1,2", "50"]).unwrap_err().message.contains("name exactly 1"));
-        assert!(words(&["torque-limit", "--axis", "1", "0"]).unwrap_err().message.contains("allowed: 1 to 100 %"));
-    }
-
-    #[test]
-    fn distances_have_a_range() {
-        assert_eq!(words(&["inch-distance", "10000", "--unit", "4"]).unwrap()[0][..3], ["0x4027", "0x0000", "0x2710"]);
-        for wrong in ["0", "10001", "0.1", "1mm"] {
-            let failure = words(&["inch-distance", wrong]).unwrap_err();
-            assert!(failure.message.contains("inching_amount"), "{wrong}: {failure}");
-        }
-    }
-
-    #[test]
-    fn the_unit_is_always_told() {
-        let sent = written(&["teach", "--point", "29999", "--in", "mm", "--unit", "2"]).unwrap();
-        assert_eq!(sent[0][..4], ["0x2028", "0x0000", "0x752F", "0x0001"]);
-        assert_eq!(written(&["teach", "4000", "--in", "pulse"]).unwrap(), [example("4.2.9-teach")]);
-        assert!(words(&["teach", "--point", "30000", "--in", "mm"]).unwrap_err().message.contains("0 to 29999"));
-        assert!(objection(&["teach"]).contains("POINT"));
-    }
-
-    #[test]
-    fn numbers_have_their_ranges_and_arms_two_sides() {
-        assert_eq!(words(&["shift", "select", "39", "--unit", "2"]).unwrap()[0][..3], ["0x203B", "0x0000", "0x0027"]);
-        assert_eq!(words(&["hand", "select", "31"]).unwrap()[0][..3], ["0x003C", "0x0000", "0x001F"]);
-        assert_eq!(words(&["arm", "select", "left", "--unit", "4"]).unwrap()[0][..3], ["0x403D", "0x0000", "0x0001"]);
-        assert!(words(&["shift", "select", "40"]).unwrap_err().message.contains("allowed: 0 to 39"));
-        assert!(words(&["hand", "select", "32"]).unwrap_err().message.contains("allowed: 0 to 31"));
-        assert!(objection(&["arm", "select", "both"]).contains("right, left"));
-    }
-
-    #[test]
-    fn each_state_has_its_command() {
-        let first = |line: &[&str]| words(line).unwrap().concat()[..3].to_vec();
-        assert_eq!(first(&["servo", "on"]), ["0x0034", "0x0000", "0x0000"]);
-        assert_eq!(first(&["servo", "off", "--axis", "3", "--unit", "2"]), ["0x2035", "0x0000", "0x0004"]);
-        assert_eq!(first(&["motor", "off"])[0], "0x0041");
-        assert_eq!(first(&["motor", "pwr"])[0], "0x0043");
-        assert_eq!(words(&["servo", "free", "--axis", "4"]).unwrap(), [example("4.2.13-free")]);
-        assert_eq!(words(&["motor", "on"]).unwrap(), [example("4.2.20-on")]);
-    }
-
-    #[test]
-    fn one_axis_or_all_and_motor_power_is_for_no_single_robot() {
-        assert_eq!(words(&["servo", "on", "--axis", "1,2"]).unwrap_err().kind, Kind::Usage);
-        assert!(words(&["motor", "on", "--unit", "1"]).unwrap_err().message.contains("--unit"));
-        assert!(objection(&["servo", "brake"]).contains("free"));
-        assert_eq!(intent(&["servo", "on", "--unit", "3"]), "switch the servos of all axes of robot 3 on");
-    }
-
-    #[test]
-    fn all_words_are_zero() {
-        assert_eq!(words(&["status-reset"]).unwrap(), [vec!["0x0000"; 16]]);
-    }
+    use crate::testing::{Scripted, run_on};
 
     #[test]
     fn an_end_status_of_somebody_else_goes_away() {

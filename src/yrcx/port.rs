@@ -250,34 +250,9 @@ fn value(text: &str) -> Result<u8, String> {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
-
     use super::{place, value};
-    use crate::testing::{Reply, Scripted, example, objection, read_example, run_on, words};
+    use crate::testing::{Reply, Scripted, run_on};
     use armctl_frame::failure::Kind;
-
-    #[test]
-    fn the_examples_of_the_manual() {
-        for (id, line, done) in [
-            ("4.5.1-assign-port", ["port", "set", "DO12", "7"], json!(["DO12", "port", null, 7])),
-            ("4.5.1-assign-bit", ["port", "set", "DO(21)", "1"], json!(["DO2.1", "signal", null, true])),
-        ] {
-            assert_eq!(words(&line).unwrap(), [example(id)], "{id}");
-            let item = &read_example(id, &line)["items"][0];
-            assert_eq!(json!([item["name"], item["kind"], item["old"], item["new"]]), done);
-        }
-        let read = read_example("4.5.1-reference-do12", &["port", "get", "DO12()"]);
-        assert_eq!(item(&read), json!(["DO12", "port", 7, "00000111"]));
-        let read = read_example("4.5.1-reference-di2", &["port", "get", "DI2"]);
-        assert_eq!(item(&read), json!(["DI2", "port", 127, "01111111"]));
-        let read = read_example("4.5.1-reference-di2", &["port", "get", "di2.7"]);
-        assert_eq!(item(&read), json!(["DI2.7", "signal", false, null]));
-    }
-
-    fn item(read: &serde_json::Value) -> serde_json::Value {
-        let item = &read["items"][0];
-        json!([item["name"], item["kind"], item["value"], item["bits"]])
-    }
 
     #[test]
     fn an_answer_for_another_port_is_no_answer() {
@@ -306,19 +281,5 @@ mod tests {
         for wrong in ["256", "-1", "+1", "", "0x", "0b2", "maybe"] {
             assert!(value(wrong).is_err(), "{wrong}");
         }
-    }
-
-    #[test]
-    fn inputs_are_not_switched() {
-        for (line, part) in [
-            (["port", "set", "DI2", "1"], "DI are inputs"),
-            (["port", "set", "DO1", "1"], "DO1: 1 is out of range; allowed: 2 to 7, 10 to 17, 20 to 27"),
-            (["port", "set", "DO2", "256"], "0 to 255"),
-            (["port", "set", "DO2.9", "1"], "bits 0 to 7"),
-        ] {
-            let objection = objection(&line);
-            assert!(objection.contains(part), "{line:?}: {objection}");
-        }
-        assert!(words(&["port", "set", "DO2.1", "2"]).unwrap_err().message.contains("allowed: 0 to 1"));
     }
 }

@@ -106,7 +106,7 @@ impl Report for CarriedOut {
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::{frames, intent, words};
+    use crate::testing::frames;
 
     #[test]
     fn a_dry_run_shows_every_edge() {
@@ -119,11 +119,5 @@ mod tests {
         assert_eq!(noted[0]["depends_on"], "the earlier signals: sent only if emergency-stop is off");
         assert_eq!(frames(&["stop"]).unwrap()[0]["bits"][0], "0x0001");
         assert_eq!(frames(&["auto-mode"]).unwrap(), Vec::<serde_json::Value>::new());
-    }
-
-    #[test]
-    fn signals_are_for_no_single_robot() {
-        assert!(words(&["run", "--unit", "1"]).unwrap_err().message.contains("--unit"));
-        assert_eq!(intent(&["run"]), "run the robot program");
     }
 }

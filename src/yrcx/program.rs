@@ -311,71 +311,7 @@ impl Report for Execution {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
-
     use super::ProgramLine;
-    use crate::testing::{example, intent, objects, read_example, read_in_turn, rejects, risk, words};
-    use armctl_controller::Risk;
-
-    #[test]
-    fn the_examples_of_the_manual() {
-        let select = ["program", "select", "--program", "1", "--task", "1", "--priority", "47"];
-        assert_eq!(words(&select).unwrap(), [example("4.6.1-designate")]);
-        let done = json!({
-            "set": "program_state", "old": null, "new": "registered", "program": 1, "task": 1, "priority": 47,
-        });
-        assert_eq!(read_example("4.6.1-designate", &select), done);
-        let run = ["program", "run", "--program", "1"];
-        assert_eq!(words(&run).unwrap(), [example("4.6.2-execute")]);
-        assert_eq!(read_example("4.6.2-execute", &run)["state"], "running");
-        // In this example, the manual prints WI1 as 0x0100, and prints the name without the spaces that its own text
-        // requires.
-        let reset = ["program", "reset", "--name", "ABC_DE"];
-        assert_eq!(words(&reset).unwrap(), [example("4.6.3-reset")]);
-        assert_eq!(read_in_turn(&["4.6.3-reset"], &reset)["name"], "ABC_DE");
-        let show = read_example("4.6.4-reference", &["program", "show", "--program", "1"]);
-        assert_eq!(
-            show,
-            json!({
-                "program": "ABCDEFGH", "line": 101, "step": null, "state": null, "elapsed_ms": null, "cycles": [],
-                "cycle_times": null, "number": 1, "task": 2, "priority": 32, "in_common": false,
-            })
-        );
-    }
-
-    #[test]
-    fn programs_are_named_in_one_way() {
-        let head = |line: &str| words(&line.split(' ').collect::<Vec<_>>()).unwrap()[0][..4].join(" ");
-        assert_eq!(head("program run --all-programs"), "0x0402 0x0000 0x0000 0x0000");
-        assert_eq!(head("program step --task 3"), "0x0403 0x0002 0x0000 0x0003");
-        assert_eq!(head("program skip --name A"), "0x0404 0x0004 0x0000 0x0000");
-        assert_eq!(head("program next --program 100"), "0x0405 0x0001 0x0064 0x0000");
-        assert_eq!(head("program reset --all-programs"), "0x0406 0x0000 0x0000 0x0000");
-        assert_eq!(head("program select --name A --priority 1"), "0x0401 0x0004 0x0000 0x0000");
-        objects([
-            ("program run", "--all-programs"),
-            ("program step --all-programs", "--all-programs"),
-            ("program run --program 1 --task 1", "cannot be used with"),
-            ("program select --program 1", "--priority"),
-            ("program select --task 1 --priority 1", "--program"),
-            ("program select --program 1 --task 17 --priority 1", "1..=16"),
-        ]);
-        rejects([
-            ("program run --program 101", "allowed: 1 to 100"),
-            ("program run --task 0", "allowed: 1 to 16"),
-            ("program run --name abc", "A-Z, 0-9 and _"),
-            ("program select --program 1 --priority 65", "allowed: 1 to 64"),
-        ]);
-    }
-
-    #[test]
-    fn what_may_move_the_robot_asks_first() {
-        assert_eq!(risk(&["program", "run", "--all-programs"]), Risk::Motion);
-        assert_eq!(risk(&["program", "skip", "--task", "1"]), Risk::Motion);
-        assert_eq!(risk(&["program", "reset", "--all-programs"]), Risk::Write);
-        assert_eq!(intent(&["program", "run", "--all-programs"]), "run all programs");
-        assert_eq!(intent(&["program", "step", "--task", "3"]), "run one line of the program of task 3");
-    }
 
     #[test]
     fn lines_of_common_are_told_as_such() {

@@ -130,8 +130,6 @@ impl Report for Exchange {
 #[cfg(test)]
 mod tests {
     use super::words as read;
-    use crate::testing::{example, intent, objection, words};
-    use armctl_frame::failure::Kind;
 
     #[test]
     fn words_are_decimal_or_hexadecimal() {
@@ -140,20 +138,5 @@ mod tests {
             assert!(read(wrong).is_err(), "{wrong}");
         }
         assert!(read(&"1,".repeat(17)).is_err());
-    }
-
-    #[test]
-    fn words_go_out_as_they_are() {
-        let sent = words(&["raw", "--wi", "0x0001,0x0004,0,0x0032,0x0013"]).unwrap();
-        assert_eq!(sent, [example("2-ptp-walkthrough")]);
-        assert_eq!(intent(&["raw", "--wi", "0x42"]), "send motor-on: switch motor power and servos on");
-        assert_eq!(words(&["raw", "--wi", "0x501", "--unit", "1"]).unwrap_err().kind, Kind::Usage);
-    }
-
-    #[test]
-    fn what_the_manual_does_not_allow_is_rejected() {
-        assert!(objection(&["raw", "--wi", "0x0999"]).contains("0x0999 is not a remote command code"));
-        assert!(objection(&["raw", "--wi", "1,0xC000,0,0,19"]).contains("alarm 4.202"));
-        assert!(objection(&["raw", "--wi", "0x406,0x100"]).contains("WI1"));
     }
 }

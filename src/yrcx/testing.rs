@@ -98,25 +98,6 @@ pub(super) fn read_in_turn(ids: &[&str], line: &[&str]) -> Value {
     outcome.unwrap()
 }
 
-/// Each line is a usage error with this part in its message.
-#[track_caller]
-pub(super) fn rejects<'l>(cases: impl IntoIterator<Item = (&'l str, &'l str)>) {
-    for (line, part) in cases {
-        let failure = words(&line.split(' ').collect::<Vec<_>>()).unwrap_err();
-        assert_eq!(failure.kind, Kind::Usage, "{line}");
-        assert!(failure.message.contains(part), "{line}: {failure}");
-    }
-}
-
-/// Each line is refused by the parser, with this part in its message.
-#[track_caller]
-pub(super) fn objects<'l>(cases: impl IntoIterator<Item = (&'l str, &'l str)>) {
-    for (line, part) in cases {
-        let objection = objection(&line.split(' ').collect::<Vec<_>>());
-        assert!(objection.contains(part), "{line}: {objection}");
-    }
-}
-
 /// Error of the command-line parser.
 pub(super) fn objection(words: &[&str]) -> String {
     testing::parse(FACE, "sim:", words).err().expect("the parser objects").to_string()
@@ -156,7 +137,7 @@ pub(super) fn frames(words: &[&str]) -> Result<Vec<Value>, Failure> {
 }
 
 /// Report of a dry run.
-fn plan(words: &[&str]) -> Result<Value, Failure> {
+pub(super) fn plan(words: &[&str]) -> Result<Value, Failure> {
     let (robot, command) = resolved(DRY, words)?;
     planned::<Yrcx>(&robot, &*command, |link| link.set_unit(unit(words)))
 }

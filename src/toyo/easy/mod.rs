@@ -136,33 +136,7 @@ pub struct Program {
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::{Bench, blocks, objection};
-
-    #[test]
-    fn one_program_or_all_programs_are_read() {
-        assert_eq!(blocks(&["easy", "get", "2"]).unwrap(), ["@RESY PNO=02 ST=000"]);
-        assert_eq!(blocks(&["easy", "get"]).unwrap().len(), 8);
-        assert_eq!(blocks(&["easy", "progress"]).unwrap(), ["@RESD"]);
-        assert_eq!(blocks(&["easy", "select", "3"]).unwrap(), ["@SESN PR=03", "@RESD"]);
-        assert!(objection(&["easy", "get", "9"]).contains("9 is out of range"));
-    }
-
-    #[test]
-    fn an_equal_program_is_not_written() {
-        let read = "@RESY PNO=01 ST=000";
-        assert_eq!(
-            blocks(&["easy", "set", "1", "10", "5", "20"]).unwrap(),
-            [read, "@WESY PNO=01 ST=000 START=010 LOOP=0005 END=020", read]
-        );
-        assert_eq!(
-            blocks(&["easy", "set", "1", "loop=7"]).unwrap(),
-            [read, "@WESY PNO=01 ST=000 START=? LOOP=0007 END=?", read]
-        );
-        assert_eq!(
-            blocks(&["easy", "set", "1", "10", "5", "1000"]).unwrap_err().message,
-            "easy program 1: end: 1000 is out of range (a number, 0 to 999)"
-        );
-    }
+    use crate::testing::Bench;
 
     #[test]
     fn a_second_copy_writes_nothing() {

@@ -69,7 +69,6 @@ mod tests {
         let all = [screens("MINP", 6), screens("MOUT", 5), screens("MNIN", 1)].concat();
         assert_eq!(all_blocks(&["io", "list"]).unwrap(), all);
         assert_eq!(all_blocks(&["io", "list", "--in"]).unwrap(), screens("MINP", 6));
-        assert_eq!(all_blocks(&["io", "list", "--station", "1"]).unwrap(), ["@MINP SNO=1 GN=1", "@MOUT SNO=1 GN=1"]);
     }
 
     #[test]

@@ -263,42 +263,7 @@ mod tests {
     use serde_json::Value;
 
     use super::*;
-    use crate::testing::{Bench, Fault, all_blocks, blocks, objection};
-
-    #[test]
-    fn bits_and_whole_ports_are_set() {
-        let read = "@MOUT SNO=0 GN=1";
-        assert_eq!(blocks(&["io", "set", "1=.......1"]).unwrap(), ["@DOUT STN=0 PN01=.......1", read]);
-        assert_eq!(blocks(&["io", "set", "1.3=on"]).unwrap(), ["@DOUT STN=0 PN01=.....1..", read]);
-        assert_eq!(
-            blocks(&["io", "set", "PN99.8=off", "2=10101010", "99.1=1", "--station", "4"]).unwrap(),
-            ["@DOUT STN=4 PN99=0......1", "@DOUT STN=4 PN02=10101010", "@MOUT SNO=4 GN=1"],
-            "no port 99 can be read"
-        );
-        assert_eq!(
-            all_blocks(&["io", "direct", "4"]).unwrap(),
-            ["@STAS SNO=2", "@HSON", "@STAS SNO=0", "@DOUT 4", "@STAS SNO=0", "@HSOF"],
-            "the host is taken and given back"
-        );
-    }
-
-    #[test]
-    fn wrong_arguments_are_rejected_before_any_block_is_sent() {
-        for (words, why) in [
-            (["io", "set", "1"], "for example OUT1.3=on"),
-            (["io", "set", "1.9=on"], "bits 1 to 8"),
-            (["io", "set", "1.0=on"], "bits 1 to 8"),
-            (["io", "set", "1.1=yes"], "on or off"),
-            (["io", "set", "100=........"], "1 to 99"),
-            (["io", "set", "1=.1"], "eight characters (0, 1 or a dot)"),
-            (["io", "set", "1=on"], "OUT1.1=on"),
-            (["io", "direct", "5"], "1..=4"),
-        ] {
-            assert!(objection(&words).contains(why), "{words:?}: {}", objection(&words));
-        }
-        let twice = blocks(&["io", "set", "1.3=on", "1=00000000"]).unwrap_err();
-        assert_eq!(twice.message, "bit 3 of port 1 appears twice");
-    }
+    use crate::testing::{Bench, Fault};
 
     #[test]
     fn a_failure_reports_the_result_of_each_port() {

@@ -2,7 +2,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use super::*;
-use crate::testing::{Bench, Fault, ReceivedBlocks, all_blocks, blocks, intent, objection};
+use crate::testing::{Bench, Fault, ReceivedBlocks};
 
 const LOW: [&str; 6] = ["jog", "X", "+", "low", "--for", "500ms"];
 const STOP: &str = "@JGST X=SP Y=SP Z=SP R=SP";
@@ -20,50 +20,6 @@ fn assert_stop_is_last(received: &ReceivedBlocks) {
     let moved_mm = received.iter().rposition(|block| block.contains("=+") || block.contains("=-"));
     let stopped = received.iter().rposition(|block| block == STOP);
     assert!(moved_mm.is_some() && moved_mm < stopped, "{received:#?}");
-}
-
-#[test]
-fn a_dry_run_shows_the_whole_sequence() {
-    assert_eq!(
-        all_blocks(&LOW).unwrap(),
-        [
-            "@SYSP",
-            "@RPAR E01",
-            "@STAS SNO=2",
-            "@HSON",
-            "@STAS SNO=0",
-            "@JGST X=RS Y=RS Z=RS R=RS",
-            "@MPST",
-            // The controller reports which axis is X.
-            "@JGST X=? Y=? Z=? R=?",
-            "@STAS SNO=0",
-            "@MPST",
-            STOP,
-            "@STAS SNO=0",
-            "@MPST",
-            "@HSOF"
-        ]
-    );
-    for (words, block) in [
-        (["jog", "2", "-", "high", "--for", "1s"], "@JGST X=SP Y=-H Z=SP R=SP"),
-        (["jog", "3", "minus", "inch", "--steps", "3"], "@JGST X=SP Y=SP Z=-C R=SP"),
-        (["jog", "4", "plus", "low", "--for", "60"], "@JGST X=SP Y=SP Z=SP R=+L"),
-    ] {
-        assert_eq!(blocks(&words).unwrap()[2], block);
-    }
-}
-
-#[test]
-fn a_jog_without_time_limit_is_rejected_before_any_block_is_sent() {
-    assert!(objection(&["jog", "X", "+", "low"]).contains("--for"));
-    assert!(objection(&["jog", "X", "+", "high", "--for", "61s"]).contains("100ms to 1m"));
-    assert!(objection(&["jog", "X", "+", "high", "--for", "50ms"]).contains("100ms to 1m"));
-    assert!(objection(&["jog", "A", "+", "inch"]).contains("X, Y, Z, R"));
-    assert!(objection(&["jog", "X", "+", "inch", "--steps", "101"]).contains("1..=100"));
-    for words in [["jog", "X", "+", "inch", "--for", "1s"], ["jog", "X", "+", "low", "--steps", "2"]] {
-        assert_eq!(blocks(&words).unwrap_err().kind, Kind::Usage, "{words:?}");
-    }
-    assert_eq!(intent(&LOW), "move axis X slowly in plus direction for 500ms");
 }
 
 #[test]

@@ -271,38 +271,7 @@ impl EepromRow for Records {
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::{Bench, blocks, objection};
-
-    #[test]
-    fn a_program_is_read_from_sixteen_records() {
-        let blocks = |words: &[&str]| blocks(words).unwrap();
-        assert_eq!(blocks(&["palletizing", "get", "3"]).len(), 16);
-        assert_eq!(blocks(&["palletizing", "get", "3", "source-p1", "16"]), ["@RPLT 03 SNO=03", "@RPLT 03 SNO=16"]);
-        assert_eq!(blocks(&["palletizing", "progress"]), ["@RPLD"]);
-        assert_eq!(blocks(&["palletizing", "select", "16"]), ["@SPLN PR=16", "@RPLD"]);
-        let copied = blocks(&["palletizing", "copy", "1", "2"]);
-        assert_eq!((copied.len(), &copied[32][..]), (49, "@CPPL STA=01 TOP=02"));
-        assert!(objection(&["palletizing", "get", "17"]).contains("17 is out of range (a number, 1 to 16)"));
-        let error = objection(&["palletizing", "get", "1", "sorce-p1"]);
-        assert!(error.contains("unknown record; did you mean source-p1?"), "{error}");
-    }
-
-    #[test]
-    fn an_equal_record_is_not_written() {
-        assert_eq!(
-            blocks(&["palletizing", "set", "1", "Source-P1", "1.5", "-2", "0"]).unwrap(),
-            ["@RPLT 01 SNO=03", "@WPLT 01 SNO=03 X=+0001.50 Y=-0002.00 Z=+0000.00", "@RPLT 01 SNO=03"]
-        );
-        assert_eq!(
-            blocks(&["palletizing", "set", "1", "1", "5", "m-m"]).unwrap()[1],
-            "@WPLT 01 SNO=01 TAG=005 MOD=M-M"
-        );
-        assert_eq!(blocks(&["palletizing", "set", "1", "7", "aim=incremental"]).unwrap()[2..], ["@RPLT 01 SNO=07"]);
-        assert_eq!(
-            blocks(&["palletizing", "set", "1", "7", "aim=x"]).unwrap_err().message,
-            "source-approach: aim: 'x' is not a (absolute) or i (incremental)"
-        );
-    }
+    use crate::testing::Bench;
 
     #[test]
     fn a_program_is_dumped_restored_and_copied() {

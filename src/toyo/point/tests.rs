@@ -1,38 +1,6 @@
 //! Tests of the blocks and results of `toyo point`.
 
-use crate::testing::{Bench, Fault, blocks, objection};
-
-#[test]
-fn each_point_of_overlapping_ranges_is_read_once() {
-    assert_eq!(
-        blocks(&["point", "get", "9-10,20", "9"]).unwrap(),
-        ["@MTSK", "@RPAR T1 PT=009", "@RPAR T1 PT=010", "@RPAR T1 PT=020"]
-    );
-    assert_eq!(
-        blocks(&["point", "get", "1", "--task", "2"]).unwrap(),
-        ["@MTSK", "@CTSK TASK=02", "@RPAR T1 PT=001", "@CTSK TASK=?"]
-    );
-    assert_eq!(blocks(&["point", "list"]).unwrap().len(), 1 + 999);
-    assert_eq!(blocks(&["point", "list", "998-999"]).unwrap()[1..], ["@RPAR T1 PT=998", "@RPAR T1 PT=999"]);
-    assert!(objection(&["point", "get", "1000"]).contains("1000 is out of range (a number, 1 to 999)"));
-}
-
-#[test]
-fn an_equal_point_is_not_written() {
-    assert_eq!(
-        blocks(&["point", "set", "7", "100", "-20.5", "0", "0"]).unwrap(),
-        ["@MTSK", "@RPAR T1 PT=007", "@WPAR T1 PT=007 X=+0100.00 Y=-0020.50 Z=+0000.00 R=+0000.00", "@RPAR T1 PT=007"]
-    );
-    assert_eq!(
-        blocks(&["point", "set", "7", "z=1"]).unwrap(),
-        ["@MTSK", "@RPAR T1 PT=007", "@WPAR T1 PT=007 X=? Y=? Z=+0001.00 R=?", "@RPAR T1 PT=007"]
-    );
-    assert_eq!(
-        blocks(&["point", "set", "7", "100", "0", "9000", "0"]).unwrap_err().message,
-        "point 7: z: 9000.00 is out of range (a number, -8000.00 to 8000.00 mm)"
-    );
-    assert!(objection(&["point", "set", "7"]).contains("VALUE"));
-}
+use crate::testing::{Bench, Fault, blocks};
 
 #[test]
 fn points_are_dumped_and_restored() {

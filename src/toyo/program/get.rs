@@ -338,7 +338,7 @@ impl Report for Got {
 
 #[cfg(test)]
 mod tests {
-    use crate::testing::{Bench, Fault, all_blocks, blocks, objection};
+    use crate::testing::{Bench, Fault, blocks};
     use armctl_frame::failure::Kind;
 
     /// Returns a controller with this fault at step 2 of three steps.
@@ -395,34 +395,6 @@ mod tests {
         assert_eq!(got["steps"].as_array().unwrap().len(), 9);
         let failure = with_step_2(Fault::Answered("@NG")).run(&["program", "get", "--from", "2", "--to", "2"]);
         assert_eq!(failure.unwrap_err().kind, Kind::Refused, "nothing was answered");
-    }
-
-    #[test]
-    fn another_task_is_chosen_first() {
-        assert_eq!(blocks(&["program", "get"]).unwrap(), ["@MTSK", "@RPAR E22", "@RSTX 0001"]);
-        assert_eq!(
-            all_blocks(&["program", "get", "--task", "2", "--from", "10"]).unwrap(),
-            [
-                "@MTSK",
-                "@STAS SNO=2",
-                "@HSON",
-                "@STAS SNO=0",
-                "@CTSK TASK=02",
-                "@RPAR E22",
-                "@RSTX 0010",
-                "@CTSK TASK=?",
-                "@STAS SNO=0",
-                "@HSOF"
-            ]
-        );
-    }
-
-    #[test]
-    fn steps_and_tasks_have_ranges() {
-        assert!(objection(&["program", "get", "--from", "0"]).contains("1..=5000"));
-        assert!(objection(&["program", "get", "--task", "5"]).contains("1..=4"));
-        let failure = blocks(&["program", "get", "--from", "5", "--to", "4"]).unwrap_err();
-        assert_eq!(failure.kind.exit(), 2);
     }
 
     #[test]

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::testing::{Bench, blocks, objection};
+use crate::testing::{Bench, blocks};
 use armctl_frame::failure::{Failure, Kind};
 
 /// The program in the sample session of the manual (TO 3-1).
@@ -235,23 +235,9 @@ fn blocks_are_those_of_the_manual() {
         edit(&["copy", "1", "1", "--at", "1", "--from-task", "2", "--to-task", "1"]),
         ["@CPSS TASK=02 STA=0001 END=0001 TASK=01 TOP=0001"]
     );
-    assert_eq!(blocks(&["program", "search", "1"]).unwrap(), ["@MTSK", "@STAS SNO=0", "@SSTG TAG=001", "@RSTX 0000"]);
-    assert_eq!(blocks(&["program", "show"]).unwrap(), ["@MTSK", "@RSTX 0000"]);
 }
 
 #[test]
-fn wrong_arguments_send_nothing() {
-    assert!(objection(&["program", "search", "1000"]).contains("1..=999"));
-    for words in [
-        &["insert", "1", "OUT", "STN=9"][..],
-        &["insert", "1", "JMP", "TAG=next"],
-        &["delete", "5", "--to", "4"],
-        &["copy", "5", "4", "--at", "1"],
-        &["copy", "1", "2", "--at", "5000"],
-        &["copy", "1", "2", "--at", "2"],
-    ] {
-        let failure = blocks(&[&["program"], words].concat()).unwrap_err();
-        assert_eq!(failure.kind, Kind::Usage, "{words:?}");
-    }
+fn a_missing_file_is_a_local_failure() {
     assert_eq!(blocks(&["program", "put", "/nowhere/x.txt"]).unwrap_err().kind, Kind::Local);
 }

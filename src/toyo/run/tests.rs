@@ -1,43 +1,11 @@
 //! Tests of `toyo run` on simulators in virtual time.
 
 use super::*;
-use crate::testing::{Bench, Fault, all_blocks, blocks, intent, objection};
+use crate::testing::{Bench, Fault};
 
 /// A program that waits half a second, and then moves 100 mm at 100 mm/s.
 const PROGRAM: &str = "origin = true\nspeeds = { 1 = 100.0 }\npoints = { 1 = { 1 = [100.0, 0.0, 0.0, 0.0] } }\n\
     steps = { 1 = [\"TIM TM=000.5\", \"MOVP a PT=001 CN=00 S V=01 POST\", \"OUT STN=0 PN01=.......1\", \"END\"] }\n";
-
-#[test]
-fn dry_runs_show_the_start_and_the_status_reads() {
-    assert_eq!(
-        all_blocks(&["run", "sequential", "12", "--wait"]).unwrap(),
-        [
-            "@SYSP",
-            "@RPAR E01",
-            "@STAS SNO=2",
-            "@HSON",
-            "@STAS SNO=0",
-            "@SPST 0012",
-            "@STAS SNO=0",
-            "@MPST",
-            "@STAS SNO=4",
-            "@RSTX 0000",
-            "@STAS SNO=1",
-            "@RSTX 0000",
-            "@STAS SNO=2",
-            "@RSTX ?",
-            "@HSOF"
-        ]
-    );
-    assert_eq!(blocks(&["run", "sequential"]).unwrap(), ["@SPST 0000"]);
-    assert_eq!(blocks(&["run", "palletizing", "--program", "3", "--no-wait"]).unwrap(), ["@SPLN PR=03", "@PPST"]);
-    assert_eq!(blocks(&["run", "palletizing", "--no-wait"]).unwrap(), ["@PPST"]);
-    assert_eq!(blocks(&["run", "easy", "--program", "8", "--no-wait"]).unwrap(), ["@SESN PR=08", "@SESY"]);
-    assert_eq!(blocks(&["run", "point", "7", "--no-wait"]).unwrap(), ["@EXTP PT=007"]);
-    assert_eq!(intent(&["run", "easy", "--program", "8"]), "run easy program 8");
-    assert!(objection(&["run", "sequential", "5001"]).contains("1..=5000"));
-    assert!(objection(&["run", "point", "0"]).contains("1 to 999"));
-}
 
 #[test]
 fn run_with_wait_ends_with_the_program() {

@@ -39,31 +39,3 @@ impl Kind for Comments {
         values.text(Key::Comment).is_none_or(str::is_empty)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use serde_json::json;
-
-    use crate::testing::{example, read_example, words, written};
-
-    #[test]
-    fn the_examples_of_the_manual() {
-        let set = ["comment", "set", "100", "WAIT ORG"];
-        assert_eq!(written(&set).unwrap(), [example("4.3.2-define")]);
-        assert_eq!(read_example("4.3.2-define", &set)["items"][0]["new"], "WAIT ORG");
-        let read = read_example("4.3.2-reference", &["comment", "get", "50"]);
-        let (name, kind) = ("50", "comment of point");
-        let item = json!({"name": name, "label": null, "kind": kind, "ok": true, "value": "WAIT ORG"});
-        assert_eq!(read["items"], json!([item]));
-    }
-
-    #[test]
-    fn comments_have_sixteen_characters_that_print() {
-        assert!(words(&["comment", "set", "1", "0123456789ABCDEF"]).is_ok());
-        assert_eq!(written(&["comment", "set", "1", ""]).unwrap()[0][4], "0x0000");
-        for wrong in ["0123456789ABCDEFG", "Größe", "a\tb"] {
-            let failure = words(&["comment", "set", "1", wrong]).unwrap_err();
-            assert!(failure.message.ends_with("allowed: up to 16 ASCII characters"), "{failure}");
-        }
-    }
-}

@@ -70,32 +70,3 @@ pub struct Data {
     /// Data 4: 1 for a hand on the R axis, otherwise 0.
     data_4: i32,
 }
-
-#[cfg(test)]
-mod tests {
-    use serde_json::json;
-
-    use crate::testing::{example, read_example, words, written};
-    use armctl_frame::failure::Kind;
-
-    const SET: [&str; 8] = ["hand-data", "set", "1", "0", "10000", "-2", "5", "0"];
-
-    #[test]
-    fn the_examples_of_the_manual() {
-        assert_eq!(written(&SET).unwrap(), [example("4.3.5-define")]);
-        assert_eq!(read_example("4.3.5-define", &SET)["items"][0]["new"]["data_2_mm"], -2.0);
-        let read = read_example("4.3.5-reference", &["hand-data", "get", "1"]);
-        let hand = json!({"robot": 1, "data_1": 10000, "data_2_mm": -2.0, "data_3_mm": 5.0, "data_4": 0});
-        assert_eq!(read["items"][0]["value"], hand);
-    }
-
-    #[test]
-    fn a_hand_belongs_to_a_robot_and_is_read_without() {
-        let sent = written(&["hand-data", "set", "1", "3", "10000", "-2", "5", "1"]).unwrap();
-        assert_eq!((sent[0][0].as_str(), sent[0][10].as_str()), ("0x3110", "0x0001"));
-        assert_eq!(words(&["hand-data", "get", "1", "--unit", "3"]).unwrap_err().kind, Kind::Usage);
-        let first = |data| words(&["hand-data", "set", "1", "1", data, "0", "0", "0"]);
-        assert!(first("10.5").unwrap_err().message.contains("data_1"));
-        assert!(first("10.000").is_err(), "ambiguous: 10 or 10000");
-    }
-}

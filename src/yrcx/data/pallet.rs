@@ -63,36 +63,3 @@ pub struct Places {
     /// First of the five points that define the pallet.
     first_point: i32,
 }
-
-#[cfg(test)]
-mod tests {
-    use serde_json::json;
-
-    use crate::testing::{example, objection, read_example, words, written};
-
-    #[test]
-    fn the_examples_of_the_manual() {
-        let set = ["pallet-data", "set", "10", "10", "15", "1", "100"];
-        assert_eq!(written(&set).unwrap(), [example("4.3.3-define")]);
-        assert_eq!(
-            read_example("4.3.3-define", &set)["items"][0]["new"],
-            json!({"nx": 10, "ny": 15, "nz": 1, "first_point": 100})
-        );
-        let read = read_example("4.3.3-reference", &["pallet-data", "get", "10"]);
-        assert_eq!(read["items"][0]["value"], json!({"nx": 10, "ny": 15, "nz": 1, "first_point": 100}));
-    }
-
-    #[test]
-    fn a_pallet_has_so_many_places_and_no_more() {
-        for (line, part) in [
-            ("1 256 128 1 1", "X times Y times Z is 32768; a pallet has 1 to 32767"),
-            ("1 0 1 1 1", "X times Y times Z is 0"),
-            ("1 1 1 1 29996", "allowed: 0 to 29995"),
-        ] {
-            let line: Vec<&str> = ["pallet-data", "set"].into_iter().chain(line.split(' ')).collect();
-            let failure = words(&line).unwrap_err();
-            assert!(failure.message.contains(part), "{failure}");
-        }
-        assert!(objection(&["pallet-data", "get", "40"]).contains("allowed: 0 to 39"));
-    }
-}

@@ -179,42 +179,8 @@ fn printed_point(file: &Path) -> Result<Given, Failure> {
 mod tests {
     use serde_json::json;
 
-    use crate::testing::{Reply, Scripted, example, objects, read_example, report_on, run_on, words, written};
+    use crate::testing::{Reply, Scripted, report_on, run_on};
     use armctl_frame::failure::Kind;
-
-    #[test]
-    fn the_examples_of_the_manual() {
-        let set = ["point", "set", "100", "--pulse", "10000,-20000,5000,-18000"];
-        assert_eq!(written(&set).unwrap(), [example("4.3.1-define")]);
-        assert_eq!(
-            read_example("4.3.1-define", &set)["items"][0]["new"]["text"],
-            json!("--pulse 10000,-20000,5000,-18000")
-        );
-        let read = read_example("4.3.1-reference", &["point", "get", "50"]);
-        let row = &read["items"][0];
-        assert_eq!((&row["name"], &row["ok"], &row["kind"]), (&json!("50"), &json!(true), &json!("point")));
-        let row = &row["value"];
-        assert_eq!(row["text"], json!("--mm 10.000,-20.000,5.000,-18.000"));
-        assert_eq!((&row["x_mm"], &row["joints"][3]["mm"]), (&json!(10.0), &json!(-18.0)));
-    }
-
-    #[test]
-    fn coordinates_have_a_unit_and_a_hand() {
-        let sent = written(&["point", "set", "0", "--mm", "1,-2.5,0,0", "--hand", "left"]).unwrap();
-        assert_eq!(sent[0][..8], ["0x0100", "0x0005", "0x0000", "0x0000", "0x03E8", "0x0000", "0xF63C", "0xFFFF"]);
-        objects([
-            ("point set 1", "--mm"),
-            ("point set 1 --mm 1,2,3", "expected four numbers, one per axis, such as 10,-20,5,-18; 3 given"),
-            ("point set 1 --mm 1,2,3,4 --pulse 1,2,3,4", "cannot be used with"),
-            ("point set 1 --pulse 1,2,3,4 --hand left", "cannot be used with"),
-            ("point set 30000 --mm 1,2,3,4", "allowed: 0 to 29999"),
-            ("point get 0..30000", "allowed: 0 to 29999"),
-        ]);
-        let failure = words(&["point", "set", "1", "--mm", "1.0005,2,3,4"]).unwrap_err();
-        assert!(failure.message.contains("axis_1"), "{failure}");
-        assert_eq!(words(&["point", "get", "1", "--unit", "2"]).unwrap_err().kind, Kind::Usage);
-        assert_eq!(words(&["point", "get", "0..29"]).unwrap().len(), 30);
-    }
 
     fn answer(point: u16) -> Reply {
         let mut words = [0; 16];

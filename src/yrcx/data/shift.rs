@@ -52,28 +52,3 @@ pub struct Shift {
     /// Shift of axes 1 to 4 in mm, or degrees for rotary axes.
     shift_mm: [f64; 4],
 }
-
-#[cfg(test)]
-mod tests {
-    use serde_json::json;
-
-    use crate::testing::{example, objection, read_example, words, written};
-
-    #[test]
-    fn the_examples_of_the_manual() {
-        let set = ["shift-data", "set", "5", "10", "-20", "5", "-18"];
-        assert_eq!(written(&set).unwrap(), [example("4.3.4-define")]);
-        assert_eq!(
-            read_example("4.3.4-define", &set)["items"][0]["new"],
-            json!({"shift_mm": [10.0, -20.0, 5.0, -18.0]})
-        );
-        let read = read_example("4.3.4-reference", &["shift-data", "get", "5"]);
-        assert_eq!(read["items"][0]["value"], json!({"shift_mm": [10.0, -20.0, 5.0, -18.0]}));
-    }
-
-    #[test]
-    fn mistakes_are_named() {
-        assert!(objection(&["shift-data", "set", "40", "1", "2", "3", "4"]).contains("allowed: 0 to 39"));
-        assert!(words(&["shift-data", "set", "4", "1"]).unwrap_err().message.contains("4 values needed, but 1 typed"));
-    }
-}

@@ -179,7 +179,7 @@ impl Report for Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{frames, intent, objection, risk};
+    use crate::testing::frames;
 
     #[test]
     fn messages_have_the_bytes_of_the_specification() {
@@ -193,16 +193,6 @@ mod tests {
     }
 
     #[test]
-    fn what_the_controller_is_shown_can_move_it() {
-        assert_eq!(risk(&["eip", "set", "4", "150", "3", "00"]), Risk::Motion);
-        assert_eq!(risk(&["eip", "set", "0xF5", "1", "3", "00"]), Risk::Destroy);
-        assert_eq!(risk(&["eip", "get", "4", "150", "3"]), Risk::Read);
-        assert!(frames(&["eip", "get", "4", "150", "3", "--unit", "1"]).unwrap_err().message.contains("--unit"));
-        let asked = intent(&["eip", "set", "4", "150", "3", "0xFF01"]);
-        assert_eq!(asked, "set class 0x04 (assembly), instance 150, attribute 3 to ff 01");
-    }
-
-    #[test]
     fn values_are_numbers_and_texts_where_they_can_be() {
         let object = Object { class: 1, instance: 1, attribute: Some(7) };
         let value = Value::of(object, b"\x04YRCX");
@@ -211,21 +201,5 @@ mod tests {
         assert_eq!((value.number, value.text), (Some(636), None));
         assert_eq!(Value::of(object, b"\x02\x1b[").text, None, "control characters are no text");
         assert_eq!(Value::of(object, &[]).number, None);
-    }
-
-    #[test]
-    fn mistakes_are_named() {
-        for (line, part) in [
-            (&["eip", "get", "4"][..], "INSTANCE"),
-            (&["eip", "get", "x", "1", "1"], "not a number from 0 to 65535"),
-            (&["eip", "get", "4", "65536", "1"], "not a number from 0 to 65535"),
-            (&["eip", "get", "+4", "1", "1"], "not a number"),
-            (&["eip", "set", "4", "1", "3"], "HEX"),
-            (&["eip", "set", "4", "1", "3", "0"], "not valid hexadecimal data"),
-            (&["eip", "set", "4", "1", "3", ""], "not valid hexadecimal data"),
-        ] {
-            let objection = objection(line);
-            assert!(objection.contains(part), "{line:?}: {objection}");
-        }
     }
 }

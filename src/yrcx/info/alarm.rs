@@ -67,17 +67,3 @@ pub fn told(alarm: alarm::Alarm) -> Told {
         ..Told::default()
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use serde_json::json;
-
-    use crate::testing::{example, read_example, words};
-
-    #[test]
-    fn the_examples_of_the_manual() {
-        assert_eq!(words(&["info", "alarm"]).unwrap(), [example("4.7.17-reference")]);
-        let latest = &read_example("4.7.17-reference", &["info", "alarm"])["alarms"][0];
-        assert_eq!((&latest["code"], &latest["place"]), (&json!("2.334"), &json!("robot 1")));
-    }
-}

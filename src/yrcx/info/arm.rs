@@ -77,14 +77,7 @@ impl Report for Arms {
 mod tests {
     use serde_json::json;
 
-    use crate::testing::{Reply, Scripted, answer, example, read_in_turn, report_on, words};
-
-    #[test]
-    fn the_examples_of_the_manual() {
-        let ids = ["4.7.9-reference", "4.7.10-reference"];
-        assert_eq!(words(&["info", "arm"]).unwrap(), ids.map(example));
-        assert_eq!(read_in_turn(&ids, &["info", "arm"]), json!({"selected": "left", "current": "left", "errors": []}));
-    }
+    use crate::testing::{Reply, Scripted, answer, report_on};
 
     #[test]
     fn one_that_is_refused_does_not_hide_the_other() {

@@ -90,17 +90,7 @@ impl Report for Origins {
 mod tests {
     use serde_json::json;
 
-    use crate::testing::{Reply, Scripted, example, read_example, run_on, words};
-
-    #[test]
-    fn the_example_of_the_manual() {
-        let line = ["info", "origin", "--unit", "1"];
-        assert_eq!(words(&line).unwrap(), [example("4.7.11-reference")]);
-        let read = read_example("4.7.11-reference", &line);
-        let states: Vec<_> = read["axes"].as_array().unwrap().iter().map(|axis| axis["state"].clone()).collect();
-        assert_eq!(states, ["complete", "complete", "incomplete", "complete"]);
-        assert_eq!(read["system"], json!(null));
-    }
+    use crate::testing::{Reply, Scripted, run_on, words};
 
     #[test]
     fn without_a_robot_it_is_that_of_the_system() {

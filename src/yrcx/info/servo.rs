@@ -60,18 +60,3 @@ impl Report for Servos {
         View::table(table)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use serde_json::json;
-
-    use crate::testing::{example, read_example, words};
-
-    #[test]
-    fn the_example_of_the_manual() {
-        assert_eq!(words(&["info", "servo"]).unwrap(), [example("4.7.3-reference")]);
-        let servos = read_example("4.7.3-reference", &["info", "servo"]);
-        let states: Vec<_> = servos["axes"].as_array().unwrap().iter().map(|axis| axis["state"].clone()).collect();
-        assert_eq!(states, [json!("servo"), json!("servo"), json!("free"), json!("servo")]);
-    }
-}

@@ -56,20 +56,3 @@ impl Report for Modules {
         View::table(table)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use serde_json::json;
-
-    use crate::testing::{example, read_example, words};
-
-    #[test]
-    fn the_example_of_the_manual() {
-        assert_eq!(words(&["info", "slots", "--controller", "1"]).unwrap(), [example("4.7.15-reference")]);
-        let slots = &read_example("4.7.15-reference", &["info", "slots"])["slots"];
-        assert_eq!(slots[0], json!({"slot": 1, "module": "EtherNet/IP", "code": "0x0401"}));
-        assert_eq!(slots[1]["module"], "DIO NPN general-purpose input");
-        assert_eq!(slots[3], json!({"slot": 4, "module": "none", "code": "0x0000"}));
-        assert!(words(&["info", "slots", "--controller", "5"]).unwrap_err().message.contains("allowed: 1 to 4"));
-    }
-}

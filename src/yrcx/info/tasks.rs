@@ -143,38 +143,3 @@ pub struct TaskLine {
     /// Whether the line is in the COMMON program.
     in_common: bool,
 }
-
-#[cfg(test)]
-mod tests {
-    use serde_json::json;
-
-    use crate::testing::{example, objection, read_example, words};
-
-    #[test]
-    fn the_examples_of_the_manual() {
-        assert_eq!(words(&["info", "tasks", "1..8"]).unwrap(), [example("4.7.5-reference")]);
-        let read = read_example("4.7.5-reference", &["info", "tasks", "1..8"]);
-        let states: Vec<Option<&str>> =
-            read["items"].as_array().unwrap().iter().map(|task| task["value"].as_str()).collect();
-        let (runs, waits) = (Some("execution"), Some("suspend"));
-        assert_eq!(states, [runs, runs, None, None, waits, None, None, None]);
-        assert_eq!(words(&["info", "line", "1..8"]).unwrap(), [example("4.7.6-reference")]);
-        let read = read_example("4.7.6-reference", &["info", "line", "2-3,5"]);
-        let task = |task, line: Option<i32>| {
-            let value = line.map(|line| json!({"line": line, "in_common": false}));
-            json!({"name": task, "label": null, "kind": "task", "ok": true, "value": value})
-        };
-        assert_eq!(read["items"], json!([task("2", Some(19)), task("3", None), task("5", Some(99))]));
-    }
-
-    #[test]
-    fn only_the_halves_that_are_wanted_are_read() {
-        let halves = |line: &[&str]| words(line).unwrap().iter().map(|words| words[2].clone()).collect::<Vec<_>>();
-        assert_eq!(halves(&["info", "tasks"]), ["0x0000", "0x0001"]);
-        assert_eq!(halves(&["info", "tasks", "9"]), ["0x0001"]);
-        assert_eq!(halves(&["info", "line", "8..9"]), ["0x0000", "0x0001"]);
-        for wrong in ["0", "17", "3..2", "x"] {
-            assert!(objection(&["info", "line", wrong]).contains("[TASK]"), "{wrong}");
-        }
-    }
-}

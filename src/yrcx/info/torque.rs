@@ -82,18 +82,7 @@ impl Report for Torques {
 mod tests {
     use serde_json::json;
 
-    use crate::testing::{Reply, Scripted, example, objection, read_example, run_on, words};
-
-    #[test]
-    fn the_examples_of_the_manual() {
-        let max = ["info", "torque", "--axes", "3"];
-        assert_eq!(words(&max).unwrap(), [example("4.7.12-reference")]);
-        let read = read_example("4.7.12-reference", &max);
-        assert_eq!(read, json!({"of": "max", "axes": [{"axis_number": 3, "torque_percent": 20}]}));
-        let rated = ["info", "torque", "--of", "rated", "--axes", "3"];
-        assert_eq!(words(&rated).unwrap(), [example("4.7.18-reference")]);
-        assert_eq!(read_example("4.7.18-reference", &rated)["axes"][0]["torque_percent"], 100);
-    }
+    use crate::testing::{Reply, Scripted, objection, run_on};
 
     #[test]
     fn torques_have_a_sign_and_all_axes_are_read() {

@@ -207,7 +207,7 @@ fn switching(procedure: Option<Procedure>) -> Result<Procedure, Failure> {
 mod tests {
     use serde_json::Value;
 
-    use crate::testing::{Bench, Reply, Scripted, frames, intent, objection, risk};
+    use crate::testing::{Bench, Reply, Scripted, frames, intent, risk};
     use armctl_controller::Risk;
 
     #[test]
@@ -251,32 +251,5 @@ mod tests {
         let word = shown(&mut bench);
         assert_eq!((&word["name"], &word["value"], &word["meaning"]), (&"SIW(2)".into(), &5.into(), &Value::Null));
         assert_eq!(bench.into_peer().taken[0][2], 0, "the command used the words");
-    }
-
-    #[test]
-    fn what_moves_the_robot_asks_first() {
-        assert_eq!(risk(&["io", "set", "20=on"]), Risk::Write);
-        assert_eq!(risk(&["io", "set", "20=on", "auto-start=on"]), Risk::Motion);
-        assert_eq!(risk(&["io", "set", "auto-start=off"]), Risk::Write);
-        assert_eq!(risk(&["io", "pulse", "origin"]), Risk::Motion);
-        assert_eq!(intent(&["io", "pulse", "origin"]), "switch origin (SI(14)) on and off again");
-        assert_eq!(intent(&["io", "set", "20=on", "stop=off"]), "switch SI(20) on, stop (SI(06)) off");
-    }
-
-    #[test]
-    fn mistakes_are_named() {
-        for (line, part) in [
-            (&["io", "set"][..], "SIGNAL=STATE"),
-            (&["io", "set", "20"], "servo-on=on"),
-            (&["io", "set", "20=maybe"], "use on or off"),
-            (&["io", "set", "SI(02)=on"], "reserved"),
-            (&["io", "pulse", "cpu-ok"], "is not a valid signal"),
-            (&["io", "set", "SOW2=5"], "only the controller sets SOW(2)"),
-            (&["io", "set", "SIW1=5"], "belong to remote commands"),
-            (&["io", "set", "SIW2=65536"], "out of range for SIW(2)"),
-        ] {
-            let objection = objection(line);
-            assert!(objection.contains(part), "{line:?}: {objection}");
-        }
     }
 }

@@ -88,24 +88,3 @@ impl Command for AbsReset {
         Ok(MotionReport::new(format!("{verb} {way}"), &order, done.as_ref(), None))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::testing::{intent, objection, risk, words};
-    use armctl_controller::Risk;
-
-    #[test]
-    fn the_move_and_the_reset_are_two_things() {
-        let first = |line: &str| words(&line.split(' ').collect::<Vec<_>>()).unwrap()[0][..3].to_vec();
-        assert_eq!(first("abs-reset --axis 3 --move + --unit 2"), ["0x2030", "0x0000", "0x0004"]);
-        assert_eq!(first("abs-reset --axis 3 --unit 2"), ["0x2031", "0x0000", "0x0004"]);
-        assert_eq!(risk(&["abs-reset", "--axis", "1", "--move", "-"]), Risk::Motion);
-        assert_eq!(
-            intent(&["abs-reset", "--axis", "1", "--move", "-"]),
-            "move axis 1 of robot 1 in minus direction to the nearest reset position"
-        );
-        assert!(intent(&["abs-reset", "--axis", "1", "--unit", "3"]).contains("axis 1 of robot 3"));
-        assert!(words(&["abs-reset", "--axis", "none"]).unwrap_err().message.contains("name exactly 1"));
-        assert!(objection(&["abs-reset"]).contains("--axis"));
-    }
-}

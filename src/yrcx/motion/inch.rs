@@ -58,21 +58,3 @@ impl Motion for Inch {
         Some(self.system.unit())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::testing::{intent, objection, words};
-
-    #[test]
-    fn an_inch_has_a_system_an_axis_and_a_direction() {
-        let sent = words(&["inch", "tool", "4", "minus", "--unit", "2", "--report", "pulse"]).unwrap();
-        assert_eq!(sent[0][..4], ["0x2026", "0x4000", "0x0088", "0x0000"]);
-        assert_eq!(
-            intent(&["inch", "cartesian", "2", "+"]),
-            "inch axis 2 of robot 1 in plus direction in Cartesian coordinates (by the inching distance, at the manual \
-             speed)"
-        );
-        assert!(words(&["inch", "pulse", "1,2", "+"]).unwrap_err().message.contains("name exactly 1"));
-        assert!(objection(&["inch", "joint", "1", "+"]).contains("pulse, cartesian, tool"));
-    }
-}

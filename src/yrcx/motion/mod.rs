@@ -324,4 +324,4 @@ impl Report for MotionReport {
 }
 
 #[cfg(test)]
-mod tests;
+pub mod tests;

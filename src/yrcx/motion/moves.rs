@@ -126,24 +126,7 @@ impl Motion for Move {
 mod tests {
     use serde_json::json;
 
-    use crate::testing::{Reply, Scripted, frames, intent, objects, rejects, run_on, words};
-
-    #[test]
-    fn some_axes_and_another_robot() {
-        // The numbers are in the order of the axes as typed: 1.5 is for axis 3.
-        for line in ["move --to 1.5,-2,3 --axes 3,1,2 --hand left", "move --to 3=1.5,1=-2,2=3 --hand left"] {
-            let sent = words(&["--unit", "2"].into_iter().chain(line.split(' ')).collect::<Vec<_>>()).unwrap();
-            assert_eq!(
-                sent[0][..10],
-                ["0x2006", "0x0011", "0x0007", "0x0000", "0xF830", "0xFFFF", "0x0BB8", "0x0000", "0x05DC", "0x0000"],
-                "{line}"
-            );
-        }
-        let sent = words(&["move", "--to-pulse", "4=7"]).unwrap();
-        assert_eq!((sent[0][2].as_str(), sent[0][10].as_str()), ("0x0008", "0x0007"));
-        let sent = words(&["move", "--point", "1", "--unit=4", "--speed-of-max", "12.34"]).unwrap();
-        assert_eq!(sent[0][..5], ["0x4001", "0x0002", "0x0000", "0x04D2", "0x0001"]);
-    }
+    use crate::testing::{Reply, Scripted, frames, run_on};
 
     #[test]
     fn what_is_not_named_stays_where_it_is() {
@@ -165,74 +148,5 @@ mod tests {
         assert!(refused.unwrap_err().message.starts_with("the robot did not move"));
         assert_eq!(peer.taken.len(), 1);
         assert_eq!(frames(&["move", "--to", "1=1,2=2"]).unwrap().len(), 1);
-    }
-
-    #[test]
-    fn what_cannot_be_meant_is_rejected() {
-        rejects([
-            ("move --to 1,2,3", "3 numbers for 4 axes"),
-            ("move --to 1,2 --axes 1", "2 numbers for 1 axes"),
-            ("move --to 1 --axes 5", "axes from 1 to 4"),
-            ("move --to 1,2 --axes 1,1", "axis 1 appears twice"),
-            ("move --to 1=1,1=2", "axis 1 appears twice"),
-            ("move --to 1=1,2", "some numbers have an axis"),
-            ("move --to 1=1 --axes 1", "typed twice: with --axes"),
-            ("move --to 5=1", "'5' is not a valid axis"),
-            ("move --to 1.0005,2,3,4", "axis_1"),
-            ("move --point 30000", "point: 30000 is out of range; allowed: 0 to 29999"),
-            ("move --point 1 --speed 101", "speed_percent: 101 is out of range; allowed: 1 to 100 %"),
-            ("move --point 1 --speed-of-max 0.001", "speed_of_max_percent"),
-            ("move --point 1 --speed 100mm/s", "needs a linear or circular move"),
-            ("move --point 1 --linear --speed 1001mm/s", "allowed: 1 to 1000 mm/s"),
-            ("move --point 1 --circular", "two points"),
-            ("move --point 1,2", "one point"),
-            ("move --point 1 --arch 1,2:5", "arch_axis"),
-            ("move --point 1 --arch 1:5 --accel 5", "move-arch has neither --accel"),
-            ("move --point 1 --accel 0", "accel_percent: 0 is out of range; allowed: 1 to 100 %"),
-        ]);
-        objects([
-            ("move", "--point"),
-            ("move --point 1 --to 1,2,3,4", "cannot be used with"),
-            ("move --to 1,2,3,4 --linear", "cannot be used with"),
-            ("move --to-pulse 1,2,3,4 --arch 1:1", "cannot be used with"),
-            ("move --point 1 --linear --arch 1:1", "cannot be used with"),
-            ("move --point 1,2 --circular --axes 1", "cannot be used with"),
-            ("move --point 1 --arch-start 1", "--arch"),
-            ("move --point 1 --arch 5", "such as 3:10.0"),
-            ("move --point 1 --hand left", "cannot be used with"),
-            ("move --point 1 --unit 5", "0..=4"),
-        ]);
-    }
-
-    #[test]
-    fn the_question_names_robot_target_axes_and_speed() {
-        for (line, told) in [
-            ("move --point 19 --speed 50", "move robot 1 to point 19 (all axes, at 50 %)"),
-            (
-                "--unit 2 move --to 1,2 --axes 2,1",
-                "move robot 2 to axis 2: 1 mm, axis 1: 2 mm (axes 2, 1 alone, at the program speed)",
-            ),
-            ("move --to 4=90", "move robot 1 to axis 4: 90 mm (axis 4 alone, axes 1 and 2 stay, at the program speed)"),
-            (
-                "move --point 3 --axes 4",
-                "move robot 1 to point 3 (axis 4 alone, but a SCARA may also move axes 1 and 2 to the point, at the \
-                 program speed)",
-            ),
-            (
-                "move --to-pulse 1,2,3,4",
-                "move robot 1 to axis 1: 1 pulses, axis 2: 2 pulses, axis 3: 3 pulses, axis 4: 4 pulses (all axes, at \
-                 the program speed)",
-            ),
-            (
-                "move --point 5 --arch 3:0 --arch-unit pulse --speed-of-max 0.5",
-                "move robot 1 to point 5 in an arch over axis 3 at 0 pulses (all axes, at 0.5 % of the maximum)",
-            ),
-            (
-                "move --point 1,2 --circular --speed 9mm/s",
-                "move robot 1 over point 1 to point 2 in an arc (all axes, at 9 mm/s)",
-            ),
-        ] {
-            assert_eq!(intent(&line.split(' ').collect::<Vec<_>>()), told);
-        }
     }
 }

@@ -95,28 +95,3 @@ impl Command for Origin {
         Ok(MotionReport::new(if done.is_some() { has_done } else { doing }, &order, done.as_ref(), None))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::testing::{intent, objection, words};
-
-    #[test]
-    fn all_robots_one_robot_or_one_axis() {
-        let first = |line: &str| words(&line.split(' ').collect::<Vec<_>>()).unwrap()[0][..3].to_vec();
-        assert_eq!(first("origin"), ["0x0032", "0x0000", "0x0000"]);
-        assert_eq!(first("origin --unit 2 --only incremental"), ["0x2032", "0x0002", "0x0000"]);
-        assert_eq!(first("origin --only absolute"), ["0x0032", "0x0004", "0x0000"]);
-        assert_eq!(first("origin --only incomplete"), ["0x0032", "0x0008", "0x0000"]);
-        assert_eq!(first("origin --axis 4 --unit 3"), ["0x3033", "0x0000", "0x0008"]);
-        for (line, told) in [
-            ("origin", "return all axes of all robots to origin"),
-            ("origin --unit 2", "return all axes of robot 2 to origin"),
-            ("origin --only incomplete", "return the axes without known origin of all robots to origin"),
-            ("origin --axis 1", "return axis 1 of robot 1 to origin"),
-        ] {
-            assert_eq!(intent(&line.split(' ').collect::<Vec<_>>()), told);
-        }
-        assert!(words(&["origin", "--axis", "1,2"]).unwrap_err().message.contains("name exactly 1"));
-        assert!(objection(&["origin", "--axis", "1", "--only", "absolute"]).contains("cannot be used with"));
-    }
-}

@@ -47,25 +47,3 @@ impl Motion for Pallet {
         format!("all axes, {}", self.pace.describe())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::testing::{intent, rejects, words};
-
-    #[test]
-    fn places_and_pallets_have_their_ranges() {
-        let sent =
-            words(&["pallet", "--pallet", "39", "--position", "32767", "--accel", "1", "--decel", "100"]).unwrap();
-        assert_eq!(sent[0][..6], ["0x0018", "0x0060", "0x0000", "0x0000", "0x0027", "0x7FFF"]);
-        assert_eq!(sent[0][10..12], ["0x0001", "0x0064"]);
-        rejects([
-            ("pallet --pallet 40 --position 1", "pallet: 40 is out of range; allowed: 0 to 39"),
-            ("pallet --pallet 0 --position 0", "work_position: 0 is out of range; allowed: 1 to 32767"),
-            ("pallet --pallet 0 --position 1 --arch 3:1 --accel 50", "pallet-arch has neither"),
-        ]);
-        assert_eq!(
-            intent(&["pallet", "--pallet", "1", "--position", "21", "--arch", "3:-5", "--speed", "70"]),
-            "move robot 1 to position 21 of pallet 1 in an arch over axis 3 at -5 mm (all axes, at 70 %)"
-        );
-    }
-}

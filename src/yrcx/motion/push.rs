@@ -102,36 +102,3 @@ impl Report for Pushed {
         })
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::testing::{intent, objection, words};
-    use armctl_frame::failure::Kind;
-
-    #[test]
-    fn force_and_time_set_their_flags_and_have_their_ranges() {
-        let sent = |line: &str| words(&line.split(' ').collect::<Vec<_>>());
-        assert_eq!(sent("push --axis 2 --to 1").unwrap()[0][..4], ["0x004C", "0x0001", "0x0002", "0x0000"]);
-        let all = sent("--unit 3 push --axis 2 --to-pulse -1 --force -1000 --time 32.767s --speed 1").unwrap();
-        assert_eq!(all[0][..6], ["0x304D", "0x0185", "0x0002", "0x0001", "0xFFFF", "0xFFFF"]);
-        assert_eq!(all[0][8..10], ["0xFC18", "0x7FFF"]);
-        for (line, part) in [
-            ("push --axis 1 --to 1 --force 1001", "push_force_percent: 1001 is out of range; allowed: -1000 to 1000 %"),
-            ("push --axis 1,3 --to 1", "name exactly 1"),
-        ] {
-            let failure = sent(line).unwrap_err();
-            assert_eq!(failure.kind, Kind::Usage, "{line}");
-            assert!(failure.message.contains(part), "{line}: {failure}");
-        }
-        for (time, told) in
-            [("100", "not 100s"), ("0s", "not 0s"), ("1.5ms", "not 0.0015s"), ("a", "is not a valid duration")]
-        {
-            let objection = objection(&["push", "--axis", "1", "--to", "1", "--time", time]);
-            assert!(objection.contains(told), "{objection}");
-        }
-        assert_eq!(
-            intent(&["push", "--axis", "3", "--to", "10", "--speed", "50", "--force", "100", "--time", "100ms"]),
-            "push with axis 3 of robot 1 towards 10 mm (at 50 %, with 100 % of the rated torque, for 100ms)"
-        );
-    }
-}

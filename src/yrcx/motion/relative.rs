@@ -92,34 +92,3 @@ impl Motion for Movei {
         targets(&self.axes, &self.by, &self.by_pulse)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::testing::{intent, objection, rejects, words};
-
-    #[test]
-    fn distances_go_to_the_axes_that_are_named() {
-        let sent = words(&["movei", "--by", "-1", "--axes", "4", "--hand", "right", "--unit", "3"]).unwrap();
-        assert_eq!(sent[0][..4], ["0x300E", "0x0009", "0x0008", "0x0000"]);
-        assert_eq!(sent[0][4..12], ["0x0000", "0x0000", "0x0000", "0x0000", "0x0000", "0x0000", "0xFC18", "0xFFFF"]);
-    }
-
-    #[test]
-    fn what_cannot_be_meant_is_rejected() {
-        rejects([
-            ("movei --by 1,2", "2 numbers for 4 axes"),
-            ("movei --by-pulse 1.5,2,3,4", "axis_1"),
-            ("movei --point 30000", "out of range"),
-            ("movei --point 1 --speed 9mm/s", "a linear or circular move"),
-            ("movei --by 1,2,3,4 --decel 10", "movei-mm has neither"),
-        ]);
-        for line in [&["movei"][..], &["movei", "--by", "1", "--linear"], &["movei", "--point", "1", "--hand", "left"]]
-        {
-            assert!(objection(line).starts_with("error"), "{line:?}");
-        }
-        assert_eq!(
-            intent(&["movei", "--by", "1,-2", "--axes", "1,2", "--speed", "5", "--unit", "2"]),
-            "move robot 2 by axis 1: 1 mm, axis 2: -2 mm (axes 1, 2 alone, at 5 %)"
-        );
-    }
-}

@@ -9,7 +9,7 @@ use armctl_controller::yrcx::image::Words;
 use armctl_frame::failure::Kind;
 
 /// A command line for each worked example of 4.2. Misprints of the manual are corrected, as in the data file.
-const EXAMPLES: &[(&str, &str)] = &[
+pub(crate) const EXAMPLES: &[(&str, &str)] = &[
     ("4.2.1-ptp", "move --point 100 --speed 50 --report pulse"),
     ("4.2.1-arch", "move --point 100 --speed 50 --arch 3:1.000 --arch-start 0 --arch-end 0 --report mm"),
     ("4.2.1-linear", "move --point 100 --linear --speed 200mm/s --accel 50 --report mm"),

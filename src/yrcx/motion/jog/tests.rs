@@ -1,6 +1,6 @@
 use std::time::Duration;
 
-use crate::testing::{Bench, Reply, Scripted, answer, intent, objection, run_on, words};
+use crate::testing::{Bench, Reply, Scripted, answer, run_on};
 use armctl_controller::yrcx::image::Words;
 use armctl_frame::failure::Kind;
 
@@ -119,18 +119,4 @@ fn a_link_that_stays_down_promises_nothing_of_the_stop_input() {
     let failure = bench.run(&JOG).unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
     assert!(failure.message.ends_with("the connection was lost; the connection is still down"), "{failure}");
-}
-
-#[test]
-fn what_cannot_be_meant_is_rejected() {
-    assert!(words(&["jog", "tool", "5", "+"]).unwrap_err().message.contains("must be from 1 to 4"));
-    assert!(words(&["jog", "tool", "1,2", "+"]).unwrap_err().message.contains("name exactly 1"));
-    assert!(objection(&["jog", "pulse", "1"]).contains("<DIRECTION>"));
-    assert!(objection(&["jog", "pulse", "1", "+", "--for", "0s"]).contains("is zero"));
-    assert!(objection(&["jog", "pulse", "1", "+", "--no-wait"]).contains("--no-wait"));
-    assert_eq!(
-        intent(&["jog", "tool", "3", "+", "--for", "1.5s", "--unit", "2"]),
-        "jog axis 3 of robot 2 in plus direction in tool coordinates (for 1500ms, at the manual speed)"
-    );
-    assert!(intent(&JOG).contains("(until Ctrl-C, at the manual speed)"));
 }
