@@ -105,6 +105,9 @@ fn exit(done: Result<(), Kind>) -> ExitCode {
 
 /// Inserts the subcommand of a family, if the binary was started through a link with the name of this family.
 fn with_family(mut args: Vec<OsString>) -> Vec<OsString> {
+    if files::was_started_by_itself() {
+        return args;
+    }
     let name = args.first().and_then(|name| Path::new(name).file_stem()).and_then(|name| name.to_str());
     if let Some(family) = name.and_then(|name| name.parse::<Family>().ok()) {
         // Usage lines show this name, followed by the family.

@@ -12,7 +12,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use tempfile::NamedTempFile;
 
-pub use self::program::this_program;
+pub use self::program::{own_command, this_program, was_started_by_itself};
 
 /// Size limit of files that users write: inventories, command files, simulator states.
 pub const SETTINGS: u64 = 16 << 20;
@@ -104,7 +104,7 @@ fn open_nonblocking(path: &Path) -> io::Result<File> {
     std::fs::OpenOptions::new().read(true).custom_flags(flags).open(path)
 }
 
-#[cfg(not(unix))]
+#[cfg(windows)]
 fn open_nonblocking(path: &Path) -> io::Result<File> {
     File::open(path)
 }
@@ -186,10 +186,7 @@ fn abandoned_drafts(folder: &Path) -> Vec<PathBuf> {
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         name.strip_prefix(DRAFT.0).is_some_and(|rest| rest.ends_with(DRAFT.1))
     });
-    let is_dead = |path: &PathBuf| {
-        path.symlink_metadata().is_ok_and(|found| found.is_file())
-            && open(path).is_ok_and(|file| locks_detect_dead_processes() && lock(&file))
-    };
+    let is_dead = |path: &PathBuf| path.symlink_metadata().is_ok_and(|found| found.is_file()) && is_abandoned(path);
     drafts.filter(is_dead).collect()
 }
 
@@ -239,9 +236,14 @@ fn lock_folder(folder: &Path) -> Option<File> {
     Some(folder)
 }
 
-#[cfg(not(unix))]
-fn lock_folder(_: &Path) -> Option<File> {
-    None
+#[cfg(windows)]
+fn lock_folder(folder: &Path) -> Option<File> {
+    loop {
+        match exclusive::lock_in(folder) {
+            Err(error) if error.kind() == ErrorKind::WouldBlock => std::thread::sleep(exclusive::RETRY_PAUSE),
+            locked => return locked.ok(),
+        }
+    }
 }
 
 /// Exclusive use of a folder. It ends when the lock is dropped.
@@ -265,29 +267,83 @@ pub fn claim_folder(folder: &Path) -> io::Result<FolderLock> {
     }
 }
 
-/// Returns the folder without a lock: on this system, folders cannot be locked, and every process gets the folder.
+/// Locks a folder for this process. If the folder cannot be locked, as on some network drives, every process gets the
+/// folder.
 ///
 /// # Errors
-/// The folder does not exist.
-#[cfg(not(unix))]
+/// [`ErrorKind::WouldBlock`] if another process has locked the folder, or the folder does not exist.
+#[cfg(windows)]
 pub fn claim_folder(folder: &Path) -> io::Result<FolderLock> {
-    folder.metadata().map(|_| FolderLock { _folder: None })
+    folder.metadata()?;
+    match exclusive::lock_in(folder) {
+        Ok(file) => Ok(FolderLock { _folder: Some(file) }),
+        Err(error) if error.kind() == ErrorKind::WouldBlock => Err(error),
+        Err(_) => Ok(FolderLock { _folder: None }),
+    }
 }
 
-/// Locks a file. Returns `false` if another process has locked it.
+/// Files that only one process has open. On Windows, this replaces file locks, which also block readers.
+#[cfg(windows)]
+mod exclusive {
+    use std::fs::{File, OpenOptions};
+    use std::io::{self, ErrorKind};
+    use std::os::windows::fs::OpenOptionsExt as _;
+    use std::path::Path;
+    use std::time::Duration;
+
+    /// Interval of the attempts to lock a folder.
+    pub const RETRY_PAUSE: Duration = Duration::from_millis(5);
+    /// Name of the file that locks its folder.
+    const LOCK_FILE: &str = ".armctl.lock";
+    const FILE_FLAG_DELETE_ON_CLOSE: u32 = 0x0400_0000;
+    const ERROR_SHARING_VIOLATION: i32 = 32;
+
+    /// Locks a folder with a file in it. Windows removes the file at the end of the lock, or of the process.
+    ///
+    /// # Errors
+    /// `WouldBlock` if another process has locked the folder.
+    pub fn lock_in(folder: &Path) -> io::Result<File> {
+        let mut options = OpenOptions::new();
+        options.write(true).create(true).truncate(true).share_mode(0).custom_flags(FILE_FLAG_DELETE_ON_CLOSE);
+        options.open(folder.join(LOCK_FILE)).map_err(|error| {
+            if error.raw_os_error() == Some(ERROR_SHARING_VIOLATION) { ErrorKind::WouldBlock.into() } else { error }
+        })
+    }
+
+    /// Whether no process has the file open for writing.
+    pub fn is_free(path: &Path) -> bool {
+        const FILE_SHARE_READ: u32 = 1;
+        const FILE_SHARE_DELETE: u32 = 4;
+
+        OpenOptions::new().read(true).share_mode(FILE_SHARE_READ | FILE_SHARE_DELETE).open(path).is_ok()
+    }
+}
+
+/// Marks a file that is open for writing as a file of this process, until the file is closed. Returns `false` if another
+/// process has marked it.
 #[cfg(unix)]
-fn lock(file: &File) -> bool {
+pub fn lock(file: &File) -> bool {
     rustix::fs::flock(file, rustix::fs::FlockOperation::NonBlockingLockExclusive).is_ok()
 }
 
-#[cfg(not(unix))]
-fn lock(_: &File) -> bool {
+/// Does nothing: a file that is open for writing is a file of its process.
+#[cfg(windows)]
+pub fn lock(_: &File) -> bool {
     true
 }
 
-/// Whether the system releases a lock when the process that owns it ends.
-const fn locks_detect_dead_processes() -> bool {
-    cfg!(unix)
+/// Whether the process that marked a file with [`lock`] has ended. `false` if the file cannot be opened.
+#[cfg(unix)]
+pub fn is_abandoned(path: &Path) -> bool {
+    // A shared lock, so that two processes can check at the same time.
+    let is_free = |file: File| rustix::fs::flock(&file, rustix::fs::FlockOperation::NonBlockingLockShared).is_ok();
+    open(path).is_ok_and(is_free)
+}
+
+/// Whether the process that marked a file with [`lock`] has ended. `false` if the file cannot be opened.
+#[cfg(windows)]
+pub fn is_abandoned(path: &Path) -> bool {
+    exclusive::is_free(path)
 }
 
 /// Whether an open file still has a name in a folder.
@@ -296,7 +352,8 @@ fn is_linked(file: &File) -> bool {
     file.metadata().is_ok_and(|found| std::os::unix::fs::MetadataExt::nlink(&found) > 0)
 }
 
-#[cfg(not(unix))]
+/// Always `true`: an open file cannot lose its name.
+#[cfg(windows)]
 fn is_linked(_: &File) -> bool {
     true
 }
@@ -331,7 +388,6 @@ mod tests {
         assert_eq!(read(&folder.path().join("no"), 5).unwrap_err().kind(), ErrorKind::NotFound);
     }
 
-    #[cfg(unix)]
     #[test]
     fn sweeps_only_drafts_of_dead_processes() {
         let folder = tempfile::tempdir().unwrap();
@@ -346,6 +402,16 @@ mod tests {
         assert!(living.path().exists() && !folder.path().join(".armctl-dead.part").exists());
         drop(living);
         assert_eq!(names(), 2);
+    }
+
+    #[test]
+    fn a_folder_has_one_user() {
+        let folder = tempfile::tempdir().unwrap();
+        let lock = claim_folder(folder.path()).unwrap();
+        assert_eq!(claim_folder(folder.path()).unwrap_err().kind(), ErrorKind::WouldBlock);
+        drop(lock);
+        drop(claim_folder(folder.path()).unwrap());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 
     #[cfg(unix)]

@@ -15,8 +15,9 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::view::View;
 use crate::settings::Robot;
+use armctl_files as files;
 use armctl_transport::session::location::SessionFolder;
-use armctl_transport::session::{detach, process, terminate};
+use armctl_transport::session::{detach, process, start_file, terminate};
 
 /// Flag of the process in the background.
 pub const DETACHED: &str = "--detached";
@@ -57,6 +58,14 @@ pub enum Start {
     Opened(Opened),
     /// The link could not be opened.
     Failed(Failure),
+}
+
+/// Reports the start of this background process to the process that started it.
+pub fn report_start(screen: &Screen, start: &Start) -> Result<(), Failure> {
+    let Some(path) = start_file() else { return screen.json(start) };
+    let line = serde_json::to_vec(start).context("internal error")?;
+    files::replace(&path, &line).with_context(|| path.display().to_string())?;
+    Ok(())
 }
 
 impl Report for Opened {
@@ -106,7 +115,8 @@ pub async fn start(robot: &Robot, words: impl Iterator<Item = OsString>) -> Resu
     let line = match interruptible(spawn_blocking(move || child.line())).await {
         Ok(line) => line.map_err(|error| Failure::local(format!("armctl in the background: {error}")))?,
         Err(interrupt) => {
-            terminate(pid);
+            // The process may have ended already.
+            let _ = terminate(pid);
             return Err(interrupt);
         }
     };
@@ -114,7 +124,12 @@ pub async fn start(robot: &Robot, words: impl Iterator<Item = OsString>) -> Resu
     match serde_json::from_str(&line) {
         Ok(Start::Opened(opened)) => Ok(opened),
         Ok(Start::Failed(failure)) => Err(failure),
-        Err(_) => Err(Failure::local(format!("{}: the session process failed", robot.label()))
-            .hint(format!("see {} for the reason", log.display()))),
+        Err(_) => {
+            Err(Failure::local(format!("{}: the session process failed", robot.label())).hint(if cfg!(windows) {
+                "open the session without --background to see the reason".to_owned()
+            } else {
+                format!("see {} for the reason", log.display())
+            }))
+        }
     }
 }

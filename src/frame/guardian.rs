@@ -24,7 +24,9 @@ use tokio::time::{MissedTickBehavior, interval};
 use crate::failure::{Failure, Kind};
 use crate::output::{ColorChoice, Format, Screen};
 use crate::settings::Robot;
-use armctl_files::this_program;
+use armctl_files::own_command;
+#[cfg(windows)]
+use armctl_transport::session::terminate;
 
 /// Interval between heartbeats.
 const HEARTBEAT_INTERVAL: Duration = Duration::from_millis(500);
@@ -49,12 +51,10 @@ const DONE: u8 = b'q';
 
 /// Returns this program with the arguments of the command that stops a robot. `words` follow the family name.
 fn stop_command(robot: &Robot, words: &[&str], first: Option<&str>) -> io::Result<Command> {
-    let mut command = Command::new(this_program()?);
+    let mut command = own_command()?;
     command.args(first).args(["--quiet", "-t", robot.target.value.url(), robot.family.name()]);
     command.args(words).env_remove("ARMCTL_ROBOT").env_remove("ARMCTL_TARGET");
     command.stdout(Stdio::null());
-    #[cfg(unix)]
-    std::os::unix::process::CommandExt::process_group(&mut command, 0);
     Ok(command)
 }
 
@@ -96,7 +96,7 @@ fn stop_failure(why: &str) -> String {
 /// Starts a guardian. Returns the pipe to the guardian and its process.
 fn spawn(robot: &Robot, words: &[&str], first: &str) -> io::Result<(Pipe, Child)> {
     let mut command = stop_command(robot, words, Some(first))?;
-    #[cfg(not(unix))]
+    #[cfg(windows)]
     command.env(GUARDED, std::process::id().to_string());
     let mut child = command.stdin(Stdio::piped()).spawn()?;
     let pipe = Arc::new(Mutex::new(child.stdin.take()));
@@ -227,8 +227,8 @@ pub fn serve(args: &[OsString]) -> Option<Result<(), Kind>> {
     if !was_moving_at_end() || !stops {
         return Some(Ok(()));
     }
-    let stopped = this_program().map_err(|error| error.to_string());
-    let stopped = stopped.and_then(|program| run_until_stopped(Command::new(program).args(&args[2..])));
+    let stopped = own_command().map_err(|error| error.to_string());
+    let stopped = stopped.and_then(|mut program| run_until_stopped(program.args(&args[2..])));
     Some(stopped.map_err(|why| {
         print(&stop_failure(&why));
         Kind::OutcomeUnknown
@@ -291,19 +291,16 @@ fn kill(guarded: Option<rustix::process::Pid>) -> bool {
 }
 
 /// Environment variable with the id of the guarded process, on systems without parent process ids.
-#[cfg(not(unix))]
+#[cfg(windows)]
 const GUARDED: &str = "ARMCTL_GUARDED";
 
-#[cfg(not(unix))]
+#[cfg(windows)]
 fn guarded_process() -> Option<u32> {
     std::env::var(GUARDED).ok()?.parse().ok()
 }
 
 /// Kills the guarded process. The pipe of the process is still open, so its id is still valid.
-#[cfg(not(unix))]
+#[cfg(windows)]
 fn kill(guarded: Option<u32>) -> bool {
-    let Some(guarded) = guarded else { return false };
-    let mut kill = Command::new("taskkill");
-    kill.args(["/F", "/PID", &guarded.to_string()]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    kill.status().is_ok_and(|status| status.success())
+    guarded.is_some_and(terminate)
 }

@@ -23,9 +23,25 @@ use crate::output::{busy_work, immediate_exit};
 type TerminationRequest = watch::Sender<Option<&'static str>>;
 
 const KEYS: &str = "Ctrl-C";
-#[cfg_attr(not(unix), cfg(test))]
+/// A program requests the end.
+#[cfg(unix)]
 const TERMINATE: &str = "termination request (SIGTERM)";
+#[cfg(windows)]
+const TERMINATE: &str = "Ctrl-Break";
+/// The terminal was closed.
+#[cfg(unix)]
 const HANGUP: &str = "the terminal was closed (SIGHUP)";
+#[cfg(windows)]
+const HANGUP: &str = "the console window was closed";
+#[cfg(windows)]
+const LOGOFF: &str = "the user logs off";
+#[cfg(windows)]
+const SHUTDOWN: &str = "Windows shuts down";
+/// Requests that come automatically, and can come more than once.
+#[cfg(unix)]
+const AUTOMATIC: &[&str] = &[HANGUP];
+#[cfg(windows)]
+const AUTOMATIC: &[&str] = &[HANGUP, LOGOFF, SHUTDOWN];
 #[cfg(unix)]
 const QUIT: &str = "Ctrl-\\ (SIGQUIT)";
 #[cfg(unix)]
@@ -168,13 +184,12 @@ struct Presses {
 
 impl Presses {
     /// Records a request, and returns whether it ends the process. `is_waiting` is whether the previous request is
-    /// still pending. Requests from a closing terminal do not count, because they come automatically and more than
-    /// once.
+    /// still pending. Requests that come automatically do not count, for example from a closing terminal.
     fn press(&mut self, how: &str, is_waiting: bool, now: Instant) -> bool {
         if !is_waiting {
             *self = Self::default();
         }
-        if how == HANGUP {
+        if AUTOMATIC.contains(&how) {
             return false;
         }
         if self.last.is_none_or(|last| now.duration_since(last) >= ECHO_WINDOW) {
@@ -264,19 +279,53 @@ fn hangup_is_ignored() -> bool {
     ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_none_or(|mask| mask & 1 != 0)
 }
 
-#[cfg(not(unix))]
-struct Signals;
+/// Events of the console. All events after the creation of this value count, even before the value is polled.
+///
+/// After its window was closed, Windows waits about 5 s for the end of the process. During this time, the work stops the
+/// robot. If the time is too short, the guardian stops the robot: it has its own console.
+#[cfg(windows)]
+struct Signals {
+    keys: Option<tokio::signal::windows::CtrlC>,
+    terminate: Option<tokio::signal::windows::CtrlBreak>,
+    hangup: Option<tokio::signal::windows::CtrlClose>,
+    logoff: Option<tokio::signal::windows::CtrlLogoff>,
+    shutdown: Option<tokio::signal::windows::CtrlShutdown>,
+}
 
-#[cfg(not(unix))]
+/// Waits for an event of the console.
+#[cfg(windows)]
+macro_rules! receive {
+    ($event:expr) => {
+        async {
+            match &mut $event {
+                Some(event) => _ = event.recv().await,
+                None => std::future::pending().await,
+            }
+        }
+    };
+}
+
+#[cfg(windows)]
 impl Signals {
     fn new() -> Self {
-        Self
+        use tokio::signal::windows::{ctrl_break, ctrl_c, ctrl_close, ctrl_logoff, ctrl_shutdown};
+
+        Self {
+            keys: ctrl_c().ok(),
+            terminate: ctrl_break().ok(),
+            hangup: ctrl_close().ok(),
+            logoff: ctrl_logoff().ok(),
+            shutdown: ctrl_shutdown().ok(),
+        }
     }
 
     async fn next(&mut self) -> &'static str {
-        match tokio::signal::ctrl_c().await {
-            Ok(()) => KEYS,
-            Err(_) => std::future::pending().await,
+        tokio::select! {
+            () = receive!(self.keys) => KEYS,
+            () = receive!(self.terminate) => TERMINATE,
+            () = receive!(self.hangup) => HANGUP,
+            () = receive!(self.logoff) => LOGOFF,
+            () = receive!(self.shutdown) => SHUTDOWN,
         }
     }
 }
@@ -320,7 +369,6 @@ mod tests {
         assert!(presses.press(KEYS, true, at(600)));
     }
 
-    #[cfg(unix)]
     #[test]
     fn repeated_hangups_do_not_end_the_process() {
         let start = Instant::now();

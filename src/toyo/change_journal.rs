@@ -121,7 +121,7 @@ impl ChangeJournal {
             fs::create_dir_all(folder)?;
             let path = folder.join(format!("{:016x}.json", fastrand::u64(..)));
             let file = OpenOptions::new().create_new(true).write(true).open(&path)?;
-            lock(&file);
+            files::lock(&file);
             self.file = Some((file, path));
         }
         if let Some((file, _)) = &mut self.file {
@@ -149,8 +149,7 @@ impl ChangeJournal {
         let own = self.file.as_ref().map(|(_, path)| path);
         let others = self.paths().filter(|path| Some(path) != own);
         let mut running = others.filter(|path| {
-            let (file, metadata) = (files::open(path), fs::symlink_metadata(path));
-            file.is_ok_and(|file| metadata.is_ok_and(|metadata| metadata.is_file() && !is_free(&file, &metadata)))
+            fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_file()) && !files::is_abandoned(path)
         });
         running.any(|path| read_entry(&path).is_some_and(|entry| entry.robot == self.entry.robot))
     }
@@ -179,8 +178,7 @@ impl AbandonedEntry {
 fn read_abandoned(path: &Path) -> Option<JournalEntry> {
     let metadata =
         fs::symlink_metadata(path).ok().filter(|metadata| metadata.is_file() && metadata.len() <= MAX_SIZE)?;
-    let file = files::open(path).ok()?;
-    if !is_free(&file, &metadata) {
+    if !files::is_abandoned(path) {
         return None;
     }
     if metadata.modified().ok().and_then(|time| time.elapsed().ok()).is_some_and(|age| age > MAX_AGE) {
@@ -199,26 +197,6 @@ fn now() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs())
 }
 
-#[cfg(unix)]
-fn lock(file: &File) {
-    rustix::fs::flock(file, rustix::fs::FlockOperation::NonBlockingLockExclusive).unwrap_or_default();
-}
-
-#[cfg(unix)]
-fn is_free(file: &File, _: &fs::Metadata) -> bool {
-    rustix::fs::flock(file, rustix::fs::FlockOperation::NonBlockingLockShared).is_ok()
-}
-
-#[cfg(not(unix))]
-fn lock(_: &File) {}
-
-/// Without file locks, an entry counts as left by an ended process when it is older than the longest command.
-#[cfg(not(unix))]
-fn is_free(_: &File, metadata: &fs::Metadata) -> bool {
-    let age = metadata.modified().ok().and_then(|time| time.elapsed().ok());
-    age.is_some_and(|age| age > Duration::from_secs(3600))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -234,7 +212,6 @@ mod tests {
         journal.moving(Some(Moving::Jog));
         assert_eq!(file_count(), 1);
         // The process that wrote the entry is still running.
-        #[cfg(unix)]
         assert!(
             journal_of().abandoned_entries().is_empty()
                 && journal_of().has_entry_of_running_process()
@@ -247,7 +224,6 @@ mod tests {
         assert_eq!(file_count(), 0);
     }
 
-    #[cfg(unix)]
     #[test]
     fn an_entry_of_an_ended_process_is_found_until_it_is_deleted() {
         let folder = tempfile::tempdir().unwrap();

@@ -9,26 +9,25 @@ use super::devicenet::bus as devicenet;
 use super::eip::bus as eip;
 use super::fieldbus::{Fieldbus, Search, Serve};
 use super::profibus::bus as profibus;
-#[cfg(target_os = "linux")]
 use super::profinet::bus as profinet;
 
 /// Generates the lists of fieldbuses.
 macro_rules! fieldbuses {
-    ($($(#[$cfg:meta])* $bus:ident,)*) => {
+    ($($bus:ident,)*) => {
         /// All fieldbuses. The first is the default of a simulator URL.
-        pub const BUSES: &[&Fieldbus] = &[$($(#[$cfg])* &$bus::BUS,)*];
+        pub const BUSES: &[&Fieldbus] = &[$(&$bus::BUS,)*];
 
         /// Command-line arguments of `robots discover`, per fieldbus.
         #[derive(Debug, Args)]
         #[group(skip)]
         pub struct Searches {
-            $($(#[$cfg])* #[command(flatten)] $bus: $bus::Search,)*
+            $(#[command(flatten)] $bus: $bus::Search,)*
         }
 
         impl Searches {
             /// Returns the search of each fieldbus.
             pub fn each(&self) -> Vec<(&'static Fieldbus, &dyn Search)> {
-                vec![$($(#[$cfg])* (&$bus::BUS, &self.$bus),)*]
+                vec![$((&$bus::BUS, &self.$bus),)*]
             }
         }
 
@@ -36,25 +35,25 @@ macro_rules! fieldbuses {
         #[derive(Debug, Args)]
         #[group(skip)]
         pub struct Servers {
-            $($(#[$cfg])* #[command(flatten)] $bus: $bus::ServeArgs,)*
+            $(#[command(flatten)] $bus: $bus::ServeArgs,)*
         }
 
         impl Servers {
             /// Returns the server of each fieldbus.
             pub fn each(&self) -> Vec<(&'static Fieldbus, &dyn Serve)> {
-                vec![$($(#[$cfg])* (&$bus::BUS, &self.$bus),)*]
+                vec![$((&$bus::BUS, &self.$bus),)*]
             }
 
             /// Returns each fieldbus with the arguments that only this fieldbus has.
             pub fn arguments() -> Vec<(&'static Fieldbus, Vec<Arg>)> {
                 let of = |command: Command| command.get_arguments().cloned().collect();
-                vec![$($(#[$cfg])* (&$bus::BUS, of($bus::ServeArgs::augment_args(Command::new("sim")))),)*]
+                vec![$((&$bus::BUS, of($bus::ServeArgs::augment_args(Command::new("sim")))),)*]
             }
         }
 
         /// Returns the schemas of the device identities, one per fieldbus.
         pub fn identities(generator: &mut SchemaGenerator) -> Vec<Schema> {
-            vec![$($(#[$cfg])* $bus::Identity::json_schema(generator),)*]
+            vec![$($bus::Identity::json_schema(generator),)*]
         }
     };
 }
@@ -63,7 +62,6 @@ fieldbuses! {
     eip,
     devicenet,
     profibus,
-    #[cfg(target_os = "linux")]
     profinet,
 }
 

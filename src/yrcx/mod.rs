@@ -59,7 +59,6 @@ mod port;
 mod position;
 mod procedures;
 pub mod profibus;
-#[cfg_attr(not(target_os = "linux"), path = "profinet/elsewhere.rs")]
 pub mod profinet;
 mod program;
 mod raw;

@@ -6,7 +6,6 @@ pub mod bus;
 pub mod devicenet;
 pub mod eip;
 pub mod profibus;
-#[cfg(target_os = "linux")]
 pub mod profinet;
 mod url;
 

@@ -159,6 +159,9 @@ pub enum ProfinetError {
     /// The user has no permission for raw Ethernet.
     #[error("PROFINET needs raw Ethernet, but armctl has no permission for it (CAP_NET_RAW)")]
     Privilege,
+    /// This system has no raw Ethernet sockets for programs.
+    #[error("PROFINET needs Linux: raw Ethernet")]
+    Platform,
     /// The network interface does not exist.
     #[error("this computer has no network interface '{name}'")]
     NoInterface {

@@ -60,6 +60,7 @@ impl From<ProfinetError> for LinkError {
             E::NoInterface { present, .. } => {
                 Self::Settings(cause.advice(format!("use one of {}", present.join(", "))))
             }
+            E::Platform => Self::Local(cause.advice("run armctl on a Linux computer in the network of the controller")),
             E::Privilege => Self::Local(cause.advice(PRIVILEGE)),
             E::Interface { .. } => Self::Local(cause.advice("check the cable and the settings of the interface")),
             E::PortTaken { .. } => {

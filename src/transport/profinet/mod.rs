@@ -4,27 +4,24 @@
 
 use std::time::Duration;
 
-#[cfg(target_os = "linux")]
 pub mod commission;
 pub mod controller;
 pub mod device;
 pub mod error;
 pub mod gsdml;
 pub mod guess;
-#[cfg(target_os = "linux")]
 pub mod interface;
 pub mod layout;
-#[cfg(target_os = "linux")]
 pub mod link;
 mod link_error;
-#[cfg(target_os = "linux")]
 pub mod network;
-#[cfg(target_os = "linux")]
 mod port;
 pub mod settings;
-#[cfg(target_os = "linux")]
 pub mod simulated;
 #[cfg(target_os = "linux")]
+mod sockets;
+#[cfg(not(target_os = "linux"))]
+#[path = "no_sockets.rs"]
 mod sockets;
 #[cfg(test)]
 mod tests;

@@ -1,14 +1,11 @@
 //! Frames and RPC calls outside of connections. They go through a network card, or to a simulated device.
 
-use std::io::{ErrorKind, Read as _, Write as _};
+use std::io::ErrorKind;
 use std::net::{SocketAddr, SocketAddrV4, UdpSocket};
 use std::time::{Duration, Instant};
 
-use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use socket2::Socket;
-
 use super::error::ProfinetError;
-use super::interface::Interface;
+use super::interface::{Interface, RawSocket};
 use super::network::in_frame;
 use super::simulated::Network;
 use super::wire::frame::{self, Frame};
@@ -23,7 +20,7 @@ const BUFFER: usize = 65_536;
 /// Sender and receiver of Ethernet frames.
 #[derive(Debug)]
 pub(super) struct Frames {
-    end: End<Socket>,
+    end: End<RawSocket>,
     tap: Tap,
 }
 
@@ -79,8 +76,7 @@ impl Frames {
         match &self.end {
             End::Simulated(network) => network.send_frame(frame),
             End::Socket(socket, _) => {
-                let mut socket = socket;
-                socket.write_all(frame).map_err(|error| LocalError::new("cannot send a frame", &error))?;
+                socket.send(frame).map_err(|error| LocalError::new("cannot send a frame", &error))?;
             }
         }
         Ok(())
@@ -110,7 +106,7 @@ impl Frames {
     }
 
     fn take(&self, until: Now) -> Result<Option<Vec<u8>>, ProfinetError> {
-        let (mut source, start) = match &self.end {
+        let (socket, start) = match &self.end {
             End::Simulated(network) => return Ok(network.hear_frame(until)),
             End::Socket(socket, start) => (socket, start),
         };
@@ -120,10 +116,8 @@ impl Frames {
             if left.is_zero() {
                 return Ok(None);
             }
-            let wait = Timespec::try_from(left).ok();
-            // A signal ends the wait early, as a shorter timeout would.
-            let _ = poll(&mut [PollFd::new(source, PollFlags::IN)], wait.as_ref());
-            match source.read(&mut buffer) {
+            socket.wait(left);
+            match socket.receive(&mut buffer) {
                 Ok(length) => {
                     buffer.truncate(length);
                     return Ok(Some(buffer));

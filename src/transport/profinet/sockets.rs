@@ -6,10 +6,9 @@ use std::os::unix::net::UnixStream;
 use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use socket2::Socket;
 
 use super::error::ProfinetError;
-use super::interface::Interface;
+use super::interface::{Interface, RawSocket};
 use super::wire::dcp::IpSuite;
 use super::wire::frame::ETHER_TYPE;
 use super::wire::rpc;
@@ -22,7 +21,7 @@ pub(super) const BUFFER: usize = 65_536;
 
 #[derive(Debug)]
 pub(super) struct Sockets {
-    raw: Socket,
+    raw: RawSocket,
     udp: UdpSocket,
     /// Write end of a socket pair: a byte written here wakes the thread.
     bell: UnixStream,
@@ -49,12 +48,12 @@ impl Sockets {
         Ok((Self { raw, udp, bell, heard }, ip))
     }
 
-    pub fn send_frame(&self, bytes: &[u8]) -> io::Result<usize> {
-        (&self.raw).write(bytes)
+    pub fn send_frame(&self, bytes: &[u8]) -> io::Result<()> {
+        self.raw.send(bytes)
     }
 
-    pub fn send_datagram(&self, to: SocketAddrV4, bytes: &[u8]) -> io::Result<usize> {
-        self.udp.send_to(bytes, to)
+    pub fn send_datagram(&self, to: SocketAddrV4, bytes: &[u8]) -> io::Result<()> {
+        self.udp.send_to(bytes, to).map(|_| ())
     }
 
     /// Wakes the thread.
@@ -82,7 +81,7 @@ impl Sockets {
     /// Reads all available frames and datagrams, up to the limit.
     pub fn hear(&self, buffer: &mut [u8], mut frame: impl FnMut(&[u8]), mut datagram: impl FnMut(SocketAddrV4, &[u8])) {
         for _ in 0..AT_ONCE {
-            let Ok(length) = (&self.raw).read(buffer) else { break };
+            let Ok(length) = self.raw.receive(buffer) else { break };
             frame(&buffer[..length]);
         }
         for _ in 0..AT_ONCE {

@@ -184,6 +184,12 @@ impl Connection {
         }
     }
 
+    /// Sends the last frame of this client, without a runtime.
+    fn send_last(&mut self, control: Control) {
+        Frame::Control(control).emit(&mut self.unsent);
+        socket::write_last(&self.writer, &self.unsent);
+    }
+
     async fn flush(&mut self) -> io::Result<()> {
         while !self.unsent.is_empty() {
             self.writer.writable().await?;
@@ -462,7 +468,9 @@ impl Attached {
 /// Sends Bye when the client ends normally. A process that is killed sends no Bye.
 impl Drop for Attached {
     fn drop(&mut self) {
-        self.connection.send_control(Control::Bye);
+        if self.ended.is_none() {
+            self.connection.send_last(Control::Bye);
+        }
     }
 }
 

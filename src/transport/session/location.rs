@@ -234,10 +234,7 @@ impl Drop for Claim {
 }
 
 #[cfg(test)]
-#[cfg(unix)]
 mod tests {
-    use std::os::unix::fs::{PermissionsExt as _, symlink};
-
     use super::*;
 
     fn info() -> Info {
@@ -279,8 +276,11 @@ mod tests {
         assert!(!location.check().unwrap());
     }
 
+    #[cfg(unix)]
     #[test]
     fn what_others_could_be_behind_is_not_trusted() {
+        use std::os::unix::fs::{PermissionsExt as _, symlink};
+
         let folder = tempfile::tempdir().unwrap();
         let private = folder.path().join("armctl");
         socket::make_private(&private).unwrap();

@@ -1,5 +1,5 @@
 //! Sessions: a link that stays open between commands. One process, the host, owns the link. Other processes reach the
-//! device through a local socket of the host.
+//! device through a local socket of the host. On Windows, a named pipe takes the place of the socket.
 //!
 //! `wire` defines the frames on the socket. They are armctl's own frames, not frames of a controller. The host passes
 //! on the bytes and images of the clients. It only decides which client may send:
@@ -17,16 +17,18 @@
 //! of the image stay.
 
 pub mod client;
+#[cfg(any(windows, test))]
+mod command_line;
 pub mod host;
 pub mod location;
 #[cfg(unix)]
 mod socket;
-#[cfg(not(unix))]
-#[path = "no_socket.rs"]
+#[cfg(windows)]
+#[path = "pipe.rs"]
 mod socket;
 pub mod wire;
 
-pub use socket::{Detached, detach, leave_terminal, terminate};
+pub use socket::{Detached, detach, leave_terminal, start_file, terminate};
 
 /// Process id of this process.
 pub fn process() -> u32 {

@@ -95,7 +95,7 @@ impl Listener {
 
     /// Waits for the next client of the same user. Returns the socket with the process id of the client, if the system
     /// reports it. Cancel safe.
-    pub async fn accept(&self) -> io::Result<(ReadHalf, WriteHalf, Option<u32>)> {
+    pub async fn accept(&mut self) -> io::Result<(ReadHalf, WriteHalf, Option<u32>)> {
         loop {
             let (stream, _) = self.0.accept().await?;
             // The client is already gone.
@@ -115,6 +115,12 @@ pub async fn connect(path: &Path) -> io::Result<Option<(ReadHalf, WriteHalf)>> {
         Err(error) if matches!(error.kind(), io::ErrorKind::ConnectionRefused | io::ErrorKind::NotFound) => Ok(None),
         Err(error) => Err(error),
     }
+}
+
+/// Writes the last bytes of a client.
+pub fn write_last(to: &WriteHalf, bytes: &[u8]) {
+    // An error is ignored: the host is gone.
+    let _ = to.try_write(bytes);
 }
 
 /// A background process of this program.
@@ -152,12 +158,15 @@ impl Detached {
     }
 }
 
-/// Terminates a process.
-pub fn terminate(pid: u32) {
-    // An error is ignored: the process may have ended already.
-    if let Some(pid) = i32::try_from(pid).ok().and_then(Pid::from_raw) {
-        let _ = kill_process(pid, Signal::TERM);
-    }
+/// File to which this background process writes its start message. `None`: it writes the message to stdout.
+pub fn start_file() -> Option<PathBuf> {
+    None
+}
+
+/// Ends a process. Returns whether the process existed.
+pub fn terminate(pid: u32) -> bool {
+    let pid = i32::try_from(pid).ok().and_then(Pid::from_raw);
+    pid.is_some_and(|pid| kill_process(pid, Signal::TERM).is_ok())
 }
 
 /// Starts a new session of the operating system: detaches this process from its terminal and process group.

@@ -376,7 +376,7 @@ mod tests {
     fn locks_the_folder_for_one_process() {
         let folder = TempDir::new().unwrap();
         let _first = Spool::open(folder.path(), 1 << 20).unwrap();
-        assert!(!cfg!(unix) || is_locked(&Spool::open(folder.path(), 1 << 20).unwrap_err()));
+        assert!(is_locked(&Spool::open(folder.path(), 1 << 20).unwrap_err()));
     }
 
     #[test]

@@ -13,7 +13,7 @@ use jiff::Timestamp;
 use super::host::{OpenResult, SessionHost};
 use crate::command::families;
 use armctl_frame::attach::{folder_failure, format_since, identify, session_key};
-use armctl_frame::background::{self, DETACHED, Opened, Start};
+use armctl_frame::background::{self, DETACHED, Opened, Start, report_start};
 use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::interrupt::{catch_interrupts, interruptible};
 use armctl_frame::output::Screen;
@@ -94,11 +94,11 @@ impl Open {
         leave_terminal().context("the terminal")?;
         match Self::open(run, robot, true).await {
             Ok((host, opened)) => {
-                run.screen.json(&Start::Opened(opened))?;
+                report_start(&run.screen, &Start::Opened(opened))?;
                 Ok(self.serve(run, host).await?)
             }
             Err(failure) => {
-                run.screen.json(&Start::Failed(failure.clone()))?;
+                report_start(&run.screen, &Start::Failed(failure.clone()))?;
                 Err(RunError { is_reported: true, ..failure.into() })
             }
         }

@@ -5,7 +5,7 @@
 use std::collections::HashMap;
 use std::ffi::OsString;
 use std::io::{self, BufRead as _, BufReader, BufWriter, ErrorKind, Read as _, Write as _};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 use std::sync::{Mutex, PoisonError, mpsc};
 use std::thread;
 
@@ -14,7 +14,7 @@ use serde_json::Value;
 
 use super::program::{Program, Stop};
 use crate::failure::{Kind, exit_process};
-use armctl_files::this_program;
+use armctl_files::own_command;
 
 /// The only argument of a worker process.
 const WORKER_ARGUMENT: &str = "--filter-worker";
@@ -128,11 +128,8 @@ pub fn ask(filter: &str, input: Option<&Value>, mut take: impl FnMut(Value) -> b
 
 impl Worker {
     fn start() -> io::Result<Self> {
-        let mut command = Command::new(this_program()?);
+        let mut command = own_command()?;
         command.arg(WORKER_ARGUMENT).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
-        // The worker has its own process group, so that Ctrl-C does not reach it.
-        #[cfg(unix)]
-        std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let mut child = command.spawn()?;
         let no_input = || io::Error::other("no pipe");
         let requests = child.stdin.take().ok_or_else(no_input)?;

@@ -6,22 +6,13 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
 
-#[cfg(target_os = "linux")]
-use super::profinet;
-use super::{Address, Query, devicenet, eip, profibus};
+use super::{Address, Query, devicenet, eip, profibus, profinet};
 
 /// Scheme that hints name first.
 pub const USUAL: Scheme = eip::SCHEME;
 
 /// All schemes.
-pub static BUSES: &[Scheme] = &[
-    eip::SCHEME,
-    devicenet::SLCAN,
-    devicenet::CAN,
-    profibus::SCHEME,
-    #[cfg(target_os = "linux")]
-    profinet::SCHEME,
-];
+pub static BUSES: &[Scheme] = &[eip::SCHEME, devicenet::SLCAN, devicenet::CAN, profibus::SCHEME, profinet::SCHEME];
 
 /// Values of `bus=` in a `sim:` URL, with their fieldbus.
 pub fn simulators() -> impl Iterator<Item = (&'static str, &'static str)> {

@@ -20,7 +20,6 @@ mod ar;
 mod calls;
 mod checks;
 mod fault;
-#[cfg(target_os = "linux")]
 pub mod server;
 mod station;
 

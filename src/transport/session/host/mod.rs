@@ -599,5 +599,4 @@ impl Host {
 }
 
 #[cfg(test)]
-#[cfg(unix)]
 mod tests;
