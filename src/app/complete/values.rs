@@ -129,9 +129,9 @@ fn robots(context: &Context) -> Vec<Candidate> {
 
 fn tags(context: &Context) -> Vec<Candidate> {
     let inventory = context.inventory().unwrap_or_default();
-    let mut tags: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    let mut tags: BTreeMap<String, Vec<&str>> = BTreeMap::new();
     for robot in &inventory.robots {
-        for tag in &robot.tags {
+        for tag in robot.all_tags() {
             tags.entry(tag).or_default().push(&robot.name);
         }
     }

@@ -53,7 +53,7 @@ pub const LINES: &[&str] = &[
     "names set parts B5",
     "robots set cell3 read_only=off",
     "robots set cell3 names.clamp=27010",
-    "robots set cell3 timeout=5s tags=line1,welding",
+    "robots set cell3 timeout=5s site=berlin line=3 tags=welding",
     "robots rename cell3 press",
     "robots rename cell3 press --json",
     "robots default cell3",

@@ -20,6 +20,7 @@ use armctl_frame::output::view::{Table, View};
 use armctl_frame::run::{Run, RunError};
 use armctl_frame::settings::inventory::{Entry, matches_pattern};
 use armctl_frame::settings::model::ModelCache;
+use armctl_frame::settings::place::Place;
 use armctl_frame::settings::{Origin, Robot, Setting, duration};
 
 /// Commands for the inventory.
@@ -116,7 +117,14 @@ impl Show {
         let family = robot.family.name();
         run.local(
             "robots.show",
-            &Shown { name: robot.name, family, tags: robot.tags, settings, with_origin: self.origin },
+            &Shown {
+                name: robot.name,
+                family,
+                tags: robot.tags,
+                place: robot.place,
+                settings,
+                with_origin: self.origin,
+            },
         )
     }
 }
@@ -157,6 +165,8 @@ struct Listed {
     /// Whether commands use this robot if no robot is selected.
     default: bool,
     tags: Vec<String>,
+    /// Place in the plant.
+    place: Place,
 }
 
 impl List {
@@ -171,7 +181,7 @@ impl List {
             let is_named = selection.from_environment
                 || selection.robots.is_empty()
                 || selection.robots.iter().any(|pattern| matches_pattern(pattern, &robot.name));
-            is_named && selection.tags.iter().all(|tag| robot.tags.contains(tag))
+            is_named && selection.tags.iter().all(|tag| robot.has_tag(tag))
         };
         let robots: Vec<&Entry> = inventory.robots.iter().filter(is_chosen).collect();
         let has_others = robots.len() < inventory.robots.len();
@@ -182,6 +192,7 @@ impl List {
             read_only: robot.options.read_only.or(inventory.defaults.read_only).unwrap_or(false),
             default: inventory.default.as_ref() == Some(&robot.name),
             tags: robot.tags.clone(),
+            place: robot.place.clone(),
         });
         Ok(Self {
             file: inventory.path.as_ref().map(|path| path.display().to_string()),
@@ -198,7 +209,7 @@ impl Report for List {
         } else {
             "no robots yet; add one with `armctl setup`, or with `armctl robots add cell1 udp://192.168.1.31`"
         };
-        let mut table = Table::new(&["name", "family", "target", "default", "read-only", "tags"], no_robots);
+        let mut table = Table::new(&["name", "family", "target", "default", "read-only", "place", "tags"], no_robots);
         let mark = |on: bool| if on { "yes" } else { "" };
         for robot in &self.robots {
             table.row([
@@ -207,6 +218,7 @@ impl Report for List {
                 robot.target.as_str().into(),
                 mark(robot.default).into(),
                 mark(robot.read_only).into(),
+                robot.place.path().into(),
                 robot.tags.join(" ").into(),
             ]);
         }
@@ -220,6 +232,8 @@ pub struct Shown {
     name: String,
     family: &'static str,
     tags: Vec<String>,
+    /// Place in the plant.
+    place: Place,
     settings: Vec<Value>,
     #[serde(skip)]
     with_origin: bool,
@@ -240,7 +254,8 @@ impl Report for Shown {
         let mut table = Table::new(columns, "");
         let (tags, family) = (self.tags.join(" "), self.family.to_owned());
         let own = [("name", self.name.clone()), ("family", family), ("tags", tags)];
-        let own = own.into_iter().map(|(name, value)| (name, value, "robot".to_owned()));
+        let place = self.place.levels().into_iter().filter_map(|(key, value)| Some((key, value?.to_owned())));
+        let own = own.into_iter().chain(place).map(|(name, value)| (name, value, "robot".to_owned()));
         let settings = self.settings.iter().map(|row| (row.name, row.value.clone(), row.origin.clone()));
         for (name, value, origin) in own.chain(settings) {
             let mut cells = vec![name.into(), value.into()];

@@ -1,5 +1,7 @@
 //! `armctl status`: one line per robot of any family.
 
+use std::collections::BTreeMap;
+
 use clap::Args;
 
 use crate::command::families;
@@ -11,6 +13,7 @@ use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::output::Screen;
 use armctl_frame::output::envelope::Envelope;
 use armctl_frame::script_line::Line;
+use armctl_frame::settings::place::Place;
 use armctl_frame::settings::{Robot, target};
 use armctl_frame::share::{can_share, open_shared_session};
 use armctl_frame::{Access, Command, ConnectMode, Connection, Context, Entry, Family};
@@ -115,8 +118,12 @@ impl Family for Fleet {
 }
 
 /// Whether robots answer, their mode, servo, alarm and position.
-#[derive(Debug, Args)]
-pub struct Overview {}
+#[derive(Debug, Default, Args)]
+pub struct Overview {
+    /// Also count the robots of each site, area, line or cell
+    #[arg(long, value_name = "LEVEL", value_parser = Place::KEYS)]
+    by: Option<String>,
+}
 
 impl Command for Overview {
     type Family = Fleet;
@@ -146,23 +153,41 @@ impl Command for Overview {
         Ok(OverviewReport { family: robot.family.name(), failure: Some(failure), ..OverviewReport::default() })
     }
 
-    /// Summary line: `32 robots, 30 answer, 1 alarm`.
+    /// Summary line `32 robots, 30 answer, 1 alarm`, below a line for each place of the level `--by`.
     fn summary(&self, envelopes: &[Envelope]) -> Option<String> {
-        let count = |field: &str| {
-            let is_true = |envelope: &&Envelope| envelope.data.as_ref().is_some_and(|data| data[field] == true);
-            envelopes.iter().filter(is_true).count()
-        };
-        let (robots, answer, alarms) = (envelopes.len(), count("reachable"), count("faulted"));
-        let plural = |number: usize| if number == 1 { "" } else { "s" };
-        let verb = if answer == 1 { "answers" } else { "answer" };
-        let number = if alarms == 0 { "no".to_owned() } else { alarms.to_string() };
-        Some(format!("{robots} robot{}, {answer} {verb}, {number} alarm{}", plural(robots), plural(alarms.max(1))))
+        let mut lines = Vec::new();
+        if let Some(key) = &self.by {
+            let mut places: BTreeMap<Option<&str>, Vec<&Envelope>> = BTreeMap::new();
+            for envelope in envelopes {
+                let place = envelope.place.as_ref().and_then(|place| place.get(key));
+                places.entry(place).or_default().push(envelope);
+            }
+            for (place, envelopes) in places {
+                let label = place.map_or_else(|| format!("no {key}"), |place| format!("{key} {place}"));
+                lines.push(format!("{label}: {}", count(envelopes.into_iter())));
+            }
+        }
+        lines.push(count(envelopes.iter()));
+        Some(lines.join("\n"))
     }
+}
+
+/// Counts robots, answers and alarms.
+fn count<'a>(envelopes: impl Iterator<Item = &'a Envelope> + Clone) -> String {
+    let count = |field: &str| {
+        let is_true = |envelope: &&Envelope| envelope.data.as_ref().is_some_and(|data| data[field] == true);
+        envelopes.clone().filter(is_true).count()
+    };
+    let (robots, answer, alarms) = (envelopes.clone().count(), count("reachable"), count("faulted"));
+    let plural = |number: usize| if number == 1 { "" } else { "s" };
+    let verb = if answer == 1 { "answers" } else { "answer" };
+    let number = if alarms == 0 { "no".to_owned() } else { alarms.to_string() };
+    format!("{robots} robot{}, {answer} {verb}, {number} alarm{}", plural(robots), plural(alarms.max(1)))
 }
 
 /// Overview of a robot, with the connections of an interactive session.
 pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Result<OverviewReport, Failure> {
-    let overview = Overview {};
+    let overview = Overview::default();
     let access = Access::reading(overview.connect_mode());
     let access = line.connect(robot, access, screen).await?;
     let mut connection = Fleet::connect(robot, access, screen).await?;

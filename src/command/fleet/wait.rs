@@ -40,7 +40,7 @@ impl Wait {
     pub fn command(&self) -> Result<Box<dyn AnyCommand>, Failure> {
         Ok(match self.item()? {
             Some(comparison) => Box::new(SharedLine::reading("wait", &NOUNS, comparison.name)?),
-            None => Box::new(Overview {}),
+            None => Box::new(Overview::default()),
         })
     }
 

@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use crate::failure::Failure;
 use crate::settings::Robot;
+use crate::settings::place::Place;
 
 /// Output of `--json` for a robot:
 /// `{"robot":…,"family":…,"target":…,"simulated":…,"command":…,"ok":…,"data"|"error":…}`.
@@ -43,6 +44,10 @@ pub struct Envelope {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "bool")]
     pub simulated: Option<bool>,
+    /// Place of the robot in the plant, if `robots.toml` sets it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Place")]
+    pub place: Option<Place>,
     /// Command, for example `yerc.status`.
     pub command: Option<String>,
     /// Whether the command succeeded.
@@ -87,6 +92,7 @@ impl Envelope {
             family: Some(robot.family.name()),
             target: Some(robot.target.value.url().to_owned()),
             simulated: Some(robot.target.value.is_simulated()),
+            place: Some(robot.place.clone()).filter(|place| !place.is_empty()),
             command: Some(command.to_owned()),
             ok: error.is_none(),
             data,
@@ -104,6 +110,7 @@ impl Envelope {
             family: None,
             target: None,
             simulated: None,
+            place: None,
             command: Some(command.to_owned()),
             ok: true,
             data: Some(data),
@@ -121,6 +128,7 @@ impl Envelope {
             family: None,
             target: None,
             simulated: None,
+            place: None,
             command: command.map(ToOwned::to_owned),
             ok: false,
             data: None,

@@ -9,7 +9,8 @@
 //! [[robot]]
 //! name = "cell3"
 //! target = "udp://192.168.1.31?model=dx200"
-//! tags = ["line1", "welding"]
+//! tags = ["welding"]
+//! line = "3"
 //! read_only = true
 //!
 //! [robot.names]
@@ -32,6 +33,7 @@ use toml::Spanned;
 use super::duration;
 use super::model::ModelSetting;
 use super::names::grammar;
+use super::place::{self, Place};
 use super::target::{Family, Target, TargetArgument};
 use crate::failure::{Failure, plain};
 use armctl_controller::names::{Name, Source, unusable};
@@ -75,6 +77,8 @@ pub struct Entry {
     pub pulses_per_degree: Vec<f64>,
     /// Tags.
     pub tags: Vec<String>,
+    /// Place in the plant.
+    pub place: Place,
     /// Names of the robot's signals, variables and registers.
     pub names: Arc<[Name]>,
 }
@@ -119,6 +123,18 @@ impl Location {
             Self::Named(path) | Self::Default(path) => Some(path),
             Self::Nowhere => None,
         }
+    }
+}
+
+impl Entry {
+    /// Whether the robot has a tag: one of its own, or a level of its place such as `line=3`.
+    pub fn has_tag(&self, tag: &str) -> bool {
+        self.all_tags().any(|known| known == tag)
+    }
+
+    /// Tags of the robot, and the levels of its place as tags.
+    pub fn all_tags(&self) -> impl Iterator<Item = String> {
+        self.tags.iter().cloned().chain(self.place.tags())
     }
 }
 
@@ -214,6 +230,12 @@ impl Inventory {
                 },
                 pulses_per_degree: raw.pulses_per_degree.into_iter().map(Spanned::into_inner).collect(),
                 tags: raw.tags,
+                place: Place {
+                    site: level(raw.site, &at)?,
+                    area: level(raw.area, &at)?,
+                    line: level(raw.line, &at)?,
+                    cell: level(raw.cell, &at)?,
+                },
             });
         }
         if let Some(default) = &file.default
@@ -275,6 +297,16 @@ fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(
     at: &dyn Fn(std::ops::Range<usize>, &str) -> Failure,
 ) -> Result<Option<T>, Failure> {
     raw.map(|word| word.as_ref().parse::<T>().map_err(|why| at(word.span(), &why.to_string()))).transpose()
+}
+
+/// Checks a level of a place. An error contains the position of the value.
+fn level(
+    raw: Option<Spanned<String>>,
+    at: &dyn Fn(std::ops::Range<usize>, &str) -> Failure,
+) -> Result<Option<String>, Failure> {
+    let Some(value) = raw else { return Ok(None) };
+    place::check(value.as_ref()).map_err(|why| at(value.span(), &why))?;
+    Ok(Some(value.into_inner()))
 }
 
 /// Parses a name and its address.
@@ -366,6 +398,10 @@ struct RawRobot {
     retries: Option<u32>,
     #[serde(default)]
     tags: Vec<String>,
+    site: Option<Spanned<String>>,
+    area: Option<Spanned<String>>,
+    line: Option<Spanned<String>>,
+    cell: Option<Spanned<String>>,
     #[serde(default)]
     names: BTreeMap<String, Spanned<toml::Value>>,
 }

@@ -9,6 +9,7 @@ pub mod duration;
 pub mod inventory;
 pub mod model;
 pub mod names;
+pub mod place;
 pub mod target;
 
 use std::fmt;
@@ -27,6 +28,7 @@ use armctl_controller::yerc::Model;
 use inventory::{Entry, Inventory, Options};
 use model::{ModelCache, ModelSetting};
 use names::RobotNames;
+use place::Place;
 use target::{Address, Family, Target, TargetArgument};
 
 /// Where a setting comes from.
@@ -97,6 +99,8 @@ pub struct Robot {
     pub pulses_per_degree: Vec<f64>,
     /// Tags.
     pub tags: Vec<String>,
+    /// Place in the plant.
+    pub place: Place,
     /// Sessions that commands of the robot use.
     pub sessions: Sessions,
     /// Alarm explanations of the robot's site.
@@ -281,7 +285,7 @@ impl Sources {
             [] => !tags.is_empty() || self.inventory.default.as_ref() == Some(&entry.name),
             patterns => patterns.iter().any(|pattern| inventory::matches_pattern(pattern, &entry.name)),
         };
-        let is_chosen = |entry: &&Entry| is_named(entry) && tags.iter().all(|tag| entry.tags.contains(tag));
+        let is_chosen = |entry: &&Entry| is_named(entry) && tags.iter().all(|tag| entry.has_tag(tag));
         self.inventory.robots.iter().filter(is_chosen).map(|entry| self.resolve(entry, None)).collect()
     }
 
@@ -338,7 +342,8 @@ impl Sources {
         let target = Setting { value: entry.target.clone(), origin: Origin::Robot };
         let robot = self.robot(entry.name.clone(), entry.family, target, &entry.options, entry.tags.clone());
         let names = RobotNames::new(Arc::clone(&entry.names), entry.family, &entry.target.address());
-        Ok(Robot { pulses_per_degree: entry.pulses_per_degree.clone(), names, ..robot })
+        let (pulses_per_degree, place) = (entry.pulses_per_degree.clone(), entry.place.clone());
+        Ok(Robot { pulses_per_degree, place, names, ..robot })
     }
 
     /// Returns the robot at a target, with all settings.
@@ -393,16 +398,16 @@ impl Sources {
             chosen = self.inventory.robots.iter().collect();
         }
         for tag in &selection.tags {
-            let known = || self.inventory.robots.iter().flat_map(|robot| &robot.tags).map(String::as_str);
-            if !known().any(|known| known == tag) {
+            let known: Vec<String> = self.inventory.robots.iter().flat_map(Entry::all_tags).collect();
+            if !known.contains(tag) {
                 let failure = Failure::usage(format!("no robot in the inventory has the tag '{tag}'"));
-                return Err(match nearest(tag, known()) {
+                return Err(match nearest(tag, known.iter().map(String::as_str)) {
                     Some(near) => failure.hint(format!("did you mean '{near}'?")),
                     None => failure.hint("`armctl robots list` shows the robots with their tags"),
                 });
             }
         }
-        chosen.retain(|robot| selection.tags.iter().all(|tag| robot.tags.contains(tag)));
+        chosen.retain(|robot| selection.tags.iter().all(|tag| robot.has_tag(tag)));
         // A command of a family applies only to the robots of this family in a mixed selection. A robot of another
         // family that the user named explicitly causes an error below.
         if selection.is_plural()
@@ -479,6 +484,7 @@ impl Sources {
             model: url_model.unwrap_or_else(|| setting!(model, ModelSetting::Auto)),
             pulses_per_degree: Vec::new(),
             tags,
+            place: Place::default(),
             sessions: self.selection.sessions,
             alarms: self.alarms(),
             // The path is absolute, so that it stays valid in any folder.

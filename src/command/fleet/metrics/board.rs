@@ -27,6 +27,8 @@ pub struct Board {
 pub struct RobotMetrics {
     /// Encoded labels.
     pub labels: String,
+    /// Encoded labels with the target and the place of the robot.
+    pub info: String,
     /// Newest sample, while the robot answers.
     pub last_poll: Option<Arc<PollResult>>,
     /// Whether the robot has been polled yet.
@@ -82,8 +84,11 @@ impl Board {
             Event::Appeared(robot) => {
                 let id = [("robot", robot.name.as_str()), ("family", robot.family.name())];
                 let failures = ["no_answer", "refused", "malformed"].map(|kind| (kind.to_owned(), 0));
-                let seen =
-                    RobotMetrics { labels: labels("", &id), failures: failures.into(), ..RobotMetrics::default() };
+                let own = labels("", &id);
+                let place = robot.place.levels().into_iter().filter_map(|(key, value)| Some((key, value?)));
+                let info: Vec<(&str, &str)> = [("target", robot.target.value.url())].into_iter().chain(place).collect();
+                let info = labels(&own, &info);
+                let seen = RobotMetrics { labels: own, info, failures: failures.into(), ..RobotMetrics::default() };
                 self.robots.insert(RobotId::for_robot(robot), seen);
             }
             Event::Gone(robot) => _ = self.robots.remove(&RobotId::for_robot(robot)),

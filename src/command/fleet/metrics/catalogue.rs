@@ -44,6 +44,8 @@ pub const METRICS: &[Metric] = &[
     metric("armctl_inventory_last_reload_successful", Gauge, "",
         "Whether armctl could read robots.toml after its last change.",
         |board, samples| samples.write_sample("", u8::from(!board.is_inventory_broken))),
+    metric("armctl_robot", Info, "", "Target of the robot, and its place (site, area, line, cell) from robots.toml.",
+        |board, samples| board.robots.values().for_each(|seen| samples.write_sample(&seen.info, 1))),
     metric("armctl_robot_up", Gauge, "", "Whether the robot answered the latest poll.",
         |board, samples| each(board, samples, |seen| seen.is_known.then(|| u8::from(seen.last_poll.is_some())))),
     metric("armctl_robot_servo_on", Gauge, "", "Whether the servo power is on.",

@@ -53,7 +53,7 @@ use self::outbox::Outbox;
 use self::plain_format::{Alarms, PlainFormat, Position};
 use self::sparkplug::{Names, Node};
 use self::spool::Spool;
-use self::topic::Levels;
+use self::topic::{Levels, Template, Topics};
 use crate::command::fleet::poll::{Event, Poll, PollRequest, RobotId, Subscription};
 use crate::command::fleet::service::{END_TIMEOUT, Service};
 use armctl_files as files;
@@ -63,14 +63,14 @@ use armctl_frame::local_names::state_folder;
 use armctl_frame::output::log::Level;
 use armctl_frame::output::view::{Cell, Tone, View};
 use armctl_frame::run::{Run, RunError};
-use armctl_frame::settings::duration;
+use armctl_frame::settings::{Robot, duration};
 use armctl_frame::{Report, SchemaEntry};
 
 /// Publish changes of robots to an MQTT broker.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Without -r, --tag, --sim or -t, armctl publishes all robots in the inventory. --watch INTERVAL sets \
-                  how often armctl polls the robots (1s). The topics are PREFIX/ROBOT/status and so on. Messages are \
+                  how often armctl polls the robots (1s). The topics are PREFIX/ROBOT/status and so on, or as --topic says. Messages are \
                   retained, and their payload is the envelope of --json. PREFIX/NODE/state is online or offline. \
                   Messages from the broker cannot move a robot or change anything. publish runs until Ctrl-C or \
                   SIGTERM (exit code 0), and connects again after the broker was away. With --count N, publish ends \
@@ -96,6 +96,9 @@ pub struct Publish {
     /// First levels of all topics
     #[arg(long, value_name = "TOPIC", default_value = "armctl", value_parser = topic::prefix)]
     prefix: String,
+    /// Topics of robots, with the place of a robot: '{site}/{area}/{line}/{robot}/{kind}'
+    #[arg(long, value_name = "TEMPLATE", conflicts_with = "is_wanted")]
+    topic: Option<Template>,
     /// Name of this publisher at the broker; default: the name of this computer
     #[arg(long, value_name = "NAME")]
     node: Option<String>,
@@ -257,14 +260,16 @@ impl Publish {
         let broker = Broker::new(&url, &self.login)?;
         let node = topic::level(&self.node.clone().unwrap_or_else(this_machine))?;
         let mut poll = Poll::new(&run.sources, run.screen.silenced())?;
-        let levels = Levels::new(poll.robots());
+        let template = self.topic.clone().unwrap_or_default();
+        let topics = Topics { prefix: self.prefix.clone(), template, levels: Levels::new(poll.robots()) };
+        let check = |robot: &Robot| topics.topic_of(robot, Kind::Status.name());
         for robot in poll.robots() {
-            levels.level_of(robot)?;
+            check(robot)?;
         }
         let robots: Vec<RobotId> = poll.robots().iter().map(RobotId::for_robot).collect();
         let service = Service::begin(run.screen)?;
         let (outbox, folder) = self.outbox(&node)?;
-        let speech = self.create_format((&node, levels), &also, folder.as_deref());
+        let speech = self.create_format((&node, topics.clone()), &also, folder.as_deref());
         let log = BrokerLog::new(&service, broker.url.to_string());
         for warning in &broker.warnings {
             log.log(Level::Warning, warning);
@@ -283,6 +288,11 @@ impl Publish {
             let found = async || {
                 let event = looks.next(&mut events).await?;
                 service.note(&event);
+                if let Event::Appeared(robot) = &event
+                    && let Err(failure) = check(robot)
+                {
+                    log.log(Level::Warning, &format!("{failure}; armctl does not publish this robot"));
+                }
                 Some(event)
             };
             let stop = async {
@@ -369,19 +379,17 @@ impl Publish {
 
     fn create_format(
         &self,
-        (node, levels): (&str, Levels),
+        (node, topics): (&str, Topics),
         also: &Rc<[ExtraTopic]>,
         folder: Option<&Path>,
     ) -> Box<dyn MessageFormat> {
         let every_ms = u64::try_from(self.every.as_millis()).unwrap_or(u64::MAX);
         let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(|kind| self.kinds.contains(kind)).collect();
         match &self.sparkplug.group {
-            None => {
-                Box::new(PlainFormat::new((&self.prefix, node.to_owned(), levels), &kinds, Rc::clone(also), every_ms))
-            }
+            None => Box::new(PlainFormat::new((node.to_owned(), topics), &kinds, Rc::clone(also), every_ms)),
             Some(group) => {
-                let names =
-                    Names { group: group.clone(), node: node.to_owned(), host: self.sparkplug.host.clone(), levels };
+                let (host, levels) = (self.sparkplug.host.clone(), topics.levels);
+                let names = Names { group: group.clone(), node: node.to_owned(), host, levels };
                 let file = folder.map(|folder| folder.join("bdseq"));
                 let text = file.as_deref().and_then(|file| files::text(file, 16).ok());
                 let bd_seq = text.and_then(|text| text.trim().parse().ok()).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Plain message format: one retained topic per robot and kind, `PREFIX/ROBOT/status`, with the envelope of `--json` as
+//! Plain message format: one retained topic per robot and kind, `PREFIX/ROBOT/status` or a template, with the envelope of `--json` as
 //! payload.
 //!
 //! A message is sent after a change, and at the latest after a given time. If a robot does not answer, all its topics
@@ -15,7 +15,7 @@ use super::Kind;
 use super::extra_topic::ExtraTopic;
 use super::message_format::{MessageFormat, Reaction};
 use super::outbox::Record;
-use super::topic::Levels;
+use super::topic::Topics;
 use super::uplink::{Message, Will};
 use crate::command::fleet::poll::{Event, PollResult, RobotId};
 use armctl_frame::face::overview::OverviewReport;
@@ -53,9 +53,8 @@ struct SentState {
 /// The plain message format.
 #[derive(Debug)]
 pub struct PlainFormat {
-    prefix: String,
     node: String,
-    levels: Levels,
+    topics: Topics,
     kinds: Vec<Kind>,
     also: Rc<[ExtraTopic]>,
     every_ms: u64,
@@ -65,18 +64,13 @@ pub struct PlainFormat {
 impl PlainFormat {
     /// Creates the format for these kinds and extra commands; unchanged data is sent again after `every_ms`. `node` is
     /// a topic level.
-    pub fn new(
-        (prefix, node, levels): (&str, String, Levels),
-        kinds: &[Kind],
-        also: Rc<[ExtraTopic]>,
-        every_ms: u64,
-    ) -> Self {
-        Self { prefix: prefix.to_owned(), node, levels, kinds: kinds.to_vec(), also, every_ms, sent: BTreeMap::new() }
+    pub fn new((node, topics): (String, Topics), kinds: &[Kind], also: Rc<[ExtraTopic]>, every_ms: u64) -> Self {
+        Self { node, topics, kinds: kinds.to_vec(), also, every_ms, sent: BTreeMap::new() }
     }
 
     fn state(&self, state: &str) -> Message {
         Message {
-            topic: format!("{}/{}/state", self.prefix, self.node),
+            topic: format!("{}/{}/state", self.topics.prefix, self.node),
             payload: state.as_bytes().to_vec(),
             retain: true,
             acknowledged: true,
@@ -85,10 +79,11 @@ impl PlainFormat {
 
     /// Records for data that has changed or is due again.
     fn changed(&mut self, robot: &Robot, envelopes: Vec<(String, Envelope)>, now_ms: u64) -> Vec<Record> {
-        let Ok(level) = self.levels.level_of(robot) else { return Vec::new() };
         let last_sent = self.sent.entry(RobotId::for_robot(robot)).or_default();
         let mut records = Vec::new();
         for (kind, envelope) in envelopes {
+            // `publish` reports a robot without a topic once, when the robot appears.
+            let Ok(key) = self.topics.topic_of(robot, &kind) else { continue };
             let Ok(what) = serde_json::to_vec(&envelope) else { continue };
             let is_due = last_sent
                 .get(&kind)
@@ -98,7 +93,6 @@ impl PlainFormat {
             }
             let time = i64::try_from(now_ms).ok().and_then(|ms| Timestamp::from_millisecond(ms).ok());
             let Ok(body) = serde_json::to_vec(&Envelope { time, ..envelope }) else { continue };
-            let key = format!("{}/{level}/{kind}", self.prefix);
             records.push(Record { kind: 0, time_ms: now_ms, key, body, epoch: 0 });
             last_sent.insert(kind, SentState { what, at_ms: now_ms });
         }
@@ -149,15 +143,8 @@ impl PlainFormat {
     /// The robot was removed: clears its retained messages.
     fn records_of_removed_robot(&mut self, robot: &Robot, now_ms: u64) -> Vec<Record> {
         let told = self.sent.remove(&RobotId::for_robot(robot)).unwrap_or_default();
-        let Ok(level) = self.levels.level_of(robot) else { return Vec::new() };
-        let empty = |kind: String| Record {
-            kind: 0,
-            time_ms: now_ms,
-            key: format!("{}/{level}/{kind}", self.prefix),
-            body: Vec::new(),
-            epoch: 0,
-        };
-        told.into_keys().map(empty).collect()
+        let empty = |key: String| Record { kind: 0, time_ms: now_ms, key, body: Vec::new(), epoch: 0 };
+        told.into_keys().filter_map(|kind| self.topics.topic_of(robot, &kind).ok()).map(empty).collect()
     }
 }
 

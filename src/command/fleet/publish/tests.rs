@@ -15,7 +15,7 @@ use super::delivery::{Backoff, Broker, Counts, Delivery, Listener, Uplink};
 use super::outbox::Outbox;
 use super::plain_format::PlainFormat;
 use super::spool::Spool;
-use super::topic::Levels;
+use super::topic::Topics;
 use super::uplink::{Event, Loss, Message, Refusal, SendError, TlsError, Version, Will};
 use super::{ExtraTopic, Kind, MessageFormat};
 use crate::command::fleet::poll::{Event as Found, PollResult};
@@ -200,7 +200,8 @@ const KINDS: [Kind; 3] = [Kind::Status, Kind::Alarms, Kind::Position];
 
 fn plain() -> Box<dyn MessageFormat> {
     let also: Rc<[ExtraTopic]> = Rc::from([]);
-    Box::new(PlainFormat::new(("armctl", "cell7".to_owned(), Levels::default()), &KINDS, also, 60_000))
+    let topics = Topics { prefix: "armctl".to_owned(), ..Topics::default() };
+    Box::new(PlainFormat::new(("cell7".to_owned(), topics), &KINDS, also, 60_000))
 }
 
 /// Records log messages, except those for `-v`.

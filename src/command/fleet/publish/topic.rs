@@ -1,4 +1,4 @@
-//! Names as topic levels.
+//! Topics of robots, and names as topic levels.
 //!
 //! A level is the name of a robot or node. Characters with a special meaning in topics, and characters that are not
 //! allowed, are written as `%` and the hex digits of each byte, as in URLs: `+`, `#`, `/`, `%`, control characters, and
@@ -6,8 +6,11 @@
 
 use std::collections::BTreeSet;
 
+use std::str::FromStr;
+
 use armctl_frame::failure::Failure;
 use armctl_frame::settings::Robot;
+use armctl_frame::settings::place::Place;
 
 /// Topic levels of robots. If several robots have the same name, as simulators do, the family is appended.
 #[derive(Debug, Clone, Default)]
@@ -33,6 +36,100 @@ impl Levels {
             return level(&format!("{}-{}", robot.name, robot.family));
         }
         level(&robot.name)
+    }
+}
+
+/// Template of the topics of robots, such as `{site}/{area}/{line}/{robot}/{kind}`: one part for each level.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Template(Vec<Part>);
+
+/// Level of a template. A placeholder is a whole level, so that two robots never share a topic.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Part {
+    Text(String),
+    /// The prefix of all topics.
+    Prefix,
+    Robot,
+    Family,
+    /// What is published: `status`, `alarms`, `position`, or the name of an extra command.
+    Kind,
+    /// A level of the place.
+    Place(&'static str),
+}
+
+/// Placeholders of a template.
+const KNOWN: &str = "{robot}, {kind}, {family}, {prefix}, {site}, {area}, {line}, {cell}";
+
+impl Default for Template {
+    fn default() -> Self {
+        Self(vec![Part::Prefix, Part::Robot, Part::Kind])
+    }
+}
+
+impl FromStr for Template {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.split('/').map(str::parse).collect::<Result<Vec<Part>, String>>()?;
+        if !parts.contains(&Part::Robot) || !parts.contains(&Part::Kind) {
+            return Err("the topic needs the levels {robot} and {kind}".to_owned());
+        }
+        Ok(Self(parts))
+    }
+}
+
+impl FromStr for Part {
+    type Err = String;
+
+    fn from_str(level: &str) -> Result<Self, String> {
+        if !level.contains(['{', '}']) {
+            return prefix(level).map(Self::Text);
+        }
+        match level.strip_prefix('{').and_then(|rest| rest.strip_suffix('}')) {
+            Some("prefix") => Ok(Self::Prefix),
+            Some("robot") => Ok(Self::Robot),
+            Some("family") => Ok(Self::Family),
+            Some("kind") => Ok(Self::Kind),
+            name => match Place::KEYS.into_iter().find(|key| Some(*key) == name) {
+                Some(key) => Ok(Self::Place(key)),
+                None => Err(format!("'{level}' is not a level; known: {KNOWN}")),
+            },
+        }
+    }
+}
+
+/// Topics of the robots.
+#[derive(Debug, Clone, Default)]
+pub struct Topics {
+    /// First levels of all topics.
+    pub prefix: String,
+    /// Template of the topics.
+    pub template: Template,
+    /// Topic levels of the robots.
+    pub levels: Levels,
+}
+
+impl Topics {
+    /// Topic of a robot for data of this kind, which is a topic level.
+    ///
+    /// # Errors
+    /// If the template needs a level of the place that the robot does not have.
+    pub fn topic_of(&self, robot: &Robot, kind: &str) -> Result<String, Failure> {
+        let level_of = |part: &Part| match part {
+            Part::Text(text) => Ok(text.clone()),
+            Part::Prefix => Ok(self.prefix.clone()),
+            Part::Robot => self.levels.level_of(robot),
+            Part::Family => Ok(robot.family.name().to_owned()),
+            Part::Kind => Ok(kind.to_owned()),
+            Part::Place(key) => match robot.place.get(key) {
+                Some(value) => level(value),
+                None => {
+                    Err(Failure::usage(format!("the topic has the level {{{key}}}, but {} has no {key}", robot.name))
+                        .hint(format!("set it: `armctl robots set {} {key}=NAME`", robot.name)))
+                }
+            },
+        };
+        Ok(self.template.0.iter().map(level_of).collect::<Result<Vec<_>, Failure>>()?.join("/"))
     }
 }
 
@@ -94,6 +191,8 @@ pub fn identifier(text: &str) -> Result<String, String> {
 
 #[cfg(test)]
 mod tests {
+    use armctl_frame::settings::Sources;
+    use armctl_frame::settings::target::{Family, Target, TargetArgument};
     use proptest::prelude::*;
 
     use super::*;
@@ -114,6 +213,38 @@ mod tests {
             assert_eq!(level(name).unwrap(), expected);
         }
         assert!(level("").is_err() && level(&"x".repeat(201)).is_err() && level(&"/".repeat(67)).is_err());
+    }
+
+    #[test]
+    fn fills_templates_with_encoded_levels() {
+        let mut robot = test_robot("a/b");
+        robot.place.site = Some("Werk #1".to_owned());
+        let topic = |template: &str, robot: &Robot| {
+            let template = template.parse().unwrap();
+            Topics { prefix: "armctl".to_owned(), template, ..Topics::default() }.topic_of(robot, "status")
+        };
+        assert_eq!(topic("{prefix}/{robot}/{kind}", &robot).unwrap(), "armctl/a%2Fb/status");
+        assert_eq!(topic("{site}/x/{family}/{robot}/{kind}", &robot).unwrap(), "Werk %231/x/toyo/a%2Fb/status");
+        let failure = topic("{line}/{robot}/{kind}", &robot).unwrap_err();
+        assert_eq!(failure.hint.as_deref(), Some("set it: `armctl robots set a/b line=NAME`"));
+        assert_eq!("{prefix}/{robot}/{kind}".parse(), Ok(Template::default()));
+        for wrong in [
+            "{robot}",
+            "{kind}/x",
+            "{robot}//{kind}",
+            "{robot}/{kind}/#",
+            "/{robot}/{kind}",
+            "{robto}/{kind}",
+            "x{robot}/{kind}",
+        ] {
+            assert!(wrong.parse::<Template>().is_err(), "{wrong}");
+        }
+    }
+
+    fn test_robot(name: &str) -> Robot {
+        let target: Target =
+            "tcp://127.0.0.1:9".parse::<TargetArgument>().unwrap().resolve(Some(Family::Toyo)).unwrap();
+        Robot { name: name.to_owned(), ..Sources::default().at(&target, Family::Toyo).unwrap() }
     }
 
     #[test]

@@ -16,6 +16,7 @@ use armctl_frame::run::{Run, RunError};
 use armctl_frame::settings::duration;
 use armctl_frame::settings::inventory::{Entry, Inventory, is_name, named};
 use armctl_frame::settings::model::ModelSetting;
+use armctl_frame::settings::place;
 use armctl_frame::settings::target::{Family, Target, TargetArgument};
 use armctl_frame::{Candidate, Report, ValueKind};
 
@@ -124,7 +125,8 @@ impl Remove {
 /// Changes settings of a robot; `KEY=` without a value removes a setting.
 #[derive(Debug, Args)]
 #[command(after_help = "Settings: target, family, model, read_only, hold, encoding, timeout, retries, \
-                        pulses_per_degree=S,L,U,R,B,T (yerc), tags=A,B. Names: names.NAME=ADDRESS, such as \
+                        pulses_per_degree=S,L,U,R,B,T (yerc), tags=A,B, and the place: site, \
+                        area, line, cell. Names: names.NAME=ADDRESS, such as \
                         names.clamp=27010.")]
 pub struct Set {
     /// Name of the robot
@@ -139,7 +141,7 @@ pub struct Set {
 type Parse = fn(&str, Family) -> Result<Value, Failure>;
 
 /// Settings of an entry: key, description, parser.
-const SETTINGS: [(&str, &str, Parse); 10] = [
+const SETTINGS: [(&str, &str, Parse); 14] = [
     ("target", "target URL", |text, family| {
         let target = text.parse::<TargetArgument>()?.resolve(Some(family))?;
         Ok(target.url().into())
@@ -176,6 +178,10 @@ const SETTINGS: [(&str, &str, Parse); 10] = [
     ("tags", "tags for --tag, such as line1,welding", |text, _| {
         Ok(Value::Array(text.split(',').map(str::trim).filter(|tag| !tag.is_empty()).collect()))
     }),
+    ("site", "place: site, such as berlin", level),
+    ("area", "place: area of the site", level),
+    ("line", "place: line of the area", level),
+    ("cell", "place: cell of the line", level),
 ];
 
 fn candidates() -> Vec<Candidate> {
@@ -190,6 +196,11 @@ fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(text: &str) -> Result<T,
 
 fn invalid(why: impl Into<String>, hint: &str) -> Failure {
     Failure::usage(why).hint(hint)
+}
+
+fn level(text: &str, _: Family) -> Result<Value, Failure> {
+    place::check(text).map_err(|why| invalid(why, "example: line=3"))?;
+    Ok(text.into())
 }
 
 fn switch(text: &str) -> Result<bool, Failure> {

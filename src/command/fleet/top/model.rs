@@ -327,7 +327,7 @@ impl RobotRow {
             name: robot.name.clone(),
             family: robot.family,
             place: robot.target.value.url().to_owned(),
-            tags: robot.tags.clone(),
+            tags: robot.tags.iter().cloned().chain(robot.place.tags()).collect(),
             contact: Contact::Waiting,
             last: None,
             answers: VecDeque::with_capacity(ANSWERS),

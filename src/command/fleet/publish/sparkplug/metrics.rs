@@ -74,6 +74,8 @@ pub fn metrics_of_poll(look: &PollResult, kinds: &[Kind], also: &[ExtraTopic]) -
         metric("info/target", DataType::String, text(Some(look.robot.target.value.url()))),
         metric("info/simulated", DataType::Boolean, flag(Some(look.robot.target.value.is_simulated()))),
     ]);
+    let place = look.robot.place.levels();
+    metrics.extend(place.map(|(key, value)| metric(&format!("info/{key}"), DataType::String, text(value))));
     for (line, answer) in &look.extras {
         if let (Some(also), Ok(data)) = (also.iter().find(|also| also.text() == &**line), answer) {
             let mut found = Vec::new();
