@@ -1,29 +1,18 @@
 //! Commands `toyo alarm list|history|watch|reset|point`.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::explain::alarm_from_code;
 use super::link::Link;
 use super::link::Toyo;
 use super::wait::{status_page, wait_for_status};
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::toyo::errors;
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::request::Request;
 use armctl_controller::toyo::status::Status;
-use armctl_controller::toyo::table;
 use armctl_frame::dry_run::unknown;
 use armctl_frame::face::shared_commands::CommonReport;
-use armctl_frame::failure::{self, Failure};
-use armctl_frame::output::view::View;
+use armctl_frame::failure;
 use armctl_frame::robot::alarm::{Alarm as Told, AlarmEntry, Alarms, ExtraColumns, Nothing, Row, Source};
-use armctl_frame::settings::{Robot, alarms};
-use armctl_frame::settings_report::{Done, NewValue, Old};
+use armctl_frame::settings::alarms;
 use armctl_frame::watch::{Watch, Watchable, Watched};
-use armctl_frame::{Command, Context, Report, commands};
 
 commands! {
     /// Commands for alarms.

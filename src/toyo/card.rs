@@ -1,19 +1,10 @@
 //! `toyo card read|write`: the memory card.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::link::Toyo;
 use super::wait::{AcceptedWork, Work};
-use armctl_controller::Risk;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
-use armctl_frame::dry_run::{Known as _, unknown};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, Tone, View};
+use crate::prelude::*;
+use armctl_frame::dry_run::unknown;
 use armctl_frame::wait_arguments::MotionEnd;
-use armctl_frame::{Command, Context, Report, commands};
 
 commands! {
     /// Commands for the memory card.

@@ -57,6 +57,7 @@ mod param;
 mod point_calc;
 mod port;
 mod position;
+mod prelude;
 mod procedures;
 pub mod profibus;
 #[cfg_attr(not(target_os = "linux"), path = "profinet/elsewhere.rs")]

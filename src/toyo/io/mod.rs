@@ -14,9 +14,7 @@ mod set;
 
 pub(super) use port::{INPUTS, OUTPUTS, PortBank, ports_of};
 
-use clap::Args;
-
-use armctl_frame::commands;
+use crate::prelude::*;
 use armctl_frame::watch::Watch;
 
 commands! {

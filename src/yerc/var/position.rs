@@ -2,13 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use schemars::JsonSchema;
-use serde::Serialize;
 use serde_json::{Map, Value as Json};
 
 use super::word::different_words;
+use crate::prelude::*;
 use armctl_controller::units::{self, Quantity, Unit};
-use armctl_controller::yerc::group::Group;
 use armctl_controller::yerc::payload::{
     BasePosition, ExtendedForm, ExternalPosition, Form, MAX_AXES, NamedAxis, Position, PositionKind,
 };

@@ -2,17 +2,13 @@
 
 use std::time::Duration;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::check;
 use super::connect::{adapter, request_timeout};
 use crate::fieldbus::{At, BusBoard, Checked};
 use crate::link_error::not_open;
-use armctl_controller::yrcx::image::Image;
+use crate::prelude::*;
 use armctl_frame::face::layers::Layers;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::view::Cell;
+use armctl_frame::failure::Kind;
 use armctl_frame::settings::target::bus::Scheme;
 use armctl_frame::settings::target::devicenet::{BUS, DeviceNet};
 use armctl_transport::devicenet::error::Error;

@@ -1,13 +1,9 @@
 //! `yrcx eip identity`.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::board::{Board, Identity};
 use crate::messages::BoardReport;
-use armctl_frame::Report;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::view::{Section, View};
+use crate::prelude::*;
+use armctl_frame::failure::Kind;
 
 /// Identity and services of the board (ListIdentity, ListServices).
 #[derive(Debug, Serialize, JsonSchema)]

@@ -6,8 +6,7 @@
 
 use std::collections::BTreeSet;
 
-use armctl_frame::failure::Failure;
-use armctl_frame::settings::Robot;
+use armctl_frame::prelude::*;
 
 /// Topic levels of robots. If several robots have the same name, as simulators do, the family is appended.
 #[derive(Debug, Clone, Default)]

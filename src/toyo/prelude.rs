@@ -1,0 +1,7 @@
+//! Names that almost every command of this family uses.
+
+pub use armctl_controller::toyo::field::Value;
+pub use armctl_controller::toyo::layout::Record;
+pub use armctl_controller::toyo::request::Request;
+pub use armctl_controller::toyo::table;
+pub use armctl_frame::prelude::*;

@@ -1,0 +1,6 @@
+//! Names that almost every command of this family uses.
+
+pub use armctl_controller::text::Encoding;
+pub use armctl_controller::yerc::Model;
+pub use armctl_controller::yerc::group::Group;
+pub use armctl_frame::prelude::*;
