@@ -29,7 +29,6 @@ use crate::cli::Words;
 use crate::command::families;
 use crate::command::fleet::session::host::{self, ManagerThread};
 use armctl_frame::Entry;
-use armctl_frame::failure::Kind;
 use armctl_frame::flags::Globals;
 use armctl_frame::interrupt::{catch_interrupts, clear_interrupt, interruptible, termination_request};
 use armctl_frame::prelude::*;

@@ -73,7 +73,7 @@ async fn transfer(context: Context<'_, Toyo>, work: AcceptedWork, no_wait: bool)
     if no_wait {
         return Ok(TransferReport { accepted: true, elapsed_ms: None, needs_power_cycle: None });
     }
-    let Some(end) = work.wait(link, context.screen, armctl_client::toyo::Letters::UNKNOWN).await.known()? else {
+    let Some(end) = work.wait(link, context.screen, Letters::UNKNOWN).await.known()? else {
         link.status_of(&[0]).await?;
         return Err(unknown());
     };

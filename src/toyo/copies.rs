@@ -6,11 +6,9 @@ use super::numbers::ask_all;
 use super::refusal;
 use super::values::{NamedValue, in_a_line, named_values_with};
 use crate::prelude::*;
-use armctl_client::toyo::Letters;
 use armctl_controller::toyo::table::palletizing::RECORDS;
 use armctl_frame::authority::Authority;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Kind;
 
 /// A program copy, and the requests that read source and target.
 #[derive(Debug)]

@@ -10,7 +10,6 @@ use armctl_controller::names::Kind;
 use armctl_controller::toyo::field;
 use armctl_controller::toyo::names as names_of;
 use armctl_frame::store::{Get, List, Row};
-use armctl_frame::watch::Watch;
 
 table_commands! {
     /// Commands for counters.

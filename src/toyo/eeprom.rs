@@ -7,8 +7,7 @@ use super::link::Link;
 use super::refusal;
 use crate::prelude::*;
 use armctl_controller::toyo::layout::LayoutProblem;
-use armctl_controller::toyo::table::{Command, Op, Parameter};
-use armctl_frame::failure::Kind;
+use armctl_controller::toyo::table::{Command, Op};
 
 /// A stored value: its read request, its write request, and the new value.
 #[derive(Debug, Clone)]

@@ -4,8 +4,6 @@ use super::link::{Link, Toyo};
 use super::position::{Coordinates, UNIT, titled};
 use super::wait::{AcceptedWork, Work};
 use crate::prelude::*;
-use armctl_client::toyo::Letters;
-use armctl_frame::failure::Kind;
 use armctl_frame::robot::motion::Motion;
 use armctl_frame::wait_arguments::MotionEnd;
 

@@ -4,8 +4,6 @@ use super::link::Toyo;
 use super::orders::no_effect;
 use super::wait::wait_for_status;
 use crate::prelude::*;
-use armctl_controller::toyo::status::Status;
-use armctl_frame::failure::Kind;
 use armctl_frame::settings_report::Switch;
 
 /// Switch the host ON or OFF permanently.

@@ -9,9 +9,7 @@ use super::link::Toyo;
 use super::task;
 use super::wait::status_page;
 use crate::prelude::*;
-use armctl_controller::toyo::status::Status;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Kind;
 
 /// Clear memory. Only a backup can restore the cleared memory.
 #[derive(Debug, Args)]

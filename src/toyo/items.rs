@@ -6,7 +6,6 @@ use super::link::{Link, Refusal};
 use super::refusal;
 use crate::prelude::*;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Kind;
 
 /// The answer or the failure of each request.
 pub type Answers = Vec<Result<Record, Failure>>;

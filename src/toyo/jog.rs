@@ -15,8 +15,6 @@ use super::refusal;
 use super::values::machine;
 use super::wait::{POLL_INTERVAL, explain_present_error, position_request, status_page};
 use crate::prelude::*;
-use armctl_client::toyo::Letters;
-use armctl_frame::failure::Kind;
 use armctl_frame::robot::motion::Motion;
 use armctl_frame::robot::position::Position;
 use armctl_frame::settings::duration;

@@ -8,7 +8,6 @@ use super::rows::{Listed, WRITING, texts, unlisted};
 use super::values::{Changes, word};
 use crate::prelude::*;
 use armctl_controller::toyo::field;
-use armctl_controller::toyo::table::Parameter;
 use armctl_frame::store::Row;
 
 table_commands! {

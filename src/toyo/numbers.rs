@@ -7,7 +7,6 @@ use armctl_controller::names::Kind as NameKind;
 use armctl_controller::toyo::field::{Field, Form};
 use armctl_controller::toyo::names as names_of;
 use armctl_controller::typed;
-use armctl_frame::failure::Kind;
 use armctl_frame::names;
 
 /// A number or a range: `5`, `1-5`, `1..5`.

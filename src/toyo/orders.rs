@@ -7,9 +7,8 @@ use super::link::Toyo;
 use super::position::UNIT;
 use super::wait::wait_for_status;
 use crate::prelude::*;
-use armctl_controller::toyo::status::{ProgramKind, RunMode, Status};
+use armctl_controller::toyo::status::{ProgramKind, RunMode};
 use armctl_frame::face::shared_commands::CommonReport;
-use armctl_frame::failure::Kind;
 use armctl_frame::robot::position::Position;
 use armctl_frame::settings_report::Switch;
 

@@ -4,7 +4,7 @@ use super::link::Link;
 use super::position::Coordinates;
 use super::top::alarms;
 use crate::prelude::*;
-use armctl_controller::toyo::status::{RunMode, Status};
+use armctl_controller::toyo::status::RunMode;
 use armctl_controller::toyo::table::Command;
 use armctl_frame::face::overview::{LeftOver, OverviewReport};
 use armctl_frame::robot::state::{Fault, Mode, PositionMm, State};

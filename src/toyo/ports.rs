@@ -4,7 +4,6 @@ use anyhow::Context as _;
 
 use crate::prelude::*;
 use armctl_frame::OfflineCommand;
-use armctl_frame::failure::Kind;
 use armctl_transport::ports::{self, PortInfo, PortKind, PortUser};
 
 /// Failure: another program uses the port. If that program is armctl and receives a termination signal, it first stops

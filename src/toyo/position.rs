@@ -2,7 +2,6 @@
 
 use super::link::Toyo;
 use crate::prelude::*;
-use armctl_client::toyo::Letters;
 use armctl_frame::plot::SeriesHistory;
 use armctl_frame::robot::position::{self as robot, Positions};
 

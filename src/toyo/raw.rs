@@ -8,7 +8,6 @@ use crate::prelude::*;
 use armctl_controller::toyo::describe::{Sender, describe};
 use armctl_controller::toyo::request::{Answer, BlockError};
 use armctl_frame::decode::{field_table, problem_lines};
-use armctl_frame::failure::Kind;
 
 /// Send a block unchanged. armctl does not switch the host ON, compare values or wait for an end.
 #[derive(Debug, Args)]

@@ -3,9 +3,8 @@
 use super::link::Link;
 use crate::prelude::*;
 use armctl_controller::toyo::errors;
-use armctl_controller::toyo::status::{ProgramKind, RunMode, Status};
+use armctl_controller::toyo::status::{ProgramKind, RunMode};
 use armctl_controller::toyo::table::commands::{Command, Row};
-use armctl_frame::failure::Kind;
 
 /// Failure for a refusal. It contains the reason if the status shows one.
 pub async fn explained(link: &mut Link, request: &Request) -> Failure {

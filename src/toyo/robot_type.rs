@@ -5,7 +5,6 @@ use super::numbers::number;
 use crate::prelude::*;
 use armctl_controller::toyo::field::Field;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Kind;
 
 /// Set the robot type of an axis. The type determines the parameters of the axis.
 #[derive(Debug, Args)]

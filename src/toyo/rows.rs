@@ -10,10 +10,8 @@ use super::link::{Link, Toyo, wrong};
 use super::numbers::Numbers;
 use super::values::{Changes, NOT_IN_MANUAL, word};
 use crate::prelude::*;
-use armctl_client::toyo::Letters;
 use armctl_controller::toyo::field::{self, Form};
 use armctl_controller::toyo::layout::{Layout, UNLISTED};
-use armctl_controller::toyo::table::Parameter;
 use armctl_frame::robot::item::as_requested;
 use armctl_frame::store::Row;
 

@@ -3,7 +3,6 @@
 use super::link::Link;
 use crate::prelude::*;
 use armctl_controller::toyo::table::Command;
-use armctl_frame::failure::Kind;
 
 /// Reads the current task, and selects `task` temporarily if it is another one. Returns the task that is current after
 /// this.

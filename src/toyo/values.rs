@@ -8,7 +8,6 @@ use std::ops::Range;
 use serde_json::Value as Json;
 
 use crate::prelude::*;
-use armctl_client::toyo::Letters;
 use armctl_controller::nearest::nearest;
 use armctl_controller::toyo::field::{Field, Form, Number};
 use armctl_controller::toyo::layout::{Layout, UNLISTED};

@@ -9,13 +9,10 @@ use super::position::Coordinates;
 use super::program::steps;
 use super::refusal;
 use crate::prelude::*;
-use armctl_client::toyo::Letters;
 pub(super) use armctl_client::toyo::status_page;
 use armctl_controller::toyo::errors;
-use armctl_controller::toyo::status::Status;
 use armctl_controller::toyo::table::Command;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Kind;
 use armctl_frame::output::progress::Progress;
 
 /// Interval between two reads of the status.

@@ -16,10 +16,8 @@ use crate::prelude::*;
 use armctl_controller::yerc::payload;
 use armctl_controller::yerc::query::{self, Query, ReadAlarm, ReadAlarmHistory};
 use armctl_controller::yerc::wire::Status;
-use armctl_frame::failure::Kind;
 use armctl_frame::items;
 use armctl_frame::robot::alarm::{self, Alarms, Row};
-use armctl_frame::watch::{Watch, Watchable, Watched};
 
 commands! {
     /// Alarms.

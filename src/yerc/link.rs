@@ -21,7 +21,6 @@ use armctl_controller::yerc::session::{DownloadEnd, Reply, UploadEnd};
 use armctl_frame::Family;
 use armctl_frame::dry_run::Plan;
 use armctl_frame::face::sample::Traffic;
-use armctl_frame::failure::Kind;
 use armctl_frame::settings::model::ReportedModel;
 use armctl_frame::settings::target;
 use armctl_frame::settings_report::{OLD_VALUE, nothing_written};

@@ -21,7 +21,7 @@ use super::link::Yerc;
 use crate::numbers::parse_in_range;
 use crate::prelude::*;
 use armctl_controller::units;
-use armctl_controller::yerc::payload::{CartesianMove, ExtendedForm, Form, MoveLayout, PositionKind, PulseMove};
+use armctl_controller::yerc::payload::{CartesianMove, ExtendedForm, Form, MoveLayout, PulseMove};
 use armctl_controller::yerc::query::{Coordinates, MoveCartesian, MoveKind, MovePulse};
 use armctl_frame::Subcommands;
 

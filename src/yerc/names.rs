@@ -7,7 +7,6 @@ use super::file::{FileReading, read_files};
 use super::link::{Link, Yerc};
 use crate::prelude::*;
 use armctl_controller::yerc::names::{FILES, FileNames, read};
-use armctl_frame::failure::Kind;
 use armctl_frame::items::{self, ItemError};
 use armctl_frame::settings::names::{CacheFile, CachedNames, KeptFile};
 

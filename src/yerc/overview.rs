@@ -4,7 +4,7 @@ use super::alarm::plan_latest;
 use super::link::Link;
 use super::status;
 use crate::prelude::*;
-use armctl_controller::yerc::payload::{ControllerStatus, Position, StatusBit};
+use armctl_controller::yerc::payload::{ControllerStatus, StatusBit};
 use armctl_controller::yerc::query::{Coordinates, ReadPosition, ReadStatus};
 use armctl_frame::dry_run::unknown;
 use armctl_frame::face::overview::{LeftOver, OverviewReport};

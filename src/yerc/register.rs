@@ -18,7 +18,6 @@ use armctl_frame::failure::Kind as FailureKind;
 use armctl_frame::names;
 use armctl_frame::settings_report::{IF_DIFFERENT, OLD_VALUE};
 use armctl_frame::store::{Copy, Dump, Get, List, Restore, Row, TableWrite, WrittenOf, write};
-use armctl_frame::watch::Watch;
 
 commands! {
     /// Commands for registers.

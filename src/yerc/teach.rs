@@ -13,7 +13,6 @@ use crate::existing_items::ReadError;
 use crate::failure::refusal_failure;
 use crate::prelude::*;
 use armctl_controller::names::Kind;
-use armctl_controller::yerc::payload::{Position, PositionKind};
 use armctl_controller::yerc::query::{Coordinates, Query as _, ReadPosition, ReadVariable, WriteVariable};
 use armctl_controller::yerc::variables::{Reference, Value, VariableKind};
 use armctl_frame::dry_run::unknown;

@@ -6,7 +6,7 @@ use super::overview::report;
 use super::position::{CARTESIAN_AXES, ROBOT_AXES, decimal};
 use crate::prelude::*;
 use armctl_controller::units;
-use armctl_controller::yerc::payload::{Axes, ControllerStatus, CycleMode, Position, PositionKind, StatusBit};
+use armctl_controller::yerc::payload::{Axes, ControllerStatus, CycleMode, StatusBit};
 use armctl_controller::yerc::query::{
     Coordinates, Query, QueryError, ReadIoGroups, ReadPosition, ReadPositionError, ReadStatus, ReadTorque,
 };

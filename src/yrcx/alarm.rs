@@ -6,15 +6,12 @@ use super::numbers::Numbers;
 use super::several::ask_each;
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::yrcx::signal::output;
-use armctl_controller::yrcx::table;
 use armctl_frame::dry_run::unknown;
 use armctl_frame::face::shared_commands::CommonReport;
 use armctl_frame::failure;
 use armctl_frame::items::ItemOutcome;
 use armctl_frame::robot::alarm::{AlarmEntry, AlarmState, Alarms, Kind, Nothing, Row};
 use armctl_frame::settings::alarms;
-use armctl_frame::watch::{Watch, Watchable, Watched};
 
 commands! {
     /// Commands for alarms.

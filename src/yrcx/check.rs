@@ -5,7 +5,6 @@ use super::link::Yrcx;
 use super::overview::left_over;
 use crate::prelude::*;
 use armctl_controller::yrcx::answer::Status;
-use armctl_controller::yrcx::signal::output;
 use armctl_frame::Family as _;
 use armctl_frame::attach::is_held;
 use armctl_frame::face::layers::{Layer, Layers};

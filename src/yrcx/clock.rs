@@ -8,8 +8,6 @@ use super::overwrite::there;
 use super::several::ask_each;
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::yrcx::table;
-use armctl_frame::failure::Kind;
 use armctl_frame::items;
 use armctl_frame::items::ItemError;
 use armctl_frame::robot::item::{Item, Written, WrittenItems};

@@ -11,7 +11,6 @@ use crate::prelude::*;
 use armctl_frame::settings::target::bus::simulators;
 use armctl_frame::settings::target::{self, Bus, Place};
 use armctl_transport::image::ImageLink;
-use armctl_transport::image::tap::Tap;
 
 /// Endpoint of a target.
 #[derive(Debug, Clone, Copy)]

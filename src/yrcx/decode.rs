@@ -13,7 +13,6 @@ use armctl_controller::yrcx::describe::{Description, answer, command};
 use armctl_controller::yrcx::image::Words;
 use armctl_frame::decode::capture::{Input, Selection, holds_telegram, parse_hex};
 use armctl_frame::decode::{self, field_table, in_parentheses, problem_lines, stdin_bytes};
-use armctl_frame::failure::Kind;
 
 /// Decode words of YRCX remote commands and answers
 #[derive(Debug, Args)]

@@ -14,7 +14,6 @@ use armctl_controller::yrcx::session::{NotSentReason, Silence};
 use armctl_controller::yrcx::table::{Command, Pace};
 use armctl_frame::attach::session_busy;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Kind;
 
 /// Failure for an error of the client; `label` is the robot.
 pub fn failure(label: &str, error: Error) -> Failure {

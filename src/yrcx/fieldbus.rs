@@ -18,8 +18,7 @@ use armctl_files as files;
 use armctl_frame::face::layers::Layers;
 use armctl_frame::failure::plain;
 use armctl_frame::settings::target::{Address, Bus, Place, Sim, Target};
-use armctl_transport::image::tap::Tap;
-use armctl_transport::image::{Cause, ImageLink, LinkError};
+use armctl_transport::image::{Cause, ImageLink};
 
 /// A fieldbus: how to connect to it, diagnose it and simulate it.
 #[derive(Debug)]

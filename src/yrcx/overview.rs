@@ -6,7 +6,7 @@ use super::status::position_mm;
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::answer::Status;
-use armctl_controller::yrcx::signal::{input, output};
+use armctl_controller::yrcx::signal::input;
 use armctl_controller::yrcx::table::Command;
 use armctl_frame::face::overview::{LeftOver, OverviewReport};
 use armctl_frame::robot::alarm::{Alarm, Kind, Source};

@@ -11,7 +11,6 @@ use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
 use armctl_controller::nearest::nearest;
 use armctl_controller::typed;
-use armctl_controller::yrcx::table;
 use armctl_controller::yrcx::table::parameter::{PARAMETERS, Parameter};
 use armctl_frame::store::Row;
 

@@ -8,10 +8,8 @@ use crate::complete;
 use crate::prelude::*;
 use armctl_controller::names::{Kind, Names};
 use armctl_controller::yrcx::names::signal_of_port;
-use armctl_controller::yrcx::table;
 use armctl_frame::names;
 use armctl_frame::robot::item::{Columns, Item, Items, Written, WrittenItems};
-use armctl_frame::watch::{Watch, Watchable, Watched};
 
 commands! {
     /// Commands for ports.

@@ -3,7 +3,6 @@
 use super::link::{Link, Yrcx};
 use crate::prelude::*;
 use armctl_controller::yrcx::procedure::Procedure;
-use armctl_controller::yrcx::signal::{Signal, output};
 use armctl_frame::face::shared_commands::CommonReport;
 
 /// Declares a command for each procedure.

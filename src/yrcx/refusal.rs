@@ -6,7 +6,6 @@ use armctl_controller::yrcx::alarm::{Alarm, STOP_INPUT};
 use armctl_controller::yrcx::codec::WordError;
 use armctl_controller::yrcx::table::{Pace, Row};
 use armctl_controller::yrcx::value::Value;
-use armctl_frame::failure::Kind;
 
 /// Builds the order of a command line.
 pub trait BuildOrder {

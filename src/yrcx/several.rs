@@ -7,7 +7,6 @@ use crate::prelude::*;
 use armctl_controller::yrcx::alarm::{Alarm, STOP_INPUT};
 use armctl_controller::yrcx::value::Value;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Kind;
 
 /// Results of several requests, in the order of the requests.
 #[derive(Debug)]

@@ -10,7 +10,7 @@ use super::several::{ask_each, is_undefined};
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
 use armctl_controller::names::Kind as Label;
-use armctl_controller::yrcx::table::{self, Command};
+use armctl_controller::yrcx::table::Command;
 use armctl_controller::yrcx::value::Value;
 use armctl_frame::robot::item::Plain;
 use armctl_frame::store;

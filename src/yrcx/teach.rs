@@ -5,9 +5,7 @@ use super::overwrite::{self, confirmation, there};
 use super::position::{Unit, group, position, unit_of};
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::yrcx::table;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Kind;
 use armctl_frame::teach::{Taught, mismatch, unverified};
 
 /// Stores the current position as a point, replaces the old point, and reads the point back.

@@ -11,7 +11,6 @@ use super::link::{Link, Yrcx};
 use super::unit::Unit;
 use crate::prelude::*;
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Words};
-use armctl_controller::yrcx::signal::output;
 use armctl_controller::yrcx::table::Row;
 use armctl_frame::face::Face;
 use armctl_frame::face::registration::Registered;

@@ -16,7 +16,6 @@ use super::position::mm;
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::answer::Status;
-use armctl_controller::yrcx::signal::{Side, Signal, output};
 use armctl_controller::yrcx::table::Command;
 use armctl_frame::Family as _;
 use armctl_frame::face::registration;

@@ -9,13 +9,11 @@ use super::stores::{Kind, Numbered};
 use crate::complete;
 use crate::prelude::*;
 use armctl_controller::names;
-use armctl_controller::yrcx::table;
 use armctl_controller::yrcx::value::Value;
 use armctl_frame::names as labels;
 use armctl_frame::robot::item::{Item, Written, WrittenItems};
 use armctl_frame::settings_report;
 use armctl_frame::store::{Copy, Dump, Get, List, Restore};
-use armctl_frame::watch::Watch;
 
 commands! {
     /// Commands for static variables.

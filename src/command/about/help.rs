@@ -7,7 +7,6 @@ use super::{environment, page};
 use crate::command::families::FAMILIES;
 use armctl_controller::nearest::nearest;
 use armctl_frame::face::Face;
-use armctl_frame::failure::Kind;
 use armctl_frame::prelude::*;
 
 /// Show the help of a topic or a command.

@@ -5,7 +5,6 @@ use super::robots::entry::{NewRobot, check_new};
 use super::robots::file;
 use crate::command::families::{self, FAMILIES};
 use armctl_frame::face::layers;
-use armctl_frame::failure::Kind;
 use armctl_frame::interrupt::{catch_interrupts, interruptible};
 use armctl_frame::output::render;
 use armctl_frame::prelude::*;

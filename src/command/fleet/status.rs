@@ -5,7 +5,6 @@ use armctl_frame::authority::Authority;
 use armctl_frame::dry_run::Plan;
 use armctl_frame::face::Face;
 use armctl_frame::face::overview::OverviewReport;
-use armctl_frame::failure::Kind;
 use armctl_frame::output::envelope::Envelope;
 use armctl_frame::prelude::*;
 use armctl_frame::script_line::Line;

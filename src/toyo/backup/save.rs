@@ -7,7 +7,6 @@ use crate::link::Link;
 use crate::link::Toyo;
 use crate::prelude::*;
 use crate::tasks;
-use armctl_controller::toyo::table::{self, Parameter};
 use armctl_frame::backup::arguments::BackupOptions;
 use armctl_frame::backup::manifest::Entry;
 use armctl_frame::backup::save::{self, Task, interrupted_failure};

@@ -9,7 +9,7 @@ use crate::prelude::*;
 use armctl_controller::typed;
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoValue, Signals, WATCHED};
-use armctl_frame::watch::{self, Watchable};
+use armctl_frame::watch;
 
 /// Read signals, or all signals of a port.
 #[derive(Debug, Args)]

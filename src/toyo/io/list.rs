@@ -5,7 +5,6 @@ use super::read::{read, row};
 use super::{BITS, Station};
 use crate::link::Toyo;
 use crate::prelude::*;
-use armctl_frame::failure::Kind;
 use armctl_frame::names;
 use armctl_frame::robot::io::{Filter, IoRow, Signals};
 

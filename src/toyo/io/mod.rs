@@ -15,7 +15,6 @@ mod set;
 pub(super) use port::{INPUTS, OUTPUTS, PortBank, ports_of};
 
 use crate::prelude::*;
-use armctl_frame::watch::Watch;
 
 commands! {
     /// Commands for signals.

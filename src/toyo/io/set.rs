@@ -13,7 +13,6 @@ use crate::prelude::*;
 use armctl_controller::names::{Kind as NameKind, Names};
 use armctl_controller::toyo::field::{Field, Mask};
 use armctl_controller::typed;
-use armctl_frame::failure::Kind;
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoValue, WrittenSignal, WrittenSignals};
 

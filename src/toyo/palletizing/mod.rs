@@ -13,7 +13,6 @@ use super::programs::{Copy, Kind, Select};
 use super::rows::{EepromRow, Listed, is_zero, unlisted};
 use super::values::{self, NamedValue};
 use crate::prelude::*;
-use armctl_client::toyo::Letters;
 use armctl_controller::nearest::nearest;
 use armctl_controller::toyo::field;
 use armctl_controller::toyo::layout::Layout;

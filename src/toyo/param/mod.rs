@@ -14,15 +14,12 @@ use super::numbers::Numbers;
 use super::rows::{EepromRow, Listed, unlisted};
 use super::values::{self, NamedValue};
 use crate::prelude::*;
-use armctl_client::toyo::Letters;
 use armctl_controller::nearest::nearest;
 use armctl_controller::toyo::layout::Layout;
+use armctl_controller::toyo::table::Group;
 use armctl_controller::toyo::table::parameters::PARAMETERS;
-use armctl_controller::toyo::table::{Group, Parameter};
-use armctl_frame::failure::Kind;
 use armctl_frame::output::view;
 use armctl_frame::store::{Dump, Get, List, Restore, Set};
-use armctl_frame::watch::Watch;
 
 commands! {
     /// Commands for parameters.

@@ -14,12 +14,10 @@ use super::position::{Coordinates, heading};
 use super::rows::{EepromRow, Listed, is_zero, texts, unlisted};
 use super::{complete, tasks, values};
 use crate::prelude::*;
-use armctl_client::toyo::Letters;
 use armctl_controller::names::Kind;
 use armctl_controller::toyo::field;
 use armctl_controller::toyo::layout::Layout;
 use armctl_controller::toyo::names as names_of;
-use armctl_controller::toyo::table::Parameter;
 use armctl_frame::robot::position::FourAxes;
 use armctl_frame::teach::parse_printed_position;
 

@@ -9,7 +9,6 @@ use crate::rows::EepromRow as _;
 use crate::values::Changes;
 use armctl_controller::toyo::table::Command as Word;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Kind;
 use armctl_frame::gate::data_changed;
 use armctl_frame::store::{Store as _, Writable as _, describe_change};
 use armctl_frame::teach::Taught;

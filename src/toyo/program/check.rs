@@ -12,7 +12,6 @@ use armctl_controller::names::{Name, Names};
 use armctl_controller::toyo::errors;
 use armctl_controller::toyo::program::{self, Checked, Known, MOST_STEPS};
 use armctl_frame::OfflineCommand;
-use armctl_frame::failure::Kind;
 use armctl_frame::store::keys_of;
 
 /// Check program files and print each error with line and column. Needs no robot.

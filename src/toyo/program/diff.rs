@@ -12,7 +12,6 @@ use armctl_controller::toyo::program::{MOST_STEPS, check_named, used};
 use armctl_frame::backup::compare::{Compared, State};
 use armctl_frame::backup::manifest::Hash;
 use armctl_frame::backup::text_diff::{self, TextDifference};
-use armctl_frame::failure::Kind;
 use armctl_frame::names;
 use armctl_frame::output::csv::RowsOf;
 use armctl_frame::robot::file::{FILES, FileItem};

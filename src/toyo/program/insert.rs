@@ -13,7 +13,6 @@ use armctl_controller::names::Names;
 use armctl_controller::toyo::program::{Part, check_named};
 use armctl_frame::authority::Authority;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Kind;
 use armctl_frame::names;
 
 /// Insert a step. The number of each later step increases by one.

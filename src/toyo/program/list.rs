@@ -7,7 +7,6 @@ use crate::prelude::*;
 use crate::tasks;
 use armctl_controller::toyo::program::{tags, used};
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Kind;
 use armctl_frame::items::{ItemError, verdict};
 
 /// List the tasks, with the number of steps of each task.

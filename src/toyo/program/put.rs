@@ -18,7 +18,6 @@ use armctl_controller::toyo::program::{self, MOST_STEPS, Part, Program, check_na
 use armctl_frame::authority::Authority;
 use armctl_frame::backup::manifest::Hash;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Kind;
 use armctl_frame::interrupt::interruptible;
 use armctl_frame::names;
 use armctl_frame::output::csv::RowsOf;

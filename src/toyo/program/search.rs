@@ -8,9 +8,8 @@ use crate::refusal;
 use crate::tasks;
 use crate::wait::status_page;
 use armctl_client::toyo::Refusal;
-use armctl_controller::toyo::table::{self, Op};
+use armctl_controller::toyo::table::Op;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Kind;
 
 /// Find the step of a tag. The search changes the current step of the program.
 #[derive(Debug, Args)]

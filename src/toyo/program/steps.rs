@@ -8,8 +8,7 @@ use crate::link::{Link, Refusal, misuse};
 use crate::prelude::*;
 use armctl_controller::toyo::request::Answer;
 use armctl_controller::toyo::status::RunMode;
-use armctl_controller::toyo::table::{Command, Op, Parameter};
-use armctl_frame::failure::Kind;
+use armctl_controller::toyo::table::{Command, Op};
 
 const READING: &str = "reading steps";
 

@@ -8,7 +8,6 @@ use crate::prelude::*;
 use crate::tasks;
 use crate::values::NOT_IN_MANUAL;
 use armctl_controller::toyo::table::Op;
-use armctl_frame::failure::Kind;
 use armctl_frame::robot::item::Plain;
 use armctl_frame::store::Row;
 

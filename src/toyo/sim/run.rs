@@ -11,7 +11,6 @@ use crate::prelude::*;
 use crate::program::text;
 use crate::rows::EepromRow;
 use crate::values::Changes;
-use armctl_client::toyo::Letters;
 use armctl_controller::names::{Name, Names};
 use armctl_controller::toyo::program::{MOST_STEPS, Program, check_named};
 use armctl_controller::toyo::simulator::{Simulator, Start, What};

@@ -11,7 +11,6 @@ use armctl_controller::toyo::program::Program;
 use armctl_controller::toyo::request::instruction;
 use armctl_controller::toyo::simulator::{Event, State, What};
 use armctl_controller::toyo::table::{Instruction, Op};
-use armctl_frame::failure::Kind;
 use armctl_frame::output::csv::RowsOf;
 use armctl_frame::robot::alarm::Alarm;
 

@@ -15,7 +15,6 @@ use crate::prelude::*;
 use armctl_controller::yerc::files;
 use armctl_frame::backup::manifest::Hash;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Kind;
 use armctl_frame::local_names::{Target, folder_of, make_folder, private_folder};
 use armctl_frame::output::progress::Progress;
 use armctl_frame::robot::file::{FileItem, Files, State};

@@ -6,7 +6,6 @@ use super::transfer;
 use crate::complete;
 use crate::link::Yerc;
 use crate::prelude::*;
-use armctl_controller::yerc::files::FileName;
 use armctl_frame::robot::file::{FileItem, Files};
 
 /// Deletes files on the controller.

@@ -7,13 +7,11 @@ use super::upload::{Delivery, UploadOptions, upload};
 use crate::complete;
 use crate::link::{Link, Yerc};
 use crate::prelude::*;
-use armctl_controller::yerc::files::FileName;
 use armctl_controller::yerc::query::{Query as _, ReadJob, ReadStatus};
 use armctl_frame::backup::job_date::align_files;
 use armctl_frame::backup::text_diff::{self, Change as LineChange, DiffLine, Hunk, MAX_TEXT, TextDifference};
 use armctl_frame::dry_run::unknown;
 use armctl_frame::editor_session::EditedText;
-use armctl_frame::failure::Kind;
 use armctl_frame::local_names::local_name;
 
 /// Edits a job of the controller.

@@ -9,7 +9,6 @@ use crate::complete;
 use crate::link::Link;
 use crate::link::Yerc;
 use crate::prelude::*;
-use armctl_controller::yerc::files::FileName;
 use armctl_frame::dry_run::unknown;
 use armctl_frame::local_names::{LocalNames, Target, make_folder, private_folder};
 use armctl_frame::output::escape;

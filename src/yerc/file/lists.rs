@@ -4,7 +4,7 @@
 use super::transfer;
 use crate::link::Link;
 use crate::prelude::*;
-use armctl_controller::yerc::files::{self, FileName, FileType};
+use armctl_controller::yerc::files;
 use armctl_frame::backup::continues_after;
 
 /// Whether a file exists on the controller.

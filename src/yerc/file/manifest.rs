@@ -6,11 +6,9 @@ use super::name::exact;
 use crate::link::Link;
 use crate::prelude::*;
 use armctl_controller::text::unhex;
-use armctl_controller::yerc::files::FileName;
 use armctl_controller::yerc::query::{ReadSystemInfo, SystemPart};
 use armctl_frame::backup::manifest;
 use armctl_frame::backup::manifest::{About, Entry};
-use armctl_frame::failure::Kind;
 use armctl_frame::settings::target::Family;
 
 /// Manifest of a backup.

@@ -4,7 +4,6 @@ use clap::ValueEnum;
 
 use crate::prelude::*;
 use armctl_controller::text::unhex;
-use armctl_controller::yerc::files::{FileName, FileType};
 use armctl_frame::robot::file::FileItem;
 
 /// Name of a file in a report.

@@ -8,7 +8,6 @@ use super::name::{self, Shown};
 use super::upload::{self, Delivery, UploadOptions, upload};
 use crate::link::Yerc;
 use crate::prelude::*;
-use armctl_controller::yerc::files::{FileName, FileType};
 use armctl_frame::local_names::controller_name;
 use armctl_frame::robot::file::{FileItem, Files};
 

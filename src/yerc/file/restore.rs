@@ -13,12 +13,10 @@ use super::upload::{self, Delivery, UploadOptions, upload};
 use crate::link::Link;
 use crate::link::Yerc;
 use crate::prelude::*;
-use armctl_controller::yerc::files::{FileName, FileType};
 use armctl_frame::authority::Authority;
 use armctl_frame::backup::manifest;
 use armctl_frame::backup::manifest::Entry;
 use armctl_frame::backup::{NOT_CHOSEN, Only, RestoreSelection, Restored, would_leave, would_write};
-use armctl_frame::failure::Kind;
 use armctl_frame::local_names::private_folder;
 use armctl_frame::robot::file::{FileItem, State};
 

@@ -10,10 +10,8 @@ use super::lists::{Existence, Lists};
 use super::transfer::{self, Download};
 use crate::link::Link;
 use crate::prelude::*;
-use armctl_controller::yerc::files::{FileName, FileType};
 use armctl_frame::authority::Authority;
 use armctl_frame::backup::manifest::Hash;
-use armctl_frame::failure::Kind;
 use armctl_frame::local_names::{Target, folder_of, local_name};
 
 /// A file to upload.

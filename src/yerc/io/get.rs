@@ -13,7 +13,6 @@ use armctl_controller::yerc::signal::Signal;
 use armctl_controller::yerc::variables::{parse_numbers, plan_io_reads};
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoRow, IoValue, Signals, WATCHED};
-use armctl_frame::watch::{Watchable, Watched};
 
 /// Reads signals.
 #[derive(Debug, Args)]

@@ -12,7 +12,6 @@ use armctl_controller::names::{Kind, Names};
 use armctl_controller::yerc::signal::Signal;
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoItem, IoKind};
-use armctl_frame::watch::Watch;
 
 commands! {
     /// Commands for signals.

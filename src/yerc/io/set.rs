@@ -15,7 +15,6 @@ use armctl_controller::typed;
 use armctl_controller::yerc::query::Query as _;
 use armctl_controller::yerc::signal::Signal;
 use armctl_controller::yerc::variables::{WriteIoStep, parse_numbers, plan_io_reads, plan_io_writes};
-use armctl_frame::failure::Kind;
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoItem, IoValue, WrittenSignal, WrittenSignals};
 use armctl_frame::robot::item::Plain;

@@ -4,7 +4,7 @@ use crate::file::{LISTS, Shown, list, plan_all};
 use crate::link::Yerc;
 use crate::prelude::*;
 use crate::selected_job::SelectedJob;
-use armctl_controller::yerc::files::{self, FileType};
+use armctl_controller::yerc::files;
 
 /// Lists the jobs of the controller (FS and DX 3.4.4), and marks the selected job.
 #[derive(Debug, Args)]

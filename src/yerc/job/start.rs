@@ -15,7 +15,6 @@ use armctl_controller::yerc::payload::{ControllerStatus, StatusBit};
 use armctl_controller::yerc::query::{Query as _, ReadJob, ReadStatus, SelectJob, StartJob};
 use armctl_frame::cycle::{Repeat, Runs};
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Kind;
 use armctl_frame::gate::data_changed;
 use armctl_frame::robot::program::{Program, ProgramState};
 use armctl_frame::settings::duration;

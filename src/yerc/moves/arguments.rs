@@ -10,7 +10,7 @@ use crate::position::{extended_words, form_words, in_a_line};
 use crate::prelude::*;
 use armctl_controller::names::Kind;
 use armctl_controller::units::{self, Unit};
-use armctl_controller::yerc::payload::{ExtendedForm, Form, PositionKind, SpeedClass};
+use armctl_controller::yerc::payload::{ExtendedForm, Form, SpeedClass};
 use armctl_controller::yerc::variables::Reference;
 use armctl_frame::names;
 use armctl_frame::robot::motion;

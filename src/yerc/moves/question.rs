@@ -7,7 +7,7 @@ use super::execution::Goal;
 use crate::position::{axis_names, in_a_line};
 use crate::prelude::*;
 use armctl_controller::units::{self, Unit};
-use armctl_controller::yerc::payload::{Position, PositionKind, SpeedClass};
+use armctl_controller::yerc::payload::SpeedClass;
 use armctl_frame::gate::data_changed;
 
 /// Parts of the text that describes a motion.

@@ -9,7 +9,7 @@ use super::value::Data;
 use super::word::different_words;
 use crate::prelude::*;
 use armctl_controller::text::{hex, unhex};
-use armctl_controller::yerc::payload::{Position, PositionKind, Text};
+use armctl_controller::yerc::payload::Text;
 use armctl_controller::yerc::variables::{Value, VariableKind};
 
 /// Text of each cell that is not empty, by column.

@@ -15,7 +15,7 @@ use crate::prelude::*;
 use crate::switch_commands::usage;
 use crate::var::position::stored_position;
 use armctl_controller::names::Kind;
-use armctl_controller::yerc::payload::{Axes, Position};
+use armctl_controller::yerc::payload::Axes;
 use armctl_controller::yerc::query::{Query as _, WriteVariable};
 use armctl_controller::yerc::status;
 use armctl_controller::yerc::variables::{

@@ -10,7 +10,6 @@ use crate::link::Yrcx;
 use crate::prelude::*;
 use crate::testing::{frames, quiet, resolved, risk, words};
 use armctl_frame::Family as _;
-use armctl_frame::failure::Kind;
 use armctl_frame::testing::{self, context, unlimited_access};
 
 /// Simulated controller for several command lines in virtual time, with a folder for backups.

@@ -10,7 +10,6 @@ use crate::numbers::single;
 use crate::position::{Unit, mm, position, unit_of};
 use crate::prelude::*;
 use crate::stores::{Kind, Numbered};
-use armctl_controller::yrcx::table;
 use armctl_frame::robot::position::FourAxes;
 use armctl_frame::store::{Copy, Dump, Get, List, Restore, TableWrite, Writable as _, WrittenOf, write};
 use armctl_frame::teach::parse_printed_position;

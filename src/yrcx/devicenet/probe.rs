@@ -4,7 +4,6 @@ use super::board::{Board, Identity};
 use super::check::profile;
 use crate::messages::BoardReport;
 use crate::prelude::*;
-use armctl_frame::failure::Kind;
 
 /// Image sizes of the node; they show how the unit is set. Its connections are allocated for the request and released;
 /// no polls are sent.

@@ -3,7 +3,6 @@
 use super::board::{Board, Node};
 use crate::messages::BoardReport;
 use crate::prelude::*;
-use armctl_frame::failure::Kind;
 
 /// Nodes that answered a duplicate MAC ID check. No node is allocated.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -8,7 +8,6 @@ use crate::link_error::not_open;
 use crate::prelude::*;
 use armctl_controller::text;
 use armctl_frame::face::layers::Layers;
-use armctl_frame::failure::Kind;
 use armctl_frame::settings::target::eip::{self, EipRole, SCHEME};
 use armctl_transport::eip::ASSEMBLY;
 use armctl_transport::eip::client::Client;
@@ -18,7 +17,6 @@ use armctl_transport::eip::link::as_advice;
 use armctl_transport::eip::probe::{self, Findings, Instances, Presence};
 use armctl_transport::eip::status;
 use armctl_transport::eip::wire;
-use armctl_transport::image::LinkError;
 
 /// Attribute 3 of an assembly, which has the data.
 const IMAGE: u32 = 3;

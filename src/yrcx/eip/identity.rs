@@ -3,7 +3,6 @@
 use super::board::{Board, Identity};
 use crate::messages::BoardReport;
 use crate::prelude::*;
-use armctl_frame::failure::Kind;
 
 /// Identity and services of the board (ListIdentity, ListServices).
 #[derive(Debug, Serialize, JsonSchema)]

@@ -7,7 +7,6 @@ use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_controller::text;
 use armctl_controller::typed;
-use armctl_frame::failure::Kind;
 use armctl_frame::settings_report::{OLD_VALUE, nothing_written};
 
 /// Reads an attribute of an object, or all its attributes (Get_Attribute_Single, Get_Attributes_All).

@@ -3,7 +3,6 @@
 use super::board::{Board, Identity, Probed, warned};
 use crate::link::Yrcx;
 use crate::prelude::*;
-use armctl_frame::failure::Kind;
 use armctl_frame::output::csv::RowsOf;
 
 /// Finds the assemblies of the board: armctl reads every assembly from 1 to 255. It requests no connection.

@@ -5,7 +5,6 @@ use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
 use crate::several::ask_each;
 use crate::single::shown;
-use armctl_controller::yrcx::table;
 use armctl_frame::items;
 use armctl_frame::items::ItemError;
 

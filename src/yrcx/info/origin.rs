@@ -4,7 +4,6 @@ use crate::link::Yrcx;
 use crate::prelude::*;
 use crate::refusal::invalid_words;
 use crate::single::shown;
-use armctl_controller::yrcx::table;
 
 /// Reads the origin return status: with --unit, of each axis of that robot; without --unit, of all robots together.
 #[derive(Debug, Args)]

@@ -6,7 +6,6 @@ use crate::link::Yrcx;
 use crate::position::{Unit, group, position};
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::yrcx::table;
 use armctl_frame::face::shared_commands::CommonReport;
 use armctl_frame::plot::SeriesHistory;
 use armctl_frame::robot::position::{AllPositions, Joint, Positions};

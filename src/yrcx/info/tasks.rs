@@ -8,7 +8,6 @@ use crate::refusal::BuildOrder as _;
 use crate::several::ask_each;
 use crate::single::shown;
 use armctl_controller::typed;
-use armctl_controller::yrcx::table;
 use armctl_frame::robot::item::{Columns, Item, Items};
 
 /// Tasks in the answer of one remote command: half of the 16 tasks.

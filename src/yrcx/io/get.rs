@@ -5,7 +5,6 @@ use crate::complete;
 use crate::link::Yrcx;
 use crate::numbers::Series;
 use crate::prelude::*;
-use armctl_controller::yrcx::signal::{Side, Signal};
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoRow, IoValue, Signals};
 

@@ -3,7 +3,6 @@
 use super::row;
 use crate::link::Yrcx;
 use crate::prelude::*;
-use armctl_controller::yrcx::signal::{Side, Signal};
 use armctl_frame::names;
 use armctl_frame::robot::io::{Filter, Signals};
 

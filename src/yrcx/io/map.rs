@@ -2,7 +2,6 @@
 
 use crate::prelude::*;
 use armctl_controller::yrcx::bus::{self, Bus, MapRow};
-use armctl_controller::yrcx::signal::Side;
 use armctl_frame::OfflineCommand;
 
 /// Prints the address table.

@@ -9,7 +9,6 @@ use armctl_controller::names::{Kind, Names};
 use armctl_controller::typed;
 use armctl_controller::yrcx::procedure::Procedure;
 use armctl_controller::yrcx::register::Register;
-use armctl_controller::yrcx::signal::{Side, Signal};
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoValue, WrittenSignal, WrittenSignals};
 

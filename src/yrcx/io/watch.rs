@@ -5,10 +5,8 @@ use crate::complete;
 use crate::link::{Link, Yrcx};
 use crate::prelude::*;
 use armctl_controller::names::Kind;
-use armctl_controller::yrcx::signal::{Side, Signal};
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoValue, Signals, WATCHED};
-use armctl_frame::watch::{Watchable, Watched};
 
 /// Arguments: the outputs of the controller to watch.
 #[derive(Debug, Args)]

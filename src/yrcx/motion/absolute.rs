@@ -6,7 +6,6 @@ use crate::link::Yrcx;
 use crate::overwrite::confirmation;
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::yrcx::table;
 use armctl_frame::wait_arguments::MotionEnd;
 
 /// Resets the absolute position of an axis of the mark type.

@@ -9,7 +9,6 @@ use crate::link::Yrcx;
 use crate::position::Unit;
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::yrcx::table;
 use armctl_frame::settings::duration;
 
 /// Jogs an axis.

@@ -21,9 +21,7 @@ use super::position::{Unit, group, position};
 use crate::link::Yrcx;
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::yrcx::table;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Kind;
 use armctl_frame::robot::motion::{self as robot, Target};
 use armctl_frame::robot::position::joint_table;
 

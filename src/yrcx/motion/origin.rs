@@ -7,7 +7,6 @@ use crate::arguments::Which;
 use crate::link::Yrcx;
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::yrcx::table;
 use armctl_frame::wait_arguments::MotionEnd;
 
 /// Returns robots or one axis to origin.

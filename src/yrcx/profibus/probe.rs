@@ -3,7 +3,6 @@
 use super::board::{Board, Station};
 use crate::messages::BoardReport;
 use crate::prelude::*;
-use armctl_frame::failure::Kind;
 
 /// Identity, diagnosis and configuration of the station (Slave_Diag, Get_Cfg).
 #[derive(Debug, Serialize, JsonSchema)]

@@ -8,7 +8,6 @@ use super::station::Station;
 use super::{connect, plan_search};
 use crate::link::Yrcx;
 use crate::prelude::*;
-use armctl_frame::failure::Kind;
 use armctl_frame::output::csv::RowsOf;
 use armctl_transport::profinet::commission::Identity;
 use armctl_transport::profinet::error::ProfinetError;

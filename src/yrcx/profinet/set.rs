@@ -8,7 +8,6 @@ use super::board::Board;
 use super::{frame_for, plan_search, station_of};
 use crate::link::Yrcx;
 use crate::prelude::*;
-use armctl_frame::failure::Kind;
 use armctl_frame::settings::target::profinet;
 use armctl_transport::profinet::commission::Found;
 use armctl_transport::profinet::wire::dcp::{Block, IpSuite, Station};

@@ -24,7 +24,7 @@ use self::page::Form;
 use super::poll::{Poll, PollRequest, Subscription};
 use super::service::{END_TIMEOUT, Service};
 use armctl_frame::face::sample::Detail;
-use armctl_frame::failure::{Kind, plain};
+use armctl_frame::failure::plain;
 use armctl_frame::interrupt::{catch_interrupts, interruptible};
 use armctl_frame::output::log::Level;
 use armctl_frame::prelude::*;

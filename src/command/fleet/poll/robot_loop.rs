@@ -16,7 +16,6 @@ use armctl_frame::Entry;
 use armctl_frame::attach::is_held;
 use armctl_frame::face::Watch;
 use armctl_frame::face::sample::Traffic;
-use armctl_frame::failure::Kind;
 use armctl_frame::prelude::*;
 use armctl_frame::share::open_shared_session;
 

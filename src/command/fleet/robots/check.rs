@@ -5,7 +5,6 @@ use armctl_frame::Family;
 use armctl_frame::dry_run::Plan;
 use armctl_frame::face::layers;
 use armctl_frame::face::layers::Layer;
-use armctl_frame::failure::Kind;
 use armctl_frame::prelude::*;
 use armctl_frame::settings::target;
 

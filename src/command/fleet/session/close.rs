@@ -4,7 +4,6 @@ use super::list::locations;
 use crate::command::families;
 use armctl_controller::nearest::nearest;
 use armctl_frame::attach::{attach_failure, folder_failure, identify};
-use armctl_frame::failure::Kind;
 use armctl_frame::interrupt::catch_interrupts;
 use armctl_frame::prelude::*;
 use armctl_frame::prompt::ask;

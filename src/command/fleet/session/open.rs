@@ -13,7 +13,6 @@ use super::host::{OpenResult, SessionHost};
 use crate::command::families;
 use armctl_frame::attach::{folder_failure, format_since, identify, session_key};
 use armctl_frame::background::{self, DETACHED, Opened, Start};
-use armctl_frame::failure::Kind;
 use armctl_frame::interrupt::{catch_interrupts, interruptible};
 use armctl_frame::output::log::Level;
 use armctl_frame::prelude::*;

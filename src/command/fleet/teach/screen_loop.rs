@@ -16,7 +16,6 @@ use super::{CommandRunner, Teach};
 use crate::command::fleet::poll::{Poll, PollRequest as Looks, RobotId, Subscription};
 use crate::command::fleet::top;
 use armctl_frame::face::teach_panel::{Panel, SmallStep, Step};
-use armctl_frame::failure::Kind;
 use armctl_frame::interrupt::termination_request;
 use armctl_frame::output::fullscreen::{Event, Fullscreen, Keys};
 use armctl_frame::output::painter::Palette;

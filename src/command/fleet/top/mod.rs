@@ -24,7 +24,6 @@ pub use self::model::Model;
 use self::view::Palette;
 pub use self::view::robot;
 use crate::command::fleet::poll::{self, Poll, PollRequest, RobotId, Subscription};
-use armctl_frame::failure::Kind;
 use armctl_frame::interrupt::{catch_interrupts, interruptible};
 use armctl_frame::output::Format;
 use armctl_frame::output::fullscreen::{Event, Fullscreen, Keys};
