@@ -15,11 +15,10 @@ use crate::command::example_lines::{all, robot_lines};
 use crate::command::fleet::common;
 use armctl_controller::Risk::{Destroy, Motion, Read, Write};
 use armctl_frame::AnyCommand;
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::gate::Intent;
 use armctl_frame::output::redraw::Redraw;
-use armctl_frame::output::{ColorChoice, Format, Screen};
-use armctl_frame::run::Run;
+use armctl_frame::output::{ColorChoice, Format};
+use armctl_frame::prelude::*;
 use armctl_frame::settings::inventory::Inventory;
 use armctl_frame::settings::target::Family;
 use armctl_frame::settings::{Selection, Sources};
@@ -124,17 +123,12 @@ fn gate_checks_every_command() {
         let is_stop = STOPS.iter().any(|stop| line.starts_with(stop));
         let refused =
             |outcome: &Result<(), Failure>| outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Rejected);
-        let is_when_known = intent.confirmation == armctl_frame::gate::Confirmation::WhenKnown;
+        let is_when_known = intent.confirmation == Confirmation::WhenKnown;
         let is_asked = *risk == Motion || *risk == Destroy && !is_when_known;
         for (what, is_right) in [
             ("its risk", intent.risk == *risk),
             ("whether it is a stop", intent.is_stop == is_stop),
-            (
-                "a question",
-                *risk < Destroy
-                    || intent.confirmation != armctl_frame::gate::Confirmation::Question
-                    || !intent.text.is_empty(),
-            ),
+            ("a question", *risk < Destroy || intent.confirmation != Confirmation::Question || !intent.text.is_empty()),
             ("nobody to ask", refused(&alone) == is_asked),
             // The commands `backup` and `diff` select their requests by robot: for a read-only robot, they only read.
             (

@@ -12,11 +12,10 @@ use super::{complete, on_this_thread, wants_json};
 use crate::cli::Cli;
 use crate::command::example_lines::preselects;
 use armctl_frame::Candidate;
-use armctl_frame::failure::Failure;
 use armctl_frame::interrupt::catch_interrupts;
-use armctl_frame::output::{ColorChoice, Format, Screen};
+use armctl_frame::output::{ColorChoice, Format};
+use armctl_frame::prelude::*;
 use armctl_frame::prompt::ask;
-use armctl_frame::run::RunError;
 
 /// Time limit for reading the choices from a controller.
 const LIST_TIMEOUT: Duration = Duration::from_secs(3);

@@ -28,16 +28,14 @@ use super::{line_words, name_lookup, refuse, report_failure, screen};
 use crate::cli::Words;
 use crate::command::families;
 use crate::command::fleet::session::host::{self, ManagerThread};
-use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::Entry;
 use armctl_frame::flags::Globals;
 use armctl_frame::interrupt::{catch_interrupts, clear_interrupt, interruptible, termination_request};
-use armctl_frame::output::Screen;
-use armctl_frame::run::{RunError, begin_trace};
+use armctl_frame::prelude::*;
+use armctl_frame::run::begin_trace;
 use armctl_frame::script_line::Line;
 use armctl_frame::session_manager::SessionManager;
-use armctl_frame::settings::Robot;
 use armctl_frame::settings::target::Family;
-use armctl_frame::{ConnectMode, Entry};
 
 /// Whether stdin is a terminal.
 pub fn can_type() -> bool {

@@ -15,17 +15,16 @@ use crate::cli::Words;
 use crate::command::families;
 use crate::command::fleet::session::host;
 use crate::command::fleet::teach::{CommandRunner, Teach, show};
+use armctl_frame::Entry;
 use armctl_frame::authority;
-use armctl_frame::failure::Failure;
 use armctl_frame::flags::Globals;
 use armctl_frame::gate::{Gate, Intent};
 use armctl_frame::interrupt::catch_interrupts;
 use armctl_frame::output::Format;
-use armctl_frame::run::{RunError, begin_trace};
+use armctl_frame::prelude::*;
+use armctl_frame::run::begin_trace;
 use armctl_frame::script_line::Line;
 use armctl_frame::session_manager::SessionManager;
-use armctl_frame::settings::Robot;
-use armctl_frame::{ConnectMode, Entry};
 
 /// Shows the teach panel until the user leaves it.
 pub async fn run(globals: Globals, teach: Teach) -> Result<(), RunError> {
@@ -64,7 +63,7 @@ fn select_robot(globals: &Globals, teach: &Teach) -> Result<Robot, Failure> {
     }
 }
 
-fn check_globals(globals: &Globals, screen: &armctl_frame::output::Screen) -> Result<(), Failure> {
+fn check_globals(globals: &Globals, screen: &Screen) -> Result<(), Failure> {
     let wrong = |what: &str, hint: &str| Err(Failure::usage(format!("teach {what}")).hint(hint));
     if globals.dry_run {
         return wrong(

@@ -41,6 +41,7 @@ pub mod local_names;
 pub mod names;
 pub mod output;
 pub mod plot;
+pub mod prelude;
 pub mod prompt;
 pub mod repeat_limiter;
 pub mod repl;

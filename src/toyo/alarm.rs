@@ -1,29 +1,15 @@
 //! Commands `toyo alarm list|history|watch|reset|point`.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::explain::alarm_from_code;
 use super::link::Link;
 use super::link::Toyo;
 use super::wait::{status_page, wait_for_status};
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::toyo::errors;
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::status::Status;
-use armctl_controller::toyo::table;
 use armctl_frame::dry_run::unknown;
 use armctl_frame::face::shared_commands::CommonReport;
-use armctl_frame::failure::{self, Failure};
-use armctl_frame::output::view::View;
 use armctl_frame::robot::alarm::{Alarm as Told, AlarmEntry, Alarms, ExtraColumns, Nothing, Row, Source};
-use armctl_frame::settings::{Robot, alarms};
-use armctl_frame::settings_report::{Done, NewValue, Old};
-use armctl_frame::watch::{Watch, Watchable, Watched};
-use armctl_frame::{Command, Context, Report, commands};
+use armctl_frame::settings::alarms;
 
 commands! {
     /// Commands for alarms.
@@ -227,7 +213,7 @@ impl Report for ResetReport {
     fn failure(&self) -> Option<Failure> {
         let remaining = self.alarms.first()?;
         let message = format!("the controller accepted the reset, but error {} is still present", remaining.line());
-        let failure = Failure::new(failure::Kind::ConditionNotMet, message);
+        let failure = Failure::new(Kind::ConditionNotMet, message);
         Some(
             failure.hint(remaining.remedy.clone().unwrap_or_default()).code(remaining.code.clone().unwrap_or_default()),
         )
@@ -286,7 +272,7 @@ mod tests {
         let (data, failure) = Bench::with_faults("error = \"24\"\n", stays).0.run(&["alarm", "reset"]).unwrap();
         assert_eq!(data["alarms"][0]["code"], "24");
         let failure = failure.unwrap();
-        assert_eq!((failure.kind, failure.code.as_deref()), (failure::Kind::ConditionNotMet, Some("24")));
+        assert_eq!((failure.kind, failure.code.as_deref()), (Kind::ConditionNotMet, Some("24")));
     }
 
     #[test]
@@ -309,7 +295,7 @@ mod tests {
     fn a_controller_without_history_has_a_clear_error() {
         let failure =
             Bench::with_faults("model = \"other\"\n", |_, _| Fault::None).0.run(&["alarm", "history"]).unwrap_err();
-        assert_eq!(failure.kind, failure::Kind::Refused);
+        assert_eq!(failure.kind, Kind::Refused);
         assert!(failure.hint.unwrap().contains("KCA-25"));
     }
 }

@@ -1,17 +1,9 @@
 //! `toyo bus`: the CC-Link board.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::link::Toyo;
 use super::link::wrong;
 use super::numbers::small;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, View};
-use armctl_frame::{Command, Context, Report};
+use crate::prelude::*;
 
 /// Show settings and errors of CC-Link.
 #[derive(Debug, Args)]

@@ -1,19 +1,10 @@
 //! `toyo card read|write`: the memory card.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::link::Toyo;
 use super::wait::{AcceptedWork, Work};
-use armctl_controller::Risk;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
-use armctl_frame::dry_run::{Known as _, unknown};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, Tone, View};
+use crate::prelude::*;
+use armctl_frame::dry_run::unknown;
 use armctl_frame::wait_arguments::MotionEnd;
-use armctl_frame::{Command, Context, Report, commands};
 
 commands! {
     /// Commands for the memory card.
@@ -82,7 +73,7 @@ async fn transfer(context: Context<'_, Toyo>, work: AcceptedWork, no_wait: bool)
     if no_wait {
         return Ok(TransferReport { accepted: true, elapsed_ms: None, needs_power_cycle: None });
     }
-    let Some(end) = work.wait(link, context.screen, armctl_client::toyo::Letters::UNKNOWN).await.known()? else {
+    let Some(end) = work.wait(link, context.screen, Letters::UNKNOWN).await.known()? else {
         link.status_of(&[0]).await?;
         return Err(unknown());
     };

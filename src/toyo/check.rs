@@ -4,14 +4,12 @@ use super::info;
 use super::link::Link;
 use super::link::Toyo;
 use super::overview::left_over;
+use crate::prelude::*;
 use armctl_controller::toyo::errors;
 use armctl_controller::toyo::status::RunMode;
+use armctl_frame::Family as _;
 use armctl_frame::attach::is_held;
 use armctl_frame::face::layers::{Layer, Layers};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
-use armctl_frame::settings::Robot;
-use armctl_frame::{Access, Family as _};
 
 const LAYERS: &[&str] =
     &["line", "answer", "version", "teach pendant", "mode", "slaves", "power cycle", "error", "servo", "origin"];

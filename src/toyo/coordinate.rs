@@ -1,20 +1,12 @@
 //! `toyo coordinate set`: sends coordinates to a program that waits for them.
 
-use clap::Args;
-
 use super::link::Toyo;
 use super::link::wrong;
 use super::point::table as point_table;
 use super::position::Coordinates;
 use super::values::{Changes, assignment, json};
-use armctl_controller::Risk;
-use armctl_controller::toyo::field::{Field, Value};
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::{Change, Confirmation};
-use armctl_frame::settings_report::{Done, NewValue, Old};
-use armctl_frame::{Command, Context, commands};
+use crate::prelude::*;
+use armctl_controller::toyo::field::Field;
 
 commands! {
     /// Commands for coordinates that the host sends.

@@ -1,25 +1,14 @@
 //! Copies of programs that the controller makes by itself.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::eeprom::{Cells, is_blank};
 use super::link::Link;
 use super::numbers::ask_all;
 use super::refusal;
 use super::values::{NamedValue, in_a_line, named_values_with};
-use armctl_client::toyo::Letters;
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::request::Request;
+use crate::prelude::*;
 use armctl_controller::toyo::table::palletizing::RECORDS;
-use armctl_frame::Report;
 use armctl_frame::authority::Authority;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::Change;
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::View;
 
 /// A program copy, and the requests that read source and target.
 #[derive(Debug)]

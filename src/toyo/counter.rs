@@ -5,21 +5,11 @@ use super::link::{Link, Toyo, wrong};
 use super::numbers::{Numbers, number, read_back, stored_otherwise};
 use super::rows::Listed;
 use crate::complete;
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::names::Kind;
-use armctl_controller::toyo::field::{self, Value};
-use armctl_controller::toyo::layout::Record;
+use armctl_controller::toyo::field;
 use armctl_controller::toyo::names as names_of;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
-use armctl_frame::ValueKind;
-use armctl_frame::commands;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
-use armctl_frame::store::{
-    Answers, Differing, Field, Get, Ids, List, Row, Single, Store, TableWords, Writable, ids, table_commands,
-};
-use armctl_frame::watch::Watch;
+use armctl_frame::store::{Get, List, Row};
 
 table_commands! {
     /// Commands for counters.

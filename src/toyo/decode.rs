@@ -2,18 +2,11 @@
 
 mod capture;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 pub use self::capture::LineDecoder;
+use crate::prelude::*;
 use armctl_controller::toyo::describe::{Description, FieldNote, Sender, describe};
-use armctl_controller::toyo::request::Request;
-use armctl_frame::Report;
 use armctl_frame::decode::capture::{Input, Selection, file_among};
 use armctl_frame::decode::{self, damage, field_table, in_parentheses, problem_lines, stdin};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, Section, View};
 
 /// Decode lines of the Toyo host communication
 #[derive(Debug, Args)]

@@ -3,17 +3,11 @@
 //! For this reason, a value that is already equal is not written. Each write is read back, because a worn cell answers
 //! `@OK` and keeps its old value (ambiguity R29).
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::link::Link;
 use super::refusal;
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::layout::{LayoutProblem, Record};
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table::{Command, Op, Parameter};
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::Screen;
+use crate::prelude::*;
+use armctl_controller::toyo::layout::LayoutProblem;
+use armctl_controller::toyo::table::{Command, Op};
 
 /// A stored value: its read request, its write request, and the new value.
 #[derive(Debug, Clone)]

@@ -1,23 +1,17 @@
 //! `armctl explain toyo`: explanation of error codes and program instructions.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::instructions::InstructionHelp;
+use crate::prelude::*;
 use armctl_controller::nearest::nearest;
 use armctl_controller::toyo::errors;
 use armctl_controller::toyo::table::Instruction;
 use armctl_controller::toyo::table::instructions::INSTRUCTIONS;
 use armctl_controller::typed;
 use armctl_frame::face::explain::{self as face, Codes, Known};
-use armctl_frame::failure::Failure;
 use armctl_frame::output::csv::RowsOf;
-use armctl_frame::output::view::View;
 use armctl_frame::robot::alarm::{Alarm, ExtraColumns, Kind, Source};
 use armctl_frame::settings::alarms::{Alarms, Origin};
 use armctl_frame::settings::target::Family;
-use armctl_frame::{Report, ValueKind};
 
 /// Error code of a Toyo controller, or an instruction of its programs
 #[derive(Debug, Args)]

@@ -7,12 +7,11 @@ use std::time::Duration;
 use serde_json::Value;
 
 use super::testing::{Bench, Fault, ReceivedBlocks, gate_input, plan, text};
-use armctl_controller::Risk::{self, Destroy, Motion, Read, Write};
-use armctl_controller::toyo::request::Request;
+use crate::prelude::*;
+use armctl_controller::Risk::{Destroy, Motion, Read, Write};
 use armctl_controller::toyo::table::commands::Row;
 use armctl_frame::CommandSet as _;
-use armctl_frame::failure::Kind;
-use armctl_frame::gate::{Confirmation, Gate};
+use armctl_frame::gate::Gate;
 use armctl_frame::testing::{QUIET, complete_frames};
 
 /// Every command with its highest risk. `FOLDER` stands for a folder with the files of [`prepared`].

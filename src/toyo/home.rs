@@ -1,23 +1,11 @@
 //! `toyo home`: return to the origin.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::link::{Link, Toyo};
 use super::position::{Coordinates, UNIT, titled};
 use super::wait::{AcceptedWork, Work};
-use armctl_client::toyo::Letters;
-use armctl_controller::Risk;
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::{Change, Confirmation};
-use armctl_frame::output::view::{Cell, Tone, View};
+use crate::prelude::*;
 use armctl_frame::robot::motion::Motion;
 use armctl_frame::wait_arguments::MotionEnd;
-use armctl_frame::{Command, Context, Report};
 
 /// Return all axes to the origin, and wait for the end (TO 2-7).
 #[derive(Debug, Args)]

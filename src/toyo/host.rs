@@ -1,17 +1,10 @@
 //! Command `toyo host on|off`: takes or releases host control.
 
-use clap::Args;
-
 use super::link::Toyo;
 use super::orders::no_effect;
 use super::wait::wait_for_status;
-use armctl_controller::Risk;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::status::Status;
-use armctl_controller::toyo::table;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::settings_report::{Done, NewValue, Old, Switch};
-use armctl_frame::{Command, Context};
+use crate::prelude::*;
+use armctl_frame::settings_report::Switch;
 
 /// Switch the host ON or OFF permanently.
 ///

@@ -1,19 +1,9 @@
 //! `toyo info`: type and versions of the controller.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::link::Link;
 use super::link::Toyo;
 use super::numbers::small;
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, Section, View};
-use armctl_frame::{Command, Context, Report};
+use crate::prelude::*;
 
 /// Show robot type, versions, axes, task and override.
 #[derive(Debug, Args)]

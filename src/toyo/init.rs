@@ -2,25 +2,14 @@
 
 use std::time::Duration;
 
-use clap::{Args, ValueEnum};
-use schemars::JsonSchema;
-use serde::Serialize;
+use clap::ValueEnum;
 
 use super::link::Link;
 use super::link::Toyo;
 use super::task;
 use super::wait::status_page;
-use armctl_controller::Risk;
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::status::Status;
-use armctl_controller::toyo::table;
-use armctl_frame::dry_run::{Known as _, unknown};
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::Confirmation;
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::View;
-use armctl_frame::{Command, Context, Report};
+use crate::prelude::*;
+use armctl_frame::dry_run::unknown;
 
 /// Clear memory. Only a backup can restore the cleared memory.
 #[derive(Debug, Args)]

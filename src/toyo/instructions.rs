@@ -2,13 +2,10 @@
 
 use std::fmt::Write as _;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
+use crate::prelude::*;
 use armctl_controller::toyo::field::{Field, Form, Number};
 use armctl_controller::toyo::table::Instruction;
 use armctl_controller::toyo::table::instructions::{INSTRUCTIONS, SECTION};
-use armctl_frame::output::view::{Cell, Section, Table};
 
 /// An instruction of sequential programs.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -4,11 +4,8 @@
 use super::eeprom::THERE;
 use super::link::{Link, Refusal};
 use super::refusal;
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::request::Request;
+use crate::prelude::*;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::Screen;
 
 /// The answer or the failure of each request.
 pub type Answers = Vec<Result<Record, Failure>>;

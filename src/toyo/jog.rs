@@ -5,9 +5,7 @@ use std::fmt;
 use std::sync::mpsc::{self, Sender};
 use std::time::Duration;
 
-use clap::{Args, ValueEnum};
-use schemars::JsonSchema;
-use serde::Serialize;
+use clap::ValueEnum;
 use tokio::time::{Instant, sleep, sleep_until, timeout_at};
 
 use super::link::Toyo;
@@ -16,18 +14,10 @@ use super::position::{Coordinates, UNIT, titled};
 use super::refusal;
 use super::values::machine;
 use super::wait::{POLL_INTERVAL, explain_present_error, position_request, status_page};
-use armctl_client::toyo::Letters;
-use armctl_controller::Risk;
-use armctl_controller::toyo::request::Request;
-use armctl_frame::dry_run::Reason;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::{Change, Confirmation};
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::{Cell, View};
+use crate::prelude::*;
 use armctl_frame::robot::motion::Motion;
 use armctl_frame::robot::position::Position;
 use armctl_frame::settings::duration;
-use armctl_frame::{Command, Context, Report};
 
 /// Jog one axis, and stop it (TO 2-7, 3-2).
 ///

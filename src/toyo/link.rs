@@ -18,22 +18,18 @@ use super::refusal;
 use super::trace::Trace;
 use super::user_choices::UserChoices;
 use super::write_log::WriteLog;
-use armctl_client::toyo::{Client, Error, Letters, Line, is_stop, status_page};
+use crate::prelude::*;
+use armctl_client::toyo::{Client, Error, Line, is_stop, status_page};
 pub use armctl_client::toyo::{Moving, Refusal, jog};
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::request::{Answer, Request};
+use armctl_controller::toyo::request::Answer;
 use armctl_controller::toyo::session::Counters;
-use armctl_controller::toyo::status::Status;
 use armctl_controller::toyo::table::Command;
+use armctl_frame::Family;
 use armctl_frame::dry_run::Plan;
 use armctl_frame::face::sample::{Traffic, counter};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
-use armctl_frame::settings::Robot;
 use armctl_frame::settings::target;
 use armctl_frame::settings_report::{OLD_VALUE, nothing_written};
 use armctl_frame::trace::lock_writer;
-use armctl_frame::{Access, Family};
 use observer::{Observer, PrintedNotices, SharedObserver};
 
 /// The toyo family.

@@ -44,6 +44,7 @@ mod param;
 mod point;
 pub mod ports;
 mod position;
+mod prelude;
 mod program;
 mod programs;
 mod raw;

@@ -1,25 +1,14 @@
 //! `toyo mvm`: groups of the MVM table. A group has five sheets: corners, pieces, counters, approach and destination.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::eeprom::{Cells, parameter_cell, parameter_sketch};
 use super::items::read_each;
 use super::link::{Link, Toyo, wrong};
 use super::numbers::Numbers;
 use super::rows::{Listed, WRITING, texts, unlisted};
 use super::values::{Changes, word};
-use armctl_controller::Risk;
-use armctl_controller::toyo::field::{self, Value};
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table::Parameter;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::Cell;
-use armctl_frame::store::{
-    Answers, Differing, Field, Ids, Row, Single, Store, TableWords, Writable, ids, table_commands,
-};
+use crate::prelude::*;
+use armctl_controller::toyo::field;
+use armctl_frame::store::Row;
 
 table_commands! {
     /// Commands for groups of the MVM table.

@@ -2,15 +2,12 @@
 
 use super::link::Link;
 use super::refusal;
+use crate::prelude::*;
 use armctl_controller::names::Kind as NameKind;
-use armctl_controller::toyo::field::{Field, Form, Value};
-use armctl_controller::toyo::layout::Record;
+use armctl_controller::toyo::field::{Field, Form};
 use armctl_controller::toyo::names as names_of;
-use armctl_controller::toyo::request::Request;
 use armctl_controller::typed;
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::names;
-use armctl_frame::output::Screen;
 
 /// A number or a range: `5`, `1-5`, `1..5`.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,13 +1,8 @@
 //! `toyo offset`: current offset of coordinates.
 
-use clap::Args;
-
 use super::link::Toyo;
 use super::position::Coordinates;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
-use armctl_frame::failure::Failure;
-use armctl_frame::{Command, Context};
+use crate::prelude::*;
 
 /// Show the offset that the program has set.
 #[derive(Debug, Args)]

@@ -1,24 +1,16 @@
 //! Commands that send one block: servo, mode, reset, stop.
 
-use clap::{Args, ValueEnum};
-use schemars::JsonSchema;
-use serde::Serialize;
+use clap::ValueEnum;
 
 use super::link::Moving;
 use super::link::Toyo;
 use super::position::UNIT;
 use super::wait::wait_for_status;
-use armctl_controller::Risk;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::status::{ProgramKind, RunMode, Status};
-use armctl_controller::toyo::table;
+use crate::prelude::*;
+use armctl_controller::toyo::status::{ProgramKind, RunMode};
 use armctl_frame::face::shared_commands::CommonReport;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::Confirmation;
-use armctl_frame::output::view::View;
 use armctl_frame::robot::position::Position;
-use armctl_frame::settings_report::{Done, NewValue, Old, Switch};
-use armctl_frame::{Command, Context, Report};
+use armctl_frame::settings_report::Switch;
 
 /// Switch servo power of all axes (TO 2-7), and wait until the status confirms the state.
 #[derive(Debug, Args)]

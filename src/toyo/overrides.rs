@@ -1,18 +1,12 @@
 //! `toyo override`: speed override of programs.
 
-use clap::Args;
-
 use super::eeprom::{Cell, Cells};
 use super::link::Toyo;
 use super::link::wrong;
 use super::numbers::{number, small};
-use armctl_controller::Risk;
-use armctl_controller::toyo::field::{Field, Value};
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
-use armctl_frame::failure::Failure;
+use crate::prelude::*;
+use armctl_controller::toyo::field::Field;
 use armctl_frame::robot::item::{Columns, Item, Items, Written, WrittenItems};
-use armctl_frame::{Command, Context, commands};
 
 commands! {
     /// Commands for the override.

@@ -3,11 +3,10 @@
 use super::link::Link;
 use super::position::Coordinates;
 use super::top::alarms;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::status::{RunMode, Status};
+use crate::prelude::*;
+use armctl_controller::toyo::status::RunMode;
 use armctl_controller::toyo::table::Command;
 use armctl_frame::face::overview::{LeftOver, OverviewReport};
-use armctl_frame::failure::Failure;
 use armctl_frame::robot::state::{Fault, Mode, PositionMm, State};
 
 /// Reads status and position.

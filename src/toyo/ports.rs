@@ -1,14 +1,9 @@
 //! `toyo ports`: serial ports of this computer.
 
 use anyhow::Context as _;
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::{Cell, Table, View};
-use armctl_frame::{OfflineCommand, Report};
+use crate::prelude::*;
+use armctl_frame::OfflineCommand;
 use armctl_transport::ports::{self, PortInfo, PortKind, PortUser};
 
 /// Failure: another program uses the port. If that program is armctl and receives a termination signal, it first stops

@@ -1,19 +1,9 @@
 //! `toyo position`: current position of the axes.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::link::Toyo;
-use armctl_client::toyo::Letters;
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, Section, View};
+use crate::prelude::*;
 use armctl_frame::plot::SeriesHistory;
 use armctl_frame::robot::position::{self as robot, Positions};
-use armctl_frame::{Command, Context, Report};
 
 /// Show the current position.
 #[derive(Debug, Args)]

@@ -3,20 +3,12 @@
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
-use clap::Args;
-
 use super::copies::{self, Copied};
 use super::link;
 use super::link::Toyo;
 use super::numbers::{number, read_back, stored_otherwise};
-use armctl_controller::Risk;
-use armctl_controller::toyo::field::{Field, Value};
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::Confirmation;
-use armctl_frame::settings_report::{Done, NewValue, Old};
-use armctl_frame::{Command, Context};
+use crate::prelude::*;
+use armctl_controller::toyo::field::Field;
 
 /// A type of program that has numbers.
 pub trait Kind: Debug + 'static {

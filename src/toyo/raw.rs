@@ -1,21 +1,13 @@
 //! `toyo raw`: sends any block and explains the answer.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::decode::FieldRow;
 use super::link::Link;
 use super::numbers::small;
 use crate::link::Toyo;
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::toyo::describe::{Sender, describe};
-use armctl_controller::toyo::request::{Answer, BlockError, Request};
-use armctl_controller::toyo::table;
+use armctl_controller::toyo::request::{Answer, BlockError};
 use armctl_frame::decode::{field_table, problem_lines};
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::view::View;
-use armctl_frame::{Command, Context, Report};
 
 /// Send a block unchanged. armctl does not switch the host ON, compare values or wait for an end.
 #[derive(Debug, Args)]

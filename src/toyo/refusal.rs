@@ -1,12 +1,10 @@
 //! Explanation of a refusal. `@NG` has no code, so the reason must be read from the status.
 
 use super::link::Link;
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::toyo::errors;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::status::{ProgramKind, RunMode, Status};
+use armctl_controller::toyo::status::{ProgramKind, RunMode};
 use armctl_controller::toyo::table::commands::{Command, Row};
-use armctl_frame::failure::{Failure, Kind};
 
 /// Failure for a refusal. It contains the reason if the status shows one.
 pub async fn explained(link: &mut Link, request: &Request) -> Failure {

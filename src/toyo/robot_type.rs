@@ -1,20 +1,10 @@
 //! `toyo robot-type`: robot type of an axis.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::link::Toyo;
 use super::numbers::number;
-use armctl_controller::Risk;
-use armctl_controller::toyo::field::{Field, Value};
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
-use armctl_frame::dry_run::{Known as _, unknown};
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::Confirmation;
-use armctl_frame::output::view::View;
-use armctl_frame::{Command, Context, Report};
+use crate::prelude::*;
+use armctl_controller::toyo::field::Field;
+use armctl_frame::dry_run::unknown;
 
 /// Set the robot type of an axis. The type determines the parameters of the axis.
 #[derive(Debug, Args)]

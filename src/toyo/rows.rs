@@ -4,26 +4,16 @@
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::eeprom::{Cell, Cells, parameter_cell, parameter_sketch};
 use super::items::read_each;
 use super::link::{Link, Toyo, wrong};
 use super::numbers::Numbers;
 use super::values::{Changes, NOT_IN_MANUAL, word};
-use armctl_client::toyo::Letters;
-use armctl_controller::Risk;
-use armctl_controller::toyo::field::{self, Form, Value};
-use armctl_controller::toyo::layout::{Layout, Record, UNLISTED};
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table::Parameter;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
+use crate::prelude::*;
+use armctl_controller::toyo::field::{self, Form};
+use armctl_controller::toyo::layout::{Layout, UNLISTED};
 use armctl_frame::robot::item::as_requested;
-use armctl_frame::store::{
-    Answers, Differing, Field, Ids, Row, Single, Store, TableWords, Writable, ids, table_commands,
-};
+use armctl_frame::store::Row;
 
 table_commands! {
     /// Commands for the speed table. Programs name a speed by its row.

@@ -2,10 +2,6 @@
 
 use std::time::Duration;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::complete;
 use super::link::{self, Link, Toyo};
 use super::numbers::small;
@@ -14,24 +10,16 @@ use super::position::{Coordinates, UNIT, titled};
 use super::program::steps;
 use super::tasks;
 use super::wait::{AcceptedWork, End, Work, step};
-use armctl_client::toyo::Letters;
-use armctl_controller::Risk;
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::request::Request;
+use crate::prelude::*;
 use armctl_controller::toyo::status::RunMode;
-use armctl_controller::toyo::table;
 use armctl_frame::cycle::{Repeat, Runs};
-use armctl_frame::dry_run::{Known as _, Reason, unknown};
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::{Change, Confirmation, data_changed};
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::{Section, View};
+use armctl_frame::dry_run::unknown;
+use armctl_frame::gate::data_changed;
 use armctl_frame::robot::motion::Motion;
 use armctl_frame::robot::position::Position;
 use armctl_frame::robot::program::{self as robot, ProgramState};
 use armctl_frame::settings::duration;
 use armctl_frame::wait_arguments::{MotionEnd, ProgramEnd};
-use armctl_frame::{Command, Context, Report, commands};
 
 commands! {
     /// Commands that start programs and moves.

@@ -1,16 +1,10 @@
 //! `toyo status`: all five pages of the status.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::link::Toyo;
 use super::overview::state;
+use crate::prelude::*;
 use armctl_controller::toyo::status::{self, ProgramKind};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, Tone, View};
 use armctl_frame::robot::state::State;
-use armctl_frame::{Command, Context, Report};
 
 /// Show all five pages of the status.
 #[derive(Debug, Args)]
@@ -133,6 +127,6 @@ impl Report for StatusReport {
             ("slave not ready", yes(self.slave_not_ready, Tone::Bad)),
             ("power cycle needed", yes(self.needs_power_cycle, Tone::Bad)),
         ];
-        View { sections: vec![armctl_frame::output::view::Section::Fields(fields)] }
+        View { sections: vec![Section::Fields(fields)] }
     }
 }

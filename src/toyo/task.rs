@@ -1,21 +1,10 @@
 //! `toyo task`: the current task. Programs, tables and positions belong to a task.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::link::Link;
 use super::link::Toyo;
 use super::numbers::{number, read_back, small, stored_otherwise};
-use armctl_controller::Risk;
-use armctl_controller::toyo::field::{Field, Value};
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::View;
-use armctl_frame::settings_report::{Done, NewValue, Old};
-use armctl_frame::{Command, Context, Report, commands};
+use crate::prelude::*;
+use armctl_controller::toyo::field::Field;
 
 commands! {
     /// Commands for the current task.

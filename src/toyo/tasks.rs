@@ -1,10 +1,8 @@
 //! Temporary selection of another task during a command.
 
 use super::link::Link;
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::request::Request;
+use crate::prelude::*;
 use armctl_controller::toyo::table::Command;
-use armctl_frame::failure::{Failure, Kind};
 
 /// Reads the current task, and selects `task` temporarily if it is another one. Returns the task that is current after
 /// this.

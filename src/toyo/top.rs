@@ -6,18 +6,12 @@ use super::io::{INPUTS, OUTPUTS, PortBank, ports_of};
 use super::link::{Link, Toyo};
 use super::overview::report;
 use super::position::Coordinates;
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::status::Status;
-use armctl_controller::toyo::table::{Command, Parameter};
+use crate::prelude::*;
+use armctl_controller::toyo::table::Command;
+use armctl_frame::Family as _;
 use armctl_frame::face::registration;
 use armctl_frame::face::sample::{Axis, Bank, Detail, Indicator, Sample, SignalByte, Whole, clocked};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::Tone;
 use armctl_frame::robot::alarm::Alarm;
-use armctl_frame::settings::Robot;
-use armctl_frame::{Access, Family as _};
 
 /// Poller of one controller.
 #[derive(Debug)]

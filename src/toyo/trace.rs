@@ -2,11 +2,8 @@
 
 use std::net::SocketAddr;
 
+use crate::prelude::*;
 use armctl_controller::toyo::describe::{Sender, summary};
-use armctl_controller::toyo::request::Request;
-use armctl_frame::Access;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
 use armctl_frame::trace;
 use armctl_transport::tap::Direction;
 

@@ -5,15 +5,12 @@
 
 use std::ops::Range;
 
-use schemars::JsonSchema;
-use serde::Serialize;
 use serde_json::Value as Json;
 
-use armctl_client::toyo::Letters;
+use crate::prelude::*;
 use armctl_controller::nearest::nearest;
-use armctl_controller::toyo::field::{Field, Form, Number, Value};
-use armctl_controller::toyo::layout::{Layout, Record, UNLISTED};
-use armctl_frame::failure::Failure;
+use armctl_controller::toyo::field::{Field, Form, Number};
+use armctl_controller::toyo::layout::{Layout, UNLISTED};
 
 /// A slot for one value that the user types.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -397,7 +394,7 @@ mod tests {
 
     #[test]
     fn the_slots_of_each_parameter_cover_all_fields() {
-        for row in &armctl_controller::toyo::table::parameters::PARAMETERS {
+        for row in &table::parameters::PARAMETERS {
             let (layout, slots) = (row.body(), slots(&row.body(), &Letters::USUAL));
             let covered: Vec<usize> = slots.iter().flat_map(|slot| slot.fields.clone()).collect();
             assert_eq!(covered, (0..layout.fields.len()).collect::<Vec<_>>(), "{}", row.id);

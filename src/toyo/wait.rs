@@ -8,16 +8,11 @@ use super::link::Link;
 use super::position::Coordinates;
 use super::program::steps;
 use super::refusal;
-use armctl_client::toyo::Letters;
+use crate::prelude::*;
 pub(super) use armctl_client::toyo::status_page;
 use armctl_controller::toyo::errors;
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::status::Status;
 use armctl_controller::toyo::table::Command;
-use armctl_frame::dry_run::{Reason, unknown};
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::Screen;
+use armctl_frame::dry_run::unknown;
 use armctl_frame::output::progress::Progress;
 
 /// Interval between two reads of the status.

@@ -2,7 +2,7 @@
 
 mod report;
 
-use clap::{Args, ValueEnum};
+use clap::ValueEnum;
 
 pub(super) use self::report::in_a_line;
 use self::report::{Own, WithTexts, entry, explain, short};
@@ -12,17 +12,12 @@ use super::link::Yerc;
 use super::numbers::parse_in_range;
 use super::switch_commands::usage;
 use crate::existing_items::read_failure;
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::yerc::payload;
 use armctl_controller::yerc::query::{self, Query, ReadAlarm, ReadAlarmHistory};
 use armctl_controller::yerc::wire::Status;
-use armctl_frame::dry_run::Reason;
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::items;
 use armctl_frame::robot::alarm::{self, Alarms, Row};
-use armctl_frame::settings_report::{Done, NewValue, Old};
-use armctl_frame::watch::{Watch, Watchable, Watched};
-use armctl_frame::{Command, Context, commands};
 
 commands! {
     /// Alarms.

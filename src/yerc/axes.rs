@@ -3,26 +3,17 @@
 use std::fmt;
 use std::str::FromStr;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::existing_items::ask_existing;
 use super::link::Yerc;
 use super::position::ByAxis;
 use super::switch_commands::usage;
 use crate::existing_items::read_failure;
-use armctl_controller::text::Encoding;
-use armctl_controller::yerc::Model;
-use armctl_controller::yerc::group::Group;
+use crate::prelude::*;
 use armctl_controller::yerc::payload::AxisNames;
 use armctl_controller::yerc::query::{Coordinates, ReadAxes, ReadPositionError, ReadTorque};
-use armctl_frame::dry_run::{Known as _, unknown};
-use armctl_frame::failure::Failure;
+use armctl_frame::dry_run::unknown;
 use armctl_frame::items;
 use armctl_frame::items::ItemError;
-use armctl_frame::output::view::{Cell, Table, View};
-use armctl_frame::{Command, Context, Report};
 
 /// One control group, or all groups of the controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

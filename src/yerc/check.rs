@@ -3,17 +3,13 @@
 use super::link::Link;
 use super::link::Yerc;
 use super::overview::left_over;
-use armctl_controller::yerc::Model;
-use armctl_controller::yerc::group::Group;
+use crate::prelude::*;
 use armctl_controller::yerc::payload::StatusBit;
 use armctl_controller::yerc::query::{ReadStatus, ReadSystemInfo, SystemPart};
+use armctl_frame::Family as _;
 use armctl_frame::attach::is_held;
 use armctl_frame::face::layers::{Layer, Layers};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
-use armctl_frame::settings::Robot;
 use armctl_frame::settings::names::CacheFile;
-use armctl_frame::{Access, Family as _};
 
 const LAYERS: &[&str] = &["name", "answer", "software", "model", "mode", "command remote", "hold", "alarm", "servo"];
 

@@ -4,14 +4,12 @@ use super::failure::failure;
 use super::link::Yerc;
 use super::overview::overview;
 use super::simulator_start;
+use crate::prelude::*;
 use armctl_client::yerc::{Client, Endpoint, Options};
-use armctl_controller::yerc::Model;
+use armctl_frame::Family as _;
 use armctl_frame::attach::attach;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
+use armctl_frame::settings::Sessions;
 use armctl_frame::settings::target::Place;
-use armctl_frame::settings::{Robot, Sessions};
-use armctl_frame::{Access, Family as _};
 use armctl_transport::fault::FaultSpec;
 use armctl_transport::session::host::shared_link::Datagrams;
 

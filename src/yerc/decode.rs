@@ -2,21 +2,15 @@
 
 mod capture;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 pub use self::capture::FrameDecoder;
+use crate::prelude::*;
 use armctl_controller::typed;
 use armctl_controller::yerc::describe::{Description, FieldNote, Sender, describe};
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::table::service;
 use armctl_controller::yerc::wire::{ANSWER_BIT, HEADER_LEN, RequestFrame};
-use armctl_frame::Report;
 use armctl_frame::decode::capture::{Input, Selection, file_among, parse_hex};
 use armctl_frame::decode::{self, damage, field_table, in_parentheses, problem_lines, stdin};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, Section, View};
 
 /// Decode frames of the high-speed Ethernet server
 #[derive(Debug, Args)]

@@ -1,13 +1,8 @@
 //! `armctl explain yerc`: meaning of status codes.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
+use crate::prelude::*;
 use armctl_controller::yerc::status;
-use armctl_frame::ValueKind;
 use armctl_frame::face::explain::{self as face, Codes, Known};
-use armctl_frame::failure::Failure;
 use armctl_frame::robot::alarm::{Alarm, ExtraColumns, Kind, Source};
 use armctl_frame::settings::alarms::{Alarms, Origin};
 use armctl_frame::settings::target::Family;

@@ -1,25 +1,16 @@
 //! `yerc hours`: running-time counters.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::axes::{Groups, groups_of};
 use super::existing_items::{Outcome, ask_existing};
 use super::link::Yerc;
 use super::numbers::parse_in_range;
 use super::switch_commands::usage;
 use crate::existing_items::read_failure;
-use armctl_controller::text::Encoding;
-use armctl_controller::yerc::Model;
-use armctl_controller::yerc::group::Group;
+use crate::prelude::*;
 use armctl_controller::yerc::payload::ManagementTime;
 use armctl_controller::yerc::query::{QueryError, ReadManagementTime, TimeCounter};
-use armctl_frame::failure::Failure;
 use armctl_frame::items;
 use armctl_frame::items::{ItemError, ItemOutcome};
-use armctl_frame::output::view::{Cell, Table, View};
-use armctl_frame::{Command, Context, Report};
 
 /// Reads the running-time counters (FS and DX 3.3.25).
 #[derive(Debug, Args)]

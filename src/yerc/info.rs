@@ -1,25 +1,16 @@
 //! `yerc info`: software, models, parameters.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::axes::{Groups, groups_of};
 use super::existing_items::ask_existing;
 use super::link::Yerc;
 use super::numbers::parse_in_range;
 use super::switch_commands::usage;
 use crate::existing_items::read_failure;
-use armctl_controller::text::Encoding;
-use armctl_controller::yerc::Model;
-use armctl_controller::yerc::group::Group;
+use crate::prelude::*;
 use armctl_controller::yerc::payload::{SystemInfo, Text};
 use armctl_controller::yerc::query::{QueryError, ReadSystemInfo, SystemPart};
-use armctl_frame::failure::Failure;
 use armctl_frame::items;
 use armctl_frame::items::{ItemError, ItemOutcome};
-use armctl_frame::output::view::{Cell, Table, View};
-use armctl_frame::{Command, Context, Report};
 
 /// Reads versions and names (FS and DX 3.3.26).
 #[derive(Debug, Args)]

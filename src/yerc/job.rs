@@ -7,10 +7,6 @@ mod stop;
 
 use std::str::FromStr;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use self::source::Source;
 pub use self::stop::Halt;
 use super::existing_items::{Outcome, ReadError};
@@ -20,19 +16,15 @@ use super::numbers::parse_in_range;
 use super::switch_commands::refuse_controls;
 use crate::complete;
 use crate::existing_items::read_failure;
-use armctl_controller::Risk;
-use armctl_controller::text::{Encoding, Name};
+use crate::prelude::*;
+use armctl_controller::text::Name;
 use armctl_controller::typed;
 use armctl_controller::units;
 use armctl_controller::yerc::payload::JobInfo;
 use armctl_controller::yerc::query::{ReadJob, SelectJob, Selection};
 use armctl_controller::yerc::status::{self, is_absent};
-use armctl_frame::failure::Failure;
 use armctl_frame::items;
 use armctl_frame::items::{ItemError, ItemOutcome};
-use armctl_frame::output::view::{Cell, Section, Table, View};
-use armctl_frame::settings_report::{Done, NewValue, Old};
-use armctl_frame::{Command, Context, Report, commands};
 
 commands! {
     /// Jobs.

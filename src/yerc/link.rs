@@ -11,25 +11,20 @@ use super::failure::{failure, refused};
 use super::model_cache::CachedModel;
 use super::switch_commands::usage;
 use super::trace::Trace;
+use crate::prelude::*;
 use armctl_client::Watcher;
 use armctl_client::yerc::{Cause, Client, Event, Totals, TransferError};
 pub use armctl_client::yerc::{Error, Refusal, RefusedRequest};
-use armctl_controller::text::Encoding;
-use armctl_controller::yerc::Model;
-use armctl_controller::yerc::group::Group;
 use armctl_controller::yerc::query::{Query, QueryError};
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::session::{DownloadEnd, Reply, UploadEnd};
-use armctl_frame::dry_run::{Known as _, Plan};
+use armctl_frame::Family;
+use armctl_frame::dry_run::Plan;
 use armctl_frame::face::sample::Traffic;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::Screen;
-use armctl_frame::settings::Robot;
 use armctl_frame::settings::model::ReportedModel;
 use armctl_frame::settings::target;
 use armctl_frame::settings_report::{OLD_VALUE, nothing_written};
 use armctl_frame::trace::lock_writer;
-use armctl_frame::{Access, Family};
 use armctl_transport::tap::Direction;
 
 /// The `yerc` family.

@@ -27,6 +27,7 @@ mod names;
 mod numbers;
 mod overview;
 mod position;
+mod prelude;
 mod raw;
 mod register;
 mod selected_job;

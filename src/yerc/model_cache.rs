@@ -1,8 +1,7 @@
 //! Stored model of a controller. It is used for a day, and removed if the controller reports a different model.
 
+use crate::prelude::*;
 use armctl_client::yerc::Client;
-use armctl_frame::output::Screen;
-use armctl_frame::settings::Robot;
 use armctl_frame::settings::model::{ModelCache, ReportedModel};
 use armctl_frame::settings::target::Address;
 

@@ -5,10 +5,9 @@ use std::time::Duration;
 use super::alarm;
 use super::link::Link;
 use super::switch_commands::usage;
+use crate::prelude::*;
 use armctl_controller::yerc::payload::{ControllerStatus, StatusBit};
 use armctl_controller::yerc::query::{Query as _, ReadAlarm};
-use armctl_frame::dry_run::Reason;
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::robot::alarm::hint_after;
 use armctl_frame::settings::target::Family;
 

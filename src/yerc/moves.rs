@@ -7,7 +7,6 @@ mod variable_target;
 
 pub(super) use self::execution::is_standing;
 pub(super) use self::question::{compared, moved_during_question};
-use clap::Args;
 
 use std::borrow::Cow;
 
@@ -20,14 +19,11 @@ use self::variable_target::Motion;
 use super::link::Link;
 use super::link::Yerc;
 use crate::numbers::parse_in_range;
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::units;
-use armctl_controller::yerc::group::Group;
-use armctl_controller::yerc::payload::{CartesianMove, ExtendedForm, Form, MoveLayout, PositionKind, PulseMove};
+use armctl_controller::yerc::payload::{CartesianMove, ExtendedForm, Form, MoveLayout, PulseMove};
 use armctl_controller::yerc::query::{Coordinates, MoveCartesian, MoveKind, MovePulse};
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::Confirmation;
-use armctl_frame::{Command, Context, Subcommands, commands};
+use armctl_frame::Subcommands;
 
 commands! {
     /// Motions.

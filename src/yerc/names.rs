@@ -1,19 +1,14 @@
 //! `yerc names`: user-defined names of signals, variables and registers.
 
-use clap::Args;
 use jiff::Timestamp;
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use super::check::software;
 use super::file::{FileReading, read_files};
 use super::link::{Link, Yerc};
+use crate::prelude::*;
 use armctl_controller::yerc::names::{FILES, FileNames, read};
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::items::{self, ItemError};
-use armctl_frame::output::view::{Cell, Table, View};
 use armctl_frame::settings::names::{CacheFile, CachedNames, KeptFile};
-use armctl_frame::{Command, Context, Report, commands};
 
 commands! {
     /// Commands for names.

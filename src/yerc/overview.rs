@@ -3,12 +3,11 @@
 use super::alarm::plan_latest;
 use super::link::Link;
 use super::status;
-use armctl_controller::yerc::group::Group;
-use armctl_controller::yerc::payload::{ControllerStatus, Position, StatusBit};
+use crate::prelude::*;
+use armctl_controller::yerc::payload::{ControllerStatus, StatusBit};
 use armctl_controller::yerc::query::{Coordinates, ReadPosition, ReadStatus};
-use armctl_frame::dry_run::{Known as _, unknown};
+use armctl_frame::dry_run::unknown;
 use armctl_frame::face::overview::{LeftOver, OverviewReport};
-use armctl_frame::failure::Failure;
 use armctl_frame::robot::state::{Fault, Mode, PositionMm, State};
 
 /// Reads status and position.

@@ -2,27 +2,26 @@
 
 use std::fmt::Write as _;
 
-use clap::{Args, ValueEnum};
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::{Serialize, Serializer};
+use clap::ValueEnum;
+use schemars::{Schema, SchemaGenerator, json_schema};
+use serde::Serializer;
 use serde_json::{Map, Value};
 
 use super::link::Link;
 use super::link::Yerc;
 use super::var::{PositionData, as_position, stored_position};
 use crate::existing_items::read_failure;
+use crate::prelude::*;
 use armctl_client::yerc::AxisSet;
 use armctl_controller::units::{self, Unit};
-use armctl_controller::yerc::group::Group;
-use armctl_controller::yerc::payload::{self, Axes, ExtendedForm, Form, MAX_AXES, PositionKind};
+use armctl_controller::yerc::payload;
+use armctl_controller::yerc::payload::{Axes, ExtendedForm, Form, MAX_AXES};
 use armctl_controller::yerc::query::{Coordinates, ReadPosition};
 use armctl_controller::yerc::variables;
-use armctl_frame::dry_run::{Known as _, unknown};
-use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::dry_run::unknown;
 use armctl_frame::items;
 use armctl_frame::plot::SeriesHistory;
 use armctl_frame::robot::position::{self as robot, Joint, Positions, Row};
-use armctl_frame::{Command, Context};
 
 /// Reads the current position of a group (FS and DX 3.3.6).
 #[derive(Debug, Args)]

@@ -2,9 +2,6 @@
 
 use std::time::Duration;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 use tokio::time::Instant;
 
 use super::decode::FieldRow;
@@ -13,10 +10,9 @@ use super::link::{self, Link, Refusal};
 use super::var::confirm_raw;
 use crate::failure::refusal_failure;
 use crate::link::Yerc;
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::text::hex;
 use armctl_controller::typed;
-use armctl_controller::yerc::Model;
 use armctl_controller::yerc::describe::{Sender, describe};
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::session::{DownloadEnd, Reply};
@@ -25,10 +21,6 @@ use armctl_controller::yerc::table::{BATCH_BACKUP_PATH, Row, service};
 use armctl_controller::yerc::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, MAX_DATA, Status};
 use armctl_frame::decode::capture::parse_hex;
 use armctl_frame::decode::field_table;
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::Confirmation;
-use armctl_frame::output::view::{Cell, View};
-use armctl_frame::{Command, Context, Report};
 
 /// Sends one raw request and shows the answer.
 #[derive(Debug, Args)]

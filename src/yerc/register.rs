@@ -3,34 +3,21 @@
 use std::collections::HashSet;
 use std::str::FromStr;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::batch_split::{BatchSplit, read_in_batches};
 use super::complete;
 use super::link::{Link, Yerc};
 use super::switch_commands::usage;
 use crate::existing_items::read_failure;
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::names::Kind;
 use armctl_controller::typed;
-use armctl_controller::yerc::Model;
 use armctl_controller::yerc::names::{register, register_address};
 use armctl_controller::yerc::query::Query as _;
 use armctl_controller::yerc::variables::{parse_numbers, plan_register_reads, plan_register_writes};
-use armctl_frame::dry_run::Reason;
-use armctl_frame::failure::{Failure, Kind as FailureKind};
+use armctl_frame::failure::Kind as FailureKind;
 use armctl_frame::names;
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::Cell;
 use armctl_frame::settings_report::{IF_DIFFERENT, OLD_VALUE};
-use armctl_frame::store::{
-    Answers, Copy, Differing, Dump, Field, Get, Ids, List, Restore, Row, Single, Store, TableWords, TableWrite,
-    Writable, WrittenOf, ids, write,
-};
-use armctl_frame::watch::Watch;
-use armctl_frame::{Command, Context, ValueKind, commands};
+use armctl_frame::store::{Copy, Dump, Get, List, Restore, Row, TableWrite, WrittenOf, write};
 
 commands! {
     /// Commands for registers.

@@ -3,12 +3,11 @@
 
 use super::link::Link;
 use crate::failure::refusal_failure;
-use armctl_controller::text::Encoding;
+use crate::prelude::*;
 use armctl_controller::units;
 use armctl_controller::yerc::payload::JobInfo;
 use armctl_controller::yerc::query::ReadJob;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::{Change, data_changed};
+use armctl_frame::gate::data_changed;
 
 /// Job that a start command starts, as the controller reports it.
 #[derive(Debug, PartialEq, Eq)]

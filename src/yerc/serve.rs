@@ -5,16 +5,10 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
 
 use anyhow::Context as _;
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 
+use crate::prelude::*;
 use crate::simulator_start::{self, Simulated};
-use armctl_controller::yerc::Model;
 use armctl_controller::yerc::simulator::Simulator;
-use armctl_frame::Report;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::View;
 use armctl_frame::serve::{self, Started, address, bind_failure};
 use armctl_transport::fault::{FaultSpec, Faults};
 use armctl_transport::server::Server;

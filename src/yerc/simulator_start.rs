@@ -4,11 +4,10 @@ use std::path::Path;
 
 use anyhow::Context as _;
 
+use crate::prelude::*;
 pub use armctl_client::yerc::Simulated;
-use armctl_controller::yerc::Model;
 use armctl_controller::yerc::simulator::Start;
 use armctl_files as files;
-use armctl_frame::failure::Failure;
 use armctl_transport::fault::FaultSpec;
 
 /// Start state with the busy rate of the faults. It comes from a file, or is the built-in state of the model.

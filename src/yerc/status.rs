@@ -1,19 +1,13 @@
 //! `yerc status`.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::alarm::{plan_latest, present};
 use super::link::{Link, Yerc};
 use super::overview::state;
+use crate::prelude::*;
 use armctl_controller::yerc::payload::{ControllerStatus, CycleMode, StatusBit};
 use armctl_controller::yerc::query::ReadStatus;
-use armctl_frame::dry_run::{Known as _, unknown};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, Tone, View};
+use armctl_frame::dry_run::unknown;
 use armctl_frame::robot::state::{Fault, State};
-use armctl_frame::{Command, Context, Report};
 
 /// Shows all status bits of the controller.
 #[derive(Debug, Args)]

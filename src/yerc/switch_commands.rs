@@ -1,16 +1,13 @@
 //! Commands that send one request: servo, hold, hlock, cycle, say.
 
-use clap::{Args, ValueEnum};
+use clap::ValueEnum;
 
 use super::link::Yerc;
 use super::status::cycle_name;
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::yerc::payload::{ControllerStatus, CycleMode};
 use armctl_controller::yerc::query::{self, Query};
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::Confirmation;
-use armctl_frame::settings_report::{Done, NewValue, Old, Switch};
-use armctl_frame::{Command, Context};
+use armctl_frame::settings_report::Switch;
 
 /// Declares a command that sends one request. The parts are the type, its argument, the id, the request, the intent,
 /// and the result.

@@ -1,7 +1,7 @@
 //! `yerc teach`: stores the current position of a group in a position variable. The aliases are `position teach P5` and
 //! `var set P5=here`.
 
-use clap::{Args, ValueEnum};
+use clap::ValueEnum;
 
 use super::complete;
 use super::link::{Link, Yerc};
@@ -11,18 +11,13 @@ use super::switch_commands::usage;
 use super::var::{PositionData, as_position, different_words, is_undefined, stored_position, variable_name};
 use crate::existing_items::ReadError;
 use crate::failure::refusal_failure;
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::names::Kind;
-use armctl_controller::yerc::group::Group;
-use armctl_controller::yerc::payload::{Position, PositionKind};
 use armctl_controller::yerc::query::{Coordinates, Query as _, ReadPosition, ReadVariable, WriteVariable};
 use armctl_controller::yerc::variables::{Reference, Value, VariableKind};
-use armctl_frame::dry_run::{Known as _, Reason, unknown};
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::{Change, Confirmation};
+use armctl_frame::dry_run::unknown;
 use armctl_frame::names;
 use armctl_frame::teach::{Taught, mismatch, unverified};
-use armctl_frame::{Command, Context};
 
 /// Stores the current position of a group in a position variable and reads it back (FS and DX 3.3.6, 3.3.16 to
 /// 3.3.18).

@@ -4,12 +4,11 @@ use serde_json::Value;
 
 use super::link::Link;
 use super::link::Yerc;
+use crate::prelude::*;
 use armctl_controller::text::hex;
 use armctl_frame::face::Face;
 use armctl_frame::face::registration::Registered;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::{ColorChoice, Format, Screen};
-use armctl_frame::settings::Robot;
+use armctl_frame::output::{ColorChoice, Format};
 use armctl_frame::settings_report::IF_DIFFERENT;
 use armctl_frame::testing;
 use armctl_frame::testing::{context, planned, unlimited_access};

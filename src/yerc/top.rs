@@ -4,20 +4,16 @@ use super::alarm::{SLOTS, present};
 use super::link::{Link, Yerc};
 use super::overview::report;
 use super::position::{CARTESIAN_AXES, ROBOT_AXES, decimal};
+use crate::prelude::*;
 use armctl_controller::units;
-use armctl_controller::yerc::group::Group;
-use armctl_controller::yerc::payload::{Axes, ControllerStatus, CycleMode, Position, PositionKind, StatusBit};
+use armctl_controller::yerc::payload::{Axes, ControllerStatus, CycleMode, StatusBit};
 use armctl_controller::yerc::query::{
     Coordinates, Query, QueryError, ReadIoGroups, ReadPosition, ReadPositionError, ReadStatus, ReadTorque,
 };
+use armctl_frame::Family as _;
 use armctl_frame::face::registration;
 use armctl_frame::face::sample::{Axis, Bank, Detail, Indicator, Sample, SignalByte, Whole, clocked};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::Tone;
 use armctl_frame::robot::state::Fault;
-use armctl_frame::settings::Robot;
-use armctl_frame::{Access, Family as _};
 
 /// Poller for one controller.
 #[derive(Debug)]

@@ -2,12 +2,10 @@
 
 use std::net::SocketAddr;
 
+use crate::prelude::*;
 use armctl_controller::yerc::describe::{Sender, summary};
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::wire::RequestFrame;
-use armctl_frame::Access;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
 use armctl_frame::trace;
 use armctl_transport::tap::Direction;
 

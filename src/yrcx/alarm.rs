@@ -1,30 +1,17 @@
 //! Commands `yrcx alarm list|history|watch|reset` (4.7.7, 4.8.3).
 
-use clap::Args;
-
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::info::{Part, entry};
 use super::link::{Link, Yrcx};
 use super::numbers::Numbers;
 use super::several::ask_each;
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::Risk;
-use armctl_controller::yrcx::order::Order;
-use armctl_controller::yrcx::signal::output;
-use armctl_controller::yrcx::table;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::dry_run::{Known as _, Reason, unknown};
+use armctl_frame::dry_run::unknown;
 use armctl_frame::face::shared_commands::CommonReport;
-use armctl_frame::failure::{self, Failure};
+use armctl_frame::failure;
 use armctl_frame::items::ItemOutcome;
-use armctl_frame::output::view::View;
 use armctl_frame::robot::alarm::{AlarmEntry, AlarmState, Alarms, Kind, Nothing, Row};
-use armctl_frame::settings::{Robot, alarms};
-use armctl_frame::settings_report::{Done, NewValue, Old};
-use armctl_frame::watch::{Watch, Watchable, Watched};
-use armctl_frame::{Command, Context, Report, commands};
+use armctl_frame::settings::alarms;
 
 commands! {
     /// Commands for alarms.

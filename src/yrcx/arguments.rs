@@ -1,14 +1,12 @@
 //! Arguments that several motion commands use. Numbers stay text: the codec parses each number in the unit of its field
 //! and checks the range.
 
-use clap::{Args, ValueEnum};
+use clap::ValueEnum;
 
 use super::position::Unit;
+use crate::prelude::*;
 use armctl_controller::typed;
-use armctl_controller::yrcx::order::Draft;
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::failure::Failure;
 use armctl_frame::wait_arguments::MotionEnd;
 
 /// Robot that `--unit` selects, for the confirmation question before a motion.

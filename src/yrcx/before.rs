@@ -8,13 +8,10 @@ use super::overwrite::there;
 use super::robot_settings::{SETTINGS, Setting};
 use super::single::shown;
 use super::var::held;
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::yrcx::order::{Draft, Order};
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::{Key, Values};
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::Change;
-use armctl_frame::settings_report::{OLD_VALUE, Old, nothing_written};
+use armctl_frame::settings_report::{OLD_VALUE, nothing_written};
 
 /// Reads the values that a command replaces. If the controller refuses the read, the old values stay unknown. A dry run
 /// only notes the request.

@@ -3,15 +3,12 @@
 use super::connect::endpoint;
 use super::link::Yrcx;
 use super::overview::left_over;
+use crate::prelude::*;
 use armctl_controller::yrcx::answer::Status;
-use armctl_controller::yrcx::image::Image;
-use armctl_controller::yrcx::signal::output;
+use armctl_frame::Family as _;
 use armctl_frame::attach::is_held;
 use armctl_frame::face::layers::{Layer, Layers};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
-use armctl_frame::settings::{Robot, Sessions};
-use armctl_frame::{Access, ConnectMode, Family as _};
+use armctl_frame::settings::Sessions;
 
 /// Layers that follow the layers of the fieldbus.
 const SIGNALS: [&str; 8] = ["CPU", "emergency stop", "alarm", "remote command", "program", "mode", "servo", "origin"];

@@ -1,26 +1,17 @@
 //! `yrcx clock` (4.7.13, 4.7.14, 4.8.1, 4.8.2): date and time of the controller, without time zone.
 
-use clap::Args;
 use jiff::Zoned;
 use jiff::civil::{Date, DateTime, Time};
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use super::link::{Link, Yrcx};
 use super::overwrite::there;
 use super::several::ask_each;
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::Risk;
-use armctl_controller::yrcx::order::Order;
-use armctl_controller::yrcx::table;
-use armctl_controller::yrcx::value::{Key, Values};
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::items;
 use armctl_frame::items::ItemError;
-use armctl_frame::output::view::{Cell, View};
 use armctl_frame::robot::item::{Item, Written, WrittenItems};
 use armctl_frame::settings_report::OLD_VALUE;
-use armctl_frame::{Command, Context, Report, commands};
 
 commands! {
     /// Commands for the controller clock.

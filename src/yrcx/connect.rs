@@ -7,14 +7,10 @@ use super::fieldbus::{self, At, Board, Fieldbus, Purpose, Simulation};
 use super::link_error::not_open;
 use super::simulated;
 use super::trace::{Opening, Recorder};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
-use armctl_frame::settings::Robot;
+use crate::prelude::*;
 use armctl_frame::settings::target::bus::simulators;
 use armctl_frame::settings::target::{self, Bus, Place};
-use armctl_frame::{Access, ConnectMode};
 use armctl_transport::image::ImageLink;
-use armctl_transport::image::tap::Tap;
 
 /// Endpoint of a target.
 #[derive(Debug, Clone, Copy)]

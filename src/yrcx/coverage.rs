@@ -323,7 +323,7 @@ const SENT: &[(&str, &[&str])] = &[
     ("hand-data set 1 3 10000 -2 5 1", &["0x3110 _ _ _ _ _ _ _ _ _ 0x0001"]),
     ("point set 0 --mm 1,-2.5,0,0 --hand left", &["0x0100 0x0005 0x0000 0x0000 0x03E8 0x0000 0xF63C 0xFFFF"]),
     ("info speed --unit 4", &["0x450A"]),
-    ("info line 1..8", &["0x0507 0x0000 0x0000"]),
+    ("info line 1..8", &["0x0508 0x0000 0x0000"]),
     ("info tasks", &["_ _ 0x0000", "_ _ 0x0001"]),
     ("info tasks 9", &["_ _ 0x0001"]),
     ("info line 8..9", &["_ _ 0x0000", "_ _ 0x0001"]),
@@ -653,7 +653,15 @@ fn wrong_arguments_are_rejected_before_a_command_is_sent() {
 }
 
 /// Command lines for the commands that no line of the other tables sends.
-const OTHERS: &[&str] = &[];
+const OTHERS: &[&str] = &[
+    "var add SGI1 SGI2",
+    "var sub SGI1 1",
+    "var sub SGI1 SGI2",
+    "var mul SGI1 1",
+    "var div SGI1 1",
+    "var div SGI1 SGI2",
+    "alarm history 1",
+];
 
 #[test]
 fn every_remote_command_has_a_line() {

@@ -5,20 +5,14 @@ pub mod images;
 
 use std::path::Path;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 pub use self::capture::ImageDecoder;
 use super::field_row::FieldRow;
 use super::raw::words;
+use crate::prelude::*;
 use armctl_controller::yrcx::describe::{Description, answer, command};
 use armctl_controller::yrcx::image::Words;
-use armctl_frame::Report;
 use armctl_frame::decode::capture::{Input, Selection, holds_telegram, parse_hex};
 use armctl_frame::decode::{self, field_table, in_parentheses, problem_lines, stdin_bytes};
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::view::{Section, View};
 
 /// Decode words of YRCX remote commands and answers
 #[derive(Debug, Args)]

@@ -2,16 +2,13 @@
 
 use std::time::Duration;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::Serialize;
+use schemars::{Schema, SchemaGenerator};
 use serde_json::{Map, Value};
 
 use super::buses::{self, Searches};
 use super::fieldbus::{Device, Scope};
 use super::trace::Recorder;
-use armctl_frame::Access;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
+use crate::prelude::*;
 
 /// A device that answered. Do not trust its identity.
 #[derive(Debug, Serialize, JsonSchema)]

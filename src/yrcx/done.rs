@@ -4,9 +4,8 @@ use std::time::Duration;
 
 use serde_json::Value as Json;
 
+use crate::prelude::*;
 use armctl_client::yrcx;
-use armctl_controller::yrcx::value::Values;
-use armctl_frame::settings_report::Old;
 
 /// Result of a command.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -1,16 +1,11 @@
 //! `armctl explain yrcx`: meaning of alarms and of fieldbus error codes.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::buses::BUSES;
 use super::fieldbus::Explained;
 use super::info::told;
+use crate::prelude::*;
 use armctl_controller::yrcx::alarm::Alarm;
-use armctl_frame::ValueKind;
 use armctl_frame::face::explain::{self as face, Codes, Known};
-use armctl_frame::failure::Failure;
 use armctl_frame::robot::alarm::{Alarm as Told, ExtraColumns, Kind, Source};
 use armctl_frame::settings::alarms::{Alarms, Origin};
 use armctl_frame::settings::target::Family;

@@ -5,17 +5,15 @@ use std::fmt;
 
 use super::position::Unit;
 use super::refusal::kept;
+use crate::prelude::*;
 use crate::refusal::refusal_failure;
 use armctl_client::yrcx::{Error, StopResult};
 use armctl_controller::yrcx::describe::command_summary;
-use armctl_controller::yrcx::order::Order;
 use armctl_controller::yrcx::sequence;
 use armctl_controller::yrcx::session::{NotSentReason, Silence};
 use armctl_controller::yrcx::table::{Command, Pace};
-use armctl_controller::yrcx::value::{Key, Values};
 use armctl_frame::attach::session_busy;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::{Failure, Kind};
 
 /// Failure for an error of the client; `label` is the robot.
 pub fn failure(label: &str, error: Error) -> Failure {

@@ -8,20 +8,17 @@ use std::time::Duration;
 
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
-use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::decode::images::BusDecoder;
+use crate::prelude::*;
 use armctl_controller::yrcx::alarm::Alarm;
-use armctl_controller::yrcx::image::Image;
 use armctl_controller::yrcx::simulator::Start;
 use armctl_files as files;
 use armctl_frame::face::layers::Layers;
-use armctl_frame::failure::{Failure, plain};
-use armctl_frame::settings::Robot;
+use armctl_frame::failure::plain;
 use armctl_frame::settings::target::{Address, Bus, Place, Sim, Target};
-use armctl_transport::image::tap::Tap;
-use armctl_transport::image::{Cause, ImageLink, LinkError};
+use armctl_transport::image::{Cause, ImageLink};
 
 /// A fieldbus: how to connect to it, diagnose it and simulate it.
 #[derive(Debug)]

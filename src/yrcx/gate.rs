@@ -12,17 +12,15 @@ use super::link::Link;
 use super::link::Yrcx;
 use super::simulated::in_process;
 use super::testing::{planned_line, resolved};
-use armctl_controller::Risk;
-use armctl_controller::yrcx::image::{COMMAND_WORDS, Image};
-use armctl_controller::yrcx::signal::{Side, Signal, resting};
+use crate::prelude::*;
+use armctl_controller::yrcx::image::COMMAND_WORDS;
+use armctl_controller::yrcx::signal::resting;
 use armctl_controller::yrcx::table::Row;
 use armctl_frame::authority::Authority;
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::gate::{Gate, Grant};
-use armctl_frame::settings::Robot;
 use armctl_frame::settings::target::Sim;
 use armctl_frame::testing::{self, QUIET};
-use armctl_frame::{Access, AnyCommand, CommandSet as _, ConnectMode, Context};
+use armctl_frame::{AnyCommand, CommandSet as _};
 use armctl_transport::image::ImagePeer;
 
 const READS: &[&str] = &[

@@ -5,11 +5,8 @@ use tokio::time::Instant;
 use super::connect::endpoint;
 use super::failure::failure;
 use super::trace::Recorder;
+use crate::prelude::*;
 use armctl_client::yrcx;
-use armctl_frame::Access;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
-use armctl_frame::settings::Robot;
 use armctl_transport::session::host::shared_link::Images;
 
 /// Opens the connection that the session keeps open.

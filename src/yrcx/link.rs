@@ -17,26 +17,20 @@ use super::fieldbus::Fieldbus;
 use super::link_error::not_open;
 use super::trace::{Recorder, Trace};
 use super::unit::Unit;
+use crate::prelude::*;
 use armctl_client::yrcx;
 pub use armctl_client::yrcx::hex;
 use armctl_client::yrcx::{Client, Error, Options, Refusal, Reply, Totals};
-use armctl_controller::Risk;
 use armctl_controller::yrcx::alarm::Alarm;
-use armctl_controller::yrcx::image::Image;
-use armctl_controller::yrcx::order::{Draft, Order};
 use armctl_controller::yrcx::procedure::Procedure;
 use armctl_controller::yrcx::register::Register;
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::Key;
 use armctl_frame::attach::{attach, is_held};
 use armctl_frame::dry_run::Plan;
 use armctl_frame::face::sample::{Traffic, counter};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
-use armctl_frame::settings::Robot;
 use armctl_frame::settings::target;
 use armctl_frame::trace::lock_writer;
-use armctl_frame::{Access, ConnectMode, Entry, Family};
+use armctl_frame::{Entry, Family};
 use armctl_transport::image::{self, ImageLink};
 
 /// The yrcx family.

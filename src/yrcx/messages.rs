@@ -2,12 +2,9 @@
 
 use std::marker::PhantomData;
 
-use clap::Args;
-
 use super::fieldbus::BusBoard;
 use super::link::Yrcx;
-use armctl_frame::failure::Failure;
-use armctl_frame::{Command, ConnectMode, Context, Report};
+use crate::prelude::*;
 
 /// A report that explicit messages read. Nothing is connected, polled or locked.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]

@@ -57,6 +57,7 @@ mod param;
 mod point_calc;
 mod port;
 mod position;
+mod prelude;
 mod procedures;
 pub mod profibus;
 pub mod profinet;

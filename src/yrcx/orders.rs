@@ -7,11 +7,10 @@ use serde_json::Value as Json;
 
 use super::arguments::{Hand as HandSystem, Which};
 use super::single::one_row;
+use crate::prelude::*;
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::commands;
 use armctl_frame::robot::item::WrittenItems;
-use armctl_frame::settings_report::{Done, NewValue, number};
+use armctl_frame::settings_report::number;
 
 commands! {
     /// Commands for the shift.

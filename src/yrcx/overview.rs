@@ -3,15 +3,12 @@
 use super::info::entry;
 use super::link::Link;
 use super::status::position_mm;
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::answer::Status;
-use armctl_controller::yrcx::image::Image;
-use armctl_controller::yrcx::order::Order;
-use armctl_controller::yrcx::signal::{input, output};
+use armctl_controller::yrcx::signal::input;
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::{Key, Values};
 use armctl_frame::face::overview::{LeftOver, OverviewReport};
-use armctl_frame::failure::Failure;
 use armctl_frame::robot::alarm::{Alarm, Kind, Source};
 use armctl_frame::robot::state::{Fault, Mode, PositionMm, State};
 

@@ -12,18 +12,13 @@ use super::position::Unit;
 use super::refusal::refused;
 use super::several::{check_echo, is_about_commands};
 use super::stores::{Kind, Numbered, Row};
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::Risk;
-use armctl_controller::yrcx::order::Order;
 use armctl_controller::yrcx::table::Command;
 use armctl_controller::yrcx::table::parameter::Parameter;
-use armctl_controller::yrcx::value::{Key, Values};
 use armctl_frame::authority::Authority;
-use armctl_frame::dry_run::Reason;
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::{Change, Confirmation};
 use armctl_frame::robot::item::{Item, Written, WrittenItems, as_requested};
-use armctl_frame::store::{Writable, describe_change, overwriting};
+use armctl_frame::store::{describe_change, overwriting};
 
 /// Kind of confirmation for a remote command.
 pub fn confirmation(command: Command) -> Confirmation {

@@ -3,29 +3,16 @@
 
 use std::sync::LazyLock;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::complete;
 use super::link::{Link, Yrcx};
 use super::numbers::single;
 use super::several::{ask_each, is_undefined};
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::Risk;
 use armctl_controller::nearest::nearest;
 use armctl_controller::typed;
-use armctl_controller::yrcx::order::{Draft, Order};
-use armctl_controller::yrcx::table;
 use armctl_controller::yrcx::table::parameter::{PARAMETERS, Parameter};
-use armctl_controller::yrcx::value::{Key, Values};
-use armctl_frame::ValueKind;
-use armctl_frame::dry_run::Reason;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::Cell;
-use armctl_frame::store::{
-    Answers, Differing, Field, Ids, Row, Single, Store, TableWords, Writable, ids, table_commands,
-};
+use armctl_frame::store::Row;
 
 table_commands! {
     /// Commands for parameters.

@@ -5,9 +5,8 @@ use clap::ArgGroup;
 use super::numbers::single;
 use super::overwrite::Stored;
 use super::single::one_row;
+use crate::prelude::*;
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::commands;
 
 commands! {
     /// Calculations with points and shifts.

@@ -1,24 +1,15 @@
 //! `yrcx port` (4.5.1): ports of eight signals, read and written with remote commands.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::link::Yrcx;
 use super::numbers::{Series, named, single};
 use super::several::ask_each;
 use super::single::one_row;
 use crate::complete;
+use crate::prelude::*;
 use armctl_controller::names::{Kind, Names};
 use armctl_controller::yrcx::names::signal_of_port;
-use armctl_controller::yrcx::order::{Draft, Order};
-use armctl_controller::yrcx::table;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::failure::Failure;
 use armctl_frame::names;
 use armctl_frame::robot::item::{Columns, Item, Items, Written, WrittenItems};
-use armctl_frame::watch::{Watch, Watchable, Watched};
-use armctl_frame::{Command, Context, commands};
 
 commands! {
     /// Commands for ports.

@@ -1,19 +1,9 @@
 //! Procedures of the timing charts as commands (chapter 1, section 3).
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::link::{Link, Yrcx};
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::yrcx::procedure::Procedure;
-use armctl_controller::yrcx::signal::{Signal, output};
-use armctl_frame::dry_run::Known as _;
 use armctl_frame::face::shared_commands::CommonReport;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::View;
-use armctl_frame::settings_report::{Done, NewValue, Old};
-use armctl_frame::{Command, ConnectMode, Context, Report};
 
 /// Declares a command for each procedure.
 macro_rules! procedures {

@@ -2,21 +2,13 @@
 
 mod run;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::link;
 use super::single::{Single, one_row, single_command};
 use crate::complete;
-use armctl_controller::yrcx::order::Draft;
+use crate::prelude::*;
 use armctl_controller::yrcx::table::{COMMON_LINES, Command};
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, Section, View};
 use armctl_frame::robot::program as robot;
-use armctl_frame::settings_report::{Done, NewValue, Old, number};
-use armctl_frame::{Report, commands};
+use armctl_frame::settings_report::number;
 
 commands! {
     /// Commands for programs.

@@ -1,25 +1,16 @@
 //! `yrcx raw`: words of any remote command, with a decoded answer.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::field_row::FieldRow;
 use super::refusal::refused;
 use super::{link, overwrite};
 use crate::link::Yrcx;
+use crate::prelude::*;
 use armctl_client::yrcx::Reply;
-use armctl_controller::Risk;
 use armctl_controller::typed;
 use armctl_controller::yrcx::answer::Answer;
 use armctl_controller::yrcx::describe;
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Words};
-use armctl_controller::yrcx::order::Order;
 use armctl_frame::decode::{field_table, problem_lines};
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::Confirmation;
-use armctl_frame::output::view::View;
-use armctl_frame::{Command, Context, Report};
 
 /// Sends the words of a remote command, if the manual allows them.
 #[derive(Debug, Args)]

@@ -1,13 +1,11 @@
 //! Conversion of commands that armctl rejected or the controller refused to failures.
 
+use crate::prelude::*;
 use armctl_client::yrcx::Refusal;
-use armctl_controller::Risk;
 use armctl_controller::yrcx::alarm::{Alarm, STOP_INPUT};
 use armctl_controller::yrcx::codec::WordError;
-use armctl_controller::yrcx::order::{Draft, Order};
 use armctl_controller::yrcx::table::{Pace, Row};
-use armctl_controller::yrcx::value::{Key, Value};
-use armctl_frame::failure::{Failure, Kind};
+use armctl_controller::yrcx::value::Value;
 
 /// Builds the order of a command line.
 pub trait BuildOrder {

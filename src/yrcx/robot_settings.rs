@@ -3,16 +3,12 @@
 use super::link::{Link, Yrcx};
 use super::several::{ask_each, is_undefined};
 use super::single::shown;
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::Risk;
-use armctl_controller::yrcx::order::Order;
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::{Key, Value, Values};
-use armctl_frame::dry_run::Reason;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
+use armctl_controller::yrcx::value::Value;
 use armctl_frame::robot::item::Plain;
-use armctl_frame::store::{Answers, Differing, Field, Ids, Row, Single, Store, TableWords, Writable, ids};
+use armctl_frame::store::Row;
 
 /// A setting.
 #[derive(Debug, PartialEq, Eq, Hash)]

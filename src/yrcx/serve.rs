@@ -3,14 +3,12 @@
 use std::io;
 use std::path::PathBuf;
 
-use clap::Args;
-
 use super::buses::Servers;
 use super::fieldbus::{Fieldbus, Served, ToServe};
 use super::simulated::start;
 use super::typed_arguments::TypedArguments;
+use crate::prelude::*;
 use armctl_controller::simulator::console::help_line;
-use armctl_frame::failure::Failure;
 use armctl_frame::serve::{self, Serving, Started};
 use armctl_frame::settings::target::bus::simulators;
 

@@ -3,12 +3,10 @@
 
 use super::link::Link;
 use super::refusal::{object, refused};
+use crate::prelude::*;
 use armctl_controller::yrcx::alarm::{Alarm, STOP_INPUT};
-use armctl_controller::yrcx::order::Order;
-use armctl_controller::yrcx::value::{Key, Value, Values};
+use armctl_controller::yrcx::value::Value;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::Screen;
 
 /// Results of several requests, in the order of the requests.
 #[derive(Debug)]

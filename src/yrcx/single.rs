@@ -4,12 +4,8 @@ use super::link::Done;
 use super::link::Yrcx;
 use super::overwrite::{self, Stored};
 use super::refusal::BuildOrder as _;
-use armctl_controller::yrcx::order::Draft;
-use armctl_controller::yrcx::table;
-use armctl_controller::yrcx::value::{Key, Values};
-use armctl_frame::failure::Failure;
+use crate::prelude::*;
 use armctl_frame::settings_report;
-use armctl_frame::{Context, Report};
 
 /// A command line that sends one row of the command table.
 pub trait Single {
@@ -88,7 +84,7 @@ impl<R: Report> Said<R> for R {
     }
 }
 
-impl Said<settings_report::Done> for settings_report::NewValue {
+impl Said<settings_report::Done> for NewValue {
     fn report(self, done: &Done) -> settings_report::Done {
         self.replaces(done.old.clone())
     }

@@ -1,28 +1,18 @@
 //! `yrcx status`: the dedicated outputs, servos and position.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::info::{AxisServo, servos};
 use super::link::Link;
 use super::link::Yrcx;
 use super::overview::{alarm, latest, not_asked, state};
 use super::position::{Unit, mm, position};
 use super::several::{ask_each, plan_each};
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::answer::Status as CommandStatus;
-use armctl_controller::yrcx::image::Image;
-use armctl_controller::yrcx::signal::output;
-use armctl_controller::yrcx::table;
-use armctl_frame::dry_run::Reason;
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::items::{ItemError, verdict};
 use armctl_frame::output::csv::RowsOf;
-use armctl_frame::output::view::{Cell, Section, Tone, View};
 use armctl_frame::robot::position::{Joint, joint_table};
 use armctl_frame::robot::state::{Fault, Mode, PositionMm, State};
-use armctl_frame::{Command, ConnectMode, Context, Report};
 
 /// Shows the signals. Also shows servos and position in a session, on a simulator in this process, or with --full.
 #[derive(Debug, Args)]

@@ -4,24 +4,16 @@
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::link::{Link, Yrcx};
 use super::numbers::{Numbers, named, runs};
 use super::several::{ask_each, is_undefined};
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::Risk;
 use armctl_controller::names::Kind as Label;
-use armctl_controller::yrcx::order::Order;
-use armctl_controller::yrcx::table::{self, Command};
-use armctl_controller::yrcx::value::{Key, Value, Values};
-use armctl_frame::ValueKind;
-use armctl_frame::dry_run::Reason;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
+use armctl_controller::yrcx::table::Command;
+use armctl_controller::yrcx::value::Value;
 use armctl_frame::robot::item::Plain;
-use armctl_frame::store::{self, Answers, Differing, Field, Ids, Single, Store, TableWords, Writable};
+use armctl_frame::store;
 
 /// Declaration of a table and its reports.
 pub trait Kind: Debug + Send + Sync + 'static {

@@ -1,20 +1,12 @@
 //! `yrcx teach` (4.2.9): stores the current position as a point. `point set 19 here` is an alias.
 
-use clap::Args;
-
 use super::link::{Link, Yrcx};
 use super::overwrite::{self, confirmation, there};
 use super::position::{Unit, group, position, unit_of};
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::Risk;
-use armctl_controller::yrcx::order::Order;
-use armctl_controller::yrcx::table;
-use armctl_controller::yrcx::value::{Key, Values};
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::Confirmation;
 use armctl_frame::teach::{Taught, mismatch, unverified};
-use armctl_frame::{Command, Context};
 
 /// Stores the current position as a point, replaces the old point, and reads the point back.
 #[derive(Debug, Args)]

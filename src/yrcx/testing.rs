@@ -9,19 +9,16 @@ use serde_json::Value;
 
 use super::link::{Link, Yrcx};
 use super::unit::Unit;
-use armctl_controller::Risk;
-use armctl_controller::yrcx::image::{COMMAND_WORDS, Image, Words};
-use armctl_controller::yrcx::signal::output;
+use crate::prelude::*;
+use armctl_controller::yrcx::image::{COMMAND_WORDS, Words};
 use armctl_controller::yrcx::table::Row;
 use armctl_frame::face::Face;
 use armctl_frame::face::registration::Registered;
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::gate::Grant;
-use armctl_frame::output::{ColorChoice, Format, Screen};
-use armctl_frame::settings::Robot;
+use armctl_frame::output::{ColorChoice, Format};
 use armctl_frame::testing;
 use armctl_frame::testing::{context, planned};
-use armctl_frame::{Access, AnyCommand, ConnectMode, Family as _, FamilyArguments};
+use armctl_frame::{AnyCommand, Family as _, FamilyArguments};
 use armctl_transport::image::ImagePeer;
 
 /// The examples of the manual.

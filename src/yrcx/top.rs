@@ -13,23 +13,16 @@ use super::info::servos;
 use super::link::{Link, Yrcx};
 use super::overview::{alarm, latest, not_asked, report};
 use super::position::mm;
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::answer::Status;
-use armctl_controller::yrcx::image::Image;
-use armctl_controller::yrcx::order::Order;
-use armctl_controller::yrcx::signal::{Side, Signal, output};
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::Key;
+use armctl_frame::Family as _;
 use armctl_frame::face::registration;
 use armctl_frame::face::sample::{Axis, Bank, Detail, Indicator, Sample, SignalByte, Whole};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::Tone;
 use armctl_frame::robot::alarm::Alarm;
 use armctl_frame::robot::state::PositionMm;
-use armctl_frame::settings::Robot;
 use armctl_frame::settings::target::Place;
-use armctl_frame::{Access, Family as _};
 
 /// Poller for one controller.
 #[derive(Debug)]

@@ -1,8 +1,5 @@
 //! `yrcx var` (4.4.1): static variables.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 use serde_json::{Number, Value as Json};
 
 use super::link;
@@ -10,18 +7,13 @@ use super::numbers::{named, single};
 use super::single::{Single, single_command};
 use super::stores::{Kind, Numbered};
 use crate::complete;
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::names;
-use armctl_controller::yrcx::order::Draft;
-use armctl_controller::yrcx::table;
-use armctl_controller::yrcx::value::{Key, Value, Values};
-use armctl_frame::failure::Failure;
+use armctl_controller::yrcx::value::Value;
 use armctl_frame::names as labels;
 use armctl_frame::robot::item::{Item, Written, WrittenItems};
 use armctl_frame::settings_report;
-use armctl_frame::store::{Copy, Dump, Get, Ids, List, Restore, TableWords, ids};
-use armctl_frame::watch::Watch;
-use armctl_frame::{ValueKind, commands};
+use armctl_frame::store::{Copy, Dump, Get, List, Restore};
 
 commands! {
     /// Commands for static variables.

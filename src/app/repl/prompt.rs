@@ -6,11 +6,10 @@ use tokio::time::timeout;
 
 use crate::command::fleet::status;
 use armctl_frame::face::overview::{LeftOver, OverviewReport};
+use armctl_frame::output::escape;
 use armctl_frame::output::render::with_color;
-use armctl_frame::output::view::{Cell, Tone};
-use armctl_frame::output::{Screen, escape};
+use armctl_frame::prelude::*;
 use armctl_frame::script_line::Line;
-use armctl_frame::settings::Robot;
 
 /// Time limit for reading the state of the robot.
 const STATE_TIMEOUT: Duration = Duration::from_millis(500);

@@ -1,9 +1,8 @@
 //! `armctl completions SHELL`.
 
-use clap::{Args, ValueEnum};
+use clap::ValueEnum;
 
-use armctl_frame::failure::Failure;
-use armctl_frame::run::Run;
+use armctl_frame::prelude::*;
 
 /// Print a completion script.
 #[derive(Debug, Args)]

@@ -1,15 +1,13 @@
 //! `armctl help [TOPIC | COMMAND …]`.
 
+use clap::Command;
 use clap::builder::StyledStr;
-use clap::{Args, Command};
 
 use super::{environment, page};
 use crate::command::families::FAMILIES;
 use armctl_controller::nearest::nearest;
-use armctl_frame::ValueKind;
 use armctl_frame::face::Face;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::run::Run;
+use armctl_frame::prelude::*;
 
 /// Show the help of a topic or a command.
 #[derive(Debug, Args)]

@@ -5,12 +5,11 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
-use clap::{Args, Command};
+use clap::Command;
 
 use super::{environment, page};
 use crate::command::example_lines;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::run::Run;
+use armctl_frame::prelude::*;
 
 /// Write the man pages into a folder, or print the man page of `armctl`.
 #[derive(Debug, Args)]

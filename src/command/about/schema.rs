@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use clap::Args;
 use serde_json::{Map, Value, json};
 
 use crate::command::families::FAMILIES;
@@ -11,14 +10,12 @@ use crate::command::fleet::{common, names, robots, session, tools, wait};
 #[cfg(feature = "plant")]
 use crate::command::fleet::{metrics, publish};
 use armctl_controller::nearest::nearest;
-use armctl_frame::ValueKind;
 use armctl_frame::background::Opened;
 use armctl_frame::backup::check::Checked;
 use armctl_frame::backup::family_backup::{Backup, Diff, Restore};
 use armctl_frame::dry_run::DryRun;
-use armctl_frame::failure::Failure;
 use armctl_frame::output::envelope::{Envelope, ErrorBody};
-use armctl_frame::run::Run;
+use armctl_frame::prelude::*;
 use armctl_frame::{CommandSet as _, SchemaEntry};
 
 /// Print the JSON Schema of `data` in the envelope, or the names of all reports.

@@ -3,20 +3,16 @@
 use std::path::PathBuf;
 
 use anyhow::Context as _;
-use clap::Args;
 
 use crate::command::families;
 use crate::command::fleet::status::{Fleet, Link};
-use armctl_controller::Risk;
+use armctl_frame::AnyContext;
 use armctl_frame::backup::check::Checked;
 use armctl_frame::backup::family_backup::{self, Backups};
 use armctl_frame::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
 use armctl_frame::face::Face;
-use armctl_frame::failure::Failure;
 use armctl_frame::local_names::private_folder;
-use armctl_frame::run::{Run, RunError};
-use armctl_frame::settings::Robot;
-use armctl_frame::{AnyContext, Command, Context};
+use armctl_frame::prelude::*;
 
 /// Arguments of `armctl restore`.
 pub type Restore = family_backup::Restore<Fleet>;

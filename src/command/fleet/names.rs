@@ -1,13 +1,11 @@
 //! `armctl names`: names of signals, variables and registers, from robots.toml and from the controller.
 
-use clap::{Args, Subcommand};
+use clap::Subcommand;
 
 use super::robots::entry::{self, check_known};
 use armctl_frame::SchemaEntry;
-use armctl_frame::failure::Failure;
 use armctl_frame::names::{Listing, list};
-use armctl_frame::run::{Run, RunError};
-use armctl_frame::settings::Robot;
+use armctl_frame::prelude::*;
 
 /// What can be done with the names of a robot.
 #[derive(Debug, Subcommand)]

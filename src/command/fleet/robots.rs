@@ -8,20 +8,14 @@ pub mod file;
 
 use std::time::Duration;
 
-use clap::{Args, Subcommand};
-use schemars::JsonSchema;
-use serde::Serialize;
+use clap::Subcommand;
 
 use self::entry::check_known;
-use armctl_frame::Report;
-use armctl_frame::ValueKind;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Table, View};
-use armctl_frame::run::{Run, RunError};
+use armctl_frame::prelude::*;
 use armctl_frame::settings::inventory::{Entry, matches_pattern};
 use armctl_frame::settings::model::ModelCache;
 use armctl_frame::settings::place::Place;
-use armctl_frame::settings::{Origin, Robot, Setting, duration};
+use armctl_frame::settings::{Origin, Setting, duration};
 
 /// Commands for the inventory.
 #[derive(Debug, Subcommand)]

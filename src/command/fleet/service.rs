@@ -10,13 +10,11 @@ use std::time::{Duration, Instant};
 use tokio::time::sleep;
 
 use super::poll::{Event, RobotId};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
 use armctl_frame::output::log::Level;
 #[cfg(unix)]
 use armctl_frame::output::{escape, log};
+use armctl_frame::prelude::*;
 use armctl_frame::repeat_limiter::{Line, RepeatLimiter};
-use armctl_frame::settings::Robot;
 #[cfg(unix)]
 use armctl_transport::journal::{Journal, PLACE};
 use armctl_transport::supervisor::Supervisor;

@@ -1,20 +1,15 @@
 //! `armctl setup`: interactive setup of a robot: address, check, name, access.
 
-use clap::Args;
-
 use super::robots::discover::Discover;
 use super::robots::entry::{NewRobot, check_new};
 use super::robots::file;
 use crate::command::families::{self, FAMILIES};
 use armctl_frame::face::layers;
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::interrupt::{catch_interrupts, interruptible};
 use armctl_frame::output::render;
-use armctl_frame::output::view::View;
+use armctl_frame::prelude::*;
 use armctl_frame::prompt::ask;
-use armctl_frame::run::{Run, RunError};
 use armctl_frame::settings::target::{Family, Target, TargetArgument};
-use armctl_frame::{Access, ConnectMode};
 
 /// Asks for address, name and access rights, checks the connection, and writes robots.toml.
 #[derive(Debug, Args)]

@@ -2,21 +2,18 @@
 
 use std::collections::BTreeMap;
 
-use clap::Args;
-
 use crate::command::families;
 use armctl_frame::authority::Authority;
 use armctl_frame::dry_run::Plan;
 use armctl_frame::face::Face;
 use armctl_frame::face::overview::OverviewReport;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::Screen;
 use armctl_frame::output::envelope::Envelope;
+use armctl_frame::prelude::*;
 use armctl_frame::script_line::Line;
 use armctl_frame::settings::place::Place;
-use armctl_frame::settings::{Robot, target};
+use armctl_frame::settings::target;
 use armctl_frame::share::{can_share, open_shared_session};
-use armctl_frame::{Access, Command, ConnectMode, Connection, Context, Entry, Family};
+use armctl_frame::{Connection, Entry, Family};
 
 /// Robots of any family, for commands that all families support.
 #[derive(Debug)]

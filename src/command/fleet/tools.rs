@@ -3,16 +3,13 @@
 use std::fmt;
 use std::marker::PhantomData;
 
-use clap::{ArgMatches, Args, Command, FromArgMatches, Subcommand};
-use schemars::JsonSchema;
-use serde::Serialize;
+use clap::{ArgMatches, Command, FromArgMatches, Subcommand};
 
 use crate::command::families::{self, FAMILIES};
+use armctl_frame::SchemaEntry;
 use armctl_frame::face::tool::{Tool, ToolKind, ToolTask};
-use armctl_frame::output::view::{Cell, Table, View};
-use armctl_frame::run::{Run, RunError};
+use armctl_frame::prelude::*;
 use armctl_frame::settings::target::Family;
-use armctl_frame::{Report, SchemaEntry};
 
 /// Arguments of `armctl decode FAMILY`.
 pub type Decode = FamilyTool<Decoding>;

@@ -2,13 +2,11 @@
 
 use std::time::Duration;
 
-use clap::Args;
-
 use super::common::line::{Reading, SharedLine};
 use super::status::Overview;
 use armctl_frame::condition::{Comparison, Condition};
 use armctl_frame::face::overview::OverviewReport;
-use armctl_frame::failure::Failure;
+use armctl_frame::prelude::*;
 use armctl_frame::run::{Repeat, as_value};
 use armctl_frame::settings::duration;
 use armctl_frame::{AnyCommand, SchemaEntry};

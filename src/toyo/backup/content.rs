@@ -9,22 +9,19 @@ use crate::link::{Link, Toyo};
 use crate::palletizing::Records;
 use crate::param::{Parameters, is_machine};
 use crate::point::Points;
+use crate::prelude::*;
 use crate::program::table::Steps;
 use crate::program::{steps, text};
 use crate::rows::Rows as TableRows;
 use crate::values::NOT_IN_MANUAL;
 use crate::{files, numbers, tasks};
-use armctl_client::toyo::{Letters, letters_request};
+use armctl_client::toyo::letters_request;
 use armctl_controller::findings::Finding;
-use armctl_controller::toyo::field::{Field, Value};
-use armctl_controller::toyo::layout::Record;
+use armctl_controller::toyo::field::Field;
 use armctl_controller::toyo::program::{MOST_STEPS, Program, Rows, Style, check_kept, listing, used};
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table::{Command, Parameter};
+use armctl_controller::toyo::table::Command;
 use armctl_frame::backup::manifest::LeftOut;
 use armctl_frame::backup::parts;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
 use armctl_frame::store;
 
 /// Text of a part.

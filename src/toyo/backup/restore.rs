@@ -1,7 +1,5 @@
 //! `toyo restore`.
 
-use clap::Args;
-
 use super::content::{self, Content, Table};
 use super::manifest::{Controller, Manifest};
 use super::parts::Part;
@@ -9,13 +7,10 @@ use crate::eeprom::{Cell, Cells};
 use crate::link::Toyo;
 use crate::link::{Link, wrong};
 use crate::numbers::small;
+use crate::prelude::*;
 use crate::program::steps;
 use crate::tasks;
-use armctl_controller::Risk;
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table::{self, Group, Parameter};
+use armctl_controller::toyo::table::Group;
 use armctl_frame::authority::Authority;
 use armctl_frame::backup::arguments::RestoreOptions;
 use armctl_frame::backup::manifest;
@@ -23,15 +18,11 @@ use armctl_frame::backup::manifest::{MANIFEST, Saved};
 use armctl_frame::backup::parts::{Replaced, compare_all, overwriting, settle, write_all};
 use armctl_frame::backup::{NOT_CHOSEN, NOT_MACHINE, Only, RestoreSelection, Restored, would_leave, would_write};
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::Confirmation;
 use armctl_frame::interrupt::interruptible;
 use armctl_frame::local_names::private_folder;
-use armctl_frame::output::Screen;
 use armctl_frame::robot::file::{FileItem, State};
 use armctl_frame::settings_report::nothing_written;
 use armctl_frame::store::PartResult;
-use armctl_frame::{Command, Context};
 
 /// Write a backup back to the controller.
 #[derive(Debug, Args)]

@@ -1,26 +1,18 @@
 //! `toyo backup`.
 
-use clap::Args;
-
 use super::content::{self, Text};
 use super::manifest::Controller;
 use super::parts::Part;
 use crate::link::Link;
 use crate::link::Toyo;
+use crate::prelude::*;
 use crate::tasks;
-use armctl_controller::Risk;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table::{self, Parameter};
 use armctl_frame::backup::arguments::BackupOptions;
 use armctl_frame::backup::manifest::Entry;
 use armctl_frame::backup::save::{self, Task, interrupted_failure};
 use armctl_frame::backup::{BackedUp, Only, SaveOptions};
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
 use armctl_frame::robot::file::FileItem;
-use armctl_frame::settings::Robot;
-use armctl_frame::{Command, Context};
 
 /// Save all data of a controller to a folder of text files.
 #[derive(Debug, Args)]

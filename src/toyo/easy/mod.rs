@@ -2,20 +2,15 @@
 
 mod progress;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::eeprom::Cell;
 use super::link::wrong;
 use super::programs::{Copy, Kind, Select};
 use super::rows::{self, Rows, WRITING};
-use armctl_controller::toyo::field::{self, Value};
-use armctl_controller::toyo::layout::{Layout, Record};
-use armctl_controller::toyo::request::Request;
+use crate::prelude::*;
+use armctl_controller::toyo::field;
+use armctl_controller::toyo::layout::Layout;
 use armctl_controller::toyo::table::Command;
-use armctl_frame::commands;
-use armctl_frame::failure::Failure;
-use armctl_frame::store::{Dump, Field, Get, Ids, List, Restore, Set, TableWords, ids};
+use armctl_frame::store::{Dump, Get, List, Restore, Set};
 
 commands! {
     /// Commands for easy programs.

@@ -1,15 +1,7 @@
 //! `toyo easy progress`.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::link::Toyo;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::View;
-use armctl_frame::{Command, Context, Report};
+use crate::prelude::*;
 
 /// Show the progress of the running or selected easy program.
 #[derive(Debug, Args)]

@@ -1,18 +1,15 @@
 //! `toyo io get` and `toyo io watch`.
 
-use clap::Args;
-
 use super::port::{Signal, SignalRange};
 use super::read::{read, row};
 use super::{BITS, Station, list};
 use crate::complete;
 use crate::link::Toyo;
+use crate::prelude::*;
 use armctl_controller::typed;
-use armctl_frame::failure::Failure;
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoValue, Signals, WATCHED};
-use armctl_frame::watch::{self, Watchable};
-use armctl_frame::{Command, Context};
+use armctl_frame::watch;
 
 /// Read signals, or all signals of a port.
 #[derive(Debug, Args)]

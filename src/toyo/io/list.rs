@@ -1,15 +1,12 @@
 //! `toyo io list`.
 
-use clap::Args;
-
 use super::port::{PortBank, Signal};
 use super::read::{read, row};
 use super::{BITS, Station};
 use crate::link::Toyo;
-use armctl_frame::failure::{Failure, Kind};
+use crate::prelude::*;
 use armctl_frame::names;
 use armctl_frame::robot::io::{Filter, IoRow, Signals};
-use armctl_frame::{Command, Context};
 
 /// List all ports of a station, without ports that the controller refuses.
 #[derive(Debug, Args)]

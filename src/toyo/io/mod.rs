@@ -14,10 +14,7 @@ mod set;
 
 pub(super) use port::{INPUTS, OUTPUTS, PortBank, ports_of};
 
-use clap::Args;
-
-use armctl_frame::commands;
-use armctl_frame::watch::Watch;
+use crate::prelude::*;
 
 commands! {
     /// Commands for signals.

@@ -2,12 +2,9 @@
 
 use std::str::FromStr;
 
+use crate::prelude::*;
 use armctl_controller::names::{Kind, Names};
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::layout::Record;
 use armctl_controller::toyo::names as names_of;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
 use armctl_controller::typed;
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoItem, IoKind};

@@ -2,8 +2,6 @@
 
 use std::str::FromStr;
 
-use clap::Args;
-
 use super::super::link::{Link, wrong};
 use super::super::numbers::{number, read_back, stored_otherwise};
 use super::super::refusal;
@@ -11,18 +9,12 @@ use super::Station;
 use super::port::{OUTPUTS, Signal, name, ports_of};
 use crate::complete;
 use crate::link::Toyo;
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::names::{Kind as NameKind, Names};
-use armctl_controller::toyo::field::{self, Field, Mask};
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
+use armctl_controller::toyo::field::{Field, Mask};
 use armctl_controller::typed;
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoValue, WrittenSignal, WrittenSignals};
-use armctl_frame::settings_report::{Done, NewValue, Old};
-use armctl_frame::{Command, Context};
 
 /// Set outputs. All bits of a port change at once; ports change in the typed order.
 #[derive(Debug, Args)]
@@ -91,7 +83,7 @@ impl FromStr for Assignment {
         let mask = match bit {
             Some(bit) => one_bit(bit, value)?,
             None => match fields()[2].read(value) {
-                Ok(field::Value::Mask(mask)) => mask,
+                Ok(Value::Mask(mask)) => mask,
                 _ => {
                     return Err(format!(
                         "'{value}' is not a valid port value: type eight characters (0, 1 or a dot) for bits 8 to 1; \
@@ -217,11 +209,7 @@ impl Assignment {
 
     /// Request that sets the port.
     fn order(&self, station: u8) -> Result<Request, Failure> {
-        let values = vec![
-            field::Value::Number(station.into()),
-            field::Value::Number(self.port.into()),
-            field::Value::Mask(self.mask),
-        ];
+        let values = vec![Value::Number(station.into()), Value::Number(self.port.into()), Value::Mask(self.mask)];
         Request::new(table::Command::Dout, values).map_err(|error| wrong(&error))
     }
 }
@@ -250,7 +238,7 @@ impl Command for Direct {
     const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
-        let values = vec![field::Value::Number(self.number.into())];
+        let values = vec![Value::Number(self.number.into())];
         let request = Request::in_form(table::Command::Dout, 1, values).map_err(|error| wrong(&error))?;
         context.link.ask(&request).await?;
         let words = format!("direct output F{}", self.number);

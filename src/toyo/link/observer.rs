@@ -6,13 +6,12 @@ use std::sync::{Arc, Mutex};
 
 use crate::change_journal::{AbandonedEntry, ChangeJournal};
 use crate::failure::not_put_back;
+use crate::prelude::*;
 use crate::trace::Trace;
 use crate::user_choices::UserChoices;
 use armctl_client::toyo::Event;
 use armctl_client::{Ends, Watcher};
-use armctl_controller::toyo::status::Status;
 use armctl_controller::toyo::table::commands::Command;
-use armctl_frame::output::Screen;
 use armctl_frame::trace::lock_writer;
 use armctl_transport::tap::Direction;
 

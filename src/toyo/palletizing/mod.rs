@@ -4,10 +4,6 @@ mod progress;
 
 use std::hash::{Hash, Hasher};
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::complete;
 use super::eeprom::Cell;
 use super::items::read_each;
@@ -16,19 +12,14 @@ use super::numbers;
 use super::programs::{Copy, Kind, Select};
 use super::rows::{EepromRow, Listed, is_zero, unlisted};
 use super::values::{self, NamedValue};
-use armctl_client::toyo::Letters;
+use crate::prelude::*;
 use armctl_controller::nearest::nearest;
-use armctl_controller::toyo::field::{self, Value};
-use armctl_controller::toyo::layout::{Layout, Record};
-use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::field;
+use armctl_controller::toyo::layout::Layout;
 use armctl_controller::toyo::table::palletizing::RECORDS;
 use armctl_controller::toyo::table::{Command, Pallet};
-use armctl_frame::ValueKind;
-use armctl_frame::commands;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
 use armctl_frame::output::view;
-use armctl_frame::store::{Answers, Dump, Field, Get, Ids, List, Restore, Set, Store, TableWords, ids};
+use armctl_frame::store::{Dump, Get, List, Restore, Set};
 
 commands! {
     /// Commands for palletizing programs.

@@ -1,9 +1,7 @@
 //! Special rules for parameters 2 (E, machine) and parameters 3 (U, special).
 
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::table::{Group, Parameter};
-use armctl_frame::failure::Failure;
+use crate::prelude::*;
+use armctl_controller::toyo::table::Group;
 
 /// Maximum number of steps of all tasks together (TO 2-4, E22).
 const MOST_STEPS: i32 = 5000;

@@ -6,9 +6,6 @@ pub use machine::{POWER_CYCLE, consequence_of};
 
 use std::hash::{Hash, Hasher};
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::complete;
 use super::eeprom::{Cell, parameter_cell, parameter_sketch};
 use super::items::{Answers as Records, read_each_twice};
@@ -16,22 +13,13 @@ use super::link::{Link, Toyo, wrong};
 use super::numbers::Numbers;
 use super::rows::{EepromRow, Listed, unlisted};
 use super::values::{self, NamedValue};
-use armctl_client::toyo::Letters;
+use crate::prelude::*;
 use armctl_controller::nearest::nearest;
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::layout::{Layout, Record};
-use armctl_controller::toyo::request::Request;
+use armctl_controller::toyo::layout::Layout;
+use armctl_controller::toyo::table::Group;
 use armctl_controller::toyo::table::parameters::PARAMETERS;
-use armctl_controller::toyo::table::{Group, Parameter};
-use armctl_frame::ValueKind;
-use armctl_frame::commands;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::Screen;
 use armctl_frame::output::view;
-use armctl_frame::store::{
-    Answers, Differing, Dump, Field, Get, Ids, List, Restore, Set, Single, Store, TableWords, ids,
-};
-use armctl_frame::watch::Watch;
+use armctl_frame::store::{Dump, Get, List, Restore, Set};
 
 commands! {
     /// Commands for parameters.

@@ -6,10 +6,6 @@ pub use teach::Teach;
 
 use std::path::Path;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::eeprom::{Cell, parameter_cell, parameter_sketch};
 use super::items::{Answers as Records, read_each};
 use super::link::{Link, Toyo, wrong};
@@ -17,19 +13,12 @@ use super::numbers::{Numbers, named, number};
 use super::position::{Coordinates, heading};
 use super::rows::{EepromRow, Listed, is_zero, texts, unlisted};
 use super::{complete, tasks, values};
-use armctl_client::toyo::Letters;
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::names::Kind;
-use armctl_controller::toyo::field::{self, Value};
-use armctl_controller::toyo::layout::{Layout, Record};
+use armctl_controller::toyo::field;
+use armctl_controller::toyo::layout::Layout;
 use armctl_controller::toyo::names as names_of;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table::Parameter;
-use armctl_frame::ValueKind;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
 use armctl_frame::robot::position::FourAxes;
-use armctl_frame::store::{Answers, Field, Ids, Store, TableWords, ids, table_commands};
 use armctl_frame::teach::parse_printed_position;
 
 table_commands! {

@@ -1,24 +1,17 @@
 //! Command `toyo teach`: stores the current position as a point. `point set 5 here` and `point teach 5` are aliases.
 
-use clap::Args;
-
 use super::{AXES, Points, TaskOptions, parse_point};
 use crate::complete;
 use crate::link::{Link, Toyo};
 use crate::position::{Coordinates, UNIT};
+use crate::prelude::*;
 use crate::rows::EepromRow as _;
 use crate::values::Changes;
-use armctl_controller::Risk;
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::request::Request;
 use armctl_controller::toyo::table::Command as Word;
-use armctl_frame::dry_run::{Known as _, unknown};
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::{Confirmation, data_changed};
+use armctl_frame::dry_run::unknown;
+use armctl_frame::gate::data_changed;
 use armctl_frame::store::{Store as _, Writable as _, describe_change};
 use armctl_frame::teach::Taught;
-use armctl_frame::{Command, Context};
 
 /// Store the current position as a point, and read it back.
 #[derive(Debug, Args)]

@@ -2,23 +2,17 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::text::{self, Remark};
 use crate::files;
 use crate::point::Points;
+use crate::prelude::*;
 use crate::sim::{self, Stop};
 use armctl_controller::findings::{Finding, Severity};
 use armctl_controller::names::{Name, Names};
 use armctl_controller::toyo::errors;
 use armctl_controller::toyo::program::{self, Checked, Known, MOST_STEPS};
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::{Cell, Section, Tone, View};
+use armctl_frame::OfflineCommand;
 use armctl_frame::store::keys_of;
-use armctl_frame::{OfflineCommand, Report};
 
 /// Check program files and print each error with line and column. Needs no robot.
 #[derive(Debug, Args)]

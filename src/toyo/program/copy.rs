@@ -1,27 +1,15 @@
 //! `toyo program copy`.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::and_mode;
 use super::insert::moved_wrong;
 use super::steps;
 use crate::link::Link;
 use crate::link::Toyo;
+use crate::prelude::*;
 use crate::tasks;
-use armctl_controller::Risk;
-use armctl_controller::toyo::field::Value;
 use armctl_controller::toyo::program::tags;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
 use armctl_frame::authority::Authority;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::Confirmation;
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::View;
-use armctl_frame::{Command, Context, Report};
 
 /// Copy steps over other steps, within a task or to another task.
 #[derive(Debug, Args)]

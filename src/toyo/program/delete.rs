@@ -1,28 +1,15 @@
 //! `toyo program delete`.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::and_mode;
 use super::get::Step;
 use super::insert::moved_wrong;
 use super::steps;
 use crate::link::Link;
 use crate::link::Toyo;
+use crate::prelude::*;
 use crate::tasks;
-use armctl_controller::Risk;
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
 use armctl_frame::authority::Authority;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::{Change, Confirmation};
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::View;
-use armctl_frame::{Command, Context, Report};
 
 /// Delete steps; later steps move up.
 #[derive(Debug, Args)]

@@ -2,27 +2,19 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::get::Get;
 use super::text;
 use crate::link::Toyo;
+use crate::prelude::*;
 use crate::{files, tasks};
-use armctl_controller::Risk;
 use armctl_controller::text::Encoding;
-use armctl_controller::toyo::layout::Record;
 use armctl_controller::toyo::program::{MOST_STEPS, check_named, used};
 use armctl_frame::backup::compare::{Compared, State};
 use armctl_frame::backup::manifest::Hash;
 use armctl_frame::backup::text_diff::{self, TextDifference};
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::names;
 use armctl_frame::output::csv::RowsOf;
-use armctl_frame::output::view::{Section, View};
 use armctl_frame::robot::file::{FILES, FileItem};
-use armctl_frame::{Command, Context, Report};
 
 /// Compare a program in the controller with a text file. The exit code is 8 if they differ.
 #[derive(Debug, Args)]

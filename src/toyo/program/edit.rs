@@ -2,27 +2,18 @@
 
 use std::collections::BTreeMap;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::and_mode;
 use super::get::Get;
 use super::put::{Put, Stored};
 use super::steps;
 use crate::items::Answers;
 use crate::link::Toyo;
+use crate::prelude::*;
 use crate::tasks;
-use armctl_controller::Risk;
 use armctl_controller::text::Encoding;
-use armctl_controller::toyo::layout::Record;
 use armctl_controller::toyo::program::{Rows, Style, listing_with};
 use armctl_frame::backup::text_diff::{self, Hunk, TextDifference};
 use armctl_frame::editor_session::EditedText;
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::Confirmation;
-use armctl_frame::output::view::View;
-use armctl_frame::{Command, Context, Report};
 
 /// Edit the program of a task.
 #[derive(Debug, Args)]

@@ -2,33 +2,23 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::kept::Source;
 use super::steps;
 use crate::items::Answers;
 use crate::link::{Link, Toyo, misuse};
+use crate::prelude::*;
 use crate::tasks;
-use armctl_controller::Risk;
-use armctl_controller::toyo::layout::Record;
 use armctl_controller::toyo::program::{self, Rows, Style, Unread, listing_named, not_read};
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table::{Op, Parameter};
+use armctl_controller::toyo::table::Op;
 use armctl_frame::backup::manifest::Hash;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::items::{ItemOutcome, verdict};
 use armctl_frame::local_names::Target;
 use armctl_frame::names;
-use armctl_frame::output::Screen;
 use armctl_frame::output::csv::RowsOf;
 use armctl_frame::output::escape;
-use armctl_frame::output::view::{Cell, View};
 use armctl_frame::robot::file::FileItem;
 use armctl_frame::robot::item::Plain;
-use armctl_frame::{Command, Context, Report};
 
 /// Read the program of a task as text, which `program put` writes back.
 #[derive(Debug, Args)]

@@ -1,9 +1,5 @@
 //! `toyo program insert`.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::and_mode;
 use super::get::Step;
 use super::steps;
@@ -11,22 +7,13 @@ use crate::complete;
 use crate::eeprom::{Cells, THERE};
 use crate::link::Link;
 use crate::link::Toyo;
+use crate::prelude::*;
 use crate::tasks;
-use armctl_controller::Risk;
 use armctl_controller::names::Names;
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::layout::Record;
 use armctl_controller::toyo::program::{Part, check_named};
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
 use armctl_frame::authority::Authority;
-use armctl_frame::dry_run::{Reason, unknown};
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::{Change, Confirmation};
+use armctl_frame::dry_run::unknown;
 use armctl_frame::names;
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::View;
-use armctl_frame::{Command, Context, Report};
 
 /// Insert a step. The number of each later step increases by one.
 #[derive(Debug, Args)]

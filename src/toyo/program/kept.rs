@@ -7,16 +7,15 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use jiff::Timestamp;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use sha2::{Digest as _, Sha256};
 
-use armctl_controller::toyo::layout::Record;
+use crate::prelude::*;
 use armctl_controller::toyo::program::{tags, used};
 use armctl_controller::toyo::request::instruction;
 use armctl_controller::toyo::table::Op;
 use armctl_files as files;
 use armctl_frame::local_names::state_folder;
-use armctl_frame::settings::Robot;
 
 /// First word of each file.
 const FORMAT: &str = "armctl-toyo-source";

@@ -1,21 +1,13 @@
 //! `toyo program list`.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::steps;
 use crate::link::Link;
 use crate::link::Toyo;
+use crate::prelude::*;
 use crate::tasks;
-use armctl_controller::Risk;
 use armctl_controller::toyo::program::{tags, used};
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::items::{ItemError, verdict};
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::{Cell, Table, View};
-use armctl_frame::{Command, Context, Report};
 
 /// List the tasks, with the number of steps of each task.
 #[derive(Debug, Args)]

@@ -4,10 +4,6 @@ use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::and_mode;
 use super::check::Labelled;
 use super::steps;
@@ -15,24 +11,18 @@ use super::text;
 use crate::eeprom::{Cells, THERE};
 use crate::link::Link;
 use crate::link::Toyo;
+use crate::prelude::*;
 use crate::{files, tasks};
-use armctl_controller::Risk;
 use armctl_controller::names::Names;
-use armctl_controller::toyo::layout::Record;
 use armctl_controller::toyo::program::{self, MOST_STEPS, Part, Program, check_named};
 use armctl_frame::authority::Authority;
 use armctl_frame::backup::manifest::Hash;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::{Change, Confirmation};
 use armctl_frame::interrupt::interruptible;
 use armctl_frame::names;
-use armctl_frame::output::Screen;
 use armctl_frame::output::csv::RowsOf;
-use armctl_frame::output::view::{Section, View};
 use armctl_frame::robot::file::{FILES, FileItem};
 use armctl_frame::robot::item::Plain;
-use armctl_frame::{Command, Context, Report};
 
 /// Write a program from a text file to the controller.
 #[derive(Debug, Args)]

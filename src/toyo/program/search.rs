@@ -1,24 +1,15 @@
 //! `toyo program search`.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::steps;
 use crate::link::Link;
 use crate::link::Toyo;
+use crate::prelude::*;
 use crate::refusal;
 use crate::tasks;
 use crate::wait::status_page;
 use armctl_client::toyo::Refusal;
-use armctl_controller::Risk;
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table::{self, Op};
+use armctl_controller::toyo::table::Op;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::view::View;
-use armctl_frame::{Command, Context, Report};
 
 /// Find the step of a tag. The search changes the current step of the program.
 #[derive(Debug, Args)]

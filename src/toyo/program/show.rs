@@ -1,20 +1,12 @@
 //! `toyo program show`.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::steps;
 use crate::link::Toyo;
+use crate::prelude::*;
 use crate::refusal;
 use armctl_client::toyo::Refusal;
-use armctl_controller::toyo::request::Request;
-use armctl_controller::toyo::table;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, View};
 use armctl_frame::robot::program::Program;
-use armctl_frame::{Command, Context, Report};
 
 /// Show the current step of the program of the current task.
 #[derive(Debug, Args)]

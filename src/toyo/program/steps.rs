@@ -5,14 +5,10 @@ use std::ops::RangeInclusive;
 use crate::eeprom::Cell;
 use crate::items::{Answers, read_until};
 use crate::link::{Link, Refusal, misuse};
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::request::{Answer, Request};
+use crate::prelude::*;
+use armctl_controller::toyo::request::Answer;
 use armctl_controller::toyo::status::RunMode;
-use armctl_controller::toyo::table::{Command, Op, Parameter};
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::Change;
-use armctl_frame::output::Screen;
+use armctl_controller::toyo::table::{Command, Op};
 
 const READING: &str = "reading steps";
 

@@ -4,15 +4,12 @@ use super::steps;
 use crate::eeprom::Cells;
 use crate::items::read_each;
 use crate::link::{Link, Toyo};
+use crate::prelude::*;
 use crate::tasks;
 use crate::values::NOT_IN_MANUAL;
-use armctl_controller::Risk;
-use armctl_controller::toyo::layout::Record;
 use armctl_controller::toyo::table::Op;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::Screen;
 use armctl_frame::robot::item::Plain;
-use armctl_frame::store::{Answers, Differing, Field, Ids, Row, Single, Store, TableWords, Writable, ids};
+use armctl_frame::store::Row;
 
 /// The steps of a task.
 #[derive(Debug)]

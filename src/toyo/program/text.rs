@@ -1,14 +1,9 @@
 //! Text of the findings in program files.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::files;
+use crate::prelude::*;
 use armctl_controller::names::Name;
 use armctl_controller::toyo::program::{Checked, Finding, Program, Severity};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::{Cell, Tone};
 use armctl_frame::settings::inventory;
 use armctl_frame::settings::target::Family;
 

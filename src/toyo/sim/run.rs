@@ -3,23 +3,18 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use clap::Args;
-
 use super::trace::{End, Recorder, Source, Stop, Trace};
 use crate::files;
 use crate::param::{Parameters, key_text};
 use crate::point::Points;
+use crate::prelude::*;
 use crate::program::text;
 use crate::rows::EepromRow;
 use crate::values::Changes;
-use armctl_client::toyo::Letters;
 use armctl_controller::names::{Name, Names};
-use armctl_controller::toyo::field::Value;
 use armctl_controller::toyo::program::{MOST_STEPS, Program, check_named};
 use armctl_controller::toyo::simulator::{Simulator, Start, What};
 use armctl_frame::OfflineCommand;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
 use armctl_frame::settings::duration;
 use armctl_frame::store::rows_of_file;
 

@@ -3,20 +3,15 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::explain::alarm_from_code;
 use crate::position::Coordinates;
+use crate::prelude::*;
 use armctl_controller::toyo::errors;
 use armctl_controller::toyo::program::Program;
 use armctl_controller::toyo::request::instruction;
 use armctl_controller::toyo::simulator::{Event, State, What};
 use armctl_controller::toyo::table::{Instruction, Op};
-use armctl_frame::Report;
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::output::csv::RowsOf;
-use armctl_frame::output::view::{Cell, Table, Tone, View};
 use armctl_frame::robot::alarm::Alarm;
 
 /// The program of a task, with its file.

@@ -1,15 +1,9 @@
 //! Alarm reports and their display.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::link::Link;
-use armctl_controller::text::Encoding;
-use armctl_controller::yerc::Model;
+use crate::prelude::*;
 use armctl_controller::yerc::payload;
-use armctl_frame::failure::Failure;
 use armctl_frame::robot::alarm::{Alarm, AlarmEntry, AlarmState, ExtraColumns, Kind};
-use armctl_frame::settings::Robot;
 use armctl_frame::settings::alarms::Origin;
 use armctl_frame::settings::target::Family;
 

@@ -5,18 +5,15 @@ use super::name::{self, Shown, type_word};
 use super::transfer::{self, Download};
 use crate::link::Link;
 use crate::link::Yerc;
+use crate::prelude::*;
 use armctl_controller::text::hex;
-use armctl_controller::yerc::files::{self, FileType};
+use armctl_controller::yerc::files;
 use armctl_controller::yerc::query::Query as _;
-use armctl_frame::Context;
 use armctl_frame::backup::manifest::Entry;
 use armctl_frame::backup::save::{Content, SavedPart, Task, interrupted_failure};
 use armctl_frame::backup::{BackedUp, Only, SaveOptions};
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::local_names::{LocalNames, Target};
-use armctl_frame::output::Screen;
 use armctl_frame::robot::file::FileItem;
-use armctl_frame::settings::Robot;
 
 /// Makes a backup.
 pub async fn back_up(context: Context<'_, Yerc>, making: SaveOptions) -> Result<BackedUp, Failure> {

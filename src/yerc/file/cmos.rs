@@ -8,23 +8,17 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::Args;
-
 use super::transfer;
 use crate::link::Link;
 use crate::link::Yerc;
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::yerc::files;
 use armctl_frame::backup::manifest::Hash;
-use armctl_frame::dry_run::{Reason, unknown};
-use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::dry_run::unknown;
 use armctl_frame::local_names::{Target, folder_of, make_folder, private_folder};
-use armctl_frame::output::Screen;
 use armctl_frame::output::progress::Progress;
-use armctl_frame::output::view::View;
 use armctl_frame::robot::file::{FileItem, Files, State};
 use armctl_frame::settings::duration;
-use armctl_frame::{Command, Context};
 
 /// Creates and downloads the batch backup.
 #[derive(Debug, Args)]

@@ -1,20 +1,12 @@
 //! `yerc file delete` (FS and DX 3.4.1).
 
-use clap::Args;
-
 use super::lists::{Existence, Lists};
 use super::name::{self, Shown};
 use super::transfer;
 use crate::complete;
 use crate::link::Yerc;
-use armctl_controller::Risk;
-use armctl_controller::text::Encoding;
-use armctl_controller::yerc::files::FileName;
-use armctl_frame::dry_run::Reason;
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::{Change, Confirmation};
+use crate::prelude::*;
 use armctl_frame::robot::file::{FileItem, Files};
-use armctl_frame::{Command, Context};
 
 /// Deletes files on the controller.
 #[derive(Debug, Args)]

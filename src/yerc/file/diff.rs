@@ -2,27 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::compare::{Comparer, Comparison};
 use super::content::Content;
 use super::name::{self, Shown};
 use super::transfer;
 use crate::complete;
 use crate::link::Yerc;
-use armctl_controller::yerc::files::FileType;
+use crate::prelude::*;
 use armctl_frame::backup::compare::{Compared, State};
 use armctl_frame::backup::job_date::{DATE_LINE, align_files};
 use armctl_frame::backup::manifest::Hash;
 use armctl_frame::backup::text_diff::{self, Change, Ending, MAX_TEXT, TextDifference};
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::local_names::{local_name, private_folder};
 use armctl_frame::output::csv::RowsOf;
-use armctl_frame::output::view::{Section, View};
 use armctl_frame::robot::file::{FILES, FileItem};
-use armctl_frame::{Command, Context, Report};
 
 /// Compares a file on the controller with a local file.
 #[derive(Debug, Args)]

@@ -1,29 +1,18 @@
 //! `yerc job edit`: edits a job of the controller in the user's editor.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::content::{Content, JobRules};
 use super::name::{self, Shown};
 use super::transfer;
 use super::upload::{Delivery, UploadOptions, upload};
 use crate::complete;
 use crate::link::{Link, Yerc};
-use armctl_controller::Risk;
-use armctl_controller::text::Encoding;
-use armctl_controller::yerc::files::FileName;
+use crate::prelude::*;
 use armctl_controller::yerc::query::{Query as _, ReadJob, ReadStatus};
 use armctl_frame::backup::job_date::align_files;
 use armctl_frame::backup::text_diff::{self, Change as LineChange, DiffLine, Hunk, MAX_TEXT, TextDifference};
-use armctl_frame::dry_run::{Reason, unknown};
+use armctl_frame::dry_run::unknown;
 use armctl_frame::editor_session::EditedText;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::{Change, Confirmation};
 use armctl_frame::local_names::local_name;
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::{Section, View};
-use armctl_frame::{Command, Context, Report};
 
 /// Edits a job of the controller.
 #[derive(Debug, Args)]

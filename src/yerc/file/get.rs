@@ -2,23 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-
 use super::name;
 use super::pattern::{self, FilePattern, is_pattern};
 use super::transfer::{self, Download};
 use crate::complete;
 use crate::link::Link;
 use crate::link::Yerc;
-use armctl_controller::text::Encoding;
-use armctl_controller::yerc::files::FileName;
+use crate::prelude::*;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Failure;
 use armctl_frame::local_names::{LocalNames, Target, make_folder, private_folder};
-use armctl_frame::output::view::View;
-use armctl_frame::output::{Screen, escape};
+use armctl_frame::output::escape;
 use armctl_frame::robot::file::{FileItem, Files};
-use armctl_frame::{Command, Context};
 
 /// Downloads files from the controller.
 #[derive(Debug, Args)]

@@ -1,19 +1,13 @@
 //! `yerc file list` (FS and DX 3.4.4).
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::name::{Shown, TypeArg, name_of_type, type_word};
 use super::transfer;
 use crate::link::Yerc;
+use crate::prelude::*;
 use armctl_controller::yerc::files;
 use armctl_frame::backup;
-use armctl_frame::failure::Failure;
 use armctl_frame::items::ItemError;
-use armctl_frame::output::view::{Cell, Table, View};
 use armctl_frame::robot::file::{FileItem, Files};
-use armctl_frame::{Command, Context};
 
 /// Lists the files on the controller.
 #[derive(Debug, Args)]

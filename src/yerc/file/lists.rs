@@ -3,10 +3,9 @@
 
 use super::transfer;
 use crate::link::Link;
-use armctl_controller::yerc::files::{self, FileName, FileType};
+use crate::prelude::*;
+use armctl_controller::yerc::files;
 use armctl_frame::backup::continues_after;
-use armctl_frame::dry_run::Reason;
-use armctl_frame::failure::Failure;
 
 /// Whether a file exists on the controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

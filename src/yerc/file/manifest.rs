@@ -1,17 +1,14 @@
 //! Manifest entries of a Yaskawa backup.
 
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 use super::name::exact;
 use crate::link::Link;
+use crate::prelude::*;
 use armctl_controller::text::unhex;
-use armctl_controller::yerc::Model;
-use armctl_controller::yerc::files::FileName;
-use armctl_controller::yerc::group::Group;
 use armctl_controller::yerc::query::{ReadSystemInfo, SystemPart};
 use armctl_frame::backup::manifest;
 use armctl_frame::backup::manifest::{About, Entry};
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::settings::target::Family;
 
 /// Manifest of a backup.

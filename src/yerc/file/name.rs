@@ -1,12 +1,9 @@
 //! Names and types of files in arguments and in reports.
 
 use clap::ValueEnum;
-use schemars::JsonSchema;
-use serde::Serialize;
 
-use armctl_controller::text::{Encoding, unhex};
-use armctl_controller::yerc::files::{FileName, FileType};
-use armctl_frame::failure::Failure;
+use crate::prelude::*;
+use armctl_controller::text::unhex;
 use armctl_frame::robot::file::FileItem;
 
 /// Name of a file in a report.

@@ -2,22 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-
 use super::content::{Content, JobRules};
 use super::lists::{Existence, Lists};
 use super::name::{self, Shown};
 use super::upload::{self, Delivery, UploadOptions, upload};
 use crate::link::Yerc;
-use armctl_controller::Risk;
-use armctl_controller::text::Encoding;
-use armctl_controller::yerc::files::{FileName, FileType};
-use armctl_frame::dry_run::Reason;
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::Confirmation;
+use crate::prelude::*;
 use armctl_frame::local_names::controller_name;
 use armctl_frame::robot::file::{FileItem, Files};
-use armctl_frame::{Command, Context};
 
 /// Uploads files to the controller.
 #[derive(Debug, Args)]

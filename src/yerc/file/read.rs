@@ -3,10 +3,8 @@
 use super::lists::{Existence, Lists};
 use super::transfer;
 use crate::link::Link;
-use armctl_controller::yerc::files::FileName;
+use crate::prelude::*;
 use armctl_frame::backup::continues_after;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::Screen;
 
 /// Result of reading a file.
 #[derive(Debug)]

@@ -12,17 +12,12 @@ use super::transfer;
 use super::upload::{self, Delivery, UploadOptions, upload};
 use crate::link::Link;
 use crate::link::Yerc;
-use armctl_controller::yerc::files::{FileName, FileType};
-use armctl_frame::Context;
+use crate::prelude::*;
 use armctl_frame::authority::Authority;
 use armctl_frame::backup::manifest;
 use armctl_frame::backup::manifest::Entry;
 use armctl_frame::backup::{NOT_CHOSEN, Only, RestoreSelection, Restored, would_leave, would_write};
-use armctl_frame::dry_run::Reason;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::Change;
 use armctl_frame::local_names::private_folder;
-use armctl_frame::output::Screen;
 use armctl_frame::robot::file::{FileItem, State};
 
 /// Selection of the files of a backup to upload.

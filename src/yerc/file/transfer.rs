@@ -6,17 +6,16 @@ use super::compare::Comparer;
 use super::content::Content;
 use crate::failure::refusal_failure;
 use crate::link::{Link, Refusal};
-use armctl_controller::yerc::files::{self, FileName, FileType, split_list};
+use crate::prelude::*;
+use armctl_controller::yerc::files;
+use armctl_controller::yerc::files::split_list;
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::session::{DownloadEnd, UploadEnd};
 use armctl_controller::yerc::table::service;
 use armctl_controller::yerc::wire::Status;
 use armctl_frame::backup::manifest::Hash;
-use armctl_frame::dry_run::Reason;
-use armctl_frame::failure::{Failure, Kind};
 pub use armctl_frame::items::describe_request;
 use armctl_frame::local_names::Target;
-use armctl_frame::output::Screen;
 use armctl_frame::output::progress::Progress;
 
 /// Maximum size of a file from a controller. Real files have a few megabytes.

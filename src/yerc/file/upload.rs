@@ -9,15 +9,10 @@ use super::content::Content;
 use super::lists::{Existence, Lists};
 use super::transfer::{self, Download};
 use crate::link::Link;
-use armctl_controller::text::Encoding;
-use armctl_controller::yerc::files::{FileName, FileType};
+use crate::prelude::*;
 use armctl_frame::authority::Authority;
 use armctl_frame::backup::manifest::Hash;
-use armctl_frame::dry_run::Reason;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::Change;
 use armctl_frame::local_names::{Target, folder_of, local_name};
-use armctl_frame::output::Screen;
 
 /// A file to upload.
 #[derive(Debug)]

@@ -2,21 +2,17 @@
 
 use std::collections::HashSet;
 
-use clap::Args;
-
 use super::super::batch_split::{BatchSplit, read_in_batches};
 use super::super::switch_commands::usage;
 use super::{group_item, item, signal};
 use crate::complete;
 use crate::existing_items::read_failure;
 use crate::link::Yerc;
+use crate::prelude::*;
 use armctl_controller::yerc::signal::Signal;
 use armctl_controller::yerc::variables::{parse_numbers, plan_io_reads};
-use armctl_frame::failure::Failure;
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoRow, IoValue, Signals, WATCHED};
-use armctl_frame::watch::{Watchable, Watched};
-use armctl_frame::{Command, Context};
 
 /// Reads signals.
 #[derive(Debug, Args)]

@@ -1,18 +1,15 @@
 //! `yerc io list`.
 
-use clap::Args;
-
 use super::super::batch_split::{BatchSplit, read_in_batches};
 use super::super::switch_commands::usage;
 use super::{item, kind, signal};
 use crate::existing_items::read_failure;
 use crate::link::Yerc;
+use crate::prelude::*;
 use armctl_controller::yerc::signal::Signal;
 use armctl_controller::yerc::variables::plan_io_reads;
-use armctl_frame::failure::Failure;
 use armctl_frame::names;
 use armctl_frame::robot::io::{Filter, IoRow, Signals};
-use armctl_frame::{Command, Context};
 
 /// Reads the signals of all classes of the model.
 #[derive(Debug, Args)]

@@ -7,14 +7,11 @@ mod signal;
 #[cfg(test)]
 mod tests;
 
+use crate::prelude::*;
 use armctl_controller::names::{Kind, Names};
-use armctl_controller::yerc::Model;
 use armctl_controller::yerc::signal::Signal;
-use armctl_frame::commands;
-use armctl_frame::failure::Failure;
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoItem, IoKind};
-use armctl_frame::watch::Watch;
 
 commands! {
     /// Commands for signals.

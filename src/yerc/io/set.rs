@@ -3,8 +3,6 @@
 use std::collections::BTreeMap;
 use std::str::FromStr;
 
-use clap::Args;
-
 use super::super::batch_split::{BatchSplit, read_in_batches};
 use super::super::switch_commands::usage;
 use super::{group_item, item, signal};
@@ -12,23 +10,16 @@ use crate::complete;
 use crate::existing_items::read_failure;
 use crate::link::Link;
 use crate::link::Yerc;
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::typed;
-use armctl_controller::yerc::Model;
 use armctl_controller::yerc::query::Query as _;
 use armctl_controller::yerc::signal::Signal;
 use armctl_controller::yerc::variables::{WriteIoStep, parse_numbers, plan_io_reads, plan_io_writes};
-use armctl_frame::dry_run::Reason;
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::names;
-use armctl_frame::output::Screen;
 use armctl_frame::robot::io::{IoItem, IoValue, WrittenSignal, WrittenSignals};
 use armctl_frame::robot::item::Plain;
 use armctl_frame::settings_report::{IF_DIFFERENT, OLD_VALUE};
-use armctl_frame::store::{
-    Answers, ComparedRow, Differing, Field, Ids, Row, Single, Store, TableWords, Writable, ids, write_rows,
-};
-use armctl_frame::{Command, Context};
+use armctl_frame::store::{ComparedRow, Row, write_rows};
 
 /// Switches network inputs.
 #[derive(Debug, Args)]

@@ -1,16 +1,10 @@
 //! `yerc job list`.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::file::{LISTS, Shown, list, plan_all};
 use crate::link::Yerc;
+use crate::prelude::*;
 use crate::selected_job::SelectedJob;
-use armctl_controller::yerc::files::{self, FileType};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, Table, View};
-use armctl_frame::{Command, Context, Report};
+use armctl_controller::yerc::files;
 
 /// Lists the jobs of the controller (FS and DX 3.4.4), and marks the selected job.
 #[derive(Debug, Args)]

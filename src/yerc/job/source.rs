@@ -3,14 +3,11 @@
 //! The protocol has no dates, sizes or hashes of files, so a cached file could be outdated. For this reason the file is
 //! downloaded each time. Its hash identifies the version.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::file::{exact, fetch};
 use crate::link::Link;
+use crate::prelude::*;
 use armctl_controller::yerc::payload::JobInfo;
 use armctl_frame::backup::manifest::Hash;
-use armctl_frame::failure::Failure;
 
 /// A line of a job file.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]

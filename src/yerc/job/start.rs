@@ -2,9 +2,6 @@
 
 use std::time::Duration;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 use tokio::time::Instant;
 
 use super::{Select, about, without_suffix};
@@ -12,20 +9,16 @@ use crate::complete;
 use crate::link::{Link, Yerc};
 use crate::motion::{POLL_INTERVAL, START_TIMEOUT, StandstillCause, lost_contact, plan_alarm};
 use crate::numbers::parse_in_range;
+use crate::prelude::*;
 use crate::selected_job::SelectedJob;
-use armctl_controller::Risk;
 use armctl_controller::yerc::payload::{ControllerStatus, StatusBit};
 use armctl_controller::yerc::query::{Query as _, ReadJob, ReadStatus, SelectJob, StartJob};
 use armctl_frame::cycle::{Repeat, Runs};
-use armctl_frame::dry_run::{Known as _, unknown};
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::{Change, Confirmation, data_changed};
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::{Section, View};
+use armctl_frame::dry_run::unknown;
+use armctl_frame::gate::data_changed;
 use armctl_frame::robot::program::{Program, ProgramState};
 use armctl_frame::settings::duration;
 use armctl_frame::wait_arguments::ProgramEnd;
-use armctl_frame::{Command, Context, Report};
 
 /// Starts the selected job, or selects a job and starts it (FS and DX 3.3.23, 3.3.24).
 #[derive(Debug, Args)]

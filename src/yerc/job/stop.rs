@@ -1,13 +1,8 @@
 //! `yerc stop` and `yerc job stop`.
 
-use clap::Args;
-
 use crate::link::Yerc;
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::yerc::query::{self, Query as _};
-use armctl_frame::failure::Failure;
-use armctl_frame::settings_report::{Done, NewValue, Old};
-use armctl_frame::{Command, Context};
 
 /// Stops the running job and all motion: HOLD on, like `yerc hold on` (FS and DX 3.3.20).
 #[derive(Debug, Args)]

@@ -2,17 +2,16 @@
 
 use std::fmt;
 
-use clap::{Args, ValueEnum};
+use clap::ValueEnum;
 
 use crate::complete;
 use crate::numbers::parse_in_range;
 use crate::position::{extended_words, form_words, in_a_line};
+use crate::prelude::*;
 use armctl_controller::names::Kind;
 use armctl_controller::units::{self, Unit};
-use armctl_controller::yerc::group::Group;
-use armctl_controller::yerc::payload::{ExtendedForm, Form, PositionKind, SpeedClass};
+use armctl_controller::yerc::payload::{ExtendedForm, Form, SpeedClass};
 use armctl_controller::yerc::variables::Reference;
-use armctl_frame::failure::Failure;
 use armctl_frame::names;
 use armctl_frame::robot::motion;
 use armctl_frame::wait_arguments::MotionEnd;

@@ -2,8 +2,6 @@
 
 use std::time::Duration;
 
-use schemars::JsonSchema;
-use serde::Serialize;
 use tokio::time::Instant;
 
 use super::question::{Question, moved_during_question};
@@ -11,20 +9,15 @@ use crate::failure::refusal_failure;
 use crate::link::{Link, Refusal, Yerc};
 use crate::motion::{POLL_INTERVAL, START_TIMEOUT, StandstillCause, lost_contact, plan_alarm};
 use crate::position::{self, as_reported, in_a_line};
+use crate::prelude::*;
 use armctl_client::yerc::AxisSet;
 use armctl_controller::units::{self, Unit};
-use armctl_controller::yerc::Model;
-use armctl_controller::yerc::group::Group;
-use armctl_controller::yerc::payload::{Axes, ControllerStatus, ExtendedForm, Form, Position, PositionKind};
+use armctl_controller::yerc::payload::{Axes, ControllerStatus, ExtendedForm, Form};
 use armctl_controller::yerc::query::{Coordinates, Query, ReadPosition, ReadStatus};
 use armctl_controller::yerc::status::is_absent;
-use armctl_frame::dry_run::Known as _;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::view::{Cell, Tone, View};
 use armctl_frame::robot::motion::Motion;
 use armctl_frame::robot::position as robot;
 use armctl_frame::settings::duration;
-use armctl_frame::{Context, Report};
 
 /// A motion whose arguments have been checked.
 #[derive(Debug)]

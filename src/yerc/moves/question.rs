@@ -5,11 +5,10 @@ use std::borrow::Cow;
 use super::arguments::{Speed, Values, base_is_given, describe};
 use super::execution::Goal;
 use crate::position::{axis_names, in_a_line};
+use crate::prelude::*;
 use armctl_controller::units::{self, Unit};
-use armctl_controller::yerc::group::Group;
-use armctl_controller::yerc::payload::{Position, PositionKind, SpeedClass};
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::{Change, data_changed};
+use armctl_controller::yerc::payload::SpeedClass;
+use armctl_frame::gate::data_changed;
 
 /// Parts of the text that describes a motion.
 #[derive(Debug)]

@@ -8,20 +8,16 @@ use crate::existing_items::ReadError;
 use crate::failure::refusal_failure;
 use crate::link::{Link, Yerc};
 use crate::position;
+use crate::prelude::*;
 use crate::switch_commands::usage;
 use crate::var::{different_words, is_undefined, variable_name};
 use armctl_controller::units;
-use armctl_controller::yerc::group::Group;
-use armctl_controller::yerc::payload::{
-    Axes, ExtendedForm, ExternalPosition, Form, MAX_AXES, Position, PositionKind, PulseMove,
-};
+use armctl_controller::yerc::payload::{Axes, ExtendedForm, ExternalPosition, Form, MAX_AXES, PulseMove};
 use armctl_controller::yerc::query::{
     Coordinates, MoveCartesian, MoveKind, MovePulse, Query, ReadPosition, ReadVariable,
 };
 use armctl_controller::yerc::variables::{Reference, Value, VariableKind};
-use armctl_frame::Context;
-use armctl_frame::dry_run::{Known as _, Reason, unknown};
-use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::dry_run::unknown;
 use armctl_frame::names;
 
 /// A move to a position in a variable or to axis angles.

@@ -7,11 +7,10 @@ use std::collections::BTreeMap;
 use super::position::{self, PositionData};
 use super::value::Data;
 use super::word::different_words;
-use armctl_controller::text::{Encoding, hex, unhex};
-use armctl_controller::yerc::group::Group;
-use armctl_controller::yerc::payload::{Position, PositionKind, Text};
+use crate::prelude::*;
+use armctl_controller::text::{hex, unhex};
+use armctl_controller::yerc::payload::Text;
 use armctl_controller::yerc::variables::{Value, VariableKind};
-use armctl_frame::store::Field;
 
 /// Text of each cell that is not empty, by column.
 pub type Cells = BTreeMap<String, String>;

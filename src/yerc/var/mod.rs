@@ -15,11 +15,10 @@ pub use self::raw::confirm_raw;
 use self::table::Variables;
 pub use self::table::is_undefined;
 pub use self::word::different_words;
+use crate::prelude::*;
 use armctl_controller::names::{Kind, Names};
 use armctl_controller::yerc::variables::Reference;
-use armctl_frame::commands;
 use armctl_frame::store::{Copy, Dump, Get, List, Restore};
-use armctl_frame::watch::Watch;
 
 commands! {
     /// Commands for variables.

@@ -2,16 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use schemars::JsonSchema;
-use serde::Serialize;
 use serde_json::{Map, Value as Json};
 
 use super::word::different_words;
+use crate::prelude::*;
 use armctl_controller::units::{self, Quantity, Unit};
-use armctl_controller::yerc::group::Group;
-use armctl_controller::yerc::payload::{
-    BasePosition, ExtendedForm, ExternalPosition, Form, MAX_AXES, NamedAxis, Position, PositionKind,
-};
+use armctl_controller::yerc::payload::{BasePosition, ExtendedForm, ExternalPosition, Form, MAX_AXES, NamedAxis};
 use armctl_controller::yerc::variables::{Value, VariableKind};
 
 /// Position of a group as the value of a variable: P for robots, BP for bases, EX for stations.

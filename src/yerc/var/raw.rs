@@ -6,16 +6,14 @@ use super::table::{Variables, is_undefined};
 use super::word::with_field;
 use crate::existing_items::ReadError;
 use crate::link::Link;
+use crate::prelude::*;
 use armctl_controller::yerc::query::ReadVariable;
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::table::service;
 use armctl_controller::yerc::variables::{Reference, Value, VariableKind};
 use armctl_frame::authority::Authority;
-use armctl_frame::dry_run::Known as _;
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::Change;
 use armctl_frame::settings_report::{OLD_VALUE, nothing_written};
-use armctl_frame::store::{Differing, describe_change};
+use armctl_frame::store::describe_change;
 
 /// Asks the user to confirm a raw request that writes positions. `intent` is the text for a request that armctl cannot
 /// decode.

@@ -3,23 +3,18 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::Args;
-
 use super::cells::LAST_TOOL;
 use super::table::{Draft, StringForm, Variables};
 use super::word::Word;
 use crate::complete;
 use crate::link::Yerc;
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::names::Kind;
 use armctl_controller::typed::{self, integer};
 use armctl_controller::yerc::variables::{Reference, Value, VariableKind};
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::Confirmation;
 use armctl_frame::names;
-use armctl_frame::store::{Row, Store as _, TableWrite, WrittenOf, write};
+use armctl_frame::store::{Row, TableWrite, WrittenOf, write};
 use armctl_frame::teach::parse_printed_position;
-use armctl_frame::{Command, Context};
 
 /// Writes variables.
 #[derive(Debug, Args)]

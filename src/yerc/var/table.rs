@@ -3,10 +3,6 @@
 use std::convert::Infallible;
 use std::fmt::Debug;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::cells::{self, Cells};
 use super::value::Data;
 use super::word::{Word, different_words};
@@ -15,26 +11,19 @@ use crate::complete;
 use crate::existing_items::ReadError;
 use crate::existing_items::read_failure;
 use crate::link::{Link, Yerc};
+use crate::prelude::*;
 use crate::switch_commands::usage;
 use crate::var::position::stored_position;
-use armctl_controller::Risk;
 use armctl_controller::names::Kind;
-use armctl_controller::text::Encoding;
-use armctl_controller::yerc::Model;
-use armctl_controller::yerc::group::Group;
-use armctl_controller::yerc::payload::{Axes, Position};
+use armctl_controller::yerc::payload::Axes;
 use armctl_controller::yerc::query::{Query as _, WriteVariable};
 use armctl_controller::yerc::status;
 use armctl_controller::yerc::variables::{
     Reference, Value, VariableKind, WriteStep, parse_references, plan_reads, plan_writes,
 };
-use armctl_frame::ValueKind;
-use armctl_frame::dry_run::Reason;
-use armctl_frame::failure::{Failure, Kind as FailureKind};
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::Cell;
+use armctl_frame::failure::Kind as FailureKind;
 use armctl_frame::settings_report::{IF_DIFFERENT, OLD_VALUE};
-use armctl_frame::store::{Answers, Differing, Field, Ids, Row, Store, TableWords, Writable, ids};
+use armctl_frame::store::Row;
 
 /// Table of the variables. Its keys have the 32-byte form of strings, for any model.
 #[derive(Debug)]

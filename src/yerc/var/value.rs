@@ -1,10 +1,8 @@
 //! Value of a variable in reports.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::position::PositionData;
-use armctl_controller::text::{Encoding, hex};
+use crate::prelude::*;
+use armctl_controller::text::hex;
 use armctl_controller::yerc::variables::Value;
 
 /// The value of a variable.

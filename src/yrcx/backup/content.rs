@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 use super::parts::Part;
 use super::save::{GAP, gap_after};
@@ -12,22 +12,18 @@ use crate::link::{Link, Yrcx};
 use crate::numbers::runs;
 use crate::overwrite::there;
 use crate::param::{Parameters, Setting};
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
 use crate::robot_settings::Settings;
 use crate::several::{ask_each, is_undefined};
 use crate::single::shown;
 use crate::stores::Numbered;
 use crate::var::Variables;
-use armctl_controller::yrcx::order::{Draft, Order};
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::Key;
 use armctl_frame::backup::manifest::{About, Entry};
 use armctl_frame::backup::parts::Table;
-use armctl_frame::dry_run::{Known as _, Reason};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
 use armctl_frame::settings::target::Family;
-use armctl_frame::store::{self, Store, Writable, part_text};
+use armctl_frame::store::{self, part_text};
 use armctl_frame::text_files;
 
 /// Host software of the controller, and its robots.

@@ -3,14 +3,11 @@
 use super::content::{self, Controller};
 use super::parts::Part;
 use crate::link::{Link, Yrcx};
-use armctl_controller::yrcx::signal::output;
-use armctl_frame::Context;
+use crate::prelude::*;
 use armctl_frame::backup::manifest;
 use armctl_frame::backup::parts::{Replaced, Table, compare_all, overwriting, write_all};
 use armctl_frame::backup::{NOT_CHOSEN, NOT_MACHINE, RestoreSelection, Restored, would_leave, would_write};
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::Screen;
 use armctl_frame::robot::file::FileItem;
 
 /// A part with the rows to be written.

@@ -3,24 +3,19 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use clap::Args;
-
 use super::content::{self, Controller, Text};
 use super::parts::{Part, THOUSAND};
 use crate::data::PointSheet;
 use crate::link::Link;
 use crate::link::Yrcx;
+use crate::prelude::*;
 use armctl_frame::backup::arguments::BackupOptions;
 use armctl_frame::backup::manifest::{Entry, LeftOut};
 use armctl_frame::backup::save::{self, BackupWriter, Task, interrupted_failure};
 use armctl_frame::backup::{BackedUp, Only, SaveOptions};
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
 use armctl_frame::robot::file::{FileItem, State};
-use armctl_frame::settings::Robot;
 use armctl_frame::store::{self, Store as _};
-use armctl_frame::{Command, Context};
 
 /// Saves points, pallets, shifts, hands, variables and parameters in a folder of text files.
 #[derive(Debug, Args)]

@@ -7,11 +7,9 @@ use tempfile::TempDir;
 
 use crate::link::Link;
 use crate::link::Yrcx;
+use crate::prelude::*;
 use crate::testing::{frames, quiet, resolved, risk, words};
-use armctl_controller::Risk;
 use armctl_frame::Family as _;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::settings::Robot;
 use armctl_frame::testing::{self, context, unlimited_access};
 
 /// Simulated controller for several command lines in virtual time, with a folder for backups.

@@ -1,9 +1,8 @@
 //! `yrcx comment` (4.3.2).
 
+use crate::prelude::*;
 use crate::stores::{Kind, Numbered};
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::{Key, Values};
-use armctl_frame::store::{Ids, TableWords, ids, table_commands};
 
 table_commands! {
     /// Commands for point comments.

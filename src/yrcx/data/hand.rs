@@ -1,12 +1,8 @@
 //! `yrcx hand-data` (4.3.5).
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
+use crate::prelude::*;
 use crate::stores::{Kind, Numbered, int, mm};
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::{Key, Values};
-use armctl_frame::store::{Ids, TableWords, ids, table_commands};
 
 table_commands! {
     /// Commands for hands.

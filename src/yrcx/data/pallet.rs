@@ -1,12 +1,8 @@
 //! `yrcx pallet-data` (4.3.3).
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
+use crate::prelude::*;
 use crate::stores::{Kind, Numbered, all_zero, int};
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::{Key, Values};
-use armctl_frame::store::{Ids, TableWords, ids, table_commands};
 
 table_commands! {
     /// Commands for pallets.

@@ -8,18 +8,11 @@ use super::sheet::PointSheet;
 use crate::link::Yrcx;
 use crate::numbers::single;
 use crate::position::{Unit, mm, position, unit_of};
+use crate::prelude::*;
 use crate::stores::{Kind, Numbered};
-use armctl_controller::Risk;
-use armctl_controller::yrcx::table;
-use armctl_controller::yrcx::value::{Key, Values};
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::Confirmation;
 use armctl_frame::robot::position::FourAxes;
-use armctl_frame::store::{
-    Copy, Dump, Get, Ids, List, Restore, TableWords, TableWrite, Writable as _, WrittenOf, ids, write,
-};
+use armctl_frame::store::{Copy, Dump, Get, List, Restore, TableWrite, Writable as _, WrittenOf, write};
 use armctl_frame::teach::parse_printed_position;
-use armctl_frame::{Command, Context, commands};
 
 commands! {
     /// Commands for points.

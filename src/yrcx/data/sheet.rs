@@ -2,19 +2,14 @@
 
 use std::collections::{HashMap, HashSet};
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::{Comments, Points};
 use crate::link::{Link, Yrcx};
+use crate::prelude::*;
 use crate::several::plan_each;
 use crate::stores::{Draft as Texts, Kind as _, Numbered, Row};
-use armctl_controller::Risk;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
 use armctl_frame::robot::item::Plain;
 use armctl_frame::robot::position::FourAxes;
-use armctl_frame::store::{Answers, Differing, Field, Ids, Row as TableRow, Single, Store, TableWords, Writable, ids};
+use armctl_frame::store::Row as TableRow;
 
 /// The points with their comments.
 #[derive(Debug, Default)]

@@ -1,12 +1,8 @@
 //! `yrcx shift-data` (4.3.4).
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
+use crate::prelude::*;
 use crate::stores::{Kind, Numbered, all_zero, mm as mm_of};
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::{Key, Values};
-use armctl_frame::store::{Ids, TableWords, ids, table_commands};
 
 table_commands! {
     /// Commands for shifts.

@@ -2,17 +2,12 @@
 
 use std::time::Duration;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::check;
 use super::connect::{adapter, request_timeout};
 use crate::fieldbus::{At, BusBoard, Checked};
 use crate::link_error::not_open;
-use armctl_controller::yrcx::image::Image;
+use crate::prelude::*;
 use armctl_frame::face::layers::Layers;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::view::Cell;
 use armctl_frame::settings::target::bus::Scheme;
 use armctl_frame::settings::target::devicenet::{BUS, DeviceNet};
 use armctl_transport::devicenet::error::Error;
@@ -21,7 +16,6 @@ use armctl_transport::devicenet::network::{Connection, Network, Tap};
 use armctl_transport::devicenet::scanner::Found;
 use armctl_transport::devicenet::settings::{Purpose, Settings};
 use armctl_transport::devicenet::wire::{Request, class, connection};
-use armctl_transport::image::LinkError;
 
 /// Time to listen for the polls of another master.
 const LISTEN: Duration = Duration::from_secs(1);

@@ -2,7 +2,6 @@
 
 use std::time::Duration;
 
-use clap::Args;
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
@@ -10,12 +9,10 @@ use super::board::Node;
 use super::connect::adapter;
 use crate::fieldbus::{self, Device, MAKER, Scope, bus_of, fields};
 use crate::link_error::not_open;
-use armctl_frame::failure::Failure;
+use crate::prelude::*;
 use armctl_frame::settings::target::Bus;
 use armctl_frame::settings::target::devicenet::DeviceNet;
 use armctl_transport::devicenet::network::Network;
-use armctl_transport::image::LinkError;
-use armctl_transport::image::tap::Tap;
 
 /// Adapters to search.
 #[derive(Debug, Args)]

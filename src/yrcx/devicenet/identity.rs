@@ -1,13 +1,8 @@
 //! `yrcx devicenet identity`.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::board::{Board, Identity};
 use crate::messages::BoardReport;
-use armctl_frame::Report;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Section, View};
+use crate::prelude::*;
 
 /// Identity of the node. Its connections are allocated for the request and released; no polls are sent.
 #[derive(Debug, Serialize, JsonSchema)]

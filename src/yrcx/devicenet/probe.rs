@@ -1,14 +1,9 @@
 //! `yrcx devicenet probe`.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::board::{Board, Identity};
 use super::check::profile;
 use crate::messages::BoardReport;
-use armctl_frame::Report;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::view::{Cell, Section, View};
+use crate::prelude::*;
 
 /// Image sizes of the node; they show how the unit is set. Its connections are allocated for the request and released;
 /// no polls are sent.

@@ -1,13 +1,8 @@
 //! `yrcx devicenet scan`.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::board::{Board, Node};
 use crate::messages::BoardReport;
-use armctl_frame::Report;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::view::{Section, Table, View};
+use crate::prelude::*;
 
 /// Nodes that answered a duplicate MAC ID check. No node is allocated.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -4,13 +4,11 @@ use std::iter;
 use std::net::SocketAddr;
 use std::path::Path;
 
-use clap::Args;
-
 use super::simulated;
 use super::simulated::{Controller, FAULTS, size};
 use crate::fieldbus::{Operator, Serve, Served, ToServe};
+use crate::prelude::*;
 use crate::simulated::{faults, faults_of_option};
-use armctl_frame::failure::Failure;
 use armctl_frame::serve::{address, bind_failure};
 use armctl_frame::settings::target::devicenet::SLCAN;
 use armctl_transport::devicenet::can::Bitrate;

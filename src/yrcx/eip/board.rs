@@ -2,17 +2,12 @@
 
 use std::net::SocketAddrV4;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::{check, connect};
 use crate::fieldbus::{At, BusBoard, Checked};
 use crate::link_error::not_open;
+use crate::prelude::*;
 use armctl_controller::text;
-use armctl_controller::yrcx::image::Image;
 use armctl_frame::face::layers::Layers;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::view::{Cell, Tone};
 use armctl_frame::settings::target::eip::{self, EipRole, SCHEME};
 use armctl_transport::eip::ASSEMBLY;
 use armctl_transport::eip::client::Client;
@@ -22,7 +17,6 @@ use armctl_transport::eip::link::as_advice;
 use armctl_transport::eip::probe::{self, Findings, Instances, Presence};
 use armctl_transport::eip::status;
 use armctl_transport::eip::wire;
-use armctl_transport::image::LinkError;
 
 /// Attribute 3 of an assembly, which has the data.
 const IMAGE: u32 = 3;

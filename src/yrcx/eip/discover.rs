@@ -4,17 +4,16 @@ use std::io::ErrorKind;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::time::Duration;
 
-use clap::Args;
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
 use super::board::Identity;
 use crate::fieldbus::{self, Device, MAKER, Scope, fields};
-use armctl_frame::failure::{Failure, Kind, plain};
+use crate::prelude::*;
+use armctl_frame::failure::plain;
 use armctl_frame::settings::target::eip::SCHEME;
 use armctl_transport::eip::PORT;
 use armctl_transport::eip::discovery::{self, list_identity};
-use armctl_transport::image::tap::Tap;
 
 /// Addresses to search.
 #[derive(Debug, Args)]

@@ -1,13 +1,8 @@
 //! `yrcx eip identity`.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::board::{Board, Identity};
 use crate::messages::BoardReport;
-use armctl_frame::Report;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::view::{Section, View};
+use crate::prelude::*;
 
 /// Identity and services of the board (ListIdentity, ListServices).
 #[derive(Debug, Serialize, JsonSchema)]

@@ -1,20 +1,13 @@
 //! `yrcx eip get` and `yrcx eip set`: raw explicit messages.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 use serde_json::json;
 
 use super::board::{Board, Object, shown};
 use crate::link::Yrcx;
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::text;
 use armctl_controller::typed;
-use armctl_frame::dry_run::Known as _;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::view::{Cell, Section, View};
-use armctl_frame::settings_report::{Done, NewValue, OLD_VALUE, Old, nothing_written};
-use armctl_frame::{Command, ConnectMode, Context, Report};
+use armctl_frame::settings_report::{OLD_VALUE, nothing_written};
 
 /// Reads an attribute of an object, or all its attributes (Get_Attribute_Single, Get_Attributes_All).
 #[derive(Debug, Args)]

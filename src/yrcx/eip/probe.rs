@@ -1,16 +1,9 @@
 //! `yrcx eip probe`.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::board::{Board, Identity, Probed, warned};
 use crate::link::Yrcx;
-use armctl_controller::Risk;
-use armctl_frame::failure::{Failure, Kind};
+use crate::prelude::*;
 use armctl_frame::output::csv::RowsOf;
-use armctl_frame::output::view::{Cell, Section, Table, View};
-use armctl_frame::{Command, ConnectMode, Context, Report};
 
 /// Finds the assemblies of the board: armctl reads every assembly from 1 to 255. It requests no connection.
 #[derive(Debug, Args)]

@@ -2,12 +2,10 @@
 
 use std::net::SocketAddrV4;
 
-use clap::Args;
-
 use super::simulated::{self, Controller, FAULTS};
 use crate::fieldbus::{Operator, Serve, Served, ToServe};
+use crate::prelude::*;
 use crate::simulated::{faults, faults_of_option};
-use armctl_frame::failure::Failure;
 use armctl_frame::serve::{address, bind_failure};
 use armctl_frame::settings::target::eip::SCHEME;
 use armctl_transport::eip::adapter::server::{Listen, Server};

@@ -7,10 +7,9 @@ use std::time::Duration;
 use anyhow::Context as _;
 
 use super::bus::BUS;
+use crate::prelude::*;
 use crate::simulated::{Simulated, faults_of_url, start};
-use armctl_controller::yrcx::image::Image;
 use armctl_controller::yrcx::simulator::{Simulator, Start};
-use armctl_frame::failure::Failure;
 use armctl_frame::settings::target::Sim;
 use armctl_transport::eip::PORT;
 use armctl_transport::eip::adapter::server::{Listen, Server};

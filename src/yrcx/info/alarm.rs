@@ -1,12 +1,9 @@
 //! Command `yrcx info alarm` (4.7.17), and the conversion of alarms in answers.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
+use crate::prelude::*;
 use crate::single::{one_row, shown};
 use armctl_controller::yrcx::alarm;
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::{Key, Values};
 use armctl_frame::robot::alarm::{Alarm as Told, AlarmEntry, Alarms, ExtraColumns, Kind, Nothing, Row, Source};
 
 one_row! {

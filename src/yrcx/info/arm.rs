@@ -1,20 +1,12 @@
 //! `yrcx info arm` (4.7.9, 4.7.10).
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::link::Yrcx;
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
 use crate::several::ask_each;
 use crate::single::shown;
-use armctl_controller::yrcx::table;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::failure::Failure;
 use armctl_frame::items;
 use armctl_frame::items::ItemError;
-use armctl_frame::output::view::{Cell, View};
-use armctl_frame::{Command, Context, Report};
 
 /// Reads the selected and the current hand system.
 #[derive(Debug, Args)]

@@ -1,17 +1,9 @@
 //! `yrcx info origin` (4.7.11).
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::link::Yrcx;
+use crate::prelude::*;
 use crate::refusal::invalid_words;
 use crate::single::shown;
-use armctl_controller::yrcx::table;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, Table, Tone, View};
-use armctl_frame::{Command, Context, Report};
 
 /// Reads the origin return status: with --unit, of each axis of that robot; without --unit, of all robots together.
 #[derive(Debug, Args)]

@@ -2,22 +2,14 @@
 
 use std::time::Duration;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::link::Yrcx;
 use crate::position::{Unit, group, position};
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::yrcx::table;
-use armctl_controller::yrcx::value::Key;
 use armctl_frame::face::shared_commands::CommonReport;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, Table, View};
 use armctl_frame::plot::SeriesHistory;
 use armctl_frame::robot::position::{AllPositions, Joint, Positions};
 use armctl_frame::settings::duration;
-use armctl_frame::{Command, Context, Report};
 
 /// Reads the position, once or continuously.
 #[derive(Debug, Args)]

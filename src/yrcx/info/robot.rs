@@ -1,14 +1,9 @@
 //! Commands whose report comes from a single answer: `yrcx info version` (4.7.1), `system` (4.7.2), `speed` (4.7.8),
 //! `inch` (4.7.16).
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
+use crate::prelude::*;
 use crate::single::{one_row, shown};
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::Report;
-use armctl_frame::output::view::{Cell, View};
 
 one_row! {
     /// Reads the versions.

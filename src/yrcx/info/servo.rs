@@ -1,13 +1,8 @@
 //! `yrcx info servo` (4.7.3).
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
+use crate::prelude::*;
 use crate::single::{one_row, shown};
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::{Key, Values};
-use armctl_frame::Report;
-use armctl_frame::output::view::{Cell, Table, Tone, View};
 
 one_row! {
     /// Reads the states of the servos.

@@ -1,13 +1,8 @@
 //! `yrcx info slots` (4.7.15).
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
+use crate::prelude::*;
 use crate::single::{one_row, shown};
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::Report;
-use armctl_frame::output::view::{Table, View};
 
 one_row! {
     /// Reads the boards in the option slots.

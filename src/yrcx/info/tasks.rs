@@ -1,23 +1,14 @@
 //! Commands `yrcx info tasks` (4.7.5) and `yrcx info line` (4.7.6). One remote command reads eight tasks.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::complete;
 use crate::link::Yrcx;
+use crate::prelude::*;
 use crate::program;
 use crate::refusal::BuildOrder as _;
 use crate::several::ask_each;
 use crate::single::shown;
 use armctl_controller::typed;
-use armctl_controller::yrcx::order::Order;
-use armctl_controller::yrcx::table;
-use armctl_controller::yrcx::value::{Key, Values};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, Tone};
 use armctl_frame::robot::item::{Columns, Item, Items};
-use armctl_frame::{Command, Context};
 
 /// Tasks in the answer of one remote command: half of the 16 tasks.
 const HALF: [Key; 8] = [Key::Task1, Key::Task2, Key::Task3, Key::Task4, Key::Task5, Key::Task6, Key::Task7, Key::Task8];

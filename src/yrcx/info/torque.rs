@@ -1,14 +1,10 @@
 //! `yrcx info torque` (4.7.12, 4.7.18).
 
 use clap::ValueEnum;
-use schemars::JsonSchema;
-use serde::Serialize;
 
+use crate::prelude::*;
 use crate::single::one_row;
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::Report;
-use armctl_frame::output::view::{Table, View};
 
 one_row! {
     /// Reads the torque of axes; the sign is the direction.

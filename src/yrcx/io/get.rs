@@ -1,16 +1,12 @@
 //! `yrcx io get`.
 
-use clap::Args;
-
 use super::{Readable, readables, row, word_item};
 use crate::complete;
 use crate::link::Yrcx;
 use crate::numbers::Series;
-use armctl_controller::yrcx::signal::{Side, Signal};
-use armctl_frame::failure::Failure;
+use crate::prelude::*;
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoRow, IoValue, Signals};
-use armctl_frame::{Command, ConnectMode, Context};
 
 /// Reads signals and general-purpose words.
 #[derive(Debug, Args)]

@@ -1,14 +1,10 @@
 //! `yrcx io list`.
 
-use clap::Args;
-
 use super::row;
 use crate::link::Yrcx;
-use armctl_controller::yrcx::signal::{Side, Signal};
-use armctl_frame::failure::Failure;
+use crate::prelude::*;
 use armctl_frame::names;
 use armctl_frame::robot::io::{Filter, Signals};
-use armctl_frame::{Command, ConnectMode, Context};
 
 /// Reads all signals. Inputs are listed only in a session, because only the client that sets the inputs can read them.
 #[derive(Debug, Args)]

@@ -1,15 +1,8 @@
 //! `yrcx io map`: layout of the image on each fieldbus (chapter 1, section 1).
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
+use crate::prelude::*;
 use armctl_controller::yrcx::bus::{self, Bus, MapRow};
-use armctl_controller::yrcx::signal::Side;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::{Cell, Table, View};
-use armctl_frame::{OfflineCommand, Report};
+use armctl_frame::OfflineCommand;
 
 /// Prints the address table.
 #[derive(Debug, Args)]

@@ -7,14 +7,12 @@ mod set;
 mod watch;
 
 use crate::numbers::Series;
+use crate::prelude::*;
 use armctl_controller::names::{Kind, Names};
-use armctl_controller::yrcx::image::Image;
 use armctl_controller::yrcx::register::Register;
-use armctl_controller::yrcx::signal::{Side, Signal};
+use armctl_frame::Offline;
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoItem, IoKind, IoRow};
-use armctl_frame::watch::Watch;
-use armctl_frame::{Offline, commands};
 
 commands! {
     /// Commands for signals.

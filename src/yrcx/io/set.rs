@@ -1,23 +1,16 @@
 //! `yrcx io set` and `yrcx io pulse`.
 
-use clap::Args;
-
 use super::{ANY_INPUT, called, input, item, named_input, word_item};
 use crate::complete;
 use crate::link::Link;
 use crate::link::Yrcx;
-use armctl_controller::Risk;
+use crate::prelude::*;
 use armctl_controller::names::{Kind, Names};
 use armctl_controller::typed;
-use armctl_controller::yrcx::image::Image;
 use armctl_controller::yrcx::procedure::Procedure;
 use armctl_controller::yrcx::register::Register;
-use armctl_controller::yrcx::signal::{Side, Signal};
-use armctl_frame::failure::Failure;
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoValue, WrittenSignal, WrittenSignals};
-use armctl_frame::settings_report::{Done, NewValue, Old};
-use armctl_frame::{Command, Context};
 
 /// Switches inputs of the controller one after the other, and sets general-purpose words.
 #[derive(Debug, Args)]

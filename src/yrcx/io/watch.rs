@@ -1,17 +1,12 @@
 //! `yrcx io watch`: signal changes as they occur.
 
-use clap::Args;
-
 use super::row;
 use crate::complete;
 use crate::link::{Link, Yrcx};
+use crate::prelude::*;
 use armctl_controller::names::Kind;
-use armctl_controller::yrcx::signal::{Side, Signal};
-use armctl_frame::failure::Failure;
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoValue, Signals, WATCHED};
-use armctl_frame::watch::{Watchable, Watched};
-use armctl_frame::{Command, ConnectMode, Context};
 
 /// Arguments: the outputs of the controller to watch.
 #[derive(Debug, Args)]

@@ -3,14 +3,13 @@
 use std::sync::{Arc, Mutex};
 
 use crate::failure::failure;
+use crate::prelude::*;
 use crate::refusal::refused;
 use crate::trace::Trace;
 use armctl_client::Watcher;
 use armctl_client::yrcx::Event;
 use armctl_controller::yrcx::describe::{answer_summary, command_summary};
-use armctl_frame::output::Screen;
 use armctl_frame::trace::lock_writer;
-use armctl_transport::image::LinkError;
 
 /// Observer that records the traffic and prints notices.
 #[derive(Debug)]

@@ -2,10 +2,9 @@ use std::time::Duration;
 
 use serde_json::json;
 
+use crate::prelude::*;
 use crate::testing::{Bench, Reply, Scripted, run_on};
-use armctl_controller::Risk;
 use armctl_controller::yrcx::image::Words;
-use armctl_frame::failure::Kind;
 
 fn words(head: &[u16]) -> Words {
     let mut words = [0; 16];

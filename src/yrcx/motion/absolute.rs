@@ -1,19 +1,12 @@
 //! `yrcx abs-reset` (4.2.10, 4.2.11): absolute reset of an axis of the mark type.
 
-use clap::Args;
-
 use super::{MotionReport, go};
 use crate::arguments::{Direction, Which};
 use crate::link::Yrcx;
 use crate::overwrite::confirmation;
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::Risk;
-use armctl_controller::yrcx::table;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::Confirmation;
 use armctl_frame::wait_arguments::MotionEnd;
-use armctl_frame::{Command, Context};
 
 /// Resets the absolute position of an axis of the mark type.
 #[derive(Debug, Args)]

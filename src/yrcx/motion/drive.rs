@@ -1,13 +1,11 @@
 //! `yrcx drive` (4.2.3) and `yrcx drivei` (4.2.4): absolute and relative moves of one axis.
 
-use clap::{ArgGroup, Args};
+use clap::ArgGroup;
 
 use super::{Motion, MotionReport, Target, single_target};
 use crate::arguments::Pace;
-use armctl_controller::yrcx::order::Draft;
+use crate::prelude::*;
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::failure::Failure;
 
 /// Target of one axis; `yrcx push` uses it too.
 #[derive(Debug, Args)]

@@ -1,15 +1,11 @@
 //! `yrcx inch` (4.2.7): move by the inching distance.
 
-use clap::Args;
-
 use super::{Motion, MotionReport};
 use crate::arguments::{Direction, System};
 use crate::position::Unit;
+use crate::prelude::*;
 
-use armctl_controller::yrcx::order::Draft;
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::failure::Failure;
 
 /// Moves by the inching distance.
 #[derive(Debug, Args)]

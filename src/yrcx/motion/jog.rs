@@ -3,19 +3,13 @@
 
 use std::time::Duration;
 
-use clap::Args;
-
 use super::{Live, MotionReport};
 use crate::arguments::{Direction, Ending, System, Which};
 use crate::link::Yrcx;
 use crate::position::Unit;
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::Risk;
-use armctl_controller::yrcx::table;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::failure::Failure;
 use armctl_frame::settings::duration;
-use armctl_frame::{Command, Context};
 
 /// Jogs an axis.
 #[derive(Debug, Args)]

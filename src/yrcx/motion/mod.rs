@@ -15,27 +15,15 @@ mod tool;
 use std::sync::mpsc::{self, Sender};
 use std::thread::{self, JoinHandle};
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::arguments::{Axes, Ending, Which};
 use super::link::{Done, Link};
 use super::position::{Unit, group, position};
 use crate::link::Yrcx;
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::Risk;
-use armctl_controller::yrcx::order::{Draft, Order};
-use armctl_controller::yrcx::table;
-use armctl_controller::yrcx::value::{Key, Values};
-use armctl_frame::dry_run::{Reason, unknown};
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::Confirmation;
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::{Section, View};
+use armctl_frame::dry_run::unknown;
 use armctl_frame::robot::motion::{self as robot, Target};
 use armctl_frame::robot::position::joint_table;
-use armctl_frame::{Command, Context, Report};
 
 pub use absolute::AbsReset;
 pub use drive::{Drive, Drivei};

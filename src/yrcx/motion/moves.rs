@@ -1,14 +1,12 @@
 //! `yrcx move` (4.2.1): move to one or two points, or to coordinates.
 
-use clap::{ArgGroup, Args};
+use clap::ArgGroup;
 
 use super::{Motion, MotionReport, Target, targets};
 use crate::arguments::{Arch, Axes, Hand, Pace, Ramps};
 use crate::position::Unit;
-use armctl_controller::yrcx::order::Draft;
+use crate::prelude::*;
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::failure::Failure;
 
 /// Moves to a point, or to coordinates.
 #[derive(Debug, Args)]

@@ -1,17 +1,13 @@
 //! `yrcx origin` (4.2.12): return to origin, of robots or of one axis.
 
-use clap::{Args, ValueEnum};
+use clap::ValueEnum;
 
 use super::{MotionReport, go};
 use crate::arguments::Which;
 use crate::link::Yrcx;
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::Risk;
-use armctl_controller::yrcx::table;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::failure::Failure;
 use armctl_frame::wait_arguments::MotionEnd;
-use armctl_frame::{Command, Context};
 
 /// Returns robots or one axis to origin.
 #[derive(Debug, Args)]

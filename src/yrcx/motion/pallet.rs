@@ -1,13 +1,9 @@
 //! `yrcx pallet` (4.2.5): move to a pallet position.
 
-use clap::Args;
-
 use super::{Motion, MotionReport};
 use crate::arguments::{Arch, Pace, Ramps};
-use armctl_controller::yrcx::order::Draft;
+use crate::prelude::*;
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::failure::Failure;
 
 /// Moves to a pallet position.
 #[derive(Debug, Args)]

@@ -2,19 +2,11 @@
 
 use std::time::Duration;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::drive::Destination;
 use super::{FromMotion, Motion, MotionReport};
 use crate::arguments::Pace;
-use armctl_controller::yrcx::order::Draft;
+use crate::prelude::*;
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::{Key, Values};
-use armctl_frame::Report;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::View;
 use armctl_frame::settings::duration;
 
 /// Pushes with one axis.

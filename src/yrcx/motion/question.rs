@@ -3,13 +3,11 @@
 use crate::link::Link;
 use crate::overwrite::mm;
 use crate::position::Unit;
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::yrcx::order::Order;
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::{Key, Values};
 use armctl_frame::authority::Authority;
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::{Change, data_changed};
+use armctl_frame::gate::data_changed;
 
 /// Target of a motion.
 #[derive(Debug, Clone, PartialEq)]

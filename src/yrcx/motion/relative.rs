@@ -1,14 +1,12 @@
 //! `yrcx movei` (4.2.2): move by the distances of a point, or by typed distances.
 
-use clap::{ArgGroup, Args};
+use clap::ArgGroup;
 
 use super::{Motion, MotionReport, Target, targets};
 use crate::arguments::{Axes, Hand, Pace, Ramps};
 use crate::position::Unit;
-use armctl_controller::yrcx::order::Draft;
+use crate::prelude::*;
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::failure::Failure;
 
 /// Moves by distances.
 #[derive(Debug, Args)]

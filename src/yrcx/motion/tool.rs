@@ -1,13 +1,9 @@
 //! `yrcx movet` (4.2.21): move to a point in tool coordinates.
 
-use clap::Args;
-
 use super::{Motion, MotionReport};
 use crate::arguments::{Axes, Pace, Ramps};
-use armctl_controller::yrcx::order::Draft;
+use crate::prelude::*;
 use armctl_controller::yrcx::table::Command;
-use armctl_controller::yrcx::value::Key;
-use armctl_frame::failure::Failure;
 
 /// Moves a robot to a point in tool coordinates. The coordinates of the point are along the axes of the tool.
 #[derive(Debug, Args)]

@@ -2,21 +2,16 @@
 
 use std::time::Duration;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::{check, connect};
 use crate::fieldbus::{At, BusBoard, Checked};
 use crate::link_error::not_open;
+use crate::prelude::*;
 use armctl_controller::text::hex;
-use armctl_controller::yrcx::image::{COMMAND_WORDS, Image};
+use armctl_controller::yrcx::image::COMMAND_WORDS;
 use armctl_frame::face::layers::Layers;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::view::Cell;
 use armctl_frame::settings::target::Bus;
 use armctl_frame::settings::target::profibus::{Profibus, SCHEME};
-use armctl_transport::image::tap::Tap;
-use armctl_transport::image::{Event, LinkError};
+use armctl_transport::image::Event;
 use armctl_transport::profibus::driver::survey;
 use armctl_transport::profibus::error::ProfibusError;
 use armctl_transport::profibus::link::record;

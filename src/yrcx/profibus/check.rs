@@ -3,9 +3,8 @@
 
 use super::board::Board;
 use crate::fieldbus::{Checked, InLayer as _};
-use armctl_controller::yrcx::image::Image;
+use crate::prelude::*;
 use armctl_frame::face::layers::Layers;
-use armctl_frame::failure::Kind;
 use armctl_transport::profibus::port::latency_timer;
 
 /// Layers in the order of the check.

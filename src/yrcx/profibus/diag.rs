@@ -1,13 +1,8 @@
 //! `yrcx profibus diag`.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::board::Board;
 use crate::messages::BoardReport;
-use armctl_frame::Report;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, Section, View};
+use crate::prelude::*;
 
 /// Diagnosis of a station (Slave_Diag): its state, and the blocks of the unit, its modules and channels.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -2,15 +2,13 @@
 
 use std::time::Duration;
 
-use clap::Args;
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
 use super::board::{Board, Station};
 use crate::fieldbus::{self, Device, Scope, bus_of, fields};
-use armctl_frame::failure::Failure;
+use crate::prelude::*;
 use armctl_frame::settings::target::profibus::SCHEME;
-use armctl_transport::image::tap::Tap;
 
 /// Line to search.
 #[derive(Debug, Args)]

@@ -1,13 +1,8 @@
 //! `yrcx profibus probe`.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::board::{Board, Station};
 use crate::messages::BoardReport;
-use armctl_frame::Report;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::view::{Section, View};
+use crate::prelude::*;
 
 /// Identity, diagnosis and configuration of the station (Slave_Diag, Get_Cfg).
 #[derive(Debug, Serialize, JsonSchema)]

@@ -1,13 +1,8 @@
 //! `yrcx profibus scan`.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::board::{Board, Station};
 use crate::messages::BoardReport;
-use armctl_frame::Report;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, Table, View};
+use crate::prelude::*;
 
 /// Stations that answered a request for their state. No other master is active then.
 #[derive(Debug, Serialize, JsonSchema)]

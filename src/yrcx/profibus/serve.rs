@@ -1,11 +1,9 @@
 //! Server for a simulated controller as a PROFIBUS slave behind a pseudo-terminal.
 
-use clap::Args;
-
 use super::simulated::{self, FAULTS, Options, Server};
 use crate::fieldbus::{Operator, Serve, Served, ToServe};
+use crate::prelude::*;
 use crate::simulated::{faults, faults_of_option};
-use armctl_frame::failure::Failure;
 use armctl_frame::serve::terminal_link::TerminalLink;
 use armctl_transport::profibus::rates::{RATES, Rate};
 

@@ -2,17 +2,14 @@
 
 use std::time::Duration;
 
-use clap::Args;
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
 use super::station::Station;
 use crate::fieldbus::{self, Device, Scope, fields};
 use crate::link_error::not_open;
-use armctl_frame::failure::Failure;
+use crate::prelude::*;
 use armctl_frame::settings::target::profinet::SCHEME;
-use armctl_transport::image::LinkError;
-use armctl_transport::image::tap::Tap;
 use armctl_transport::profinet::commission;
 use armctl_transport::profinet::interface::Interface;
 

@@ -2,16 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
-use armctl_controller::yrcx::image::Image;
+use crate::prelude::*;
 use armctl_files as files;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::{Cell, Section, Table, View};
-use armctl_frame::{OfflineCommand, Report};
+use armctl_frame::OfflineCommand;
 use armctl_transport::profinet::gsdml::{self, Fitting, Gsdml, Head};
 use armctl_transport::profinet::layout::Direction;
 

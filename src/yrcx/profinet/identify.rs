@@ -1,16 +1,10 @@
 //! `yrcx profinet identify`.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::board::Board;
 use super::plan_search;
 use super::station::Station;
 use crate::link::Yrcx;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Section, View};
-use armctl_frame::{Command, ConnectMode, Context, Report};
+use crate::prelude::*;
 
 /// Reads the identity of the station (DCP Identify). The station needs no IP address, and armctl opens no connection.
 #[derive(Debug, Args)]

@@ -19,11 +19,10 @@ use serde_json::json;
 
 use super::connect::{Endpoint, endpoint};
 use super::link::Link;
+use crate::prelude::*;
 use armctl_controller::text;
-use armctl_frame::failure::Failure;
-use armctl_frame::settings::Robot;
+use armctl_frame::Offline;
 use armctl_frame::settings::target::profinet::SCHEME;
-use armctl_frame::{Offline, commands};
 use armctl_transport::profinet::commission;
 use armctl_transport::profinet::settings::Station;
 use armctl_transport::profinet::wire::Mac;

@@ -3,20 +3,12 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::board::Board;
 use super::station::Station;
 use super::{connect, plan_search};
 use crate::link::Yrcx;
-use armctl_controller::Risk;
-use armctl_controller::yrcx::image::Image;
-use armctl_frame::failure::{Failure, Kind};
+use crate::prelude::*;
 use armctl_frame::output::csv::RowsOf;
-use armctl_frame::output::view::{Cell, Section, Table, Tone, View};
-use armctl_frame::{Command, ConnectMode, Context, Report};
 use armctl_transport::profinet::commission::Identity;
 use armctl_transport::profinet::error::ProfinetError;
 use armctl_transport::profinet::guess;

@@ -1,15 +1,12 @@
 //! Server for a simulated controller as an IO device on a network interface.
 
-use clap::Args;
-
 use super::simulated::{Controller, NAME, controller, layout, setup};
 use crate::fieldbus::{Operator, Serve, Served, ToServe};
 use crate::link_error::not_open;
+use crate::prelude::*;
 use crate::simulated::{faults, faults_of_option};
-use armctl_frame::failure::Failure;
 use armctl_frame::settings::target::profinet::{self, SCHEME};
 use armctl_transport::fault::{FaultNames, FaultSpec, SimulatorFaults};
-use armctl_transport::image::LinkError;
 use armctl_transport::profinet::device::Fault;
 use armctl_transport::profinet::device::server::Server;
 use armctl_transport::profinet::interface::Interface;

@@ -2,19 +2,13 @@
 
 use std::net::Ipv4Addr;
 
-use clap::Args;
 use serde_json::json;
 
 use super::board::Board;
 use super::{frame_for, plan_search, station_of};
 use crate::link::Yrcx;
-use armctl_controller::Risk;
-use armctl_frame::dry_run::Known as _;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::gate::{Change, Confirmation};
+use crate::prelude::*;
 use armctl_frame::settings::target::profinet;
-use armctl_frame::settings_report::{Done, NewValue, Old};
-use armctl_frame::{Command, ConnectMode, Context};
 use armctl_transport::profinet::commission::Found;
 use armctl_transport::profinet::wire::dcp::{Block, IpSuite, Station};
 

@@ -1,9 +1,6 @@
 //! Report of a PROFINET station.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
-use armctl_frame::output::view::{Cell, Tone};
+use crate::prelude::*;
 use armctl_transport::profinet::commission::Found;
 use armctl_transport::profinet::wire::dcp;
 

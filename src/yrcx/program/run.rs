@@ -2,29 +2,21 @@
 
 use std::time::Duration;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 use tokio::time::{Instant, timeout};
 
 use super::WhichOrAll;
 use crate::alarm;
 use crate::info::Part;
 use crate::link::{Link, Yrcx};
+use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::Risk;
-use armctl_controller::yrcx::signal::output;
-use armctl_controller::yrcx::table;
 use armctl_frame::cycle::{Cycle, Repeat, Runs};
 use armctl_frame::dry_run::unknown;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::view::{Section, View};
 use armctl_frame::robot::alarm::{AlarmEntry, hint_after};
 use armctl_frame::robot::program::{Program, ProgramState};
 use armctl_frame::settings::duration;
 use armctl_frame::settings::target::Family;
 use armctl_frame::wait_arguments::ProgramEnd;
-use armctl_frame::{Command, Context, Report};
 
 /// Runs a program, or all registered programs. The controller answers when it has accepted the start.
 #[derive(Debug, Args)]

@@ -2,22 +2,18 @@
 
 use std::time::Duration;
 
-use clap::{Args, Subcommand};
-use schemars::JsonSchema;
-use serde::Serialize;
+use clap::Subcommand;
 
 use super::Shared;
 use super::line::SharedLine;
 use crate::command::fleet::status::{Fleet, Link};
 use armctl_frame::face::shared_commands::SharedVerb;
-use armctl_frame::failure::Failure;
 use armctl_frame::output::envelope::Envelope;
-use armctl_frame::output::view::View;
+use armctl_frame::prelude::*;
 use armctl_frame::robot::alarm::AllAlarms;
 use armctl_frame::settings::{alarms, duration};
-use armctl_frame::settings_report::Done;
 use armctl_frame::watch::Changes;
-use armctl_frame::{AnyCommand, Command, ConnectMode, Context, Report, SchemaEntry};
+use armctl_frame::{AnyCommand, SchemaEntry};
 
 /// Alarms of all robots.
 #[derive(Debug, Subcommand)]

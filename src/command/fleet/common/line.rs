@@ -8,25 +8,20 @@ use std::slice;
 
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
-use schemars::JsonSchema;
-use serde::Serialize;
 use serde_json::Value;
 
 use super::PerRobot;
 use crate::command::families;
-use armctl_controller::Risk;
 use armctl_frame::command::AnyContext;
 use armctl_frame::face::family_command::{FamilyLine, ParsedCommand};
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::{Confirmation, Intent};
+use armctl_frame::gate::Intent;
 use armctl_frame::items::ItemError;
 use armctl_frame::names;
 use armctl_frame::output::csv::Sheet;
-use armctl_frame::output::view::View;
+use armctl_frame::prelude::*;
 use armctl_frame::report::sheet_of;
-use armctl_frame::settings::Robot;
 use armctl_frame::settings::target::Family;
-use armctl_frame::{AnyCommand, AnyReport, ConnectMode, Driver, Outcome, Report};
+use armctl_frame::{AnyCommand, AnyReport, Driver, Outcome};
 
 /// A parsed command, or the error.
 type Parsed = Result<Box<dyn AnyCommand>, Failure>;

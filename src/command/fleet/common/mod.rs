@@ -9,15 +9,12 @@ use futures_util::future::LocalBoxFuture;
 use crate::command::families::{self, FAMILIES};
 use armctl_frame::command::AnyContext;
 use armctl_frame::face::shared_commands::SharedVerb;
-use armctl_frame::failure::Failure;
 use armctl_frame::gate::Intent;
-use armctl_frame::output::Screen;
 use armctl_frame::output::csv::Sheet;
+use armctl_frame::prelude::*;
 use armctl_frame::robot::position::AllPositions;
-use armctl_frame::settings::Robot;
 use armctl_frame::settings::target::{Address, Family};
-use armctl_frame::settings_report::Done;
-use armctl_frame::{Access, AnyCommand, ConnectMode, Connection, Driver, Entry, Outcome, SchemaEntry};
+use armctl_frame::{AnyCommand, Connection, Driver, Entry, Outcome, SchemaEntry};
 
 /// A verb with the command of each family.
 pub struct Shared {

@@ -17,22 +17,17 @@ use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::{Duration, SystemTime};
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 use tokio::time::timeout;
 
 use self::board::Board;
 use self::page::Form;
 use super::poll::{Poll, PollRequest, Subscription};
 use super::service::{END_TIMEOUT, Service};
-use armctl_frame::Report;
 use armctl_frame::face::sample::Detail;
-use armctl_frame::failure::{Failure, Kind, plain};
+use armctl_frame::failure::plain;
 use armctl_frame::interrupt::{catch_interrupts, interruptible};
 use armctl_frame::output::log::Level;
-use armctl_frame::output::view::View;
-use armctl_frame::run::{Run, RunError};
+use armctl_frame::prelude::*;
 use armctl_transport::http::{Answer, Request, Server, Status};
 
 /// Serves metrics of all robots, or of the selected ones, until Ctrl-C or SIGTERM.

@@ -10,12 +10,10 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches};
 
 use crate::command::families;
-use armctl_controller::Risk;
 use armctl_frame::AnyCommand;
 use armctl_frame::face::family_command::{FamilyLine, ParsedCommand};
-use armctl_frame::failure::Failure;
 use armctl_frame::names;
-use armctl_frame::settings::Robot;
+use armctl_frame::prelude::*;
 use armctl_frame::settings::target::Family;
 
 /// An extra command. Two extra commands with the same text are equal.

@@ -40,10 +40,9 @@ pub use self::poll_request::PollRequest;
 use self::robot_loop::{RobotTask, follow};
 use self::roster::Roster;
 use armctl_frame::face::sample::{Sample, Traffic};
-use armctl_frame::failure::Failure;
-use armctl_frame::output::Screen;
+use armctl_frame::prelude::*;
+use armctl_frame::settings::Sources;
 use armctl_frame::settings::target::Family;
-use armctl_frame::settings::{Robot, Sources};
 
 /// Unique id of a polled robot. The name is not enough: simulators of several families have the same name.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -12,14 +12,12 @@ use super::extra_command::Read;
 use super::poll_request::MergedRequests;
 use super::{CLOSE_TIMEOUT, Event, EventSender, Extra, PollResult, RobotId, wait_for_stop};
 use crate::command::families;
+use armctl_frame::Entry;
 use armctl_frame::attach::is_held;
 use armctl_frame::face::Watch;
 use armctl_frame::face::sample::Traffic;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::Screen;
-use armctl_frame::settings::Robot;
+use armctl_frame::prelude::*;
 use armctl_frame::share::open_shared_session;
-use armctl_frame::{Access, ConnectMode, Entry};
 
 /// Polling task of one robot.
 pub(super) struct RobotTask {

@@ -12,8 +12,7 @@ use tokio::time::Instant;
 
 use super::{Event, Extra, Poll, PollRequest, RobotId, Subscription};
 use armctl_frame::face::sample::{Detail, Sample, Traffic};
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::Screen;
+use armctl_frame::prelude::*;
 use armctl_frame::settings::inventory::{Inventory, Location};
 use armctl_frame::settings::{Selection, Sources};
 

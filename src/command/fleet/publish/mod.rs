@@ -38,10 +38,8 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::Duration;
 
-use clap::{Args, ValueEnum};
+use clap::ValueEnum;
 use futures_util::future::join;
-use schemars::JsonSchema;
-use serde::Serialize;
 use tokio::time::timeout;
 
 use self::broker::{Broker, Login, Url};
@@ -57,14 +55,12 @@ use self::topic::{Levels, Template, Topics};
 use crate::command::fleet::poll::{Event, Poll, PollRequest, RobotId, Subscription};
 use crate::command::fleet::service::{END_TIMEOUT, Service};
 use armctl_files as files;
-use armctl_frame::failure::Failure;
+use armctl_frame::SchemaEntry;
 use armctl_frame::interrupt::{catch_interrupts, interruptible};
 use armctl_frame::local_names::state_folder;
 use armctl_frame::output::log::Level;
-use armctl_frame::output::view::{Cell, Tone, View};
-use armctl_frame::run::{Run, RunError};
-use armctl_frame::settings::{Robot, duration};
-use armctl_frame::{Report, SchemaEntry};
+use armctl_frame::prelude::*;
+use armctl_frame::settings::duration;
 
 /// Publish changes of robots to an MQTT broker.
 #[derive(Debug, Args)]

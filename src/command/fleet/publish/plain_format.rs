@@ -8,8 +8,6 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use jiff::Timestamp;
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use super::Kind;
 use super::extra_topic::ExtraTopic;
@@ -19,12 +17,11 @@ use super::topic::Topics;
 use super::uplink::{Message, Will};
 use crate::command::fleet::poll::{Event, PollResult, RobotId};
 use armctl_frame::face::overview::OverviewReport;
-use armctl_frame::failure::Failure;
 use armctl_frame::output::envelope::Envelope;
 use armctl_frame::output::log::Level;
+use armctl_frame::prelude::*;
 use armctl_frame::robot::alarm::Alarm;
 use armctl_frame::robot::state::PositionMm;
-use armctl_frame::settings::Robot;
 
 /// The alarms and errors of a robot.
 #[derive(Debug, Clone, Serialize, JsonSchema)]

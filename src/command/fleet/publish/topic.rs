@@ -5,11 +5,9 @@
 //! a leading `$`. Two names therefore never have the same topic, and the name can be decoded.
 
 use std::collections::BTreeSet;
-
 use std::str::FromStr;
 
-use armctl_frame::failure::Failure;
-use armctl_frame::settings::Robot;
+use armctl_frame::prelude::*;
 use armctl_frame::settings::place::Place;
 
 /// Topic levels of robots. If several robots have the same name, as simulators do, the family is appended.

@@ -1,19 +1,12 @@
 //! `armctl robots check`: checks each layer of a connection, with hints for problems.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::command::families;
-use armctl_frame::ValueKind;
+use armctl_frame::Family;
 use armctl_frame::dry_run::Plan;
 use armctl_frame::face::layers;
 use armctl_frame::face::layers::Layer;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::Screen;
-use armctl_frame::output::view::View;
-use armctl_frame::settings::{Robot, target};
-use armctl_frame::{Access, Command, ConnectMode, Context, Family, Report};
+use armctl_frame::prelude::*;
+use armctl_frame::settings::target;
 
 /// Checks each layer of the connection between this computer and the robot, and shows which settings to change. Changes
 /// nothing. Exit code 8 if a layer failed.

@@ -2,15 +2,10 @@
 
 use std::time::Duration;
 
-use clap::{Args, FromArgMatches as _};
-use schemars::JsonSchema;
-use serde::Serialize;
+use clap::FromArgMatches as _;
 
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, Table, View};
-use armctl_frame::run::{Run, RunError};
+use armctl_frame::prelude::*;
 use armctl_frame::settings::duration;
-use armctl_frame::{Access, ConnectMode, Report};
 use armctl_toyo::ports::{self, Port};
 use armctl_yrcx::buses::Searches;
 use armctl_yrcx::discover::{self, FoundDevice};

@@ -3,16 +3,11 @@
 use std::io::Write as _;
 
 use anyhow::Context as _;
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use super::file;
 use armctl_files as files;
-use armctl_frame::Report;
 use armctl_frame::editor_session::open_editor;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::View;
-use armctl_frame::run::{Run, RunError};
+use armctl_frame::prelude::*;
 use armctl_frame::settings::inventory::Inventory;
 
 /// Content of a new file.

@@ -1,24 +1,20 @@
 //! Commands that add, change and remove inventory entries.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
 use toml_edit::{Array, Table, Value, value};
 
 use super::file::change;
 use armctl_controller::nearest::nearest;
 use armctl_controller::text::Encoding;
 use armctl_controller::yerc::Model;
-use armctl_frame::failure::Failure;
+use armctl_frame::Candidate;
 use armctl_frame::output::jq::failure_after_change;
-use armctl_frame::output::view::{self, Cell, View};
-use armctl_frame::run::{Run, RunError};
+use armctl_frame::output::view;
+use armctl_frame::prelude::*;
 use armctl_frame::settings::duration;
 use armctl_frame::settings::inventory::{Entry, Inventory, is_name, named};
 use armctl_frame::settings::model::ModelSetting;
 use armctl_frame::settings::place;
 use armctl_frame::settings::target::{Family, Target, TargetArgument};
-use armctl_frame::{Candidate, Report, ValueKind};
 
 /// Arguments of `robots add`.
 #[derive(Debug, Args)]

@@ -5,9 +5,8 @@ use std::path::Path;
 use anyhow::Context as _;
 
 use armctl_files as files;
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::output::busy_work::register;
-use armctl_frame::run::Run;
+use armctl_frame::prelude::*;
 use armctl_frame::settings::document::{Document, DocumentError};
 use armctl_frame::settings::inventory::Inventory;
 

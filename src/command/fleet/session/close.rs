@@ -1,21 +1,12 @@
 //! `armctl session close`: closes sessions, and waits until they are closed.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::list::locations;
 use crate::command::families;
 use armctl_controller::nearest::nearest;
-use armctl_frame::Report;
-use armctl_frame::ValueKind;
 use armctl_frame::attach::{attach_failure, folder_failure, identify};
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::interrupt::catch_interrupts;
-use armctl_frame::output::view::{Table, View};
+use armctl_frame::prelude::*;
 use armctl_frame::prompt::ask;
-use armctl_frame::run::{Run, RunError};
-use armctl_frame::settings::Robot;
 use armctl_frame::settings::target::Target;
 use armctl_transport::session::client::{AttachError, close};
 use armctl_transport::session::location::SessionPath;

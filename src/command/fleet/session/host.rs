@@ -13,14 +13,11 @@ use tokio::task::{JoinSet, LocalSet};
 
 use super::watched_entry::WatchedEntry;
 use crate::command::families;
-use armctl_frame::Access;
 use armctl_frame::attach::{folder_failure, in_use, info, session_key};
 use armctl_frame::face::HeldLink;
-use armctl_frame::failure::Failure;
 use armctl_frame::guardian::{self, SessionGuardian};
-use armctl_frame::output::Screen;
+use armctl_frame::prelude::*;
 use armctl_frame::session_manager::{HeldBy, ManagerRequest, SessionManager};
-use armctl_frame::settings::Robot;
 use armctl_transport::session::host::{EndReason, Host};
 use armctl_transport::session::location::{LockResult, SessionFolder};
 

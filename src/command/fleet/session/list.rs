@@ -2,16 +2,10 @@
 
 use std::time::Duration;
 
-use clap::Args;
 use jiff::Timestamp;
-use schemars::JsonSchema;
-use serde::Serialize;
 
-use armctl_frame::Report;
 use armctl_frame::attach::folder_failure;
-use armctl_frame::failure::Failure;
-use armctl_frame::output::view::{Cell, Table, Tone, View};
-use armctl_frame::run::{Run, RunError};
+use armctl_frame::prelude::*;
 use armctl_transport::session::client::{AttachError, status};
 use armctl_transport::session::location::{SessionFolder, SessionPath};
 use armctl_transport::session::wire::{Leftover, Peer, Status, VERSION};

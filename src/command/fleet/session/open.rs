@@ -7,22 +7,18 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
-use clap::Args;
 use jiff::Timestamp;
 
 use super::host::{OpenResult, SessionHost};
 use crate::command::families;
 use armctl_frame::attach::{folder_failure, format_since, identify, session_key};
 use armctl_frame::background::{self, DETACHED, Opened, Start, report_start};
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::interrupt::{catch_interrupts, interruptible};
-use armctl_frame::output::Screen;
 use armctl_frame::output::log::Level;
+use armctl_frame::prelude::*;
 use armctl_frame::repeat_limiter::{Line, RepeatLimiter};
-use armctl_frame::run::{Run, RunError};
+use armctl_frame::settings::duration;
 use armctl_frame::settings::target::Family;
-use armctl_frame::settings::{Robot, duration};
-use armctl_frame::{Access, ConnectMode, ValueKind};
 use armctl_transport::session::client::status;
 use armctl_transport::session::host::EndReason;
 use armctl_transport::session::leave_terminal;

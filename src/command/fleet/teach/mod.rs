@@ -14,12 +14,9 @@ mod screen_loop;
 mod tests;
 mod view;
 
-use clap::Args;
-
 pub use self::screen_loop::show;
-use armctl_controller::Risk;
-use armctl_frame::failure::Failure;
-use armctl_frame::gate::{Confirmation, Intent};
+use armctl_frame::gate::Intent;
+use armctl_frame::prelude::*;
 use armctl_frame::settings::target::Family;
 
 /// Arguments of `teach`; `crate::app` runs it.

@@ -16,12 +16,10 @@ use super::{CommandRunner, Teach};
 use crate::command::fleet::poll::{Poll, PollRequest as Looks, RobotId, Subscription};
 use crate::command::fleet::top;
 use armctl_frame::face::teach_panel::{Panel, SmallStep, Step};
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::interrupt::termination_request;
-use armctl_frame::output::Screen;
 use armctl_frame::output::fullscreen::{Event, Fullscreen, Keys};
 use armctl_frame::output::painter::Palette;
-use armctl_frame::settings::Robot;
+use armctl_frame::prelude::*;
 
 /// Polling interval, and interval of screen updates.
 const POLL_INTERVAL: Duration = Duration::from_millis(250);

@@ -16,7 +16,6 @@ mod view;
 
 use std::time::Duration;
 
-use clap::Args;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep_until};
 
@@ -25,11 +24,10 @@ pub use self::model::Model;
 use self::view::Palette;
 pub use self::view::robot;
 use crate::command::fleet::poll::{self, Poll, PollRequest, RobotId, Subscription};
-use armctl_frame::failure::{Failure, Kind};
 use armctl_frame::interrupt::{catch_interrupts, interruptible};
 use armctl_frame::output::Format;
 use armctl_frame::output::fullscreen::{Event, Fullscreen, Keys};
-use armctl_frame::run::{Run, RunError};
+use armctl_frame::prelude::*;
 
 /// Full-screen live monitor of one or all robots.
 #[derive(Debug, Args)]

@@ -8,9 +8,8 @@ use super::keys::KeyAction;
 use super::track::Track;
 use crate::command::fleet::poll::{Event, RobotId};
 use armctl_frame::face::sample::Sample;
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::view::Tone;
-use armctl_frame::settings::{Robot, target};
+use armctl_frame::prelude::*;
+use armctl_frame::settings::target;
 
 /// Time since the view started.
 pub type Moment = Duration;

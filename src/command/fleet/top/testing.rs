@@ -2,12 +2,11 @@
 
 use armctl_frame::face::overview::OverviewReport;
 use armctl_frame::face::sample::{Axis, Bank, Indicator, Sample, SignalByte, Whole};
-use armctl_frame::failure::{Failure, Kind};
-use armctl_frame::output::view::Tone;
+use armctl_frame::prelude::*;
 use armctl_frame::robot::alarm::Alarm;
 use armctl_frame::robot::state::{Fault, Mode, PositionMm, State};
 use armctl_frame::settings::inventory::Inventory;
-use armctl_frame::settings::{Robot, Selection, Sources};
+use armctl_frame::settings::{Selection, Sources};
 
 use std::time::Duration;
 

@@ -1,0 +1,8 @@
+//! Names that almost every command of this family uses.
+
+pub use armctl_controller::text::Encoding;
+pub use armctl_controller::yerc::Model;
+pub use armctl_controller::yerc::files::{FileName, FileType};
+pub use armctl_controller::yerc::group::Group;
+pub use armctl_controller::yerc::payload::{Position, PositionKind};
+pub use armctl_frame::prelude::*;
