@@ -4,6 +4,7 @@
 
 use super::memory::Kind;
 use super::world::{Refusal, World, code};
+use crate::simulator::refuse_if;
 use crate::yerc::Model;
 use crate::yerc::table::{Action, Attribute, Availability, Plural, Row, Service, service, total};
 use crate::yerc::wire::RequestFrame;
@@ -207,9 +208,7 @@ fn write_several(world: &mut World, row: &Row, plural: Plural, first: u16, last:
     };
     let count = u32::from_le_bytes(*count);
     let range = plural_range(plural, count, first, last, code::REQUEST_SIZE)?;
-    if elements.len() != range.len() * row.size() {
-        return Err(Refusal::Added(code::REQUEST_SIZE));
-    }
+    refuse_if(elements.len() != range.len() * row.size(), Refusal::Added(code::REQUEST_SIZE))?;
     world.may_write()?;
     check_writable(world, row, *range.start())?;
     check_writable(world, row, *range.end())?;
@@ -231,12 +230,8 @@ fn plural_range(
     too_many: u16,
 ) -> Result<std::ops::RangeInclusive<u16>, Refusal> {
     let Ok(count) = u16::try_from(count) else { return Err(Refusal::Added(too_many)) };
-    if count > plural.max {
-        return Err(Refusal::Added(too_many));
-    }
-    if count == 0 || plural.even && count % 2 == 1 {
-        return Err(Refusal::Added(code::OPERAND_RANGE));
-    }
+    refuse_if(count > plural.max, Refusal::Added(too_many))?;
+    refuse_if(count == 0 || plural.even && count % 2 == 1, Refusal::Added(code::OPERAND_RANGE))?;
     match first.checked_add(count - 1).filter(|&end| end <= last) {
         Some(end) => Ok(first..=end),
         None => Err(Refusal::Instance),
@@ -270,9 +265,7 @@ fn whole_element(row: &Row, data: &[u8]) -> Answer {
     if data.len() == size {
         return Ok(data.to_vec());
     }
-    if size > 4 || data.len() != 4 {
-        return Err(Refusal::Added(code::REQUEST_SIZE));
-    }
+    refuse_if(size > 4 || data.len() != 4, Refusal::Added(code::REQUEST_SIZE))?;
     let (value, fill) = data.split_at(size);
     let negative = value.last().is_some_and(|byte| byte & 0x80 != 0) && row.number == INTEGER;
     let fits = fill.iter().all(|&byte| byte == 0 || negative && byte == 0xFF);
