@@ -124,35 +124,16 @@ pub(super) enum Store {
 }
 
 impl Store {
-    const ALL: [(u16, Self); 21] = [
-        (command::IO, Self::Io),
-        (command::REGISTER, Self::Register),
-        (0x7A, Self::Variable(Kind::B)),
-        (0x7B, Self::Variable(Kind::I)),
-        (0x7C, Self::Variable(Kind::D)),
-        (0x7D, Self::Variable(Kind::R)),
-        (0x7E, Self::Variable(Kind::S)),
-        (0x7F, Self::Variable(Kind::P)),
-        (0x80, Self::Variable(Kind::Bp)),
-        (0x81, Self::Variable(Kind::Ex)),
-        (0x8C, Self::Variable(Kind::S)),
-        (0x300, Self::Io),
-        (0x301, Self::Register),
-        (0x302, Self::Variable(Kind::B)),
-        (0x303, Self::Variable(Kind::I)),
-        (0x304, Self::Variable(Kind::D)),
-        (0x305, Self::Variable(Kind::R)),
-        (0x306, Self::Variable(Kind::S)),
-        (0x307, Self::Variable(Kind::P)),
-        (0x308, Self::Variable(Kind::Bp)),
-        (0x309, Self::Variable(Kind::Ex)),
-    ];
-
     pub(super) fn from_number(command: u16) -> Option<Self> {
-        if command == 0x30C {
-            return Some(Self::Variable(Kind::S));
+        let variable = |index: u16| Kind::ALL.get(usize::from(index)).map(|kind| Self::Variable(*kind));
+        match command {
+            command::IO | 0x300 => Some(Self::Io),
+            command::REGISTER | 0x301 => Some(Self::Register),
+            0x7A..=0x81 => variable(command - 0x7A),
+            0x302..=0x309 => variable(command - 0x302),
+            0x8C | 0x30C => Some(Self::Variable(Kind::S)),
+            _ => None,
         }
-        Self::ALL.into_iter().find(|(number, _)| *number == command).map(|(_, store)| store)
     }
 }
 
