@@ -44,3 +44,8 @@ pub use armctl_files::{plain, this_program};
 fn vanished(why: impl Display) -> io::Error {
     io::Error::new(io::ErrorKind::NotConnected, why.to_string())
 }
+
+/// Refuses with `error` if `is_refused`.
+fn refuse_if<E>(is_refused: bool, error: E) -> Result<(), E> {
+    if is_refused { Err(error) } else { Ok(()) }
+}

@@ -6,3 +6,8 @@ pub(crate) mod answers;
 pub mod console;
 pub(crate) mod start;
 pub(crate) mod timeline;
+
+/// Refuses with `error` if `is_refused`.
+pub(crate) fn refuse_if<E>(is_refused: bool, error: E) -> Result<(), E> {
+    if is_refused { Err(error) } else { Ok(()) }
+}

@@ -14,7 +14,24 @@ use std::time::Duration;
 use fastrand::Rng;
 use thiserror::Error;
 
+/// Declares the faults of a simulated device. Columns: variant, name, effect.
+macro_rules! device_faults {
+    ($(#[$doc:meta])* $device:ident { $($fault:ident $name:literal $effect:literal,)* }) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub enum $device {
+            $(#[doc = $effect] $fault,)*
+        }
+
+        impl $device {
+            /// All faults with their names.
+            pub const ALL: &[(&str, Self)] = &[$(($name, Self::$fault),)*];
+        }
+    };
+}
+
 pub use datagram::{FaultSpec, Faults};
+pub(crate) use device_faults;
 pub use line::{LineFaultSpec, LineFaults, Passed};
 
 /// Longest delay that a specification can contain.

@@ -3,6 +3,7 @@
 use super::operate::Refusal;
 use super::reply::{Fields, Reply};
 use super::world::{Mode, World};
+use crate::simulator::refuse_if;
 use crate::toyo::field::{Mask, Value};
 use crate::toyo::request::{BlockError, Request};
 use crate::toyo::table::Command;
@@ -41,9 +42,7 @@ fn parse(block: &str) -> Result<Request, String> {
 
 fn execute(world: &mut World, request: &Request) -> Result<Reply, String> {
     let row = request.row();
-    if row.needs_host && !world.switches.host {
-        return Err("the host is off".to_owned());
-    }
+    refuse_if(row.needs_host && !world.switches.host, "the host is off".to_owned())?;
     if !world.supports(row.only_on) {
         return Err(format!("a {} does not have this command", world.model));
     }
@@ -131,9 +130,7 @@ fn robot_type(world: &mut World, axis: usize, robot_type: i32) -> Reply {
 
 /// Sets the bits of a port, or the bit that M12 assigns.
 fn direct(world: &mut World, request: &Request) -> Result<(), Refusal> {
-    if world.switches.machine_changed {
-        return Err("parameter 2 was changed: power must be cycled first");
-    }
+    refuse_if(world.switches.machine_changed, "parameter 2 was changed: power must be cycled first")?;
     let fields = Fields(request.record());
     let (port, mask) = if let Some(mask) = request.record().mask("data") {
         (fields.port(), mask)

@@ -4,6 +4,7 @@ use super::errors::code;
 use super::memory::index;
 use super::motion::{Coordinates, minus};
 use super::world::World;
+use crate::simulator::refuse_if;
 use crate::toyo::field::Value;
 
 /// Number of linear axes of a matrix: axes 1 to 3. Axis 4 (`TURN`) rotates.
@@ -27,9 +28,7 @@ impl Matrix {
             if pieces <= 1 {
                 continue;
             }
-            if !(1..=pieces).contains(&piece) {
-                return Err(code::CALCULATION);
-            }
+            refuse_if(!(1..=pieces).contains(&piece), code::CALCULATION)?;
             let share = f64::from(piece - 1) / f64::from(pieces - 1);
             let way = minus(&self.corners[direction], &self.origin);
             place.iter_mut().zip(way).take(SPACE).for_each(|(coordinate, way)| *coordinate += way * share);

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::action::{Action, action, place};
 use super::defaults;
 use super::motion::{AXES, Coordinates};
+use crate::simulator::refuse_if;
 use crate::toyo::field::{Field, Form, Value};
 use crate::toyo::layout::Record;
 use crate::toyo::table::parameters::PARAMETERS;
@@ -325,9 +326,7 @@ impl Memory {
         };
         if parameter.id == "E22" {
             let total: i32 = record.pairs().map(|(field, _)| record.number(field.name).unwrap_or_default()).sum();
-            if index(total) > MOST_STEPS {
-                return Err(NoRoom);
-            }
+            refuse_if(index(total) > MOST_STEPS, NoRoom)?;
         }
         if !self.wear.write(cell) {
             return Ok(());
@@ -369,9 +368,7 @@ impl Memory {
     pub(super) fn insert_step(&mut self, task: usize, step: usize) -> Result<(), NoRoom> {
         let size = self.size(task);
         let last = self.content.steps[task].last().ok_or(NoRoom)?;
-        if step > size || !last.is_nothing() {
-            return Err(NoRoom);
-        }
+        refuse_if(step > size || !last.is_nothing(), NoRoom)?;
         let mut rest = self.content.steps[task][step - 1..size - 1].to_vec();
         rest.insert(0, Step::nothing());
         self.replace(task, step, rest)
@@ -380,9 +377,7 @@ impl Memory {
     /// Deletes steps. The steps after them move up.
     pub(super) fn delete_steps(&mut self, task: usize, first: usize, last: usize) -> Result<(), NoRoom> {
         let size = self.size(task);
-        if first > last || last > size {
-            return Err(NoRoom);
-        }
+        refuse_if(first > last || last > size, NoRoom)?;
         let mut rest = self.content.steps[task][last..].to_vec();
         rest.resize_with(size + 1 - first, Step::nothing);
         self.replace(task, first, rest)
@@ -392,9 +387,7 @@ impl Memory {
     pub(super) fn copy_steps(&mut self, from: (usize, usize, usize), to: (usize, usize)) -> Result<(), NoRoom> {
         let (source, first, last) = from;
         let (task, top) = to;
-        if first > last || last > self.size(source) || top + (last - first) > self.size(task) {
-            return Err(NoRoom);
-        }
+        refuse_if(first > last || last > self.size(source) || top + (last - first) > self.size(task), NoRoom)?;
         let steps = self.content.steps[source][first - 1..last].to_vec();
         self.replace(task, top, steps)
     }

@@ -6,6 +6,7 @@ use super::motion::{AXES, Arc, Coordinates, Drive, Path, Segment, minus, plus};
 use super::task::{Flow, Wait};
 use super::watch::NEAR;
 use super::world::World;
+use crate::simulator::refuse_if;
 
 /// Number of rows in the coordinate table.
 const LAST_POINT: i32 = 999;
@@ -45,9 +46,7 @@ impl World {
         };
         let axes = self.machine.tasks[index].clone();
         self.check_motion_allowed(&axes.axes)?;
-        if axes.space < 2 {
-            return Err(code::ARC_DATA);
-        }
+        refuse_if(axes.space < 2, code::ARC_DATA)?;
         let from = self.arm.goal();
         let (via_base, via) = self.resolve_target(index, &first, &from)?;
         let (to_base, to) = self.resolve_target(index, &second, &via)?;
@@ -65,13 +64,8 @@ impl World {
 
     /// Whether axes can move in a program.
     pub(super) fn check_motion_allowed(&self, axes: &[usize]) -> Result<(), u8> {
-        if axes.is_empty() {
-            return Err(code::COMMAND);
-        }
-        if !axes.iter().all(|&axis| self.switches.servo[axis]) {
-            return Err(code::UNEXECUTABLE);
-        }
-        Ok(())
+        refuse_if(axes.is_empty(), code::COMMAND)?;
+        refuse_if(!axes.iter().all(|&axis| self.switches.servo[axis]), code::UNEXECUTABLE)
     }
 
     /// Coordinates of the row whose number is the sum of `point` and a counter.
@@ -86,12 +80,8 @@ impl World {
         let from = path.at(0.0);
         for &axis in axes {
             let (least, most) = path.range(axis);
-            if most > self.settings.plus[axis] + NEAR && most > from[axis] + NEAR {
-                return Err(code(axis, true));
-            }
-            if least < self.settings.minus[axis] - NEAR && least < from[axis] - NEAR {
-                return Err(code(axis, false));
-            }
+            refuse_if(most > self.settings.plus[axis] + NEAR && most > from[axis] + NEAR, code(axis, true))?;
+            refuse_if(least < self.settings.minus[axis] - NEAR && least < from[axis] - NEAR, code(axis, false))?;
         }
         Ok(())
     }
@@ -99,9 +89,7 @@ impl World {
     /// Targets of a move: without the offset, and with the offset. The axes of other tasks stay in place.
     fn resolve_target(&self, index: usize, order: &Move, from: &Coordinates) -> Result<(Coordinates, Coordinates), u8> {
         let axes = &self.machine.tasks[index].axes;
-        if !axes.iter().all(|&axis| self.arm.known[axis]) {
-            return Err(code::ORIGIN_INCOMPLETE);
-        }
+        refuse_if(!axes.iter().all(|&axis| self.arm.known[axis]), code::ORIGIN_INCOMPLETE)?;
         if axes.iter().any(|&axis| self.machine.driver[axis].is_some()) && !self.synchronized {
             return Err(code::NOT_SYNCHRONIZED);
         }

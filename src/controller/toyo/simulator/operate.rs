@@ -8,6 +8,7 @@ use super::memory::{MOST_STEPS, TASKS};
 use super::routine::Routine;
 use super::settings::Special;
 use super::world::{Kind, Mode, World};
+use crate::simulator::refuse_if;
 
 /// Reason of a refusal.
 pub(super) type Refusal = &'static str;
@@ -15,9 +16,7 @@ pub(super) type Refusal = &'static str;
 impl World {
     /// Refuses while anything runs.
     pub(super) fn idle(&self) -> Result<(), Refusal> {
-        if self.is_executing() {
-            return Err("a program, motion or jog runs");
-        }
+        refuse_if(self.is_executing(), "a program, motion or jog runs")?;
         if self.card.is_busy() { Err("the memory card is in use") } else { Ok(()) }
     }
 
@@ -38,18 +37,14 @@ impl World {
 
     fn of_kind(&self, kind: Kind, what: Refusal) -> Result<(), Refusal> {
         self.check_startable()?;
-        if self.switches.mode == Mode::Program {
-            return Err("programs do not run in program mode");
-        }
+        refuse_if(self.switches.mode == Mode::Program, "programs do not run in program mode")?;
         if self.kind() == kind { Ok(()) } else { Err(what) }
     }
 
     /// Starts the sequential program of task 1 at a step. 0 continues, or begins at the first step.
     pub(super) fn start_sequential(&mut self, step: usize) -> Result<(), Refusal> {
         self.of_kind(Kind::Sequential, "the controller is not in sequential mode")?;
-        if step > self.memory.size(0) || self.memory.size(0) == 0 {
-            return Err("no such step");
-        }
+        refuse_if(step > self.memory.size(0) || self.memory.size(0) == 0, "no such step")?;
         self.memory.index_tags();
         self.jog_ready = false;
         let allowance = (self.switches.mode == Mode::Step).then_some(1);
@@ -143,9 +138,7 @@ impl World {
     pub(super) fn search_origin(&mut self, drive: usize) -> Result<(), Refusal> {
         self.check_startable()?;
         self.powered_axes()?;
-        if !self.machine.driver.contains(&Some(drive)) {
-            return Err("this axis has no driven axis (E26)");
-        }
+        refuse_if(!self.machine.driver.contains(&Some(drive)), "this axis has no driven axis (E26)")?;
         self.reset_program();
         self.jog_ready = false;
         self.synchronize(drive);
@@ -163,23 +156,15 @@ impl World {
             return Ok(());
         }
         let [(axis, word)] = moving[..] else { return Err("only one axis at a time can jog") };
-        if words.contains(&"RS") {
-            return Err("all other axes must be stopped (SP)");
-        }
+        refuse_if(words.contains(&"RS"), "all other axes must be stopped (SP)")?;
         // A repetition of the same JOG changes nothing.
         if self.jog.is_some_and(|jog| jog.axis == axis && jog.word == *word && !word.ends_with('C')) {
             return Ok(());
         }
         self.check_startable()?;
-        if !self.jog_ready {
-            return Err("JOG was not reset (RS)");
-        }
-        if axis >= self.axes {
-            return Err("this axis is not fitted");
-        }
-        if !self.switches.servo[axis] {
-            return Err("servo power is off");
-        }
+        refuse_if(!self.jog_ready, "JOG was not reset (RS)")?;
+        refuse_if(axis >= self.axes, "this axis is not fitted")?;
+        refuse_if(!self.switches.servo[axis], "servo power is off")?;
         if let Err(code) = self.begin_jog(axis, word) {
             self.fail(code);
         }
@@ -199,9 +184,7 @@ impl World {
 
     pub(super) fn cancel_error(&mut self) -> Result<(), Refusal> {
         self.unchanged()?;
-        if self.switches.estop {
-            return Err("the emergency stop is pressed");
-        }
+        refuse_if(self.switches.estop, "the emergency stop is pressed")?;
         self.errors.cancel();
         Ok(())
     }
@@ -219,9 +202,7 @@ impl World {
 
     /// Switches host control, unless the pendant is ON.
     pub(super) fn host(&mut self, on: bool) -> Result<(), Refusal> {
-        if on && self.switches.pendant {
-            return Err("the teach pendant is on");
-        }
+        refuse_if(on && self.switches.pendant, "the teach pendant is on")?;
         if !on {
             self.end_jog();
         }
@@ -250,9 +231,7 @@ impl World {
     /// Selects sequential or palletizing mode, unless M10 selects a different mode.
     pub(super) fn select_program_kind(&mut self, palletizing: bool) -> Result<(), Refusal> {
         self.idle()?;
-        if self.settings.special != Special::None {
-            return Err("M10 selects easy or external point mode");
-        }
+        refuse_if(self.settings.special != Special::None, "M10 selects easy or external point mode")?;
         if palletizing != self.switches.palletizing {
             self.reset_program();
         }
@@ -269,9 +248,7 @@ impl World {
     /// Stores coordinates for a move of a task. Only one set of coordinates can wait.
     pub(super) fn store_coordinates(&mut self, task: usize, place: [f64; 4], speed: i32) -> Result<(), Refusal> {
         let slot = &mut self.tasks[task].supplied;
-        if slot.is_some() {
-            return Err("earlier coordinates are still waiting");
-        }
+        refuse_if(slot.is_some(), "earlier coordinates are still waiting")?;
         *slot = Some((place, speed));
         Ok(())
     }

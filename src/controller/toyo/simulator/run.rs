@@ -7,6 +7,7 @@ use super::memory::{TASKS, TagLookup};
 use super::task::{Flow, Wait};
 use super::trace::What;
 use super::world::World;
+use crate::simulator::refuse_if;
 use crate::toyo::field::Mask;
 
 /// Maximum nesting of subroutines. The manual has no limit.
@@ -205,9 +206,7 @@ impl World {
             }
             Action::OutputAt { task, port, mask, axis, at_least, place } => {
                 let task = task.checked_sub(1).unwrap_or(index);
-                if !self.machine.tasks[task].axes.contains(&axis) {
-                    return Err(code::TASK);
-                }
+                refuse_if(!self.machine.tasks[task].axes.contains(&axis), code::TASK)?;
                 self.output_at(OutputAt { task, axis, at_least, place, port, mask })?;
             }
             Action::CancelOutputs { task } => {
@@ -218,9 +217,7 @@ impl World {
             Action::Offset(target) => self.tasks[index].offset = self.target(index, target)?,
             Action::Servo { axis, on } => self.switch_servo(index, axis, on)?,
             Action::Torque(torque) => {
-                if !self.machine.tasks[index].axes.contains(&torque.axis) {
-                    return Err(code::COMMAND);
-                }
+                refuse_if(!self.machine.tasks[index].axes.contains(&torque.axis), code::COMMAND)?;
                 self.tasks[index].torque = Some(torque);
             }
         }
@@ -249,9 +246,7 @@ impl World {
 
     /// Returns the step of a tag.
     pub(super) fn find(&self, index: usize, tag: usize) -> Result<usize, u8> {
-        if !(1..=999).contains(&tag) {
-            return Err(code::TAG_NUMBER);
-        }
+        refuse_if(!(1..=999).contains(&tag), code::TAG_NUMBER)?;
         match self.memory.tag(index, tag) {
             TagLookup::Step(step) => Ok(step),
             TagLookup::Nowhere => Err(code::TAG_UNDEFINED),
@@ -262,9 +257,7 @@ impl World {
     fn call(&mut self, index: usize, step: usize, tag: usize) -> Result<Flow, u8> {
         let to = self.find(index, tag)?;
         let stack = &mut self.tasks[index].stack;
-        if stack.len() >= DEPTH {
-            return Err(code::STACK_FULL);
-        }
+        refuse_if(stack.len() >= DEPTH, code::STACK_FULL)?;
         stack.push(step + 1);
         Ok(Flow::To(to))
     }
@@ -309,9 +302,7 @@ impl World {
     }
 
     fn output(&mut self, port: Port, mask: Mask, time: Option<std::time::Duration>) -> Result<(), u8> {
-        if !self.ports.set_output(port, mask) {
-            return Err(code::PORT);
-        }
+        refuse_if(!self.ports.set_output(port, mask), code::PORT)?;
         if let Some(time) = time {
             let back = Mask { care: mask.care, bits: !mask.bits & mask.care };
             // If the same pulse is already running, its time starts again.
@@ -328,9 +319,7 @@ impl World {
             None if !own.is_empty() => own.clone(),
             _ => return Err(code::COMMAND),
         };
-        if on && self.switches.estop {
-            return Err(code::UNEXECUTABLE);
-        }
+        refuse_if(on && self.switches.estop, code::UNEXECUTABLE)?;
         if !on {
             self.arm.freeze_owner(index, self.now);
             self.arm.discard_interrupted(index);
@@ -344,9 +333,7 @@ impl World {
     fn order_task(&mut self, index: usize, other: usize, order: TaskOrder) -> Result<Flow, u8> {
         match order {
             TaskOrder::Start => {
-                if self.tasks[other].running || self.memory.size(other) == 0 {
-                    return Err(code::TASK_START);
-                }
+                refuse_if(self.tasks[other].running || self.memory.size(other) == 0, code::TASK_START)?;
                 self.tasks[other].reset();
                 self.tasks[other].start(1, self.now.saturating_add(self.tick));
             }

@@ -23,6 +23,7 @@ use super::trace::Trace;
 use super::world::{COUNTERS, Mode, Switches, TIMERS, World};
 use crate::Now;
 use crate::simulator::console;
+use crate::simulator::refuse_if;
 use crate::simulator::start::{self, Event, Source, Table, default_entry, default_text};
 use crate::simulator::timeline::Timeline;
 use crate::toyo::field::{Mask, Value};
@@ -361,9 +362,7 @@ fn step(line: &str) -> Result<Record, String> {
 
 /// Stores a program in a task. The task gets as many steps as the program needs.
 fn program(world: &mut World, task: usize, steps: Vec<Record>) -> Result<(), String> {
-    if !(1..=TASKS).contains(&task) {
-        return Err("tasks must be from 1 to 4".to_owned());
-    }
+    refuse_if(!(1..=TASKS).contains(&task), "tasks must be from 1 to 4".to_owned())?;
     let mut sizes: [usize; TASKS] = std::array::from_fn(|index| world.memory.size(index));
     sizes[task - 1] = sizes[task - 1].max(steps.len());
     // At first, task 1 has all steps. The steps of the other tasks are taken from task 1, and not from the easy

@@ -9,6 +9,28 @@ use crate::yerc::payload::{
 use crate::yerc::request::Request;
 use crate::yerc::table::{Row, service, total};
 
+macro_rules! read_all {
+    ($(#[$doc:meta])* $name:ident, $command:literal, $answer:ty) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub struct $name {
+            instance: u16,
+        }
+
+        impl Query for $name {
+            type Answer = $answer;
+
+            fn request(&self) -> Request {
+                read_all($command, self.instance)
+            }
+
+            fn decode(&self, data: &[u8]) -> Result<$answer, PayloadError> {
+                <$answer>::parse(data)
+            }
+        }
+    };
+}
+
 /// Reads both status words (0x72).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ReadStatus;
@@ -116,28 +138,15 @@ impl Query for ReadAlarmHistory {
     }
 }
 
-/// Reads the current job of a task (0x73).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct ReadJob {
-    task: u8,
+read_all! {
+    /// Reads the current job of a task (0x73).
+    ReadJob, 0x73, JobInfo
 }
 
 impl ReadJob {
     /// Task 0 is the master task. Sub tasks are 1 to 5 on FS100, 1 to 15 on DX200.
     pub fn new(model: Model, task: u8) -> Result<Self, QueryError> {
-        Ok(Self { task: known_task(model, task)? })
-    }
-}
-
-impl Query for ReadJob {
-    type Answer = JobInfo;
-
-    fn request(&self) -> Request {
-        read_all(0x73, u16::from(self.task) + 1)
-    }
-
-    fn decode(&self, data: &[u8]) -> Result<JobInfo, PayloadError> {
-        JobInfo::parse(data)
+        Ok(Self { instance: u16::from(known_task(model, task)?) + 1 })
     }
 }
 
@@ -161,10 +170,9 @@ fn instance(model: Model, group: Group, coordinates: Coordinates) -> Result<u16,
     }
 }
 
-/// Reads the axis names of a group (0x74).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct ReadAxes {
-    instance: u16,
+read_all! {
+    /// Reads the axis names of a group (0x74).
+    ReadAxes, 0x74, AxisNames
 }
 
 impl ReadAxes {
@@ -174,22 +182,9 @@ impl ReadAxes {
     }
 }
 
-impl Query for ReadAxes {
-    type Answer = AxisNames;
-
-    fn request(&self) -> Request {
-        read_all(0x74, self.instance)
-    }
-
-    fn decode(&self, data: &[u8]) -> Result<AxisNames, PayloadError> {
-        AxisNames::parse(data)
-    }
-}
-
-/// Reads the current position of a group (0x75).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct ReadPosition {
-    instance: u16,
+read_all! {
+    /// Reads the current position of a group (0x75).
+    ReadPosition, 0x75, Position
 }
 
 impl ReadPosition {
@@ -205,54 +200,28 @@ impl ReadPosition {
     }
 }
 
-impl Query for ReadPosition {
-    type Answer = Position;
-
-    fn request(&self) -> Request {
-        read_all(0x75, self.instance)
-    }
-
-    fn decode(&self, data: &[u8]) -> Result<Position, PayloadError> {
-        Position::parse(data)
-    }
-}
-
-macro_rules! read_axes {
-    ($(#[$doc:meta])* $name:ident, $command:literal) => {
-        $(#[$doc])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-        pub struct $name {
-            group: Group,
-        }
-
-        impl $name {
-            /// Accepts any group of the model.
-            pub fn new(model: Model, group: Group) -> Result<Self, QueryError> {
-                Ok(Self { group: known_group(model, group)? })
-            }
-        }
-
-        impl Query for $name {
-            type Answer = Axes;
-
-            fn request(&self) -> Request {
-                read_all($command, self.group.instance())
-            }
-
-            fn decode(&self, data: &[u8]) -> Result<Axes, PayloadError> {
-                Axes::parse(data)
-            }
-        }
-    };
-}
-
-read_axes! {
+read_all! {
     /// Reads the position error (deviation) of each axis in pulses (0x76).
-    ReadPositionError, 0x76
+    ReadPositionError, 0x76, Axes
 }
-read_axes! {
+
+impl ReadPositionError {
+    /// Accepts any group of the model.
+    pub fn new(model: Model, group: Group) -> Result<Self, QueryError> {
+        Ok(Self { instance: known_group(model, group)?.instance() })
+    }
+}
+
+read_all! {
     /// Reads the torque of each axis (0x77); the manuals do not specify the unit.
-    ReadTorque, 0x77
+    ReadTorque, 0x77, Axes
+}
+
+impl ReadTorque {
+    /// Accepts any group of the model.
+    pub fn new(model: Model, group: Group) -> Result<Self, QueryError> {
+        Ok(Self { instance: known_group(model, group)?.instance() })
+    }
 }
 
 /// Subject of an operating-time counter (3.3.25).
@@ -270,10 +239,9 @@ pub enum TimeCounter {
     Application(u8),
 }
 
-/// Reads an operating-time counter (0x88).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct ReadManagementTime {
-    instance: u16,
+read_all! {
+    /// Reads an operating-time counter (0x88).
+    ReadManagementTime, 0x88, ManagementTime
 }
 
 impl ReadManagementTime {
@@ -300,18 +268,6 @@ impl ReadManagementTime {
     }
 }
 
-impl Query for ReadManagementTime {
-    type Answer = ManagementTime;
-
-    fn request(&self) -> Request {
-        read_all(0x88, self.instance)
-    }
-
-    fn decode(&self, data: &[u8]) -> Result<ManagementTime, PayloadError> {
-        ManagementTime::parse(data)
-    }
-}
-
 /// Subject of system information (3.3.26).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SystemPart {
@@ -321,10 +277,9 @@ pub enum SystemPart {
     Application(u8),
 }
 
-/// Reads versions and names (0x89).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct ReadSystemInfo {
-    instance: u16,
+read_all! {
+    /// Reads versions and names (0x89).
+    ReadSystemInfo, 0x89, SystemInfo
 }
 
 impl ReadSystemInfo {
@@ -338,18 +293,6 @@ impl ReadSystemInfo {
             SystemPart::Application(number) => 100 + u16::from(number),
         };
         checked(model, Self { instance })
-    }
-}
-
-impl Query for ReadSystemInfo {
-    type Answer = SystemInfo;
-
-    fn request(&self) -> Request {
-        read_all(0x89, self.instance)
-    }
-
-    fn decode(&self, data: &[u8]) -> Result<SystemInfo, PayloadError> {
-        SystemInfo::parse(data)
     }
 }
 

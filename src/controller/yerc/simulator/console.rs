@@ -4,6 +4,7 @@ use super::alarms::Class;
 use super::memory::io_class;
 use super::world::{Mode, World};
 use crate::simulator::console::{self, expected, number, on_off, unknown};
+use crate::simulator::refuse_if;
 use crate::yerc::payload::CycleMode;
 
 /// Lines of `help`.
@@ -107,9 +108,7 @@ fn servo(world: &mut World, on: bool) -> Result<(), String> {
     if world.alarms.is_active() {
         return Err("servo power stays off while an alarm is active: 'alarm clear' first".into());
     }
-    if world.switches.estop {
-        return Err("servo power stays off during an emergency stop: 'estop off' first".into());
-    }
+    refuse_if(world.switches.estop, "servo power stays off during an emergency stop: 'estop off' first".to_owned())?;
     world.switches.servo = true;
     Ok(())
 }

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::memory::Kind;
 use super::motion::{AXES, Pulses};
+use crate::simulator::refuse_if;
 
 /// Added status: NOP is missing at the start, END is missing at the end, or lines do not end in CR LF.
 const NOP_OR_END_MISSING: u16 = 0x5130;
@@ -30,13 +31,9 @@ impl Program {
     /// `stem` is the file name without `.JBI`. It must be equal to the job name in the file.
     pub(super) fn parse(stem: &[u8], text: &[u8]) -> Result<Self, u16> {
         let lines = lines(text)?;
-        if lines.first() != Some(&b"/JOB".as_slice()) {
-            return Err(FORMAT);
-        }
+        refuse_if(lines.first() != Some(&b"/JOB".as_slice()), FORMAT)?;
         let name = lines.iter().find_map(|line| line.strip_prefix(b"//NAME ")).ok_or(FORMAT)?;
-        if name.trim_ascii() != stem {
-            return Err(JOB_RECORD);
-        }
+        refuse_if(name.trim_ascii() != stem, JOB_RECORD)?;
         let head = lines.iter().position(|line| *line == b"NOP").ok_or(NOP_OR_END_MISSING)?;
         let Some((&b"END", body)) = lines[head..].split_last() else { return Err(NOP_OR_END_MISSING) };
         let instructions: Result<Vec<_>, u16> =

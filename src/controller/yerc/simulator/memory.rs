@@ -35,6 +35,8 @@ pub(super) enum Kind {
 }
 
 impl Kind {
+    /// All kinds, in the order of their commands.
+    pub(super) const ALL: [Self; 8] = [Self::B, Self::I, Self::D, Self::R, Self::S, Self::P, Self::Bp, Self::Ex];
     /// All kinds. Longer names come first, so that a prefix search finds `BP` before `B`.
     pub(super) const BY_NAME: [(&'static str, Self); 8] = [
         ("BP", Self::Bp),
@@ -108,10 +110,9 @@ pub(super) struct Memory {
 
 impl Memory {
     pub(super) fn new(model: Model) -> Self {
-        use Kind::{B, Bp, D, Ex, I, P, R, S};
         Self {
             model,
-            banks: [B, I, D, R, S, P, Bp, Ex].map(Bank::new),
+            banks: Kind::ALL.map(Bank::new),
             io: vec![0; IO_END],
             registers: vec![0; REGISTERS],
             ladder: Vec::new(),

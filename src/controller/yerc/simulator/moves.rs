@@ -5,6 +5,7 @@
 
 use super::motion::{AXES, Family, MAX_ANGULAR_DEG_S, MAX_LINEAR_MM_S, Pose, Pulses, Speed, forward, inverse};
 use super::world::{Refusal, World, code};
+use crate::simulator::refuse_if;
 use crate::yerc::Model;
 use crate::yerc::payload::{CartesianMove, MoveLayout, PositionKind, PulseMove, SpeedClass};
 
@@ -27,9 +28,7 @@ impl World {
             Model::Fs100 => &[MoveLayout::Words25, MoveLayout::Words26][..],
             Model::Dx100 | Model::Dx200 | Model::Yrc1000 => &[MoveLayout::Words26],
         };
-        if !layouts.iter().any(|layout| layout.size() == data.len()) {
-            return Err(Refusal::Added(code::REQUEST_SIZE));
-        }
+        refuse_if(!layouts.iter().any(|layout| layout.size() == data.len()), Refusal::Added(code::REQUEST_SIZE))?;
         let order = CartesianMove::parse(data).map_err(|_| Refusal::Added(code::REQUEST_SIZE))?;
         self.may_move()?;
         let group = self.moved_group(order.robot, order.station)?;
@@ -40,12 +39,8 @@ impl World {
             PositionKind::Tool => instance == INCREMENT,
             PositionKind::Pulse | PositionKind::Other(_) => false,
         };
-        if !known {
-            return Err(Refusal::Added(code::COORDINATE));
-        }
-        if order.reserved != [0, 0] {
-            return Err(Refusal::Added(code::RANGE));
-        }
+        refuse_if(!known, Refusal::Added(code::COORDINATE))?;
+        refuse_if(order.reserved != [0, 0], Refusal::Added(code::RANGE))?;
         if order.form.0 & !FORM_BITS != 0 || order.extended.0 & !EXTENDED_FORM_BITS != 0 {
             return Err(Refusal::Added(code::FORM));
         }
@@ -72,9 +67,7 @@ impl World {
 
     /// Executes command 0x8B.
     pub(super) fn move_pulse(&mut self, instance: u16, data: &[u8]) -> Result<(), Refusal> {
-        if data.len() != PulseMove::SIZE {
-            return Err(Refusal::Added(code::REQUEST_SIZE));
-        }
+        refuse_if(data.len() != PulseMove::SIZE, Refusal::Added(code::REQUEST_SIZE))?;
         let order = PulseMove::parse(data).map_err(|_| Refusal::Added(code::REQUEST_SIZE))?;
         self.may_move()?;
         let group = self.moved_group(order.robot, order.station)?;
@@ -145,9 +138,7 @@ impl World {
     fn base_target(&self, robot: u16, words: &[f64; 3], increment: bool) -> Result<Option<(usize, Pulses)>, Refusal> {
         let base = self.arm.find(Family::Base, robot);
         let axes = base.map_or(0, |base| self.arm.groups[base].axes);
-        if words[axes.min(3)..].iter().any(|&word| word != 0.0) {
-            return Err(Refusal::Added(code::RANGE));
-        }
+        refuse_if(words[axes.min(3)..].iter().any(|&word| word != 0.0), Refusal::Added(code::RANGE))?;
         Ok(base.map(|base| {
             let mut pulses = [0.0; AXES];
             for (pulse, (word, from)) in pulses.iter_mut().zip(words.iter().zip(self.arm.groups[base].pulses)) {
@@ -187,9 +178,7 @@ fn speed_of(instance: u16, class: SpeedClass, speed: u32) -> Result<Ordered, Ref
         _ => return Err(Refusal::Added(code::SPEED)),
     };
     let value = f64::from(speed) * scale;
-    if speed == 0 || value > most + 1e-9 {
-        return Err(Refusal::Added(code::SPEED));
-    }
+    refuse_if(speed == 0 || value > most + 1e-9, Refusal::Added(code::SPEED))?;
     Ok(match class {
         SpeedClass::Linear => Ordered::Speed(Speed::Linear(value)),
         SpeedClass::Angular => Ordered::Speed(Speed::Angular(value)),

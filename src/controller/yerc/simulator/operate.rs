@@ -2,6 +2,7 @@
 
 use super::robot::{Answer, command};
 use super::world::{Mode, Refusal, World, code};
+use crate::simulator::refuse_if;
 use crate::yerc::payload::{CycleMode, Text};
 use crate::yerc::table::Row;
 
@@ -37,9 +38,7 @@ impl World {
         self.may_command()?;
         if instance == 1 {
             // An alarm that stops the whole controller stays active until a restart.
-            if self.alarms.major_is_active() {
-                return Err(Refusal::Added(code::ALARM));
-            }
+            refuse_if(self.alarms.major_is_active(), Refusal::Added(code::ALARM))?;
             self.alarms.clear();
         } else {
             self.switches.error = false;
@@ -78,22 +77,16 @@ impl World {
             3 => CycleMode::Continuous,
             _ => return Err(Refusal::Added(code::RANGE)),
         };
-        if self.switches.mode == Mode::Teach {
-            return Err(Refusal::Added(code::MODE));
-        }
+        refuse_if(self.switches.mode == Mode::Teach, Refusal::Added(code::MODE))?;
         self.may_command()?;
         self.switches.cycle = cycle;
         Ok(())
     }
 
     fn say(&mut self, data: &[u8]) -> Result<(), Refusal> {
-        if data.is_empty() || data.len() > MESSAGE_FIELD {
-            return Err(Refusal::Added(code::REQUEST_SIZE));
-        }
+        refuse_if(data.is_empty() || data.len() > MESSAGE_FIELD, Refusal::Added(code::REQUEST_SIZE))?;
         let text = Text::<MESSAGE_FIELD>::cut(data);
-        if text.as_bytes().len() > MESSAGE_LEN {
-            return Err(Refusal::Added(code::RANGE));
-        }
+        refuse_if(text.as_bytes().len() > MESSAGE_LEN, Refusal::Added(code::RANGE))?;
         self.may_command()?;
         self.switches.message = text.as_bytes().to_vec();
         Ok(())
@@ -102,32 +95,22 @@ impl World {
     fn start_job(&mut self, data: &[u8]) -> Result<(), Refusal> {
         execute_word(data)?;
         self.may_move()?;
-        if !self.player.has_job() {
-            return Err(Refusal::Added(code::NO_JOB_SET));
-        }
+        refuse_if(!self.player.has_job(), Refusal::Added(code::NO_JOB_SET))?;
         self.player.start(self.now);
         Ok(())
     }
 
     fn select_job(&mut self, instance: u16, data: &[u8]) -> Result<(), Refusal> {
-        if data.len() != SELECTION {
-            return Err(Refusal::Added(code::REQUEST_SIZE));
-        }
+        refuse_if(data.len() != SELECTION, Refusal::Added(code::REQUEST_SIZE))?;
         let (name, line) = data.split_at(NAME_FIELD);
         let (name, line) = (Text::<NAME_FIELD>::cut(name), word(line)?);
         self.may_command()?;
-        if self.switches.editing {
-            return Err(Refusal::Added(code::EDITING));
-        }
-        if self.is_running() {
-            return Err(Refusal::Added(code::MOVING));
-        }
+        refuse_if(self.switches.editing, Refusal::Added(code::EDITING))?;
+        refuse_if(self.is_running(), Refusal::Added(code::MOVING))?;
         let program = self.files.program(name.as_bytes()).ok_or(Refusal::Added(code::NO_SUCH_JOB))?;
         if instance == EXECUTE {
             let line = usize::try_from(line).unwrap_or(usize::MAX);
-            if !self.player.select(name.as_bytes(), program, line) {
-                return Err(Refusal::Added(code::RANGE));
-            }
+            refuse_if(!self.player.select(name.as_bytes(), program, line), Refusal::Added(code::RANGE))?;
         } else {
             self.player.masters.insert(instance - FIRST_MASTER, name.as_bytes().to_vec());
         }

@@ -9,6 +9,7 @@ use super::memory::Kind;
 use super::motion::{AXES, Family, MAX_LINEAR_MM_S, Pose, Pulses, Speed, inverse};
 use super::world::World;
 use crate::Now;
+use crate::simulator::refuse_if;
 use crate::yerc::payload::{CycleMode, JobInfo, Text};
 
 /// Duration of a line without a motion or a wait.
@@ -192,9 +193,7 @@ impl World {
                     Arithmetic::Mul => left * right,
                     Arithmetic::Div => left / right,
                 };
-                if !value.is_finite() || !self.memory.store_number(*kind, *index, value) {
-                    return Err(OUT_OF_RANGE);
-                }
+                refuse_if(!value.is_finite() || !self.memory.store_number(*kind, *index, value), OUT_OF_RANGE)?;
                 self.line_done(soon);
             }
             Instruction::Wait(condition, limit) => {
@@ -232,9 +231,7 @@ impl World {
 
     fn call(&mut self, name: &[u8], at: Now) -> Result<(), Fault> {
         let program = self.files.program(name).ok_or(NO_LABEL_OR_JOB)?;
-        if self.player.callers.len() >= MAX_CALLS {
-            return Err(TOO_MANY_CALLS);
-        }
+        refuse_if(self.player.callers.len() >= MAX_CALLS, TOO_MANY_CALLS)?;
         let called = Cursor { name: name.to_vec(), program: Arc::new(program), line: 0 };
         if let Some(mut caller) = self.player.cursor.replace(called) {
             caller.line += 1;

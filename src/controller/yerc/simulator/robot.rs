@@ -4,6 +4,7 @@
 
 use super::memory::Kind;
 use super::world::{Refusal, World, code};
+use crate::simulator::refuse_if;
 use crate::yerc::Model;
 use crate::yerc::table::{Action, Attribute, Availability, Plural, Row, Service, service, total};
 use crate::yerc::wire::RequestFrame;
@@ -123,35 +124,16 @@ pub(super) enum Store {
 }
 
 impl Store {
-    const ALL: [(u16, Self); 21] = [
-        (command::IO, Self::Io),
-        (command::REGISTER, Self::Register),
-        (0x7A, Self::Variable(Kind::B)),
-        (0x7B, Self::Variable(Kind::I)),
-        (0x7C, Self::Variable(Kind::D)),
-        (0x7D, Self::Variable(Kind::R)),
-        (0x7E, Self::Variable(Kind::S)),
-        (0x7F, Self::Variable(Kind::P)),
-        (0x80, Self::Variable(Kind::Bp)),
-        (0x81, Self::Variable(Kind::Ex)),
-        (0x8C, Self::Variable(Kind::S)),
-        (0x300, Self::Io),
-        (0x301, Self::Register),
-        (0x302, Self::Variable(Kind::B)),
-        (0x303, Self::Variable(Kind::I)),
-        (0x304, Self::Variable(Kind::D)),
-        (0x305, Self::Variable(Kind::R)),
-        (0x306, Self::Variable(Kind::S)),
-        (0x307, Self::Variable(Kind::P)),
-        (0x308, Self::Variable(Kind::Bp)),
-        (0x309, Self::Variable(Kind::Ex)),
-    ];
-
     pub(super) fn from_number(command: u16) -> Option<Self> {
-        if command == 0x30C {
-            return Some(Self::Variable(Kind::S));
+        let variable = |index: u16| Kind::ALL.get(usize::from(index)).map(|kind| Self::Variable(*kind));
+        match command {
+            command::IO | 0x300 => Some(Self::Io),
+            command::REGISTER | 0x301 => Some(Self::Register),
+            0x7A..=0x81 => variable(command - 0x7A),
+            0x302..=0x309 => variable(command - 0x302),
+            0x8C | 0x30C => Some(Self::Variable(Kind::S)),
+            _ => None,
         }
-        Self::ALL.into_iter().find(|(number, _)| *number == command).map(|(_, store)| store)
     }
 }
 
@@ -207,9 +189,7 @@ fn write_several(world: &mut World, row: &Row, plural: Plural, first: u16, last:
     };
     let count = u32::from_le_bytes(*count);
     let range = plural_range(plural, count, first, last, code::REQUEST_SIZE)?;
-    if elements.len() != range.len() * row.size() {
-        return Err(Refusal::Added(code::REQUEST_SIZE));
-    }
+    refuse_if(elements.len() != range.len() * row.size(), Refusal::Added(code::REQUEST_SIZE))?;
     world.may_write()?;
     check_writable(world, row, *range.start())?;
     check_writable(world, row, *range.end())?;
@@ -231,12 +211,8 @@ fn plural_range(
     too_many: u16,
 ) -> Result<std::ops::RangeInclusive<u16>, Refusal> {
     let Ok(count) = u16::try_from(count) else { return Err(Refusal::Added(too_many)) };
-    if count > plural.max {
-        return Err(Refusal::Added(too_many));
-    }
-    if count == 0 || plural.even && count % 2 == 1 {
-        return Err(Refusal::Added(code::OPERAND_RANGE));
-    }
+    refuse_if(count > plural.max, Refusal::Added(too_many))?;
+    refuse_if(count == 0 || plural.even && count % 2 == 1, Refusal::Added(code::OPERAND_RANGE))?;
     match first.checked_add(count - 1).filter(|&end| end <= last) {
         Some(end) => Ok(first..=end),
         None => Err(Refusal::Instance),
@@ -270,9 +246,7 @@ fn whole_element(row: &Row, data: &[u8]) -> Answer {
     if data.len() == size {
         return Ok(data.to_vec());
     }
-    if size > 4 || data.len() != 4 {
-        return Err(Refusal::Added(code::REQUEST_SIZE));
-    }
+    refuse_if(size > 4 || data.len() != 4, Refusal::Added(code::REQUEST_SIZE))?;
     let (value, fill) = data.split_at(size);
     let negative = value.last().is_some_and(|byte| byte & 0x80 != 0) && row.number == INTEGER;
     let fits = fill.iter().all(|&byte| byte == 0 || negative && byte == 0xFF);

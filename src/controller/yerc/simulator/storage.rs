@@ -7,6 +7,7 @@ use super::job::Program;
 use super::lists;
 use super::variables;
 use super::world::{Refusal, World, code};
+use crate::simulator::refuse_if;
 use crate::yerc::Model;
 use crate::yerc::table::BATCH_BACKUP_PATH;
 
@@ -220,13 +221,8 @@ impl World {
 
     fn may_change_files(&self) -> Result<(), Refusal> {
         self.may_command()?;
-        if self.switches.editing {
-            return Err(Refusal::Added(code::EDITING));
-        }
-        if self.is_running() {
-            return Err(Refusal::Added(code::MOVING));
-        }
-        Ok(())
+        refuse_if(self.switches.editing, Refusal::Added(code::EDITING))?;
+        refuse_if(self.is_running(), Refusal::Added(code::MOVING))
     }
 
     /// Whether a batch backup is possible now (DX 3.4.5).
@@ -237,10 +233,7 @@ impl World {
                 _ => code::BACKUP_MODE,
             }));
         }
-        if self.is_running() {
-            return Err(Refusal::Added(code::OPERATING));
-        }
-        Ok(())
+        refuse_if(self.is_running(), Refusal::Added(code::OPERATING))
     }
 }
 

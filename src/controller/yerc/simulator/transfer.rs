@@ -16,6 +16,7 @@ use super::robot::has;
 use super::storage::{Content, FileContent};
 use super::world::{Refusal, World, code};
 use crate::Now;
+use crate::simulator::refuse_if;
 use crate::yerc::Model;
 use crate::yerc::table::{BATCH_BACKUP_PATH, Row, service};
 use crate::yerc::wire::{AnswerFrame, Division, LAST_BLOCK, MAX_DATA, RequestFrame, Status};
@@ -187,15 +188,9 @@ impl FileServer {
     fn open(&mut self, world: &mut World, now: Now, peer: u64, request: &RequestFrame<'_>) -> Result<Vec<u8>, Refusal> {
         let row =
             Row::of_file(request.service, request.data).filter(|_| request.command == 0).ok_or(Refusal::Command)?;
-        if request.instance != 0 {
-            return Err(Refusal::Instance);
-        }
-        if request.attribute != 0 {
-            return Err(Refusal::Attribute);
-        }
-        if request.block != 0 {
-            return Err(Refusal::Added(code::BLOCK));
-        }
+        refuse_if(request.instance != 0, Refusal::Instance)?;
+        refuse_if(request.attribute != 0, Refusal::Attribute)?;
+        refuse_if(request.block != 0, Refusal::Added(code::BLOCK))?;
         let stage = match request.service {
             service::DELETE => {
                 world.delete_file(request.data)?;
@@ -206,9 +201,7 @@ impl FileServer {
                 Stage::Receiving { name: request.data.to_vec(), bytes: Vec::new(), received: 0 }
             }
             _ if request.data == BATCH_BACKUP_PATH => {
-                if !has(world, row.availability) {
-                    return Err(Refusal::Added(code::PATH));
-                }
+                refuse_if(!has(world, row.availability), Refusal::Added(code::PATH))?;
                 if let Some(content) = world.files.backup.clone() {
                     Stage::Sending { content, block: 1, is_backup: true }
                 } else {

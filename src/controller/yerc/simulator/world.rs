@@ -10,6 +10,7 @@ use super::motion::{Arm, End, Family, Group};
 use super::playback::Player;
 use super::storage::Storage;
 use crate::Now;
+use crate::simulator::refuse_if;
 use crate::simulator::timeline::Timeline;
 use crate::yerc::Model;
 use crate::yerc::payload::{ControllerStatus, CycleMode, StatusBit};
@@ -335,21 +336,14 @@ impl World {
     pub(super) fn may_write(&self) -> Result<(), Refusal> {
         self.may_command()?;
         let Switches { mode, editing, play_lock, .. } = self.switches;
-        if editing {
-            return Err(Refusal::Added(code::EDITING));
-        }
-        if play_lock && mode == Mode::Play {
-            return Err(Refusal::Added(code::NO_ACCESS));
-        }
-        Ok(())
+        refuse_if(editing, Refusal::Added(code::EDITING))?;
+        refuse_if(play_lock && mode == Mode::Play, Refusal::Added(code::NO_ACCESS))
     }
 
     /// Whether a motion or a job can start.
     pub(super) fn may_move(&self) -> Result<(), Refusal> {
         let Switches { mode, servo, hold, editing, .. } = self.switches;
-        if mode == Mode::Teach {
-            return Err(Refusal::Added(code::MODE));
-        }
+        refuse_if(mode == Mode::Teach, Refusal::Added(code::MODE))?;
         self.may_command()?;
         let obstacle = [
             (editing, code::EDITING),
@@ -365,13 +359,8 @@ impl World {
 
     /// Whether servo power can be switched on.
     pub(super) fn may_power(&self) -> Result<(), Refusal> {
-        if self.alarms.is_active() {
-            return Err(Refusal::Added(code::ALARM));
-        }
-        if self.switches.estop {
-            return Err(Refusal::Added(code::SERVO_REFUSED));
-        }
-        Ok(())
+        refuse_if(self.alarms.is_active(), Refusal::Added(code::ALARM))?;
+        refuse_if(self.switches.estop, Refusal::Added(code::SERVO_REFUSED))
     }
 
     /// Switches mode or remote. This stops jobs and drops transfers.

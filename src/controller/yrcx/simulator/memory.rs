@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::alarms::{ARITHMETIC, AlarmSource, Fault, NO_AXIS, NO_PALLET, NO_POINT, POINT_UNIT};
 use super::geometry::{Four, STEPS, whole};
 use super::robot::AXES;
+use crate::simulator::refuse_if;
 
 pub(super) const POINTS: u16 = 30_000;
 /// Number of pallets and of shifts.
@@ -149,9 +150,7 @@ impl Memory {
     /// Adds another point to a point, or subtracts it (4.4.3).
     pub(super) fn combine_points(&mut self, number: usize, other: usize, sign: i64) -> Result<(), Fault> {
         let (mut point, other) = (self.point(number)?, self.point(other)?);
-        if point.unit != other.unit {
-            return Err(unit_differs("the two points"));
-        }
+        refuse_if(point.unit != other.unit, unit_differs("the two points"))?;
         for (value, added) in point.values.iter_mut().zip(other.values) {
             *value = i32::try_from(i64::from(*value) + sign * i64::from(added)).map_err(|_| too_large())?;
         }
@@ -162,9 +161,7 @@ impl Memory {
     /// Sets an element of a point. Elements count from 0 (4.4.4).
     pub(super) fn set_element(&mut self, number: usize, unit: PointUnit, at: usize, value: i32) -> Result<(), Fault> {
         let mut point = self.point(number)?;
-        if point.unit != unit {
-            return Err(unit_differs("the point"));
-        }
+        refuse_if(point.unit != unit, unit_differs("the point"))?;
         let no_axis = || Fault::new(NO_AXIS, AlarmSource::Controller, format!("a point has no element {}", at + 1));
         *point.values.get_mut(at).ok_or_else(no_axis)? = value;
         self.set_point(number, point);

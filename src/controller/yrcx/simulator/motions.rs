@@ -9,6 +9,7 @@ use super::moves::{Frame, Homing, Rate, Speed};
 use super::request::Request;
 use super::robot::{ALL, Method, RESET_PITCH, ResumableMotion};
 use super::world::World;
+use crate::simulator::refuse_if;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Values};
 
@@ -221,9 +222,7 @@ fn slower(share: f64, percent: i32) -> Rate {
 fn to_reset_position(world: &World, request: &Request) -> Result<Leg, Fault> {
     let (number, at) = (request.robot(), axis(request));
     let robot = world.robot(number)?;
-    if robot.axes[at].method != Method::Mark {
-        return Err(super::operate::no_mark(number, at));
-    }
+    refuse_if(robot.axes[at].method != Method::Mark, super::operate::no_mark(number, at))?;
     let from = robot.pulses();
     let mut to = from;
     // The next reset position in this direction, also if the axis is exactly at a reset position.

@@ -6,6 +6,7 @@ use super::memory::{Point, PointUnit};
 use super::motion::{End, Leg, Motion, Owner, Path};
 use super::robot::{Axis, Method, Motor, Robot, over_limit};
 use super::world::{Mode, World};
+use crate::simulator::refuse_if;
 
 /// Full tool speed in mm/s and degrees/s.
 const LINEAR_SPEED: f64 = 1000.0;
@@ -283,9 +284,7 @@ impl World {
                 (true, true) => limits.0,
                 (true, false) => limits.1,
             };
-            if (to[axis] - from[axis]) * sign <= 0.0 {
-                return Err(over_limit(number, axis));
-            }
+            refuse_if((to[axis] - from[axis]) * sign <= 0.0, over_limit(number, axis))?;
             let leg = self.joint_leg(number, &from, &to, speed)?;
             return Ok((leg, End::Stopped(over_limit(number, axis))));
         }

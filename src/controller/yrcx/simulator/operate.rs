@@ -13,6 +13,7 @@ use super::request::Request;
 use super::robot::{Method, RESET_PITCH, Servo};
 use super::task::{State, TASKS, Task};
 use super::world::{Action, World};
+use crate::simulator::refuse_if;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Values};
 
@@ -99,9 +100,7 @@ fn absolute_reset(world: &mut World, request: &Request) -> Result<(), Fault> {
     let (number, at) = (request.robot(), axis(request));
     world.has_axes(number, 1 << at)?;
     let axis = &mut world.robot_mut(number)?.axes[at];
-    if axis.method != Method::Mark {
-        return Err(no_mark(number, at));
-    }
+    refuse_if(axis.method != Method::Mark, no_mark(number, at))?;
     let turns = axis.pulses / RESET_PITCH;
     if (turns - turns.round()).abs() * RESET_PITCH > 1.0 {
         let why = format!("axis {} is not at a position for an absolute reset", at + 1);

@@ -2,6 +2,7 @@
 //! controllers are known to do.
 
 use super::alarms::{AlarmSource, Fault, UNKNOWN_COMMAND};
+use crate::simulator::refuse_if;
 use crate::yrcx::answer::Status;
 use crate::yrcx::image::{COMMAND_WORDS, Words};
 use crate::yrcx::table::parameter::Parameter;
@@ -171,20 +172,14 @@ fn text(charset: Charset, words: &[u16]) -> Result<String, String> {
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
     let (used, rest) = bytes.split_at(end);
-    if rest.iter().any(|byte| *byte != 0) {
-        return Err("characters after the end".to_owned());
-    }
+    refuse_if(rest.iter().any(|byte| *byte != 0), "characters after the end".to_owned())?;
     let allowed = |byte: &u8| match charset {
         Charset::Comment => (0x20..=0x7E).contains(byte),
         Charset::Program => byte.is_ascii_uppercase() || byte.is_ascii_digit() || *byte == b'_',
     };
     let length = used.iter().rposition(|byte| *byte != b' ').map_or(0, |last| last + 1);
     let used = &used[..length];
-    if !used.iter().all(allowed) {
-        return Err("a character that is not allowed".to_owned());
-    }
-    if used.is_empty() && charset == Charset::Program {
-        return Err("no name".to_owned());
-    }
+    refuse_if(!used.iter().all(allowed), "a character that is not allowed".to_owned())?;
+    refuse_if(used.is_empty() && charset == Charset::Program, "no name".to_owned())?;
     Ok(used.iter().copied().map(char::from).collect())
 }

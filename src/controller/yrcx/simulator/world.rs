@@ -16,6 +16,7 @@ use super::program::Program;
 use super::robot::{ALL, Robot, Servo};
 use super::task::Task;
 use crate::Now;
+use crate::simulator::refuse_if;
 use crate::simulator::timeline::Timeline;
 use crate::yrcx::alarm::Alarm;
 use crate::yrcx::image::Image;
@@ -376,9 +377,7 @@ impl World {
         self.has_axes(number, axes)?;
         if state == Servo::On {
             self.may_power()?;
-            if !self.motor {
-                return Err(Fault::new(NO_POWER, AlarmSource::Robot(number), "motor power is off"));
-            }
+            refuse_if(!self.motor, Fault::new(NO_POWER, AlarmSource::Robot(number), "motor power is off"))?;
         }
         let robot = self.robot_mut(number)?;
         if state != Servo::On {

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use super::super::Now;
 use super::super::wire::{Mac, connection, general, owner};
+use crate::refuse_if;
 
 /// Timeout of the explicit connection: four times its packet rate of 2500 ms.
 const EXPLICIT_PATIENCE: Duration = Duration::from_secs(10);
@@ -51,36 +52,20 @@ impl Allocation {
     }
 
     pub(super) fn allocate(&mut self, now: Now, choice: u8, by: Mac, data_mac: u8) -> Result<(), Refusal> {
-        if data_mac != by.number() {
-            return Err((general::INVALID_PARAMETER, owner::NONE));
-        }
-        if self.master().is_some_and(|master| master != by) {
-            return Err((general::CONFLICT, owner::ANOTHER_MASTER));
-        }
-        if choice == 0 || choice & !KNOWN != 0 {
-            return Err((general::NO_RESOURCE, owner::INVALID_CHOICE));
-        }
-        if choice & self.choice() != 0 {
-            return Err((general::ALREADY, owner::INVALID_CHOICE));
-        }
-        if (choice | self.choice()) & connection::EXPLICIT == 0 {
-            return Err((general::CONFLICT, owner::INVALID_CHOICE));
-        }
+        refuse_if(data_mac != by.number(), (general::INVALID_PARAMETER, owner::NONE))?;
+        refuse_if(self.master().is_some_and(|master| master != by), (general::CONFLICT, owner::ANOTHER_MASTER))?;
+        refuse_if(choice == 0 || choice & !KNOWN != 0, (general::NO_RESOURCE, owner::INVALID_CHOICE))?;
+        refuse_if(choice & self.choice() != 0, (general::ALREADY, owner::INVALID_CHOICE))?;
+        refuse_if((choice | self.choice()) & connection::EXPLICIT == 0, (general::CONFLICT, owner::INVALID_CHOICE))?;
         self.held = Some((choice | self.choice(), by));
         self.refresh(now);
         Ok(())
     }
 
     pub(super) fn release(&mut self, choice: u8, by: Mac) -> Result<(), Refusal> {
-        if self.master().is_some_and(|master| master != by) {
-            return Err((general::CONFLICT, owner::ANOTHER_MASTER));
-        }
-        if choice == 0 || choice & !KNOWN != 0 {
-            return Err((general::NO_RESOURCE, owner::INVALID_CHOICE));
-        }
-        if choice & !self.choice() != 0 {
-            return Err((general::ALREADY, owner::INVALID_CHOICE));
-        }
+        refuse_if(self.master().is_some_and(|master| master != by), (general::CONFLICT, owner::ANOTHER_MASTER))?;
+        refuse_if(choice == 0 || choice & !KNOWN != 0, (general::NO_RESOURCE, owner::INVALID_CHOICE))?;
+        refuse_if(choice & !self.choice() != 0, (general::ALREADY, owner::INVALID_CHOICE))?;
         let left = self.choice() & !choice;
         self.held = self.held.filter(|_| left != 0).map(|(_, master)| (left, master));
         Ok(())

@@ -2,40 +2,20 @@
 
 use super::super::can::MOST_DATA;
 use super::super::wire::Fragment;
+use crate::fault::device_faults;
 
-/// A fault of the slave.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum DeviceFault {
-    /// The slave neither sends acknowledgements of explicit fragments nor accepts them.
-    NoAcknowledge,
-    /// Every image from the slave lacks its third fragment.
-    LostFragment,
-    /// Every image from the slave has wrong fragment counts.
-    WrongCount,
-    /// The slave reports another image size.
-    OtherSize,
-    /// Another master owns the connections of the slave.
-    ForeignOwner,
-    /// The slave answers every duplicate MAC check.
-    DuplicateMac,
-    /// The slave does not answer.
-    Mute,
-    /// All adapters on the bus are in the state bus-off.
-    BusOff,
-}
-
-impl DeviceFault {
-    /// All faults with their names.
-    pub const ALL: [(&str, Self); 8] = [
-        ("no-acknowledge", Self::NoAcknowledge),
-        ("lost-fragment", Self::LostFragment),
-        ("wrong-count", Self::WrongCount),
-        ("other-size", Self::OtherSize),
-        ("foreign-owner", Self::ForeignOwner),
-        ("duplicate-mac", Self::DuplicateMac),
-        ("mute", Self::Mute),
-        ("bus-off", Self::BusOff),
-    ];
+device_faults! {
+    /// A fault of the slave.
+    DeviceFault {
+        NoAcknowledge "no-acknowledge" "Neither sends acknowledgements of explicit fragments nor accepts them.",
+        LostFragment "lost-fragment" "Every image from the slave lacks its third fragment.",
+        WrongCount "wrong-count" "Every image from the slave has wrong fragment counts.",
+        OtherSize "other-size" "Reports another image size.",
+        ForeignOwner "foreign-owner" "Another master owns the connections of the slave.",
+        DuplicateMac "duplicate-mac" "Answers every duplicate MAC check.",
+        Mute "mute" "Does not answer.",
+        BusOff "bus-off" "All adapters on the bus are in the state bus-off.",
+    }
 }
 
 /// Applies a fault to the frames of an image.

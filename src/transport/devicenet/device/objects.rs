@@ -8,6 +8,7 @@ use super::fault::DeviceFault;
 use super::messages::Whole;
 use super::polled::Polled;
 use super::{Application, Device};
+use crate::refuse_if;
 
 /// Instance of the produced assembly.
 const ASSEMBLY: u16 = 100;
@@ -89,9 +90,7 @@ impl<A: Application> Device<A> {
 
     fn allocate(&mut self, now: Now, from: Mac, data: &[u8]) -> Result<Vec<u8>, Refusal> {
         let [choice, master] = *data else { return Err(length(data, 2)) };
-        if self.fault == Some(DeviceFault::ForeignOwner) {
-            return Err((general::CONFLICT, owner::ANOTHER_MASTER));
-        }
+        refuse_if(self.fault == Some(DeviceFault::ForeignOwner), (general::CONFLICT, owner::ANOTHER_MASTER))?;
         self.allocation.allocate(now, choice, from, master)?;
         if choice & connection::POLL != 0 {
             self.polled = Some(Polled::new());
@@ -184,9 +183,7 @@ impl<A: Application> Device<A> {
     }
 
     fn set(&mut self, now: Now, (class, instance): (u8, u16), attribute: u8, value: &[u8]) -> Result<Vec<u8>, Refusal> {
-        if (class, attribute) != (class::CONNECTION, 9) {
-            return Err((general::NOT_SETTABLE, owner::NONE));
-        }
+        refuse_if((class, attribute) != (class::CONNECTION, 9), (general::NOT_SETTABLE, owner::NONE))?;
         let [low, high] = *value else { return Err(length(value, 2)) };
         let rate = u16::from_le_bytes([low, high]);
         match &mut self.polled {

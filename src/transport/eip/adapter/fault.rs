@@ -1,65 +1,31 @@
 //! Deliberate faults of a simulated adapter, for tests of originators.
 
 use super::super::wire::Cyclic;
+use crate::fault::device_faults;
 
-/// A fault of the adapter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum AdapterFault {
-    /// The adapter sends only every other image.
-    HalfRate,
-    /// The adapter sends no images.
-    Stall,
-    /// The adapter sends every image with the sequence numbers of the previous image.
-    Stale,
-    /// The adapter sends every image twice.
-    Double,
-    /// The sequence numbers decrease.
-    WrongSequence,
-    /// The adapter sends images with an unknown connection id.
-    WrongId,
-    /// The adapter sends images that are one byte too short.
-    WrongSize,
-    /// The adapter repeats its first image, as if the application behind it had stopped.
-    Frozen,
-    /// The adapter refuses reads of assemblies with messages.
-    Unreadable,
-    /// The adapter closes the TCP connection at every request.
-    Reset,
-    /// The adapter answers no request.
-    Mute,
-    /// The adapter closes the TCP connection at every Set_Attribute.
-    ResetSet,
-    /// The adapter sends random bytes.
-    Garbage,
-    /// The adapter appends a socket address after the counted items of a ForwardOpen reply, as OpENer boards do.
-    Trailing,
-    /// The adapter does not report an owner in its status, and checks the owner before the sizes, as OpENer boards do.
-    Unowned,
+device_faults! {
+    /// A fault of the adapter.
+    AdapterFault {
+        HalfRate "half-rate" "Sends only every other image.",
+        Stall "stall" "Sends no images.",
+        Stale "stale" "Sends every image with the sequence numbers of the previous image.",
+        Double "double" "Sends every image twice.",
+        WrongSequence "wrong-sequence" "The sequence numbers decrease.",
+        WrongId "wrong-id" "Sends images with an unknown connection id.",
+        WrongSize "wrong-size" "Sends images that are one byte too short.",
+        Frozen "frozen" "Repeats its first image, as if the application behind it had stopped.",
+        Unreadable "unreadable" "Refuses reads of assemblies with messages.",
+        Reset "reset" "Closes the TCP connection at every request.",
+        ResetSet "reset-set" "Closes the TCP connection at every Set_Attribute.",
+        Mute "mute" "Answers no request.",
+        Garbage "garbage" "Sends random bytes.",
+        Trailing "trailing" "Appends a socket address after the items of a ForwardOpen reply, as OpENer boards do.",
+        Unowned "unowned" "Hides its owner in the status, and checks the owner before the sizes, as OpENer boards do.",
+    }
 }
 
 /// Socket address item 0.0.0.0:2222.
 pub(super) const TRAILING: [u8; 20] = [0x01, 0x80, 16, 0, 0, 2, 0x08, 0xAE, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
-
-impl AdapterFault {
-    /// All faults with their names.
-    pub const ALL: [(&'static str, Self); 15] = [
-        ("half-rate", Self::HalfRate),
-        ("stall", Self::Stall),
-        ("stale", Self::Stale),
-        ("double", Self::Double),
-        ("wrong-sequence", Self::WrongSequence),
-        ("wrong-id", Self::WrongId),
-        ("wrong-size", Self::WrongSize),
-        ("frozen", Self::Frozen),
-        ("unreadable", Self::Unreadable),
-        ("reset", Self::Reset),
-        ("reset-set", Self::ResetSet),
-        ("mute", Self::Mute),
-        ("garbage", Self::Garbage),
-        ("trailing", Self::Trailing),
-        ("unowned", Self::Unowned),
-    ];
-}
 
 /// Applies a fault to the image with this number. Returns the datagrams to send.
 pub(super) fn images(fault: Option<AdapterFault>, number: u64, bytes: Vec<u8>) -> Vec<Vec<u8>> {

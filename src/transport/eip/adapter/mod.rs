@@ -13,6 +13,7 @@ use super::wire::{
     Triad, service,
 };
 use super::{Now, PORT};
+use crate::refuse_if;
 
 mod fault;
 mod objects;
@@ -355,20 +356,12 @@ impl<A: Application> Adapter<A> {
 
     fn register(&mut self, client: u64, data: &[u8]) -> Result<(u32, Vec<u8>), u32> {
         let [version, 0, options @ ..] = data else { return Err(INVALID_LENGTH) };
-        if options.len() != 2 {
-            return Err(INVALID_LENGTH);
-        }
-        if *version != 1 || options != [0, 0] {
-            return Err(UNSUPPORTED_VERSION);
-        }
+        refuse_if(options.len() != 2, INVALID_LENGTH)?;
+        refuse_if(*version != 1 || options != [0, 0], UNSUPPORTED_VERSION)?;
         let sessions = self.clients.values().filter(|client| client.session.is_some()).count();
         let state = self.clients.get_mut(&client).ok_or(NO_MEMORY)?;
-        if state.session.is_some() {
-            return Err(UNSUPPORTED_COMMAND);
-        }
-        if sessions >= self.setup.most_sessions {
-            return Err(NO_MEMORY);
-        }
+        refuse_if(state.session.is_some(), UNSUPPORTED_COMMAND)?;
+        refuse_if(sessions >= self.setup.most_sessions, NO_MEMORY)?;
         self.last_session += 1;
         state.session = Some(self.last_session);
         Ok((self.last_session, data.to_vec()))

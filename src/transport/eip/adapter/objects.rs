@@ -6,6 +6,7 @@ use super::super::settings::MOST_IMAGE;
 use super::super::wire::{Request, service};
 use super::super::{ASSEMBLY, Now};
 use super::{Adapter, AdapterFault, Application, NOT_ENOUGH_DATA, Purpose, UNKNOWN_DESTINATION, UNKNOWN_SERVICE};
+use crate::refuse_if;
 
 const IDENTITY: u32 = 1;
 /// Attribute 3 of an assembly: its data.
@@ -32,9 +33,7 @@ impl<A: Application> Adapter<A> {
             ASSEMBLY => instance == 0 || self.images.contains_key(&instance),
             _ => false,
         };
-        if !is_there {
-            return Err(UNKNOWN_DESTINATION);
-        }
+        refuse_if(!is_there, UNKNOWN_DESTINATION)?;
         match (request.service, attribute) {
             (service::ATTRIBUTES_ALL, None) if class == IDENTITY && instance == 1 => Ok(self.identity().attributes()),
             (service::ATTRIBUTE_SINGLE, Some(attribute)) => match (class, instance) {
@@ -82,12 +81,8 @@ impl<A: Application> Adapter<A> {
 
     /// Sets the data of an output assembly with a message, if no connection owns the assembly.
     fn set_image(&mut self, now: Now, instance: u32, image: &[u8]) -> Result<Vec<u8>, u8> {
-        if self.setup.assembly(instance, Purpose::Output).is_none() {
-            return Err(NOT_SETTABLE);
-        }
-        if self.held.iter().any(|held| held.peer.output == Some(instance)) {
-            return Err(STATE_CONFLICT);
-        }
+        refuse_if(self.setup.assembly(instance, Purpose::Output).is_none(), NOT_SETTABLE)?;
+        refuse_if(self.held.iter().any(|held| held.peer.output == Some(instance)), STATE_CONFLICT)?;
         let kept = self.images.get_mut(&instance).ok_or(UNKNOWN_DESTINATION)?;
         match image.len().cmp(&kept.len()) {
             Ordering::Less => return Err(NOT_ENOUGH_DATA),
@@ -100,9 +95,7 @@ impl<A: Application> Adapter<A> {
 
     /// Returns an instance attribute of an assembly: data or size.
     fn assembly_attribute(&mut self, now: Now, instance: u32, attribute: u32) -> Result<Vec<u8>, u8> {
-        if self.fault == Some(AdapterFault::Unreadable) {
-            return Err(UNKNOWN_ATTRIBUTE);
-        }
+        refuse_if(self.fault == Some(AdapterFault::Unreadable), UNKNOWN_ATTRIBUTE)?;
         let is_input = self.setup.assembly(instance, Purpose::Input).is_some();
         let image = self.images.get_mut(&instance).ok_or(UNKNOWN_DESTINATION)?;
         match attribute {

@@ -9,6 +9,7 @@ use super::super::{ASSEMBLY, IO_PORT, Now};
 use super::{
     Adapter, AdapterFault, Application, Consumer, Event, Held, NOT_ENOUGH_DATA, Peer, Producer, Purpose, Setup,
 };
+use crate::refuse_if;
 
 /// Extended status codes (volume 1, table 3-5.29).
 const DUPLICATE: u16 = 0x0100;
@@ -76,21 +77,15 @@ impl<A: Application> Adapter<A> {
         let points = points(open)?;
         // Some boards check the owner before the sizes.
         let is_owned = self.held.iter().any(|held| held.peer.output == Some(points.output));
-        if self.fault == Some(AdapterFault::Unowned) && is_owned {
-            return Err(Status::connection(OWNED, &[]));
-        }
+        refuse_if(self.fault == Some(AdapterFault::Unowned) && is_owned, Status::connection(OWNED, &[]))?;
         let role = self.setup.allows(open, &points)?;
         let intervals = Multiplier::from_code(open.multiplier).ok_or(Status::general(INVALID_PARAMETER))?.intervals();
-        if self.held.iter().any(|held| held.triad == open.triad) {
-            return Err(Status::connection(DUPLICATE, &[]));
-        }
+        refuse_if(self.held.iter().any(|held| held.triad == open.triad), Status::connection(DUPLICATE, &[]))?;
         let output = (role == Role::ExclusiveOwner).then_some(points.output);
         if output.is_some() && self.held.iter().any(|held| held.peer.output == output) {
             return Err(Status::connection(OWNED, &[]));
         }
-        if self.held.len() >= self.setup.most_connections {
-            return Err(Status::connection(OUT_OF_CONNECTIONS, &[]));
-        }
+        refuse_if(self.held.len() >= self.setup.most_connections, Status::connection(OUT_OF_CONNECTIONS, &[]))?;
         let o_t = self.setup.interval(&open.o_t);
         let mut t_o = self.setup.interval(&open.t_o);
         let is_multicast = open.t_o.net == Net::Multicast;
@@ -101,9 +96,7 @@ impl<A: Application> Adapter<A> {
             held.is_multicast && is_multicast && held.peer.input == points.input && fits
         });
         let shared = shared.map(|held| (held.t_o_id, held.peer.t_o));
-        if role == Role::ListenOnly && shared.is_none() {
-            return Err(Status::connection(NOTHING_TO_HEAR, &[]));
-        }
+        refuse_if(role == Role::ListenOnly && shared.is_none(), Status::connection(NOTHING_TO_HEAR, &[]))?;
         let o_t_id = self.next_id();
         let (t_o_id, producer) = if let Some((id, interval)) = shared {
             t_o = interval;
@@ -196,15 +189,10 @@ impl Setup {
         if differs(key.vendor, own.vendor) || differs(key.product, own.product) {
             return Err(Status::connection(VENDOR_OR_PRODUCT, &[]));
         }
-        if differs(key.device_type, own.device_type) {
-            return Err(Status::connection(DEVICE_TYPE, &[]));
-        }
+        refuse_if(differs(key.device_type, own.device_type), Status::connection(DEVICE_TYPE, &[]))?;
         let revision = own.revision;
         let minor_fits = key.minor == 0 || key.minor == revision.minor || key.compatible && key.minor < revision.minor;
-        if key.major != 0 && !(key.major == revision.major && minor_fits) {
-            return Err(Status::connection(REVISION, &[]));
-        }
-        Ok(())
+        refuse_if(key.major != 0 && !(key.major == revision.major && minor_fits), Status::connection(REVISION, &[]))
     }
 
     /// Returns the requested interval, rounded up to a multiple of the tick.
@@ -226,9 +214,7 @@ fn points(open: &Open) -> Result<Points<'_>, Status> {
         rest => (rest, &[][..]),
     };
     let strange = |segment: &Segment| !matches!(segment, Segment::Class(_) | Segment::Instance(_) | Segment::Point(_));
-    if rest.iter().any(strange) {
-        return Err(Status::connection(SEGMENT, &[]));
-    }
+    refuse_if(rest.iter().any(strange), Status::connection(SEGMENT, &[]))?;
     let (configuration, output, input) = match *rest {
         [Segment::Class(ASSEMBLY), Segment::Instance(configuration), Segment::Point(output), Segment::Point(input)] => {
             (Some(configuration), output, input)

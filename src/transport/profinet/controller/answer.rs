@@ -16,6 +16,7 @@ use super::client::Outcome;
 use super::cyclic::{Consumer, Producer};
 use super::view::Step;
 use super::{Action, Controller, Io, Phase};
+use crate::refuse_if;
 
 const CONNECT: &str = "Connect";
 const WRITE: &str = "Write";
@@ -67,9 +68,7 @@ impl Controller {
                     if *uuid != ar.uuid || *session_key != ar.session_key {
                         return Err(senseless("it belongs to another connection"));
                     }
-                    if *card != mac {
-                        return Err(senseless("the answer is from another network card"));
-                    }
+                    refuse_if(*card != mac, senseless("the answer is from another network card"))?;
                     has_ar = true;
                 }
                 Response::Iocr { kind: 1, frame_id, .. } => input = Some(*frame_id),
@@ -77,16 +76,12 @@ impl Controller {
                 Response::AlarmCr { reference, .. } => alarm = Some(*reference),
                 Response::ModuleDiff(modules) => {
                     let mismatches = self.settings.layout.mismatches(modules);
-                    if !mismatches.is_empty() {
-                        return Err(ProfinetError::Modules(mismatches));
-                    }
+                    refuse_if(!mismatches.is_empty(), ProfinetError::Modules(mismatches))?;
                 }
                 _ => {}
             }
         }
-        if !has_ar {
-            return Err(senseless("it does not contain the connection"));
-        }
+        refuse_if(!has_ar, senseless("it does not contain the connection"))?;
         let (Some(input), Some(output)) = (input, output) else {
             return Err(senseless("it does not contain the cyclic data of both directions"));
         };
@@ -129,12 +124,8 @@ impl Controller {
         let senseless = |why| ProfinetError::Senseless { what: PRM_END, why };
         let found = blocks.iter().find(|block| block.kind == BlockType::PRM_END.answer());
         let control = Control::parse(found.ok_or_else(|| senseless("the block is missing"))?).map_err(malformed)?;
-        if control.ar != self.uuid() {
-            return Err(senseless("it belongs to another connection"));
-        }
-        if control.command != Control::DONE {
-            return Err(senseless("the device did not confirm it"));
-        }
+        refuse_if(control.ar != self.uuid(), senseless("it belongs to another connection"))?;
+        refuse_if(control.command != Control::DONE, senseless("the device did not confirm it"))?;
         self.await_ready(now);
         Ok(())
     }

@@ -5,6 +5,7 @@ use super::super::error::Unusable;
 use super::super::layout::{Direction, FrameLayout, Layout};
 use super::super::settings::{SEND_CLOCK, Settings, swap};
 use super::super::wire::cyclic::{Cyclic, GOOD, RUNNING};
+use crate::refuse_if;
 
 /// Sender of cyclic frames.
 #[derive(Debug, Clone)]
@@ -131,9 +132,7 @@ impl Consumer {
     }
 
     fn image(&self, cyclic: &Cyclic<'_>) -> Result<Vec<u8>, Unusable> {
-        if !cyclic.is_usable() {
-            return Err(Unusable::Status(cyclic.status, cyclic.transfer));
-        }
+        refuse_if(!cyclic.is_usable(), Unusable::Status(cyclic.status, cyclic.transfer))?;
         let is_good = |at: usize| cyclic.data.get(at).is_some_and(|status| status & GOOD != 0);
         let mut image = Vec::new();
         for (place, length) in &self.frame.objects {
@@ -148,9 +147,7 @@ impl Consumer {
             image.extend_from_slice(&cyclic.data[at..at + length]);
         }
         for (place, _) in self.frame.consumers.iter().zip(&self.fed).filter(|(_, fed)| **fed) {
-            if !is_good(usize::from(place.offset)) {
-                return Err(Unusable::Consumer(place.slot, place.subslot));
-            }
+            refuse_if(!is_good(usize::from(place.offset)), Unusable::Consumer(place.slot, place.subslot))?;
         }
         swap(&mut image, self.swapped);
         Ok(image)

@@ -14,6 +14,7 @@ use super::super::wire::{ByteOrder, Uuid};
 use super::alarms::Alarms;
 use super::ar::{Ar, Stage};
 use super::{Action, Application, Device, Event, Fault, MOST_ANSWERS, checks};
+use crate::refuse_if;
 
 /// Alarm reference of the device.
 const ALARM_REFERENCE: u16 = 0;
@@ -97,9 +98,7 @@ impl<A: Application> Device<A> {
 
     fn connect(&mut self, now: Now, from: SocketAddrV4, blocks: &[u8]) -> Answer {
         let status = |code1, code2| Status::new(CONNECT, 0x81, code1, code2);
-        if self.ar.is_some() || self.fault == Some(Fault::Owned) {
-            return Err(status(CMRPC, 4));
-        }
+        refuse_if(self.ar.is_some() || self.fault == Some(Fault::Owned), status(CMRPC, 4))?;
         let requests = Request::parse_all(blocks).map_err(|_| status(CMRPC, 0))?;
         let mut accepted = checks::connect(requests, &self.setup.layout, self.setup.shortest)?;
         if accepted.output.frame_id == ANY_FRAME_ID {
@@ -157,12 +156,8 @@ impl<A: Application> Device<A> {
         let [block] = &blocks[..] else { return Err(status(CMRPC, 1)) };
         let control = Control::parse(block).map_err(|_| status(CMRPC, 0))?;
         let Some(ar) = self.ar.as_mut().filter(|ar| ar.uuid == control.ar) else { return Err(status(CMRPC, 5)) };
-        if control.session_key != ar.session_key {
-            return Err(status(0x14, 5));
-        }
-        if control != Control::call(control.kind, ar.uuid, ar.session_key) {
-            return Err(status(0x14, 8));
-        }
+        refuse_if(control.session_key != ar.session_key, status(0x14, 5))?;
+        refuse_if(control != Control::call(control.kind, ar.uuid, ar.session_key), status(0x14, 8))?;
         match (code, control.kind) {
             (RELEASE, BlockType::RELEASE) => self.drop_ar(now, None),
             (CONTROL, BlockType::PRM_END) if matches!(ar.stage, Stage::Parameters(_)) => {}
@@ -186,9 +181,7 @@ impl<A: Application> Device<A> {
             _ => return Err(status(0xB0)),
         };
         let length = u32::try_from(record.len()).unwrap_or(u32::MAX);
-        if length > asked.length {
-            return Err(status(0xB1));
-        }
+        refuse_if(length > asked.length, status(0xB1))?;
         Ok(Record { length, ..asked }.emit(BlockType::READ.answer(), 0, &record))
     }
 
@@ -209,9 +202,7 @@ impl<A: Application> Device<A> {
         if let Stage::Parameters(until) = &mut ar.stage {
             *until = now + ar.activity_timeout;
         }
-        if parameters.is_empty() {
-            return Err(Status::new(WRITE, 0x80, 0xB1, 0));
-        }
+        refuse_if(parameters.is_empty(), Status::new(WRITE, 0x80, 0xB1, 0))?;
         let mut statuses = Vec::new();
         for (at, parameter) in (1u16..).zip(parameters) {
             let has = self.setup.layout.find(parameter.slot, parameter.subslot).is_some();

@@ -7,6 +7,7 @@ use toml::Spanned;
 use super::{
     AlarmEntry, ArmEntry, Entries, KindEntry, Number, PalletEntry, PointEntry, RobotEntry, ServoEntry, StateEntry,
 };
+use crate::simulator::refuse_if;
 use crate::simulator::start::{Source, numbered};
 use crate::yrcx::alarm::Alarm;
 use crate::yrcx::simulator::alarms::{AlarmSource, Entry};
@@ -198,9 +199,7 @@ pub(super) fn memory(world: &mut World, entries: &Entries, source: Source<'_>) -
 
 fn programs(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<(), String> {
     source.each(&entries.programs, |program| {
-        if !(1..=100).contains(&program.number) {
-            return Err("programs must be from 1 to 100".to_owned());
-        }
+        refuse_if(!(1..=100).contains(&program.number), "programs must be from 1 to 100".to_owned())?;
         let parsed = Program::parse(&program.name, program.text.trim_end())?;
         world.programs.insert(program.number, parsed);
         Ok(())
