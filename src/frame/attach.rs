@@ -158,10 +158,14 @@ fn holder(robot: &Robot) -> String {
 fn unresponsive_session(robot: &Robot) -> Failure {
     let failure = Failure::new(Kind::NoAnswer, format!("{}: {} does not respond", robot.label(), holder(robot)));
     let Some(Info { pid, .. }) = owner(robot) else { return failure };
-    failure.hint(format!(
-        "use `kill -CONT {pid}` to continue the process if it is suspended, or `kill -KILL {pid}` to end the process \
-         and free the connection"
-    ))
+    failure.hint(if cfg!(windows) {
+        format!("use `taskkill /F /PID {pid}` to end the process and free the connection")
+    } else {
+        format!(
+            "use `kill -CONT {pid}` to continue the process if it is suspended, or `kill -KILL {pid}` to end the \
+             process and free the connection"
+        )
+    })
 }
 
 /// Whether a session has the link of the robot, and commands can use this session.

@@ -134,11 +134,7 @@ fn not_open(label: &str, path: &str, error: &OpenError) -> Failure {
             "plug the adapter in; `armctl toyo ports` lists the serial ports",
         ),
         OpenError::Busy => return ports::in_use(label, path),
-        OpenError::Forbidden => (
-            Kind::Local,
-            format!("no permission to open {path}"),
-            "add your user to the group of the port, usually dialout (`sudo usermod -aG dialout $USER`), and log in again",
-        ),
+        OpenError::Forbidden => (Kind::Local, format!("no permission to open {path}"), OpenError::PERMISSION),
         OpenError::NotSerial => {
             (Kind::Usage, format!("{path} is not a serial port"), "use `armctl toyo ports` to list the serial ports")
         }

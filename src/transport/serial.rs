@@ -175,6 +175,15 @@ fn open_error(error: &serialport::Error, path: &str) -> OpenError {
     }
 }
 
+impl OpenError {
+    /// Advice for a user without permission to open a port.
+    pub const PERMISSION: &str = if cfg!(target_os = "linux") {
+        "add your user to the group of the port, usually dialout (`sudo usermod -aG dialout $USER`), and log in again"
+    } else {
+        "close other programs that use the port, and check that your user has access to the port"
+    };
+}
+
 fn is_listed(path: &str) -> bool {
     let name = path.trim_start_matches(r"\\.\");
     ports().is_ok_and(|ports| ports.iter().any(|port| port.name.eq_ignore_ascii_case(name)))

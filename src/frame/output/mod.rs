@@ -169,13 +169,14 @@ impl Screen {
     }
 
     fn wants_color(&self, is_terminal: bool) -> bool {
+        let has_colors = is_terminal && shows_colors();
         match self.color {
             ColorChoice::Always => true,
             ColorChoice::Never => false,
             ColorChoice::Auto => {
                 let set = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
                 let is_forced = set("CLICOLOR_FORCE").is_some_and(|value| value != "0");
-                set("NO_COLOR").is_none() && (is_forced || (is_terminal && !is_dumb()))
+                set("NO_COLOR").is_none() && (is_forced || (has_colors && !is_dumb()))
             }
         }
     }
@@ -303,6 +304,19 @@ impl Screen {
     fn stderr(text: &str) {
         let _ = io::stderr().lock().write_all(text.as_bytes());
     }
+}
+
+/// Whether the terminal can show colors.
+#[cfg(unix)]
+const fn shows_colors() -> bool {
+    true
+}
+
+/// Whether the console can show colors. Switches escape sequences on, because the console of an old Windows starts
+/// without them.
+#[cfg(windows)]
+fn shows_colors() -> bool {
+    ratatui::crossterm::ansi_support::supports_ansi()
 }
 
 fn is_dumb() -> bool {

@@ -55,6 +55,7 @@ impl Family {
         match self {
             Self::Yerc => "udp://HOST",
             Self::Yrcx => bus::USUAL.shortest,
+            Self::Toyo if cfg!(windows) => "serial://COM3 or tcp://HOST:PORT",
             Self::Toyo => "serial:///dev/ttyUSB0 or tcp://HOST:PORT",
         }
     }
@@ -231,7 +232,7 @@ impl Target {
     pub fn short_name(&self) -> String {
         match &self.place {
             Place::Udp(udp) => udp.host.clone(),
-            Place::Serial(serial) => serial.path.rsplit('/').next().unwrap_or_default().to_owned(),
+            Place::Serial(serial) => serial.path.rsplit(['/', '\\']).next().unwrap_or_default().to_owned(),
             Place::Tcp(tcp) => tcp.host.clone(),
             Place::Sim(_) => "sim".to_owned(),
             Place::Bus(bus) => bus.short_name().to_owned(),

@@ -563,7 +563,7 @@ const fn serial_advice(error: &serial::OpenError) -> &'static str {
     match error {
         serial::OpenError::Absent => "plug the adapter in, and check the name of its port: `armctl robots discover`",
         serial::OpenError::Busy => "end the other program, or use the session of the robot",
-        serial::OpenError::Forbidden => "on Linux, join the group that owns the port (dialout)",
+        serial::OpenError::Forbidden => serial::OpenError::PERMISSION,
         _ => "check the port and its baud rate",
     }
 }

@@ -13,6 +13,7 @@ use super::wire::Mac;
 use super::wire::dcp::IpSuite;
 use crate::image::tap::Tap;
 
+use self::raw::Link;
 pub use self::raw::{RawSocket, all};
 
 /// An Ethernet interface.
@@ -31,14 +32,6 @@ pub struct Interface {
     /// Recorder of traffic outside of connections.
     pub tap: Tap,
     link: Link,
-}
-
-#[derive(Debug, Clone)]
-enum Link {
-    /// A network card.
-    Card(raw::Card),
-    /// An in-process network.
-    Simulated(simulated::Network),
 }
 
 impl Interface {
@@ -63,10 +56,7 @@ impl Interface {
 
     /// The in-process network behind this interface; `None` for a network card.
     pub const fn network(&self) -> Option<&simulated::Network> {
-        match &self.link {
-            Link::Card(_) => None,
-            Link::Simulated(network) => Some(network),
-        }
+        self.link.network()
     }
 
     /// Checks that the interface can transmit frames.
@@ -87,9 +77,6 @@ impl Interface {
 
     /// Opens a non-blocking socket for frames of one EtherType.
     pub fn raw_socket(&self, ether_type: u16) -> Result<RawSocket, ProfinetError> {
-        match &self.link {
-            Link::Card(card) => RawSocket::open(card, ether_type),
-            Link::Simulated(_) => Err(ProfinetError::Ended),
-        }
+        self.link.socket(ether_type)
     }
 }

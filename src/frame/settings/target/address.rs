@@ -101,10 +101,13 @@ impl Address {
 
     /// A device of this computer.
     pub(super) fn device(path: &str) -> Self {
+        // `\\.\com3` and `COM3` are one port. The path is not resolved, because that would open the port.
+        if cfg!(windows) {
+            return Self::Device(path.trim_start_matches(r"\\.\").to_ascii_uppercase());
+        }
         // Links such as those in /dev/serial/by-id are resolved. A missing port keeps its name.
         let real = std::fs::canonicalize(Path::new(path));
-        let path = real.map_or_else(|_| path.to_owned(), |path| path.display().to_string());
-        Self::Device(if cfg!(windows) { path.to_ascii_uppercase() } else { path })
+        Self::Device(real.map_or_else(|_| path.to_owned(), |path| path.display().to_string()))
     }
 
     /// A station on the line of this address.

@@ -12,7 +12,7 @@ use crate::failure::Failure;
 pub enum TargetArgument {
     /// A URL.
     Url(Target),
-    /// `192.168.1.31`, `192.168.1.31:10040`, `COM3`, `/dev/ttyUSB0`.
+    /// `192.168.1.31`, `192.168.1.31:10040`, `COM3`, `\\.\COM12`, `/dev/ttyUSB0`.
     Bare(String),
 }
 
@@ -92,9 +92,10 @@ impl fmt::Display for TargetArgument {
 }
 
 fn is_serial(text: &str) -> bool {
+    let device = text.strip_prefix(r"\\.\");
     let is_com = |text: &str| text.get(..3).is_some_and(|com| com.eq_ignore_ascii_case("com"));
-    let number = || text.get(3..).is_some_and(|number| number.parse::<u8>().is_ok());
-    text.starts_with("/dev/") || is_com(text) && number()
+    let number = |text: &str| text.get(3..).is_some_and(|number| number.parse::<u8>().is_ok());
+    text.starts_with("/dev/") || is_com(device.unwrap_or(text)) && number(device.unwrap_or(text))
 }
 
 #[cfg(test)]
@@ -110,6 +111,7 @@ mod tests {
             ("127.0.0.1", Some(Family::Yrcx), "eip://127.0.0.1"),
             ("127.0.0.1:4001", Some(Family::Toyo), "tcp://127.0.0.1:4001"),
             ("COM3", Some(Family::Toyo), "serial://COM3"),
+            (r"\\.\COM12", Some(Family::Toyo), r"serial://\\.\COM12"),
             ("/dev/ttyUSB0", Some(Family::Toyo), "serial:///dev/ttyUSB0"),
             ("udp://127.0.0.1", None, "udp://127.0.0.1"),
         ] {

@@ -5,10 +5,28 @@ use std::time::Duration;
 
 use super::Interface;
 use crate::profinet::error::ProfinetError;
+use crate::profinet::simulated::Network;
 
-/// Address of a network card. It cannot be created.
+/// What is behind an interface: only an in-process network.
 #[derive(Debug, Clone)]
-pub enum Card {}
+pub enum Link {
+    /// An in-process network.
+    Simulated(Network),
+}
+
+impl Link {
+    /// Same as in `raw`.
+    pub const fn network(&self) -> Option<&Network> {
+        match self {
+            Self::Simulated(network) => Some(network),
+        }
+    }
+
+    /// Returns an error: not supported on this system.
+    pub fn socket(&self, _ether_type: u16) -> Result<RawSocket, ProfinetError> {
+        Err(ProfinetError::Platform)
+    }
+}
 
 /// Returns an error: not supported on this system.
 pub fn all() -> Result<Vec<Interface>, ProfinetError> {
@@ -20,11 +38,6 @@ pub fn all() -> Result<Vec<Interface>, ProfinetError> {
 pub enum RawSocket {}
 
 impl RawSocket {
-    /// Same as in `raw`.
-    pub fn open(card: &Card, _ether_type: u16) -> Result<Self, ProfinetError> {
-        match *card {}
-    }
-
     /// Same as in `raw`.
     pub fn send(&self, _frame: &[u8]) -> io::Result<()> {
         match *self {}

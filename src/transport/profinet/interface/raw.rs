@@ -10,15 +10,40 @@ use nix::sys::socket::{LinkAddr, SockaddrIn};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use socket2::{Domain, Protocol, Socket, Type};
 
-use super::{Interface, Link};
+use super::Interface;
 use crate::image::tap::Tap;
 use crate::local::LocalError;
 use crate::profinet::error::ProfinetError;
+use crate::profinet::simulated::Network;
 use crate::profinet::wire::Mac;
 use crate::profinet::wire::dcp::IpSuite;
 
-/// Address of a network card.
-pub type Card = LinkAddr;
+/// What is behind an interface.
+#[derive(Debug, Clone)]
+pub enum Link {
+    /// A network card.
+    Card(LinkAddr),
+    /// An in-process network.
+    Simulated(Network),
+}
+
+impl Link {
+    /// The in-process network; `None` for a network card.
+    pub const fn network(&self) -> Option<&Network> {
+        match self {
+            Self::Card(_) => None,
+            Self::Simulated(network) => Some(network),
+        }
+    }
+
+    /// Opens a socket on a network card.
+    pub fn socket(&self, ether_type: u16) -> Result<RawSocket, ProfinetError> {
+        match self {
+            Self::Card(card) => RawSocket::open(card, ether_type),
+            Self::Simulated(_) => Err(ProfinetError::Ended),
+        }
+    }
+}
 
 /// Ethernet interfaces of this computer.
 pub fn all() -> Result<Vec<Interface>, ProfinetError> {
@@ -57,8 +82,7 @@ pub fn all() -> Result<Vec<Interface>, ProfinetError> {
 pub struct RawSocket(Socket);
 
 impl RawSocket {
-    /// Opens a socket on a network card.
-    pub fn open(card: &Card, ether_type: u16) -> Result<Self, ProfinetError> {
+    fn open(card: &LinkAddr, ether_type: u16) -> Result<Self, ProfinetError> {
         let failed = |error: &io::Error| match error.kind() {
             ErrorKind::PermissionDenied => ProfinetError::Privilege,
             _ => LocalError::new("cannot open a raw Ethernet socket", error).into(),
