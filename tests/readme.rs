@@ -269,12 +269,9 @@ fn first_block(heading: &str) -> Vec<String> {
 }
 
 #[test]
-fn readme_starts_with_two_commands_and_reaches_a_robot_with_four() {
+fn readme_starts_with_two_commands_and_reaches_a_robot_with_three() {
     assert_eq!(first_block("## Try it"), ["cargo run -- --sim yerc status", "cargo test"]);
-    assert_eq!(
-        first_block("## Get started"),
-        ["cargo install --locked --path .", "armctl setup", "armctl status", "armctl top"]
-    );
+    assert_eq!(first_block("## Get started"), ["armctl setup", "armctl status", "armctl top"]);
 }
 
 fn root() -> PathBuf {

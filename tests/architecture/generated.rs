@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use armctl::command::families::FAMILIES;
 use clap::{CommandFactory as _, ValueEnum as _};
 
-use super::contract::CONTRACT;
 use super::source::{has_word, root};
 
 #[test]
@@ -17,6 +17,19 @@ fn completions_cover_all_program_names() {
         for name in ["armctl", "yerc", "yrcx", "toyo", "ARMCTL_COMPLETE"] {
             assert!(has_word(shell.script(), name), "{shell:?}: {name}");
         }
+    }
+}
+
+#[test]
+fn documents_name_this_version() {
+    let version = env!("CARGO_PKG_VERSION");
+    for (file, words) in [
+        ("README.md", format!("armctl_{version}-1_amd64.deb")),
+        ("README.md", format!("armctl-{version}-linux-x86_64.tar.gz")),
+        ("README.md", format!("armctl-{version}-windows-x86_64.zip")),
+        ("CHANGELOG.md", format!("## [{version}]")),
+    ] {
+        assert!(std::fs::read_to_string(root().join(file)).unwrap_or_default().contains(&words), "{file}: {words}");
     }
 }
 
@@ -74,7 +87,7 @@ fn every_robot_command_has_a_schema_and_help() {
     assert_eq!(known.len(), ids.len(), "an id is there twice: {ids:?}");
     let root = armctl::cli::Cli::command();
     let mut words = BTreeSet::new();
-    for (family, _) in CONTRACT {
+    for family in FAMILIES.iter().map(|face| face.family().name()) {
         leaves(root.find_subcommand(family).expect("the family is there"), family, &mut words);
     }
     // The command `repl` has no report, because each line at its prompt has its own report.

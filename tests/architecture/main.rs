@@ -1,13 +1,14 @@
 //! Rules of the architecture: allowed dependencies, printing, size of files and of module cycles, and current generated
-//! files. A failure has file and line. `ARMCTL_BLESS=1 cargo test --test architecture` rewrites `man/` and
-//! `docs/schemas/`.
+//! files. A failure has file and line. `ARMCTL_BLESS=1 cargo test --test architecture` rewrites `man/`,
+//! `docs/schemas/` and `docs/surface.txt`.
 
 mod circles;
 mod concepts;
-mod contract;
 mod generated;
 mod loopback;
+mod old_files;
 mod source;
+mod surface;
 
 use source::{Source, committed, has_word, root, sources};
 

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::io;
 
+use socketcan::errors::{ControllerProblems as Problems, ErrorCause};
 use socketcan::tokio::CanSocket;
 use socketcan::{CanError, CanFrame, EmbeddedFrame as _, Id, SocketOptions as _, StandardId};
 
@@ -98,30 +99,12 @@ impl SocketCan {
                 CanFrame::Remote(_) => {}
                 CanFrame::Error(error) => {
                     let before = self.health;
-                    self.learn(&CanError::from(error));
+                    learn(&mut self.health, &CanError::from(error));
                     if self.health != before {
                         return Ok(Heard::Health(self.health));
                     }
                 }
             }
-        }
-    }
-
-    fn learn(&mut self, error: &CanError) {
-        use socketcan::errors::ControllerProblem as Problem;
-        match error {
-            CanError::BusOff => self.health.state = BusState::Off,
-            CanError::Restarted => self.health.state = BusState::Active,
-            CanError::ControllerProblem(problem) => match problem {
-                Problem::Active => self.health.state = BusState::Active,
-                Problem::ReceiveErrorWarning | Problem::TransmitErrorWarning => self.health.state = BusState::Warning,
-                Problem::ReceiveErrorPassive | Problem::TransmitErrorPassive => self.health.state = BusState::Passive,
-                Problem::ReceiveBufferOverflow => self.health.overruns += 1,
-                Problem::TransmitBufferOverflow => self.health.rejected += 1,
-                Problem::Unspecified => {}
-            },
-            CanError::NoAck if self.health.state == BusState::Active => self.health.state = BusState::Warning,
-            _ => {}
         }
     }
 }
@@ -145,9 +128,56 @@ impl CanPort for SocketCan {
     }
 }
 
+/// Notes the state of the bus. One error frame can have several causes.
+fn learn(health: &mut Health, error: &CanError) {
+    for cause in error {
+        match cause {
+            ErrorCause::BusOff => health.state = BusState::Off,
+            ErrorCause::Restarted => health.state = BusState::Active,
+            ErrorCause::Controller(problems) => learn_problems(health, *problems),
+            ErrorCause::NoAck if health.state == BusState::Active => health.state = BusState::Warning,
+            _ => {}
+        }
+    }
+}
+
+fn learn_problems(health: &mut Health, problems: Problems) {
+    let states = [
+        (Problems::ACTIVE, BusState::Active),
+        (Problems::RX_WARNING.union(Problems::TX_WARNING), BusState::Warning),
+        (Problems::RX_PASSIVE.union(Problems::TX_PASSIVE), BusState::Passive),
+    ];
+    for (_, state) in states.into_iter().filter(|(flags, _)| problems.intersects(*flags)) {
+        health.state = state;
+    }
+    health.overruns += u64::from(problems.contains(Problems::RX_OVERFLOW));
+    health.rejected += u64::from(problems.contains(Problems::TX_OVERFLOW));
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    use socketcan::CanErrorFrame;
+
+    #[test]
+    fn learns_all_causes_of_an_error_frame() {
+        // Bits of the identifier and bytes as in linux/can/error.h: 0x04 controller (byte 1), 0x20 no acknowledgement,
+        // 0x40 bus off, 0x100 restarted.
+        let after = |bits: u32, problems: u8| {
+            let frame = CanErrorFrame::new_error(bits, &[0, problems, 0, 0, 0, 0, 0, 0]).unwrap();
+            let mut health = Health::default();
+            learn(&mut health, &CanError::from(frame));
+            (health.state, health.overruns, health.rejected)
+        };
+        assert_eq!(after(0x04, 0x04), (BusState::Warning, 0, 0));
+        assert_eq!(after(0x04, 0x08 | 0x20), (BusState::Passive, 0, 0));
+        assert_eq!(after(0x04, 0x40), (BusState::Active, 0, 0));
+        assert_eq!(after(0x04, 0x01 | 0x02), (BusState::Active, 1, 1));
+        assert_eq!(after(0x20, 0), (BusState::Warning, 0, 0));
+        assert_eq!(after(0x04 | 0x40, 0x20), (BusState::Off, 0, 0));
+        assert_eq!(after(0x100, 0), (BusState::Active, 0, 0));
+    }
 
     #[tokio::test]
     async fn an_interface_that_is_not_there_is_told_with_what_to_do() {
