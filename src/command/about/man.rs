@@ -98,12 +98,12 @@ fn render_page(root: &Command, command: &Command, path: &[&str]) -> io::Result<V
              \\fBarmctl\\fR(1)."
         )?;
     }
-    let examples: Vec<&str> =
+    let examples: Vec<String> =
         if command.has_subcommands() { Vec::new() } else { example_lines::examples(path).collect() };
     if !examples.is_empty() {
         writeln!(text, ".SH EXAMPLES\n.nf")?;
         for example in examples {
-            writeln!(text, "armctl {}", escape(example))?;
+            writeln!(text, "armctl {}", escape(&example))?;
         }
         writeln!(text, ".fi")?;
     }
