@@ -1,5 +1,5 @@
-//! Tests that run every subcommand through the confirmation gate: its risk, a read-only robot, no terminal for a
-//! question. Also compares each dry run with the frames that were sent.
+//! Tests that run every subcommand through the confirmation gate: its risk, no terminal for a question. Also compares
+//! each dry run with the frames that were sent.
 
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
@@ -224,21 +224,6 @@ fn every_leaf_has_the_risk_that_it_shall_have() {
     }
     let all: BTreeSet<&str> = Commands::schemas().iter().map(|entry| entry.id).collect();
     assert_eq!(all.difference(&seen).collect::<Vec<_>>(), Vec::<&&str>::new(), "these have no line");
-}
-
-#[test]
-fn a_read_only_robot_is_read_and_stopped() {
-    for (line, risk) in lines() {
-        let (mut robot, command) = real(&line);
-        robot.read_only.value = true;
-        let intent = command.intent(Some(&robot));
-        let passes = Gate { yes: true, ..Gate::default() }.must_ask(&QUIET, &robot, &intent);
-        if risk == Risk::Read || ["stop", "emergency-stop"].contains(&&*line) {
-            assert_eq!(passes, Ok(false), "{line}");
-        } else {
-            assert_eq!(passes.unwrap_err().kind, Kind::Rejected, "{line}");
-        }
-    }
 }
 
 #[test]
