@@ -12,15 +12,13 @@ use std::path::Path;
 use std::time::Duration;
 
 use anyhow::Context as _;
-use clap::Args;
 use jiff::Timestamp;
-use serde::Serialize;
 
 pub use self::report::Capture;
 use self::report::{FULL, Links, Problems, count_text};
 use super::Field;
 use crate::Report as _;
-use crate::failure::Failure;
+use crate::basics::*;
 use crate::output::Format;
 use crate::output::busy_work::register;
 use crate::output::envelope::ErrorBody;
