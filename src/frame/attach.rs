@@ -7,7 +7,7 @@ use jiff::Timestamp;
 use jiff::tz::TimeZone;
 use tokio::time::timeout;
 
-use crate::basics::*;
+use crate::prelude::basics::*;
 use crate::settings::target::{self, Address, Family, Target};
 use crate::settings::{Sessions, Sources};
 use crate::{Access, Driver};

@@ -6,10 +6,10 @@ use futures_util::future::LocalBoxFuture;
 use super::authority::Authority;
 use super::connection::{self, Access, ConnectMode, Connection, Driver, Entry, Family};
 use super::report::{Outcome, Report, sheet_of};
-use crate::basics::*;
 use crate::gate::Intent;
 use crate::output::csv::Sheet;
 use crate::output::envelope::Envelope;
+use crate::prelude::basics::*;
 use crate::settings::target;
 
 /// Execution context of a command.

@@ -5,8 +5,8 @@ use futures_util::future::LocalBoxFuture;
 
 use super::command::{AnyCommand, AnyContext, Command};
 use super::report::{Outcome, Report, SchemaEntry};
-use crate::basics::*;
 use crate::gate::Intent;
+use crate::prelude::basics::*;
 
 /// A command of a family that needs no robot. It uses only files or this computer.
 pub trait OfflineCommand {

@@ -10,8 +10,8 @@ use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
 use super::dry_run::Plan;
-use crate::basics::*;
 use crate::gate::{Grant, Intent};
+use crate::prelude::basics::*;
 use crate::settings::target;
 
 /// What a command may do with a link.

@@ -1,6 +1,6 @@
 //! Repeated runs and their statistics: `--repeat 20 --stats`.
 
-use crate::basics::*;
+use crate::prelude::basics::*;
 
 /// Repetition of a run. Each run starts after the end of the run before it.
 #[derive(Debug, Clone, Copy, clap::Args)]

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::report::Report;
-use crate::basics::*;
+use crate::prelude::basics::*;
 pub use armctl_client::{Plan, Reason};
 
 impl From<Plan> for DryRun {

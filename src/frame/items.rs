@@ -4,7 +4,7 @@
 //! the exit code of the most severe failure.
 
 use crate::backup::severity;
-use crate::basics::*;
+use crate::prelude::basics::*;
 
 /// Failure of one item, for example `{"asked":"B300","kind":"refused","code":"0xA001","message":…}`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]

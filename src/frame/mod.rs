@@ -20,7 +20,6 @@ pub mod attach;
 pub mod authority;
 pub mod background;
 pub mod backup;
-pub mod basics;
 pub mod batch;
 pub mod command;
 pub mod command_set;

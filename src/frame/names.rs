@@ -14,8 +14,8 @@ use jiff::tz::TimeZone;
 
 use super::kind::Candidate;
 use super::report::Report;
-use crate::basics::*;
 use crate::output::csv::RowsOf;
+use crate::prelude::basics::*;
 use crate::settings::names::{KeptFile, RobotNames, grammar};
 use crate::settings::target::Family;
 use armctl_controller::names::{Found, Grammar, Kind, Name, Names, unusable};

@@ -1,7 +1,9 @@
 //! Names that almost every command uses: its arguments and its report, its context, its failure, its view and its risk.
-//! The families and the commands import all of them at once. Modules of this crate use only [`basics`](crate::basics).
+//! The families and the commands import all of them at once. Modules of this crate use only [`basics`].
 
-pub use crate::basics::*;
+pub mod basics;
+
+pub use self::basics::*;
 pub use crate::commands;
 pub use crate::dry_run::{Known as _, Reason};
 pub use crate::run::{Run, RunError};

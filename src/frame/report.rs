@@ -4,8 +4,8 @@ use schemars::Schema;
 use schemars::generate::SchemaSettings;
 use serde_json::Value;
 
-use crate::basics::*;
 use crate::output::csv::{RowsOf, Sheet};
+use crate::prelude::basics::*;
 
 /// Report of a command.
 pub trait Report: Serialize + JsonSchema {

@@ -27,12 +27,12 @@ use super::interrupt::{MotionInProgress, catch_interrupts, interruptible};
 use super::report::{AnyReport, Outcome};
 use super::script_line::Line;
 use super::share::open_shared_session;
-use crate::basics::*;
 use crate::gate::{Gate, Grant, Intent, OnInterrupt};
 use crate::guardian::Guardian;
 use crate::output::envelope::Envelope;
 use crate::output::jq::{Filter, failure_after_change};
 use crate::output::redraw::Redraw;
+use crate::prelude::basics::*;
 use crate::settings::{Sessions, Sources};
 
 /// Run options of the command line.

@@ -4,8 +4,8 @@ use clap::ValueEnum;
 use serde_json::{Map, Value};
 
 use super::report::Report;
-use crate::basics::*;
 use crate::face::shared_commands::CommonReport;
+use crate::prelude::basics::*;
 use crate::robot::item::{Item, Written, WrittenItems};
 
 /// Purpose of a read before a write, as a dry run shows it.

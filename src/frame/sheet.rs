@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::local_names::Target;
 use super::text_files;
-use crate::basics::*;
+use crate::prelude::basics::*;
 use armctl_controller::findings::Findings;
 use armctl_controller::sheet::{Column, Dialect, update, write};
 

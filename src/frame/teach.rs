@@ -6,7 +6,7 @@ use anyhow::Context as _;
 use serde_json::{Map, Value as Json};
 
 use super::report::Report;
-use crate::basics::*;
+use crate::prelude::basics::*;
 use crate::robot::position::Position;
 use armctl_files as files;
 

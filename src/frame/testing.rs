@@ -10,11 +10,11 @@ use super::connection::{self, Access, Borrowed, ConnectMode, Family};
 use super::dry_run::{DryRun, is_end};
 use super::report::{AnyReport as _, Outcome};
 use super::settings_report::OLD_VALUE;
-use crate::basics::*;
 use crate::face::Face;
 use crate::face::family_command::{FamilyLine, ParsedCommand};
 use crate::flags::Globals;
 use crate::gate::{Gate, Grant};
+use crate::prelude::basics::*;
 use crate::settings::inventory::Options;
 use crate::settings::{Selection, Sources};
 

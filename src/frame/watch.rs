@@ -12,8 +12,8 @@ use serde_json::{Map, Value};
 use super::command::{Command, Context};
 use super::connection::{ConnectMode, Family};
 use super::report::{AnyReport as _, Report};
-use crate::basics::*;
 use crate::output::csv::RowsOf;
+use crate::prelude::basics::*;
 use crate::settings::duration;
 
 /// Read interval for families without change notifications.

@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::Report;
 use crate::backup::manifest;
 use crate::backup::manifest::MANIFEST;
-use crate::basics::*;
+use crate::prelude::basics::*;
 
 /// Result of the integrity check.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -9,8 +9,8 @@ use super::compare::{BackupSide, CompareOptions, Differences};
 use super::manifest;
 use super::tolerance::{Limit, Tolerance};
 use super::{BackedUp, Only, SaveOptions};
-use crate::basics::*;
 use crate::dry_run::unknown;
+use crate::prelude::basics::*;
 
 /// Comparison options.
 #[derive(Debug, Args)]

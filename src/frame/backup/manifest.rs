@@ -12,9 +12,9 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 
-use crate::basics::*;
 use crate::local_names::{Target, is_plain_file_name};
 use crate::output::escape;
+use crate::prelude::basics::*;
 use crate::settings::target::Family;
 use armctl_controller::text::{hex, unhex};
 use armctl_files as files;

@@ -20,9 +20,9 @@ use serde_json::{Value, json};
 use super::Report;
 use super::backup::manifest::MANIFEST;
 use super::robot::file::{FILES, FileItem, Files, NO_DIFFERENCE};
-use crate::basics::*;
 use crate::items::ItemError;
 use crate::output::csv::RowsOf;
+use crate::prelude::basics::*;
 use crate::settings::inventory::matches_pattern;
 use armctl_controller::nearest::nearest;
 

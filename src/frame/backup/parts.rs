@@ -5,8 +5,8 @@ use std::path::Path;
 
 use super::manifest::LeftOut;
 use crate::Family;
-use crate::basics::*;
 use crate::interrupt::interruptible;
+use crate::prelude::basics::*;
 use crate::robot::file::{FileItem, State};
 use crate::settings_report::nothing_written;
 use crate::store::{self, PartResult, TablePart};

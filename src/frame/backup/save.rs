@@ -9,9 +9,9 @@ use tokio::time::Instant;
 
 use super::manifest::{self, About, Entry, Hash, LeftOut, MANIFEST, Manifest, Reason, Saved};
 use super::{BackedUp, SaveOptions};
-use crate::basics::*;
 use crate::interrupt::interruptible;
 use crate::local_names::{Target, make_folder, private_folder};
+use crate::prelude::basics::*;
 use crate::robot::file::{FileItem, State};
 
 /// Maximum progress that may be lost from the manifest after a power failure.

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use similar::{Algorithm, ChangeTag, capture_diff_slices_deadline, group_diff_ops};
 
-use crate::basics::*;
+use crate::prelude::basics::*;
 use armctl_controller::text::Encoding;
 
 /// Maximum file size for a line comparison; larger files are compared only by bytes.

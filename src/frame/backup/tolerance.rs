@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::backup::manifest::Entry;
-use crate::basics::*;
+use crate::prelude::basics::*;
 
 /// Tolerance of positions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]

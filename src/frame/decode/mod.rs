@@ -7,7 +7,7 @@ use anyhow::Context as _;
 
 use self::capture::{CaptureDecoder, Input, Selection};
 use super::{Report, SchemaEntry};
-use crate::basics::*;
+use crate::prelude::basics::*;
 use crate::run::{Run, RunError};
 use armctl_files as files;
 

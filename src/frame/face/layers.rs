@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::overview::LeftOver;
-use crate::basics::*;
+use crate::prelude::basics::*;
 use armctl_files as files;
 
 /// One layer.

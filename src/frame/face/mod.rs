@@ -23,7 +23,7 @@ use self::teach_panel::Panel;
 use self::tool::{Tool, ToolKind};
 use super::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
 use super::robot::alarm::Alarm;
-use crate::basics::*;
+use crate::prelude::basics::*;
 use crate::settings::target::Family;
 use crate::{Access, AnyCommand, AnyContext, Connection, Driver, Outcome, SchemaEntry};
 use armctl_transport::session::host::Guard;

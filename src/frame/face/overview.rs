@@ -1,7 +1,7 @@
 //! Summary of a robot for `armctl status`.
 
 use crate::Report;
-use crate::basics::*;
+use crate::prelude::basics::*;
 use crate::robot::state::State;
 
 /// State of one robot in one line.

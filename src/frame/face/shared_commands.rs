@@ -7,10 +7,10 @@ use serde::Serializer;
 
 use super::registration::Declaration;
 use crate::AnyContext;
-use crate::basics::*;
 use crate::connection;
 use crate::gate::Intent;
 use crate::output::csv::{RowsOf, Sheet};
+use crate::prelude::basics::*;
 use crate::report::sheet_of;
 use crate::{AnyCommand, Command, ConnectMode, Driver, Outcome, Report};
 

@@ -1,9 +1,9 @@
 //! Alarms and errors: common keys of `alarm list` and `alarm history` in every family, `explain`, `top` and topics.
 
 use crate::Report;
-use crate::basics::*;
 use crate::face::shared_commands::CommonReport;
 use crate::items::{ItemError, ItemOutcome, verdict};
+use crate::prelude::basics::*;
 use crate::settings::alarms::Explanation;
 use crate::settings::target::Family;
 

@@ -9,9 +9,9 @@ use std::path::Path;
 use crate::Report;
 use crate::backup::manifest::{Hash, LeftOut, Saved};
 use crate::backup::{continues_after, severity};
-use crate::basics::*;
 use crate::items::ItemError;
 use crate::output::csv::RowsOf;
+use crate::prelude::basics::*;
 
 /// A file.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]

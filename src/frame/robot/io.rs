@@ -1,8 +1,8 @@
 //! Signals: common keys of `io get|set|list|watch` in every family, and of `armctl io`.
 
 use crate::Report;
-use crate::basics::*;
 use crate::items::{ItemError, all_failed, verdict};
+use crate::prelude::basics::*;
 use crate::watch::Watched;
 
 /// Location of the watched items for `io watch` of every family.

@@ -4,9 +4,9 @@
 //! report `old`, `new` and `written`. Each item has its own result.
 
 use crate::Report;
-use crate::basics::*;
 use crate::items::{ItemError, verdict};
 use crate::output::csv::RowsOf;
+use crate::prelude::basics::*;
 
 /// No family-specific fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, JsonSchema)]

@@ -6,10 +6,10 @@ use std::fmt::Write as _;
 use schemars::{Schema, SchemaGenerator};
 
 use crate::Report;
-use crate::basics::*;
 use crate::face::shared_commands::CommonReport;
 use crate::items::{ItemError, verdict};
 use crate::plot::{Plot, SeriesHistory};
+use crate::prelude::basics::*;
 
 /// A position of a robot in one frame. Null means that the frame has no such coordinate, or that the protocol does
 /// not report it.

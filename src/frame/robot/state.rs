@@ -1,6 +1,6 @@
 //! Robot state: common keys of the status in every family, `armctl status`, `top`, metrics and topics.
 
-use crate::basics::*;
+use crate::prelude::basics::*;
 use crate::robot::alarm::Alarm;
 use crate::settings::alarms;
 

@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use super::Run;
 use super::print::with_robot_name;
-use crate::basics::*;
 use crate::output::log::Level;
+use crate::prelude::basics::*;
 use crate::repeat_limiter::{Line, RepeatLimiter};
 
 /// Missing answers of a robot that is watched.

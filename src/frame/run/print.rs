@@ -7,10 +7,10 @@ use serde_json::Value;
 
 use super::failure_log::RoundFailures;
 use super::{Run, RunError};
-use crate::basics::*;
 use crate::output::csv::Sheet;
 use crate::output::envelope::{Envelope, ErrorBody};
 use crate::output::{Format, escape, render};
+use crate::prelude::basics::*;
 use crate::{AnyCommand, AnyReport, Outcome};
 
 /// Report or failure of a robot. With only one robot, there is no robot in the row.

@@ -5,9 +5,9 @@ use std::time::Duration;
 use tokio::time::{Instant, timeout_at};
 
 use super::print::as_value;
-use crate::basics::*;
 use crate::condition::Condition;
 use crate::interrupt::interruptible;
+use crate::prelude::basics::*;
 use crate::settings::duration;
 
 /// Time that every look has, even if `--for` ends earlier: a robot that answers at once is not missed.

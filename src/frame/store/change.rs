@@ -3,12 +3,12 @@
 
 use super::{Answers, Differing, Store, Writable, WrittenOf, columns, item};
 use crate::authority::Authority;
-use crate::basics::*;
 use crate::connection::Family;
 use crate::dry_run::{Known as _, unknown};
 use crate::interrupt::interruptible;
 use crate::items::describe_request;
 use crate::names;
+use crate::prelude::basics::*;
 use crate::robot::item::{Written, WrittenItems};
 use crate::settings_report::nothing_written;
 

@@ -3,8 +3,8 @@
 use super::change::{TableWrite, confirmation, intent, write};
 use super::get::Rows;
 use super::{Writable, WrittenOf, read};
-use crate::basics::*;
 use crate::dry_run::Known as _;
+use crate::prelude::basics::*;
 use crate::robot::item::as_requested;
 use crate::{Command, Context};
 

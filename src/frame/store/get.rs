@@ -1,9 +1,9 @@
 //! `get` and `list`. `watch` repeats `get`.
 
 use super::{ItemsOf, Store, columns, item, read, read_keys};
-use crate::basics::*;
 use crate::items::ItemError;
 use crate::names;
+use crate::prelude::basics::*;
 use crate::robot::item::{Item, Items};
 use crate::watch::{Watchable, Watched};
 use crate::{Command, Context};

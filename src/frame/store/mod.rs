@@ -21,7 +21,7 @@ pub use self::set::Set;
 use super::connection::Family;
 use super::kind::ValueKind;
 use super::names as labels;
-use crate::basics::*;
+use crate::prelude::basics::*;
 use crate::robot::item::{Columns, Item, Items, WrittenItems, as_requested};
 use armctl_controller::names::{Kind, Names};
 use armctl_controller::sheet::Column;

@@ -5,7 +5,7 @@ use clap::builder::ValueRange;
 
 use super::change::{TableWrite, confirmation, intent, write};
 use super::{Store, Writable, WrittenOf, read_keys};
-use crate::basics::*;
+use crate::prelude::basics::*;
 use crate::robot::item::as_requested;
 use crate::{Command, Context};
 use armctl_controller::nearest::nearest;

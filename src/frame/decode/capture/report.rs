@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use super::DecodedMessage;
 use crate::Report;
-use crate::basics::*;
 use crate::decode::{Field, field_table, in_parentheses, problem_lines};
 use crate::output::csv::RowsOf;
+use crate::prelude::basics::*;
 use armctl_transport::tap::Direction;
 
 /// Messages of a family in a capture file.
