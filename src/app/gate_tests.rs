@@ -113,7 +113,7 @@ fn observe(line: &str) -> Result<Seen, String> {
 fn gate_checks_every_command() {
     let mut wrong = Vec::new();
     for (line, risk) in robot_lines() {
-        let Seen { intent, alone, read_only, fleet } = match observe(line) {
+        let Seen { intent, alone, read_only, fleet } = match observe(&line) {
             Ok(seen) => seen,
             Err(why) => {
                 wrong.push(why);
@@ -124,20 +124,20 @@ fn gate_checks_every_command() {
         let refused =
             |outcome: &Result<(), Failure>| outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Rejected);
         let is_when_known = intent.confirmation == Confirmation::WhenKnown;
-        let is_asked = *risk == Motion || *risk == Destroy && !is_when_known;
+        let is_asked = risk == Motion || risk == Destroy && !is_when_known;
         for (what, is_right) in [
-            ("its risk", intent.risk == *risk),
+            ("its risk", intent.risk == risk),
             ("whether it is a stop", intent.is_stop == is_stop),
-            ("a question", *risk < Destroy || intent.confirmation != Confirmation::Question || !intent.text.is_empty()),
+            ("a question", risk < Destroy || intent.confirmation != Confirmation::Question || !intent.text.is_empty()),
             ("nobody to ask", refused(&alone) == is_asked),
             // The commands `backup` and `diff` select their requests by robot: for a read-only robot, they only read.
             (
                 "a read-only robot",
-                refused(&read_only) == (*risk > Read && !is_stop)
+                refused(&read_only) == (risk > Read && !is_stop)
                     || line.split(' ').any(|word| ["backup", "diff"].contains(&word)),
             ),
-            ("a fleet", refused(&fleet) == (*risk >= Destroy || (*risk > Read && !is_stop && refused(&read_only)))),
-            ("its first grant", intent.initial_risk() <= if is_when_known { (*risk).min(Write) } else { *risk }),
+            ("a fleet", refused(&fleet) == (risk >= Destroy || (risk > Read && !is_stop && refused(&read_only)))),
+            ("its first grant", intent.initial_risk() <= if is_when_known { (risk).min(Write) } else { risk }),
         ] {
             if !is_right {
                 wrong.push(format!("{line}: {what} ({:?}, {:?})", intent.risk, intent.confirmation));
@@ -159,7 +159,7 @@ fn every_command_has_valid_examples() {
         assert!(lines >= 2, "{leaf}: {lines} examples in command/leaves");
     }
     for line in all() {
-        let words = line_words::split(line).unwrap();
+        let words = line_words::split(&line).unwrap();
         let parsed = Cli::try_parse_from(std::iter::once("armctl".to_owned()).chain(words));
         assert!(parsed.is_ok(), "{line}: {}", parsed.unwrap_err());
     }

@@ -213,7 +213,7 @@ fn risk(line: &str, whole: &Command) -> Option<&'static str> {
     let (_, words) = find_command(&words, whole);
     let most =
         example_lines::robot_lines().filter(|(line, _)| line.split(' ').take(words.len()).eq(words.iter().copied()));
-    Some(match most.map(|(_, risk)| *risk).max() {
+    Some(match most.map(|(_, risk)| risk).max() {
         Some(Risk::Destroy) => "deletes or overwrites",
         _ => "moves or powers the robot",
     })

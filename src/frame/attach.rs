@@ -7,10 +7,9 @@ use jiff::Timestamp;
 use jiff::tz::TimeZone;
 use tokio::time::timeout;
 
-use crate::failure::{Failure, Kind};
-use crate::output::Screen;
+use crate::prelude::basics::*;
 use crate::settings::target::{self, Address, Family, Target};
-use crate::settings::{Robot, Sessions, Sources};
+use crate::settings::{Sessions, Sources};
 use crate::{Access, Driver};
 use armctl_transport::session::client::{self, AttachError, AttachResult, Attached, SessionBusy};
 use armctl_transport::session::location::{self, Claim, LocationError, SessionFolder, SessionPath, key};

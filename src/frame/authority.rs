@@ -3,11 +3,8 @@
 use std::sync::{Mutex, PoisonError};
 
 use super::interrupt::{catch_interrupts, interruptible};
-use crate::failure::{Failure, Kind};
-use crate::gate::{Change, Confirmation, Gate, Grant, Intent, not_confirmed};
-use crate::output::Screen;
-use crate::settings::Robot;
-use armctl_controller::Risk;
+use crate::gate::{Gate, Grant, Intent, not_confirmed};
+use crate::prelude::basics::*;
 
 /// Authorizes a command for `robot` before anything is sent. Asks the user if the risk requires it.
 pub async fn confirm_intent(gate: Gate, screen: &Screen, robot: &Robot, intent: &Intent) -> Result<(), Failure> {

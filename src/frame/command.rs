@@ -6,13 +6,11 @@ use futures_util::{FutureExt as _, TryFutureExt as _};
 use super::authority::Authority;
 use super::connection::{self, Access, ConnectMode, Connection, Driver, Entry, Family};
 use super::report::{Outcome, Report, sheet_of};
-use crate::failure::Failure;
-use crate::gate::{Confirmation, Intent};
-use crate::output::Screen;
+use crate::gate::Intent;
 use crate::output::csv::Sheet;
 use crate::output::envelope::Envelope;
-use crate::settings::{Robot, target};
-use armctl_controller::Risk;
+use crate::prelude::basics::*;
+use crate::settings::target;
 
 /// Execution context of a command.
 #[derive(Debug)]

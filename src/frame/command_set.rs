@@ -5,11 +5,8 @@ use futures_util::future::LocalBoxFuture;
 
 use super::command::{AnyCommand, AnyContext, Command};
 use super::report::{Outcome, Report, SchemaEntry};
-use crate::failure::Failure;
-use crate::gate::{Confirmation, Intent};
-use crate::output::Screen;
-use crate::settings::Robot;
-use armctl_controller::Risk;
+use crate::gate::Intent;
+use crate::prelude::basics::*;
 
 /// A command of a family that needs no robot. It uses only files or this computer.
 pub trait OfflineCommand {
@@ -24,18 +21,18 @@ pub trait OfflineCommand {
 
 /// An [`OfflineCommand`] as a member of a set of robot commands.
 #[derive(Debug, clap::Args)]
-pub struct Offline<C: clap::Args> {
+pub struct Offline<C: Args> {
     #[command(flatten)]
     command: C,
 }
 
-impl<C: OfflineCommand + clap::Args> Offline<C> {
+impl<C: OfflineCommand + Args> Offline<C> {
     fn report(&self, screen: &Screen) -> Outcome {
         Ok(Box::new(self.command.run(screen)?))
     }
 }
 
-impl<C: OfflineCommand + clap::Args + 'static> AnyCommand for Offline<C> {
+impl<C: OfflineCommand + Args + 'static> AnyCommand for Offline<C> {
     fn id(&self) -> &'static str {
         C::ID
     }
@@ -68,7 +65,7 @@ pub trait CommandSet {
     }
 }
 
-impl<C: Command + clap::Args + 'static> CommandSet for C {
+impl<C: Command + Args + 'static> CommandSet for C {
     fn lay_out(command: clap::Command, _is_named: &dyn Fn(&str) -> bool) -> clap::Command {
         C::augment_args(command)
     }
@@ -82,9 +79,9 @@ impl<C: Command + clap::Args + 'static> CommandSet for C {
     }
 }
 
-impl<C: OfflineCommand + clap::Args + 'static> CommandSet for Offline<C> {
+impl<C: OfflineCommand + Args + 'static> CommandSet for Offline<C> {
     fn lay_out(command: clap::Command, _is_named: &dyn Fn(&str) -> bool) -> clap::Command {
-        <Self as clap::Args>::augment_args(command)
+        <Self as Args>::augment_args(command)
     }
 
     fn command(self) -> Box<dyn AnyCommand> {

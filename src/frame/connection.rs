@@ -10,11 +10,9 @@ use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
 use super::dry_run::Plan;
-use crate::failure::Failure;
 use crate::gate::{Grant, Intent};
-use crate::output::Screen;
-use crate::settings::{Robot, target};
-use armctl_controller::Risk;
+use crate::prelude::basics::*;
+use crate::settings::target;
 
 /// What a command may do with a link.
 #[derive(Debug, Clone)]

@@ -1,10 +1,6 @@
 //! Repeated runs and their statistics: `--repeat 20 --stats`.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
-use crate::failure::Failure;
-use crate::output::view::Cell;
+use crate::prelude::basics::*;
 
 /// Repetition of a run. Each run starts after the end of the run before it.
 #[derive(Debug, Clone, Copy, clap::Args)]

@@ -1,12 +1,9 @@
 //! Dry run: frames are recorded instead of sent.
 
-use schemars::JsonSchema;
-use serde::Serialize;
 use serde_json::Value;
 
 use super::report::Report;
-use crate::failure::{Failure, Kind};
-use crate::output::view::{Cell, Section, Table, View};
+use crate::prelude::basics::*;
 pub use armctl_client::{Plan, Reason};
 
 impl From<Plan> for DryRun {

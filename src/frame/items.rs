@@ -3,12 +3,8 @@
 //! If some items failed, the exit code is 9. If all failed, it is the exit code that they have in common, or otherwise
 //! the exit code of the most severe failure.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::backup::severity;
-use crate::failure::{Failure, Kind};
-use crate::output::view::{Cell, Tone};
+use crate::prelude::basics::*;
 
 /// Failure of one item, for example `{"asked":"B300","kind":"refused","code":"0xA001","message":…}`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]

@@ -11,16 +11,11 @@ use std::sync::{Mutex, PoisonError};
 
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use super::kind::Candidate;
 use super::report::Report;
-use crate::failure::Failure;
-use crate::output::Screen;
 use crate::output::csv::RowsOf;
-use crate::output::view::{Cell, Section, Table, View};
-use crate::settings::Robot;
+use crate::prelude::basics::*;
 use crate::settings::names::{KeptFile, RobotNames, grammar};
 use crate::settings::target::Family;
 use armctl_controller::names::{Found, Grammar, Kind, Name, Names, unusable};

@@ -2,8 +2,7 @@
 //! question.
 
 use super::interrupt::interruptible;
-use crate::failure::Failure;
-use crate::output::Screen;
+use crate::prelude::basics::*;
 
 /// Asks a question and returns the answer. If the question is aborted, the terminal is restored.
 pub async fn ask<T: Send + 'static>(

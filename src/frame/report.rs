@@ -1,13 +1,11 @@
 //! Command reports.
 
+use schemars::Schema;
 use schemars::generate::SchemaSettings;
-use schemars::{JsonSchema, Schema};
-use serde::Serialize;
 use serde_json::Value;
 
-use crate::failure::Failure;
 use crate::output::csv::{RowsOf, Sheet};
-use crate::output::view::View;
+use crate::prelude::basics::*;
 
 /// Report of a command.
 pub trait Report: Serialize + JsonSchema {

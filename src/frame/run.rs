@@ -11,7 +11,6 @@ use std::time::Duration;
 use anyhow::Context as _;
 use futures_util::StreamExt as _;
 use futures_util::stream;
-use serde::Serialize;
 
 use self::failure_log::FailureLog;
 pub use self::print::as_value;
@@ -28,15 +27,13 @@ use super::interrupt::{MotionInProgress, catch_interrupts, interruptible};
 use super::report::{AnyReport, Outcome};
 use super::script_line::Line;
 use super::share::open_shared_session;
-use crate::failure::{Failure, Kind};
-use crate::gate::{Confirmation, Gate, Grant, Intent, OnInterrupt};
+use crate::gate::{Gate, Grant, Intent, OnInterrupt};
 use crate::guardian::Guardian;
-use crate::output::Screen;
 use crate::output::envelope::Envelope;
 use crate::output::jq::{Filter, failure_after_change};
 use crate::output::redraw::Redraw;
-use crate::settings::{Robot, Sessions, Sources};
-use armctl_controller::Risk;
+use crate::prelude::basics::*;
+use crate::settings::{Sessions, Sources};
 
 /// Run options of the command line.
 #[derive(Debug)]

@@ -10,10 +10,8 @@ use serde_json::Value;
 
 use super::connection::{Access, ConnectMode};
 use super::session_manager::{HeldBy, SessionManager};
-use crate::failure::Failure;
-use crate::output::Screen;
 use crate::output::envelope::Envelope;
-use crate::settings::Robot;
+use crate::prelude::basics::*;
 
 /// Context of a line in a REPL or batch.
 #[derive(Debug, Clone)]

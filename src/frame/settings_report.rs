@@ -1,15 +1,11 @@
 //! Common arguments and reports of commands that set a value.
 
 use clap::ValueEnum;
-use schemars::JsonSchema;
-use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::report::Report;
 use crate::face::shared_commands::CommonReport;
-use crate::failure::Failure;
-use crate::gate::Change;
-use crate::output::view::View;
+use crate::prelude::basics::*;
 use crate::robot::item::{Item, Written, WrittenItems};
 
 /// Purpose of a read before a write, as a dry run shows it.

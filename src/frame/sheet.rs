@@ -2,11 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
-
 use super::local_names::Target;
 use super::text_files;
-use crate::failure::Failure;
+use crate::prelude::basics::*;
 use armctl_controller::findings::Findings;
 use armctl_controller::sheet::{Column, Dialect, update, write};
 

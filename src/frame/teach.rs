@@ -3,13 +3,10 @@
 use std::path::Path;
 
 use anyhow::Context as _;
-use schemars::JsonSchema;
-use serde::Serialize;
 use serde_json::{Map, Value as Json};
 
 use super::report::Report;
-use crate::failure::{Failure, Kind};
-use crate::output::view::{Cell, Tone, View};
+use crate::prelude::basics::*;
 use crate::robot::position::Position;
 use armctl_files as files;
 

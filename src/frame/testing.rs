@@ -12,13 +12,11 @@ use super::report::{AnyReport as _, Outcome};
 use super::settings_report::OLD_VALUE;
 use crate::face::Face;
 use crate::face::family_command::{FamilyLine, ParsedCommand};
-use crate::failure::{Failure, Kind};
 use crate::flags::Globals;
 use crate::gate::{Gate, Grant};
-use crate::output::Screen;
+use crate::prelude::basics::*;
 use crate::settings::inventory::Options;
-use crate::settings::{Robot, Selection, Sources};
-use armctl_controller::Risk;
+use crate::settings::{Selection, Sources};
 
 /// Screen without output.
 pub static QUIET: Screen = Screen::silent();

@@ -4,19 +4,16 @@ use std::cell::RefCell;
 use std::marker::PhantomData;
 use std::time::Duration;
 
-use clap::Args;
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
-use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::Serialize;
+use schemars::{Schema, SchemaGenerator};
 use serde_json::{Map, Value};
 
 use super::command::{Command, Context};
 use super::connection::{ConnectMode, Family};
 use super::report::{AnyReport as _, Report};
-use crate::failure::Failure;
 use crate::output::csv::RowsOf;
-use crate::output::view::{Cell, Section, Table, View};
+use crate::prelude::basics::*;
 use crate::settings::duration;
 
 /// Read interval for families without change notifications.

@@ -30,11 +30,11 @@ pub(super) fn objection(words: &[&str]) -> String {
     testing::parse(FACE, "sim:", words).err().expect("the parser objects").to_string()
 }
 
-/// Input of the gate for a command line: robot, intent, and command name.
-pub(super) fn gate_input(words: &[&str]) -> (Robot, Intent, &'static str) {
+/// Input of the gate for a command line: intent and command name.
+pub(super) fn gate_input(words: &[&str]) -> (Intent, &'static str) {
     let (robot, command) = resolved("tcp://127.0.0.1:1", words).expect("a command line");
     let intent = command.intent(Some(&robot));
-    (robot, intent, command.id())
+    (intent, command.id())
 }
 
 /// Text of the confirmation without "This will".

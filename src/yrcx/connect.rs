@@ -11,6 +11,7 @@ use crate::prelude::*;
 use armctl_frame::settings::target::bus::simulators;
 use armctl_frame::settings::target::{self, Bus, Place};
 use armctl_transport::image::ImageLink;
+use armctl_transport::image::tap::Tap;
 
 /// Endpoint of a target.
 #[derive(Debug, Clone, Copy)]

@@ -18,7 +18,8 @@ use armctl_files as files;
 use armctl_frame::face::layers::Layers;
 use armctl_frame::failure::plain;
 use armctl_frame::settings::target::{Address, Bus, Place, Sim, Target};
-use armctl_transport::image::{Cause, ImageLink};
+use armctl_transport::image::tap::Tap;
+use armctl_transport::image::{Cause, ImageLink, LinkError};
 
 /// A fieldbus: how to connect to it, diagnose it and simulate it.
 #[derive(Debug)]

@@ -2,6 +2,7 @@
 
 use crate::prelude::*;
 use armctl_frame::settings::target::bus::Scheme;
+use armctl_transport::image::LinkError;
 
 /// Converts an error of a link or an explicit messaging client that did not open. The scheme comes from the URL.
 pub fn not_open(label: &str, Scheme { name, bus, .. }: &Scheme, error: &LinkError) -> Failure {

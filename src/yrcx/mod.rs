@@ -12,9 +12,8 @@
 //!    of the field and checks its range. Arguments that several commands use are in `arguments.rs`, positions in
 //!    `position.rs`.
 //! 2. Add a line to the list below, or to the list of its group.
-//! 3. Add tests: `testing::words` returns the words of a command line, `testing::example` returns the words of an
-//!    example
-//!    in the manual. `coverage.rs` has a line for each row of the table.
+//! 3. Add rows to the tables of `coverage.rs`: the words that a command line sends, the example in the manual that it
+//!    becomes, its question, and the mistakes that it rejects.
 
 mod alarm;
 mod arguments;

@@ -6,5 +6,3 @@ pub use armctl_controller::yrcx::signal::{Side, Signal, output};
 pub use armctl_controller::yrcx::table;
 pub use armctl_controller::yrcx::value::{Key, Values};
 pub use armctl_frame::prelude::*;
-pub use armctl_transport::image::LinkError;
-pub use armctl_transport::image::tap::Tap;

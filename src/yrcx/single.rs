@@ -31,7 +31,7 @@ pub trait Single {
     fn report(&self, done: &Done) -> Result<Self::Report, Failure>;
 }
 
-/// Implements [`Command`](armctl_frame::Command) for commands with one remote command. A blanket implementation is not possible: the trait is
+/// Implements [`Command`] for commands with one remote command. A blanket implementation is not possible: the trait is
 /// of another crate.
 macro_rules! single_command {
     ($($name:ty),*) => {

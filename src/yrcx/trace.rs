@@ -14,7 +14,7 @@ use crate::prelude::*;
 use armctl_controller::text::hex;
 use armctl_controller::yrcx::changes::changes;
 use armctl_frame::trace;
-use armctl_transport::image::tap::Passage;
+use armctl_transport::image::tap::{Passage, Tap};
 use armctl_transport::tap::Direction;
 
 /// Text trace of the images of one link. If the link uses no network, the trace also records the bytes of the images.

@@ -36,8 +36,8 @@ fn columns_come_from_the_schema_of_the_json() {
         if line.contains(" -r ") || line.contains("--jq") || line.contains("--json") {
             continue;
         }
-        let Some(json) = print_report(line, "json", folder.path()) else { continue };
-        let csv = print_report(line, "csv", folder.path()).expect("it is done as CSV, too");
+        let Some(json) = print_report(&line, "json", folder.path()) else { continue };
+        let csv = print_report(&line, "csv", folder.path()).expect("it is done as CSV, too");
         let envelope: Value = serde_json::from_str(&json).expect("an envelope");
         let command = if envelope.is_array() { &envelope[0]["command"] } else { &envelope["command"] };
         let schema_of_report = armctl::command::about::schema::all().into_iter().find(|entry| *command == entry.id);

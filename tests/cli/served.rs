@@ -86,8 +86,8 @@ fn difference(line: &str) -> Option<String> {
 
 #[test]
 fn help_examples_work_on_a_served_simulator() {
-    let lines: Vec<&str> = robot_lines()
-        .map(|(line, _)| *line)
+    let lines: Vec<String> = robot_lines()
+        .map(|(line, _)| line)
         .filter(|line| ["yerc ", "yrcx ", "toyo "].iter().any(|family| line.starts_with(family)))
         .filter(|line| !LEFT_OUT.iter().any(|out| line.contains(out)))
         .collect();

@@ -147,14 +147,14 @@ fn write_paragraphs(about: &str, text: &mut Vec<u8>) -> io::Result<()> {
 }
 
 fn write_examples(path: &[&str], command: &Command, heading: &str, text: &mut Vec<u8>) -> io::Result<()> {
-    let examples: Vec<&str> =
+    let examples: Vec<String> =
         if command.has_subcommands() { Vec::new() } else { example_lines::examples(path).collect() };
     if examples.is_empty() {
         return Ok(());
     }
     writeln!(text, "{heading}\n.RS\n.nf")?;
     for example in examples {
-        writeln!(text, "armctl {}", escape(example))?;
+        writeln!(text, "armctl {}", escape(&example))?;
     }
     writeln!(text, ".fi\n.RE")
 }

@@ -74,7 +74,7 @@ fn with_template(mut command: Command, root: &Command, path: &[&str], is_long: b
     if Pair::of(&command).is_some() {
         let _ = writeln!(after, "You can write a name and its value as one word: NAME=VALUE.\n");
     }
-    let examples: Vec<&str> =
+    let examples: Vec<String> =
         if command.has_subcommands() { Vec::new() } else { example_lines::examples(path).take(3).collect() };
     if !examples.is_empty() {
         let _ = writeln!(after, "{style}Examples:{style:#}");

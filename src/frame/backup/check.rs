@@ -2,15 +2,12 @@
 
 use std::path::Path;
 
-use schemars::JsonSchema;
-use serde::Serialize;
 use serde_json::Value;
 
 use crate::Report;
 use crate::backup::manifest;
 use crate::backup::manifest::MANIFEST;
-use crate::failure::Failure;
-use crate::output::view::{Cell, Table, Tone, View};
+use crate::prelude::basics::*;
 
 /// Result of the integrity check.
 #[derive(Debug, Serialize, JsonSchema)]

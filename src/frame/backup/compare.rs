@@ -4,8 +4,6 @@ use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use super::job_date::{DATE_LINE, align_files};
 use super::tolerance::Tolerance;
@@ -13,11 +11,10 @@ use crate::Report;
 use crate::backup::manifest::{Entry, Manifest, Saved};
 use crate::backup::text_diff::{Change, Hunk, MAX_TEXT, TextDifference, unified};
 use crate::backup::{Only, severity};
-use crate::failure::{Failure, Kind};
 use crate::items::ItemError;
 use crate::output::csv::RowsOf;
 use crate::output::escape;
-use crate::output::view::{Cell, Section, Table, Tone, View};
+use crate::prelude::basics::*;
 use crate::robot::file::{FILES, FileItem};
 use armctl_controller::text::Encoding;
 use armctl_files as files;

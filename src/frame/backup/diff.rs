@@ -4,15 +4,13 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
-use clap::Args;
 
 use super::compare::{BackupSide, CompareOptions, Differences};
 use super::manifest;
 use super::tolerance::{Limit, Tolerance};
 use super::{BackedUp, Only, SaveOptions};
 use crate::dry_run::unknown;
-use crate::failure::{Failure, Kind};
-use crate::settings::Robot;
+use crate::prelude::basics::*;
 
 /// Comparison options.
 #[derive(Debug, Args)]

@@ -3,7 +3,6 @@
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
-use clap::Args;
 use serde_json::Value;
 
 use super::arguments::{BackupOptions, RestoreOptions};
@@ -11,13 +10,11 @@ use super::compare::Differences;
 use super::diff::DiffOptions;
 use super::manifest;
 use super::{BackedUp, RestoreSelection, Restored, SaveOptions};
-use crate::failure::Failure;
-use crate::gate::Confirmation;
 use crate::local_names::private_folder;
+use crate::prelude::basics::*;
 use crate::settings::inventory::Inventory;
-use crate::settings::{Robot, target};
+use crate::settings::target;
 use crate::{Command, Context, Family};
-use armctl_controller::Risk;
 
 /// A family with backups.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]

@@ -7,16 +7,14 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use jiff::Timestamp;
-use schemars::JsonSchema;
+use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 
-use crate::failure::{Failure, Kind};
 use crate::local_names::{Target, is_plain_file_name};
 use crate::output::escape;
-use crate::settings::Robot;
+use crate::prelude::basics::*;
 use crate::settings::target::Family;
 use armctl_controller::text::{hex, unhex};
 use armctl_files as files;

@@ -15,17 +15,14 @@ mod tolerance;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use schemars::JsonSchema;
-use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::Report;
 use super::backup::manifest::MANIFEST;
 use super::robot::file::{FILES, FileItem, Files, NO_DIFFERENCE};
-use crate::failure::{Failure, Kind};
 use crate::items::ItemError;
 use crate::output::csv::RowsOf;
-use crate::output::view::View;
+use crate::prelude::basics::*;
 use crate::settings::inventory::matches_pattern;
 use armctl_controller::nearest::nearest;
 

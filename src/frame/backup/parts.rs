@@ -5,10 +5,8 @@ use std::path::Path;
 
 use super::manifest::LeftOut;
 use crate::Family;
-use crate::failure::{Failure, Kind};
-use crate::gate::Change;
 use crate::interrupt::interruptible;
-use crate::output::Screen;
+use crate::prelude::basics::*;
 use crate::robot::file::{FileItem, State};
 use crate::settings_report::nothing_written;
 use crate::store::{self, PartResult, TablePart};

@@ -9,12 +9,10 @@ use tokio::time::Instant;
 
 use super::manifest::{self, About, Entry, Hash, LeftOut, MANIFEST, Manifest, Reason, Saved};
 use super::{BackedUp, SaveOptions};
-use crate::failure::{Failure, Kind};
 use crate::interrupt::interruptible;
 use crate::local_names::{Target, make_folder, private_folder};
-use crate::output::Screen;
+use crate::prelude::basics::*;
 use crate::robot::file::{FileItem, State};
-use crate::settings::Robot;
 
 /// Maximum progress that may be lost from the manifest after a power failure.
 const WRITE_EVERY: Duration = Duration::from_secs(1);

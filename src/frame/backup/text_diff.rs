@@ -2,11 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use schemars::JsonSchema;
-use serde::Serialize;
 use similar::{Algorithm, ChangeTag, capture_diff_slices_deadline, group_diff_ops};
 
-use crate::output::view::{Cell, Tone};
+use crate::prelude::basics::*;
 use armctl_controller::text::Encoding;
 
 /// Maximum file size for a line comparison; larger files are compared only by bytes.

@@ -2,10 +2,8 @@
 
 use std::collections::HashMap;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::backup::manifest::Entry;
+use crate::prelude::basics::*;
 
 /// Tolerance of positions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]

@@ -4,13 +4,10 @@
 pub mod capture;
 
 use anyhow::Context as _;
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use self::capture::{CaptureDecoder, Input, Selection};
 use super::{Report, SchemaEntry};
-use crate::failure::{Failure, Kind};
-use crate::output::view::{Cell, Section, Table};
+use crate::prelude::basics::*;
 use crate::run::{Run, RunError};
 use armctl_files as files;
 

@@ -1,21 +1,16 @@
 //! `armctl explain FAMILY CODE`: meaning of a code, and its occurrences on selected robots.
 
-use clap::Args;
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
-use schemars::JsonSchema;
-use serde::Serialize;
 
 use super::registration::Declaration;
 use super::shared_commands::default_arguments;
 use super::tool::ToolTask;
 use crate::authority::Authority;
-use crate::failure::Failure;
 use crate::output::csv::RowsOf;
-use crate::output::view::{Cell, Section, Table, View};
+use crate::prelude::basics::*;
 use crate::robot::alarm::{Alarm, AlarmEntry, Alarms, ExtraColumns, Row};
 use crate::run::{Run, RunError};
-use crate::settings::Robot;
 use crate::settings::alarms::{self, Explanation, Origin};
 use crate::{Access, Command, ConnectMode, Context, Entry, Report};
 

@@ -2,12 +2,8 @@
 
 use std::path::Path;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::overview::LeftOver;
-use crate::failure::Failure;
-use crate::output::view::{Cell, Table, Tone};
+use crate::prelude::basics::*;
 use armctl_files as files;
 
 /// One layer.

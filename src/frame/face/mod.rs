@@ -23,11 +23,9 @@ use self::teach_panel::Panel;
 use self::tool::{Tool, ToolKind};
 use super::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
 use super::robot::alarm::Alarm;
-use crate::failure::Failure;
-use crate::output::Screen;
-use crate::settings::{Robot, target::Family};
+use crate::prelude::basics::*;
+use crate::settings::target::Family;
 use crate::{Access, AnyCommand, AnyContext, Connection, Driver, Outcome, SchemaEntry};
-use armctl_controller::Risk;
 use armctl_transport::session::host::Guard;
 use armctl_transport::session::host::shared_link::SharedLink;
 

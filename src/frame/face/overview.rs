@@ -1,11 +1,7 @@
 //! Summary of a robot for `armctl status`.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::Report;
-use crate::failure::Failure;
-use crate::output::view::{Cell, Table, Tone, View};
+use crate::prelude::basics::*;
 use crate::robot::state::State;
 
 /// State of one robot in one line.

@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use clap::{ArgMatches, Args, FromArgMatches as _, Subcommand};
+use clap::{ArgMatches, FromArgMatches as _, Subcommand};
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
@@ -20,14 +20,12 @@ use crate::backup::family_backup::Backups;
 use crate::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
 use crate::connection;
 use crate::decode::Decode;
-use crate::failure::Failure;
-use crate::output::Screen;
+use crate::prelude::basics::*;
 use crate::robot::alarm::Alarm;
 use crate::serve::Serve;
 use crate::settings::alarms::{Alarms, Origin};
-use crate::settings::{Robot, target};
+use crate::settings::target;
 use crate::{Access, AnyCommand, AnyContext, Command, CommandSet, Driver, FamilyArguments, Outcome, SchemaEntry};
-use armctl_controller::Risk;
 use armctl_transport::session::host::Guard;
 
 /// A family, declared in its `face.rs`.

@@ -1,21 +1,17 @@
 //! Commands that every family has: `armctl alarm history`, `alarm reset`, `stop`. Each robot gets the command of its
 //! family, and the reports have the common keys.
 
-use clap::Args;
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
-use schemars::JsonSchema;
-use serde::{Serialize, Serializer};
+use serde::Serializer;
 
 use super::registration::Declaration;
 use crate::AnyContext;
 use crate::connection;
-use crate::failure::Failure;
 use crate::gate::Intent;
 use crate::output::csv::{RowsOf, Sheet};
-use crate::output::view::View;
+use crate::prelude::basics::*;
 use crate::report::sheet_of;
-use crate::settings::Robot;
 use crate::{AnyCommand, Command, ConnectMode, Driver, Outcome, Report};
 
 /// Shared commands.

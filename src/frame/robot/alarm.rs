@@ -1,13 +1,9 @@
 //! Alarms and errors: common keys of `alarm list` and `alarm history` in every family, `explain`, `top` and topics.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::Report;
 use crate::face::shared_commands::CommonReport;
-use crate::failure::Failure;
 use crate::items::{ItemError, ItemOutcome, verdict};
-use crate::output::view::{Cell, Section, Table, Tone, View};
+use crate::prelude::basics::*;
 use crate::settings::alarms::Explanation;
 use crate::settings::target::Family;
 

@@ -6,16 +6,12 @@
 use std::fmt;
 use std::path::Path;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::Report;
 use crate::backup::manifest::{Hash, LeftOut, Saved};
 use crate::backup::{continues_after, severity};
-use crate::failure::{Failure, Kind};
 use crate::items::ItemError;
 use crate::output::csv::RowsOf;
-use crate::output::view::{Cell, Table, Tone, View};
+use crate::prelude::basics::*;
 
 /// A file.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]

@@ -1,13 +1,8 @@
 //! Signals: common keys of `io get|set|list|watch` in every family, and of `armctl io`.
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::Report;
-use crate::failure::Failure;
 use crate::items::{ItemError, all_failed, verdict};
-use crate::output::view::{Cell, Table, Tone, View};
+use crate::prelude::basics::*;
 use crate::watch::Watched;
 
 /// Location of the watched items for `io watch` of every family.

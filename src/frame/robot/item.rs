@@ -3,14 +3,10 @@
 //! Reads report `items[]` with `name`, `label`, `kind`, `ok`, `value` and, after a failure, `error`. Writes also
 //! report `old`, `new` and `written`. Each item has its own result.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use crate::Report;
-use crate::failure::Failure;
 use crate::items::{ItemError, verdict};
 use crate::output::csv::RowsOf;
-use crate::output::view::{Cell, Section, Table, View};
+use crate::prelude::basics::*;
 
 /// No family-specific fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, JsonSchema)]

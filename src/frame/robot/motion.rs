@@ -1,9 +1,7 @@
 //! Motions: common keys of the reports of moves, jogs, homing and runs to a point in every family.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::position::Position;
+use crate::prelude::basics::*;
 
 /// A motion. Null means that the protocol does not report it, that it does not follow from the command, or that the
 /// command did not wait.

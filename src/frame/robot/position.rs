@@ -3,15 +3,13 @@
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::Serialize;
+use schemars::{Schema, SchemaGenerator};
 
 use crate::Report;
 use crate::face::shared_commands::CommonReport;
-use crate::failure::Failure;
 use crate::items::{ItemError, verdict};
-use crate::output::view::{Cell, Section, Table, View};
 use crate::plot::{Plot, SeriesHistory};
+use crate::prelude::basics::*;
 
 /// A position of a robot in one frame. Null means that the frame has no such coordinate, or that the protocol does
 /// not report it.

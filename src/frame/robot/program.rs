@@ -1,11 +1,8 @@
 //! Programs and jobs: the report keys that all families share.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::item::Plain;
 use crate::cycle::Cycle;
-use crate::output::view::{Cell, Tone};
+use crate::prelude::basics::*;
 
 /// A program or job. A field is null if the protocol does not report it, or if the command did not wait for the end.
 #[derive(Debug, Default, Serialize, JsonSchema)]

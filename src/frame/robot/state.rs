@@ -1,11 +1,8 @@
 //! Robot state: common keys of the status in every family, `armctl status`, `top`, metrics and topics.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
-use crate::failure::Failure;
+use crate::prelude::basics::*;
 use crate::robot::alarm::Alarm;
-use crate::settings::{Robot, alarms};
+use crate::settings::alarms;
 
 /// State that is common to all robots. Null means that the protocol does not report it, or that it was not read.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]

@@ -4,10 +4,9 @@ use std::time::Instant;
 
 use super::Run;
 use super::print::with_robot_name;
-use crate::failure::Failure;
 use crate::output::log::Level;
+use crate::prelude::basics::*;
 use crate::repeat_limiter::{Line, RepeatLimiter};
-use crate::settings::Robot;
 
 /// Missing answers of a robot that is watched.
 pub(super) struct FailureLog<'a> {

@@ -3,17 +3,14 @@
 use std::collections::HashMap;
 
 use jiff::Timestamp;
-use serde::Serialize;
 use serde_json::Value;
 
 use super::failure_log::RoundFailures;
 use super::{Run, RunError};
-use crate::failure::Failure;
 use crate::output::csv::Sheet;
 use crate::output::envelope::{Envelope, ErrorBody};
-use crate::output::view::{Table, View};
 use crate::output::{Format, escape, render};
-use crate::settings::Robot;
+use crate::prelude::basics::*;
 use crate::{AnyCommand, AnyReport, Outcome};
 
 /// Report or failure of a robot. With only one robot, there is no robot in the row.

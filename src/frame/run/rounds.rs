@@ -2,15 +2,13 @@
 
 use std::time::Duration;
 
-use serde::Serialize;
 use tokio::time::{Instant, timeout_at};
 
 use super::print::as_value;
 use crate::condition::Condition;
-use crate::failure::{Failure, Kind};
 use crate::interrupt::interruptible;
-use crate::output::Screen;
-use crate::settings::{Robot, duration};
+use crate::prelude::basics::*;
+use crate::settings::duration;
 
 /// Time that every look has, even if `--for` ends earlier: a robot that answers at once is not missed.
 const SHORTEST_LOOK: Duration = Duration::from_millis(250);

@@ -6,9 +6,8 @@ use super::failure_log::RoundFailures;
 use super::print::{ReportPosition, envelopes, with_robot_name, with_time};
 use super::rounds::Rounds;
 use super::{DEFAULT_INTERVAL, Granted, Run, RunError, failure_of, run_parallel};
-use crate::failure::{Failure, Kind};
 use crate::output::envelope::Envelope;
-use crate::settings::Robot;
+use crate::prelude::basics::*;
 use crate::{AnyCommand, Outcome};
 
 /// Time after which a watch tries again to reach a robot that did not answer.

@@ -5,16 +5,12 @@ use super::{Answers, Differing, Store, Writable, WrittenOf, columns, item};
 use crate::authority::Authority;
 use crate::connection::Family;
 use crate::dry_run::{Known as _, unknown};
-use crate::failure::{Failure, Kind};
-use crate::gate::{Change, Confirmation};
 use crate::interrupt::interruptible;
 use crate::items::describe_request;
 use crate::names;
-use crate::output::Screen;
+use crate::prelude::basics::*;
 use crate::robot::item::{Written, WrittenItems};
-use crate::settings::Robot;
 use crate::settings_report::nothing_written;
-use armctl_controller::Risk;
 
 /// Kind of confirmation for a write.
 pub const fn confirmation<S: Writable>() -> Confirmation {

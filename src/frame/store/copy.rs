@@ -1,16 +1,12 @@
 //! `copy`: copies the content of a row to other rows.
 
-use clap::Args;
-
 use super::change::{TableWrite, confirmation, intent, write};
 use super::get::Rows;
 use super::{Writable, WrittenOf, read};
 use crate::dry_run::Known as _;
-use crate::failure::{Failure, Kind};
-use crate::gate::Confirmation;
+use crate::prelude::basics::*;
 use crate::robot::item::as_requested;
 use crate::{Command, Context};
-use armctl_controller::Risk;
 
 /// Copies a row to one or several other rows.
 #[derive(Debug, Args)]

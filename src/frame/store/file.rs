@@ -3,23 +3,16 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::change::{Row, TableWrite, confirmation, intent, write};
 use super::get::{Rows, defined};
 use super::{Store, Writable, WrittenOf, read, read_keys, sheet};
-use crate::failure::Failure;
-use crate::gate::Confirmation;
 use crate::items::{ItemError, verdict};
-use crate::output::view::{Section, View};
+use crate::prelude::basics::*;
 use crate::report::Report;
 use crate::robot::item::as_requested;
 use crate::sheet::SheetManner;
 use crate::text_files;
 use crate::{Command, Context};
-use armctl_controller::Risk;
 use armctl_controller::findings::Findings;
 use armctl_controller::sheet::{Column, Sheet};
 

@@ -1,15 +1,13 @@
 //! `get` and `list`. `watch` repeats `get`.
 
-use clap::Args;
-
 use super::{ItemsOf, Store, columns, item, read, read_keys};
-use crate::failure::Failure;
 use crate::items::ItemError;
 use crate::names;
+use crate::prelude::basics::*;
 use crate::robot::item::{Item, Items};
 use crate::watch::{Watchable, Watched};
 use crate::{Command, Context};
-use armctl_controller::{Risk, typed};
+use armctl_controller::typed;
 
 /// Row arguments, after parsing.
 #[derive(Debug)]

@@ -12,10 +12,6 @@ use std::borrow::Cow;
 use std::fmt::Debug;
 use std::hash::Hash;
 
-use clap::Args;
-use schemars::JsonSchema;
-use serde::Serialize;
-
 pub use self::change::{ComparedRow, Row, TableWrite, describe_change, overwriting, write, write_rows};
 pub use self::copy::Copy;
 pub use self::file::{Dump, LeftOut, Restore, keys_of, rows_of_file};
@@ -25,11 +21,8 @@ pub use self::set::Set;
 use super::connection::Family;
 use super::kind::ValueKind;
 use super::names as labels;
-use crate::failure::Failure;
-use crate::output::Screen;
-use crate::output::view::Cell;
+use crate::prelude::basics::*;
 use crate::robot::item::{Columns, Item, Items, WrittenItems, as_requested};
-use armctl_controller::Risk;
 use armctl_controller::names::{Kind, Names};
 use armctl_controller::sheet::Column;
 

@@ -1,15 +1,13 @@
 //! `set`: writes one row.
 
+use clap::ArgAction;
 use clap::builder::ValueRange;
-use clap::{ArgAction, Args};
 
 use super::change::{TableWrite, confirmation, intent, write};
 use super::{Store, Writable, WrittenOf, read_keys};
-use crate::failure::Failure;
-use crate::gate::Confirmation;
+use crate::prelude::basics::*;
 use crate::robot::item::as_requested;
 use crate::{Command, Context};
-use armctl_controller::Risk;
 use armctl_controller::nearest::nearest;
 
 /// A row, and its new content.

@@ -16,6 +16,7 @@ use armctl_transport::devicenet::network::{Connection, Network, Tap};
 use armctl_transport::devicenet::scanner::Found;
 use armctl_transport::devicenet::settings::{Purpose, Settings};
 use armctl_transport::devicenet::wire::{Request, class, connection};
+use armctl_transport::image::LinkError;
 
 /// Time to listen for the polls of another master.
 const LISTEN: Duration = Duration::from_secs(1);

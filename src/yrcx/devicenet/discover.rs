@@ -13,6 +13,8 @@ use crate::prelude::*;
 use armctl_frame::settings::target::Bus;
 use armctl_frame::settings::target::devicenet::DeviceNet;
 use armctl_transport::devicenet::network::Network;
+use armctl_transport::image::LinkError;
+use armctl_transport::image::tap::Tap;
 
 /// Adapters to search.
 #[derive(Debug, Args)]

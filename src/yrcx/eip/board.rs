@@ -17,6 +17,7 @@ use armctl_transport::eip::link::as_advice;
 use armctl_transport::eip::probe::{self, Findings, Instances, Presence};
 use armctl_transport::eip::status;
 use armctl_transport::eip::wire;
+use armctl_transport::image::LinkError;
 
 /// Attribute 3 of an assembly, which has the data.
 const IMAGE: u32 = 3;

@@ -14,6 +14,7 @@ use armctl_frame::failure::plain;
 use armctl_frame::settings::target::eip::SCHEME;
 use armctl_transport::eip::PORT;
 use armctl_transport::eip::discovery::{self, list_identity};
+use armctl_transport::image::tap::Tap;
 
 /// Addresses to search.
 #[derive(Debug, Args)]

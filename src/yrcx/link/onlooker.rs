@@ -10,6 +10,7 @@ use armctl_client::Watcher;
 use armctl_client::yrcx::Event;
 use armctl_controller::yrcx::describe::{answer_summary, command_summary};
 use armctl_frame::trace::lock_writer;
+use armctl_transport::image::LinkError;
 
 /// Observer that records the traffic and prints notices.
 #[derive(Debug)]

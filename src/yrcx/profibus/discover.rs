@@ -9,6 +9,7 @@ use super::board::{Board, Station};
 use crate::fieldbus::{self, Device, Scope, bus_of, fields};
 use crate::prelude::*;
 use armctl_frame::settings::target::profibus::SCHEME;
+use armctl_transport::image::tap::Tap;
 
 /// Line to search.
 #[derive(Debug, Args)]

@@ -9,6 +9,8 @@ use crate::link_error::not_open;
 use crate::prelude::*;
 use armctl_frame::face::layers::Layers;
 use armctl_frame::settings::target::profinet::{Profinet, SCHEME};
+use armctl_transport::image::LinkError;
+use armctl_transport::image::tap::Tap;
 use armctl_transport::profinet::commission::{self, Found, Identity};
 use armctl_transport::profinet::error::ProfinetError;
 use armctl_transport::profinet::interface::Interface;

@@ -10,6 +10,8 @@ use crate::fieldbus::{self, Device, Scope, fields};
 use crate::link_error::not_open;
 use crate::prelude::*;
 use armctl_frame::settings::target::profinet::SCHEME;
+use armctl_transport::image::LinkError;
+use armctl_transport::image::tap::Tap;
 use armctl_transport::profinet::commission;
 use armctl_transport::profinet::interface::Interface;
 

@@ -7,6 +7,7 @@ use crate::prelude::*;
 use crate::simulated::{faults, faults_of_option};
 use armctl_frame::settings::target::profinet::{self, SCHEME};
 use armctl_transport::fault::{FaultNames, FaultSpec, SimulatorFaults};
+use armctl_transport::image::LinkError;
 use armctl_transport::profinet::device::Fault;
 use armctl_transport::profinet::device::server::Server;
 use armctl_transport::profinet::interface::Interface;

@@ -59,13 +59,13 @@ fn lines(family: &str) -> Vec<Line> {
     let mut seen = BTreeSet::new();
     let mut lines = Vec::new();
     for (line, risk) in robot_lines() {
-        let words = bounded(&split(line.split("  #").next().unwrap_or(line)));
+        let words = bounded(&split(line.split("  #").next().unwrap_or(&line)));
         let is_other = ["yerc", "yrcx", "toyo"].iter().any(|other| *other != family && words[0] == *other);
         let is_name = |word: &&String| word.chars().all(|char| char.is_ascii_lowercase() || char == '-');
         let command = || words.iter().take_while(is_name).cloned().collect();
-        if !is_other && seen.insert(if *risk == Risk::Read { command() } else { words.clone() }) {
+        if !is_other && seen.insert(if risk == Risk::Read { command() } else { words.clone() }) {
             let is_stop = STOPS.iter().any(|stop| line.starts_with(stop));
-            lines.push(Line { words, risk: *risk, is_stop });
+            lines.push(Line { words, risk, is_stop });
         }
     }
     lines.sort_by_key(|line| line.is_stop);

@@ -12,18 +12,16 @@ use std::path::Path;
 use std::time::Duration;
 
 use anyhow::Context as _;
-use clap::Args;
 use jiff::Timestamp;
-use serde::Serialize;
 
 pub use self::report::Capture;
 use self::report::{FULL, Links, Problems, count_text};
 use super::Field;
 use crate::Report as _;
-use crate::failure::Failure;
 use crate::output::Format;
 use crate::output::busy_work::register;
 use crate::output::envelope::ErrorBody;
+use crate::prelude::basics::*;
 use crate::run::{Run, RunError};
 use armctl_files as files;
 use armctl_transport::capture::{Carrier, Message, OpenError, Summary, read};

@@ -3,15 +3,11 @@
 use std::collections::HashMap;
 use std::time::Duration;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::DecodedMessage;
 use crate::Report;
 use crate::decode::{Field, field_table, in_parentheses, problem_lines};
-use crate::failure::{Failure, Kind};
 use crate::output::csv::RowsOf;
-use crate::output::view::{Cell, Section, Table, Tone, View};
+use crate::prelude::basics::*;
 use armctl_transport::tap::Direction;
 
 /// Messages of a family in a capture file.

@@ -104,6 +104,29 @@ impl PartialEq for Bus {
 impl Eq for Bus {}
 
 #[cfg(test)]
+pub(super) mod testing {
+    use std::any::Any;
+
+    use super::super::{Place, Target};
+
+    /// Options of a fieldbus URL.
+    pub fn options<T: Any + Clone>(url: &str) -> T {
+        match url.parse::<Target>().unwrap().place {
+            Place::Bus(bus) => bus.options::<T>().unwrap().clone(),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// Each URL is wrong, with this part in its message.
+    pub fn rejects(cases: &[(&str, &str)]) {
+        for (url, part) in cases {
+            let failure = url.parse::<Target>().unwrap_err();
+            assert!(failure.message.contains(part), "{url}: {failure}");
+        }
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::super::Target;
     use super::*;

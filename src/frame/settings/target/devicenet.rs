@@ -122,18 +122,8 @@ fn time(query: &mut Query, name: &str, allowed: &RangeInclusive<Duration>) -> Re
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Place, Target};
+    use super::super::bus::testing::{options, rejects};
     use super::*;
-
-    fn node(url: &str) -> Result<DeviceNet, String> {
-        match url.parse::<Target>() {
-            Ok(target) => match target.place {
-                Place::Bus(bus) => Ok(bus.options::<DeviceNet>().unwrap().clone()),
-                other => panic!("{other:?}"),
-            },
-            Err(failure) => Err(failure.message),
-        }
-    }
 
     #[test]
     fn parses_urls_of_adapters() {
@@ -145,13 +135,16 @@ mod tests {
             cycle: Duration::from_millis(20),
             rate: Duration::from_millis(100),
         };
-        assert_eq!(node("slcan:///dev/ttyACM0?mac=5"), Ok(usual.clone()));
+        assert_eq!(options::<DeviceNet>("slcan:///dev/ttyACM0?mac=5"), usual.clone());
         let all = "slcan:///dev/ttyACM0?mac=5&bitrate=500k&baud=115200&master=0&cycle=20ms&rate=100ms";
-        assert_eq!(node(all), Ok(usual.clone()));
+        assert_eq!(options::<DeviceNet>(all), usual.clone());
         let place = network::Place::Serial { path: "COM3".to_owned(), baud: 115_200 };
-        assert_eq!(node("slcan://COM3?mac=5"), Ok(DeviceNet { place, ..usual.clone() }));
+        assert_eq!(options::<DeviceNet>("slcan://COM3?mac=5"), DeviceNet { place, ..usual.clone() });
         let place = network::Place::Tcp { host: "10.0.0.1".to_owned(), port: 4001 };
-        assert_eq!(node("slcan://10.0.0.1:4001?mac=5"), Ok(DeviceNet { place: place.clone(), ..usual.clone() }));
+        assert_eq!(
+            options::<DeviceNet>("slcan://10.0.0.1:4001?mac=5"),
+            DeviceNet { place: place.clone(), ..usual.clone() }
+        );
         let slow = DeviceNet {
             place,
             bitrate: Bitrate::K125,
@@ -159,14 +152,14 @@ mod tests {
             rate: Duration::from_millis(250),
             ..usual.clone()
         };
-        assert_eq!(node("slcan://10.0.0.1:4001?mac=5&bitrate=125k"), Ok(slow));
+        assert_eq!(options::<DeviceNet>("slcan://10.0.0.1:4001?mac=5&bitrate=125k"), slow);
         let place = network::Place::SocketCan { interface: "can0".to_owned() };
-        assert_eq!(node("can://can0?mac=5"), Ok(DeviceNet { place, ..usual }));
+        assert_eq!(options::<DeviceNet>("can://can0?mac=5"), DeviceNet { place, ..usual });
     }
 
     #[test]
     fn names_mistakes_in_urls() {
-        for (url, part) in [
+        rejects(&[
             ("slcan:/dev/ttyACM0?mac=5", "slashes"),
             ("slcan:///dev/ttyACM0", "mac is missing"),
             ("slcan:///dev/ttyACM0?mac=64", "0 to 63"),
@@ -182,9 +175,6 @@ mod tests {
             ("can://can0?mac=5&bitrate=500k", "bitrate"),
             ("can:///dev/can0?mac=5", "can0"),
             ("can://?mac=5", "name of an interface"),
-        ] {
-            let message = node(url).unwrap_err();
-            assert!(message.contains(part), "{url}: {message}");
-        }
+        ]);
     }
 }

@@ -174,19 +174,9 @@ fn key(text: &str) -> Result<EipKey, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Place, Target};
+    use super::super::bus::testing::{options, rejects};
     use super::{Eip, EipKey, EipRole};
     use std::time::Duration;
-
-    fn eip(url: &str) -> Result<Eip, String> {
-        match url.parse::<Target>() {
-            Ok(target) => match target.place {
-                Place::Bus(bus) => Ok(bus.options::<Eip>().unwrap().clone()),
-                other => panic!("{other:?}"),
-            },
-            Err(failure) => Err(failure.message),
-        }
-    }
 
     #[test]
     fn a_host_is_enough() {
@@ -204,8 +194,11 @@ mod tests {
             multicast: false,
             key: None,
         };
-        assert_eq!(eip("eip://rcx"), Ok(usual.clone()));
-        assert_eq!(eip("eip://rcx:44818/?in=100&out=150&config=1&rpi=20ms&multiplier=16&multicast=no"), Ok(usual));
+        assert_eq!(options::<Eip>("eip://rcx"), usual.clone());
+        assert_eq!(
+            options::<Eip>("eip://rcx:44818/?in=100&out=150&config=1&rpi=20ms&multiplier=16&multicast=no"),
+            usual
+        );
     }
 
     #[test]
@@ -227,12 +220,12 @@ mod tests {
             multicast: true,
             key: Some(key),
         };
-        assert_eq!(eip(url), Ok(expected));
+        assert_eq!(options::<Eip>(url), expected);
     }
 
     #[test]
     fn names_mistakes_in_urls() {
-        for (url, part) in [
+        rejects(&[
             ("eip:h", "slashes"),
             ("eip://", "host is missing"),
             ("eip://[::1]", "IPv6"),
@@ -250,9 +243,6 @@ mod tests {
             ("eip://h?key=1:2", "key must be VENDOR"),
             ("eip://h?key=1:2:3:128.1", "key must be VENDOR"),
             ("eip://h?rpm=20ms", "unknown parameter 'rpm'; did you mean 'rpi'?"),
-        ] {
-            let message = eip(url).unwrap_err();
-            assert!(message.contains(part), "{url}: {message}");
-        }
+        ]);
     }
 }
