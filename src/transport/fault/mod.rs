@@ -25,7 +25,7 @@ macro_rules! device_faults {
 
         impl $device {
             /// All faults with their names.
-            pub const ALL: &[(&str, Self)] = &[$(($name, Self::$fault),)*];
+            pub const ALL: [(&str, Self); [$($name),*].len()] = [$(($name, Self::$fault),)*];
         }
     };
 }

@@ -80,14 +80,8 @@ fn the_start_input_works_only_with_the_host_off() {
     bench.console("input 0/SY/2 on");
     bench.rest();
     assert_eq!(bench.counter(1), 1);
-    assert_eq!(
-        bench.ask("@MINP SNO=0 GN=1"),
-        "@MINP SNO=0 GN=1 SY01=00000010 PN01=00000000 PN02=00000000 PN03=00000000"
-    );
-    assert_eq!(
-        bench.ask("@MOUT SNO=0 GN=1"),
-        "@MOUT SNO=0 GN=1 SY01=00001110 PN01=00000000 PN02=00000000 PN03=00000000"
-    );
+    bench.answers("@MINP SNO=0 GN=1", "@MINP SNO=0 GN=1 SY01=00000010 PN01=00000000 PN02=00000000 PN03=00000000");
+    bench.answers("@MOUT SNO=0 GN=1", "@MOUT SNO=0 GN=1 SY01=00001110 PN01=00000000 PN02=00000000 PN03=00000000");
 }
 
 #[test]
@@ -137,22 +131,22 @@ fn absolute_encoders_keep_the_origin() {
 fn errors_are_stored_in_the_history() {
     let mut bench =
         Bench::ready("hours = 999\nhistory = [{ code = \"28\", after_seconds = 3661 }, { power_cut = true }]");
-    assert_eq!(bench.ask("@EHTR NO=01"), "@EHTR NO=01 ER=28 AL=00 H=001 M=01 S=01");
-    assert_eq!(bench.ask("@EHTR NO=02"), "@EHTR NO=02 ER=** AL=** H=*** M=** S=**");
-    assert_eq!(bench.ask("@EHTR NO=03"), "@EHTR NO=03 ER=00 AL=00 H=000 M=00 S=00");
+    bench.answers("@EHTR NO=01", "@EHTR NO=01 ER=28 AL=00 H=001 M=01 S=01");
+    bench.answers("@EHTR NO=02", "@EHTR NO=02 ER=** AL=** H=*** M=** S=**");
+    bench.answers("@EHTR NO=03", "@EHTR NO=03 ER=00 AL=00 H=000 M=00 S=00");
     bench.pass(125_000);
     bench.console("error 13");
     bench.console("error A1");
     assert_eq!(bench.page(1), 0x13, "the first one stays");
-    assert_eq!(bench.ask("@EHTR NO=01"), "@EHTR NO=01 ER=A1 AL=00 H=999 M=02 S=05");
+    bench.answers("@EHTR NO=01", "@EHTR NO=01 ER=A1 AL=00 H=999 M=02 S=05");
     bench.console("power cycle");
-    assert_eq!(bench.ask("@EHTR NO=01"), "@EHTR NO=01 ER=** AL=** H=*** M=** S=**");
-    assert_eq!(bench.ask("@EHTR NO=03"), "@EHTR NO=03 ER=13 AL=00 H=999 M=02 S=05");
+    bench.answers("@EHTR NO=01", "@EHTR NO=01 ER=** AL=** H=*** M=** S=**");
+    bench.answers("@EHTR NO=03", "@EHTR NO=03 ER=13 AL=00 H=999 M=02 S=05");
     for _ in 0..120 {
         bench.console("error 60");
     }
     assert!(bench.ask("@EHTR NO=99").contains("ER=60"));
-    assert_eq!(bench.ask("@MERP"), "@MERP         ");
+    bench.answers("@MERP", "@MERP         ");
 }
 
 #[test]
@@ -172,19 +166,13 @@ fn ports_are_shown_by_screens() {
     let mut bench = Bench::ready(
         "inputs = { \"0/04\" = \"00000001\", \"0/23\" = \"10000000\", \"4/03\" = \"11111111\" }\noutputs = { \"0/18\" = \"00010000\", \"2/02\" = \"00000010\" }",
     );
-    assert_eq!(
-        bench.ask("@MINP SNO=0 GN=2"),
-        "@MINP SNO=0 GN=2 PN04=00000001 PN05=00000000 PN06=00000000 PN07=00000000"
-    );
-    assert_eq!(
-        bench.ask("@MINP SNO=0 GN=6"),
-        "@MINP SNO=0 GN=6 PN20=00000000 PN21=00000000 PN22=00000000 PN23=10000000"
-    );
+    bench.answers("@MINP SNO=0 GN=2", "@MINP SNO=0 GN=2 PN04=00000001 PN05=00000000 PN06=00000000 PN07=00000000");
+    bench.answers("@MINP SNO=0 GN=6", "@MINP SNO=0 GN=6 PN20=00000000 PN21=00000000 PN22=00000000 PN23=10000000");
     bench.ng("@MINP SNO=0 GN=7", "no such screen");
-    assert_eq!(bench.ask("@MINP SNO=4 GN=1"), "@MINP SNO=4 PN01=00000000 PN02=00000000 PN03=11111111");
+    bench.answers("@MINP SNO=4 GN=1", "@MINP SNO=4 PN01=00000000 PN02=00000000 PN03=11111111");
     bench.ng("@MINP SNO=4 GN=2", "no such screen");
-    assert_eq!(bench.ask("@MOUT SNO=0 GN=5"), "@MOUT SNO=0 GN=5 PN16=00000000 PN17=00000000 PN18=00010000");
-    assert_eq!(bench.ask("@MOUT SNO=2 GN=1"), "@MOUT SNO=2 PN01=00000000 PN02=00000010");
+    bench.answers("@MOUT SNO=0 GN=5", "@MOUT SNO=0 GN=5 PN16=00000000 PN17=00000000 PN18=00010000");
+    bench.answers("@MOUT SNO=2 GN=1", "@MOUT SNO=2 PN01=00000000 PN02=00000010");
 }
 
 #[test]
@@ -203,15 +191,15 @@ fn sysp_reports_the_controller_type() {
     let mut bench = Bench::ready(
         "version = \"3.40\"\nrobot_types = [120000, 120100]\nwrite = [\"WPAR M09 J\", \"WPAR E01 AX1=Y AX2=X AX3=Z AX4=R\"]",
     );
-    assert_eq!(bench.ask("@SYSP"), "@SYSP RTYP=120000 VER=03.40 J ARM1=Y ARM2=X ARM3=Z ARM4=R N");
-    assert_eq!(bench.ask("@CVER NO=4"), "@CVER NO=4 VER=03.40");
+    bench.answers("@SYSP", "@SYSP RTYP=120000 VER=03.40 J ARM1=Y ARM2=X ARM3=Z ARM4=R N");
+    bench.answers("@CVER NO=4", "@CVER NO=4 VER=03.40");
     assert_eq!(bench.ask("@TYPE AX1 RTYP=777777"), "@TYPE AX1 RTYP=120000", "one that it does not know");
     assert_eq!(bench.page(0) & 0x80, 0);
-    assert_eq!(bench.ask("@TYPE AX1 RTYP=120100"), "@TYPE AX1 RTYP=120100");
+    bench.answers("@TYPE AX1 RTYP=120100", "@TYPE AX1 RTYP=120100");
     assert_eq!(bench.page(0) & 0x80, 0x80);
     assert_eq!(bench.ask("@RPAR E01"), "@RPAR E01 AX1=X AX2=Y AX3=Z AX4=R", "parameter 2 is as at first");
-    assert_eq!(bench.ask("@MBUS C1"), "@MBUS C1 STN=01 BRT=156K VER=01");
-    assert_eq!(bench.ask("@MBUS C2"), "@MBUS C2 ER1=00 ER2=00 ER3=00 MS1=00 MS2=00");
+    bench.answers("@MBUS C1", "@MBUS C1 STN=01 BRT=156K VER=01");
+    bench.answers("@MBUS C2", "@MBUS C2 ER1=00 ER2=00 ER3=00 MS1=00 MS2=00");
 }
 
 #[test]

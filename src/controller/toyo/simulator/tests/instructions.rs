@@ -83,9 +83,7 @@ fn subroutines_return() {
 
 #[test]
 fn a_program_needs_its_end() {
-    let mut bench =
-        Bench::with(&["NOP", "NOP"], "write = [\"WPAR E22 TASK01=0002 TASK02=0000 TASK03=0000 TASK04=0000\"]");
-    bench.run();
+    let bench = Bench::ran(&["NOP", "NOP"], "write = [\"WPAR E22 TASK01=0002 TASK02=0000 TASK03=0000 TASK04=0000\"]");
     assert_eq!(bench.error(), Some(0xB0));
 }
 
@@ -103,8 +101,7 @@ fn waits_end_when_inputs_match() {
         ],
         "steps.2 = [\"IOUT PN9=1.......\", \"END\"]",
     );
-    bench.ok("@SPST 0001");
-    bench.pass(1000);
+    bench.start(1000);
     assert_eq!(bench.page(4) & 0b100, 0b100, "it waits for input");
     assert_eq!(bench.sim.wake(), None, "and nothing else happens");
     bench.console("input 0/02/1 on");
@@ -129,12 +126,8 @@ fn a_task_waits_for_another_by_counters_and_internal_ports() {
         &["TSTR TASK=02", "INSP PN1=.......1 AND", "CWIT CN05>=0003", "OUT STN=0 PN01=1.......", "END"],
         "steps.2 = [\"TIM TM=001.0\", \"IOUT PN1=.......1\", \"TIM TM=001.0\", \"CNT CN05=0003\", \"END\"]",
     );
-    bench.ok("@SPST 0001");
-    bench.pass(1500);
-    assert_eq!(
-        bench.ask("@MNIN SNO=0 GN=1"),
-        "@MNIN SNO=0 GN=1 PN01=00000001 PN02=00000000 PN03=00000000 PN04=00000000"
-    );
+    bench.start(1500);
+    bench.answers("@MNIN SNO=0 GN=1", "@MNIN SNO=0 GN=1 PN01=00000001 PN02=00000000 PN03=00000000 PN04=00000000");
     assert_eq!(bench.page(4) & 0b100, 0b100, "CWIT waits as well");
     assert_eq!(bench.port(1), 0);
     bench.rest();
@@ -165,7 +158,7 @@ fn a_pulse_ends_by_itself() {
 
 #[test]
 fn ports_and_counters_are_copied() {
-    let mut bench = Bench::with(
+    let bench = Bench::ran(
         &["INPC STN=0 PN01=01 CN=01", "OUTC STN=0 PN=02 CN=01", "END"]
             .map(|step| step.replace("PN01=01", "PN=01"))
             .iter()
@@ -173,34 +166,31 @@ fn ports_and_counters_are_copied() {
             .collect::<Vec<_>>(),
         "inputs = { \"0/01\" = \"10000001\" }",
     );
-    bench.run();
     assert_eq!((bench.counter(1), bench.port(2)), (129, 0x81));
     fails(&["CNT CN01=0256", "OUTC STN=0 PN=02 CN=01", "END"], 0xA7);
 }
 
 #[test]
 fn timer_instructions_wait_for_their_time() {
-    let mut bench = Bench::with(
+    let mut bench = Bench::ran(
         &["TIMP TN1=001.0", "TIM TM=002.5", "JMPT TAG=001 TN1>=003.5", "END", "TAG TAG=001", "CNT CN01=0001", "END"],
         "",
     );
-    bench.run();
     assert_eq!(bench.counter(1), 1);
     let now = bench.now;
     assert!(now >= std::time::Duration::from_millis(2500), "{now:?}");
-    assert_eq!(bench.ask("@MTMR TN=1"), "@MTMR TN1=003.5");
+    bench.answers("@MTMR TN=1", "@MTMR TN1=003.5");
     bench.pass(2000);
-    assert_eq!(bench.ask("@MTMR TN=1"), "@MTMR TN1=005.5");
+    bench.answers("@MTMR TN=1", "@MTMR TN1=005.5");
     bench.pass(2_000_000);
-    assert_eq!(bench.ask("@MTMR TN=1"), "@MTMR TN1=999.9");
-    assert_eq!(bench.ask("@MTMR TN=2"), "@MTMR TN2=000.0");
+    bench.answers("@MTMR TN=1", "@MTMR TN1=999.9");
+    bench.answers("@MTMR TN=2", "@MTMR TN2=000.0");
 }
 
 #[test]
 fn selection_inputs_select_a_tag() {
     let steps = ["PSEL", "CNT CN01=0001", "END", "TAG TAG=005", "CNT CN01=0002", "END"];
-    let mut bench = Bench::with(&steps, "write = [\"WPAR M05 0/01/5\"]\ninputs = { \"0/01\" = \"00001111\" }");
-    bench.run();
+    let mut bench = Bench::ran(&steps, "write = [\"WPAR M05 0/01/5\"]\ninputs = { \"0/01\" = \"00001111\" }");
     assert_eq!(bench.counter(1), 1, "0 goes on");
     bench.console("input 0/01 01010000");
     bench.run();
@@ -212,27 +202,22 @@ fn selection_inputs_select_a_tag() {
 
 #[test]
 fn a_stop_instruction_waits_for_the_next_start() {
-    let mut bench = Bench::with(&["CNT CN01=0001", "STOP", "CNT CN01=0002", "END"], "");
-    bench.run();
+    let mut bench = ran(&["CNT CN01=0001", "STOP", "CNT CN01=0002", "END"]);
     assert_eq!((bench.counter(1), bench.page(0)), (1, 0b0011_0100), "paused");
-    assert_eq!(bench.ask("@RSTX 0000"), "@RSTX 0003 CNT CN01=0002");
-    bench.ok("@SPST 0000");
-    bench.rest();
+    bench.answers("@RSTX 0000", "@RSTX 0003 CNT CN01=0002");
+    bench.resume();
     assert_eq!((bench.counter(1), bench.page(0)), (2, 0b0011_0000));
 }
 
 #[test]
 fn servo_power_is_switched_by_axis() {
-    let mut bench =
-        Bench::with(&["SVOF X", "MOV a X=+0001.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 POST", "END"], "");
-    bench.run();
+    let mut bench = ran(&["SVOF X", "MOV a X=+0001.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 POST", "END"]);
     assert_eq!((bench.error(), bench.sim.state().servo), (Some(0x62), false));
     assert_eq!(bench.page(3) & 1, 0);
-    let mut bench = Bench::with(
+    let bench = Bench::ran(
         &["SVON ALL", "MOV a X=+0001.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 POST", "END"],
         "servo = false",
     );
-    bench.run();
     assert_eq!((bench.error(), bench.sim.state().servo), (None, true));
     bench.at([1.0, 0.0, 0.0, 0.0]);
 }
@@ -251,8 +236,7 @@ fn a_million_instructions_are_executed() {
         ],
         "instruction_us = 100",
     );
-    bench.ok("@SPST 0001");
-    bench.rest();
+    bench.run();
     assert_eq!(bench.counter(2), 34);
     // 34 times 9999 rounds of three instructions, and some more instructions, 0.1 ms each.
     assert!(bench.now > std::time::Duration::from_secs(100), "{:?}", bench.now);
@@ -279,8 +263,7 @@ fn a_loop_schedules_the_same_pulse_once() {
         "END",
     ];
     let mut bench = Bench::with(&steps, "write = [\"WPAR M11 I\"]");
-    bench.ok("@SPST 0001");
-    bench.pass(3900);
+    bench.start(3900);
     assert_eq!(bench.port(1), 1, "every time it begins anew");
     bench.pass(600);
     bench.rest();

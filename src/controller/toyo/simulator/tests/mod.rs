@@ -42,6 +42,13 @@ impl Bench {
         Self::ready(&format!("steps.1 = [{}]\n{toml}", steps.join(", ")))
     }
 
+    /// The controller after a run of the program.
+    fn ran(steps: &[&str], toml: &str) -> Self {
+        let mut bench = Self::with(steps, toml);
+        bench.run();
+        bench
+    }
+
     /// Sends a block and returns the answer, both without line end.
     fn ask(&mut self, block: &str) -> String {
         self.sim.receive(self.now, format!("{block}\r\n").as_bytes());
@@ -49,6 +56,11 @@ impl Bench {
         assert_eq!(self.sim.transmit(self.now), None, "{block}: one answer");
         let text = String::from_utf8(answer).unwrap();
         text.strip_suffix("\r\n").unwrap().to_owned()
+    }
+
+    #[track_caller]
+    fn answers(&mut self, block: &str, answer: &str) {
+        assert_eq!(self.ask(block), answer, "{block}");
     }
 
     #[track_caller]
@@ -91,6 +103,18 @@ impl Bench {
         self.rest();
     }
 
+    /// Starts the program and runs it for this time.
+    fn start(&mut self, ms: u64) {
+        self.ok("@SPST 0001");
+        self.pass(ms);
+    }
+
+    /// Continues the program and runs it to its end.
+    fn resume(&mut self) {
+        self.ok("@SPST 0000");
+        self.rest();
+    }
+
     fn error(&self) -> Option<u8> {
         self.sim.state().error
     }
@@ -119,9 +143,7 @@ impl Bench {
 
 /// The controller after a run of the program.
 fn ran(steps: &[&str]) -> Bench {
-    let mut bench = Bench::with(steps, "");
-    bench.run();
-    bench
+    Bench::ran(steps, "")
 }
 
 /// Asserts that this error ends the program.

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::{Bench, What, fails};
+use super::{Bench, What, fails, ran};
 
 /// A move of X to 100 mm with speed row 5 (200 mm/s) and ramps of 0.1 s. It takes 0.6 s; the two ramps together are 20
 /// mm long.
@@ -14,8 +14,7 @@ fn mov(x: f64, y: f64, tail: &str) -> String {
 
 /// Run time of the steps. Steps other than moves do not count.
 fn time_of(steps: &[&str], toml: &str) -> (Bench, Duration) {
-    let mut bench = Bench::with(steps, &format!("instruction_us = 1\n{toml}"));
-    bench.run();
+    let bench = Bench::ran(steps, &format!("instruction_us = 1\n{toml}"));
     assert_eq!(bench.error(), None);
     let time = bench.now;
     (bench, time)
@@ -60,8 +59,7 @@ fn path_speed_is_along_the_line_and_axis_speed_is_of_the_longest_axis() {
     about(time_of(&[&mov(30.0, 40.0, "T V=05 POST"), "END"], "").1, 0.2 + 30.0 / 200.0);
     about(time_of(&[&mov(30.0, 40.0, "S V=05 POST"), "END"], "").1, 0.2 + 20.0 / 200.0);
     let mut bench = Bench::with(&[&mov(30.0, 40.0, "S V=05 POST"), "END"], "");
-    bench.ok("@SPST 0001");
-    bench.pass(150);
+    bench.start(150);
     bench.at([15.0, 20.0, 0.0, 0.0]);
 }
 
@@ -72,7 +70,7 @@ fn override_takes_effect_at_the_next_start() {
     bench.ng("@WOVR OV=050", "or jog runs");
     bench.rest();
     bench.ok("@WOVR OV=050");
-    assert_eq!(bench.ask("@ROVR"), "@ROVR OV=050");
+    bench.answers("@ROVR", "@ROVR OV=050");
 }
 
 #[test]
@@ -82,8 +80,7 @@ fn pass_points_are_rounded_and_do_not_stop() {
     about(time_of(&[&first, &second, "END"], "").1, 1.1);
     about(time_of(&["PASS PASS=050.0", &first, &second, "END"], "").1, 1.15);
     let mut bench = Bench::with(&[&first, "OUT STN=0 PN01=.......1", &second, "END"], "instruction_us = 1");
-    bench.ok("@SPST 0001");
-    bench.pass(501);
+    bench.start(501);
     assert_eq!(bench.port(1), 1, "what follows is done while it moves");
     bench.pass(49);
     let [x, y, ..] = bench.sim.state().position;
@@ -97,14 +94,12 @@ fn pass_points_are_rounded_and_do_not_stop() {
 #[test]
 fn targets_come_from_rows_counters_and_increments() {
     let toml = "points.1 = { 1 = [1.0, 0.0, 0.0, 0.0], 12 = [12.0, 1.0, 0.0, 0.0] }\ncounters = { 3 = 11 }";
-    let mut bench = Bench::with(&["MOVP a PT=001 CN=03 S V=05 POST", "MOVP i PT=001 CN=00 S V=05 POST", "END"], toml);
-    bench.run();
+    let bench = Bench::ran(&["MOVP a PT=001 CN=03 S V=05 POST", "MOVP i PT=001 CN=00 S V=05 POST", "END"], toml);
     bench.at([13.0, 1.0, 0.0, 0.0]);
-    let mut bench = Bench::with(
+    let bench = Bench::ran(
         &["MOVP a PT=000 CN=03 S V=05 POST", "END"],
         "counters = { 3 = 1 }\npoints.1.1 = [5.0, 0.0, 0.0, 0.0]",
     );
-    bench.run();
     bench.at([5.0, 0.0, 0.0, 0.0]);
     fails(&["MOVP a PT=000 CN=01 S V=05 POST", "END"], 0xB6);
     fails(&["CNT CN01=0500", "MOVP a PT=500 CN=01 S V=05 POST", "END"], 0xB6);
@@ -120,13 +115,11 @@ fn offsets_are_added_to_absolute_positions() {
         "STOP",
         "END",
     ];
-    let mut bench = Bench::with(&steps, "");
-    bench.run();
+    let mut bench = ran(&steps);
     bench.at([111.0, 0.0, 0.0, 0.0]);
-    assert_eq!(bench.ask("@MOFF"), "@MOFF X=+0010.00 Y=+0000.00 Z=+0000.00 R=+0000.00");
+    bench.answers("@MOFF", "@MOFF X=+0010.00 Y=+0000.00 Z=+0000.00 R=+0000.00");
     let steps = ["OFSP PT=002 CN=00", TO_100, "MVB S V=05 POST", "END"];
-    let mut bench = Bench::with(&steps, "points.1.2 = [0.0, 5.0, 0.0, 0.0]");
-    bench.run();
+    let bench = Bench::ran(&steps, "points.1.2 = [0.0, 5.0, 0.0, 0.0]");
     bench.at([0.0, 0.0, 0.0, 0.0]);
 }
 
@@ -140,8 +133,7 @@ fn arcs_go_through_their_points() {
         "END",
     ];
     let mut bench = Bench::with(&steps, "points.1.1 = [-100.0, 0.0, 0.0, 20.0]");
-    bench.ok("@SPST 0001");
-    bench.pass(600);
+    bench.start(600);
     // Half a circle of 314.16 mm: 0.1 s, 294.16 mm at 200 mm/s, 0.1 s. After half the time, the axes are at the top of
     // the circle.
     let half = f64::midpoint(0.2, (std::f64::consts::PI * 100.0 - 20.0) / 200.0);
@@ -193,7 +185,7 @@ fn soft_limits_are_checked_before_and_during_moves() {
     let offset = "OFS X=+0000.00 Y=-0950.00 Z=+0000.00 R=+0000.00";
     fails(&[offset, "MOV a X=+0000.00 Y=-0051.00 Z=+0000.00 R=+0000.00 S V=05 POST", "END"], 0x39).at([0.0; 4]);
     // An arc whose points are within the limits, but which extends beyond the limits.
-    let mut bench = Bench::with(
+    let bench = Bench::ran(
         &[
             "MVC a X=+0070.00 Y=+0070.00 Z=+0000.00 R=+0000.00 V=05 POST",
             "MVC a X=+0000.00 Y=+0140.00 Z=+0000.00 R=+0000.00 V=05 POST",
@@ -201,7 +193,6 @@ fn soft_limits_are_checked_before_and_during_moves() {
         ],
         "write = [\"WPAR P01 AX1=+0060.00 AX2=+1000.00 AX3=+1000.00 AX4=+1000.00\"]",
     );
-    bench.run();
     assert_eq!(bench.error(), Some(0xC0));
 }
 
@@ -225,24 +216,20 @@ fn a_move_needs_origin_and_servo_power() {
 fn a_start_after_a_stop_continues_the_move() {
     let steps = ["MOV i X=+0100.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 POST", "CNT+ CN01=0001", "END"];
     let mut bench = Bench::with(&steps, "");
-    bench.ok("@SPST 0001");
-    bench.pass(300);
+    bench.start(300);
     bench.ok("@STOP");
     assert_eq!(bench.page(0) & 0b110, 0b110, "it still slows down");
     bench.rest();
     bench.at([60.0, 0.0, 0.0, 0.0]);
     assert_eq!(bench.page(0), 0b0011_0100);
-    bench.ok("@SPST 0000");
-    bench.rest();
+    bench.resume();
     bench.at([100.0, 0.0, 0.0, 0.0]);
     assert_eq!(bench.counter(1), 1);
     // A start at the first step begins a new move, and does not complete the interrupted one.
-    bench.ok("@SPST 0001");
-    bench.pass(300);
+    bench.start(300);
     bench.ok("@STOP");
     bench.pass(1000);
-    bench.ok("@SPST 0001");
-    bench.rest();
+    bench.run();
     bench.at([260.0, 0.0, 0.0, 0.0]);
 }
 
@@ -250,8 +237,7 @@ fn a_start_after_a_stop_continues_the_move() {
 fn a_jog_during_a_stop_does_not_shift_the_target() {
     let steps = ["MOV i X=+0100.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 POST", "END"];
     let mut bench = Bench::with(&steps, "");
-    bench.ok("@SPST 0001");
-    bench.pass(300);
+    bench.start(300);
     bench.ok("@STOP");
     bench.pass(1000);
     bench.ok("@JGST X=RS Y=RS Z=RS R=RS");
@@ -260,16 +246,14 @@ fn a_jog_during_a_stop_does_not_shift_the_target() {
     bench.ok("@JGST X=SP Y=SP Z=SP R=SP");
     bench.pass(1000);
     bench.at([70.0, 0.0, 0.0, 0.0]);
-    bench.ok("@SPST 0000");
-    bench.rest();
+    bench.resume();
     bench.at([100.0, 0.0, 0.0, 0.0]);
 }
 
 #[test]
 fn an_emergency_stop_stops_at_once() {
     let mut bench = Bench::with(&[TO_100, "END"], "");
-    bench.ok("@SPST 0001");
-    bench.pass(300);
+    bench.start(300);
     bench.console("estop");
     bench.at([50.0, 0.0, 0.0, 0.0]);
     assert_eq!((bench.page(0), bench.page(1), bench.page(3) & 1), (0b0011_0001, 0x13, 0));
@@ -279,8 +263,7 @@ fn an_emergency_stop_stops_at_once() {
     bench.console("estop off");
     bench.ok("@CERR");
     bench.ok("@SVON");
-    bench.ok("@SPST 0000");
-    bench.rest();
+    bench.resume();
     bench.at([100.0, 0.0, 0.0, 0.0]);
 }
 
@@ -324,13 +307,11 @@ fn a_stopped_return_to_origin_is_not_complete() {
     bench.at([0.0; 4]);
     // A program that is stopped in HOME starts the return to origin again when it continues.
     let mut bench = Bench::with(&["HOME", TO_100, "END"], "position = [50.0, 0.0, 0.0, 0.0]");
-    bench.ok("@SPST 0001");
-    bench.pass(200);
+    bench.start(200);
     assert_eq!(bench.page(0) & 0b1000, 0b1000);
     bench.ok("@STOP");
     bench.pass(2000);
-    bench.ok("@SPST 0000");
-    bench.rest();
+    bench.resume();
     assert_eq!(bench.error(), None);
     bench.at([100.0, 0.0, 0.0, 0.0]);
 }
@@ -405,12 +386,10 @@ fn a_jog_stops_at_the_soft_limit() {
 #[test]
 fn an_escape_input_ends_a_move() {
     let toml = "points.1.1 = [100.0, 0.0, 0.0, 0.0]\nwrite = [\"WPAR M03 0/01/1\"]";
-    let mut bench = Bench::with(&["MVE a PT=001 CN=00 S V=05", "CNT CN01=0001", "END"], toml);
-    bench.run();
+    let bench = Bench::ran(&["MVE a PT=001 CN=00 S V=05", "CNT CN01=0001", "END"], toml);
     bench.at([100.0, 0.0, 0.0, 0.0]);
     let mut bench = Bench::with(&["MVE a PT=001 CN=00 S V=05", "CNT CN01=0001", "END"], toml);
-    bench.ok("@SPST 0001");
-    bench.pass(300);
+    bench.start(300);
     bench.console("input 0/01/1 on");
     assert_eq!(bench.page(4) & 1, 1);
     bench.rest();
@@ -433,8 +412,7 @@ fn position_outputs_follow_the_position() {
     ];
     let mut bench = Bench::with(&steps, "instruction_us = 1\nwrite = [\"WPAR P13 AX1>=+0060.00 0/02/8\"]");
     bench.sim.record_trace(true);
-    bench.ok("@SPST 0001");
-    bench.pass(10);
+    bench.start(10);
     assert_eq!(bench.port(1), 2, "what is there already is set at once");
     bench.rest();
     assert_eq!((bench.port(1), bench.port(2)), (3, 0x80), "the third was cancelled");
@@ -456,8 +434,7 @@ fn position_outputs_follow_the_position() {
 fn an_obstacle_causes_overflow_or_overload() {
     let mut bench = Bench::with(&[TO_100, "END"], "");
     bench.console("obstacle X 30");
-    bench.ok("@SPST 0001");
-    bench.pass(500);
+    bench.start(500);
     bench.at([30.0, 0.0, 0.0, 0.0]);
     bench.rest();
     assert_eq!(bench.error(), Some(0x24), "70 mm are more than the 50 of E03");
@@ -520,8 +497,7 @@ fn torque_limits_end_moves() {
         let steps = [format!("TLMV X TT=01 TM=000.5 {limits}"), TO_100.to_owned(), "END".to_owned()];
         let mut bench = Bench::with(&steps.iter().map(String::as_str).collect::<Vec<_>>(), toml);
         bench.console("obstacle X 30");
-        bench.ok("@SPST 0001");
-        bench.pass(5000);
+        bench.start(5000);
         assert_eq!(bench.error(), code);
     }
 }
@@ -537,9 +513,8 @@ fn the_host_supplies_coordinates() {
     let mut steps = steps.map(str::to_owned).to_vec();
     steps.insert(0, "TAG TAG=001".to_owned());
     let mut bench = Bench::with(&steps.iter().map(String::as_str).collect::<Vec<_>>(), "");
-    bench.ok("@SPST 0001");
-    bench.pass(1000);
-    assert_eq!(bench.ask("@RSTX 0000"), "@RSTX 0002 RSMV a X=+0000.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 PASS");
+    bench.start(1000);
+    bench.answers("@RSTX 0000", "@RSTX 0002 RSMV a X=+0000.00 Y=+0000.00 Z=+0000.00 R=+0000.00 S V=05 PASS");
     assert_eq!(bench.page(4) & 0b100, 0, "that is no input");
     bench.ok("@MRSS TASK=01 X=+0010.00 Y=+0000.00 Z=+0000.00 R=+0000.00 V=00");
     bench.ok("@MRSS TASK=01 X=+0020.00 Y=+0000.00 Z=+0000.00 R=+0000.00 V=10");
@@ -552,8 +527,7 @@ fn the_host_supplies_coordinates() {
 #[test]
 fn synchronized_axes_move_together() {
     let toml = "model = \"KCA-20-M00\"\nwrite = [\"WPAR E26 AX1=M AX2=S AX3=0 AX4=0\"]";
-    let mut bench = Bench::with(&[TO_100, "END"], toml);
-    bench.run();
+    let mut bench = Bench::ran(&[TO_100, "END"], toml);
     assert_eq!(bench.error(), Some(0x64));
     bench.ok("@CERR");
     bench.ng("@SORG 2", "no driven axis");

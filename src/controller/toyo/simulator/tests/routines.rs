@@ -19,13 +19,11 @@ fn groups_visit_every_position() {
         "TAG TAG=002",
         "END",
     ];
-    let mut bench = Bench::with(&steps, GROUP);
-    bench.run();
+    let mut bench = Bench::ran(&steps, GROUP);
     let mut places = Vec::new();
     while bench.sim.state().paused {
         places.push(bench.sim.state().position.map(f64::round));
-        bench.ok("@SPST 0000");
-        bench.rest();
+        bench.resume();
     }
     assert_eq!(bench.error(), None);
     let place = |x, y| [x, y, 0.0, 45.0];
@@ -41,11 +39,9 @@ fn groups_visit_every_position() {
         ]
     );
     assert_eq!((bench.counter(11), bench.counter(12)), (1, 1), "the group is at its beginning again");
-    let mut bench = Bench::with(&["MINI GRP=02", "MVM S GRP=02 V=05 POST APPR", "END"], GROUP);
-    bench.run();
+    let bench = Bench::ran(&["MINI GRP=02", "MVM S GRP=02 V=05 POST APPR", "END"], GROUP);
     bench.at([10.0, 10.0, 50.0, 46.0]);
-    let mut bench = Bench::with(&["MVM S GRP=02 V=05 POST DIST", "END"], GROUP);
-    bench.run();
+    let bench = Bench::ran(&["MVM S GRP=02 V=05 POST DIST", "END"], GROUP);
     assert_eq!(bench.error(), Some(0xA7), "counters that were not set");
     fails(&["LOOP GRP=05 THEN=001 ELSE=002", "TAG TAG=001", "END"], 0xA1);
 }
@@ -79,22 +75,22 @@ fn palletizing_moves_all_pieces() {
     assert_eq!(bench.page(2) & 0b11, 0b01);
     bench.ng("@SPST 0001", "sequential mode");
     bench.ok("@SPLN PR=03");
-    assert_eq!(
-        bench.ask("@RPLD"),
-        "@RPLD M-1 START PR=03 PC1=0000 PN1=0002 PC2=0000 PN2=0000 PC3=0000 PN3=0000 TAG=000 STP=0000"
+    bench.answers(
+        "@RPLD",
+        "@RPLD M-1 START PR=03 PC1=0000 PN1=0002 PC2=0000 PN2=0000 PC3=0000 PN3=0000 TAG=000 STP=0000",
     );
     bench.ok("@PPST");
     bench.pass(5000);
     bench.at([10.0, 0.0, 5.0, 1.0]);
-    assert_eq!(
-        bench.ask("@RPLD"),
-        "@RPLD M-1 SOURCE PR=03 PC1=0001 PN1=0002 PC2=0001 PN2=0000 PC3=0001 PN3=0000 TAG=002 STP=0006"
+    bench.answers(
+        "@RPLD",
+        "@RPLD M-1 SOURCE PR=03 PC1=0001 PN1=0002 PC2=0001 PN2=0000 PC3=0001 PN3=0000 TAG=002 STP=0006",
     );
     bench.pass(10_000);
     bench.at([100.0, 50.0, 5.0, 3.0]);
-    assert_eq!(
-        bench.ask("@RPLD"),
-        "@RPLD M-1 DESTI PR=03 PC1=0001 PN1=0000 PC2=0001 PN2=0000 PC3=0001 PN3=0000 TAG=003 STP=0010"
+    bench.answers(
+        "@RPLD",
+        "@RPLD M-1 DESTI PR=03 PC1=0001 PN1=0000 PC2=0001 PN2=0000 PC3=0001 PN3=0000 TAG=003 STP=0010",
     );
     bench.pass(10_000);
     bench.at([20.0, 0.0, 5.0, 1.0]);
@@ -144,10 +140,10 @@ fn easy_programs_repeat() {
     bench.ok("@SESN PR=02");
     bench.ok("@SESY");
     bench.pass(1500);
-    assert_eq!(bench.ask("@RESD"), "@RESD PR=02 ST=000 SQS=0003 SUB=005 LOOP=0002");
+    bench.answers("@RESD", "@RESD PR=02 ST=000 SQS=0003 SUB=005 LOOP=0002");
     bench.rest();
     assert_eq!((bench.error(), bench.counter(1), bench.counter(2)), (None, 3, 1));
-    assert_eq!(bench.ask("@RESD"), "@RESD PR=02 ST=000 SQS=0000 SUB=000 LOOP=0000");
+    bench.answers("@RESD", "@RESD PR=02 ST=000 SQS=0000 SUB=000 LOOP=0000");
 }
 
 #[test]

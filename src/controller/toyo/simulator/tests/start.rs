@@ -3,15 +3,15 @@
 use std::time::Duration;
 
 use super::super::{EXAMPLE, Start};
-use super::Bench;
+use super::{Bench, ran};
 use crate::toyo::request::instruction;
 
 #[test]
 fn the_example_is_a_valid_start_state() {
     let mut bench = Bench::new(EXAMPLE);
     assert_eq!((bench.page(1), bench.counter(1), bench.port(2)), (0x13, 7, 0x80));
-    assert_eq!(bench.ask("@RPAR T2 V05"), "@RPAR T2 V05=0200.0");
-    assert_eq!(bench.ask("@RSTX 0003"), "@RSTX 0003 OUT STN=0 PN01=.......1");
+    bench.answers("@RPAR T2 V05", "@RPAR T2 V05=0200.0");
+    bench.answers("@RSTX 0003", "@RSTX 0003 OUT STN=0 PN01=.......1");
     assert_eq!(bench.sim.wear().total(), 0);
     bench.pass(2000);
     assert!(bench.ask("@MINP SNO=0 GN=1").contains("PN01=00000101"));
@@ -81,8 +81,7 @@ fn events_happen_at_their_times() {
 
 #[test]
 fn the_console_shows_the_state() {
-    let mut bench = Bench::with(&["OUT STN=0 PN01=.......1", "END"], "");
-    bench.run();
+    let mut bench = ran(&["OUT STN=0 PN01=.......1", "END"]);
     assert_eq!(
         bench.console("state"),
         "now            sequential, automatic mode, host on, servo on\n\

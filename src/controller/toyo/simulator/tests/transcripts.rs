@@ -95,9 +95,9 @@ fn the_program_of_the_first_session_moves_and_switches() {
     }
     assert_eq!(bench.page(0) & 0b10, 0b10, "the program is executed");
     bench.rest();
-    assert_eq!(bench.ask("@MPST"), "@MPST X=+0100.00 Y=+0020.00 Z=+0000.00 R=+0000.00");
+    bench.answers("@MPST", "@MPST X=+0100.00 Y=+0020.00 Z=+0000.00 R=+0000.00");
     assert_eq!(bench.port(1), 1);
-    assert_eq!(bench.ask("@STAS SNO=0"), "@STAS SNO=0 ST1=30 ST2=00");
+    bench.answers("@STAS SNO=0", "@STAS SNO=0 ST1=30 ST2=00");
     assert_eq!(bench.error(), None);
 }
 
@@ -116,5 +116,5 @@ fn the_second_session_jogs_to_a_position() {
     // X moves for 1 s at 50 mm/s in the plus direction and for 1 s back at 10 mm/s, ramps included. Y moves like X, and
     // Z at 10 mm/s. Inching moves there and back.
     bench.at([50.0 - 10.0, 50.0, 10.0, 0.0]);
-    assert_eq!(bench.ask("@MPST"), "@MPST X=+0040.00 Y=+0050.00 Z=+0010.00 R=+0000.00");
+    bench.answers("@MPST", "@MPST X=+0040.00 Y=+0050.00 Z=+0010.00 R=+0000.00");
 }
