@@ -171,7 +171,9 @@ fn create(path: &Path) -> io::Result<File> {
         options.write(true).create_new(true).share_mode(SHARE_READ | SHARE_DELETE);
         match options.open(path) {
             // An earlier file of this name is still being deleted, because another process has it open.
-            Err(_) if Instant::now() < deadline => thread::sleep(RETRY_PAUSE),
+            Err(error) if error.kind() != ErrorKind::NotFound && Instant::now() < deadline => {
+                thread::sleep(RETRY_PAUSE)
+            }
             opened => return opened,
         }
     }
