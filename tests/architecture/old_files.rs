@@ -10,16 +10,25 @@ use super::source::root;
 
 #[test]
 fn reads_every_key_of_robots_toml() {
-    let robot = |name: &str| {
-        let shown = data(&["--config", &contract("robots.toml"), "robots", "show", name], &[0]);
-        let settings = shown["settings"].as_array().unwrap_or_else(|| panic!("settings: {shown}")).clone();
-        move |setting: &str| {
-            let found = settings.iter().find(|row| row["name"] == setting);
-            found.unwrap_or_else(|| panic!("{setting}: {settings:?}"))["value"].clone()
-        }
-    };
-    let cell = robot("cell3");
-    assert_eq!(cell("target"), json!("udp://192.168.1.31:10040?file_port=10041"));
+    let inventory = contract("robots.toml");
+    let listed = data(&["--config", &inventory, "robots", "list"], &[0]);
+    let robots = listed["robots"].as_array().expect("a list of robots");
+    assert_eq!(robots.len(), 7, "{listed}");
+    let settings = [
+        ("cell3", "model", "fs100", "robot"),
+        ("cell3", "read_only", "true", "robot"),
+        ("cell3", "encoding", "utf-8", "robot"),
+        ("cell3", "timeout", "500ms", "robot"),
+        ("cell3", "retries", "0", "robot"),
+        ("tray", "hold", "true", "robot"),
+        ("tray", "timeout", "3s", "defaults"),
+        ("tray", "retries", "3", "defaults"),
+    ];
+    for (robot, name, value, origin) in settings {
+        let shown = data(&["--config", &inventory, "robots", "show", robot], &[0]);
+        let wanted = json!({"name": name, "value": value, "origin": origin});
+        assert!(shown["settings"].as_array().is_some_and(|rows| rows.contains(&wanted)), "{wanted}: {shown}");
+    }
 }
 
 #[test]

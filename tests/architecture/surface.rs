@@ -299,7 +299,9 @@ fn values(argument: &clap::Arg) -> BTreeSet<String> {
 
 /// Collects the keys of a schema with their types. `open` has the definitions that are being read.
 fn flatten<'a>(schema: &'a Value, local: &'a Value, path: &str, parts: &mut Parts, open: &mut Vec<&'a str>) {
-    let mut add = |value: &str| drop(parts.entry(path.to_owned()).or_default().insert(value.to_owned()));
+    let mut add = |value: &str| {
+        parts.entry(path.to_owned()).or_default().insert(value.to_owned());
+    };
     if schema.as_bool() == Some(true) {
         add("any");
     }
@@ -321,7 +323,9 @@ fn flatten<'a>(schema: &'a Value, local: &'a Value, path: &str, parts: &mut Part
         return;
     }
     if let Some(constants) = schema["enum"].as_array() {
-        constants.iter().for_each(|constant| add(&quoted(constant)));
+        for constant in constants {
+            add(&quoted(constant));
+        }
         return;
     }
     let types = schema["type"].as_array().into_iter().flatten().chain(Some(&schema["type"]));
