@@ -28,7 +28,7 @@ use super::{line_words, name_lookup, refuse, report_failure, screen};
 use crate::cli::Words;
 use crate::command::families;
 use crate::command::fleet::session::host::{self, ManagerThread};
-use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::failure::{Failure, Kind, omit_program_name};
 use armctl_frame::flags::Globals;
 use armctl_frame::interrupt::{catch_interrupts, clear_interrupt, interruptible, termination_request};
 use armctl_frame::output::Screen;
@@ -101,6 +101,7 @@ impl Repl {
     /// Runs lines from a terminal.
     async fn read_lines(mut self) -> Result<(), RunError> {
         let terminal = Terminal::save();
+        omit_program_name();
         let (mut editor, say) = Editor::start(&self.screen, Assistant::new(&self.meaning, &self.globals))?;
         let (manager, thread) = host::start(say)?;
         let outcome = self.prompt(&mut editor, &terminal, &manager).await;

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::overview::LeftOver;
-use crate::failure::Failure;
+use crate::failure::{Failure, pasteable};
 use crate::output::view::{Cell, Table, Tone};
 use armctl_files as files;
 
@@ -129,6 +129,7 @@ impl Layers {
     /// A later finding replaces an earlier one.
     fn add(&mut self, layer: &'static str, state: State, found: String, advice: Option<String>) {
         self.found.retain(|known| known.layer != layer);
+        let advice = advice.as_deref().map(pasteable);
         self.found.push(Layer { layer, state, found, advice });
     }
 }

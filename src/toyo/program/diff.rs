@@ -17,7 +17,7 @@ use armctl_controller::toyo::program::{MOST_STEPS, check_named, used};
 use armctl_frame::backup::compare::{Compared, State};
 use armctl_frame::backup::manifest::Hash;
 use armctl_frame::backup::text_diff::{self, TextDifference};
-use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::failure::Failure;
 use armctl_frame::names;
 use armctl_frame::output::csv::RowsOf;
 use armctl_frame::output::view::{Section, View};
@@ -129,11 +129,13 @@ impl Report for Difference {
     fn view(&self) -> View {
         let Some(hunks) = self.files[0].more.compared.changes() else { return View::text(self.summary()) };
         let old = format!("task {} (controller)", self.task);
-        View::default().append(Section::Lines(text_diff::unified(&old, self.file(), hunks)))
+        View::default()
+            .append(Section::Lines(text_diff::unified(&old, self.file(), hunks)))
+            .append(Section::Text(self.summary()))
     }
 
     fn failure(&self) -> Option<Failure> {
-        (!self.equal).then(|| Failure::new(Kind::ConditionNotMet, self.summary()))
+        (!self.equal).then(|| Failure::difference(self.summary()))
     }
 
     fn rows(&self) -> RowsOf {
