@@ -168,8 +168,12 @@ pub fn pasteable(hint: &str) -> String {
     if FAMILIES_ARE_COMMANDS.load(Ordering::Relaxed) { hint.to_owned() } else { with_program_name(hint) }
 }
 
-fn serialize_hint<S: Serializer>(hint: &Option<String>, serializer: S) -> Result<S::Ok, S::Error> {
-    hint.as_deref().map(pasteable).serialize(serializer)
+fn serialize_hint<H, S>(hint: &H, serializer: S) -> Result<S::Ok, S::Error>
+where
+    H: Clone + Into<Option<String>>,
+    S: Serializer,
+{
+    hint.clone().into().map(|hint| pasteable(&hint)).serialize(serializer)
 }
 
 fn with_program_name(hint: &str) -> String {

@@ -129,7 +129,7 @@ impl Layers {
     /// A later finding replaces an earlier one.
     fn add(&mut self, layer: &'static str, state: State, found: String, advice: Option<String>) {
         self.found.retain(|known| known.layer != layer);
-        let advice = advice.as_deref().map(pasteable);
+        let advice = advice.map(|advice| pasteable(&advice));
         self.found.push(Layer { layer, state, found, advice });
     }
 }
