@@ -6,8 +6,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize, Serializer};
 
-use crate::settings::target::Family;
-
 /// Class of a failure. The class determines the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -177,7 +175,8 @@ where
 }
 
 fn with_program_name(hint: &str) -> String {
-    let is_of_family = |code: &str| code.split_once(' ').is_some_and(|(word, _)| word.parse::<Family>().is_ok());
+    let is_of_family =
+        |code: &str| code.split_once(' ').is_some_and(|(word, _)| matches!(word, "yerc" | "yrcx" | "toyo"));
     // Every second part is between backticks.
     let parts = hint.split('`').enumerate().map(|(index, part)| match part {
         code if index % 2 == 1 && is_of_family(code) => format!("armctl {code}"),
