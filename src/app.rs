@@ -31,7 +31,7 @@ use crate::cli::{Cli, Words};
 use armctl_files as files;
 #[cfg(unix)]
 use armctl_frame::background::{DETACHED, close_inherited_files};
-use armctl_frame::failure::{Failure, Kind};
+use armctl_frame::failure::{Failure, Kind, omit_program_name};
 use armctl_frame::flags::Globals;
 use armctl_frame::guardian;
 use armctl_frame::interrupt::catch_interrupts;
@@ -110,6 +110,7 @@ fn with_family(mut args: Vec<OsString>) -> Vec<OsString> {
     }
     let name = args.first().and_then(|name| Path::new(name).file_stem()).and_then(|name| name.to_str());
     if let Some(family) = name.and_then(|name| name.parse::<Family>().ok()) {
+        omit_program_name();
         // Usage lines show this name, followed by the family.
         args[0] = "armctl".into();
         let asks_version = args.get(1).is_some_and(|word| word == "--version" || word == "-V");

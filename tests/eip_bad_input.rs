@@ -115,7 +115,7 @@ fn monitor_connections_report_the_same_errors() {
     let (exit, _, _, message, hint) = error_of(&board.start_with("in=101"), "yrcx io get");
     assert_eq!(exit, 3);
     assert!(message.contains("to a read-only client") && hint.contains("role=input_only"), "{message}; {hint}");
-    let hint = "check in and in_size of the URL; use `yrcx eip probe` to find the values";
+    let hint = "check `in=` and `in_size=` in the URL; use `armctl yrcx eip probe` to find the values";
     assert_error(&board.start_with("in=1"), "yrcx io get", 5, "", "the input assembly has 0 bytes, not 48", hint);
     assert_error(
         &board.start_with("in_size=50"),
@@ -139,7 +139,7 @@ fn reports_an_existing_owner() {
         "0x0106",
         "another master, such as a PLC, commands the controller: ForwardOpen was refused: ownership conflict (0x01/0x0106)",
         "stop the owner's connection first: remove the controller from the PLC's scan list, or close the session. \
-         `yrcx io get` and `yrcx status` can read the signals at the same time",
+         `armctl yrcx io get` and `armctl yrcx status` can read the signals at the same time",
     );
     let (exit, _, code, message, _) =
         error_of(&board.target, &format!("yrcx eip set 4 150 3 {} --yes", "00".repeat(48)));
@@ -277,7 +277,7 @@ fn reports_faults_of_the_board() {
             "frozen",
             "yrcx info servo",
             "no answer to servo-status: the controller did not start the command",
-            "use `yrcx status` to see the state of the controller",
+            "use `armctl yrcx status` to see the state of the controller",
         ),
         ("stall", "yrcx info servo", "the controller sends no data", LINK),
         ("wrong-id", "yrcx info servo", "the controller sends no data", LINK),
@@ -305,7 +305,7 @@ fn never_repeats_a_change_whose_answer_is_lost() {
     let board = Board::start(&["--fault", "frozen"]);
     let (exit, kind, _, message, hint) = error_of(&board.target, "yrcx motor off --yes");
     assert_eq!((exit, &*kind), (6, "outcome_unknown"), "{message}");
-    assert_eq!(hint, "use `yrcx status` to see whether servos and motor power are on");
+    assert_eq!(hint, "use `armctl yrcx status` to see whether servos and motor power are on");
     // The old value is read first. Without an answer to this read, nothing is written.
     let board = Board::start(&["--fault", "reset"]);
     let (exit, kind, _, message, _) = error_of(&board.target, "yrcx eip set 0xF5 1 3 0200");
@@ -318,7 +318,7 @@ fn never_repeats_a_change_whose_answer_is_lost() {
         message,
         "the request was sent once, and the result is unknown: the TCP connection ended before the answer to Set_Attribute_Single"
     );
-    assert_eq!(hint, "read the value with `yrcx eip get 0xf5 1 3`");
+    assert_eq!(hint, "read the value with `armctl yrcx eip get 0xf5 1 3`");
 }
 
 /// A TCP server that calls `serve` for each connection. The server ends with the process.

@@ -232,7 +232,7 @@ fn a_lost_line_during_a_jog_has_a_hint_to_press_the_emergency_stop() {
     assert_eq!(output.status.code(), Some(6), "{}", errors(&output));
     let message = errors(&output);
     assert!(message.contains("the axis can still move"), "{message}");
-    assert!(message.contains("press the emergency stop") && message.contains("`toyo stop --jog`"), "{message}");
+    assert!(message.contains("press the emergency stop") && message.contains("`armctl toyo stop --jog`"), "{message}");
 }
 
 /// Ctrl-C comes after the order was sent, after its acceptance, or during the motion.

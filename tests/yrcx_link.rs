@@ -115,7 +115,7 @@ fn one_owner_and_several_listeners() {
 
     let (code, stderr) = failure_of(&simulator.run("yrcx status --full"));
     assert!(code == 3 && stderr.contains("[0x0106]") && stderr.contains("another master"), "{code} {stderr}");
-    assert!(stderr.contains("`yrcx io get` and `yrcx status` can read the signals"), "{stderr}");
+    assert!(stderr.contains("`armctl yrcx io get` and `armctl yrcx status` can read the signals"), "{stderr}");
     let mut listener = armctl();
     listener.args([
         "-t",

@@ -29,6 +29,7 @@ use crate::cli::Words;
 use crate::command::families;
 use crate::command::fleet::session::host::{self, ManagerThread};
 use armctl_frame::Entry;
+use armctl_frame::failure::omit_program_name;
 use armctl_frame::flags::Globals;
 use armctl_frame::interrupt::{catch_interrupts, clear_interrupt, interruptible, termination_request};
 use armctl_frame::prelude::*;
@@ -99,6 +100,7 @@ impl Repl {
     /// Runs lines from a terminal.
     async fn read_lines(mut self) -> Result<(), RunError> {
         let terminal = Terminal::save();
+        omit_program_name();
         let (mut editor, say) = Editor::start(&self.screen, Assistant::new(&self.meaning, &self.globals))?;
         let (manager, thread) = host::start(say)?;
         let outcome = self.prompt(&mut editor, &terminal, &manager).await;

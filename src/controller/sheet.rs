@@ -161,8 +161,10 @@ impl Sheet {
             if row.cells.len() == head.cells.len() {
                 rows.push(row);
             } else {
-                let message =
-                    format!("the row has {} cells, but the table has {} columns", row.cells.len(), head.cells.len());
+                let count =
+                    |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
+                let (cells, columns) = (count(row.cells.len(), "cell"), count(head.cells.len(), "column"));
+                let message = format!("the row has {cells}, but the table has {columns}");
                 findings.error(SourceLocation { line: number, column: 1 }, message, None);
             }
         }
@@ -419,7 +421,7 @@ mod tests {
         assert!(errors("point;x_mm;remark\n")[0].contains("unknown column 'remark'"));
         assert!(errors("point;x_mn\n")[0].contains("did you mean x_mm?"));
         assert!(errors("point,x_mm,X_mm\n")[0].contains("appears twice"));
-        assert!(errors("point,x_mm\n1\n")[0].contains("the row has 1 cells, but the table has 2 columns"));
+        assert!(errors("point,x_mm\n1\n")[0].contains("the row has 1 cell, but the table has 2 columns"));
         assert!(errors("point,x_mm\n1,\"2\n")[0].contains("wrong quotes"));
         assert!(errors("")[0].contains("the file is empty"));
     }

@@ -1,9 +1,10 @@
 //! Failures of commands, and their exit codes.
 
 use std::fmt;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// Class of a failure. The class determines the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -84,15 +85,23 @@ pub struct Failure {
     /// What happened, as a sentence without a period at its end.
     pub message: String,
     /// What the user can do.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none", serialize_with = "serialize_hint")]
     #[schemars(with = "String")]
     pub hint: Option<String>,
+    /// Whether the report states the same for people. Only the exit code, JSON and CSV show this failure.
+    #[serde(skip)]
+    pub is_in_report: bool,
 }
 
 impl Failure {
     /// Creates a failure of this kind without code and hint.
     pub fn new(kind: Kind, message: impl Into<String>) -> Self {
-        Self { kind, code: None, message: message.into(), hint: None }
+        Self { kind, code: None, message: message.into(), hint: None, is_in_report: false }
+    }
+
+    /// Creates the failure of a comparison that found a difference. The view of the report ends with this message.
+    pub fn difference(message: impl Into<String>) -> Self {
+        Self { is_in_report: true, ..Self::new(Kind::ConditionNotMet, message) }
     }
 
     /// Creates a failure for a mistake on the command line or in a settings file.
@@ -144,6 +153,38 @@ impl Failure {
     }
 }
 
+/// Whether `yerc`, `yrcx` and `toyo` are commands where the user types: at the prompt, or as links to the binary.
+static FAMILIES_ARE_COMMANDS: AtomicBool = AtomicBool::new(false);
+
+/// Keeps the program name out of the commands in hints, because the user types commands without it.
+pub fn omit_program_name() {
+    FAMILIES_ARE_COMMANDS.store(true, Ordering::Relaxed);
+}
+
+/// Hint with commands that can be pasted: the program name precedes the name of a family.
+pub fn pasteable(hint: &str) -> String {
+    if FAMILIES_ARE_COMMANDS.load(Ordering::Relaxed) { hint.to_owned() } else { with_program_name(hint) }
+}
+
+fn serialize_hint<H, S>(hint: &H, serializer: S) -> Result<S::Ok, S::Error>
+where
+    H: Clone + Into<Option<String>>,
+    S: Serializer,
+{
+    hint.clone().into().map(|hint| pasteable(&hint)).serialize(serializer)
+}
+
+fn with_program_name(hint: &str) -> String {
+    let is_of_family =
+        |code: &str| code.split_once(' ').is_some_and(|(word, _)| matches!(word, "yerc" | "yrcx" | "toyo"));
+    // Every second part is between backticks.
+    let parts = hint.split('`').enumerate().map(|(index, part)| match part {
+        code if index % 2 == 1 && is_of_family(code) => format!("armctl {code}"),
+        text => text.to_owned(),
+    });
+    parts.collect::<Vec<_>>().join("`")
+}
+
 /// Returns the hint for a message that refuses a number with a decimal comma, for example `'2,5' is not a number`.
 pub fn decimal_point(message: &str) -> Option<String> {
     let quoted = message.split('\'').zip(message.split('\'').skip(1)).skip(1).step_by(2);
@@ -192,6 +233,19 @@ impl From<anyhow::Error> for Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn program_name_precedes_the_family_in_a_hint() {
+        for (hint, printed) in [
+            ("use `toyo ports` to list the ports", "use `armctl toyo ports` to list the ports"),
+            ("`yerc status`, `yrcx io get SI(01)`", "`armctl yerc status`, `armctl yrcx io get SI(01)`"),
+            ("see `armctl help yerc`, or `armctl yerc status`", "see `armctl help yerc`, or `armctl yerc status`"),
+            ("yerc status and `yerc` are not commands", "yerc status and `yerc` are not commands"),
+            ("set `in=` in the URL of yrcx", "set `in=` in the URL of yrcx"),
+        ] {
+            assert_eq!(with_program_name(hint), printed);
+        }
+    }
 
     #[test]
     fn exit_codes_match_the_contract() {

@@ -127,7 +127,7 @@ pub fn verdict<'a>(total: usize, errors: impl IntoIterator<Item = &'a ItemError>
     let has_same_code = errors.iter().all(|error| error.failure.code == representative.failure.code);
     let failure = representative.failure();
     let code = failure.code.filter(|_| has_same_code);
-    Some(Failure { kind, code, message: format!("{how_many}: {}", failure.message), hint: failure.hint })
+    Some(Failure { kind, code, message: format!("{how_many}: {}", failure.message), ..failure })
 }
 
 /// Fails if all items failed for the same reason. In that case there is no report. If the reasons differ, the report

@@ -67,7 +67,8 @@ pub fn failure(label: &str, error: Error) -> Failure {
         },
         Error::Io { is_shared, error } => broken(label, is_shared, &error),
         Error::DryRun => unknown(),
-        _ => about(Kind::Malformed, error.to_string()),
+        // The enum can get more variants.
+        _ => Failure::local(error.to_string()),
     }
 }
 

@@ -95,7 +95,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
             )
         }
         Error::MonitorOnly { .. } => Failure::usage(error.to_string())
-            .hint("remove role from the URL; input_only and listen_only can only read signals: `yrcx io get`"),
+            .hint("remove `role=` from the URL; input_only and listen_only can only read signals: `yrcx io get`"),
         Error::NotHeld => Failure::usage(format!("without waiting, {error}"))
             .hint("remove --no-wait, or keep a connection open with `armctl session open` first"),
         Error::Silent => about(Kind::NoAnswer, &error).hint("check the connection: use `-v` to count received packets"),

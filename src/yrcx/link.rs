@@ -112,7 +112,7 @@ impl Family for Yrcx {
             Entry::ThroughSession
         } else {
             Entry::Stops(format!(
-                "open the command connection and close it at the end. The close stops the robot: motor power goes off \
+                "open the command connection and close it at the end; closing it stops the robot: motor power goes off \
                  with alarm {} (`armctl session open` keeps a connection open)",
                 fieldbus.link_alarm
             ))

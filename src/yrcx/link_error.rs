@@ -15,9 +15,9 @@ pub fn not_open(label: &str, Scheme { name, bus, .. }: &Scheme, error: &LinkErro
             return failure.hint(cause.advice.as_deref().unwrap_or(OWNED));
         }
         LinkError::Size(_) => {
-            (Kind::Malformed, format!("check {options} of the URL; use `yrcx {bus} probe` to find the values"))
+            (Kind::Malformed, format!("check {options} in the URL; use `yrcx {bus} probe` to find the values"))
         }
-        LinkError::Refused(_) => (Kind::Refused, format!("check {options} of the URL; see `armctl help targets`")),
+        LinkError::Refused(_) => (Kind::Refused, format!("check {options} in the URL; see `armctl help targets`")),
         LinkError::Silent(_) | LinkError::Lost { .. } => {
             (Kind::NoAnswer, "check the link to the controller".to_owned())
         }
@@ -33,11 +33,12 @@ pub fn not_open(label: &str, Scheme { name, bus, .. }: &Scheme, error: &LinkErro
 const OWNED: &str = "stop the owner's connection first: remove the controller from the PLC's scan list, or close the \
                      session. `yrcx io get` and `yrcx status` can read the signals at the same time";
 
-/// Lists the options, for example `in, out and config`.
+/// Lists the options as they are typed in a URL, for example "`in=`, `out=` and `config=`".
 fn listed(options: &[&str]) -> String {
-    match options {
+    let typed: Vec<String> = options.iter().map(|option| format!("`{option}=`")).collect();
+    match &typed[..] {
         [] => "the options".to_owned(),
-        [one] => (*one).to_owned(),
+        [one] => one.clone(),
         [all @ .., last] => format!("{} and {last}", all.join(", ")),
     }
 }
@@ -56,8 +57,16 @@ mod tests {
         for (error, kind, hint) in [
             (LinkError::Owned(cause()), Kind::Refused, "stop the owner's connection first"),
             (LinkError::Owned(cause().advice("ask the PLC")), Kind::Refused, "ask the PLC"),
-            (LinkError::Size(cause().options(&["in", "in_size"])), Kind::Malformed, "check in and in_size of the URL"),
-            (LinkError::Refused(cause().options(&["a", "b", "c"])), Kind::Refused, "check a, b and c of the URL"),
+            (
+                LinkError::Size(cause().options(&["in", "in_size"])),
+                Kind::Malformed,
+                "check `in=` and `in_size=` in the URL",
+            ),
+            (
+                LinkError::Refused(cause().options(&["a", "b", "c"])),
+                Kind::Refused,
+                "check `a=`, `b=` and `c=` in the URL",
+            ),
             (LinkError::Refused(cause().advice("set the ident")), Kind::Refused, "set the ident"),
             (LinkError::Silent(cause()), Kind::NoAnswer, "check the link"),
             (LinkError::Lost { cause: cause(), outputs }, Kind::NoAnswer, "check the link"),

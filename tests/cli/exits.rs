@@ -124,7 +124,7 @@ fn describes_exit_6() {
         snapbox::str![[r#"
 error: udp://127.0.0.1:10040: the request was sent once, with no answer within 100ms: the result is unknown
 
-hint: check before you repeat the command: use `yerc status` to see the state
+hint: check before you repeat the command: use `armctl yerc status` to see the state
 
 "#]]
     );

@@ -388,7 +388,9 @@ impl Report for Differences {
         if !table.rows.is_empty() {
             view = view.append(Section::Table(table));
         }
-        if self.equal { view.append(Section::Text(self.summary())) } else { view }
+        // A file that could not be compared is an error, and the error has the summary.
+        let is_complete = self.files.iter().all(|file| file.error.is_none());
+        if is_complete { view.append(Section::Text(self.summary())) } else { view }
     }
 
     fn failure(&self) -> Option<Failure> {
@@ -398,7 +400,7 @@ impl Report for Differences {
         let failures = self.files.iter().filter_map(|file| file.error.as_ref()).map(ItemError::failure);
         Some(match failures.max_by_key(|failure| severity(failure.kind)) {
             Some(gravest) => Failure { message: self.summary(), code: None, ..gravest },
-            None => Failure::new(Kind::ConditionNotMet, self.summary()),
+            None => Failure::difference(self.summary()),
         })
     }
 

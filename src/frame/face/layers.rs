@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::overview::LeftOver;
+use crate::failure::pasteable;
 use crate::prelude::basics::*;
 use armctl_files as files;
 
@@ -125,6 +126,7 @@ impl Layers {
     /// A later finding replaces an earlier one.
     fn add(&mut self, layer: &'static str, state: State, found: String, advice: Option<String>) {
         self.found.retain(|known| known.layer != layer);
+        let advice = advice.map(|advice| pasteable(&advice));
         self.found.push(Layer { layer, state, found, advice });
     }
 }

@@ -27,7 +27,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use anyhow::Context as _;
 use serde::Serialize;
 
-use crate::failure::{Failure, Kind};
+use crate::failure::{Failure, Kind, pasteable};
 
 /// Output format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -254,7 +254,7 @@ impl Screen {
 
     /// Prints a failure on stderr: `error:`, then an empty line and `hint:`.
     pub fn failure(&self, failure: &Failure) {
-        if failure.kind == Kind::PipeClosed {
+        if failure.kind == Kind::PipeClosed || failure.is_in_report {
             return;
         }
         if let Kind::Halted(_) = failure.kind {
@@ -265,7 +265,7 @@ impl Screen {
         let hint = failure
             .hint
             .as_ref()
-            .map(|hint| format!("\n{} {}\n", self.paint_stderr("1;36", "hint:"), escape::lines(hint)));
+            .map(|hint| format!("\n{} {}\n", self.paint_stderr("1;36", "hint:"), escape::lines(&pasteable(hint))));
         let message = escape::lines(&failure.message);
         Self::prose(&format!("{} {message}{code}\n{}", self.paint_stderr("1;31", label), hint.unwrap_or_default()));
     }

@@ -121,11 +121,13 @@ impl Report for Difference {
     fn view(&self) -> View {
         let Some(hunks) = self.files[0].more.compared.changes() else { return View::text(self.summary()) };
         let old = format!("task {} (controller)", self.task);
-        View::default().append(Section::Lines(text_diff::unified(&old, self.file(), hunks)))
+        View::default()
+            .append(Section::Lines(text_diff::unified(&old, self.file(), hunks)))
+            .append(Section::Text(self.summary()))
     }
 
     fn failure(&self) -> Option<Failure> {
-        (!self.equal).then(|| Failure::new(Kind::ConditionNotMet, self.summary()))
+        (!self.equal).then(|| Failure::difference(self.summary()))
     }
 
     fn rows(&self) -> RowsOf {

@@ -237,7 +237,7 @@ fn advice(error: &Error) -> Option<std::borrow::Cow<'static, str>> {
     Some(match error {
         Error::Duplicate { .. } => {
             "close the session that uses it (`armctl session list`), or set another number for this master with \
-             master= in the URL (0 to 63)"
+             `master=` in the URL (0 to 63)"
                 .into()
         }
         Error::Owned { .. } => {
@@ -246,12 +246,12 @@ fn advice(error: &Error) -> Option<std::borrow::Cow<'static, str>> {
                 .into()
         }
         Error::Size { .. } => {
-            "set the I/O size of the controller's unit to Normal (48 bytes) or Compact (4); check mac in the URL: \
+            "set the I/O size of the controller's unit to Normal (48 bytes) or Compact (4); check `mac=` in the URL: \
              `yrcx devicenet scan` lists the nodes"
                 .into()
         }
         Error::Silent { is_bus_alive: true, .. } => {
-            "check mac in the URL: `yrcx devicenet scan` lists the nodes that answer".into()
+            "check `mac=` in the URL: `yrcx devicenet scan` lists the nodes that answer".into()
         }
         Error::Silent { .. } | Error::Lost { .. } => {
             "check the bit rate, the 24 V of the bus, its plugs and both terminators (121 ohm); check that the \
@@ -261,12 +261,12 @@ fn advice(error: &Error) -> Option<std::borrow::Cow<'static, str>> {
         Error::BusOff => "check the bit rate and the wiring (CAN_H and CAN_L, both terminators)".into(),
         Error::Port(PortError::Open { advice, .. }) => advice.clone(),
         Error::Port(PortError::Setup { .. } | PortError::Mute { .. } | PortError::Flooded { .. }) => {
-            "check that it is an SLCAN (Lawicel) adapter; check baud in the URL".into()
+            "check that it is an SLCAN (Lawicel) adapter; check `baud=` in the URL".into()
         }
         Error::Port(PortError::Gone { .. }) => "plug the adapter in again".into(),
-        Error::Port(PortError::Stuck { .. }) => "set a longer cycle in the URL, or check the bus".into(),
+        Error::Port(PortError::Stuck { .. }) => "set a longer `cycle=` in the URL, or check the bus".into(),
         Error::Refused { .. } | Error::Senseless { .. } => {
-            "check mac in the URL: `yrcx devicenet identity` shows the device".into()
+            "check `mac=` in the URL: `yrcx devicenet identity` shows the device".into()
         }
         Error::Settings(_) | Error::Outdated | Error::Ended => return None,
     })

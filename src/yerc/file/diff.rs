@@ -154,7 +154,7 @@ impl Report for Difference {
             if !compared.ignored.is_empty() {
                 lines.push(format!("the line {DATE_LINE} also differs, but the comparison ignores it").into());
             }
-            return View::default().append(Section::Lines(lines));
+            return View::default().append(Section::Lines(lines)).append(Section::Text(self.summary()));
         }
         match &compared.hunks {
             Some(hunks) if !self.equal => {
@@ -176,7 +176,7 @@ impl Report for Difference {
     }
 
     fn failure(&self) -> Option<Failure> {
-        (!self.equal).then(|| Failure::new(Kind::ConditionNotMet, self.summary()))
+        (!self.equal).then(|| Failure::difference(self.summary()))
     }
 
     fn rows(&self) -> RowsOf {
@@ -223,9 +223,12 @@ mod tests {
         assert_eq!(
             text(theirs, ours),
             "--- A.JBI (controller)\n+++ a.jbi\n@@ -5,5 +5,6 @@\n 4\n 5\n 6\n-'ソ\\x1b\n-END\n+MOVJ [LF]\n+\n+END\n\
-             \\ no line ending\n"
+             \\ no line ending\n\nA.JBI on the controller and a.jbi differ\n"
         );
-        assert_eq!(text(b"", b"a\n"), "--- A.JBI (controller)\n+++ a.jbi\n@@ -0,0 +1,1 @@\n+a\n");
+        assert_eq!(
+            text(b"", b"a\n"),
+            "--- A.JBI (controller)\n+++ a.jbi\n@@ -0,0 +1,1 @@\n+a\n\nA.JBI on the controller and a.jbi differ\n"
+        );
     }
 
     #[test]

@@ -161,7 +161,7 @@ impl Board {
             format!("MAC {} answer", others.join(", "))
         };
         Failure::new(Kind::NoAnswer, format!("MAC {} does not answer; {others}", self.node.mac))
-            .hint("check mac of the URL, and the MAC ID that is set at the controller")
+            .hint("check `mac=` in the URL, and the MAC ID that is set at the controller")
     }
 }
 

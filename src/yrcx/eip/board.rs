@@ -109,7 +109,7 @@ impl Board {
         image.ok_or_else(|| {
             let message = format!("assembly {} has {} bytes, fewer than an image", self.eip.input, bytes.len());
             Failure::new(Kind::Malformed, message)
-                .hint("check in of the URL; use `yrcx eip probe` to find the assemblies")
+                .hint("check `in=` in the URL; use `yrcx eip probe` to find the assemblies")
         })
     }
 

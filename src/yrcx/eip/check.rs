@@ -74,7 +74,7 @@ fn connection(settings: &Eip, found: [(u32, Presence); 2], layers: &mut Layers) 
         let what = format!(
             "the board has {from} bytes from the controller and {to} bytes to the controller; the URL has other sizes"
         );
-        return layers.fail_with(layer, what, format!("set in_size={from} and out_size={to} in the URL"));
+        return layers.fail_with(layer, what, format!("set `in_size={from}` and `out_size={to}` in the URL"));
     }
     let instances = format!("in {input}, out {output}");
     if from.is_none() || to.is_none() {

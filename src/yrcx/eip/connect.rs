@@ -55,7 +55,7 @@ async fn look(at: &At<'_>, eip: &Eip) -> Result<ImageLink, LinkError> {
     }
     let cause = Cause::new(format!("the board refuses to send its inputs to a read-only client: {refused}"));
     Err(LinkError::Refused(cause.advice(
-        "check in of the URL, or add role=input_only and out= with the heartbeat instance from the board's EDS file",
+        "check `in=` in the URL, or add `role=input_only` and `out=` with the heartbeat instance from the board's EDS file",
     )))
 }
 

@@ -11,7 +11,7 @@ use armctl_frame::output::csv::RowsOf;
     after_help = "Use the resulting target with -t or `armctl robots add`.\n\nWith --try, armctl also requests owner \
                   connections with invalid sizes, starting with the instances of the URL. The board refuses these \
                   connections with a reason that identifies instances and sizes. If the board accepts a connection, \
-                  armctl commands the controller until the connection closes. The close stops the robot."
+                  armctl commands the controller until the connection closes. Closing it stops the robot."
 )]
 pub struct Probe {
     /// Request connections to find the parameters that the board accepts
@@ -95,7 +95,8 @@ impl Report for ProbeReport {
         self.probed.connectable.is_none().then(|| {
             let failure = Failure::new(Kind::ConditionNotMet, "no connection parameters found for the board");
             if self.has_tried {
-                failure.hint("find the instances in the board's EDS file and set in, out and config in the URL")
+                failure
+                    .hint("find the instances in the board's EDS file and set `in=`, `out=` and `config=` in the URL")
             } else {
                 failure
                     .hint("add --try to request connections from the board, but only when the cell is clear of people")

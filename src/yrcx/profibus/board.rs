@@ -82,7 +82,7 @@ impl Board {
             Unknown::NoAnswer => self.silent(),
             Unknown::NotAsked => {
                 Failure::new(Kind::Malformed, format!("{}: it is a {}", self.name(), kind(found.kind)))
-                    .hint("check station of the URL; use `yrcx profibus scan` to list the slaves")
+                    .hint("check `station=` in the URL; use `yrcx profibus scan` to list the slaves")
             }
             why => Failure::new(Kind::Malformed, format!("{}: Slave_Diag: {}", self.name(), unknown(&why)))
                 .hint("check that the station is a PROFIBUS DP slave"),

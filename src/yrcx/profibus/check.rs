@@ -23,14 +23,14 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Opti
         Some(time) => layers.warn(
             "name",
             format!("{} opens, but its driver delays characters by {time} ms", settings.port),
-            "write 1 to latency_timer of the port in /sys/bus/usb-serial/devices, or set slot=50ms in the URL",
+            "write 1 to latency_timer of the port in /sys/bus/usb-serial/devices, or set `slot=50ms` in the URL",
         ),
     }
     let Some((station, image)) = answered else {
         layers.fail_with(
             "station",
             format!("station {} does not answer", settings.station),
-            "check station and baud of the URL, wires A and B, the terminators, and that the controller is on. Use \
+            "check `station=` and `baud=` in the URL, wires A and B, the terminators, and that the controller is on. Use \
              `yrcx profibus scan` to list the stations that answer",
         );
         return Ok(None);
@@ -41,8 +41,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Opti
         layers.fail_with(
             "station",
             station.kind,
-            "check station of the URL; use `yrcx profibus scan` to list the \
-                                                   slaves",
+            "check `station=` in the URL; use `yrcx profibus scan` to list the slaves",
         );
         return Ok(None);
     }
@@ -53,7 +52,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Opti
             layers.fail_with(
                 "ident",
                 ident.clone(),
-                format!("set ident={ident} in the URL, if the station is the controller"),
+                format!("set `ident={ident}` in the URL, if the station is the controller"),
             );
         }
         Some(ident) => layers.ok("ident", ident.clone()),
@@ -66,13 +65,13 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Opti
                 [station.in_size, station.out_size].map(|size| size.map_or("?".to_owned(), |size| size.to_string()));
             let found =
                 format!("{bytes}: {} bytes from the station and {} bytes to the station, not 48", sizes[0], sizes[1]);
-            layers.fail_with("configuration", found, "check station of the URL, and the unit of the controller");
+            layers.fail_with("configuration", found, "check `station=` in the URL, and the unit of the controller");
         }
         (None, false) => {
             layers.fail_with(
                 "configuration",
                 "the station does not report its configuration",
-                "set cfg= or gsd= in the URL",
+                "set `cfg=` or `gsd=` in the URL",
             );
         }
     }

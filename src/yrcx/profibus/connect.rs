@@ -78,7 +78,7 @@ pub(super) fn settings(profibus: &Profibus, calm: Duration) -> Result<Settings, 
 /// Reads a GSD file and selects a module: the module with this name, or the only module with the size of the image.
 fn file(path: &Path, module: Option<&str>) -> Result<(Gsd, Module), LinkError> {
     let wrong = |text: String| Cause::new(format!("{}: {text}", path.display()));
-    let gsd = device_file(path, MAX_FILE, "set gsd= in the URL to the manufacturer's GSD file", Gsd::parse)?;
+    let gsd = device_file(path, MAX_FILE, "set `gsd=` in the URL to the manufacturer's GSD file", Gsd::parse)?;
     let found = match module {
         Some(name) => gsd.modules.iter().find(|module| module.name.eq_ignore_ascii_case(name)),
         None => gsd.fitting(Image::BYTES, Image::BYTES),
@@ -87,7 +87,7 @@ fn file(path: &Path, module: Option<&str>) -> Result<(Gsd, Module), LinkError> {
         let names: Vec<&str> = gsd.modules.iter().map(|module| module.name.as_str()).collect();
         let size = Image::BYTES;
         let cause = wrong(format!("no module with this name, or no unique module with {size} bytes each way"));
-        let advice = format!("set module= in the URL to one of: {}", names.join(", "));
+        let advice = format!("set `module=` in the URL to one of: {}", names.join(", "));
         return Err(LinkError::Settings(cause.advice(advice)));
     };
     Ok((gsd, module))

@@ -29,8 +29,9 @@ impl Report for Probed {
 
     fn failure(&self) -> Option<Failure> {
         (!self.station.fits()).then(|| {
-            Failure::new(Kind::ConditionNotMet, "the image size is not 48 bytes each way")
-                .hint("check station of the URL; if the slave does not report its configuration, set cfg= or gsd=")
+            Failure::new(Kind::ConditionNotMet, "the image size is not 48 bytes each way").hint(
+                "check `station=` in the URL; if the slave does not report its configuration, set `cfg=` or `gsd=`",
+            )
         })
     }
 }

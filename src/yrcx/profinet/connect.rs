@@ -69,13 +69,13 @@ pub(super) fn settings(profinet: &Profinet, calm: Duration) -> Result<Settings, 
             Image::BYTES
         ));
         return Err(LinkError::Settings(
-            cause.advice("correct layout= in the URL; use `yrcx profinet probe` to find the layout"),
+            cause.advice("correct `layout=` in the URL; use `yrcx profinet probe` to find the layout"),
         ));
     }
     if profinet.cycle < shortest {
         let cause =
             Cause::new(format!("the device needs a cycle of at least {} ms", shortest.as_micros().div_ceil(1000)));
-        return Err(LinkError::Settings(cause.advice("set a longer cycle= in the URL")));
+        return Err(LinkError::Settings(cause.advice("set a longer `cycle=` in the URL")));
     }
     let cycle = profinet.cycle.max(whole(calm));
     let watchdog = profinet.watchdog.max(cycle * 3).min(LONGEST_WATCHDOG);
@@ -149,12 +149,12 @@ fn file(path: &Path) -> Result<Modules, LinkError> {
     }
     let size = Image::BYTES;
     let cause = wrong(format!("there is no unique selection of modules with {size} bytes each way"));
-    let advice = "set layout= in the URL instead; use `yrcx profinet gsdml FILE` to list the modules";
+    let advice = "set `layout=` in the URL instead; use `yrcx profinet gsdml FILE` to list the modules";
     Err(LinkError::Settings(cause.advice(advice)))
 }
 
 pub(super) fn read(path: &Path) -> Result<Gsdml, LinkError> {
-    device_file(path, MOST_BYTES, "use the manufacturer's GSDML file: gsdml= in the URL, or FILE", Gsdml::parse)
+    device_file(path, MOST_BYTES, "use the manufacturer's GSDML file: `gsdml=` in the URL, or FILE", Gsdml::parse)
 }
 
 #[cfg(test)]
