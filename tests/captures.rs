@@ -1,7 +1,8 @@
 //! Replay of requests and answers that were captured from a controller.
 //!
 //! The file is not part of the project; the variable `ARMCTL_YERC_CAPTURES` has its path. The controller is a YRC1000.
-//! Its requests for these commands are those of a DX200, and armctl recognizes the model by the software version.
+//! Its requests for these commands are the same as the requests for a DX200, and armctl recognizes the model by the
+//! software version.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 #![expect(clippy::needless_pass_by_value, reason = "queries are built where they are sent")]

@@ -214,13 +214,13 @@ fn raw_reads_a_single_field() {
         let sent = frames(DX200, line);
         let (request, before) = sent.split_last().expect("the request");
         assert_eq!(head(request), (1, expected), "{line}");
-        // A position is read before it is overwritten, so all frames before the last one are reads.
+        // A position is read before it is overwritten, so all frames before the last frame are reads.
         assert!(before.iter().all(|frame| head(frame).1.3 == GET_ALL), "{line}");
     }
 }
 
 /// FS 3.3.39 has 25 words, and DX 3.3.39 has 26. In the FS manual, the reserved words come before the form, so the
-/// words after them move by one.
+/// words after them move by one word.
 #[test]
 fn cartesian_move_of_25_words_matches_the_fs100_manual() {
     let line = "move linear --to 1,-2,3,-4,5,-0 --speed 70mm/s --coordinate user --user 63 --tool 62 --form back,lower \

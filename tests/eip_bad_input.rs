@@ -218,8 +218,8 @@ fn recorded(board: &Board) -> (String, Arc<Mutex<Vec<u8>>>) {
     (target, sent)
 }
 
-/// A board that accepts an owner connection is under the control of this client. Therefore, monitoring commands must
-/// never request such a connection.
+/// A client that opens an owner connection takes control of the board. Therefore, monitoring commands must never
+/// request such a connection.
 #[test]
 fn only_try_requests_an_owner_connection() {
     let board = Board::start(&[]);

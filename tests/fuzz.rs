@@ -173,7 +173,7 @@ proptest! {
     }
 }
 
-/// The simulator limits the number of answers that nobody has fetched.
+/// The simulator limits the number of answers that no client has fetched.
 #[test]
 fn simulator_limits_its_cached_answers() {
     let mut simulator = Simulator::new(Start::default());

@@ -389,7 +389,8 @@ impl Log {
         let path = folder.join("log");
         let file = std::fs::File::create(&path).expect("a file");
         let stat = file.metadata().expect("it is there");
-        // A service that is started from a terminal can inherit the variable. The inode is then not that of its stderr.
+        // A service that is started from a terminal can inherit the variable. The inode in the variable is then not the
+        // inode of its stderr.
         let inode = if is_journal { stat.ino() } else { stat.ino() + 1 };
         command.env("JOURNAL_STREAM", format!("{}:{inode}", stat.dev())).stderr(file).stdout(Stdio::null());
         Self { path, _service: Service { process: command.spawn().expect("it starts") } }

@@ -400,7 +400,7 @@ fn second_ctrl_c_ends_the_process_at_once() {
         controller.wait_for(|asked| asked.command == 0x72);
         interrupt(&child);
         controller.wait_for(|asked| asked.command == 0x83);
-        // A signal that comes shortly after the first one counts as the same signal, so the signal is repeated.
+        // A signal that comes shortly after the first signal counts as the same signal, so the signal is repeated.
         while child.try_wait().unwrap().is_none() {
             // The process may have ended since the check.
             let pid = child.id().to_string();

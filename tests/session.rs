@@ -328,7 +328,8 @@ fn motion_with_no_wait_continues_after_its_command() {
     assert_eq!(desk.data("-r cell yrcx status --full")["position"]["x_mm"], 10.0);
 }
 
-/// The session process is killed during a command. The command reports this, and that the outcome is unknown.
+/// The session process is killed during a command. The command reports the end of the session, and that its own outcome
+/// is unknown.
 #[test]
 fn command_reports_its_killed_session() {
     for (family, words, until) in [
@@ -463,7 +464,7 @@ fn background_session_keeps_no_file_of_its_starter_open() {
     let mut shell = Command::new("sh");
     shell.args(["-c", &open]).arg(command.get_program()).args(command.get_args()).stdin(Stdio::null());
     shell.env_clear().envs(command.get_envs().filter_map(|(name, value)| Some((name, value?))));
-    // If the session kept descriptor 9 open, this would wait for its end.
+    // If the session kept descriptor 9 open, this call would wait for the end of the session.
     let output = shell.output().unwrap();
     assert!(output.status.success(), "{}", stderr(&output));
     let opened: Value = serde_json::from_slice(&output.stdout).unwrap();

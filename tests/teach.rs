@@ -97,7 +97,7 @@ impl Desk {
         teach
     }
 
-    /// Waits until X of the base differs from `start`, which shows that the step is in progress.
+    /// Waits until X in base coordinates differs from `start`. The step is then in progress.
     fn wait_for_motion_from(&self, start: f64) {
         assert!((0..MAX_POLLS).any(|_| self.x() > start), "nothing moves");
     }

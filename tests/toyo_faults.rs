@@ -18,7 +18,7 @@ use armctl_transport::line::{InProcessLine, Pace};
 use armctl_transport::sim::Peer;
 use tokio::time::Instant;
 
-/// 9600 baud, 8 data bits, even parity, one stop bit.
+/// Number of bits of a character with 8 data bits, even parity and one stop bit. The line has 9600 baud.
 const BITS: u32 = 11;
 const BAUD: u32 = 9600;
 const TIMEOUT: Duration = Duration::from_secs(1);
@@ -92,7 +92,7 @@ struct Tally {
     answered: u32,
     refused: u32,
     open: u32,
-    /// Reads that returned another value than the stored one.
+    /// Reads that returned another value than the stored value.
     wrong: u32,
     /// Orders that were executed more than once. `lost` counts confirmed orders that were not executed.
     doubled: u32,

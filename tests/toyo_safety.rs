@@ -328,7 +328,8 @@ fn serve_connections(mut fault: impl FnMut(&str) -> BlockFault + Send + 'static)
 
 fn toyo(url: &str, state: &std::path::Path, words: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
-    // Without the inventory of the user: with an inventory, armctl shares the connection, and connects later.
+    // The command runs without the inventory of the user. With an inventory, armctl shares the connection, and connects
+    // later.
     command
         .env("XDG_STATE_HOME", state)
         .env("XDG_CONFIG_HOME", state)

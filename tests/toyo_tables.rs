@@ -324,7 +324,7 @@ fn every_status_bit_matches_the_manual() {
         let low: Vec<u8> = own().filter(|bit| bit.is_low).map(|bit| bit.bit).collect();
         assert_eq!(low, theirs.active_low, "page {}", theirs.page);
         assert_eq!(theirs.kind == "code", theirs.page == 1);
-        // The program kind and the run mode take two bits each.
+        // The program kind and the run mode use two bits each.
         assert_eq!(theirs.groups.len(), if theirs.page == 2 { 2 } else { 0 });
     }
 }

@@ -45,7 +45,7 @@ impl Desk {
 
 #[test]
 fn for_bounds_the_wait_for_a_silent_robot() {
-    // Both take what is sent, and never answer.
+    // Both sockets accept data, but never answer.
     let (udp, tcp) = (UdpSocket::bind("127.0.0.1:0"), TcpListener::bind("127.0.0.1:0"));
     let address = |found: std::io::Result<SocketAddr>| found.expect("an address").to_string();
     let udp = udp.expect("a port");

@@ -147,7 +147,7 @@ fn monitoring_does_not_disturb_the_owner() {
     let simulator = Simulator::start(&[]);
     let mut owner = simulator.command("yrcx info servo --watch 1h -o jsonl").spawn().unwrap();
     BufReader::new(owner.stdout.take().unwrap()).lines().next().unwrap().unwrap();
-    // None of these opens an owner connection; it would be refused.
+    // None of these commands opens an owner connection, because the controller would refuse a second owner.
     for line in ["yrcx status", "status", "yrcx io get", "yrcx io watch --count 1", "yrcx auto-mode"] {
         let output = simulator.run(line);
         let (code, stderr) = failure_of(&output);
@@ -257,7 +257,7 @@ fn tshark_decodes_the_recording() {
     let opened = read("yrcx info servo", "cip.cm.sc == 0x54", &["cip.rr", "cip.cm.fwo.consize", "cip.genstat"]);
     assert_eq!(opened.len(), 2, "{opened:?}");
     assert!(opened[0].contains("54,50") && opened[1].ends_with("0x00"), "{opened:?}");
-    // Images to the controller have a run/idle header, those from it none.
+    // Images to the controller have a run/idle header. Images from the controller have no such header.
     let images = read("yrcx info servo", "cipio", &["udp.length"]);
     assert!(images.iter().any(|length| length == "80") && images.iter().any(|length| length == "76"), "{images:?}");
     assert!(images.iter().all(|length| ["80", "76"].contains(&length.as_str())), "{images:?}");

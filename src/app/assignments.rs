@@ -1,5 +1,5 @@
-//! Conversion of `NAME=VALUE` for commands that expect another form: two words (`counter set 1 0`), or a flag (`point
-//! set 7 --mm 1,2,3,4`).
+//! Converts an argument `NAME=VALUE` for commands that expect name and value in another form: as two words (`counter
+//! set 1 0`), or with a flag (`point set 7 --mm 1,2,3,4`).
 
 use std::ffi::OsString;
 
@@ -76,7 +76,8 @@ mod tests {
         ("yrcx var get", "SGI1", "SGI3"),
     ];
 
-    /// Verbs that read other things: names, one program, the numbers of an object.
+    /// `get` commands without a range of numbers, because they read names, one program, or several numbers of one
+    /// object.
     const NO_RANGES: [&str; 6] = [
         "toyo palletizing get",
         "toyo param get",

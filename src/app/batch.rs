@@ -56,7 +56,7 @@ pub async fn run(globals: Globals, batch: Batch) -> Result<(), RunError> {
 pub fn refuse_repetition(globals: &Globals) -> Result<(), Failure> {
     if globals.watch.is_some() || globals.count.is_some() || globals.until.is_some() {
         return Err(Failure::usage("--watch, --count and --until cannot apply to a batch")
-            .hint("write them after a command in the file"));
+            .hint("write these flags after a command in the file"));
     }
     Ok(())
 }
@@ -185,7 +185,12 @@ impl Plan<'_> {
             let line_numbers: Vec<String> = failed.iter().map(|(origin, _)| origin.line.to_string()).collect();
             format!("{} of {all} commands failed; lines: {}", failed.len(), line_numbers.join(", "))
         } else {
-            format!("stopped at {}; {} done before it, {} not started", origin, started - failed.len(), all - started)
+            format!(
+                "stopped at {}; commands done before it: {}; not started: {}",
+                origin,
+                started - failed.len(),
+                all - started
+            )
         };
         if !self.screen.is_json() {
             self.screen.note(&message);

@@ -55,7 +55,8 @@ impl Uses {
             Common::Robots(Robots::List) | Common::Names(_) => Self { robots: true, ..NONE },
             Common::Robots(Robots::Discover(_)) => Self { link: true, gate: true, ..NONE },
             Common::Explain(_) => Self { robots: true, link: true, ..NONE },
-            // These commands show the settings that would be used, or check a connection.
+            // These commands show the settings that a link would use, or check a connection, so they use the link
+            // flags.
             Common::Robots(Robots::Show(_)) | Common::Setup(_) => Self { link: true, ..NONE },
             Common::Robots(_)
             | Common::Sim(_)
@@ -80,7 +81,8 @@ pub fn check(globals: &Globals, task: &Task) -> Result<(), Failure> {
 /// A flag as the user typed it, if present, and the function that returns whether a command uses it.
 type Flag = (Option<&'static str>, fn(Uses) -> bool);
 
-/// Returns all flags of the line. `--for` is not included, because it belongs to `--until` or to the command itself.
+/// Returns all global flags of the line. `--for` is not included, because it belongs to `--until` or to the command
+/// itself.
 fn global_flags(globals: &Globals) -> [Flag; 17] {
     let Globals { sim, target, robot, all, tag, trace, yes, dry_run, .. } = globals;
     let Globals { on_interrupt, timeout, retries, encoding, no_session, watch, count, until, check, .. } = globals;

@@ -130,7 +130,7 @@ fn gate_checks_every_command() {
             ("whether it is a stop", intent.is_stop == is_stop),
             ("a question", risk < Destroy || intent.confirmation != Confirmation::Question || !intent.text.is_empty()),
             ("nobody to ask", refused(&alone) == is_asked),
-            // The commands `backup` and `diff` select their requests by robot: for a read-only robot, they only read.
+            // For a read-only robot, the commands `backup` and `diff` send only reads.
             (
                 "a read-only robot",
                 refused(&read_only) == (risk > Read && !is_stop)

@@ -130,7 +130,7 @@ impl Parser {
         read(all, args).map_err(|error| Refusal::new(error, args, all))
     }
 
-    /// Returns the owner of a word. The commands of this family are checked first.
+    /// Returns the owner of a word. The commands of `family` are checked first.
     pub fn owner(&mut self, word: &str, family: Option<Family>) -> Owner {
         let all = build_commands::<Top>(&mut self.all);
         let of_family = family.and_then(|family| all.find_subcommand(family.name())?.find_subcommand(word));
@@ -163,7 +163,8 @@ fn read<C: Subcommand>(command: &mut Command, args: &[OsString]) -> Result<Words
     words.map_err(|error| error.format(command))
 }
 
-/// Owner of the first word, if it can be determined without the values of flags.
+/// Owner of the first word that is a family or a common command. The parser does not know yet which words are values of
+/// flags.
 enum FirstWord {
     Family(Family),
     Common,

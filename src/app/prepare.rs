@@ -119,7 +119,7 @@ impl PreparedCommand {
         self.task.go(&self.run).await
     }
 
-    /// Checks everything that can be refused without a connection: missing robots, and the gate.
+    /// Refuses the command, before a connection is opened, if a robot is missing or if the gate rejects the command.
     pub fn check_gate(&self) -> Result<(), Failure> {
         match &self.task {
             Task::Family(_, command) => self.run.check_gate(&**command),
@@ -160,7 +160,7 @@ impl Task {
             Self::Common(Common::Robots(robots)) if robots.makes_inventory() => Need::InventoryOrNone,
             Self::Common(Common::Setup(_)) => Need::InventoryOrNone,
             Self::Common(Common::Session(session)) if !session.opens() => Need::Names,
-            // The folder of the inventory also contains `alarms.toml`.
+            // `explain` reads `alarms.toml`, which is in the folder of the inventory.
             Self::Common(Common::Explain(_)) => Need::Names,
             Self::Common(common) if !common.is_about_robots() => Need::Nothing,
             Self::Family(..) | Self::Common(_) => Need::Inventory,
@@ -171,7 +171,8 @@ impl Task {
 /// Parts of inventory and environment that a command needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Need {
-    /// The command needs neither. Mistakes in them are ignored: `help` must also work while a user corrects a mistake.
+    /// The command needs no inventory and no environment variables. Mistakes in them are ignored: `help` must also work
+    /// while a user corrects a mistake.
     Nothing,
     /// The command needs names of robots, without their inventory entries.
     Names,
@@ -299,7 +300,8 @@ fn location(config: Option<PathBuf>) -> Result<Location, Failure> {
 /// variable.
 fn variable<T>(name: &str, parse: impl FnOnce(&str) -> Result<T, String>) -> Result<Option<T>, Failure> {
     let Some(value) = std::env::var_os(name).filter(|value| !value.is_empty()) else { return Ok(None) };
-    let wrong = |why: String| Failure::usage(format!("{name}: {why}")).hint(format!("correct it, or unset {name}"));
+    let wrong =
+        |why: String| Failure::usage(format!("{name}: {why}")).hint(format!("correct the value, or unset {name}"));
     let text = value.to_str().ok_or_else(|| wrong("the value is not UTF-8".to_owned()))?;
     parse(text).map(Some).map_err(wrong)
 }

@@ -115,7 +115,7 @@ impl Repl {
         manager: &SessionManager,
     ) -> Result<(), RunError> {
         // If the end of the connection would stop the robot, the connection is not opened here. The command that needs
-        // it opens it after a confirmation.
+        // the connection opens it after a confirmation.
         if let Some(robot) = &self.robot
             && !self.globals.dry_run
             && !matches!(families::of(robot.family).driver().entry(robot, ConnectMode::Control), Entry::Stops(_))
@@ -135,7 +135,7 @@ impl Repl {
             };
             if std::mem::take(&mut is_new) {
                 for left in seen.leftovers() {
-                    self.screen.note(&format!("still active from before: {}; {}", left.what, left.undo));
+                    self.screen.note(&format!("left on by an earlier command: {}; {}", left.what, left.undo));
                 }
             }
             let prompt = Prompt::new(self.meaning.prefix(), self.robot.as_ref(), &seen, self.screen.stdout_color());
@@ -243,7 +243,7 @@ impl Repl {
                 .hint("end the prompt, then run `armctl teach`")
                 .into()),
             Invocation::Prompt(_) => {
-                Err(Failure::usage("the interactive prompt is already open").hint("end it with `exit`").into())
+                Err(Failure::usage("the interactive prompt is already open").hint("end the prompt with `exit`").into())
             }
             Invocation::Bare(prefix) => Err(usage(&screen, &prefix)),
         };
@@ -267,7 +267,7 @@ async fn line(script: impl AsyncBufRead + Unpin, number: usize) -> Result<Option
         return Ok(None);
     }
     let text = String::from_utf8(bytes).map_err(|_| {
-        Failure::local(format!("line {number} of stdin is not UTF-8")).hint("convert it: iconv -t UTF-8")
+        Failure::local(format!("line {number} of stdin is not UTF-8")).hint("convert the input: iconv -t UTF-8")
     })?;
     Ok(Some(text.trim_end_matches(['\n', '\r']).to_owned()))
 }

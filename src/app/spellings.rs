@@ -19,7 +19,7 @@ pub fn rewrite_spelling(args: &[OsString], whole: &Command) -> Option<Vec<OsStri
     rewrite_teach(args, whole).or_else(|| rewrite_explain(args, whole))
 }
 
-/// Returns the families that have a code. If no family has it, returns the families whose codes have this form.
+/// Returns the families that have a code. If no family has the code, returns the families whose codes have this form.
 pub fn families_with(code: &str) -> Vec<Family> {
     let bare = |code: &str| {
         let code = code.to_ascii_lowercase();

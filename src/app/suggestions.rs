@@ -108,7 +108,12 @@ fn suggest_range(args: &[OsString], typed: &TypedLine<'_>, whole: &Command) -> O
     let words = args.iter().rev().map_while(|word| word.to_str()?.parse::<u32>().ok());
     let numbers: Vec<u32> = words.collect();
     let (from, to) = (numbers.iter().min()?, numbers.iter().max()?);
-    (has("from") && has("to")).then(|| format!("name the first and the last with flags: --from {from} --to {to}"))
+    (has("from") && has("to")).then(|| {
+        format!(
+            "type the first and the last number with flags: --from {from} --to \
+                                                {to}"
+        )
+    })
 }
 
 /// Suggests the correct form for a flag that is a plain value here, or for a value that belongs to a flag.
@@ -139,7 +144,7 @@ fn suggest_flag_or_value(error: &mut clap::Error, typed: &TypedLine<'_>, whole: 
     after_flag(&flags)
 }
 
-/// Suggestion for a value of a flag that is missing, where one of several flags is needed.
+/// Suggests a flag for a value that the user typed without a flag, if the command needs one of several flags.
 fn suggest_needed_flag(
     error: &clap::Error,
     args: &[OsString],
@@ -156,7 +161,7 @@ fn suggest_needed_flag(
     after_flag(&flags)
 }
 
-/// Flags with a value of which one is needed; `None` if the command has no such flags.
+/// Flags with a value, if the command needs one of these flags; `None` if the command has no such flags.
 fn needed_flags(command: &Command) -> Option<Vec<String>> {
     let needed: Vec<_> = command.get_groups().filter(|group| group.is_required_set()).collect();
     let is_needed = |argument: &&Arg| needed.iter().any(|group| group.get_args().any(|id| id == argument.get_id()));
@@ -178,7 +183,7 @@ fn suggest_place(error: &mut clap::Error, kind: ContextKind, typed: &TypedLine<'
     if kind == ContextKind::InvalidArg && (word.starts_with('-') || typed.path.len() > 1) {
         return None;
     }
-    // The path without the wrong word leads no further.
+    // A suggestion that only repeats the path without the wrong word is of no use.
     let leads_further = |line: &Suggestion| typed.path.is_empty() || parse_words(&line.0) != typed.path;
     let lines = lines(&word, typed, whole).into_iter().filter(leads_further);
     let (safe, dangerous): (Vec<Suggestion>, Vec<Suggestion>) = lines.partition(|line| risk(&line.0, whole).is_none());
@@ -191,9 +196,9 @@ fn suggest_place(error: &mut clap::Error, kind: ContextKind, typed: &TypedLine<'
             commands_by_risk.entry(risk).or_default().insert(format!("`armctl {} -h`", noun.join(" ")));
         }
     }
-    let dangerous = commands_by_risk
-        .into_iter()
-        .map(|(risk, helps)| format!("one that {risk}: see {}", helps.into_iter().collect::<Vec<_>>().join(", ")));
+    let dangerous = commands_by_risk.into_iter().map(|(risk, helps)| {
+        format!("a command that {risk}: see {}", helps.into_iter().collect::<Vec<_>>().join(", "))
+    });
     let mut lines: Vec<String> = safe.into_iter().map(|line| line.format_line()).collect();
     lines.extend(dangerous);
     if lines.is_empty() || lines.len() > MAX_SUGGESTIONS {

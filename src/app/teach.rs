@@ -59,7 +59,7 @@ fn select_robot(globals: &Globals, teach: &Teach) -> Result<Robot, Failure> {
     match &sources.robots(teach.family)?[..] {
         [robot] => Ok(robot.clone()),
         robots => Err(Failure::usage(format!("teach moves one robot, but {} are selected", robots.len()))
-            .hint("select one with -r")),
+            .hint("select one robot with -r")),
     }
 }
 

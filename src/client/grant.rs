@@ -47,7 +47,7 @@ impl Grant {
 
     /// The highest authorized risk.
     pub fn get(&self) -> Risk {
-        // `raise` and `up_to` are the only functions that write the number, and both write the number of a risk.
+        // The index is always valid: only `raise` and `up_to` write the number, and both write the number of a risk.
         RISKS[usize::from(self.0.highest.load(Ordering::Relaxed)).min(RISKS.len() - 1)]
     }
 

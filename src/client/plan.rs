@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 /// The frames of a dry run, in the order of sending.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Plan {
-    /// One JSON object per frame. The bytes of the frame are under the key of the controller family (`hex`, `wi`,
-    /// `bits` or `text`). If the frame has a [`Reason`], the object also has `about` and `depends_on`.
+    /// One JSON object per frame. The key that contains the bytes of the frame depends on the controller family (`hex`,
+    /// `wi`, `bits` or `text`). If the frame has a [`Reason`], the object also has `about` and `depends_on`.
     pub frames: Vec<Value>,
     /// The planned action for each file or part of a long task. The command that plans the task defines the format.
     pub items: Vec<Value>,
@@ -58,7 +58,7 @@ pub fn merge_fields(one: Vec<ReadableField>, other: &[ReadableField]) -> Vec<Rea
 }
 
 impl Plan {
-    /// Records a frame. The frame already contains its bytes under the key of the controller family.
+    /// Records a frame. The caller has already stored the bytes of the frame under the key of the controller family.
     pub fn note(&mut self, mut frame: Value, reason: Reason<'_>) {
         if let Some(frame) = frame.as_object_mut() {
             for (key, text) in [("about", reason.about), ("depends_on", reason.depends_on)] {

@@ -9,7 +9,7 @@ use armctl_transport::tap::Direction;
 pub type Ends = (SocketAddr, SocketAddr);
 
 /// An observer of a client, for example a trace, a log or a counter. `E` is the event type of the controller family. A
-/// watcher does not change the behavior of the client.
+/// watcher does not change what the client does.
 pub trait Watcher<E>: Debug + Send {
     /// A frame was sent or received.
     fn frame(&mut self, direction: Direction, ends: Ends, bytes: &[u8]) {

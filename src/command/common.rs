@@ -32,7 +32,7 @@ pub enum Common {
     Wait(Wait),
     /// Full-screen live monitor
     Top(top::Top),
-    /// Publish robots to an MQTT broker
+    /// Publish the data of robots to an MQTT broker
     #[cfg(feature = "plant")]
     Publish(Box<publish::Publish>),
     /// Serve metrics of robots to other programs

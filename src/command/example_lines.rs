@@ -65,8 +65,8 @@ pub fn is_dangerous(path: &[&str], is_noun: bool) -> bool {
     lines.peek().is_some() && if is_noun { lines.all(is_one) } else { lines.any(is_one) }
 }
 
-/// Whether a list of missing values may preselect the first value. It may not if Enter alone would then delete
-/// something, or move or stop a robot.
+/// Whether a list of missing values may preselect the first value. A list may not preselect a value if Enter alone
+/// would then delete something, or move or stop a robot.
 pub fn preselects(path: &[&str]) -> bool {
     !is_dangerous(path, false)
         && !without_robot::NO_DEFAULT.iter().any(|words| words.split(' ').eq(path.iter().copied()))

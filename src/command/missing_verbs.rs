@@ -1,4 +1,4 @@
-//! Nouns and verbs that all families share, and explanations for the families that lack one.
+//! Nouns and verbs that all families share, and explanations for the families that lack a noun or verb.
 
 use armctl_frame::failure::Failure;
 

@@ -29,7 +29,7 @@ pub type Now = Duration;
 pub enum Risk {
     /// The command only reads data. It can be repeated.
     Read,
-    /// Changes a value that can be set again: a variable, a signal, a counter, a selection, an alarm reset.
+    /// Changes a value that can be set again (a variable, a signal, a counter, a selection), or resets an alarm.
     Write,
     /// Deletes or overwrites data that a person made: jobs, programs, files, points, parameters.
     Destroy,
@@ -49,12 +49,12 @@ impl Risk {
     }
 }
 
-/// Next action of a driver for a session.
+/// Next action that a session requests from its driver.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Step<T> {
     /// Send these bytes as one datagram or one write, then poll again.
     Send(Vec<u8>),
-    /// Take this piece of received payload, then poll again. Pieces come in order, each exactly once.
+    /// A received piece of the payload. Store it, then poll again. Pieces come in order, each exactly once.
     Data(Vec<u8>),
     /// Pass the next piece of outgoing payload to `feed` of the session, then poll again.
     Feed,

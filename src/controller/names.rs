@@ -69,7 +69,7 @@ impl fmt::Display for Source {
 pub struct Name {
     /// Kind of the object.
     pub kind: Kind,
-    /// Address in the notation of the family: `#27010`, `B5`, `SO(20)`.
+    /// Address in the notation of the family, for example `#27010`, `B5` or `SO(20)`.
     pub address: String,
     /// The name.
     pub name: String,
@@ -82,7 +82,7 @@ pub struct Name {
 pub struct Grammar {
     /// Parses an address and returns it in the notation of the family; `None` for other text.
     pub address: fn(&str) -> Option<(Kind, String)>,
-    /// Prefixes of addresses.
+    /// Prefixes with which an address of the family can begin.
     pub prefixes: &'static [&'static str],
 }
 
@@ -99,7 +99,7 @@ impl Grammar {
     }
 }
 
-/// Maximum length of a name in bytes: four times the limit of a pendant.
+/// Maximum length of a name in bytes. This is four times the maximum length on a pendant.
 pub const LONGEST: usize = 128;
 
 /// Returns the reason why a text cannot be used as a name, or `None` if it can be used.
@@ -177,7 +177,8 @@ impl Names {
         let alike = self.by_name.get(&text.to_lowercase()).map(Vec::as_slice).unwrap_or_default();
         let alike = || alike.iter().filter_map(|at| self.all.get(*at)).filter(|name| kinds.contains(&name.kind));
         let is_own = |name: &Name| name.source == Source::Inventory;
-        // Names of the inventory first; within each source, exact case first.
+        // Pairs of (inventory name, exact case), in the order of the search. Names of the inventory come first. Within
+        // each source, names with exact case come first.
         let steps = [(true, true), (true, false), (false, true), (false, false)];
         for (own, exact) in steps {
             let mut found: Vec<&Name> = Vec::new();

@@ -1,8 +1,9 @@
 //! Suggestion for a mistyped word.
 
-/// The word in `known` that is most similar, if it is similar enough. Upper and lower case do not matter.
+/// The word in `known` that is most similar to `word`; `None` if no known word is similar enough. Upper and lower case
+/// do not matter.
 pub fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
-    // A word of this length is not a typing mistake, and the comparison would be slow.
+    // A longer word is not a typing mistake, and the comparison would be slow.
     if word.len() > 64 {
         return None;
     }
@@ -11,8 +12,8 @@ pub fn nearest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
     scored.filter(|(score, _)| *score > 0.75).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, other)| other)
 }
 
-/// Similarity of two words. A difference of a single typing mistake adds 1, because the similarity of short words is
-/// low otherwise.
+/// Similarity of two words. If a single typing mistake explains the difference, the result is 1 higher, because the
+/// similarity of short words is otherwise low.
 fn likeness(word: &str, other: &str) -> f64 {
     let slip = if word.len() > 2 && strsim::osa_distance(word, other) == 1 { 1.0 } else { 0.0 };
     strsim::jaro_winkler(word, other) + slip

@@ -110,7 +110,7 @@ struct Cell {
 }
 
 impl Row {
-    /// Position of a cell. After the last cell, it is the start of the row.
+    /// Position of a cell. For an index after the last cell, the position is the start of the row.
     pub fn place(&self, index: usize) -> SourceLocation {
         SourceLocation { line: self.line, column: self.cells.get(index).map_or(1, |cell| cell.column) }
     }
@@ -120,8 +120,8 @@ impl Row {
         self.whole(index).trim()
     }
 
-    /// Text of a cell with the blanks inside quotes, and without the apostrophe that protects text from being computed
-    /// as a formula.
+    /// Text of a cell, including the blanks inside quotes. An apostrophe at the start is removed if it only keeps a
+    /// spreadsheet from evaluating the text as a formula.
     pub fn string(&self, index: usize) -> &str {
         let text = self.whole(index);
         text.strip_prefix('\'').filter(|rest| is_formula(rest)).unwrap_or(text)
@@ -169,14 +169,14 @@ impl Sheet {
             }
         }
         let mut sheet = Self { dialect: Dialect { separator, decimal_comma: false }, head, rows };
-        // A semicolon suggests decimal commas, unless a cell has a decimal point. With tabs, a cell must have a decimal
-        // comma.
+        // With semicolons, the cells have decimal commas unless a cell contains a decimal point. With tabs, they have
+        // decimal commas only if a cell contains one.
         sheet.dialect.decimal_comma = separator == ';' && !sheet.own_cells().any(|text| is_decimal(text, '.'))
             || separator != ',' && sheet.own_cells().any(|text| is_decimal(text, ','));
         Some(sheet)
     }
 
-    /// Text of the cells that are not comments.
+    /// Text of the cells, without the cells of comment columns.
     fn own_cells(&self) -> impl Iterator<Item = &str> {
         let of = |row| {
             let cells = self.head.cells.iter().zip(row).filter(|(head, _)| !is_comment(&head.text));
@@ -200,14 +200,15 @@ impl Sheet {
         self.head.cells.iter().position(|cell| cell.text.trim().eq_ignore_ascii_case(name))
     }
 
-    /// Index of each of these columns, if the column is present. Any other column except a comment is an error.
+    /// Index of each of these columns; `None` for a column that the table does not have. Any other column in the table,
+    /// except a comment column, is an error.
     pub fn columns<S: AsRef<str>>(&self, known: &[S], expected: &str, findings: &mut Findings) -> Vec<Option<usize>> {
         let mut places = vec![None; known.len()];
         for (at, Cell { text: name, .. }) in self.head.cells.iter().enumerate() {
             let place = self.head.place(at);
             match known.iter().position(|column| column.as_ref().eq_ignore_ascii_case(name.trim())) {
                 Some(index) if places[index].is_some() => {
-                    findings.error(place, format!("column {name} appears twice"), None);
+                    findings.error(place, format!("column `{name}` appears twice"), None);
                 }
                 Some(index) => places[index] = Some(at),
                 None if is_comment(name) => {}
@@ -215,7 +216,7 @@ impl Sheet {
                     let near = nearest(name, known.iter().map(AsRef::as_ref));
                     let near = near.map(|near| format!("did you mean {near}?"));
                     let message = format!("unknown column '{}'", name.escape_debug());
-                    let usual = || format!("{expected}; the name of an extra column must begin with {COMMENT}");
+                    let usual = || format!("{expected}; the name of an extra column must begin with `{COMMENT}`");
                     findings.error(place, message, near.or_else(|| Some(usual())));
                 }
             }
@@ -259,7 +260,7 @@ pub fn update(
     let (Some(key), 0) = (places.first().copied().flatten(), findings.errors()) else {
         if findings.errors() == 0 {
             let missing = names.first().copied().unwrap_or_default();
-            findings.error(sheet.end_of_head(), format!("column {missing} is missing"), Some(expected));
+            findings.error(sheet.end_of_head(), format!("column `{missing}` is missing"), Some(expected));
         }
         return None;
     };
@@ -328,7 +329,7 @@ fn row(line: &str, number: usize, separator: char, findings: &mut Findings) -> O
     Some(Row { line: number, cells: cells.collect() })
 }
 
-/// Returns the cells of a line with their byte offsets, or the offset of a wrong quote.
+/// Returns the cells of a line with their byte offsets. An error is the byte offset of a quote at a wrong place.
 fn cells(line: &str, separator: char) -> Result<Vec<(usize, Cow<'_, str>)>, usize> {
     let trimmed =
         |text: &str| text.len() - text.trim_start_matches(|c: char| c != separator && c.is_whitespace()).len();

@@ -10,7 +10,7 @@ const START: SourceLocation = SourceLocation { line: 1, column: 1 };
 /// the findings.
 pub(crate) fn lines<'t>(text: &'t [u8], findings: &mut Findings) -> Vec<Cow<'t, str>> {
     if text.starts_with(&[0xFF, 0xFE]) || text.starts_with(&[0xFE, 0xFF]) {
-        findings.error(START, "the file is UTF-16", Some("save it as UTF-8".to_owned()));
+        findings.error(START, "the file is UTF-16", Some("save the file as UTF-8".to_owned()));
         return Vec::new();
     }
     let text = match text.strip_prefix("\u{FEFF}".as_bytes()) {
@@ -36,7 +36,7 @@ pub(crate) fn lines<'t>(text: &'t [u8], findings: &mut Findings) -> Vec<Cow<'t, 
             None => bytes,
         };
         if let Some(at) = bytes.iter().position(|byte| *byte == 0) {
-            let hint = "this is not a text file, or it is UTF-16: save it as UTF-8";
+            let hint = "this is not a text file, or the file is UTF-16: save the file as UTF-8";
             findings.error(
                 place(number, &bytes[..at]),
                 "NUL character; the rest of the file is not read",

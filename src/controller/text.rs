@@ -120,7 +120,7 @@ impl Encoding {
         let mut read = 0;
         loop {
             let rest = bytes.get(read..).unwrap_or_default();
-            // The worst-case capacity, so that one call decodes all bytes up to the next invalid byte.
+            // Reserves the worst-case capacity, so that one call decodes all bytes up to the next invalid byte.
             text.reserve(decoder.max_utf8_buffer_length_without_replacement(rest.len()).unwrap_or(0));
             let (result, used) = decoder.decode_to_string_without_replacement(rest, &mut text, true);
             read += used;
@@ -215,7 +215,7 @@ impl Encoding {
         Some(())
     }
 
-    /// The conversion table; `None` for ISO 8859-1 (the "latin1" of the web is Windows-1252).
+    /// The conversion table. `None` for ISO 8859-1: the table that web standards call "latin1" is Windows-1252.
     fn table(self) -> Option<&'static rs::Encoding> {
         match self {
             Self::ShiftJis => Some(rs::SHIFT_JIS),

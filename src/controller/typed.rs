@@ -1,5 +1,5 @@
-//! Parser of user input: `0x1F`, `1..5`, `B0=7`, `on`. All families and commands use it, with the same error
-//! messages.
+//! Parser of user input, for example `0x1F`, `1..5`, `B0=7` or `on`. All families and commands use it, with the same
+//! error messages.
 
 use std::collections::HashSet;
 use std::fmt::Display;
@@ -8,11 +8,11 @@ use std::ops::RangeInclusive;
 
 use thiserror::Error;
 
-/// A range with its ends in the wrong order.
+/// A range whose first end is greater than its last end.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("the end of the range is before its start; did you mean {meant}?")]
 pub struct RangeError {
-    /// The range in the right order.
+    /// The range with its ends in the right order, for the error message.
     pub meant: String,
 }
 
@@ -57,7 +57,7 @@ fn after_0x(text: &str) -> Option<&str> {
     text.strip_prefix("0x").or_else(|| text.strip_prefix("0X"))
 }
 
-/// Parses one item, or a range that includes both ends: `5`, `1..5`, `1-5`, `B0..B9`, `B0-9`.
+/// Parses one item, or a range that includes both ends. Examples: `5`, `1..5`, `1-5`, `B0..B9`, `B0-9`.
 ///
 /// # Errors
 /// If `read` fails, or if the ends are in the wrong order.
@@ -68,7 +68,7 @@ pub fn range<T: PartialOrd, E: From<RangeError>>(
     let separators = ["..", "-"];
     let ends = separators.into_iter().find_map(|separator| Some((separator, text.split_once(separator)?)));
     let Some((separator, (first_text, last_text))) = ends else { return Ok(read(text)?..=read(text)?) };
-    // The second end may omit the common prefix.
+    // The second end may omit the common prefix, as in `B0-9`.
     let begins = if last_text.starts_with(|first: char| first.is_ascii_digit()) { letters(first_text) } else { "" };
     let last_text = format!("{begins}{last_text}");
     let (first, last) = (read(first_text)?, read(&last_text)?);
@@ -78,8 +78,8 @@ pub fn range<T: PartialOrd, E: From<RangeError>>(
     Ok(first..=last)
 }
 
-/// Parses a name that ends in a number, or a range of such names: `DO2`, `DO2..DO5`. A range contains only names that
-/// `read` accepts.
+/// Parses a name that ends in a number, or a range of such names, for example `DO2` or `DO2..DO5`. A range contains
+/// only names that `read` accepts.
 ///
 /// # Errors
 /// If `read` fails for the whole text, or if the ends are in the wrong order.
@@ -109,7 +109,7 @@ pub fn once<T: Copy + Eq + Hash>(given: impl IntoIterator<Item = T>) -> Vec<T> {
     given.into_iter().filter(|item| seen.insert(*item)).collect()
 }
 
-/// Formats numbers, with a range for consecutive numbers: `7, 2..5`.
+/// Formats numbers and combines consecutive numbers to a range, for example `7, 2..5`.
 pub fn runs<T: Copy + Display + Into<i64>>(numbers: &[T], separator: &str) -> String {
     let mut runs: Vec<(T, T)> = Vec::new();
     for &number in numbers {
@@ -124,7 +124,7 @@ pub fn runs<T: Copy + Display + Into<i64>>(numbers: &[T], separator: &str) -> St
     runs.iter().map(run).collect::<Vec<_>>().join(", ")
 }
 
-/// Splits a text into a name and a value: `B0=7`.
+/// Splits a text into a name and a value, for example `B0=7`.
 ///
 /// # Errors
 /// If the `=` is missing. The message names both parts and shows the example.

@@ -92,8 +92,8 @@ impl Unit {
         }
         let padding = usize::from(self.decimals) - fraction.len();
         let digits = whole.bytes().chain(fraction.bytes()).chain(std::iter::repeat_n(b'0', padding));
-        // The sum saturates, so that a text of a thousand digits does not overflow. A saturated sum is out of range
-        // below.
+        // The sum saturates, so that a text of a thousand digits does not overflow. The range check below rejects a
+        // saturated sum.
         let magnitude = digits.fold(0_i64, |sum, digit| sum.saturating_mul(10).saturating_add(i64::from(digit - b'0')));
         i32::try_from(if negative { -magnitude } else { magnitude }).map_err(|_| UnitError::Range {
             text: shorten(text),

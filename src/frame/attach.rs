@@ -100,7 +100,8 @@ async fn find_session(robot: &Robot, access: &Access, screen: &Screen) -> Result
             ));
             return Ok(None);
         }
-        // The session folder of another user is not used. There is no session, but the user may expect one.
+        // armctl does not use a session folder that belongs to another user. The user may expect a session, so the note
+        // says why there is none.
         Err(AttachError::Location(error @ LocationError::Unsafe { .. })) => {
             screen.note(&format!("warning: armctl does not use sessions: {error}"));
             return Ok(None);
@@ -135,7 +136,8 @@ async fn find_session(robot: &Robot, access: &Access, screen: &Screen) -> Result
         ));
     }
     if access.trace.as_deref().is_some_and(|path| path != Path::new("-")) {
-        let missing = "the session itself records packets and addresses (yrcx: `armctl session open --trace FILE`)";
+        let missing = "to record packets and addresses, open the session with `armctl session open --trace FILE` \
+                       (yrcx)";
         screen.note(&format!("{}: --trace records the messages of the session; {missing}", robot.label()));
     }
     Ok(Some(attached))
@@ -199,8 +201,9 @@ fn sessions(place: &SessionFolder, family: Family) -> Vec<(SessionPath, Address)
     owned.filter_map(|(owner, location)| Some((location, owner.target.parse::<Target>().ok()?.address()))).collect()
 }
 
-/// Resolves all addresses of a robot from its network, if another address may be the same robot: the address of an open
-/// session, or, for a command that changes something, the address of a read-only robot.
+/// Resolves all addresses of a robot from its network, if the robot may also have an address that matters here. Such an
+/// address is the address of an open session. For a command that changes something, the address of a read-only robot
+/// also matters.
 ///
 /// # Errors
 /// If the robot does not answer, so that its identity is unknown.

@@ -41,13 +41,13 @@ impl<'a> Authority<'a> {
         Self::new(Gate::default(), screen, robot, Risk::Read, Grant::up_to(Risk::Read))
     }
 
-    /// Whether the user is asked before a change. While the user thinks, other clients may change data.
+    /// Whether the user is asked before a change. While the question is open, other clients may change data.
     pub fn asks(&self) -> bool {
         self.gate.needs_yes(self.robot, self.granted) && self.grant.get() < self.granted
     }
 
-    /// Confirms `change`. The controller must be unchanged so far. A change that overwrites no user data needs no
-    /// question.
+    /// Confirms `change`. The command must not have changed the controller before this call. A change that overwrites
+    /// no user data needs no question.
     pub async fn confirm(&self, change: &Change) -> Result<(), Failure> {
         let risk = self.granted;
         if !change.is_empty() && self.asks() {
@@ -73,7 +73,7 @@ enum Question {
 /// Only one question is asked at a time.
 static QUESTION_LOCK: Mutex<()> = Mutex::new(());
 
-/// Asks in a separate thread, so that Ctrl-C is handled. `otherwise` describes the state after the answer no.
+/// Asks in a separate thread, so that Ctrl-C is handled. `otherwise` describes the state after the answer `no`.
 async fn ask(
     screen: &Screen,
     robot: &Robot,

@@ -93,14 +93,15 @@ pub async fn open_session(robot: &Robot, inventory: Option<&Path>, screen: &Scre
 }
 
 /// Closes the files that the starter of this process left open. A lock or pipe of another program must not stay open as
-/// long as the session. Only a process that has opened no file itself may call it.
+/// long as the session. Only a process that has not opened a file itself may call this function.
 #[cfg(unix)]
 pub fn close_inherited_files() {
-    // Without this folder nothing is known of open files.
+    // Without this folder, the process cannot list its open files.
     let Ok(open) = std::fs::read_dir("/dev/fd") else { return };
     let open: Vec<i32> = open.filter_map(|file| file.ok()?.file_name().to_str()?.parse().ok()).collect();
     for file in open.into_iter().filter(|file| *file > 2) {
-        // One of them was open for the list only, and is closed already.
+        // One of these descriptors was open only for the list of the folder, and is closed already. Its error is
+        // ignored.
         let _ = nix::unistd::close(file);
     }
 }
@@ -113,7 +114,9 @@ pub async fn start(robot: &Robot, words: impl Iterator<Item = OsString>) -> Resu
     let mut child = detach(words, &log).context("cannot start armctl in the background")?;
     let pid = child.pid();
     let line = match interruptible(spawn_blocking(move || child.line())).await {
-        Ok(line) => line.map_err(|error| Failure::local(format!("armctl in the background: {error}")))?,
+        Ok(line) => {
+            line.map_err(|error| Failure::local(format!("cannot read from armctl in the background: {error}")))?
+        }
         Err(interrupt) => {
             // The process may have ended already.
             let _ = terminate(pid);

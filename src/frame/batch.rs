@@ -9,7 +9,7 @@ use clap::Args;
 #[derive(Debug, Args)]
 #[command(after_help = "For the file format, see `armctl help batch`.")]
 pub struct Batch {
-    /// One command per line, each with its family; - is stdin
+    /// File with one command per line, each with its family; - means stdin
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     /// Continue after a failed line

@@ -23,7 +23,8 @@ pub struct Context<'a, F: Family> {
     pub screen: &'a Screen,
     /// Whether other robots may run the same command. In that case, files need one folder per robot.
     pub several: bool,
-    /// Authority that confirms deletions and overwrites when the command knows them.
+    /// Authority with which the command confirms deletions and overwrites, as soon as it has read the data that they
+    /// affect.
     pub authority: Authority<'a>,
 }
 
@@ -107,7 +108,7 @@ pub trait Command {
         false
     }
 
-    /// Whether the command reads or writes files of this machine, even if no file is named.
+    /// Whether the command reads or writes files of this machine, even if the user names no file.
     fn uses_files(&self) -> bool {
         false
     }
@@ -137,9 +138,9 @@ pub trait Command {
         Err(failure)
     }
 
-    /// Executes the command. In a dry run, requests that change something are recorded and count as successful. A read
-    /// ends with the failure [`unknown`](super::dry_run::unknown). Unless the command handles this failure, the
-    /// requests after the read are not planned.
+    /// Executes the command. In a dry run, requests that change something are recorded and count as successful. In a
+    /// dry run, a read ends with the failure [`unknown`](super::dry_run::unknown). Unless the command handles this
+    /// failure, the requests after the read are not planned.
     async fn run(&self, context: Context<'_, Self::Family>) -> Result<Self::Report, Failure>;
 }
 
@@ -147,7 +148,8 @@ pub trait Command {
 pub trait AnyCommand {
     /// See [`Command::ID`].
     fn id(&self) -> &'static str;
-    /// Intent for the gate. With a robot, its intent on this robot; otherwise the intent with the highest risk.
+    /// Intent for the gate. With a robot, this is the intent on this robot. Without a robot, it is the intent with the
+    /// highest risk.
     fn intent(&self, robot: Option<&Robot>) -> Intent;
     /// Runs the command and returns its report, if the command needs no robot.
     fn without_robot(&self, _screen: &Screen) -> Option<Outcome> {

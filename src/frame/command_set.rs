@@ -56,8 +56,8 @@ pub trait CommandSet {
     fn command(self) -> Box<dyn AnyCommand>;
     /// Schemas of all reports.
     fn schemas() -> Vec<SchemaEntry>;
-    /// Adds the subcommands that `is_named` accepts. If a command line does not contain the name of a subcommand, its
-    /// parser is not needed.
+    /// Adds the subcommands that `is_named` accepts. If a command line does not contain the name of a subcommand, the
+    /// parser of this subcommand is not needed.
     fn lay_out(command: clap::Command, is_named: &dyn Fn(&str) -> bool) -> clap::Command;
     /// Names of the subcommands in their order. The first subcommand below a heading also has the heading.
     fn headings() -> Vec<(Option<&'static str>, String)> {

@@ -47,7 +47,7 @@ impl Condition {
     pub fn new(text: &str) -> Result<Self, Failure> {
         let text = text.trim();
         if serde_json::from_str::<Value>(text).is_ok() {
-            // As a filter, this would be true at once.
+            // A plain value is also a valid filter, and its result would be true at once.
             return Err(Failure::usage(format!("'{text}' is not a condition"))
                 .hint(format!("write the value to wait for, such as {text}=on")));
         }
@@ -213,7 +213,7 @@ fn has(value: &Value, path: &[String]) -> bool {
     true
 }
 
-/// Keys that are available where the first part of a path is missing.
+/// Keys that exist at the place where the first missing part of a path is expected.
 fn path_of<'a>(value: &'a Value, path: &[String]) -> Option<Vec<&'a str>> {
     let mut value = value;
     for key in path {

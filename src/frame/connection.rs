@@ -83,7 +83,7 @@ impl FamilyArguments {
 }
 
 /// Connection that a command needs. Some controllers, such as a YRCX, treat the end of a connection as a fault. For
-/// this reason, no other connection is opened.
+/// this reason, armctl opens only the connection that the command needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ConnectMode {
     /// A connection that reads and commands.

@@ -5,7 +5,7 @@ use crate::prelude::basics::*;
 /// Repetition of a run. Each run starts after the end of the run before it.
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub struct Repeat {
-    /// Run N times, each after the end of the previous run; stop at the first failure
+    /// Run N times. Each run starts after the end of the previous run. Stop at the first failure
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub repeat: Option<u32>,
     /// Show the duration of the runs: minimum, median, 95th percentile, maximum

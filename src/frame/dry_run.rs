@@ -54,15 +54,14 @@ pub struct DryRun {
     #[schemars(extend("items" = {
         "type": "object",
         "properties": {
-            "hex": {"description": "The bytes (yerc; messages to the board of a yrcx); `??` for bytes that depend on \
-                                    an answer.",
+            "hex": {"description": "Bytes of the frame (yerc, and messages to the board of a yrcx); `??` for bytes \
+                                    that depend on an answer.",
                     "type": "string"},
-            "wi": {"description": "The 16 command words (yrcx); `?` for words that depend on an answer.",
+            "wi": {"description": "The 16 words of a remote command (yrcx); `?` for words that depend on an answer.",
                    "type": "array", "items": {"type": "string"}},
-            "bits": {"description": "The words of bits (yrcx).", "type": "array", "items": {"type": "string"}},
-            "text": {"description": "The line (toyo); `?` for parts that depend on an answer.", "type": "string"},
-            "fields": {"description": "Fields of a command that moves something; `?` for values that depend on an \
-                                       answer.",
+            "bits": {"description": "The signal words (yrcx).", "type": "array", "items": {"type": "string"}},
+            "text": {"description": "The block (toyo); `?` for parts that depend on an answer.", "type": "string"},
+            "fields": {"description": "Fields of a motion command; `?` for values that depend on an answer.",
                        "type": "array",
                        "items": {"type": "object", "required": ["name", "value"],
                                  "properties": {"name": {"type": "string"}, "value": {"type": "string"}}}},
@@ -81,7 +80,7 @@ pub struct DryRun {
         "type": "object",
         "required": ["item", "action"],
         "properties": {
-            "item": {"description": "The file or the part.", "type": "string"},
+            "item": {"description": "Name of the file or part.", "type": "string"},
             "action": {"enum": ["write", "leave"]},
             "bytes": {"description": "Of a file.", "type": "integer"},
             "values": {"description": "Of a part.", "type": "integer"},

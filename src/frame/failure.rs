@@ -124,11 +124,14 @@ impl Failure {
         }
         let failure = Self::local(format!("{what}: {}", plain(error)));
         match error.kind() {
-            ErrorKind::PermissionDenied => failure.hint("check the permissions of the folder, or choose another"),
+            ErrorKind::PermissionDenied => failure.hint(
+                "check the permissions of the folder, or choose another \
+                                                         folder",
+            ),
             ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
                 failure.hint("free some space, and repeat the command")
             }
-            ErrorKind::InvalidData => failure.hint("check the file: it has another format"),
+            ErrorKind::InvalidData => failure.hint("check that the file has the expected format"),
             ErrorKind::IsADirectory => failure.hint("name a file, not a folder"),
             ErrorKind::FileTooLarge => failure.hint("check that this is the correct file"),
             ErrorKind::NotADirectory => failure.hint("check the path: a part of it is a file, not a folder"),

@@ -19,7 +19,8 @@ pub struct Globals {
     /// Use the built-in simulator
     #[arg(long, global = true, help_heading = "Which robot", conflicts_with_all = ["target", "robot", "all", "tag"])]
     pub sim: bool,
-    /// Controller by URL, for example udp://192.168.1.31, or by 192.168.1.31, COM3 or /dev/ttyUSB0 (ARMCTL_TARGET)
+    /// Controller: a URL, for example udp://192.168.1.31, or only an address or serial port, for example 192.168.1.31,
+    /// COM3 or /dev/ttyUSB0 (ARMCTL_TARGET)
     #[arg(short, long, global = true, value_name = "URL", add = ValueKind::Url, help_heading = "Which robot", conflicts_with_all = ["robot", "all", "tag"])]
     pub target: Option<TargetArgument>,
     /// Robots in the inventory: names or patterns, separated by commas (ARMCTL_ROBOT)
@@ -49,7 +50,7 @@ pub struct Globals {
     /// Print JSON (the same as -o json)
     #[arg(long, global = true, help_heading = "Output", conflicts_with = "format", overrides_with = "json")]
     pub json: bool,
-    /// Print the result of a jq filter that is applied to the JSON
+    /// Print the result of a jq filter that is applied to the JSON output
     #[arg(
         long,
         global = true,
@@ -65,10 +66,10 @@ pub struct Globals {
     /// Print only errors and questions on stderr
     #[arg(short, long, global = true, hide_short_help = true, help_heading = "Output", conflicts_with = "verbose")]
     pub quiet: bool,
-    /// Increase verbosity: -v a summary, -vv frames, -vvv bytes
+    /// Increase verbosity: -v prints a summary, -vv prints frames, -vvv prints bytes
     #[arg(short, long, global = true, hide_short_help = true, action = clap::ArgAction::Count, help_heading = "Output")]
     pub verbose: u8,
-    /// Use of color
+    /// When to use color
     #[arg(
         long,
         global = true,
@@ -84,7 +85,7 @@ pub struct Globals {
     /// Print long texts without the pager (PAGER)
     #[arg(long, global = true, hide_short_help = true, help_heading = "Output")]
     pub no_pager: bool,
-    /// Record the traffic: a .pcapng file for Wireshark, or - for text on stderr
+    /// Record the traffic in a .pcapng file for Wireshark, or with - as text on stderr
     #[arg(long, global = true, hide_short_help = true, value_name = "FILE", help_heading = "Output")]
     pub trace: Option<PathBuf>,
 
@@ -105,11 +106,11 @@ pub struct Globals {
     )]
     pub on_interrupt: OnInterrupt,
 
-    /// Time limit of each try: 3s, for toyo 1.5s (ARMCTL_TIMEOUT)
+    /// Time limit of each try [default: 3s, for toyo 1.5s] (ARMCTL_TIMEOUT)
     #[arg(long, global = true, hide_short_help = true, value_name = "TIME", value_parser = duration::parse_some, help_heading = "Link")]
     pub timeout: Option<Duration>,
-    /// Retries of a read without an answer: 3; a read takes at most TIME × (N + 1), a change is never retried
-    /// (ARMCTL_RETRIES)
+    /// Retries of a read without an answer. A read takes at most N + 1 times the --timeout. A change is never retried
+    /// [default: 3] (ARMCTL_RETRIES)
     #[arg(long, global = true, hide_short_help = true, value_name = "N", help_heading = "Link")]
     pub retries: Option<u32>,
     /// Encoding of names and texts on the controller (ARMCTL_ENCODING)
@@ -125,13 +126,15 @@ pub struct Globals {
     /// Stop after N reads
     #[arg(long, global = true, hide_short_help = true, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), help_heading = "Repeat")]
     pub count: Option<u64>,
-    /// Repeat a read until this condition is met: idle, NAME=VALUE, or a jq filter over its JSON
+    /// Repeat a read until this condition is met: a state, for example idle, or NAME=VALUE, or a jq filter over the
+    /// JSON output
     #[arg(long, global = true, hide_short_help = true, value_name = "CONDITION", help_heading = "Repeat")]
     pub until: Option<String>,
-    /// Read once, and exit with code 8 unless this condition is met: idle, NAME=VALUE, or a jq filter over the JSON
+    /// Read once, and exit with code 8 unless this condition is met: a state, for example idle, or NAME=VALUE, or a jq
+    /// filter over the JSON output
     #[arg(long, global = true, hide_short_help = true, value_name = "CONDITION", conflicts_with_all = ["watch", "count", "until"], help_heading = "Repeat")]
     pub check: Option<String>,
-    /// Time after which --until gives up with exit code 8
+    /// Longest time that --until waits. After it, the exit code is 8
     #[arg(long = "for", global = true, hide_short_help = true, value_name = "TIME", value_parser = duration::parse, requires = "until", help_heading = "Repeat")]
     pub within: Option<Duration>,
 }

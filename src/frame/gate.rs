@@ -129,7 +129,8 @@ impl Gate {
         let count_text = format!("{} of {} robots", unnamed.len(), robots.len());
         let message = format!("not confirmed: on {count_text} ({}) this would {}", names.join(", "), intent.text);
         Err(Failure::new(Kind::Rejected, message).hint(
-            "name each robot with -r: patterns, --tag and --all do not confirm a motion, a deletion or an overwrite",
+            "name each robot with -r. Patterns, --tag and --all are not accepted for a command that moves, deletes or \
+             overwrites",
         ))
     }
 }

@@ -33,7 +33,7 @@ const HEARTBEAT_INTERVAL: Duration = Duration::from_millis(500);
 /// Time without a heartbeat after which the guarded process counts as hanging.
 const DEAD_AFTER: Duration = Duration::from_secs(2);
 
-/// Time limit for all attempts to stop the robot, and the pause between attempts.
+/// Time limit for all attempts to stop the robot. `RETRY_PAUSE` is the pause between two attempts.
 const STOP_TIMEOUT: Duration = Duration::from_secs(30);
 const RETRY_PAUSE: Duration = Duration::from_millis(200);
 
@@ -187,8 +187,8 @@ impl SessionGuardian {
             let spawned = spawn(&self.robot, self.words, STOP_ARGUMENT);
             *started = Some(spawned.map_err(|error| {
                 format!(
-                    "if armctl dies, the robot does not stop: the process that guards the motion could not be \
-                     started: {error}"
+                    "the process that guards the motion could not be started, so the robot does not stop if armctl \
+                     dies: {error}"
                 )
             })?);
         }

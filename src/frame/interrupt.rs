@@ -47,7 +47,7 @@ const QUIT: &str = "Ctrl-\\ (SIGQUIT)";
 #[cfg(unix)]
 const SUSPEND: &str = "Ctrl-Z (SIGTSTP)";
 
-/// Two requests within this time count as one. `timeout`, for example, sends each request twice.
+/// Two requests within this time count as one request. `timeout`, for example, sends each request twice.
 const ECHO_WINDOW: Duration = Duration::from_millis(100);
 /// Time in which busy work must react to a request.
 const BUSY_TIMEOUT: Duration = Duration::from_millis(500);
@@ -63,14 +63,14 @@ pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failur
     if let Some(how) = before {
         return Err(Failure::new(Kind::Interrupted, how));
     }
-    // The wait is `unconstrained`, because work that exhausts the task budget must not delay it. Work does so if a peer
-    // answers at once.
+    // The wait is `unconstrained`, because work that exhausts the task budget must not delay the wait. Work exhausts
+    // the budget if a peer answers each request at once.
     let how = unconstrained(wait(asked, |_| true));
     run_until_request(work, how).await.map_err(|how| Failure::new(Kind::Interrupted, how))
 }
 
-/// Returns the result of `work`, or the request that ended it. The work may wait for the same request. For this reason
-/// it is polled once more after the request has arrived from its thread.
+/// Returns the result of `work`, or the request that ended `work`. The work may wait for the same request. For this
+/// reason, the work is polled once more after the request has arrived from the signal thread.
 async fn run_until_request<T, R>(work: impl Future<Output = T>, request: impl Future<Output = R>) -> Result<T, R> {
     let mut work = pin!(work);
     tokio::select! {
@@ -80,7 +80,7 @@ async fn run_until_request<T, R>(work: impl Future<Output = T>, request: impl Fu
     }
 }
 
-/// From now on, a termination request waits for the next [`interruptible`], and does not kill the process.
+/// From now on, a termination request is kept for the next call of [`interruptible`], and does not kill the process.
 pub fn catch_interrupts() {
     // If signals cannot be caught, the next call reports the error.
     let _ = requests();
@@ -107,8 +107,8 @@ fn requests() -> Result<&'static TerminationRequest, Failure> {
     asked.as_ref().map_err(|why| Failure::local(format!("cannot receive signals: {why}")))
 }
 
-/// Starts the thread. When this function returns, the thread already receives signals, because work may send a request
-/// at its first poll.
+/// Starts the thread. When this function returns, the thread already receives signals, so that a signal at the first
+/// poll of the work is not lost.
 fn start() -> std::io::Result<TerminationRequest> {
     let requests = TerminationRequest::default();
     let (ready, is_ready) = mpsc::channel();
@@ -139,7 +139,8 @@ async fn wait(mut asked: watch::Receiver<Option<&'static str>>, counts: impl Fn(
 /// Passes each termination request to the work.
 async fn forward_signals(mut signals: Signals, requests: TerminationRequest) {
     let mut presses = Presses::default();
-    // The work that was running at the last check. It is checked while a request is pending.
+    // The work that was running at the last check. While a request is pending, the check is repeated after each
+    // `BUSY_TIMEOUT`.
     let mut seen = None;
     loop {
         let is_waiting = requests.borrow().is_some();

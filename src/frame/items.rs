@@ -1,7 +1,7 @@
 //! Results of several items of one command, and the common exit code.
 //!
-//! If some items failed, the exit code is 9. If all failed, it is the exit code that they have in common, or otherwise
-//! the exit code of the most severe failure.
+//! If some items failed, the exit code is 9. If all items failed with the same exit code, this is the exit code of the
+//! command. If their exit codes differ, the exit code of the most severe failure is used.
 
 use crate::backup::severity;
 use crate::prelude::basics::*;
@@ -95,7 +95,7 @@ impl<T> ItemOutcome<T> {
 }
 
 impl<T> ItemOutcome<Option<T>> {
-    /// Removes the option from the data. Returns `None` if the result is a success without data.
+    /// Removes the `Option` around the data. Returns `None` if the result is a success without data.
     pub fn with_defaults(self) -> Option<ItemOutcome<T>> {
         let Self { ok, data, error } = self;
         let data = match data {

@@ -3,7 +3,7 @@
 //! | module | contents |
 //! |---|---|
 //! | [`run`], [`command`], [`report`], [`connection`] | the run loop, and the traits of a command and of its family |
-//! | [`gate`], [`authority`], [`dry_run`] | whether a command may run; the question before it; what it would send |
+//! | [`gate`], [`authority`], [`dry_run`] | whether a command may run; its confirmation; its frames in a dry run |
 //! | [`settings`] | robots, target URLs, the inventory |
 //! | [`output`] | the only writer to stdout and stderr |
 //! | [`failure`] | how a command can fail, with the exit code |

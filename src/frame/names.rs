@@ -40,7 +40,7 @@ struct NameLookup {
 }
 
 thread_local! {
-    /// A line is parsed in one call in one thread, and value parsers receive no context.
+    /// The mode is thread-local, because value parsers receive no context. A line is parsed in one call on one thread.
     static MODE: RefCell<Mode> = const { RefCell::new(Mode::Off) };
     static NAME_FOUND: RefCell<bool> = const { RefCell::new(false) };
 }
@@ -156,7 +156,7 @@ impl NameLookup {
 
 /// Message: several addresses have the same name.
 fn ambiguous(text: &str, several: &[&Name]) -> String {
-    /// Maximum number of addresses that the message lists. The others are counted.
+    /// Maximum number of addresses that the message lists. Further addresses are only counted.
     const SHOWN: usize = 6;
 
     let describe = |name: &&Name| format!("{} ({} of {})", name.address, name.name, name.source);

@@ -320,7 +320,7 @@ impl Run {
                         return if self.repeat.is_quiet { self.print_last(command, robot, &**report) } else { Ok(()) };
                     }
                 }
-                // A watch continues while a robot does not answer. Any other failure ends it.
+                // A watch continues while a robot does not answer. Any other failure ends the watch.
                 Err(failure)
                     if failure.kind == Kind::NoAnswer && !self.repeat.ends_with(failure, rounds.is_first()) =>
                 {
@@ -357,7 +357,7 @@ impl Run {
         }
     }
 
-    /// Ends a watch whose only look ended before there was a connection.
+    /// Ends a watch with a single read, whose time ended before there was a connection.
     fn end_unconnected(
         &self,
         command: &dyn AnyCommand,
@@ -376,7 +376,8 @@ impl Run {
         report.failure().map_or_else(|| rounds.end().or_else(stopped), stopped)
     }
 
-    /// Missing answer of a robot, if it decides how a watch ends. The report of a plain watch shows it as a state.
+    /// Failure of a robot that did not answer, if this failure decides how the watch ends. Without `--until`, a report
+    /// can also show the missing answer as a state. Such a report does not end the watch.
     fn silence(&self, outcome: &Outcome) -> Option<Failure> {
         let counts = outcome.is_err() || self.repeat.until.is_some();
         let failure = failure_of(outcome).filter(|failure| counts && failure.kind == Kind::NoAnswer)?;
@@ -467,7 +468,8 @@ impl Run {
         self.gate.on_interrupt == OnInterrupt::Leave && !command.jogs()
     }
 
-    /// One run until the end of `--for`. If it ends first, the robot counts as one that does not answer.
+    /// Runs the command once, at most until the end of `--for`. If this time ends first, the robot counts as a robot
+    /// that does not answer.
     async fn attempt(
         &self,
         command: &dyn AnyCommand,
@@ -495,7 +497,8 @@ impl Run {
     }
 
     /// Starts a guardian that stops the robot if this process dies or hangs. If a session of another process, or a
-    /// fieldbus adapter, detects that the master is missing, the guardian only ends a process that hangs.
+    /// fieldbus adapter, detects that the master is missing, this session or adapter stops the robot. In that case, the
+    /// guardian only kills a process that hangs.
     fn guardian(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<Option<Guardian>, Failure> {
         let intent = command.intent(Some(robot));
         let moves = intent.risk == Risk::Motion && !intent.is_stop && !self.leaves_motion(command);
@@ -558,7 +561,7 @@ impl Run {
 
     /// Checks whether the controller model supports the command. This check comes before any question, so that the user
     /// does not clear a cell for a mistyped command. Simulators are not checked: they need no question, and may have
-    /// another model than the configured one.
+    /// another model than the model in the settings.
     async fn check_model(&self, command: &dyn AnyCommand, robot: &Robot) -> Result<(), Failure> {
         if self.gate.dry_run || robot.target.value.is_simulated() {
             return Ok(());
@@ -601,7 +604,8 @@ mod tests {
 
     #[tokio::test(start_paused = true)]
     async fn runs_robots_in_parallel() {
-        // Half of the robots do not answer, as in a plant with switched-off robots. They are mixed with the others.
+        // Half of the robots do not answer, as in a plant with switched-off robots. They are mixed with the robots that
+        // answer.
         let silent = |robot: usize| robot.is_multiple_of(2);
         let ask = |robot| async move {
             tokio::time::sleep(Duration::from_millis(if silent(robot) { 2000 } else { 10 })).await;

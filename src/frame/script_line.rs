@@ -57,7 +57,8 @@ impl Line {
         if access.mode != ConnectMode::Control && !robot.target.value.is_simulated() {
             return Ok(access);
         }
-        // Some families record the trace in the process that has the link, others record it in each line.
+        // Some families record the trace in the process that has the link. Other families record the trace in each
+        // line.
         let trace = access.trace.clone().filter(|path| path.as_os_str() != "-");
         let holding = Access { trace, mode: ConnectMode::Control, ..access.clone() };
         let is_traced = self.manager.hold(robot, &holding, screen).await? == HeldBy::ThisProcess { records: true };

@@ -43,9 +43,9 @@ pub struct Started<S: Serve> {
     pub reach: String,
     /// Simulator.
     pub server: S::Server,
-    /// Address that it listens on; none for a terminal.
+    /// Address that the simulator listens on; `None` for a terminal.
     pub address: Option<SocketAddr>,
-    /// Whether it reads console lines on stdin.
+    /// Whether the simulator reads console lines on stdin.
     pub with_console: bool,
 }
 

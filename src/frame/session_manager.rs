@@ -1,4 +1,4 @@
-//! Client of the manager for links that stay open between the lines of this process. The manager runs in its own thread
+//! Handle of the manager that keeps links open between the lines of this process. The manager runs in its own thread
 //! (`fleet/session/host.rs`).
 
 use std::fmt;
@@ -13,8 +13,8 @@ use crate::failure::Failure;
 use crate::output::Screen;
 use crate::settings::Robot;
 
-/// Manager of the links for the lines of this process. The manager has its own thread, so that a busy line does not
-/// cause the loss of a link.
+/// Handle of the manager that keeps links open between the lines of this process. The manager has its own thread, so
+/// that a busy line does not cause the loss of a link.
 #[derive(Debug, Clone)]
 pub struct SessionManager {
     requests: mpsc::UnboundedSender<ManagerRequest>,
@@ -60,7 +60,7 @@ pub enum HeldBy {
 }
 
 impl SessionManager {
-    /// Creates a client for a thread that handles these requests.
+    /// Creates the handle that sends requests to the thread that holds the links.
     pub fn new(requests: mpsc::UnboundedSender<ManagerRequest>) -> Self {
         Self { requests, reports: Arc::default() }
     }
@@ -70,7 +70,7 @@ impl SessionManager {
         self.requests.send(ManagerRequest::End(done)).is_ok()
     }
 
-    /// Makes the link to a robot stay open, and returns which process has it.
+    /// Keeps the link to a robot open, and returns which process has the link.
     pub async fn hold(&self, robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldBy, Failure> {
         let (done, is_done) = oneshot::channel();
         let order =

@@ -12,9 +12,9 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// Finds the name and value of a command that sets a named value. They are its last two positional arguments. A
-    /// command with `NAME=VALUE` arguments has no pair. A command with four arguments has none either: these are
-    /// coordinates or the numbers of an object.
+    /// Finds the name and the value of a command that sets a named value. They are the last two positional arguments of
+    /// the command. A command with `NAME=VALUE` arguments has no pair. A command with four arguments has no pair
+    /// either, because its arguments are coordinates or the numbers of an object.
     pub fn of(verb: &Command) -> Option<Self> {
         let words: Vec<&Arg> = verb.get_positionals().collect();
         let ([_, value] | [_, _, value]) = words[..] else { return None };

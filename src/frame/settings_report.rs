@@ -11,7 +11,7 @@ use crate::robot::item::{Item, Written, WrittenItems};
 /// Purpose of a read before a write, as a dry run shows it.
 pub const OLD_VALUE: &str = "old value";
 /// Condition for a write, as a dry run shows it.
-pub const IF_DIFFERENT: &str = "whether the old value differs";
+pub const IF_DIFFERENT: &str = "whether the old value differs from the new value";
 
 /// Adds to a failure that nothing was written.
 pub fn nothing_written(failure: Failure) -> Failure {
@@ -25,8 +25,8 @@ pub fn nothing_written(failure: Failure) -> Failure {
 pub struct Old(Value);
 
 impl Old {
-    /// The value was not read. There is no request for it, it is an event without a value, or the command must not
-    /// wait.
+    /// The value was not read: there is no request that reads it, the action has no value, or the command must not wait
+    /// for an answer.
     pub const UNREAD: Self = Self(Value::Null);
 
     /// Old value; `None` if the controller refused to report it.
@@ -138,7 +138,7 @@ fn shown(value: &Value) -> String {
     }
 }
 
-/// A number as typed, as JSON; null if it is not a number.
+/// Converts a typed number to JSON; null if the text is not a number.
 pub fn number(text: &str) -> Value {
     let whole = text.parse::<i64>().map(Value::from);
     whole.unwrap_or_else(|_| text.parse::<f64>().map_or(Value::Null, Value::from))
@@ -147,8 +147,8 @@ pub fn number(text: &str) -> Value {
 /// On or off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Switch {
-    /// Switch it on
+    /// Switch on
     On,
-    /// Switch it off
+    /// Switch off
     Off,
 }

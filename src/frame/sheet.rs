@@ -1,4 +1,4 @@
-//! Spreadsheet table files: the path, and the content that an update keeps.
+//! Table files for spreadsheets: the path, and the content that an update keeps.
 
 use std::path::PathBuf;
 
@@ -15,10 +15,10 @@ pub struct SheetManner {
     /// Replace the file if it exists
     #[arg(long)]
     pub force: bool,
-    /// Update the values in an existing CSV file; comments and order stay
+    /// Update the values in an existing CSV file. Keep its comments and its order
     #[arg(long, conflicts_with_all = ["force", "decimal_comma"])]
     update: bool,
-    /// CSV with decimal commas and semicolons between cells
+    /// Write the CSV file with decimal commas, and with semicolons between the cells
     #[arg(long)]
     decimal_comma: bool,
 }

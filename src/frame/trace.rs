@@ -95,14 +95,14 @@ impl Trace {
         }
     }
 
-    /// Adds a datagram to the capture file. The first address in `ends` is the own address.
+    /// Adds a datagram to the capture file. The first address in `ends` is the address of this computer.
     pub fn datagram(&mut self, direction: Direction, ends: (SocketAddr, SocketAddr), bytes: &[u8]) {
         let (from, to) = write_in_order(direction, ends);
         self.capture(|capture, time| capture.datagram(time, from, to, bytes));
     }
 
-    /// Adds a piece of a stream to the capture file: TCP between two addresses (the own address first), or a serial
-    /// line.
+    /// Adds a piece of a stream to the capture file: TCP between two addresses (the address of this computer first), or
+    /// a serial line.
     pub fn piece(&mut self, direction: Direction, ends: Option<(SocketAddr, SocketAddr)>, bytes: &[u8]) {
         self.capture(|capture, time| match ends.map(|ends| write_in_order(direction, ends)) {
             Some((from, to)) => capture.segment(time, from, to, bytes),
@@ -126,8 +126,8 @@ impl Trace {
     }
 }
 
-/// Locks data that a link shares with the observer of its client, such as the trace. Such data is written frame by
-/// frame, so a panic leaves it complete.
+/// Locks data that a link shares with the observer of its client, such as the trace. Each frame is written as a whole,
+/// so the data is valid even if a panic has poisoned the lock.
 pub fn lock_writer<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -29,7 +29,7 @@ impl MotionEnd {
 #[derive(Debug, Clone, Copy, Args)]
 #[group(skip)]
 pub struct ProgramEnd {
-    /// Wait until the program has ended, at most TIME; with --repeat for each run
+    /// Wait until the program has ended, but at most TIME. With --repeat, TIME applies to each run
     #[arg(long, value_name = "TIME", num_args = 0..=1, value_parser = duration::parse)]
     #[expect(clippy::option_option, reason = "absent, without a limit, with one")]
     wait: Option<Option<Duration>>,

@@ -40,7 +40,7 @@ pub struct Watched {
     pub prefix: &'static str,
     /// Field for the description.
     pub label: &'static str,
-    /// Field for the value; `None` if it only matters whether the item exists. A list of bits is watched bit by bit.
+    /// Field for the value; `None` if only the existence of the item matters. A list of bits is watched bit by bit.
     pub value: Option<&'static str>,
     /// Text that is printed at the start if there are no items.
     pub empty: &'static str,
@@ -69,15 +69,16 @@ pub trait Watchable: Command {
     }
 }
 
-/// Prints the current values, then each change on a line, until Ctrl-C, --for, or --count reports.
+/// Prints the current values, then each change on its own line, until Ctrl-C. With --for, it ends after this time. With
+/// --count, it ends after this number of reports.
 #[derive(Debug, Args)]
 pub struct Watch<C: Args> {
     #[command(flatten)]
     what: C,
-    /// How long to continue
+    /// Time after which the watch ends
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
     within: Option<Duration>,
-    /// Items of the read before the current one.
+    /// Items of the read before the current read.
     #[arg(skip)]
     before: RefCell<Option<Vec<WatchedItem>>>,
 }
@@ -129,7 +130,7 @@ struct WatchedItem {
 }
 
 impl Watched {
-    /// Items in the data of a read. Its table has a row for each of them.
+    /// Items in the data of a read. `table` has one row for each item.
     fn watched_items(self, data: &Value, table: Option<&Table>) -> Vec<WatchedItem> {
         let items = data[self.list].as_array().map(Vec::as_slice).unwrap_or_default();
         let cells = |at: usize| table.map(|table| value_cells(table, at)).unwrap_or_default();

@@ -17,7 +17,7 @@ commands! {
         /// Show the present alarm with cause and remedy
         #[command(alias = "show")]
         List(List),
-        /// Alarm history, the latest first
+        /// Show the alarm history, the latest first
         History(History),
         /// Print alarms when they occur and when they clear
         Watch(Watch<List>),
@@ -59,7 +59,8 @@ impl Watchable for List {
         Watched { list: "alarms", name: "code", prefix: "alarm ", label: "text", value: None, empty: "no alarm" };
 }
 
-/// Code of the present error. It is 00 if the controller does not report the code.
+/// Returns the code of the present error; `None` if there is no error. If the controller reports an error without a
+/// code, the code is 00.
 async fn read_error_code(link: &mut Link) -> Result<Option<u8>, Failure> {
     let status = link.status_of(&[0, 1]).await?;
     Ok((status.has_error() || status.error != errors::NONE).then_some(status.error))
@@ -76,7 +77,7 @@ pub struct Axis {
     /// Axis that the alarm concerns; null if it concerns no axis.
     #[serde(rename = "axis_number")]
     axis: Option<u8>,
-    /// In the history: a power-off, which has no alarm and no time.
+    /// Whether this entry of the history is a power-off, which has no alarm and no time.
     power_off: bool,
     /// In the history: the alarm field as received; normally 00.
     alarm: Option<String>,

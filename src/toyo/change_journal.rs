@@ -1,8 +1,8 @@
 //! Journal of temporary changes: the host, the current task, the mode, motion. It is written before each change.
 //!
-//! A command restores all its changes. If its process is killed, it cannot do so. The next command then finds the
-//! journal entry, reads whether the change is still present, and reports how to undo it. The process that owns an entry
-//! holds the lock on the file of the entry.
+//! A command restores all settings that it changed. If its process is killed, the settings stay changed. The next
+//! command then finds the journal entry, reads whether the change is still present, and reports how to undo it. The
+//! process that owns an entry holds the lock on the file of the entry.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{Seek as _, Write as _};
@@ -99,7 +99,8 @@ impl ChangeJournal {
         self.change(|entry| entry.moving = moving.map(word));
     }
 
-    /// If the journal cannot be written, the command must still run.
+    /// Changes the entry and saves it. An error is ignored, because the command must run even if the journal cannot be
+    /// written.
     fn change(&mut self, change: impl FnOnce(&mut JournalEntry)) {
         let old = self.entry.clone();
         change(&mut self.entry);

@@ -54,7 +54,7 @@ async fn check_state(robot: &Robot, link: &mut Link, layers: &mut Layers) {
     if status.needs_power_cycle() {
         layers.fail_with(
             "power cycle",
-            "parameter 2 was changed, and the controller executes no command until a restart",
+            "a machine parameter (parameter 2) was changed, and the controller executes no command until a restart",
             "switch the controller's power off and on",
         );
     } else {

@@ -51,7 +51,7 @@ impl Set {
     /// Text about the speed.
     fn pace(&self) -> String {
         match self.speed {
-            Value::Number(0) => "the speed of its step".to_owned(),
+            Value::Number(0) => "the speed of the step".to_owned(),
             _ => format!("the speed of row {}", field("speed").meaning(&self.speed)),
         }
     }

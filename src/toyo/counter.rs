@@ -54,7 +54,7 @@ impl Store for Counters {
     const WORDS: TableWords = TableWords {
         nouns: ["counter", "counters"],
         placeholder: "N",
-        range: "Counters, 1 to 99: 5, CN05 or 1-10, or a name",
+        range: "Counters (1 to 99), such as 5, CN05 or 1-10, or a name",
         reading: None,
         writing: Some("A counter accepts values from 0 to 9999, also while a program runs."),
     };
@@ -128,7 +128,7 @@ impl Writable for Counters {
 
     fn complete_draft(&self, counter: i32, draft: &Option<i32>, _old: Option<&Record>) -> Result<Record, Failure> {
         let missing = || Failure::usage(format!("{}: the count is missing", Self::name(counter)));
-        let count = draft.ok_or_else(|| missing().hint("type a number from 0 to 9999"))?;
+        let count = draft.ok_or_else(|| missing().hint("write a number from 0 to 9999"))?;
         let record = read(counter).row().answers[0].record(vec![Value::Number(counter), Value::Number(count)]);
         record.map_err(|error| wrong(&error))
     }
@@ -181,7 +181,7 @@ impl Store for Timers {
     const WORDS: TableWords = TableWords {
         nouns: ["timer", "timers"],
         placeholder: "N",
-        range: "Timers, 1 to 9: 5, TN5 or 1-3, or a name",
+        range: "Timers (1 to 9), such as 5, TN5 or 1-3, or a name",
         reading: Some("Values are in seconds."),
         writing: None,
     };

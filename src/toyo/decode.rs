@@ -18,14 +18,15 @@ use armctl_frame::decode::{self, damage, field_table, in_parentheses, problem_li
                   is not an error. A damaged file is listed up to the damage, and the exit code is 1."
 )]
 pub struct Decode {
-    /// Lines, for example '@STAS SNO=0' or '@STAS SNO=0 ST1=22 ST2=00'; - for stdin; or FILE.pcap or FILE.pcapng
+    /// Lines, for example '@STAS SNO=0' or '@STAS SNO=0 ST1=22 ST2=00', or - to read lines on stdin, or a capture file
+    /// (FILE.pcap or FILE.pcapng)
     #[arg(required = true, value_name = "LINE")]
     lines: Vec<String>,
     #[command(flatten)]
     selection: Selection,
 }
 
-/// Marks that a trace uses for the sender, and that begin its explanation.
+/// Marks that a trace uses for the sender. `REMARK` is the text before the explanation of a line.
 const MARKS: [(&str, Sender); 2] = [("->", Sender::Host), ("<-", Sender::Controller)];
 const REMARK: &str = "  # ";
 

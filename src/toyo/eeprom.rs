@@ -20,7 +20,7 @@ pub struct Cell {
     pub wanted: Record,
 }
 
-/// Number of written and unchanged cells.
+/// Numbers of written and unchanged cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, JsonSchema)]
 pub struct Cells {
     /// Number of cells that were written and read back.

@@ -29,7 +29,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
         Error::LostAfterSending(cause) => {
             let message = format!("{}; it is unknown whether the command was executed", failure(label, *cause).message);
             Failure::new(Kind::OutcomeUnknown, message)
-                .hint("check the robot; after the connection is back, use `toyo status`")
+                .hint("check the robot; when the connection is open again, use `toyo status`")
         }
         Error::NotSent(cause) => {
             let failure = failure(label, *cause);
@@ -92,7 +92,7 @@ fn verification_hint(request: Option<&Request>) -> &'static str {
 
 /// Message for a setting that the block `block` did not restore.
 pub fn not_put_back(block: &str) -> String {
-    format!("armctl could not restore a temporary change with {block}")
+    format!("armctl could not undo a temporary change: {block} failed")
 }
 
 /// Failure: a change could not be undone, because the controller refused or for another cause.

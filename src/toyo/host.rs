@@ -11,7 +11,7 @@ use armctl_frame::settings_report::Switch;
 /// Other commands do not need `host on`: they switch the host ON by themselves and then restore the previous state.
 #[derive(Debug, Args)]
 pub struct Host {
-    /// on: the host has control and the start input is disabled; off: the start input has control
+    /// `on`: the host has control and the start input is disabled; `off`: the start input has control
     #[arg(value_name = "on|off")]
     to: Switch,
 }

@@ -93,8 +93,8 @@ async fn read(
     }
 }
 
-/// In a dry run, records a request that is sent a second time after a refusal, which a controller without the item
-/// sends.
+/// In a dry run, records a request that is sent a second time after a refusal. A controller without the item refuses
+/// the request.
 pub fn plan_twice(link: &mut Link, request: &Request) {
     link.plan(request, THERE);
     if request.parameter().is_some_and(|parameter| !parameter.only_on.is_empty()) {

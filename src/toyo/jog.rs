@@ -32,12 +32,12 @@ pub struct Jog {
     axis: Axis,
     /// Direction
     direction: Direction,
-    /// Speed: high, low, or inching steps (parameter P12)
+    /// Speed: `high`, `low`, or `inch` for inching steps (parameter P12)
     speed: Speed,
-    /// Duration, 100ms to 60s (high and low)
+    /// Duration of the jog, 100ms to 60s (only for `high` and `low`)
     #[arg(long = "for", value_name = "TIME", value_parser = parse_duration, required_if_eq_any([("speed", "low"), ("speed", "high")]))]
     within: Option<Duration>,
-    /// Number of inching steps (for inch)
+    /// Number of inching steps (only for `inch`)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=100), conflicts_with = "within")]
     steps: Option<u8>,
 }
@@ -47,11 +47,11 @@ pub struct Jog {
 pub enum Axis {
     /// Index of the axis, 0 to 3, regardless of its letter.
     Index(usize),
-    /// Letter of the axis on the teach pendant (E01).
+    /// Letter of the axis on the teach pendant (parameter E01).
     Letter(String),
 }
 
-/// Letters that an axis can have (TO 2-4, E01).
+/// Letters that an axis can have (TO 2-4, parameter E01).
 const LETTERS: [&str; 4] = ["X", "Y", "Z", "R"];
 
 fn parse_axis(text: &str) -> Result<Axis, String> {
@@ -93,7 +93,7 @@ struct MachineAxis {
 }
 
 impl MachineAxis {
-    /// Text such as `2 (Z)`. If the controller reports no letter, only the number.
+    /// Text such as `2 (Z)`. If the controller reports no letter, the text is only the number.
     fn in_words(&self) -> String {
         match self.letters.of(self.index) {
             "" => (self.index + 1).to_string(),
@@ -128,7 +128,8 @@ pub enum Speed {
     Inch,
 }
 
-/// A jog takes at least as long as an answer, and at most as long as a person can watch it.
+/// Minimum duration of a jog, which is longer than an answer takes. `LONGEST` is the longest time for which a person
+/// can watch the axis.
 const SHORTEST: Duration = Duration::from_millis(100);
 const LONGEST: Duration = Duration::from_secs(60);
 
@@ -320,7 +321,7 @@ impl Jog {
     }
 }
 
-/// Detects that an axis has come to rest early.
+/// Detects that an axis has come to rest before the end of the jog.
 struct RestDetector {
     start: Coordinates,
     last: Coordinates,

@@ -77,11 +77,11 @@ fn reads(group: i32) -> Result<Vec<Request>, Failure> {
 pub struct Group {
     /// Row of the coordinate table for corner P0.
     origin_point: i32,
-    /// Row of the coordinate table for corner P1; 0 for none.
+    /// Row of the coordinate table for corner P1; 0 if there is none.
     p1_point: i32,
-    /// Row of the coordinate table for corner P2; 0 for none.
+    /// Row of the coordinate table for corner P2; 0 if there is none.
     p2_point: i32,
-    /// Row of the coordinate table for corner P3; 0 for none.
+    /// Row of the coordinate table for corner P3; 0 if there is none.
     p3_point: i32,
     /// Number of pieces toward P1, P2 and P3.
     pieces: [i32; 3],
@@ -131,7 +131,7 @@ impl Store for Groups {
     const WORDS: TableWords = TableWords {
         nouns: ["group", "groups"],
         placeholder: "GROUP",
-        range: "Groups of the MVM table, 1 to 32: 5, 1-3",
+        range: "Groups of the MVM table (1 to 32), such as 5 or 1-3",
         reading: None,
         writing: Some(WRITING),
     };

@@ -91,7 +91,7 @@ impl ModeName {
         }
     }
 
-    /// The active mode, if it is another one, as `status` shows it.
+    /// The active mode in the words of `status`, if it differs from this mode.
     fn instead_of(self, status: Status) -> Option<&'static str> {
         match self {
             Self::Program | Self::Step | Self::Auto => status.run_mode().map(RunMode::name),
@@ -126,7 +126,7 @@ impl ModeName {
 #[command(after_help = "Parameter M10 selects easy mode and external point mode: `toyo param set M10 …`. `toyo \
                         status` shows the modes.")]
 pub struct Mode {
-    /// Run mode program, step or auto; program type sequential or palletizing
+    /// Run mode (`program`, `step` or `auto`), or program type (`sequential` or `palletizing`)
     mode: ModeName,
 }
 
@@ -174,7 +174,7 @@ impl Command for Reset {
     }
 }
 
-/// Stop the motion, and wait until the axes stand still. The command is repeated until they stand still.
+/// Stop the motion, and wait until the axes are at rest. armctl repeats the command until they are at rest.
 ///
 /// Without --jog: stop a program, a return to origin, or an axis that moves without execution.
 #[derive(Debug, Args)]

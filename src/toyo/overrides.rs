@@ -13,7 +13,7 @@ commands! {
     pub enum Override {
         /// Read the override
         Get(Get),
-        /// Write the override to the EEPROM; takes effect while no program runs
+        /// Write the override to the EEPROM. It takes effect while no program runs
         Set(Set),
     }
 }

@@ -44,7 +44,8 @@ pub fn heading(index: usize, letter: &str) -> &'static str {
     HEADINGS[index.min(3)][column]
 }
 
-/// Title of an axis (0 to 3): its letter. If the letter is unusual for this axis, also its number.
+/// Title of an axis (0 to 3): its letter. If the letter is unusual for this axis, the title also contains the number of
+/// the axis.
 pub fn titled(index: usize, letter: &str) -> String {
     match letter {
         _ if ["X", "Y", "Z", "R"].get(index) == Some(&letter) => letter.to_owned(),
@@ -62,8 +63,8 @@ pub struct Coordinates {
     letters: Letters,
 }
 
-/// Coordinates by the letters on the teach pendant (E01). If the controller does not report a letter, or reports it
-/// twice, the keys are `ax1_mm` to `ax4_mm`.
+/// Coordinates by the letters on the teach pendant (parameter E01). If the controller does not report a letter, or
+/// reports it twice, the keys are `ax1_mm` to `ax4_mm`.
 #[derive(JsonSchema)]
 #[schemars(rename = "Coordinates")]
 #[expect(dead_code, reason = "the shape of what is written below")]

@@ -66,7 +66,7 @@ fn reason(status: Status, row: &Row) -> Option<(String, String)> {
     }
     if status.needs_power_cycle() {
         return reason_and_hint(
-            "parameter 2 was changed, and the controller needs a restart",
+            "a machine parameter (parameter 2) was changed, and the controller needs a restart",
             "switch the controller's power off and on",
         );
     }
@@ -122,7 +122,7 @@ fn reason(status: Status, row: &Row) -> Option<(String, String)> {
         ),
         _ if row.writes_eeprom && status.run_mode() != Some(RunMode::Program) => reason_and_hint(
             "the controller is not in program mode",
-            "use `toyo mode program` if the controller requires it",
+            "use `toyo mode program` if the controller requires program mode",
         ),
         _ => None,
     }

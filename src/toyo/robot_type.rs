@@ -32,7 +32,7 @@ impl Command for RobotType {
     const RISK: Risk = Risk::Destroy;
 
     fn intent(&self) -> String {
-        format!("set axis {} to robot type {:06}; its parameters can change", self.axis, self.robot_type)
+        format!("set axis {} to robot type {:06}; the parameters of the axis can change", self.axis, self.robot_type)
     }
 
     fn confirmation(&self) -> Confirmation {

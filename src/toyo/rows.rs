@@ -212,7 +212,8 @@ pub trait EepromRow: Store<Family = Toyo, Wire = Record> {
     }
 }
 
-/// Makes tables of EEPROM records writable. A blanket implementation is not possible: the trait is of another crate.
+/// Makes tables of EEPROM records writable. A blanket implementation is not possible: the trait belongs to another
+/// crate.
 macro_rules! writable {
     ($($table:ty $(, $kind:ident: $bound:path)?;)*) => {
         $(
@@ -398,7 +399,7 @@ impl TableOf for Speed {
     const TABLE: &'static str = "T2";
     const IDS: Ids = ids!("toyo.speed-table");
     const WORDS: TableWords =
-        words(["speed-table row", "speed-table rows"], "ROW", "Rows of the speed table, 1 to 20: 5, 1-5,20");
+        words(["speed-table row", "speed-table rows"], "ROW", "Rows of the speed table (1 to 20), such as 5 or 1-5,20");
     const FIELDS: &'static [Field] = &[Field::number("speed_mm_s", "speed (mm/s)")];
 
     fn value(record: &Record) -> f64 {
@@ -410,8 +411,12 @@ impl TableOf for Accel {
     type Value = f64;
     const TABLE: &'static str = "T3";
     const IDS: Ids = ids!("toyo.accel-table");
-    const WORDS: TableWords =
-        words(["accel-table row", "accel-table rows"], "ROW", "Rows of the acceleration table, 1 to 20: 5, 1-5,20");
+    const WORDS: TableWords = words(
+        ["accel-table row", "accel-table rows"],
+        "ROW",
+        "Rows of the acceleration table (1 to 20), such as 5 or \
+                                                               1-5,20",
+    );
     const FIELDS: &'static [Field] = &[Field::number("time_s", "time (s)")];
 
     fn value(record: &Record) -> f64 {
@@ -423,8 +428,12 @@ impl TableOf for Torque {
     type Value = TorqueRow;
     const TABLE: &'static str = "T5";
     const IDS: Ids = ids!("toyo.torque-table");
-    const WORDS: TableWords =
-        words(["torque-table row", "torque-table rows"], "ROW", "Rows of the torque limit table, 1 to 8: 5, 1-3");
+    const WORDS: TableWords = words(
+        ["torque-table row", "torque-table rows"],
+        "ROW",
+        "Rows of the torque limit table (1 to 8), such as 5 \
+                                                                 or 1-3",
+    );
     const FIELDS: &'static [Field] = &[Field::number("limit", "limit"), Field::number("load", "load")];
 
     fn value(record: &Record) -> TorqueRow {

@@ -41,7 +41,7 @@ commands! {
                         first step after `toyo reset`. The command does not change mode, servo power or origin; `toyo \
                         status` shows them.")]
 pub struct Sequential {
-    /// Step to start with; default: the current step
+    /// Step to start with [default: the current step]
     #[arg(value_name = "STEP", value_parser = clap::value_parser!(i32).range(1..=5000))]
     step: Option<i32>,
     #[command(flatten)]
@@ -78,10 +78,10 @@ impl Command for Sequential {
 /// Start palletizing, or continue palletizing after a stop (TO 2-7).
 #[derive(Debug, Args)]
 pub struct Palletizing {
-    /// Program to select first; default: the current program
+    /// Program to select first [default: the current program]
     #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(i32).range(1..=16))]
     number: Option<i32>,
-    /// Program number as an option
+    /// Program to select first, as an option instead of an argument
     #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(i32).range(1..=16))]
     program: Option<i32>,
     #[command(flatten)]
@@ -115,10 +115,10 @@ impl Command for Palletizing {
 #[derive(Debug, Args)]
 #[command(after_help = "Parameter M10 selects easy mode: `armctl toyo param set M10 E`.")]
 pub struct Easy {
-    /// Program to select first; default: the current program
+    /// Program to select first [default: the current program]
     #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(i32).range(1..=8))]
     number: Option<i32>,
-    /// Program number as an option
+    /// Program to select first, as an option instead of an argument
     #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(i32).range(1..=8))]
     program: Option<i32>,
     #[command(flatten)]
@@ -351,7 +351,7 @@ async fn start_and_wait(
 ) -> Result<RunReport, Failure> {
     let Context { link, screen, .. } = context;
     let mut runs = Runs::new(repeat);
-    // A repetition needs the wait for the end too.
+    // A repeated run must also wait for the end of the program.
     let limit = limit.or(repeat.repeat.map(|_| None));
     let letters = if limit.is_none() { Letters::UNKNOWN } else { link.letters().await? };
     loop {
@@ -369,7 +369,7 @@ async fn start_and_wait(
         }
         if report.program.state == Some(ProgramState::Held) {
             let failure = Failure::new(Kind::ConditionNotMet, "the program is paused at a stop or after a step")
-                .hint("start the program without a step or program number to continue");
+                .hint("to continue, start the program without a step or program number");
             return Err(runs.add_to_failure(failure));
         }
         runs.add(report.program.elapsed_ms.unwrap_or(0));
@@ -442,7 +442,8 @@ fn stopped(last: Option<&(i32, String)>, coordinates: Option<Coordinates>) -> Fa
     let coordinates =
         coordinates.map(|coordinates| format!("; the axes are at {}", coordinates.in_a_line())).unwrap_or_default();
     Failure::new(Kind::ConditionNotMet, format!("{DONE}, but the program was stopped{step}{coordinates}")).hint(
-        "find the reason; then start the program without a step or program number to continue, or use `toyo reset`",
+        "find the reason; to continue, start the program without a step or program number; to start again from the \
+         first step, use `toyo reset`",
     )
 }
 

@@ -42,10 +42,10 @@ pub struct Serve {
     /// Simulate the transmission time of a line with this baud rate, for example 9600 [default: no delay]
     #[arg(long, value_name = "BAUD", value_parser = clap::value_parser!(u32).range(50..=4_000_000))]
     baud: Option<u32>,
-    /// Start state (TOML): modes, memory, inputs, errors, timed events
+    /// File with the start state (TOML): modes, memory, inputs, errors, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
-    /// Faults, for example noise=1%,drop=1%,delay=0..50ms,seed=7; also parity, dup, busy, echo
+    /// Faults, for example noise=1%,drop=1%,delay=0..50ms,seed=7. Other faults are parity, dup, busy and echo
     #[arg(long, value_name = "FAULTS")]
     fault: Option<LineFaultSpec>,
     /// Read console lines on stdin; `help` lists them

@@ -4,8 +4,8 @@ use super::link::Link;
 use crate::prelude::*;
 use armctl_controller::toyo::table::Command;
 
-/// Reads the current task, and selects `task` temporarily if it is another one. Returns the task that is current after
-/// this.
+/// Reads the current task, and selects `task` temporarily if another task is current. Returns the task that is current
+/// after this.
 pub async fn choose(link: &mut Link, task: Option<u8>) -> Result<u8, Failure> {
     if link.is_dry() {
         link.plan(&Request::bare(Command::Mtsk), "the current task");

@@ -248,7 +248,7 @@ impl Bench {
         Ok((report.data()?, report.failure()))
     }
 
-    /// Runs `armctl toyo WORDS…` on a robot that counts as real. Nobody can answer a question.
+    /// Runs `armctl toyo WORDS…` on a robot that counts as real. There is no terminal, so no question can be answered.
     pub(super) fn run_without_confirmation(&mut self, words: &[&str]) -> Result<Value, Failure> {
         let (robot, command) = resolved("tcp://127.0.0.1:1", words)?;
         let intent = command.intent(Some(&robot));

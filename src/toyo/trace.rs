@@ -11,7 +11,7 @@ use armctl_transport::tap::Direction;
 #[derive(Debug)]
 pub struct Trace {
     record: trace::Trace,
-    /// Own address, and address of the device server; `None` without a device server.
+    /// Address of this computer, and address of the device server; `None` without a device server.
     ends: Option<(SocketAddr, SocketAddr)>,
     /// Characters that the controller sent since its last line end.
     pending: Vec<u8>,

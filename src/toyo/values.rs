@@ -191,7 +191,7 @@ impl ValueSlot {
 
 impl Changes {
     /// Parses the values for a layout: all values in order, or some as `name=value`. `what` names the record in errors.
-    /// Coordinates have these letters. With other letters than the usual ones, coordinates need names, because their
+    /// Coordinates have these letters. If the letters are not the usual letters, coordinates need names, because their
     /// order could mean letters or axes.
     pub fn read(what: &str, layout: &Layout, letters: &Letters, typed: &[String]) -> Result<Self, Failure> {
         let slots = slots(layout, letters);

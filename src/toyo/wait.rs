@@ -156,11 +156,11 @@ impl AcceptedWork {
         let fail = |what: &str| Failure::new(Kind::ConditionNotMet, format!("{}, but {what}{coordinates}", self.done));
         match reason {
             WaitFailure::Error => explain_present_error(link, &fail).await,
-            WaitFailure::NoOrigin => fail("the status shows no origin after the end")
+            WaitFailure::NoOrigin => fail("the status shows no origin after the end of the command")
                 .hint("check why the machine stopped without an error; then repeat `toyo home`"),
             WaitFailure::NeverStarted => Failure {
                 kind: Kind::OutcomeUnknown,
-                ..fail("the status never showed that the controller executed it")
+                ..fail("the status never showed that the controller executed the command")
             }
             .hint("check `toyo status` and the robot: the execution ended at once, or it did not begin"),
             WaitFailure::NoStart => fail("the status did not show the start").hint(
@@ -195,7 +195,7 @@ pub(super) async fn explain_present_error(link: &mut Link, fail: &impl Fn(&str) 
     }
 }
 
-/// Position at rest of axes that are being stopped. If it cannot be read, the last known position.
+/// Position at rest of axes that are being stopped. If the position cannot be read, returns the last known position.
 async fn wait_for_rest(link: &mut Link, last_position: Option<Coordinates>, letters: Letters) -> Option<Coordinates> {
     let mut last = last_position?;
     for _ in 0..MAX_READS_TO_REST {
@@ -333,7 +333,7 @@ impl WorkState {
             Work::Card => status.card_reading() || status.card_writing(),
             _ => moves || status.executing() || status.homing(),
         };
-        // A pause by an input ends without a command. A stop does not.
+        // A pause by an input ends without a command. A stop ends only with a command.
         if busy || (status.paused() && status.pause_input()) {
             self.has_started = true;
             return WorkEvent::Running;

@@ -16,7 +16,7 @@ use armctl_frame::local_names::state_folder;
 
 /// Number of writes to one cell over one link at which a warning is printed.
 const LOOP: u32 = 3;
-/// The same number for several links. A person can be the reason for such writes, so it is larger.
+/// The same number for several links. A person can be the reason for such writes, so this number is larger.
 const LOOP_OF_COMMANDS: u32 = 10;
 /// Period that the log covers.
 const WINDOW: Duration = Duration::from_secs(600);

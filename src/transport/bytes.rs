@@ -31,13 +31,13 @@ pub enum Problem {
         /// Number of extra bytes.
         extra: usize,
     },
-    /// A value that the field cannot have.
+    /// The field has a value that is not valid.
     #[error("is {found:#04x}")]
     Value {
         /// The value.
         found: u32,
     },
-    /// A value that contradicts another part of the message.
+    /// The value contradicts another part of the message.
     #[error("is {found:#04x}, not {expected:#04x}")]
     Differs {
         /// The value.
@@ -127,7 +127,7 @@ impl<'a> Reader<'a> {
         rest
     }
 
-    /// Fails if bytes follow after `field`.
+    /// Fails if bytes follow after `field`, which must be the last field.
     pub fn end(&self, field: &'static str) -> Result<(), WireError> {
         match self.left() {
             0 => Ok(()),
@@ -135,7 +135,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Returns an error for the field of `len` bytes that was just read.
+    /// Returns an error for the field that was just read. The field has `len` bytes.
     pub fn wrong(&self, field: &'static str, len: usize, found: impl Into<u32>) -> WireError {
         WireError::value(field, self.at.saturating_sub(len), found)
     }

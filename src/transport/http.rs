@@ -1,8 +1,8 @@
 //! Minimal HTTP/1.1 server for short texts: one request per connection, no request bodies.
 //!
 //! All resources are limited: the time per connection (`WITHIN`), the bytes per request (`HEAD`) and the number of open
-//! connections (`MOST`). The server always accepts a new connection. If necessary, it closes the oldest connection
-//! without an answer in progress.
+//! connections (`MOST`). The server always accepts a new connection. If the limit is reached, it closes the oldest
+//! connection whose answer is not in progress.
 
 use std::cell::Cell;
 use std::collections::VecDeque;
@@ -26,9 +26,10 @@ const LINES: usize = 64;
 const WITHIN: Duration = Duration::from_secs(10);
 /// Maximum number of open connections.
 const MOST: usize = 32;
-/// Pause before the next accept if the process has too many open files.
+/// Pause before the next accept, if the process has too many open files.
 const FULL: Duration = Duration::from_millis(100);
-/// Maximum number of bytes read after the answer. The answer can then reach a client that is still sending.
+/// Maximum number of bytes that the server reads after it has sent the answer. Without this read, a client that is
+/// still sending could lose the answer.
 const REST: u64 = 64 << 10;
 
 /// A request.
@@ -36,7 +37,7 @@ const REST: u64 = 64 << 10;
 pub struct Request<'a> {
     /// Path without the query.
     pub path: &'a str,
-    /// `Accept` header.
+    /// Value of the `Accept` header.
     pub accept: Option<&'a str>,
 }
 
@@ -45,7 +46,7 @@ pub struct Request<'a> {
 pub struct Answer {
     /// Status code.
     pub status: Status,
-    /// `Content-Type`.
+    /// Value of the `Content-Type` header.
     pub kind: &'static str,
     /// Response body.
     pub body: String,
@@ -54,13 +55,13 @@ pub struct Answer {
 /// Status code of a response.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// 200.
+    /// 200: success.
     Ok,
     /// 400: not a valid request.
     BadRequest,
     /// 404: no such path.
     NotFound,
-    /// 405: the path can only be read.
+    /// 405: only GET and HEAD are possible for this path.
     MethodNotAllowed,
     /// 431: the request head is too long.
     TooLong,
@@ -105,7 +106,7 @@ impl Server {
         self.listener.local_addr()
     }
 
-    /// Serves requests. The function returns only after an error.
+    /// Serves requests until an error occurs.
     ///
     /// # Errors
     /// The server can accept no more connections.
@@ -115,8 +116,8 @@ impl Server {
         loop {
             tokio::select! {
                 biased;
-                // With `biased`, the server reads requests that have arrived before a new connection can evict their
-                // connections.
+                // Because of `biased`, the server first reads the requests that have arrived. Otherwise, a new
+                // connection could close these connections.
                 Some(ended) = peers.next() => {
                     if let Ok(number) = ended {
                         seats.free(number);
@@ -127,7 +128,7 @@ impl Server {
                         let (number, is_answered) = (seats.next, Rc::new(Cell::new(false)));
                         let served = serve(stream, &answer, Rc::clone(&is_answered));
                         let (served, close) = abortable(async move {
-                            // An error concerns only this client.
+                            // An error of one connection concerns only its client.
                             let _served = timeout(WITHIN, served).await;
                             number
                         });
@@ -148,7 +149,7 @@ impl Server {
 
 struct Seat {
     number: u64,
-    /// Whether the request is complete and the answer is in progress.
+    /// Whether the request is complete, so that the answer is in progress.
     is_answered: Rc<Cell<bool>>,
     close: AbortHandle,
 }
@@ -157,7 +158,7 @@ struct Seat {
 #[derive(Default)]
 struct Seats {
     taken: VecDeque<Seat>,
-    /// Number of the next connection.
+    /// Number that the next connection gets.
     next: u64,
 }
 
@@ -174,7 +175,8 @@ impl Seats {
         self.taken.retain(|seat| seat.number != number);
     }
 
-    /// Closes the oldest connection without an answer in progress. If there is none, closes the oldest connection.
+    /// Closes the oldest connection whose answer is not in progress. If there is no such connection, closes the oldest
+    /// connection.
     fn evict(&mut self) {
         let idle = self.taken.iter().position(|seat| !seat.is_answered.get());
         if let Some(seat) = self.taken.remove(idle.unwrap_or(0)) {
@@ -183,7 +185,7 @@ impl Seats {
     }
 }
 
-/// Whether an error of `accept(2)` concerns only the next client or its network.
+/// Whether an error of `accept(2)` concerns only the client that tried to connect, or the network of this client.
 fn is_passing(error: &io::Error) -> bool {
     use io::ErrorKind::{
         ConnectionAborted, ConnectionReset, HostUnreachable, Interrupted, NetworkDown, NetworkUnreachable, TimedOut,
@@ -209,7 +211,7 @@ fn is_full(error: &io::Error) -> bool {
 }
 
 enum Asked {
-    /// A response, and whether only its head is requested.
+    /// A response. The flag says whether the client requested only the head.
     Text(Answer, bool),
     /// The client has disconnected.
     Nothing,
@@ -235,7 +237,8 @@ async fn serve(
     }
     stream.shutdown().await?;
     is_answered.set(false);
-    // Read the remaining bytes first: if bytes arrived after the close, the system would discard the answer.
+    // The server first reads the remaining bytes. If bytes arrived after the close, the system would discard the
+    // answer.
     tokio::io::copy(&mut stream.take(REST), &mut tokio::io::sink()).await.map(|_| ())
 }
 
@@ -289,7 +292,7 @@ mod tests {
         }
     }
 
-    /// Sends the pieces to a server in real time. Returns the response.
+    /// Sends the pieces to a server in real time, and returns the response of the server.
     async fn said(pieces: &[&[u8]]) -> String {
         let server = Server::bind((Ipv4Addr::LOCALHOST, 0).into()).await.unwrap();
         let asked = async {
@@ -343,7 +346,7 @@ mod tests {
         let server = Server::bind((Ipv4Addr::LOCALHOST, 0).into()).await.unwrap();
         let address = server.local().unwrap();
         let asked = async {
-            // More connections than the limit; some of them have sent half a request.
+            // Opens more connections than the limit. Some of them have sent half a request.
             let mut silent = Vec::new();
             for number in 0..MOST + 4 {
                 let mut stream = TcpStream::connect(address).await.unwrap();
@@ -357,7 +360,8 @@ mod tests {
             let mut said = String::new();
             stream.read_to_string(&mut said).await.unwrap();
             assert!(said.ends_with("anything\n"), "{said}");
-            // The server has closed the oldest five connections. The others are still within their time limit.
+            // The server has closed the oldest five connections. The other connections are still within their time
+            // limit.
             let mut byte = [0; 1];
             for stream in &mut silent[..5] {
                 assert!(stream.read(&mut byte).await.map_or(true, |read| read == 0));

@@ -27,7 +27,7 @@ impl Journal {
         let mut entry = Vec::new();
         for (name, value) in fields {
             entry.extend(name.bytes().map(|letter| letter.to_ascii_uppercase()));
-            // The length of the value comes before a value of several lines.
+            // If a value has several lines, the protocol requires the length of the value before it.
             if value.contains('\n') {
                 entry.push(b'\n');
                 entry.extend(u64::try_from(value.len()).unwrap_or(u64::MAX).to_le_bytes());
@@ -55,7 +55,7 @@ mod tests {
         journal.write(&[("message", "no answer"), ("PRIORITY", "4"), ("robot", "a\nb=c")]).unwrap();
         let mut entry = [0; 100];
         let length = listener.recv(&mut entry).unwrap();
-        // The two forms of a field that the protocol page shows.
+        // The protocol page shows these two forms of a field.
         let expected = b"MESSAGE=no answer\nPRIORITY=4\nROBOT\n\x05\0\0\0\0\0\0\0a\nb=c\n";
         assert_eq!(&entry[..length], expected);
     }

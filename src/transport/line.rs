@@ -9,18 +9,18 @@ use tokio::time::Instant;
 use super::fault::{LineFaultSpec, LineFaults, Passed};
 use super::sim::Peer;
 
-/// Character rate of a line.
+/// Speed of a line in characters per time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pace {
     /// Bits per second, at least 1.
     baud: u32,
-    /// Bits per character, with start, parity and stop bits.
+    /// Bits per character, including start, parity and stop bits.
     bits: u32,
 }
 
 impl Pace {
-    /// Creates a rate of `baud` bits per second with `bits` bits per character. 8 data bits with parity and one stop
-    /// bit are 11 bits per character.
+    /// Creates a pace of `baud` bits per second, with `bits` bits per character. For example, 8 data bits with parity
+    /// and one stop bit are 11 bits per character.
     pub fn new(baud: u32, bits: u32) -> Self {
         Self { baud: baud.max(1), bits: bits.max(1) }
     }
@@ -54,7 +54,7 @@ impl<P: Peer> InProcessLine<P> {
         Self { peer, wire: Wire::new(pace, faults), start: Instant::now() }
     }
 
-    /// The peer, in its state after the last send or receive.
+    /// The peer, in its state after the last send or receive. Later events of the peer are not included.
     pub fn peer(&self) -> &P {
         &self.peer
     }
@@ -62,14 +62,14 @@ impl<P: Peer> InProcessLine<P> {
     /// Sends bytes to the peer. Returns at once, while the bytes are in transit.
     pub fn send(&mut self, bytes: &[u8]) {
         let now = self.start.elapsed();
-        // Events before `now` must be handled first.
+        // Events before `now` must be handled before the new bytes are sent.
         self.wire.run(now, &mut self.peer);
         self.wire.send(now, bytes);
     }
 
     /// Waits until `until` for bytes of the peer. Returns `None` after a timeout.
     pub async fn receive(&mut self, buffer: &mut [u8], until: Instant) -> Option<usize> {
-        // If a peer answers at once, this call gives the runtime a pause to handle Ctrl-C.
+        // If a peer always answers at once, this call gives the runtime time to handle Ctrl-C.
         consume_budget().await;
         loop {
             let now = self.start.elapsed();
@@ -101,7 +101,7 @@ pub struct Wire {
     there: Way,
     back: Way,
     has_echo: bool,
-    /// Time of the last `run`.
+    /// Time of the last call of `run`.
     time: Duration,
 }
 
@@ -148,7 +148,7 @@ impl Wire {
         }
     }
 
-    /// Reads bytes that the host has received by `now`. A character with a parity error reads as NUL, like from the
+    /// Reads the bytes that the host has received by `now`. A character with a parity error reads as NUL, as with the
     /// driver of a serial port.
     pub fn take(&mut self, now: Duration, buffer: &mut [u8]) -> usize {
         let mut taken = 0;
@@ -168,7 +168,7 @@ impl Wire {
         earliest(earliest(self.there.due(), self.back.due()), peer.wake())
     }
 
-    /// Drops bytes in transit to the host.
+    /// Drops all bytes that are in transit to the host.
     pub fn lose(&mut self, now: Duration) {
         self.back.runs.clear();
         self.back.free = now;
@@ -183,13 +183,13 @@ fn earliest(one: Option<Duration>, other: Option<Duration>) -> Option<Duration> 
 struct Way {
     pace: Option<Pace>,
     faults: Option<LineFaults>,
-    /// Writes in transit, in order.
+    /// Writes of which characters are in transit, in order.
     runs: VecDeque<Run>,
-    /// End of the last character written so far.
+    /// Time at which the last written character ends.
     free: Duration,
 }
 
-/// Characters of one write, without gaps.
+/// The characters of one write. There are no gaps between them.
 #[derive(Debug)]
 struct Run {
     /// Start of the first character.
@@ -224,7 +224,7 @@ impl Way {
         self.runs.push_back(Run { start, passed, taken: 0 });
     }
 
-    /// End of the next character.
+    /// Time at which the next character ends.
     fn due(&self) -> Option<Duration> {
         let run = self.runs.iter().find(|run| run.taken < run.passed.bytes.len())?;
         Some(run.start.saturating_add(self.pace.map_or(Duration::ZERO, |pace| pace.time(run.taken + 1))))
@@ -302,7 +302,7 @@ mod tests {
         let mut line = vec![b'x'; 127];
         line.push(b'\n');
         wire.send(Duration::ZERO, &line);
-        // The line is run one second later, but each event must have its own time.
+        // The line runs one second later, but each event must happen at its own time.
         wire.run(Duration::from_secs(1), &mut peer);
         assert_eq!(peer.heard, [(USUAL.time(128), line)]);
         let mut buffer = [0; 256];

@@ -1,8 +1,8 @@
 //! Serial port whose reads and writes run on a blocking thread of tokio, one at a time.
 //!
-//! tokio's reactor could wait for a serial port only on Unix, and only with unsafe code. A read ends after [`SLICE`],
-//! so a write waits at most that long for the port. All futures are cancel safe: received bytes are kept for the next
-//! [`Threaded::receive`], and a started write is completed.
+//! tokio's reactor could wait for a serial port only on Unix, and only with unsafe code. A read takes at most
+//! [`SLICE`], so a write waits at most this long for the port. All futures are cancel safe: received bytes are kept for
+//! the next [`Threaded::receive`], and a started write is completed.
 
 use std::collections::VecDeque;
 use std::io;
@@ -14,7 +14,7 @@ use tokio::time::{Instant, timeout_at};
 
 use super::vanished;
 
-/// Maximum duration of a read. A port must have this timeout.
+/// Maximum duration of a read. The timeout of the port must be set to this value.
 pub(super) const SLICE: Duration = Duration::from_millis(10);
 /// Maximum number of bytes per read.
 const PIECE: usize = 1024;
@@ -32,13 +32,13 @@ pub(super) struct Threaded {
 #[derive(Debug)]
 enum State {
     Idle(Port),
-    /// A thread uses the port. At its end, the thread returns the port and the bytes that it read.
+    /// A thread uses the port. When the thread ends, it returns the port and the bytes that it read.
     Busy {
         job: JoinHandle<(Port, io::Result<Vec<u8>>)>,
-        /// Whether to drop the bytes of this read.
+        /// Whether the bytes of this read must be dropped.
         is_stale: bool,
     },
-    /// A thread ended without returning the port.
+    /// The thread ended without returning the port.
     Lost,
 }
 
@@ -127,7 +127,7 @@ impl Threaded {
     }
 }
 
-/// Reads once from the port. The result is empty after a silence of [`SLICE`].
+/// Reads once from the port. The result is empty if no byte arrives within [`SLICE`].
 fn read(port: &mut Port) -> io::Result<Vec<u8>> {
     let mut bytes = vec![0; PIECE];
     match port.read(&mut bytes) {
@@ -162,7 +162,7 @@ fn is_pause(error: &io::Error) -> bool {
 }
 
 fn clear(port: &dyn SerialPort) {
-    // The call fails only if the port is gone; the next read or write reports that.
+    // This call fails only if the port is gone. The next read or write reports this error.
     let _ = port.clear(ClearBuffer::Input);
 }
 
@@ -199,7 +199,7 @@ mod tests {
     #[tokio::test]
     async fn what_came_too_late_is_there_the_next_time() {
         let (mut master, mut port) = pair();
-        // After this timeout, the thread continues its read.
+        // After the timeout of this call, the thread continues its read.
         assert_eq!(port.receive(&mut [0; 8], Instant::now()).await.unwrap(), None);
         assert!(matches!(port.state, State::Busy { .. }));
         master.write_all(b"@OK\r\n").unwrap();
@@ -209,7 +209,8 @@ mod tests {
     #[tokio::test]
     async fn what_has_arrived_can_be_discarded_wherever_it_is() {
         let (mut master, mut port) = pair();
-        // Half of the bytes are in the driver. The other half was read from the driver, but not received by the test.
+        // Half of these bytes are still in the driver. A read has taken the other half from the driver, but the test
+        // has not received them.
         master.write_all(&[b'x'; 64]).unwrap();
         assert_eq!(port.receive(&mut [0; 8], soon()).await.unwrap(), Some(8));
         master.write_all(&[b'x'; 64]).unwrap();

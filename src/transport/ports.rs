@@ -43,7 +43,7 @@ pub enum PortKind {
     Unknown,
 }
 
-/// Linux folders: the terminals, and the links with their stable names.
+/// Linux folder with the terminals. The folder below has the links with stable names.
 const TERMINALS: &str = "/sys/class/tty";
 const STABLE_NAMES: &str = "/dev/serial/by-id";
 
@@ -63,7 +63,7 @@ const LONGEST_FDINFO: u64 = 64 << 10;
 /// Folder of the pseudo-terminals.
 const PSEUDO_TERMINALS: &str = "/dev/pts";
 
-/// How a process uses a port, in ascending order of exclusiveness.
+/// How a process uses a port. Later variants exclude other processes more than earlier variants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Usage {
     /// The process has the other end of the pseudo-terminal open, as a simulator does.
@@ -136,18 +136,19 @@ fn kind(kind: SerialPortType) -> PortKind {
     }
 }
 
-/// Size limit of a sysfs file: one page.
+/// Size limit of a sysfs file, which is at most one memory page.
 const LONGEST_TYPE: u64 = 4096;
 
-/// Whether the port exists. Linux also has names for ports that do not exist; their type is 0.
+/// Whether the hardware of the port exists. Linux also has names for ports that do not exist; the type of these ports
+/// is 0.
 fn has_hardware(name: &str) -> bool {
     let Some(name) = Path::new(name).file_name() else { return true };
     let kind = files::text(&Path::new(TERMINALS).join(name).join("type"), LONGEST_TYPE);
     kind.map_or(true, |kind| kind.trim() != "0")
 }
 
-/// Returns the target of each link in a folder, with the name of the link. If several links have the same target, the
-/// first name in alphabetical order is used.
+/// Returns the link to each target in a folder. If several links have the same target, the link that comes first in
+/// alphabetical order is used.
 fn stable_names(folder: &Path) -> io::Result<HashMap<PathBuf, String>> {
     let entries = match std::fs::read_dir(folder) {
         Ok(entries) => entries,
@@ -156,12 +157,12 @@ fn stable_names(folder: &Path) -> io::Result<HashMap<PathBuf, String>> {
     };
     let mut links: Vec<PathBuf> = entries.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?;
     links.sort_unstable_by(|one, other| other.cmp(one));
-    // A link without a target belongs to a port that was just unplugged.
+    // A link that leads nowhere belongs to a port that was just unplugged, so it is skipped.
     let leading = links.into_iter().filter_map(|link| Some((link.canonicalize().ok()?, link.to_str()?.to_owned())));
     Ok(leading.collect())
 }
 
-/// Sort key: name and trailing number, so that 10 comes after 2.
+/// Sort key of a name: the text, then the number at the end, so that 10 comes after 2.
 fn order(name: &str) -> (String, u64) {
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
     (stem.to_owned(), name[stem.len()..].parse().unwrap_or(0))
@@ -201,7 +202,7 @@ mod tests {
                 let names: std::collections::HashSet<&str> = ports.iter().map(|port| port.name.as_str()).collect();
                 assert_eq!(names.len(), ports.len(), "{ports:?}");
             }
-            // This computer does not have the folder.
+            // This error is correct on a computer that does not have the folder.
             Err(error) => assert!(error.to_string().contains(TERMINALS), "{error}"),
         }
     }

@@ -1,4 +1,5 @@
-//! Controlling end of a pseudo-terminal. A program that opens the port is connected to this end. Unix only.
+//! Controlling end of a pseudo-terminal (Unix only). A program that opens the port of the pseudo-terminal is connected
+//! to this end.
 
 #[cfg(unix)]
 pub(super) use unix::Pty;
@@ -18,10 +19,10 @@ mod unix {
 
     /// Bytes per write.
     const PIECE: usize = 128;
-    /// Maximum number of unread bytes. It is smaller than the buffer of the system (4096 bytes on Linux, 1024
-    /// elsewhere), so that a write never blocks.
+    /// Maximum number of bytes that the program has not read yet. The limit is smaller than the buffer of the system
+    /// (4096 bytes on Linux, 1024 elsewhere), so that a write never blocks.
     const MOST_UNREAD: u32 = if cfg!(target_os = "linux") { 3072 } else { 768 };
-    /// Timeout of a read. The read is repeated after it, so the value is not important.
+    /// Timeout of a read. After a timeout, the read is repeated, so the value is not important.
     const LONG: Duration = Duration::from_secs(3600);
 
     #[derive(Debug)]
@@ -29,8 +30,8 @@ mod unix {
         reader: Threaded,
         /// Second handle for writes while a thread uses the reader.
         writer: TTYPort,
-        /// The port, which stays open here. Otherwise a read at this end would return end of file while no program has
-        /// the port open.
+        /// The port. This process keeps it open. Otherwise, a read at this end would return end of file while no
+        /// program has the port open.
         port: TTYPort,
     }
 
@@ -53,7 +54,8 @@ mod unix {
             }
         }
 
-        /// Writes bytes without waiting. If too many bytes are unread, the new bytes are lost, as on a real line.
+        /// Writes bytes without waiting. If the program has left too many bytes unread, the new bytes are lost, as on a
+        /// real line.
         pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
             for piece in bytes.chunks(PIECE) {
                 if self.port.bytes_to_read()? > MOST_UNREAD {

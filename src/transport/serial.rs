@@ -18,7 +18,7 @@ use super::ports::ports;
 
 /// Time limit for a blocked write, in addition to the transmission time.
 const STUCK: Duration = Duration::from_secs(2);
-/// Maximum deviation of the baud rate in thousandths. A receiver fails at about 40.
+/// Maximum deviation of the baud rate in thousandths. A receiver fails at a deviation of about 40.
 pub(super) const MOST_OFF: u32 = 30;
 
 /// A port and its settings.
@@ -37,7 +37,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// Character rate.
+    /// Speed of the line in characters per time.
     pub fn pace(&self) -> Pace {
         let parity = u32::from(self.parity != Parity::None);
         let bits = 1 + u32::from(u8::from(self.data_bits)) + parity + u32::from(u8::from(self.stop_bits));
@@ -57,13 +57,13 @@ pub enum OpenError {
     /// The user has no permission.
     #[error("no permission to open the port")]
     Forbidden,
-    /// Not a serial port, for example a file.
+    /// The path is not a serial port, for example a file.
     #[error("this is not a serial port")]
     NotSerial,
     /// The port does not support the settings.
     #[error("the port does not support these settings: {0}")]
     Unsupported(String),
-    /// Another error.
+    /// Any other error.
     #[error("{0}")]
     Io(#[from] io::Error),
 }
@@ -133,7 +133,7 @@ fn is_pseudo_terminal(path: &str) -> bool {
     path.starts_with("/dev/pts") || (cfg!(target_os = "macos") && path.to_string_lossy().starts_with("/dev/ttys"))
 }
 
-/// Compares the settings of the port with the requested ones. Some drivers accept unsupported settings without an
+/// Compares the settings of the port with the requested settings. Some drivers accept unsupported settings without an
 /// error.
 fn check(port: &dyn SerialPort, line: &Line, most_off: u32) -> Result<(), OpenError> {
     if is_pseudo_terminal(&line.path) {
@@ -162,8 +162,8 @@ fn open_error(error: &serialport::Error, path: &str) -> OpenError {
         ErrorKind::NoDevice if cfg!(unix) || is_listed(path) => OpenError::Busy,
         ErrorKind::NoDevice | ErrorKind::Io(io::ErrorKind::NotFound) => OpenError::Absent,
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => OpenError::Forbidden,
-        // The crate has no error kinds for these errors. Its texts are fixed and not translated. "I/O error" means a
-        // port of the mainboard that does not exist.
+        // The crate `serialport` has no error kinds for these errors, but its error texts are fixed and not translated.
+        // The text "I/O error" means a port of the mainboard that does not exist.
         _ => match error.description.as_str() {
             "No such device" | "No such device or address" | "I/O error" => OpenError::Absent,
             "Operation not permitted" => OpenError::Forbidden,
@@ -315,7 +315,7 @@ mod tests {
         ] {
             assert_eq!(settings(line), Some(format!("the port does not support these settings: {what}")));
         }
-        // The deviation is small enough for one of the buses, but not for the other.
+        // The deviation is 5 thousandths. This is less than the limit of 6, but more than the limit of 3.
         let near = Line { parity: Parity::None, baud: 38_600, ..line("/dev/ttyUSB0") };
         assert!(check(&slave, &near, 6).is_ok() && check(&slave, &near, 3).is_err());
     }

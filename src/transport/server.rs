@@ -20,8 +20,8 @@ pub trait Service {
     fn wake(&self) -> Option<Duration>;
 }
 
-/// Maximum number of known clients. Above it, the server forgets all clients and drops the datagrams in transit, which
-/// UDP allows.
+/// Maximum number of known clients. If more clients appear, the server forgets all clients and drops the datagrams in
+/// transit. UDP allows such losses.
 const MAX_CLIENTS: usize = 4096;
 /// Size of the receive buffer: larger than any frame, so that oversized datagrams are detected.
 const BUFFER: usize = 2048;
@@ -34,7 +34,7 @@ pub struct Server {
     addresses: Vec<SocketAddr>,
     start: Instant,
     faults: Option<(Faults, Faults)>,
-    /// Datagrams delayed by faults: due time, whether the datagram goes to the service, channel, client, bytes.
+    /// Datagrams that faults delay: due time, whether the datagram goes to the service, channel, client, bytes.
     delayed: Vec<(Duration, bool, usize, u64, Vec<u8>)>,
 }
 
@@ -57,7 +57,7 @@ impl Server {
         self.sockets[channel].local_addr()
     }
 
-    /// Time since the start. The service uses this clock.
+    /// Time since the start of the server. The service uses this clock.
     pub fn now(&self) -> Duration {
         self.start.elapsed()
     }
@@ -84,7 +84,7 @@ impl Server {
                 let client = self.client(from);
                 self.launch(now, true, channel, client, &buffers[channel][..len]);
             }
-            // One client that is gone (ICMP port unreachable) must not stop the server.
+            // An error report about one client that is gone (ICMP port unreachable) must not stop the server.
             Some((_, Err(error))) if is_about_one_client(&error) => {}
             Some((_, Err(error))) => return Err(error),
             None => {}

@@ -60,7 +60,7 @@ impl<P: Peer> Peer for Arc<Mutex<P>> {
     }
 }
 
-/// Locks a shared peer, even after a panic of its last user.
+/// Locks a shared peer, even if the last thread that locked it has panicked.
 pub fn locked<P>(peer: &Mutex<P>) -> MutexGuard<'_, P> {
     peer.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -76,7 +76,7 @@ pub struct InProcess<P> {
     sent: u64,
 }
 
-/// A datagram in transit, ordered by arrival, then by departure.
+/// A datagram in transit. The order is by arrival, then by departure.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct InFlight {
     at: Duration,
@@ -102,7 +102,7 @@ impl<P: Peer> InProcess<P> {
     /// Waits for one datagram of the peer on `channel`. Datagrams on other channels are dropped, as if their sockets
     /// were closed.
     pub async fn receive(&mut self, channel: usize, buffer: &mut [u8]) -> usize {
-        // If a peer answers at once, this call gives the runtime a pause to handle Ctrl-C.
+        // If a peer always answers at once, this call gives the runtime time to handle Ctrl-C.
         consume_budget().await;
         loop {
             let now = self.start.elapsed();

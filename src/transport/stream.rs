@@ -19,15 +19,16 @@ pub enum Stream<P> {
     Tcp(Tcp),
     /// An in-process peer.
     InProcess(Box<InProcessLine<P>>),
-    /// A stream in a session. Several processes share it.
+    /// A stream that a session owns. Several processes share it.
     Session(Box<Attached>),
 }
 
 impl<P: Peer> Stream<P> {
-    /// Waits until `until` for exclusive use of the stream by this process. Cancel safe.
+    /// Waits until `until` for exclusive use of the stream by this process. The future is cancel safe. Only a stream in
+    /// a session needs the wait.
     ///
     /// # Errors
-    /// [`SessionBusy`], in a session.
+    /// [`SessionBusy`] if a session refuses the use.
     pub async fn take(&mut self, until: Instant) -> Result<(), SessionBusy> {
         match self {
             Self::Session(attached) => attached.acquire(until).await,
@@ -42,10 +43,10 @@ impl<P: Peer> Stream<P> {
         }
     }
 
-    /// Claims motion for this process: no other process of the session may then move the robot.
+    /// Claims motion for this process, so that no other process of the session may move the robot.
     ///
     /// # Errors
-    /// [`SessionBusy`], in a session.
+    /// [`SessionBusy`] if a session refuses the claim.
     pub async fn claim_motion(&mut self) -> Result<(), SessionBusy> {
         match self {
             Self::Session(attached) => attached.claim_motion().await,

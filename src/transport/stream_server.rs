@@ -17,7 +17,7 @@ use super::sim::Peer;
 
 /// Bytes per read or write.
 const PIECE: usize = 4096;
-/// Maximum number of unsent bytes for a TCP client. A client that reads nothing is disconnected.
+/// Maximum number of bytes that wait for a TCP client. The server disconnects a client that does not read them.
 const MOST_UNSENT: usize = 1 << 20;
 
 /// A line with a peer, for one client at a time.
@@ -41,8 +41,8 @@ enum Event {
 }
 
 impl StreamServer {
-    /// Listens on TCP like a device server. With port 0, the system selects a port. One client at a time uses the line.
-    /// Other clients are disconnected at once, so that they get an error.
+    /// Listens on TCP like a device server. With port 0, the system selects a port. Only one client at a time uses the
+    /// line. The server disconnects all other clients at once, so that they get an error.
     pub async fn tcp(
         address: SocketAddr,
         pace: Option<Pace>,
@@ -66,7 +66,7 @@ impl StreamServer {
         Self { end, wire: Wire::new(pace, faults), start: Instant::now() }
     }
 
-    /// Time since the start. The peer uses this clock.
+    /// Time since the start of the server. The peer uses this clock.
     pub fn now(&self) -> Duration {
         self.start.elapsed()
     }
@@ -156,13 +156,13 @@ impl Tcp {
         loop {
             let Some(client) = &mut self.client else {
                 let client = accept(&self.listener).await?;
-                // The client may already be disconnected.
+                // `None` if the client has already disconnected.
                 self.client = client.set_nodelay(true).is_ok().then_some(client);
                 return Ok(Event::Changed);
             };
             let (mut reading, mut writing) = client.split();
             tokio::select! {
-                // With `biased`, the end of a client is handled before the next client connects.
+                // Because of `biased`, the server handles the end of a client before it accepts the next client.
                 biased;
                 read = reading.read(buffer) => match read {
                     Ok(len) if len > 0 => return Ok(Event::Sent(len)),
@@ -198,7 +198,7 @@ impl Tcp {
     }
 }
 
-/// Waits for the next client that is still connected.
+/// Waits for the next client. A client that has already disconnected is skipped.
 async fn accept(listener: &TcpListener) -> io::Result<TcpStream> {
     loop {
         match listener.accept().await {
@@ -280,7 +280,7 @@ mod tests {
     #[tokio::test]
     async fn an_answer_on_its_way_to_one_that_left_is_lost() {
         let (mut server, port) = on_loopback().await;
-        // One character takes eleven seconds, so the answer is not complete before the test ends.
+        // One character takes eleven seconds, so the test ends before the answer is complete.
         server.wire = Wire::new(Some(Pace::new(1, 11)), None);
         let mut peer = Mirror::default();
         let client = connect(port).await;
@@ -314,7 +314,7 @@ mod tests {
             let path = path.to_owned();
             let (data_bits, parity, stop_bits) = (DataBits::Eight, Parity::Even, StopBits::One);
             let line = Line { path, baud: 9600, data_bits, parity, stop_bits };
-            // The thread that used the port before may still be closing it.
+            // The thread that used the port before this test may still be closing it.
             loop {
                 match Serial::open(&line) {
                     Err(OpenError::Busy) => std::thread::yield_now(),
@@ -360,7 +360,7 @@ mod tests {
             for _ in 0..200 {
                 peer.answers.push_back(vec![b'x'; 1000]);
                 server.wire.run(server.now(), &mut peer);
-                // Write as if an event were due.
+                // Writes as if an event of the peer were due.
                 let now = server.now();
                 let mut buffer = [0; PIECE];
                 let len = server.wire.take(now, &mut buffer);

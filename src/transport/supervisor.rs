@@ -1,5 +1,5 @@
-//! Notifications to the service manager, `sd_notify(3)`: datagrams to the socket in the variable `NOTIFY_SOCKET`.
-//! Without this variable, nothing is sent.
+//! Notifications to the service manager, as in `sd_notify(3)`: datagrams to the socket whose path is in the variable
+//! `NOTIFY_SOCKET`. Without this variable, nothing is sent.
 
 use std::io;
 use std::time::Duration;
@@ -26,7 +26,7 @@ impl Supervisor {
         Ok(Self { socket: Some(unix::Socket::named(&name)?), watchdog })
     }
 
-    /// Returns a supervisor without a service manager, which this system does not support.
+    /// Returns a supervisor that sends nothing: this system has no supported service manager.
     #[cfg(not(unix))]
     pub fn find() -> io::Result<Self> {
         Ok(Self::default())
@@ -79,7 +79,7 @@ mod unix {
     impl Socket {
         pub fn named(name: &OsStr) -> io::Result<Self> {
             let own = UnixDatagram::unbound()?;
-            // A service manager that reads no messages must not block this process.
+            // A service manager that does not read its messages must not block this process.
             own.set_nonblocking(true)?;
             let to = match name.as_bytes() {
                 [b'@', name @ ..] => in_abstract(name)?,

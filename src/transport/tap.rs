@@ -1,12 +1,13 @@
 //! Writer for pcapng recordings. Wireshark can open them.
 //!
-//! Datagrams and TCP bytes get synthetic IP and UDP or TCP headers (link type RAW). The addresses are the real ones if
-//! known, so that Wireshark finds the dissector of the port. TCP sequence numbers start with the first recorded byte.
-//! The opening and the close of a connection are not recorded.
+//! Datagrams and TCP bytes get synthetic IP and UDP or TCP headers (link type RAW). If the real addresses are known,
+//! the headers contain them, so that Wireshark finds the dissector of the port. TCP sequence numbers start with the
+//! first recorded byte. The recording does not contain the opening and the close of a connection.
 //!
 //! A serial line has no headers. Bytes that were sent or received together form one packet of link type USER0: a
-//! direction byte (0 to the controller, 1 from the controller), then the bytes. Wireshark shows raw bytes, or uses the
-//! dissector set for USER0 under Preferences, Protocols, DLT_USER, with a header size of 1.
+//! direction byte (0 to the controller, 1 from the controller), then the bytes. Wireshark shows raw bytes.
+//! Alternatively, it uses the dissector that is set for USER0 under Preferences, Protocols, DLT_USER, with a header
+//! size of 1.
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
@@ -27,7 +28,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// Arrow in texts.
+    /// Arrow that stands for the direction in texts.
     pub const fn arrow(self) -> &'static str {
         match self {
             Self::Sent => "->",
@@ -42,7 +43,7 @@ pub const LINKTYPE_RAW: u16 = 101;
 pub const LINKTYPE_PROFIBUS_DL: u16 = 257;
 /// `LINKTYPE_USER0`: reserved for private use.
 const LINKTYPE_USER0: u16 = 147;
-/// Interface numbers, in the order of the interface blocks.
+/// Interface number of network packets. The numbers follow the order of the interface blocks.
 const NETWORK: u32 = 0;
 const LINE: u32 = 1;
 /// Maximum number of bytes per TCP segment.
@@ -113,7 +114,7 @@ impl<W: Write> CaptureWriter<W> {
         Ok(Self { out, sequence: HashMap::new() })
     }
 
-    /// Records a datagram. `time` is since 1970.
+    /// Records a datagram. `time` counts from 1970.
     pub fn datagram(&mut self, time: Duration, from: SocketAddr, to: SocketAddr, payload: &[u8]) -> io::Result<()> {
         let mut packet = Vec::with_capacity(payload.len() + 48);
         let headers = ip(from, to).udp(from.port(), to.port());
@@ -121,7 +122,7 @@ impl<W: Write> CaptureWriter<W> {
         self.packet(NETWORK, time, &packet)
     }
 
-    /// Records bytes of a TCP stream. `time` is since 1970.
+    /// Records bytes of a TCP stream. `time` counts from 1970.
     pub fn segment(&mut self, time: Duration, from: SocketAddr, to: SocketAddr, bytes: &[u8]) -> io::Result<()> {
         for piece in bytes.chunks(MOST_IN_SEGMENT) {
             let expected = self.sequence.get(&(to, from)).copied().unwrap_or(FIRST);
@@ -135,12 +136,13 @@ impl<W: Write> CaptureWriter<W> {
         Ok(())
     }
 
-    /// Records a whole frame. The frame has the link type of the section. `time` is since 1970.
+    /// Records a whole frame. The frame has the link type of the section. `time` counts from 1970.
     pub fn frame(&mut self, time: Duration, frame: &[u8]) -> io::Result<()> {
         self.packet(NETWORK, time, frame)
     }
 
-    /// Records bytes of a serial line. The recording must be one of [`streams`](Self::streams). `time` is since 1970.
+    /// Records bytes of a serial line. The recording must have been created with [`streams`](Self::streams). `time`
+    /// counts from 1970.
     pub fn line(&mut self, time: Duration, direction: Direction, bytes: &[u8]) -> io::Result<()> {
         let direction = match direction {
             Direction::Sent => 0,
@@ -167,7 +169,7 @@ impl<W: Write> CaptureWriter<W> {
 /// Sequence number of the first byte of a stream.
 const FIRST: u32 = 1;
 
-/// Returns a pcapng block: type, length, body padded to a multiple of four bytes, length again.
+/// Returns a pcapng block: type, length, body padded to a multiple of four bytes, and the length again.
 fn block(kind: u32, mut body: Vec<u8>) -> Vec<u8> {
     body.resize(body.len().next_multiple_of(4), 0);
     let len = length(body.len() + 12).to_le_bytes();
@@ -178,7 +180,7 @@ fn block(kind: u32, mut body: Vec<u8>) -> Vec<u8> {
     block
 }
 
-/// Starts a packet with an IP header. The header is IPv6 if the addresses have different versions.
+/// Starts a packet with an IP header. If the two addresses have different IP versions, the header is IPv6.
 fn ip(from: SocketAddr, to: SocketAddr) -> PacketBuilderStep<IpHeaders> {
     const HOPS: u8 = 64;
 
@@ -247,7 +249,7 @@ mod tests {
         assert_eq!(kinds, [SECTION_HEADER, INTERFACE, ENHANCED_PACKET]);
     }
 
-    /// Whether the Internet checksum (RFC 1071) is correct: over data that includes its checksum, the result is 0.
+    /// Whether the Internet checksum (RFC 1071) is correct. The checksum of data that includes its own checksum is 0.
     fn checks_out(bytes: &[u8]) -> bool {
         let words = bytes.chunks(2).map(|pair| u32::from(pair[0]) << 8 | pair.get(1).map_or(0, |low| u32::from(*low)));
         let sum: u32 = words.sum();

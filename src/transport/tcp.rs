@@ -25,7 +25,7 @@ pub enum ConnectError {
     /// The host did not answer before the deadline.
     #[error("no answer")]
     TimedOut,
-    /// Another error.
+    /// Any other error.
     #[error("{0}")]
     Io(#[from] io::Error),
 }
@@ -34,8 +34,8 @@ pub enum ConnectError {
 #[derive(Debug)]
 pub struct Tcp {
     stream: TcpStream,
-    /// Unsent bytes of a [`Tcp::send`] that was dropped. The next send sends them first, so that no message stays
-    /// incomplete.
+    /// Unsent bytes of a [`Tcp::send`] whose future was dropped. The next send sends these bytes first, so that no
+    /// message stays incomplete.
     unsent: Vec<u8>,
 }
 
@@ -149,7 +149,7 @@ mod tests {
         server.write_all(&[b'x'; 5000]).await.unwrap();
         let mut buffer = [0; 64];
         assert_eq!(tcp.receive(&mut buffer, soon()).await.unwrap(), Some(64));
-        // Some bytes may still be in transit on the loopback interface.
+        // Some of these bytes may still be in transit on the loopback interface.
         let mut left = 5000 - 64;
         while left > 0 {
             tcp.stream.readable().await.unwrap();
@@ -165,14 +165,14 @@ mod tests {
         drop(server);
         let error = tcp.receive(&mut [0; 8], soon()).await.unwrap_err();
         assert_eq!(error.kind(), io::ErrorKind::NotConnected);
-        // `discard` neither fails nor hides the error from the next read.
+        // `discard` does not fail, and the next read still reports the error.
         tcp.discard();
         assert_eq!(tcp.receive(&mut [0; 8], soon()).await.unwrap_err().kind(), io::ErrorKind::NotConnected);
     }
 
     #[tokio::test]
     async fn a_port_nobody_listens_on_refuses() {
-        // The socket is bound but not listening: no other program gets the port, and a connection is refused.
+        // The socket is bound but does not listen. So no other program gets the port, and a connection is refused.
         let socket = TcpSocket::new_v4().unwrap();
         socket.bind("127.0.0.1:0".parse().unwrap()).unwrap();
         let port = socket.local_addr().unwrap().port();

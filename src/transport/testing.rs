@@ -19,7 +19,7 @@ pub fn hex(text: &str) -> Vec<u8> {
     digits.chunks(2).map(byte).collect()
 }
 
-/// A peer that answers each line with its reverse, without delay, and records the bytes that it receives.
+/// A peer that reverses each line and returns it without delay. It records the bytes that it receives.
 #[derive(Debug, Default)]
 pub struct Mirror {
     pub line: Vec<u8>,

@@ -7,13 +7,14 @@ use tokio::net::UdpSocket;
 use tokio::task::coop::consume_budget;
 use tokio::time::{Instant, timeout_at};
 
-/// Connected UDP sockets. With a connected socket, the kernel drops datagrams of other hosts and reports a closed port.
+/// Connected UDP sockets. For a connected socket, the kernel drops datagrams from other hosts and reports a closed
+/// port.
 #[derive(Debug)]
 pub struct Udp {
     channels: Vec<Channel>,
 }
 
-/// A port of the host. It has a socket after its first use.
+/// A port of the host. Its socket opens at the first use.
 #[derive(Debug)]
 struct Channel {
     peer: SocketAddr,
@@ -23,7 +24,8 @@ struct Channel {
 #[derive(Debug)]
 struct Open {
     socket: UdpSocket,
-    /// Local address, cached because every frame needs it and a system call takes a tenth of a round trip.
+    /// Local address of the socket. It is cached, because every frame needs it and a system call takes a tenth of a
+    /// round trip.
     local: SocketAddr,
 }
 
@@ -56,7 +58,7 @@ impl Udp {
         self.channels[channel].open.as_ref().map(|open| open.local)
     }
 
-    /// Replaces the socket of a channel, so that no late datagram for the old socket is received.
+    /// Replaces the socket of a channel. The client then cannot receive a late datagram for the old socket.
     pub fn renew(&mut self, channel: usize) {
         self.channels[channel].open = None;
     }
@@ -74,10 +76,11 @@ impl Udp {
     /// Waits until `until` for one datagram. Bytes that do not fit into `buffer` are dropped.
     pub async fn receive(&mut self, channel: usize, buffer: &mut [u8], until: Instant) -> io::Result<Option<usize>> {
         let socket = self.channels[channel].socket().await?;
-        // Other tasks (Ctrl-C, other robots) get time to run even if datagrams arrive without a pause.
+        // Other tasks (Ctrl-C, other robots) get time to run, even if datagrams arrive without a pause.
         consume_budget().await;
-        // Let a peer on this computer (a simulator or proxy) run first. If the peer answers now, a failed read, a timer
-        // and a wait in the reactor are saved: a tenth of the round trip. For a remote peer, the cost is negligible.
+        // A peer on this computer (a simulator or proxy) gets time to answer first. If it answers now, the client needs
+        // no failed read, timer and wait in the reactor. This saves a tenth of the round trip. For a remote peer, the
+        // cost is negligible.
         std::thread::yield_now();
         match socket.try_recv(buffer) {
             Err(error) if error.kind() == io::ErrorKind::WouldBlock => {

@@ -22,9 +22,9 @@ use armctl_frame::robot::alarm::{self, Alarms, Row};
 commands! {
     /// Alarms.
     pub enum Alarm {
-        /// Present alarms
+        /// Show the present alarms
         List(List),
-        /// Alarm history, latest entries of each class first
+        /// Show the alarm history, with the latest entries of each class first
         History(History),
         /// Print alarms when they occur and when they clear
         Watch(Watch<List>),
@@ -35,10 +35,11 @@ commands! {
     }
 }
 
-/// Present alarms, at most four (FS and DX 3.3.1, 3.3.37).
+/// Shows the present alarms, at most four (FS and DX 3.3.1, 3.3.37).
 #[derive(Debug, Args)]
 pub struct List {
-    /// Read only codes and names, for older controllers (0x70 instead of 0x30A)
+    /// Read the codes and names without texts, with command 0x70. Use this option if the controller does not support
+    /// command 0x30A
     #[arg(long)]
     no_texts: bool,
 }
@@ -89,9 +90,9 @@ enum Class {
     Major,
     /// Monitor alarms
     Monitor,
-    /// System-defined user alarms
+    /// User alarms that the system defines
     System,
-    /// User-defined user alarms
+    /// User alarms that the user defines
     User,
     /// Off-line alarms
     Offline,
@@ -108,19 +109,20 @@ const CLASSES: [(Class, query::AlarmClass, &str); 5] = [
     (Class::Offline, query::AlarmClass::OffLine, "offline"),
 ];
 
-/// Past alarms (FS and DX 3.3.2, 3.3.38).
+/// Shows past alarms (FS and DX 3.3.2, 3.3.38).
 #[derive(Debug, Args)]
 pub struct History {
     /// Alarm class
     #[arg(long, value_enum, default_value = "all")]
     class: Class,
-    /// First entry of each list; 1 is the latest
+    /// Number of the first entry of each class. The latest entry has number 1
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = parse_in_range::<u8>(1, 100))]
     from: u8,
-    /// At most N entries of each list
+    /// Maximum number of entries of each class
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = parse_in_range::<u8>(1, 100))]
     limit: u8,
-    /// Read only codes and names, for older controllers (0x71 instead of 0x30B)
+    /// Read the codes and names without texts, with command 0x71. Use this option if the controller does not support
+    /// command 0x30B
     #[arg(long)]
     no_texts: bool,
 }
@@ -232,8 +234,8 @@ async fn read<Q: Query<Answer = payload::Alarm>>(
 }
 
 /// Whether a status can mean that the controller is older than FS1.14 and does not have 0x30A. The manuals do not
-/// define this status, so each of these selects the older command: "command error", "undefined command", undefined
-/// instance or attribute.
+/// define this status, so each of these statuses selects the older command: "command error", "undefined command",
+/// undefined instance or attribute.
 fn is_possibly_unsupported(status: Status) -> bool {
     matches!(status.code, 0x01 | 0x08 | 0x09 | 0x28)
         || (status.added_size > 0 && matches!(status.added & 0xFFFF, 0x1010 | 0xA000..=0xA002))
@@ -290,7 +292,8 @@ mod tests {
 
     #[test]
     fn reads_the_history_of_each_class_from_a_number() {
-        // User alarm (user) 100 of 0x71 is instance 3100 (golden frame R05 reads one field of it).
+        // The user-defined user alarm 100 is instance 3100 of command 0x71. Golden frame R05 reads one field of this
+        // instance.
         assert_eq!(
             frames("alarm history --class user --from 99 --limit 5 --no-texts").unwrap(),
             ["71001b0c00010000", "71001c0c00010000"]

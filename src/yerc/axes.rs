@@ -53,7 +53,7 @@ pub(super) fn groups_of(model: Model) -> impl Iterator<Item = Group> {
 /// Reads the names of the axes (FS and DX 3.3.5).
 #[derive(Debug, Args)]
 pub struct AxesOf {
-    /// Control group: R1 …, B1 …, S1 …, or all
+    /// Control group: a robot (R1 …), a base (B1 …) or a station (S1 …), or `all`
     #[arg(long, default_value_t = Groups::All)]
     group: Groups,
 }
@@ -163,7 +163,7 @@ macro_rules! by_axis {
         $(#[$doc])*
         #[derive(Debug, Args)]
         pub struct $name {
-            /// Control group: R1 …, B1 …, S1 …
+            /// Control group: a robot (R1 …), a base (B1 …) or a station (S1 …)
             #[arg(long, default_value = "R1")]
             group: Group,
         }

@@ -98,7 +98,7 @@ pub fn plan_in_batches<S: PlannedRead>(
             (BatchSplit::Halves, [first, _, .., last]) => {
                 let (one, other) = asked.split_at(asked.len().div_ceil(2));
                 for (half, which) in [(one, "first"), (other, "second")] {
-                    let about = format!("the {which} half of a refused run, divided again down to single items");
+                    let about = format!("the {which} half of the refused items, divided again down to single items");
                     for step in plan(half)? {
                         link.plan_if(&step.request(), Reason::about(&about).depending_on(REFUSED));
                     }
@@ -110,7 +110,8 @@ pub fn plan_in_batches<S: PlannedRead>(
                 for single in &singles {
                     link.plan_if(
                         single,
-                        Reason::about("each item alone, if the controller refuses the run").depending_on(REFUSED),
+                        Reason::about("each item alone, if the controller refuses the request for several items")
+                            .depending_on(REFUSED),
                     );
                 }
             }
@@ -120,7 +121,7 @@ pub fn plan_in_batches<S: PlannedRead>(
 }
 
 /// Condition for the requests after a run.
-const REFUSED: &str = "whether the controller refuses the run";
+const REFUSED: &str = "whether the controller refuses the request for several items";
 
 /// How a run is divided after this refusal; `None` if another read would not help.
 fn describe_reason(denied: &ReadError, usual: BatchSplit) -> Option<BatchSplit> {

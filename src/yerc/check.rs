@@ -75,7 +75,8 @@ async fn look(robot: &Robot, link: &mut Link, layers: &mut Layers) {
     layers.judge("servo", status.servo_on(), (on, "off"), "use `yerc servo on`: a motion needs servo power");
 }
 
-/// Checks the model, and how the model is known.
+/// Checks the model, and reports where armctl has the model from: the settings, the software version, or an earlier
+/// connection.
 fn model(robot: &Robot, link: &Link, layers: &mut Layers) {
     const NAME: &str = "set the model: ?model=fs100, dx100, dx200 or yrc1000 in the URL, or `armctl robots set NAME \
                         model=…`";

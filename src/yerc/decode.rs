@@ -21,8 +21,8 @@ use armctl_frame::decode::{self, damage, field_table, in_parentheses, problem_li
                   without frames is not an error. A damaged file is decoded up to the damage, and the exit code is 1."
 )]
 pub struct Decode {
-    /// Frames in hexadecimal (spaces, colons and 0x are allowed between the bytes), - for stdin with one frame per
-    /// line, or FILE.pcap or FILE.pcapng
+    /// Frames in hexadecimal (spaces, colons and 0x are allowed between the bytes), or - to read stdin with one frame
+    /// per line, or a capture file (FILE.pcap or FILE.pcapng)
     #[arg(required = true, value_name = "HEX")]
     hex: Vec<String>,
     /// Command of the answer, such as 0x75

@@ -1,4 +1,5 @@
-//! Several requests of one command, each with its own outcome. If one is refused, the other answers are still reported.
+//! Several requests of one command, each with its own outcome. If a request is refused, the other answers are still
+//! reported.
 
 use super::failure::refusal_failure;
 use super::link::Link;

@@ -1,4 +1,4 @@
-//! Conversion of client errors to command failures, which say what failed, on which robot, and what to do.
+//! Conversion of client errors to command failures. A failure contains what failed, on which robot, and what to do.
 
 use std::io;
 
@@ -18,7 +18,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
         Error::Refused(refusal) => refusal_failure(refusal),
         Error::NoAnswer { .. } => about(Kind::NoAnswer, error.to_string()).hint(
             "check address, cable and firewall; on the controller, check the Ethernet server function, RS022, RS029 \
-             and #82015 CMD REMOTE SEL; see `armctl help yerc` for the settings",
+             and #82015 CMD REMOTE SEL; see `armctl help yerc-setup` for the settings",
         ),
         Error::Garbage { .. } => about(Kind::Malformed, error.to_string())
             .hint("check that the address belongs to a high-speed Ethernet server; use -vvv to see the bytes"),

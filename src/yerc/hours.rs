@@ -15,10 +15,10 @@ use armctl_frame::items::{ItemError, ItemOutcome};
 /// Reads the running-time counters (FS and DX 3.3.25).
 #[derive(Debug, Args)]
 pub struct Hours {
-    /// Servo, playback and motion time of a robot or station; all: every existing counter
+    /// Servo, playback and motion time of this robot or station, or `all` for every existing counter
     #[arg(long, value_name = "R1|all")]
     group: Option<Groups>,
-    /// Operation time of an application
+    /// Operation time of the application with this number
     #[arg(long, value_name = "N", conflicts_with = "group", value_parser = parse_in_range::<u8>(1, 8))]
     application: Option<u8>,
 }

@@ -15,7 +15,7 @@ use armctl_frame::items::{ItemError, ItemOutcome};
 /// Reads versions and names (FS and DX 3.3.26).
 #[derive(Debug, Args)]
 pub struct Info {
-    /// Robot, station, or all, including applications [default: all]
+    /// Robot or station, or `all` for all groups and applications [default: all]
     #[arg(long, value_name = "R1|all")]
     group: Option<Groups>,
     /// Application number
@@ -93,7 +93,7 @@ struct Part {
 struct Named {
     /// Robot model or name of the application; null for stations.
     name: Option<String>,
-    /// Parameter version; only robots have one.
+    /// Parameter version; only robots have a parameter version.
     parameter_version: Option<String>,
 }
 

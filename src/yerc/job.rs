@@ -50,7 +50,7 @@ pub struct Show {
     /// Task number (0 is the master task), or all
     #[arg(long, value_name = "N|all", default_value = "0")]
     task: Tasks,
-    /// Also show the text of the line; the job file is downloaded each time
+    /// Also show the text of the current line. armctl downloads the job file each time
     #[arg(long)]
     source: bool,
 }
@@ -85,7 +85,7 @@ impl Command for Show {
         let jobs: Vec<(u8, Outcome<JobInfo>)> = match self.task {
             Tasks::One(task) => {
                 if link.is_dry() && self.source {
-                    link.then("download of the job file, if it exists");
+                    link.then("download of the job file, if the file exists");
                 }
                 let job = {
                     let question = link.by_model(|model| ReadJob::new(model, task)).await?;

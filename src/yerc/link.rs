@@ -147,7 +147,7 @@ impl Link {
         self.ask_optional(query).await?.map_err(|refusal| refused(refusal, query.risk()))
     }
 
-    /// Applies HOLD. Sends several attempts in parallel until the controller answers one.
+    /// Applies HOLD. Sends several attempts in parallel until the controller answers one of them.
     pub async fn stop(&mut self) -> Result<(), Failure> {
         self.client.stop().await.map_err(|error| self.failure(error))
     }
@@ -157,8 +157,8 @@ impl Link {
         self.client.try_ask(query).await.map_err(|error| self.failure(error))
     }
 
-    /// Reads the value that a write replaces. Returns `None` if the controller refuses, and in a dry run, which records
-    /// the request. If the connection is lost, the failure states that nothing was written.
+    /// Reads the value that a write replaces. Returns `None` if the controller refuses. In a dry run, records the
+    /// request and returns `None`. If the connection is lost, the failure states that nothing was written.
     pub async fn before<Q: Query>(&mut self, question: &Q) -> Result<Option<Q::Answer>, Failure> {
         let answer = self.for_purpose(OLD_VALUE).ask_optional(question).await.known().map_err(nothing_written)?;
         Ok(answer.and_then(Result::ok))

@@ -109,7 +109,7 @@ pub(super) fn plan_alarm(link: &mut Link) -> Result<(), Failure> {
 
 /// Failure: the connection was lost during a wait. The action continues without supervision, so its outcome is unknown.
 pub(super) fn lost_contact(done: &str, failure: Failure) -> Failure {
-    let message = format!("{done}, but armctl could not read its end: {failure}");
+    let message = format!("{done}, but armctl could not read the result: {failure}");
     Failure { kind: Kind::OutcomeUnknown, message, ..failure }
         .hint("do not send the command again; use `yerc status` and `yerc position` to see the result")
 }

@@ -66,10 +66,10 @@ struct Target {
     frame: Frame,
     #[command(flatten)]
     forms: Forms,
-    /// Base axes of the robot, in mm
+    /// Target of the base axes of the robot, in mm
     #[arg(long, value_name = "MM,…", allow_hyphen_values = true, value_parser = base_lengths)]
     base_axes: Option<Values>,
-    /// Station axes, in pulses
+    /// Target of the station axes, in pulses
     #[arg(long, value_name = "PULSES,…", allow_hyphen_values = true, value_parser = station_pulses)]
     station_axes: Option<Values>,
     #[command(flatten)]
@@ -167,7 +167,8 @@ fn cartesian_move(link: &Link, mover: &Mover, speed: Speed, frame: &Frame) -> Ca
     }
 }
 
-/// The base of a robot has the same number as the robot. The axes of the base move together with the robot.
+/// Base of a robot, for the check of axes for which the move has no value. The base has the same number as the robot,
+/// and its axes move together with the robot.
 fn unnamed_base_axes(group: Group, base: Option<&Values>) -> Vec<(Group, usize, &'static str)> {
     match group {
         Group::Robot(number) => vec![(Group::Base(number), base.map_or(0, |base| base.0.len()), "--base-axes")],
@@ -216,7 +217,7 @@ macro_rules! motion {
 motion! {
     /// Moves to a position with joint interpolation (0x8A, instance 1).
     Joint {
-        /// Percent of maximum speed, such as 10%
+        /// Speed in percent of the maximum speed, such as 10%
         speed: Speed::percent, target: Target
     }, "yerc.move.joint",
     |this, context| this.target.question(MoveKind::Link, this.speed),
@@ -243,7 +244,7 @@ motion! {
 motion! {
     /// Moves to pulses with joint interpolation (0x8B, instance 1).
     PulseJoint {
-        /// Percent of maximum speed, such as 10%
+        /// Speed in percent of the maximum speed, such as 10%
         speed: Speed::percent, target: PulseTarget
     }, "yerc.move.pulse.joint",
     |this, context| this.target.question(MoveKind::Link, this.speed),
@@ -327,17 +328,17 @@ impl Distance {
 /// Target in pulses with its options.
 #[derive(Debug, Args)]
 struct PulseTarget {
-    /// Target: pulses of six axes, or seven or eight if the robot has them
+    /// Target in pulses, of six axes, or of seven or eight axes if the robot has them
     #[arg(long, value_name = "S,L,U,R,B,T[,E]", allow_hyphen_values = true, value_parser = robot_pulses,
         required_unless_present = "station_axes")]
     pulses: Option<Values>,
     /// Tool number
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = parse_in_range::<u32>(0, 63))]
     tool: u32,
-    /// Base axes of the robot, in pulses
+    /// Target of the base axes of the robot, in pulses
     #[arg(long, value_name = "PULSES,…", allow_hyphen_values = true, value_parser = base_pulses)]
     base_axes: Option<Values>,
-    /// Station axes, in pulses
+    /// Target of the station axes, in pulses
     #[arg(long, value_name = "PULSES,…", allow_hyphen_values = true, value_parser = station_pulses)]
     station_axes: Option<Values>,
     #[command(flatten)]

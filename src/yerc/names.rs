@@ -24,11 +24,11 @@ commands! {
 /// controller.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "armctl reads the files IONAME.DAT, EXIONAME.DAT, VARNAME.DAT and IOMNAME.DAT; a missing file has no \
-                  names. After that, you can type a name instead of a number: `io get`, `io set`, `var get`, `var \
-                  set`, `register get`, `teach`, `move --to`. The robot's names in robots.toml have priority (`armctl \
-                  help inventory`). `armctl names list` shows all names. After a change on the controller, run this \
-                  command again."
+    after_help = "armctl reads the files IONAME.DAT, EXIONAME.DAT, VARNAME.DAT and IOMNAME.DAT. It skips a file that \
+                  the controller does not have. After that, you can type a name instead of a number: `io get`, `io \
+                  set`, `var get`, `var set`, `register get`, `teach`, `move --to`. The robot's names in robots.toml \
+                  have priority (`armctl help inventory`). `armctl names list` shows all names. After a change on the \
+                  controller, run this command again."
 )]
 pub struct Get {}
 
@@ -83,8 +83,8 @@ impl Command for Get {
         }
         if !report.kept && robot.target.value.is_simulated() {
             screen.note(
-                "Names of a simulator in this process are not stored: the simulator always reads them from its start \
-                 files.",
+                "Names of a simulator in this process are not stored: the simulator always reads the names from its \
+                 start files.",
             );
         }
         Ok(report)

@@ -26,7 +26,7 @@ use armctl_frame::robot::position::{self as robot, Joint, Positions, Row};
 /// Reads the current position of a group (FS and DX 3.3.6).
 #[derive(Debug, Args)]
 pub struct Position {
-    /// Control group: R1 …, B1 …, S1 …
+    /// Control group: a robot (R1 …), a base (B1 …) or a station (S1 …)
     #[arg(long, default_value = "R1")]
     group: Group,
     /// Pulses, base coordinates (robots only), or both [default: all that the group has]

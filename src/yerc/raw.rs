@@ -38,10 +38,10 @@ pub struct Raw {
     /// Instance: number of the item
     #[arg(long, value_name = "N", value_parser = word, required_unless_present = "file")]
     instance: Option<u16>,
-    /// Attribute: number of the field; 0 for all
+    /// Attribute: number of the field. 0 means all fields
     #[arg(long, value_name = "N", value_parser = byte, default_value = "0")]
     attribute: u8,
-    /// Service: 0x01 or 0x0E read, 0x02 or 0x10 write, 0x33 and 0x34 read and write several
+    /// Service: 0x01 or 0x0E to read, 0x02 or 0x10 to write, 0x33 to read several items, 0x34 to write several items
     #[arg(long, value_name = "N", value_parser = byte)]
     service: u8,
     /// Data of the request in hexadecimal; spaces, colons and 0x are allowed
@@ -112,7 +112,7 @@ impl Command for Raw {
         )
     }
 
-    /// Before positions are written, their current content is read.
+    /// If positions are written, the command reads their current content, and then asks the question itself.
     fn confirmation(&self) -> Confirmation {
         let is_known = !self.file && self.risk() == Risk::Destroy;
         if is_known { Confirmation::WhenKnown } else { Confirmation::Question }

@@ -22,15 +22,15 @@ use armctl_frame::store::{Copy, Dump, Get, List, Restore, Row, TableWrite, Writt
 commands! {
     /// Commands for registers.
     pub enum Register {
-        /// Read registers: 0 to 999
+        /// Read registers 0 to 999
         Get(Get<Registers>),
-        /// Write registers: 0 to 559
+        /// Write registers 0 to 559
         Set(Set),
         /// List the registers that are not 0
         List(List<Registers>),
         /// Print each change of registers
         Watch(Watch<Get<Registers>>),
-        /// Copy a register to others: 5 6..8
+        /// Copy a register to other registers, for example `5 6..8`
         Copy(Copy<Registers>),
         /// Save registers to a CSV file
         Dump(Dump<Registers>),
@@ -43,7 +43,7 @@ commands! {
 #[derive(Debug, Args)]
 #[command(after_help = WRITING)]
 pub struct Set {
-    /// 5=1000, 5=0x03E8 or NAME=1000
+    /// Registers with their new values, for example 5=1000, 5=0x03E8 or NAME=1000
     #[arg(required = true, value_name = "N=VALUE", add = complete::REGISTER_VALUE)]
     assignments: Vec<Assignment>,
 }
@@ -109,8 +109,8 @@ pub struct Word {
     value_hex: Option<String>,
 }
 
-const WRITING: &str = "A register that holds the value already is not written. The ladder program can overwrite a \
-                       register immediately after the write. Read the register back if that matters.";
+const WRITING: &str = "armctl does not write a register that already has the value. The ladder program can overwrite \
+                       a register immediately after the write. If that matters, read the register again.";
 /// Last register (DX200 manual, 3.3.10).
 const LAST: u16 = 999;
 
@@ -148,7 +148,7 @@ impl Store for Registers {
         (0..=LAST).collect()
     }
 
-    /// Those that `restore` can write.
+    /// Registers that `restore` can write.
     fn saved() -> Vec<u16> {
         Self::all().into_iter().filter(|number| plan_register_writes(Model::Dx200, &[(*number, 0)]).is_ok()).collect()
     }
@@ -207,7 +207,7 @@ impl Store for Registers {
 }
 
 impl Writable for Registers {
-    /// None in the dry run of a copy, which does not know the value.
+    /// New value; `None` in the dry run of a copy, in which the value is unknown.
     type Draft = Option<u16>;
 
     const RISK: Risk = Risk::Write;
@@ -219,7 +219,7 @@ impl Writable for Registers {
 
     fn complete_draft(&self, number: u16, draft: &Option<u16>, _old: Option<&u16>) -> Result<u16, Failure> {
         let missing = || Failure::usage(format!("{}: the value is missing", Self::name(number)));
-        draft.ok_or_else(|| missing().hint("give a number from 0 to 65535 in column value"))
+        draft.ok_or_else(|| missing().hint("write a number from 0 to 65535 in column `value`"))
     }
 
     async fn read_old(&self, link: &mut Link, screen: &Screen, rows: &[Row<Self>]) -> Result<Answers<u16>, Failure> {
@@ -227,7 +227,7 @@ impl Writable for Registers {
         self.read(link.for_purpose(OLD_VALUE), screen, &numbers).await
     }
 
-    /// Consecutive registers are one request.
+    /// Consecutive registers are written with one request.
     fn blocks(&self, rows: &[Differing<'_, Self>]) -> Vec<Vec<usize>> {
         let values: Vec<(u16, u16)> = rows.iter().map(|(number, _, new)| (*number, **new)).collect();
         let index_of = |number: &u16| rows.iter().position(|(key, ..)| key == number);

@@ -25,19 +25,19 @@ pub struct Serve {
         value_parser = |text: &str| address(text, ROBOT_PORT)
     )]
     bind: SocketAddr,
-    /// Port of the file server; default: port of the robot server + 1
+    /// Port of the file server [default: port of the robot server + 1]
     #[arg(long, value_name = "PORT")]
     file_port: Option<u16>,
     /// Controller model: fs100, dx100, dx200 or yrc1000 [default: dx200]
     #[arg(long, value_name = "MODEL")]
     model: Option<Model>,
-    /// Start state (TOML): modes, variables, jobs, files, alarms, timed events
+    /// File with the start state (TOML): modes, variables, jobs, files, alarms, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
-    /// Faults, such as drop=5%,delay=0..50ms,seed=7; also dup, reorder, corrupt, busy
+    /// Faults, such as drop=5%,delay=0..50ms,seed=7. Other faults are dup, reorder, corrupt and busy
     #[arg(long, value_name = "FAULTS")]
     fault: Option<FaultSpec>,
-    /// Read console lines on stdin: `alarm 4315`, `mode teach`, `io 20010 on`, `help`
+    /// Read console lines on stdin, for example `alarm 4315`, `mode teach`, `io 20010 on`, `help`
     #[arg(long)]
     console: bool,
 }

@@ -28,7 +28,7 @@ use armctl_frame::teach::{Taught, mismatch, unverified};
                   undefined variable gets pulses. `yerc position teach P5` and `yerc var set P5=here` do the same."
 )]
 pub struct Teach {
-    /// Position variable: P5, BP1, EX1, or a name
+    /// Position variable, for example P5, BP1 or EX1, or a name
     #[arg(value_name = "REF", value_parser = variable, add = complete::VARIABLE)]
     variable: Reference,
     /// Control group to read [default: R1 for P, B1 for BP, S1 for EX]
@@ -146,7 +146,8 @@ impl Teach {
         }
     }
 
-    /// Coordinates to store: the requested ones, or else the type that the variable has, or else pulses.
+    /// Coordinates to store: the requested coordinates. Without a request, the type that the variable has, or pulses if
+    /// the variable is undefined.
     fn coordinates(&self, old: Option<&Value>) -> Result<Coordinates, Failure> {
         match (self.coordinates, old.map(as_position).map(|old| old.kind)) {
             (Some(stored), _) => Ok(stored.into()),
@@ -202,7 +203,7 @@ impl Teach {
         let write =
             |position| WriteVariable::new(self.variable.number, stored_position(group, position)).map_err(usage);
         let reason = Reason::about("stores it")
-            .depending_on("the current position, and whether the variable already contains it");
+            .depending_on("the current position, and whether the variable already contains this position");
         link.plan_depending(&write(one)?.request(), &write(other)?.request(), reason);
         let query = ReadVariable::new(self.variable.kind, self.variable.number);
         link.plan_if(

@@ -23,7 +23,8 @@ pub struct Poller {
     texts: bool,
 }
 
-/// Signals in the view: name, first group of the general-purpose signals of this kind, and number of groups.
+/// Signals in the view: name, and first group of the general-purpose signals of this kind. `GROUPS` is the number of
+/// groups of each kind.
 const BANKS: [(&str, u16); 2] = [("inputs", 1), ("outputs", 1001)];
 const GROUPS: u16 = 4;
 

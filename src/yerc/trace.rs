@@ -23,7 +23,7 @@ impl Trace {
         Ok(Self { record: trace::Trace::of_network(access, screen)?, asked: None })
     }
 
-    /// Records a datagram. The first address in `ends` is the own address.
+    /// Records a datagram. The first address in `ends` is the address of this computer.
     pub fn record(&mut self, direction: Direction, ends: (SocketAddr, SocketAddr), bytes: &[u8]) {
         if self.record.level() > 0 {
             let sender = match direction {

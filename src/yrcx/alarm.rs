@@ -18,7 +18,7 @@ commands! {
     pub enum Alarm {
         /// Show the present alarm and what to do
         List(List),
-        /// Alarm history, latest first
+        /// Show the alarm history, latest first
         History(History),
         /// Print alarms when they occur and when they clear
         Watch(Watch<List>),
@@ -27,7 +27,7 @@ commands! {
     }
 }
 
-/// Present alarm: the latest entry of the history while SO(03) or SO(15) is on.
+/// Shows the present alarm: the latest entry of the history while SO(03) or SO(15) is on.
 #[derive(Debug, Args)]
 #[command(
     after_help = "`yrcx info alarm` shows the latest alarm that a remote command caused. That alarm may have been \
@@ -47,7 +47,7 @@ impl Command for List {
             link.plan_depending(
                 &latest,
                 &latest,
-                Reason::about("which").depending_on("the signals: read only if SO(03) or SO(15) is on"),
+                Reason::about("which").depending_on("the signals: sent only if SO(03) or SO(15) is on"),
             );
         }
         let image = link.look().await?;
@@ -95,9 +95,9 @@ impl Watchable for List {
 /// Alarm signals.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Signals {
-    /// SO(03): alarm present.
+    /// Whether SO(03) is on: an alarm is present.
     alarm: bool,
-    /// SO(15): warning present.
+    /// Whether SO(15) is on: a warning is present.
     warning: bool,
 }
 
@@ -115,7 +115,7 @@ impl AlarmState for Signals {
 #[derive(Debug, Args)]
 #[command(after_help = "`armctl explain yrcx CODE` shows what to do about an alarm.")]
 pub struct History {
-    /// Numbers in the history, 1 (the latest) to 500: 10, or 1..50
+    /// Numbers in the history, from 1 (the latest) to 500, for example 10 or 1..50
     #[arg(value_name = "N", value_delimiter = ',', default_value = "1..10",
         value_parser = |text: &str| Numbers::parse(table::Command::AlarmHistory, Key::History, text))]
     numbers: Vec<Numbers>,
@@ -151,8 +151,8 @@ impl Command for History {
 
 /// Resets the alarm.
 #[derive(Debug, Args)]
-#[command(after_help = "`yrcx io pulse alarm-reset` does the same with a dedicated input. It also works while the \
-                        controller does not accept remote commands.")]
+#[command(after_help = "`yrcx io pulse alarm-reset` resets the alarm with a dedicated input. This also works while \
+                        the controller does not accept remote commands.")]
 pub struct Reset {}
 
 impl Command for Reset {
@@ -197,9 +197,9 @@ const POWER_OFF: &str = "hint: use `yrcx recover` to clear the emergency stop an
 pub struct WasReset {
     #[serde(flatten)]
     done: Done,
-    /// SO(03) after the reset: an alarm is still present.
+    /// Whether SO(03) is on after the reset: an alarm is still present.
     alarm: bool,
-    /// SO(02): motor power is on.
+    /// Whether SO(02) is on: the motor power is on.
     servo_on: bool,
 }
 

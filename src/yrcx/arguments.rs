@@ -31,7 +31,7 @@ impl Which {
 /// Speed options.
 #[derive(Debug, Args)]
 pub struct Pace {
-    /// Speed in percent, for example 50 or 50%; replaces the program speed
+    /// Speed in percent, for example 50 or 50%. It replaces the program speed
     #[arg(long, value_name = "SPEED", value_parser = speed)]
     pub speed: Option<Speed>,
     /// Speed in percent of the robot's maximum, in steps of 0.01
@@ -111,8 +111,8 @@ impl Ramps {
         let row = command.row();
         if (self.accel.is_some() || self.decel.is_some()) && row.request().all(|field| field.key != Key::Accel) {
             return Err(Failure::usage(format!("{} has neither --accel nor --decel", row.id)).hint(
-                "remove --accel and --decel: only moves to a point without an arch accept them. Other moves use the \
-                 robot's parameters",
+                "remove --accel and --decel: moves to coordinates and moves with --arch do not accept them, and use \
+                 the robot's parameters",
             ));
         }
         Ok(draft.with_some(Key::Accel, self.accel.clone()).with_some(Key::Decel, self.decel.clone()))
@@ -122,7 +122,7 @@ impl Ramps {
 /// Selection of the axes that move.
 #[derive(Debug, Args)]
 pub struct Axes {
-    /// Axes that move, for example 1,3; default: all
+    /// Axes that move, for example 1,3 [default: all axes]
     #[arg(long, value_name = "AXES")]
     axes: Option<String>,
 }
@@ -195,7 +195,7 @@ impl Axes {
         Ok(ranges.into_iter().flatten().collect())
     }
 
-    /// Returns those of axes 1 and 2 that the numbers do not name (4.2.1); empty if all axes move.
+    /// Returns axis 1, axis 2 or both axes, if the numbers do not name them (4.2.1); empty if all axes move.
     pub fn unnamed(&self, given: &[String]) -> Vec<usize> {
         let named = self.pairs(given).unwrap_or_default();
         let is_named = |axis: &usize| named.iter().any(|(named, _)| named == axis);
@@ -251,10 +251,10 @@ pub struct Arch {
     /// Arch motion: arch axis and its arch position, for example 3:10.0
     #[arg(long = "arch", group = "way", value_name = "AXIS:POS", value_parser = peak)]
     peak: Option<Peak>,
-    /// Start of the arch; default: 0
+    /// Start of the arch [default: 0]
     #[arg(long, value_name = "POS", requires = "peak", allow_hyphen_values = true)]
     arch_start: Option<String>,
-    /// End of the arch; default: 0
+    /// End of the arch [default: 0]
     #[arg(long, value_name = "POS", requires = "peak", allow_hyphen_values = true)]
     arch_end: Option<String>,
     /// Unit of the arch positions

@@ -4,7 +4,8 @@
 use clap::{Arg, Args, Command};
 use schemars::{JsonSchema as _, Schema, SchemaGenerator};
 
-// Only the `bus` module, because the commands of the folder depend on the link, and the link on this list.
+// Only the `bus` module is imported, because the commands of the folder depend on the link, and the link depends on
+// this list.
 use super::devicenet::bus as devicenet;
 use super::eip::bus as eip;
 use super::fieldbus::{Fieldbus, Search, Serve};

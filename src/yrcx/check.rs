@@ -13,7 +13,7 @@ use armctl_frame::settings::Sessions;
 /// Layers that follow the layers of the fieldbus.
 const SIGNALS: [&str; 8] = ["CPU", "emergency stop", "alarm", "remote command", "program", "mode", "servo", "origin"];
 
-/// Checks the layers; read-only. If a session is open, the check reads the image through the session and opens no
+/// Checks the layers. It only reads. If a session is open, the check reads the image through the session and opens no
 /// second connection for images.
 pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure> {
     let fieldbus = endpoint(robot)?.fieldbus();
@@ -120,6 +120,6 @@ fn signals(image: &Image, held: bool, layers: &mut Layers) {
         "origin",
         output::ORIGIN_COMPLETE.is_on(image),
         ("complete", "incomplete"),
-        "use `yrcx origin`: moves to positions need a complete origin",
+        "use `yrcx origin`: a move to a position needs a complete return to origin",
     );
 }

@@ -18,7 +18,7 @@ commands! {
     pub enum Clock {
         /// Read date and time
         Get(Get),
-        /// Set date and time: now, 2026-03-01T08:45:00, 2026-03-01 or 08:45
+        /// Set date and time, for example `now`, 2026-03-01T08:45:00, 2026-03-01 or 08:45
         Set(Set),
     }
 }
@@ -148,7 +148,8 @@ fn in_words(seconds: u64) -> String {
 #[derive(Debug, Args)]
 #[command(after_help = "The controller clock uses local time. It supports the years 2000 to 2099.")]
 pub struct Set {
-    /// now, or a date, a time or both: 2026-03-01T08:45:00, 2026-03-01, 08:45
+    /// `now` for the time of this computer, or a date, a time or both, for example 2026-03-01T08:45:00, 2026-03-01 or
+    /// 08:45
     #[arg(value_name = "TIME", value_parser = moment)]
     moment: Moment,
 }
@@ -216,7 +217,7 @@ impl Command for Set {
         };
         let [old_date, old_time] =
             read_before(link, time.is_some(), date.is_some() || self.moment == Moment::Now).await?;
-        // The time is set first: otherwise midnight could pass on the old time and advance the new date.
+        // The time is set before the date. Otherwise the old time could pass midnight and advance the new date.
         let mut items = Vec::new();
         if let Some(time) = time {
             let order = time_order(link, time)?;

@@ -113,7 +113,7 @@ commands! {
         /// I/O ports of eight signals
         Port(Subcommands<port::Port>),
         "Link":
-        /// Diagnose the network board
+        /// Diagnose the EtherNet/IP board
         Eip(Subcommands<eip::Eip>),
         /// Diagnose DeviceNet
         Devicenet(Subcommands<devicenet::DeviceNet>),

@@ -39,7 +39,7 @@ pub fn endpoint(robot: &Robot) -> Result<Endpoint<'_>, Failure> {
     }
 }
 
-/// What was opened, with a simulator that must live as long.
+/// A value that was opened, with the simulator that must live as long as this value.
 type WithSimulator<T> = (T, Option<Box<dyn fmt::Debug>>);
 /// Explicit messaging client.
 pub type OpenBoard = WithSimulator<Box<dyn Board>>;
@@ -75,7 +75,8 @@ impl Endpoint<'_> {
         self.on_fieldbus(robot, access, screen, |fieldbus, at| (fieldbus.board)(at)).await
     }
 
-    /// Opens something on the fieldbus, with a simulator that must live as long, and a packet recorder if requested.
+    /// Opens a value on the fieldbus. Also returns the simulator that must live as long as this value, and the packet
+    /// recorder if a recording is requested.
     async fn on_fieldbus<T>(
         &self,
         robot: &Robot,

@@ -32,13 +32,13 @@ pub struct Decode {
     /// WO0 to WO15, for example 0x4000,0x0002,0x014E
     #[arg(long, value_name = "WORDS", value_parser = words)]
     wo: Option<Words>,
-    /// A capture file (pcap or pcapng), a candump log, or a file of PROFIBUS telegrams; - for stdin. Or the telegrams
+    /// A capture file (pcap or pcapng), a candump log, or a file of PROFIBUS telegrams. - means stdin. Or the telegrams
     /// themselves in hexadecimal (spaces, colons and 0x are allowed between the bytes)
     #[arg(value_name = "FILE|HEX", conflicts_with_all = ["wi", "wo"])]
     capture: Vec<String>,
     #[command(flatten)]
     selection: Selection,
-    /// List images without new content too
+    /// Also list images without new content
     #[arg(long, help_heading = "Capture files")]
     every_image: bool,
 }

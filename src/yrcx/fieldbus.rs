@@ -32,7 +32,7 @@ pub struct Fieldbus {
     ///
     /// [`LINKTYPE_RAW`]: armctl_transport::tap::LINKTYPE_RAW
     pub link_type: u16,
-    /// Layers of `robots check` between the name layer and the signal layers, in order. There is at least one.
+    /// Layers of `robots check` between the name layer and the signal layers, in order. There is at least one layer.
     pub layers: &'static [&'static str],
     /// Whether armctl can send other requests while a session on this computer is open. True for a network; false for
     /// an adapter that only one process can use.
@@ -109,7 +109,7 @@ pub fn device_file<T, E: fmt::Display>(
 /// Purpose of a link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
-    /// Use the link as the URL requests, which usually means to send commands.
+    /// Use the link as the URL requests. Usually, the link then sends commands.
     Command,
     /// Only read.
     Look,
@@ -258,9 +258,9 @@ pub trait Serve {
 /// A controller to serve.
 #[derive(Debug)]
 pub struct ToServe<'a> {
-    /// One of several simulators of the fieldbus.
+    /// Name of the simulator, if the fieldbus has several.
     pub simulator: Option<&'a str>,
-    /// Its start state.
+    /// Start state of the controller.
     pub start: Start,
     /// Name of the pseudo-terminal.
     pub link: Option<&'a Path>,

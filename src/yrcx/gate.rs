@@ -358,7 +358,7 @@ fn risk_of(bits: &[String]) -> Risk {
     differ.map(|signal| signal.risk(signal.is_on(&image))).max().unwrap_or(Risk::Write)
 }
 
-/// Returns the frames of a plan. The flag says whether the frame is sent in any case.
+/// Returns the frames of a plan. The flag is `true` if the frame is sent in any case.
 fn frames(plan: &Value) -> Vec<(Frame, bool)> {
     let texts =
         |value: &Value| value.as_array().map(|all| all.iter().map(|text| text.as_str().unwrap().to_owned()).collect());
@@ -420,12 +420,13 @@ impl Bench {
         let peer = Noting(in_process(&Sim::default()).unwrap(), Image::default(), Arc::clone(&shown));
         let access = Access::reading(ConnectMode::Control);
         let link = runtime.block_on(Link::to_peer(&simulated, &access, &QUIET, Box::new(peer))).unwrap();
-        // The tests use the settings of a real controller, because the gate must treat the simulator as one.
+        // The tests use the settings of a real controller, because the gate must treat the simulator as a real
+        // controller.
         let (robot, _) = real("status");
         Self { runtime, robot, link, shown }
     }
 
-    /// Runs a command line as the command frame does: with `--yes`, or without a terminal for the question.
+    /// Runs a command line as `armctl_frame` does: with `--yes`, or without a terminal for the question.
     fn run(&mut self, line: &str, yes: bool) -> Result<Value, Failure> {
         let (_, command) = real(line);
         let intent = command.intent(Some(&self.robot));

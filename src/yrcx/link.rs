@@ -262,7 +262,7 @@ impl Link {
         self.unit
     }
 
-    /// Returns a usage error if the user gave `--unit`; `why` says why the command does not use it.
+    /// Returns a usage error if the user gave `--unit`; `why` is the reason why the command does not use this argument.
     pub fn no_unit(&self, why: &str) -> Result<(), Failure> {
         if self.unit == 0 {
             return Ok(());

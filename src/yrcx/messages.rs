@@ -6,7 +6,8 @@ use super::fieldbus::BusBoard;
 use super::link::Yrcx;
 use crate::prelude::*;
 
-/// A report that explicit messages read. Nothing is connected, polled or locked.
+/// A report that is read with explicit messages. These messages open no I/O connection, start no polls, and lock
+/// nothing.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
 pub trait BoardReport: Report + Sized + 'static {
     /// Client of the device.

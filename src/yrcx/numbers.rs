@@ -1,4 +1,4 @@
-//! Numbers of points, variables, tasks on a command line, in the ranges of the protocol's fields.
+//! Numbers of points, variables and tasks on a command line, in the ranges of the protocol's fields.
 
 use armctl_controller::typed;
 use armctl_controller::yrcx::table::{Command, Field};

@@ -42,7 +42,7 @@ one_row! {
     Speed(self) "yrcx.speed" -> WrittenItems<Json> {
         /// Speed to set
         setting: SpeedSetting,
-        /// Percent, 1 to 100
+        /// Speed in percent, 1 to 100
         percent: String,
     }
     gives self.setting.row().0,
@@ -59,7 +59,7 @@ one_row! {
         /// Axis, 1 to 4
         #[arg(long, value_name = "AXIS")]
         axis: String,
-        /// Percent of the maximum torque, 1 to 100
+        /// Limit in percent of the maximum torque, 1 to 100
         percent: String,
     }
     gives Command::TorqueLimit,
@@ -72,7 +72,7 @@ one_row! {
 
     /// Sets the inching distance.
     InchDistance(self) "yrcx.inch-distance" -> WrittenItems<Json> {
-        /// Pulses, or steps of 0.001 mm for Cartesian and tool axes; 1 to 10000
+        /// Distance from 1 to 10000: pulses, or steps of 0.001 mm for Cartesian and tool axes
         distance: String,
     }
     gives Command::InchAmountSet,
@@ -176,8 +176,8 @@ one_row! {
     /// Resets the status of remote commands to ready.
     #[command(
         after_help = "armctl resets the status before and after each command, so this command is rarely necessary. \
-                      Use it if another client's command left an end status. The command does not stop a motion or a \
-                      running command. It does not reset an alarm (`yrcx alarm reset`)."
+                      Use this command if the command of another client left an end status. The command does not stop \
+                      a motion or a running command. It does not reset an alarm (`yrcx alarm reset`)."
     )]
     StatusReset(self) "yrcx.status-reset" -> Done {}
     gives Command::StatusReset,

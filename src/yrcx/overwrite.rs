@@ -33,7 +33,7 @@ pub fn confirmation(command: Command) -> Confirmation {
 /// must confirm before data is overwritten. If old and new data are equal, nothing is written.
 pub async fn give(link: &mut Link, authority: &Authority<'_>, order: &Order, intent: String) -> Result<Done, Failure> {
     if !overwrites(order) {
-        // The robot is not reserved while the user thinks about a question.
+        // The robot is not reserved while a question is open.
         if !authority.asks() {
             link.reserve(order).await?;
         }
@@ -258,7 +258,7 @@ fn computed(
     Ok(new)
 }
 
-/// Returns a point or shift with one changed element; a description in words if the rest of it is unknown.
+/// Returns a point or shift with one changed element; a description in words if the rest of the row is unknown.
 fn element(command: Command, values: &Values, old: Option<&Values>) -> Result<Values, String> {
     let number = values.int(Key::Element).unwrap_or_default().trailing_zeros();
     let value = values.int(Key::Value).unwrap_or_default();

@@ -84,7 +84,8 @@ impl Store for Parameters {
     const WORDS: TableWords = TableWords {
         nouns: ["parameter", "parameters"],
         placeholder: "PARAMETER",
-        range: "Name or number: WEIGHT; for an axis: TOLE.3, TOLE.1-4 or 259.3; TOLE selects all axes",
+        range: "Name or number of a parameter, such as WEIGHT. With an axis: TOLE.3, TOLE.1-4 or 259.3. TOLE selects \
+                all axes",
         reading: None,
         writing: None,
     };
@@ -174,7 +175,7 @@ impl Store for Parameters {
 }
 
 impl Writable for Parameters {
-    /// New value; `None` if no value is given, for example in a dry run that does not know the value.
+    /// New value; `None` if no value is given, for example in a dry run, in which the value is unknown.
     type Draft = Option<i32>;
 
     const RISK: Risk = Risk::Destroy;

@@ -11,17 +11,17 @@ use armctl_controller::yrcx::table::Command;
 commands! {
     /// Calculations with points and shifts.
     pub enum PointCalc {
-        /// Copy a point: 100 --to 1
+        /// Copy a point, for example `100 --to 1`
         Copy(Copy),
-        /// Add a point to another point: 100 --to 1
+        /// Add a point to another point, for example `100 --to 1`
         Add(Add),
-        /// Subtract point 100 from point 1, which changes: 100 --from 1
+        /// Subtract a point from another point: `100 --from 1` changes point 1
         Sub(Sub),
-        /// Copy a pallet position to a point: 2 --place 133 --to 100
+        /// Copy a pallet position to a point, for example `2 --place 133 --to 100`
         Pallet(Pallet),
-        /// Set one element of a point: 1 --element 4 --mm 1.0
+        /// Set one element of a point, for example `1 --element 4 --mm 1.0`
         Element(Element),
-        /// Set one element of a shift: 1 --element 2 --mm 1.0
+        /// Set one element of a shift, for example `1 --element 2 --mm 1.0`
         ShiftElement(ShiftElement),
     }
 }

@@ -14,9 +14,9 @@ use armctl_frame::robot::item::{Columns, Item, Items, Written, WrittenItems};
 commands! {
     /// Commands for ports.
     pub enum Port {
-        /// Read ports or signals: DI2, DO12, DO2.1
+        /// Read ports or signals, for example DI2, DO12 or DO2.1
         Get(Get),
-        /// Switch a port or a signal: DO12 7, DO2.1 on
+        /// Switch a port or a signal, for example `DO12 7` or `DO2.1 on`
         Set(Set),
         /// Print each change of ports
         Watch(Watch<Get>),

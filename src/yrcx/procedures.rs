@@ -56,7 +56,7 @@ procedures! {
     /// Switches the servos on after power on. Sets SI(00) on, then SI(01) on, and waits until SO(02) confirms.
     PowerOn "yrcx.power-on" power_on "servo_on" = true, "servos are on" was SERVO_ON;
     /// Puts the controller into emergency stop. Sets SI(00) off, and waits until SO(00), SO(03) and SO(02) confirm. Use
-    /// a session: without one, the connection ends, and the controller reports a link fault instead.
+    /// a session. Without a session, the connection ends, and the controller reports a link fault instead.
     EmergencyStop "yrcx.emergency-stop" emergency_stop "emergency_stop" = true, "the controller is in emergency stop" true;
     /// Ends the emergency stop and switches the servos on. Sets SI(00), SI(16) and SI(01), and waits for the
     /// confirmation of each.

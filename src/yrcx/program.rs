@@ -149,7 +149,7 @@ one_row! {
     Select(self) "yrcx.program.select" -> Done {
         #[command(flatten)]
         program: Registered,
-        /// Task, 1 to 16; default: the lowest vacant task
+        /// Task, 1 to 16 [default: the lowest vacant task]
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=16))]
         task: Option<u16>,
         /// Priority of the task, 1 to 64

@@ -1,4 +1,4 @@
-//! `yrcx raw`: words of any remote command, with a decoded answer.
+//! `yrcx raw`: sends the words of any remote command, and decodes the answer.
 
 use super::field_row::FieldRow;
 use super::refusal::refused;

@@ -51,7 +51,7 @@ fn refused_order(order: &Order, alarm: Alarm) -> Failure {
     Failure { message: failure.message.replacen(&format!("{id}: alarm"), &named, 1), ..failure }
 }
 
-/// Object of a command: `pallet 3`; empty if it has none.
+/// Object of a command, for example `pallet 3`; empty if the command has no object.
 pub fn object(order: &Order) -> String {
     let instances = order.row().request().filter(|field| INSTANCES.contains(&field.key));
     let named = instances.filter_map(|field| {

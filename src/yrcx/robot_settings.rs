@@ -14,9 +14,9 @@ use armctl_frame::store::Row;
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub struct Setting {
     name: &'static str,
-    /// Command that reads it, and the field of the answer.
+    /// Command that reads the setting, and the field of the answer.
     pub read: (Command, Key),
-    /// Command that writes it, and the field of the request.
+    /// Command that writes the setting, and the field of the request.
     pub write: (Command, Key),
 }
 
@@ -50,7 +50,7 @@ pub static SETTINGS: [Setting; 5] = [
 /// The settings of a robot.
 #[derive(Debug)]
 pub struct Settings {
-    /// 1 to 4.
+    /// Robot number, 1 to 4.
     pub robot: u8,
 }
 

@@ -30,7 +30,7 @@ pub struct ServeArgs {
     /// For DeviceNet and PROFIBUS: create a symbolic link to the pseudo-terminal, and remove the link at the end
     #[arg(long, value_name = "PATH", alias = "slcan-link")]
     link: Option<PathBuf>,
-    /// Start state (TOML): robots, memory, programs, alarms, timed events
+    /// File with the start state (TOML): robots, memory, programs, alarms, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
     /// Read console lines on stdin; `help` lists them

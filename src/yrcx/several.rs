@@ -44,7 +44,7 @@ pub async fn ask_each(link: &mut Link, screen: &Screen, what: &str, orders: &[Or
     Ok(Answers { outcomes, asked: orders.len() })
 }
 
-/// Notes read requests in a dry run, each with its object. It ends there.
+/// Notes read requests in a dry run, each with its object. The dry run ends there.
 pub fn plan_each(link: &mut Link, orders: &[Order]) -> Result<(), Failure> {
     if !link.is_dry() || orders.is_empty() {
         return Ok(());
@@ -56,7 +56,7 @@ pub fn plan_each(link: &mut Link, orders: &[Order]) -> Result<(), Failure> {
     Err(unknown())
 }
 
-/// Sends one of several requests. The flag says whether the next request can succeed.
+/// Sends one of several requests. The flag is `true` if the next request can succeed.
 async fn ask(link: &mut Link, order: &Order) -> (Result<Values, Failure>, bool) {
     match link.try_ask(order).await {
         Ok(Err(refusal)) => (Err(refused(order.row(), refusal.alarm)), !is_about_commands(refusal.alarm)),

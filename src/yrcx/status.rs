@@ -17,10 +17,10 @@ use armctl_frame::robot::state::{Fault, Mode, PositionMm, State};
 /// Shows the signals. Also shows servos and position in a session, on a simulator in this process, or with --full.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Reading signals does not affect the controller. Servos and position need remote commands. A session \
-                  reads them unless another client's command is running. Without a session, --full takes control of \
-                  the controller to read them. The controller then raises an alarm when the command ends (`armctl \
-                  help safety`)."
+    after_help = "Reading signals does not affect the controller. Servos and position need remote commands. In a \
+                  session, armctl reads servos and position, unless another client's command is running. Without a \
+                  session, --full takes control of the controller to read servos and position. The controller then \
+                  raises an alarm when the command ends (`armctl help safety`)."
 )]
 pub struct Status {
     /// Take control of the controller and also read servos and position
@@ -45,12 +45,12 @@ impl Command for Status {
         let latest = latest()?;
         if link.is_dry() && (self.full || link.commands()) {
             let noted = plan_each(link, &orders);
-            let reason = Reason::about("which alarm").depending_on("the signals: read only if there is an alarm");
+            let reason = Reason::about("which alarm").depending_on("the signals: sent only if there is an alarm");
             link.plan_depending(&latest, &latest, reason);
             noted?;
         }
         if link.is_dry() && link.is_held() {
-            let reason = Reason::default().depending_on("the session: read only if no other command is running");
+            let reason = Reason::default().depending_on("the session: sent only if no other command is running");
             for order in &orders {
                 link.plan_depending(order, order, reason);
             }
@@ -187,7 +187,8 @@ impl Report for StatusReport {
     }
 }
 
-/// Reads the current position. A robot whose origin is unknown refuses to report its position; then returns `None`.
+/// Reads the current position. A robot whose origin is unknown refuses to report its position. In this case, returns
+/// `None`.
 pub(super) async fn position_mm(link: &mut Link) -> Result<Option<[f64; 4]>, Failure> {
     let order = link.draft(table::Command::PositionMm)?.valid_order()?;
     let done = link.try_ask(&order).await?.ok();

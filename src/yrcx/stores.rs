@@ -84,14 +84,14 @@ impl PartialEq for Row {
 }
 
 impl Row {
-    /// The values of its fields.
+    /// Values of the fields.
     pub fn values(&self) -> &Values {
         &self.values
     }
 
     /// Row with these values.
     pub fn new<K: Kind>(values: Values) -> Self {
-        // A layout can have several fields of a key.
+        // A layout can have several fields with the same key.
         let counts = |field: &&'static table::Field| {
             field.when.is_none_or(|when| (when.least..=when.most).contains(&int(&values, when.key)))
         };
@@ -113,7 +113,8 @@ impl<K: Kind> Numbered<K> {
     /// Request that stores a row with these texts.
     fn write_order(number: i32, texts: &[String]) -> Result<Order, Failure> {
         let fields = K::FIELDS.iter().zip(texts);
-        // A hand is written to a robot, and its answer names that robot. No hand system is an empty text.
+        // In the request that writes a hand, the robot is the field `Robot`. In the answer to a read, the robot is the
+        // field `Owner`. An empty text means that the hand system is not sent.
         let draft = fields.fold(K::WRITE.order().with(K::READ.1, number), |draft, ((_, key, _), text)| match key {
             Key::Owner => draft.with(Key::Robot, text.as_str()),
             Key::HandSystem if text.is_empty() => draft,

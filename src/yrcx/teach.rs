@@ -18,7 +18,7 @@ pub struct Teach {
     /// Point to write, 0 to 29999
     #[arg(value_name = "POINT", required_unless_present = "flag")]
     point: Option<String>,
-    /// Point as an option
+    /// Point to write, as an option instead of an argument
     #[arg(id = "flag", long = "point", value_name = "POINT", conflicts_with = "point", hide = true)]
     flag: Option<String>,
     /// Unit of the point [default: unchanged]

@@ -73,7 +73,7 @@ pub(super) fn read_example(id: &str, line: &[&str]) -> Value {
     outcome.unwrap()
 }
 
-/// Returns the replies to the reads before an overwrite. They say that nothing is defined yet.
+/// Returns the replies to the reads before an overwrite. They report that nothing is defined yet.
 pub(super) fn undefined(line: &[&str]) -> Vec<Reply> {
     let mut refused = [0; COMMAND_WORDS];
     refused[..3].copy_from_slice(&[0x4000, 2, 904]);
@@ -240,7 +240,8 @@ impl Bench {
         Self { runtime, robot, link, peer }
     }
 
-    /// Runs `armctl yrcx WORDS…` and returns the data of its report. A report with a failure gives the failure.
+    /// Runs `armctl yrcx WORDS…` and returns the data of its report. If the report contains a failure, returns this
+    /// failure.
     pub(super) fn run(&mut self, words: &[&str]) -> Result<Value, Failure> {
         let (data, failure) = self.report(words)?;
         failure.map_or(Ok(data), Err)

@@ -1,6 +1,6 @@
-//! Live view of a robot. It shows the signals. If its connection already commands the controller, it also shows
-//! position, torque and alarm from remote commands. A connection in a session or to a simulator in this process
-//! commands the controller.
+//! Live view of a robot. It shows the signals. If the connection of this view already commands the controller, the view
+//! also shows position, torque and alarm from remote commands. A connection in a session or to a simulator in this
+//! process commands the controller.
 //!
 //! All clients of a session share the remote commands of the controller, and only one command can run at a time. So in
 //! a session, a view sends one remote command per interval and keeps the results.
@@ -49,7 +49,7 @@ const LOOKS: Duration = Duration::from_millis(100);
 /// Minimum interval of remote commands in a session.
 const TURNS: Duration = Duration::from_millis(500);
 
-/// Number of the first general-purpose signals, SI(20) and SO(20), and the number of groups of eight signals.
+/// Number of the first general-purpose signals, SI(20) and SO(20). `GROUPS` is the number of groups of eight signals.
 const FIRST: u16 = 20;
 const GROUPS: u16 = 4;
 

@@ -1,5 +1,5 @@
-//! Arguments of a command line with the set of typed names. An argument that does not fit the other choices is rejected and not
-//! ignored.
+//! Arguments of a command line, with the names of the arguments that the user typed. A typed argument that does not fit
+//! the other choices is rejected, and not ignored.
 
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, FromArgMatches, Id};

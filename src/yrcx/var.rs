@@ -18,15 +18,15 @@ use armctl_frame::store::{Copy, Dump, Get, List, Restore};
 commands! {
     /// Commands for static variables.
     pub enum Var {
-        /// Read variables: SGI1, SGI0..SGI31, SGR5
+        /// Read variables, for example SGI1, SGI0..SGI31 or SGR5
         Get(Get<Numbered<Variables>>),
         /// List the variables that are not 0
         List(List<Numbered<Variables>>),
-        /// Set a variable to a number or to another variable: SGI1 10000
+        /// Set a variable to a number or to another variable, for example `SGI1 10000`
         Set(Set),
         /// Print each change of variables
         Watch(Watch<Get<Numbered<Variables>>>),
-        /// Copy a variable to other variables: SGI1 SGI2..SGI5
+        /// Copy a variable to other variables, for example `SGI1 SGI2..SGI5`
         Copy(Copy<Numbered<Variables>>),
         /// Save variables to a CSV file
         Dump(Dump<Numbered<Variables>>),
@@ -146,7 +146,7 @@ impl Operand {
             Self::Number(text) => settings_report::number(text),
             Self::Variable(number) => name(*number).into(),
         };
-        // armctl does not read the variable back, so it knows the new value only for an assignment of a number.
+        // armctl does not read the variable back, so the new value is known only for an assignment of a number.
         let new = Some(operand.clone()).filter(|_| operation == "set" && matches!(self, Self::Number(_)));
         let item = Item::with("variable", variable, Operation { operation, operand }, Ok(new));
         WrittenItems::describe(words, vec![Written::new(item, done.old.value(), true)])

@@ -1,4 +1,4 @@
-//! Checks cycles of modules. The modules of a cycle can only be understood together, so no cycle may have more modules
+//! Checks cycles of modules. The modules of a cycle can be understood only together, so no cycle may have more modules
 //! than the largest simulator.
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -114,7 +114,7 @@ fn command_flags_do_not_shadow_global_flags() {
             check_flags(verb, &known, &format!("{path} {}", verb.get_name()), found);
         }
     }
-    /// All forms of a flag that clap accepts, including hidden ones.
+    /// All forms of a flag that clap accepts, including hidden forms.
     fn flags(argument: &clap::Arg) -> impl Iterator<Item = String> {
         let longs = argument.get_long().into_iter().chain(argument.get_all_aliases().unwrap_or_default());
         let shorts = argument.get_short().into_iter().chain(argument.get_all_short_aliases().unwrap_or_default());

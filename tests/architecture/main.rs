@@ -51,7 +51,7 @@ const BORDERS: [(&str, &[&str]); 9] = [
     ("transport/", &["std::time::SystemTime"]),
     ("frame/output/", &["crate::client", "crate::controller", "crate::transport", "tokio"]),
     ("frame/settings/", &["crate::client", "crate::transport", "tokio"]),
-    // Every module can use this one, so it uses none.
+    // Every module can use this module, so this module uses none of them.
     ("frame/failure.rs", &["crate::client", "crate::controller", "crate::transport", "clap", "tokio"]),
     // Commands use the link of their family; only the link opens connections.
     ("frame/", CONNECTIONS),
@@ -59,7 +59,7 @@ const BORDERS: [(&str, &[&str]); 9] = [
     ("command/", &["crate::app"]),
 ];
 
-/// Ways to another machine or process around the link of a family.
+/// Paths with which code could reach another machine or process without the link of a family.
 const CONNECTIONS: &[&str] = &["tokio::net", "std::net::UdpSocket", "std::net::TcpStream", "std::process"];
 
 /// Parts of the frame that end the process, or start others: the guardian, editor, pager and jq.
@@ -132,7 +132,7 @@ const PRINTING: [&str; 8] = ["stdout()", "stderr()", "println!", "eprintln!", "p
 const EXITING: [&str; 3] = ["process::exit", "process::abort", "ExitCode::from("];
 
 /// Ways to read a file, and the only modules that can contain them, because they check size and file type. The second
-/// one reads a lock file, the third is a test.
+/// module reads a lock file, and the third module is a test.
 const READING: [&str; 5] = ["fs::read(", "read_to_string(", "File::open(", "File::options(", ".read(true)"];
 const READERS: [&str; 3] = ["files/mod.rs", "transport/session/socket.rs", "yerc/var/command_tests.rs"];
 

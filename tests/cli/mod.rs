@@ -1,8 +1,8 @@
 //! Runs every command with the built binary, and checks its output and exit code.
 //!
 //! `NAME.console` files are transcripts; `transcript.rs` describes their syntax. `SNAPSHOTS=overwrite cargo test --test
-//! terminal cli::` writes the output into them. To extend a transcript, add the commands, run this, and review the
-//! result.
+//! terminal cli::` writes the output into them. To extend a transcript, add the commands, run this command line, and
+//! review the result.
 #![cfg(unix)]
 
 mod csv;

@@ -27,7 +27,7 @@ pub const ADAPTER_ADDRESS: Ipv4Addr = Ipv4Addr::new(10, 0, 0, 2);
 pub struct Mirror {
     pub image: Vec<u8>,
     pub run: bool,
-    /// Every image that differs from the previous one, with the run bit.
+    /// Every image that differs from the previous image, with the run bit.
     pub history: Vec<(Vec<u8>, bool)>,
     pub events: Vec<Event>,
 }

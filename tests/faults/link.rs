@@ -55,8 +55,8 @@ pub(crate) trait Controller {
     /// Whether the controller can refuse with this status for another reason than being busy.
     fn may_refuse(&self, status: Status) -> bool;
 
-    /// Total number of state-changing requests that the controller has executed. When this is called, no datagram to
-    /// the controller may be in transit.
+    /// Total number of state-changing requests that the controller has executed. When this function is called, no
+    /// datagram to the controller may be in transit.
     fn executed(&self) -> u32;
 
     /// Prepares a transfer of this content in this direction. Returns the file name for the request, and the content
@@ -97,7 +97,7 @@ pub(crate) struct Run<O> {
     /// Duration from the first to the last step of the session.
     pub(crate) duration: Duration,
     /// Duration from the last progress of the session to its end. Progress is content, or a frame that differs from the
-    /// previous one in more than the id.
+    /// previous frame in more than the id.
     pub(crate) idle: Duration,
 }
 
@@ -111,7 +111,7 @@ pub(crate) struct Link<C> {
     launched: u64,
     /// Number of busy refusals so far.
     busy: usize,
-    /// Number of client frames before the one that is lost.
+    /// Number of client frames before the lost frame.
     lose_in: Option<usize>,
 }
 

@@ -21,7 +21,8 @@ const BLOCK: usize = 479;
 pub(crate) enum ControllerKind {
     /// Recognizes a duplicate by its id and block number, and sends the last answer again.
     Resends,
-    /// Handles every ACK as a request for the next block, and every request as a new one. Never sends a frame again.
+    /// Handles every ACK as a request for the next block, and every request as a new request. Never sends a frame
+    /// again.
     NoResend,
 }
 

@@ -32,9 +32,9 @@ const TRANSFER_SEEDS: u64 = 25;
 /// Numbers of the client under test and of an observer.
 const CLIENT: u64 = 1;
 const OBSERVER: u64 = 2;
-/// Longer than any work of a controller, including its wait for a lost client.
+/// Time that is longer than any work of a controller, including its wait for a lost client.
 const REST: Duration = Duration::from_secs(30);
-/// Longer than the simulator needs for a backup.
+/// Time that is longer than the simulator needs for a backup.
 const LONG: Duration = Duration::from_secs(600);
 /// First of the D variables that the test writes. Each variable is written once.
 const FIRST_WRITTEN: u16 = 10;

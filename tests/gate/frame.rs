@@ -46,8 +46,8 @@ fn session_of_a_read_only_robot_passes_reads_and_stops_only() {
     assert_eq!(desk.run("session close line3").exit, Some(0));
 }
 
-/// A session is opened, and then its robot becomes read-only. From this time, the session passes no change. It reports
-/// the reason to a client with another inventory.
+/// A session is opened, and then its robot becomes read-only. From this time, the session passes no request that
+/// changes something. It reports the reason to a client with another inventory.
 #[test]
 fn read_only_applies_to_an_open_session() {
     for (family, changes, stop, read) in [
@@ -63,7 +63,8 @@ fn read_only_applies_to_an_open_session() {
         let controller = Simulator::start(family);
         let desk = Workspace::new(&entry("cell", &controller.url, ""));
         assert_eq!(desk.run("-r cell session open --background").exit, Some(0), "{family}");
-        // The other inventory does not have this robot, so the client does not know that the robot becomes read-only.
+        // The other inventory does not have this robot, so the client cannot read there that the robot became
+        // read-only.
         std::fs::write(desk.folder.path().join("other.toml"), "").unwrap();
         let around = |words: &str| desk.run(&format!("--config other.toml -t {} {family} {words}", controller.url));
         assert_eq!(around(changes[0]).exit, Some(0), "{family}");

@@ -1,4 +1,4 @@
-//! `moto-hses-client` and the client of this project with the same simulator. Each client reads what the other one
+//! `moto-hses-client` and the client of this project with the same simulator. Each client reads what the other client
 //! wrote.
 
 use std::net::{Ipv4Addr, SocketAddr};

@@ -362,7 +362,7 @@ async fn does_not_report_a_lost_upload_as_done() {
     let mut pieces = vec![Vec::new(), vec![b'x'; 600]];
     let request = FileName::new("NEW.JBI").unwrap().load();
     let end = peer.link.upload(&request, || Ok(pieces.pop().unwrap_or_default())).await;
-    // On a busy machine, the mock may answer only after the client has stopped to wait.
+    // On a busy machine, the mock may answer only after the client has stopped waiting.
     assert!(matches!(end, Ok(UploadEnd::OutcomeUnknown { sent: 479, taken: 0, .. }) | Err(_)), "{end:?}");
     assert!(peer.mock.state().read().await.get_file("NEW.JBI").is_none());
 }

@@ -99,7 +99,8 @@ fn commands_a_simulated_device_on_another_network_card() {
     check_recording(&format!("{place}/trace.pcapng"));
 }
 
-/// Commands with a controller and a DCP client of other authors. Our simulator is on the other network card.
+/// Shell script: a controller and a DCP client of other authors command our simulator, which is on the other network
+/// card of the pair.
 const DRIVER_COMMANDS: &str = r#"
 $THERE "$ARMCTL" sim yrcx --bus profinet --interface pd0 > "$FOLDER/sim" 2>&1 & D=$!
 until grep -q 'profinet://' "$FOLDER/sim"; do kill -0 $D || exit 1; done

@@ -7,7 +7,8 @@ use std::process::{Command, Stdio};
 /// Message of a test that is skipped because there are no user namespaces.
 pub const SKIPPED: &str = "skipped: there are no user namespaces here";
 
-/// Creates both namespaces, and runs `$INSIDE` in the first one. `$THERE COMMAND` runs a command in the second one.
+/// Creates both namespaces, and runs `$INSIDE` in the first namespace. `$THERE COMMAND` runs a command in the second
+/// namespace.
 const SCRIPT: &str = r#"
 set -e
 mount -t sysfs none /sys

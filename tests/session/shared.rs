@@ -23,7 +23,7 @@ struct DeviceServer {
 
 impl DeviceServer {
     /// Starts a device server for a simulator. When a second client connects, the server closes the first connection if
-    /// `evicts` is set, and otherwise the second one.
+    /// `evicts` is set, and otherwise the second connection.
     fn proxy(target: &str, evicts: bool) -> Self {
         let controller: SocketAddr = target.strip_prefix("tcp://").unwrap().parse().unwrap();
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
@@ -59,7 +59,8 @@ impl DeviceServer {
     }
 }
 
-/// Connects to a simulator. It accepts only one connection, so this waits until the previous one is closed.
+/// Connects to a simulator. The simulator accepts only one connection, so this function waits until the previous
+/// connection is closed.
 fn connected(controller: SocketAddr) -> TcpStream {
     loop {
         let line = TcpStream::connect(controller).unwrap();
@@ -133,7 +134,7 @@ fn monitors_share_a_link_for_one_client() {
         }
         top.press("q");
         assert!(top.end().success());
-        // A session that nobody uses ends by itself.
+        // A session without clients ends by itself.
         while !desk.files("sock").is_empty() {}
     }
 }

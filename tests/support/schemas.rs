@@ -65,8 +65,8 @@ fn forbid_extra_keys(schema: &mut Value) {
                 keys.insert("unevaluatedProperties".into(), false.into());
             }
             for (key, inner) in keys {
-                // A condition, or a variant of a flattened enum, has only some of the fields. The other fields are in
-                // the outer schema.
+                // An `if`, `then` or `else` part, or a variant of a flattened enum, has only some of the fields. The
+                // other fields are in the outer schema.
                 let is_part = matches!(key.as_str(), "if" | "then" | "else" | "not" | "allOf");
                 let is_variant = is_object && matches!(key.as_str(), "anyOf" | "oneOf");
                 if !(is_part || is_variant) {

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use rustix::termios::{InputModes, LocalModes, OptionalActions, Termios, Winsize, tcgetattr, tcsetattr, tcsetwinsize};
 use serialport::{SerialPort as _, TTYPort};
 
-/// Timeout of one read, and the maximum number of reads.
+/// Timeout of one read. `MAX_POLLS` is the maximum number of reads.
 const POLL_INTERVAL: Duration = Duration::from_secs(1);
 const MAX_POLLS: usize = 60;
 /// Time limit for a program. If the program has not ended within this time, the test fails.

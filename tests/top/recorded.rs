@@ -39,8 +39,8 @@ impl Recorded {
     }
 }
 
-/// Asserts that the requests only read: status, alarm, axes, positions, position errors, torque and I/O. Numbers and
-/// services are those of FS and DX 3.3.
+/// Asserts that the requests only read: status, alarm, axes, positions, position errors, torque and I/O. The numbers
+/// and services are from FS and DX 3.3.
 fn reads_of_yerc(sent: &Sent) {
     let frames = sent.pieces();
     assert!(frames.len() > 20);

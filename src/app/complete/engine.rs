@@ -46,7 +46,7 @@ pub(super) fn complete(
     let found = clap_complete::engine::complete(&mut reduced, before, index, None).ok()?;
     let mut found: Vec<Candidate> = found.iter().filter_map(candidate).collect();
     if current.is_empty() {
-        // For an empty word, a list of all forty global flags does not help the user.
+        // For an empty word, the forty global flags are not offered, because such a long list does not help the user.
         let is_flag = |candidate: &Candidate| candidate.value.starts_with('-') && candidate.value != "-";
         let has_others = found.iter().any(|candidate| !is_flag(candidate));
         found.retain(|candidate| if has_others { !is_flag(candidate) } else { own.contains(&candidate.value) });

@@ -56,8 +56,8 @@ pub(super) fn values(
     values
 }
 
-/// Returns the robot of the line, if it is exactly one. A real controller is reached only through a session, unless
-/// `connects`.
+/// Returns the robot of the line, if there is exactly one. A real controller is reached only through a session, unless
+/// `connects` is `true`.
 fn robot(family: Family, sources: &Sources, patience: Duration, connects: bool) -> Option<Robot> {
     let [robot] = <[Robot; 1]>::try_from(sources.robots(Some(family)).ok()?).ok()?;
     let sessions = match (robot.target.value.is_simulated(), robot.sessions) {

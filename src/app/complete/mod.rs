@@ -6,7 +6,7 @@
 //!
 //! `words[0]` is the program (`armctl`, or `yerc` if it was started with that name). `words[index]` is the word at the
 //! cursor, as typed so far; it may be empty. The shell scripts (`shell.rs`) and the line editor of `armctl repl` call
-//! the same function. It prints nothing and never fails. If no candidates are known, the result is empty.
+//! the same function. This function prints nothing and never fails. If no candidates are known, the result is empty.
 //!
 //! Arguments declare the [`ValueKind`] of their values: `#[arg(add = ValueKind::Robot)]`. Values of common kinds are in
 //! `values.rs`. Values of a family are in `command/FAMILY/complete.rs`. `live.rs` reads values from a robot if only the

@@ -25,7 +25,7 @@ pub struct Assistant {
 }
 
 impl Assistant {
-    /// Creates a helper for lines that are parsed with this parser and these flags.
+    /// Creates an assistant for lines that are parsed with this parser and these flags.
     pub fn new(meaning: &LineParser, globals: &Globals) -> Self {
         Self {
             meaning: RefCell::new(LineParser::new(meaning.prefix().to_vec())),

@@ -7,7 +7,8 @@ use tokio::time::sleep;
 
 use armctl_frame::output::prompt;
 
-/// Number and interval of the checks whether the editor has changed the terminal settings.
+/// Number of checks whether the editor has changed the terminal settings. `RETRY_PAUSE` is the pause between two
+/// checks.
 const TRIES: u32 = 40;
 const RETRY_PAUSE: Duration = Duration::from_millis(5);
 

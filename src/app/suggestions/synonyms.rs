@@ -59,7 +59,8 @@ pub const LINES: &[(&str, &[&str])] = &[
     ("where", &["yerc position", "yrcx position", "toyo position"]),
 ];
 
-/// Features that a family does not have but others have: preceding words, synonyms, alternative.
+/// Features that a family does not have but other families have. Each entry contains the preceding words, the synonyms
+/// of the feature, and the alternative.
 #[rustfmt::skip]
 pub const ABSENT: &[(&str, &[&str], &str)] = &[
     ("yerc", &["homing", "origin"],

@@ -6,7 +6,7 @@ use armctl_controller::toyo::table::{Command, Parameter};
 
 use super::{Client, Error, Refusal};
 
-/// The possible letters (TO 2-4, E01), in the axis order of a default machine.
+/// The letters that parameter E01 can contain (TO 2-4), in the axis order of a default machine.
 const LETTERS: [&str; 4] = ["X", "Y", "Z", "R"];
 
 /// The letter of each axis, in axis order; `None` if unknown.
@@ -42,14 +42,15 @@ impl Letters {
         *self == Self::USUAL
     }
 
-    /// Name of an axis (index 0 to 3) in settings and reports: `x`, or `ax1` if no letter identifies the axis.
+    /// Name of an axis (index 0 to 3) in settings and reports, for example `x`. If no letter identifies the axis, the
+    /// name contains the axis number, for example `ax1`.
     pub fn name(&self, index: usize) -> &'static str {
         const NUMBERED: [&str; 4] = ["ax1", "ax2", "ax3", "ax4"];
         let lower = ["x", "y", "z", "r"].into_iter().find(|lower| self.axis(lower) == Some(index));
         lower.or(NUMBERED.get(index).copied()).unwrap_or("")
     }
 
-    /// Parses letters such as `X Z Y R`. A letter that is not in the manual counts as unknown.
+    /// Parses letters, for example `X Z Y R`. A letter that is not in the manual counts as unknown.
     pub fn of_words(text: &str) -> Self {
         let words: Vec<&str> = text.split_whitespace().collect();
         Self([0, 1, 2, 3].map(|index| LETTERS.into_iter().find(|letter| words.get(index) == Some(letter))))

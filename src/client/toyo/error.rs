@@ -59,7 +59,7 @@ pub enum Error {
     #[error("{0}")]
     InvalidRequest(#[from] BlockError),
     /// A temporary change was not undone.
-    #[error("a temporary change could not be undone with {block}: {}", why(.cause.as_deref()))]
+    #[error("armctl could not undo a temporary change: {block} failed: {}", why(.cause.as_deref()))]
     NotUndone {
         /// The block that undoes the change.
         block: String,

@@ -31,7 +31,8 @@ impl Client {
             .map_err(|error| Error::NotSent(Box::new(error)))
     }
 
-    /// Plans the fence in a dry run. The fence depends on the same answer as the frame before it.
+    /// Plans the fence in a dry run. If an earlier answer decides whether the frame before the fence is sent, the same
+    /// answer decides whether the fence is sent.
     pub(super) fn plan_fence(&mut self) {
         if self.is_fenced {
             return;

@@ -41,13 +41,14 @@ use crate::{Ends, Grant, NotAuthorized, Plan, Reason, Watcher};
 
 /// A connection to one controller.
 ///
-/// The client processes one request at a time. The client stays usable after a call is dropped early: the session
-/// discards late answers.
+/// The client processes one request at a time. A call may be dropped before its end: the client stays usable, because
+/// the session discards late answers.
 #[derive(Debug)]
 pub struct Client {
     transport: Transport,
     session: LineSession,
-    /// The policy from [`Options`], and the policy in use.
+    /// The policy from [`Options`]. The field below is the policy in use, which can have shorter time limits
+    /// ([`Client::use_short_timeouts`]).
     configured_policy: Policy,
     policy: Policy,
     grant: Grant,
@@ -63,7 +64,7 @@ pub struct Client {
     is_line_lost: bool,
     opener: Option<Opener>,
     ends: Option<Ends>,
-    /// Whether no answer to an earlier request can arrive any more.
+    /// Whether all answers to earlier requests have arrived, so that an order needs no fence.
     is_fenced: bool,
     /// Dry run: the earlier answer that decides whether the last planned frame is sent.
     plan_condition: Option<String>,
@@ -134,7 +135,7 @@ const MAX_RECEIVED: usize = 64 * 1024;
 const MOTION_TIMEOUT: Duration = Duration::from_millis(300);
 /// The status page with the host state.
 const HOST_PAGE: u8 = 2;
-/// Poll interval of a session without a deadline.
+/// Longest wait in one turn of an exchange without a deadline.
 const IDLE_POLL_INTERVAL: Duration = Duration::from_secs(3600);
 
 impl Client {
@@ -142,7 +143,7 @@ impl Client {
     /// connected.
     ///
     /// # Errors
-    /// [`Error::Port`] and [`Error::DeviceServer`].
+    /// [`Error::Port`] or [`Error::DeviceServer`] if the line cannot be opened.
     pub async fn connect(endpoint: Endpoint, options: Options) -> Result<Self, Error> {
         let timeout = options.timeout;
         let mut client = Self::over(endpoint.open(timeout).await?, endpoint.character(), options);
@@ -232,7 +233,7 @@ impl Client {
         self.ask_now(request).await
     }
 
-    /// Sends one request like [`Self::try_ask`], without host control and without the fence.
+    /// Sends one request like [`Self::try_ask`], but does not switch the host ON and sends no fence.
     async fn ask_now(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Error> {
         let done = || Record::unlisted("OK");
         if self.is_dry() {
@@ -252,14 +253,15 @@ impl Client {
         Ok(Ok(content.unwrap_or(record)))
     }
 
-    /// Sends a request without host control and returns the answer, which may be a refusal.
+    /// Sends a request and returns the answer, which may be a refusal. The client does not switch the host ON for this
+    /// request.
     pub async fn raw(&mut self, request: &Request) -> Result<Answer, Error> {
         if request.risk() > Risk::Read && !is_stop(request) {
             self.fence().await?;
         }
         let planned = self.plan_all(std::slice::from_ref(request));
         if planned.is_err() && request.row().is_order() {
-            // A fence is sent after the order (see [`Self::settle`]).
+            // If an order is sent, a fence follows the order (see [`Self::settle`]).
             self.plan_fence();
         }
         planned?;
@@ -285,9 +287,9 @@ impl Client {
         }
     }
 
-    /// Confirms that the last order received its own answer. Sends a harmless read, unless a read was answered after
-    /// the order. The controller answers in the order of the requests, so all answers to the order arrive before the
-    /// answer to the read.
+    /// Confirms that the last order received its own answer, and not the answer to another order. Sends a harmless
+    /// read, unless a read was answered after the order. The controller answers in the order of the requests, so all
+    /// answers to the order arrive before the answer to the read.
     ///
     /// # Errors
     /// [`Error::OutcomeUnknown`] if the order received two contradictory answers.
@@ -406,7 +408,8 @@ impl Client {
         self.acquire(risk).await?;
         self.is_fenced = false;
         if risk == Risk::Destroy {
-            // A request of this risk may change E01: a write, or a load from a memory card.
+            // A request of this risk may change the axis letters (E01): it may be a write of E01, or a load from a
+            // memory card.
             self.letters = None;
         }
         if risk == Risk::Motion {
@@ -459,7 +462,8 @@ impl Client {
             let step = match self.session.poll(now) {
                 Step::Send(bytes) => {
                     let sent = self.send(&bytes).await;
-                    // A session sends a block completely or not at all. Another line may have sent a part of the block.
+                    // A session sends a block completely or not at all. A line without a session may have sent a part
+                    // of the block before the error.
                     is_sent |= sent.is_ok() || !self.transport.is_shared();
                     sent.map(|()| 0)
                 }
@@ -513,7 +517,7 @@ impl Client {
         if risk > Risk::Read { Error::OutcomeUnknown(unanswered) } else { Error::NoAnswer(unanswered) }
     }
 
-    /// Returns the error of a failed line. `is_open` is `true` if an order has no answer yet.
+    /// Returns the error of a failed line. `is_open` is `true` if the client sent an order and received no answer yet.
     fn broken(&mut self, error: io::Error, is_open: bool) -> Error {
         // A session that rejects a block has not sent it, and the line is unchanged.
         if let Some(busy) = SessionBusy::of(&error) {

@@ -16,7 +16,7 @@ impl Client {
         matches!(self.transport, Transport::DryRun(_))
     }
 
-    /// Returns the plan so far, with the frames that the client sends at its end, and clears it.
+    /// Returns the plan so far, and clears it. The plan includes the frames that the client would send when it closes.
     pub fn take_plan(&mut self) -> Plan {
         self.plan_end();
         self.transport.notes().map(std::mem::take).unwrap_or_default()

@@ -56,12 +56,12 @@ impl Client {
     pub async fn stop(&mut self, moving: Moving) -> Result<Record, Error> {
         if self.is_dry() {
             self.plan(&moving.stop(), "repeated until the robot stands still");
-            self.plan(&status_page(0), "repeated until the robot stands still: whether a program runs");
+            self.plan(&status_page(0), "whether a program runs; repeated until the robot stands still");
             if moving == Moving::Program {
                 self.plan_if(&Moving::Jog.stop(), "whether something still runs: an axis may be jogging");
                 self.plan_if(&status_page(0), "whether something still runs");
             }
-            self.plan(&Request::bare(Command::Mpst), "repeated until the robot stands still: position");
+            self.plan(&Request::bare(Command::Mpst), "position; repeated until the robot stands still");
             if self.host == HostState::Unknown {
                 let on = "whether the controller refuses the stop of a jog, for example while the host is OFF";
                 self.plan_to_take_host(Some(on));
@@ -99,7 +99,8 @@ impl Client {
     async fn stop_until_at_rest(&mut self, moving: Moving, why: &mut Option<Error>) -> Result<Record, Error> {
         let began = Instant::now();
         let stop = moving.stop();
-        // Position at the previous attempt; `None` if a program or origin return was still in progress then.
+        // Position at the previous attempt; `None` if a program or a return to origin was still in progress at that
+        // time.
         let mut previous = None;
         loop {
             let attempt = self.try_stop(moving, &stop).await;
@@ -159,8 +160,8 @@ impl Client {
         }
     }
 
-    /// Sends one stop after the controller refused a motion. The client does not wait for the robot to stop: a motion
-    /// in progress on the controller was not started by this client.
+    /// Sends one stop after the controller refused a motion. The client does not wait for the robot to stop: if there
+    /// is a motion on the controller, this client did not start it.
     pub async fn stop_refused_motion(&mut self, moving: Moving) {
         self.set_policy(self.configured_policy);
         self.transact(&moving.stop(), true).await.map(|_| ()).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Temporary changes: host control and modes that the client changes, and changes back at its end.
+//! Temporary changes: the client takes host control or changes a mode, and undoes these changes before it closes.
 
 use armctl_controller::Risk;
 use armctl_controller::toyo::request::{Answer, Request};
@@ -14,7 +14,7 @@ pub(super) enum HostState {
     Unknown,
     /// The host was ON already.
     AlreadyOn,
-    /// This client switched the host ON, and must switch the host OFF at its end.
+    /// This client switched the host ON, and must switch the host OFF when it closes.
     SwitchedOn,
     /// Dry run: the client reads the host state and switches the host ON only if an earlier answer requires it.
     Conditional,
@@ -33,7 +33,7 @@ impl Client {
         self.take_host_by(&grant).await
     }
 
-    /// Takes host control like [`Self::take_host`], with another grant.
+    /// Takes host control like [`Self::take_host`], but checks `grant` instead of the grant of the client.
     pub(super) async fn take_host_by(&mut self, grant: &Grant) -> Result<(), Error> {
         if self.is_dry() {
             self.plan_to_take_host(None);
@@ -103,8 +103,8 @@ impl Client {
         Ok(())
     }
 
-    /// Makes a temporary change. The request `back` undoes the change. It is sent by [`Client::put_back`] or at the end
-    /// of the client.
+    /// Makes a temporary change. The request `back` undoes the change. The client sends `back` in [`Client::put_back`]
+    /// or when it closes.
     pub async fn borrow(&mut self, change: &Request, back: Request) -> Result<(), Error> {
         // The undo request is recorded before the change is sent: if the answer is lost, the controller may have made
         // the change.
@@ -178,8 +178,8 @@ impl Client {
         Ok(status?.host_on())
     }
 
-    /// Sends the fence at the end of a client. The only error that it returns is a late refusal of an order that seemed
-    /// confirmed: later requests report every other fault.
+    /// Sends the fence when the client closes. This function returns only one kind of error: a late refusal of an order
+    /// that seemed confirmed. Later requests report every other fault.
     pub(super) async fn fence_at_end(&mut self) -> Result<(), Error> {
         match self.fence().await {
             Err(Error::NotSent(cause)) if matches!(*cause, Error::OutcomeUnknown(_)) => Err(*cause),

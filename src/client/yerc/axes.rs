@@ -1,5 +1,6 @@
-//! Axes of a control group. Some controllers answer with a word for each possible axis. The client then reads the axis
-//! configuration (0x74), once per connection, to find out which axes exist.
+//! Axes of a control group. Some controllers answer with a word for each possible axis, also for axes that do not
+//! exist. For such an answer, the client reads the axis configuration (0x74), once per connection, to find out which
+//! axes exist.
 
 use armctl_controller::yerc::group::Group;
 use armctl_controller::yerc::payload::{Axes, AxisNames, MAX_AXES};
@@ -12,7 +13,8 @@ use crate::Reason;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AxisSet(u8);
 
-/// Added status of a refusal while a certain pendant screen is open: axis names cannot be read then (DX 3.3.5).
+/// Added status of a refusal: a certain screen is open on the pendant, and while it is open, the axis names cannot be
+/// read (DX 3.3.5).
 const CONVERTING: u32 = 0x2150;
 
 impl AxisSet {
@@ -33,7 +35,7 @@ impl AxisSet {
         axis < MAX_AXES && self.0 >> axis & 1 == 1
     }
 
-    /// Returns the values up to the last existing axis. A missing axis before it has the value 0.
+    /// Returns the values up to the last existing axis. A missing axis among them has the value 0.
     fn trim(self, axes: Axes) -> Axes {
         let count = (0..axes.as_slice().len()).rev().find(|axis| self.has(*axis)).map_or(0, |last| last + 1);
         let values = axes.as_slice().iter().enumerate().take(count);
@@ -43,10 +45,11 @@ impl AxisSet {
 }
 
 impl Client {
-    /// Removes the values of missing axes from the answer `axes` of a group. Reads the axis configuration if needed.
+    /// Removes the values of missing axes from the answer `axes` of a group. Reads the axis configuration if the answer
+    /// can contain missing axes.
     pub async fn existing_axes(&mut self, group: Group, coordinates: Coordinates, axes: Axes) -> (Axes, AxisSet) {
         if axes.as_slice().len() < MAX_AXES {
-            // No group has eight axes, so a shorter answer contains only existing axes.
+            // No group has eight axes, so an answer with fewer than eight values contains only existing axes.
             return (axes, AxisSet::ALL);
         }
         let axis_set = self.read_axis_set(group, coordinates).await;
@@ -58,7 +61,7 @@ impl Client {
         let is_planned = self.axis_sets.iter().any(|known| (known.0, known.1) == (group, coordinates));
         let Ok(query) = ReadAxes::new(self.model_for_display(), group, coordinates) else { return };
         if !is_planned {
-            let reason = Reason::about("which axes exist, if the answer has all eight");
+            let reason = Reason::about("which axes exist; sent if the previous answer has all eight axes");
             self.plan_if(&query.request(), reason.depending_on("the number of axes in the previous answer"));
             self.axis_sets.push((group, coordinates, AxisSet::ALL));
         }

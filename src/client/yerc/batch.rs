@@ -12,7 +12,7 @@ pub enum ReadError<E = Error> {
     Refused(Refusal),
     /// The answer was invalid, or the connection was lost.
     Failed(E),
-    /// The read was not sent, because the connection was lost before, with this error.
+    /// The read was not sent, because the connection had already been lost with this error.
     NotSent(E),
 }
 

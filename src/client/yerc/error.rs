@@ -29,7 +29,7 @@ pub enum Error {
     NoAnswer {
         /// Total waiting time.
         waited: Duration,
-        /// What was received.
+        /// Counters of what was received instead of an answer.
         counters: Counters,
     },
     /// Data was received, but it contained no valid frame.
@@ -37,7 +37,7 @@ pub enum Error {
     Garbage {
         /// Total waiting time.
         waited: Duration,
-        /// What was received.
+        /// Counters of what was received instead of an answer.
         counters: Counters,
     },
     /// An answer without the requested content.
@@ -50,7 +50,7 @@ pub enum Error {
         request: Request,
         /// Total waiting time.
         waited: Duration,
-        /// What was received.
+        /// Counters of what was received instead of an answer.
         counters: Counters,
     },
     /// No answer to the stop, although the client sent the stop repeatedly.

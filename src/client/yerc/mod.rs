@@ -43,8 +43,8 @@ use crate::{Grant, NotAuthorized, Plan, STOP_EVERY, STOP_TRIES, STOP_WITHIN, Wat
 
 /// A connection to one controller.
 ///
-/// The client processes one request at a time. The client stays usable after a call is dropped early: the session
-/// discards late answers.
+/// The client processes one request at a time. A call may be dropped before its end: the client stays usable, because
+/// the session discards late answers.
 #[derive(Debug)]
 pub struct Client {
     transport: Transport,
@@ -64,7 +64,7 @@ pub struct Client {
     totals: Totals,
     /// The last completed download. The client keeps it, because the final ACK may have been lost.
     last_download: Option<Download>,
-    /// The session that ends a transfer at the controller after the transfer was aborted here.
+    /// The session that ends an aborted transfer at the controller. `None` if no transfer is open there.
     open: Option<Abandon>,
     /// Dry run: purpose of the next request.
     purpose: Option<&'static str>,
@@ -109,7 +109,7 @@ impl Options {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Event {
-    /// An exchange or transfer ended, and the client received other frames than the answers to its requests.
+    /// An exchange or transfer ended. During it, the client received frames that do not belong to its requests.
     UnexpectedTraffic(Counters),
     /// A transfer was aborted, and the controller did not confirm the end. The controller may stay busy until its timer
     /// expires.
@@ -137,9 +137,9 @@ const BUFFER: usize = 2048;
 /// Largest file that [`Client::read_file`] reads, in bytes.
 const MAX_FILE: u64 = 1 << 30;
 
-/// Request of a session to the function of the caller that reads or writes the file.
+/// What a transfer session requests from the function of the caller. This function reads or writes the file.
 enum FileRequest<'a, S> {
-    /// A received piece.
+    /// A received piece of the file.
     Received(&'a [u8]),
     /// An upload session that needs the next piece.
     Feed(&'a mut S),
@@ -287,8 +287,8 @@ impl Client {
         }
     }
 
-    /// Downloads a file or list of at most `limit` bytes. Passes the blocks to `take` in order. If the first answer is
-    /// slow, `first_wait` is its time limit.
+    /// Downloads a file or list of at most `limit` bytes. Passes the blocks to `take` in order. `first_wait` is the
+    /// time limit of the first answer, if the controller needs longer than the normal time limit for it.
     pub async fn download<E>(
         &mut self,
         request: &Request,
@@ -327,8 +327,8 @@ impl Client {
         }
         self.last_download = matches!(end, DownloadEnd::Complete { .. }).then_some(session);
         match end {
-            // Only the batch backup has a risk above `Read` and a long first wait. It changes something in the
-            // controller.
+            // A risk above `Read` means the batch backup, which changes something in the controller. The outcome of
+            // this change is unknown without an answer.
             DownloadEnd::NoAnswer { bytes: 0, counters } if request.risk() > Risk::Read => {
                 let waited = first_wait.unwrap_or(self.policy.timeout);
                 Err(Error::OutcomeUnknown { request: request.clone(), waited, counters }.into())
@@ -555,7 +555,7 @@ impl Client {
         Ok(Some(len))
     }
 
-    /// Counts a completed exchange or transfer, and reports unexpected traffic to the watcher.
+    /// Counts a completed exchange or transfer. Reports unexpected traffic to the watcher.
     fn count_exchange(&mut self, counters: Counters) {
         self.totals.exchanges += 1;
         self.totals.disturbances += counters.total();

@@ -20,7 +20,7 @@ use crate::Reason;
 
 /// Length of a software version in bytes.
 const VERSION: usize = 24;
-/// The command that reads the software version.
+/// Number of the command that reads the software version.
 const SYSTEM_INFO: u16 = 0x89;
 /// The model for requests that are the same for all models.
 const DEFAULT_MODEL: Model = Model::Dx200;
@@ -45,7 +45,7 @@ pub(super) enum ModelSource {
     Remembered(Model),
     /// Reported by the controller on this connection.
     Reported(Model),
-    /// Assumed in a dry run.
+    /// Assumed in a dry run, which cannot read the model.
     Assumed,
 }
 
@@ -159,7 +159,7 @@ impl Client {
         }
     }
 
-    /// Stores the software version and the model, if this reply contains the software version.
+    /// Stores the software version and the model, if the reply is the system information that contains them.
     pub(super) fn learn_model(&mut self, request: &Request, reply: &Reply) {
         let has_all_attributes = request.service == service::GET_ALL;
         let has_version = has_all_attributes || request.service == service::GET_SINGLE && request.attribute == 1;

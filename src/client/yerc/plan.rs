@@ -88,8 +88,8 @@ impl Client {
         }
     }
 
-    /// Dry run: plans [`Client::download`] as the request and one ACK as an example. The number of blocks is unknown.
-    /// The first block may also be the last block or have number 0.
+    /// Dry run: plans [`Client::download`] as the request and one ACK. The ACK is only an example: the number of blocks
+    /// is unknown, and the first block may also be the last block or have number 0.
     pub fn plan_download(&mut self, request: &Request, reason: Reason<'_>) -> Result<(), NotAuthorized> {
         self.authorize(request)?;
         let id = self.plan_request(request, reason);
@@ -142,7 +142,8 @@ impl Client {
         }
     }
 
-    /// Plans a frame with two variants. The plan shows `??` for bytes that differ.
+    /// Plans a frame that depends on an earlier answer, from two variants of the frame. The plan shows `??` for bytes
+    /// that differ.
     fn plan_masked(&mut self, frame: &[u8], other: &[u8], reason: Reason<'_>) {
         if let Some(plan) = self.transport.notes() {
             plan.note(json!({ "hex": mask_differences(frame, other) }), reason);

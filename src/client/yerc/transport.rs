@@ -133,7 +133,8 @@ impl Transport {
         }
     }
 
-    /// Opens a new socket for a channel. A late datagram for the old socket can then not be received.
+    /// Opens a new socket for a channel. The client then cannot receive a late datagram that is addressed to the old
+    /// socket.
     pub(super) fn renew(&mut self, channel: usize) {
         match self {
             Self::Udp(udp) => udp.renew(channel),

@@ -48,7 +48,7 @@ pub enum Error {
         stop: Option<bool>,
         /// Whether the client left the stop input off, because it did not observe the end of a motion.
         is_stop_held: bool,
-        /// Why the session ended; `None` if it did not end, or there is no session.
+        /// Why the session ended; `None` if the session has not ended, or if there is no session.
         ended: Option<String>,
     },
     /// A signal procedure was not completed.
@@ -105,14 +105,14 @@ pub enum Error {
         /// The refused action.
         what: String,
     },
-    /// The connection ends with the client, and the controller then stops the robot
+    /// Without a session, the connection ends when the client ends, and the controller then stops the robot
     /// ([`Options::is_held`](super::Options::is_held)).
     #[error("the connection ends with this command, and the controller would then stop the robot")]
     NotHeld,
     /// The link is up, but the controller sends no data.
     #[error("the controller sends no data")]
     Silent,
-    /// The data of the controller is too short for an image.
+    /// The data of the controller is too short for an input image.
     #[error("the controller sends {bytes} bytes, too few for an image")]
     NoImage {
         /// Bytes received.

@@ -39,8 +39,8 @@ impl Client {
             self.turn_until(until).await?;
         }
         if !self.is_owner && self.input.is_some_and(|image| !output::CPU_OK.is_on(&image)) {
-            // The board accepts every monitoring connection, so the client itself must detect an image of something
-            // else.
+            // A monitoring connection also opens if the controller does not work or the data comes from another device.
+            // The client itself must therefore check the image.
             self.watcher.event(Event::CpuNotOk);
         }
         Ok(())
@@ -117,7 +117,7 @@ impl Client {
             return;
         }
         let until = until.unwrap_or_else(|| Instant::now() + self.timeout);
-        // An error of this wait is ignored: the next call reports it.
+        // An error of this wait is ignored: the next call reports the error.
         while !self.is_up && Instant::now() < until && self.turn_until(until).await.is_ok() {}
     }
 
@@ -169,7 +169,7 @@ impl Client {
             return Ok(());
         }
         let now = self.now();
-        // A jog counts as short here: it does not end by itself, so it is interrupted.
+        // A jog counts as a short command here: it does not end by itself, so the client stops it.
         let is_short = |exchange: &Exchange| exchange.order().row().pace != Pace::Motion;
         if let Some(exchange) = self.exchange.as_mut().filter(|exchange| is_short(exchange)) {
             exchange.interrupt(now);
@@ -283,7 +283,7 @@ impl Client {
             LinkEvent::OutputChanged(change) => self.apply_change(now, &change),
             LinkEvent::Denied => {
                 self.in_flight = false;
-                // If a command was sent before, the client continues to observe it until its end.
+                // If the command was already sent, the client continues to observe it until its end.
                 self.exchange.take_if(|exchange| exchange.sent().is_none());
                 self.sequence = None;
                 self.words = Words::default();

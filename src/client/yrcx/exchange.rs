@@ -20,8 +20,8 @@ use crate::Reason;
 /// Result of a completed command.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Done {
-    /// Data of the answer, named after the fields of the command's table row (chapter 4 of the manual). Empty in a dry
-    /// run. See [`Values`] for the units.
+    /// Data of the answer. The names are those of the fields in the table row of the command (chapter 4 of the manual).
+    /// Empty in a dry run. See [`Values`] for the units.
     pub values: Values,
     /// Time from the first attempt to the end.
     pub elapsed: Duration,
@@ -93,12 +93,12 @@ impl Client {
         }
     }
 
-    /// Sends a remote command and waits until the command has ended, or until the controller starts to execute it
-    /// (`None`). A command in execution continues. The client sends no other command until it ends.
+    /// Sends a remote command and waits until the command has ended. Returns `None` as soon as the controller executes
+    /// the command, if the command has not ended by then. The command continues, and the client sends no other command
+    /// until it ends.
     ///
     /// # Errors
-    /// [`Error::NotHeld`] if the command would stop at the end of the connection; also the errors of
-    /// [`ask`](Self::ask).
+    /// [`Error::NotHeld`] if the end of the connection would stop the command; also the errors of [`ask`](Self::ask).
     pub async fn begin(&mut self, order: &Order) -> Result<Option<Done>, Error> {
         if !self.is_held {
             return Err(Error::NotHeld);
@@ -129,7 +129,8 @@ impl Client {
         Ok(outcome)
     }
 
-    /// Counts a finished command, and reports a status that remained from before the command, or that was not released.
+    /// Counts a finished command. Reports to the watcher if the controller still had the status of an earlier command,
+    /// or did not become ready for the next command.
     pub(super) fn count(&mut self, order: &Order, outcome: &Outcome) {
         self.totals.commands += 1;
         self.totals.waited += outcome.elapsed;
@@ -139,8 +140,8 @@ impl Client {
         if matches!(outcome.ended, Ended::Answered(_)) && !outcome.released {
             self.watcher.event(Event::NotReleased(order.command()));
         }
-        // A motion command ends when the motion ends; a command that starts a program ends when the program has only
-        // begun.
+        // For a motion, the command ends when the motion ends. For a start of a program, the command ends while the
+        // program still runs.
         self.has_started |= order.risk() == Risk::Motion && order.row().pace == Pace::Quick;
     }
 

@@ -1,4 +1,4 @@
-//! General-purpose words. They use the same words of the image as remote commands.
+//! General-purpose words. They share the words of the image with remote commands.
 
 use armctl_controller::Risk;
 use armctl_controller::yrcx::register::{Register, general};
@@ -10,8 +10,9 @@ use super::{Client, hex};
 use crate::Reason;
 
 impl Client {
-    /// Sets general-purpose words, all of them in one image. They keep their values until other values replace them. A
-    /// remote command uses these words while it runs, and the client restores them at its end.
+    /// Sets general-purpose words. All changes are sent in one image. The words keep their values until other values
+    /// replace them. A remote command uses these words while it runs, and the client restores them when the command
+    /// ends.
     ///
     /// # Errors
     /// [`Error::WordsNotSent`] if the words were not sent within the time limit.

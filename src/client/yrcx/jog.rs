@@ -30,13 +30,12 @@ pub(super) struct JogOutcome {
 }
 
 impl Client {
-    /// Jogs for `time` from the moment when the command is sent, then stops and returns the position. If the caller
-    /// drops the call, the caller must call [`stop`](Self::stop). The stop alarm that ends the jog does not count as a
-    /// refusal.
+    /// Jogs for `time` from the moment when the command is sent, then stops and returns the position. A caller that
+    /// drops the future must call [`stop`](Self::stop). The stop alarm that ends the jog does not count as a refusal.
     ///
     /// # Errors
-    /// The jog was refused or ended by itself, or the client did not observe its end. The stop input stays off if the
-    /// end was not observed. [`Error::Cut`] if another cause ended the jog early.
+    /// The jog was refused or ended by itself, or the client did not observe the end of the jog. In the last case, the
+    /// stop input stays off. [`Error::Cut`] if another cause ended the jog early.
     pub async fn jog(&mut self, order: &Order, time: Option<Duration>) -> Result<Done, Error> {
         self.authorize_command(order.row().id, order.risk())?;
         if self.is_dry() {

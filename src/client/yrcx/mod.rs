@@ -44,7 +44,7 @@ pub use self::simulated::Simulated;
 pub use self::stop::StopResult;
 use crate::{Grant, Plan, STOP_WITHIN, Watcher};
 
-/// A connection to one controller. The client must stay on one thread, because fieldbus links do.
+/// A connection to one controller. The client must stay on one thread, because fieldbus links must too.
 #[derive(Debug)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent state")]
 pub struct Client {
@@ -63,10 +63,10 @@ pub struct Client {
     /// The input image; `None` while the link is down.
     input: Option<Image>,
     is_up: bool,
-    /// The running remote command, and the outcome of the last one.
+    /// The running remote command. The field below is the outcome of the last command.
     exchange: Option<Exchange>,
     ended: Option<Outcome>,
-    /// The running procedure, and the outcome of the last one.
+    /// The running signal procedure. The field below is the outcome of the last procedure.
     sequence: Option<Sequence>,
     finished: Option<sequence::Outcome>,
     policy: Policy,
@@ -83,7 +83,7 @@ pub struct Client {
     is_held: bool,
     /// Whether a session owns the link, so that other clients may use the link too.
     is_shared: bool,
-    /// Whether a remote command has ended, so that another client may send the next one.
+    /// Whether the remote command of this client has ended, so that another client may send the next command.
     is_turn_over: bool,
     started: Instant,
     watcher: Box<dyn Watcher<Event>>,
@@ -102,10 +102,10 @@ enum Transport {
 /// Settings of a client.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// Whether the client sends commands to the controller. Otherwise it only monitors the signals.
+    /// Whether the client may send commands to the controller. If not, the client only monitors the signals.
     pub commands: bool,
-    /// Whether the connection stays open after the client ends, so that a motion or program can continue. When its
-    /// connection ends, a controller stops the robot.
+    /// Whether the connection stays open after the client ends, so that a motion or program can continue. A controller
+    /// stops the robot when its connection ends.
     pub is_held: bool,
     /// The highest risk that may be sent.
     pub grant: Grant,
@@ -306,12 +306,12 @@ impl Client {
         self.is_held
     }
 
-    /// Whether the client can send commands. Otherwise it only monitors signals.
+    /// Whether the client can send commands. If not, the client only monitors signals.
     pub fn commands(&self) -> bool {
         self.is_owner
     }
 
-    /// Whether the fieldbus carries the words of remote commands. Otherwise it carries only signals.
+    /// Whether the fieldbus carries the words of remote commands. If not, the fieldbus carries only signals.
     pub fn has_commands(&self) -> bool {
         self.size == 0 || Image::has_commands(self.size)
     }

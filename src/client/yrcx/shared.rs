@@ -12,8 +12,8 @@ use super::error::Error;
 use super::{Client, Event, Transport};
 
 impl Client {
-    /// Takes over the output image of the session, if a session owns the link. Only the session sends images to the
-    /// controller.
+    /// Replaces the output image of this client with the image of the session, if a session owns the link. Only the
+    /// session sends images to the controller.
     pub(super) fn join(&mut self) {
         let Transport::Image(link) = &self.transport else { return };
         if link.output().is_none() {
@@ -79,7 +79,7 @@ impl Client {
         }
     }
 
-    /// Returns an error if the session has ended, so that the link cannot come back.
+    /// Returns an error if the session has ended. The link of an ended session does not open again.
     pub(super) fn check_session(&self) -> Result<(), Error> {
         let Transport::Image(link) = &self.transport else { return Ok(()) };
         match link.ended() {
@@ -88,8 +88,8 @@ impl Client {
         }
     }
 
-    /// Checks that the last command of another client has ended: a new command would stop it. Returns
-    /// [`Error::OtherClientRunning`] if the other command is still running.
+    /// Checks that the last command of another client has ended, because a new command would stop it. Returns
+    /// [`Error::OtherClientRunning`] if that command is still running.
     pub(super) async fn check_other_commands(&mut self) -> Result<(), Error> {
         let words = self.output.next.command();
         if !self.is_shared || self.exchange.is_some() || words[0] == Status::Ready.word() {

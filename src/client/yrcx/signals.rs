@@ -30,8 +30,8 @@ impl Client {
         self.switch(procedure, limit).await
     }
 
-    /// Runs a procedure like [`run_procedure`](Self::run_procedure), with a time limit and without authorization: a
-    /// stop is always allowed.
+    /// Runs a procedure like [`run_procedure`](Self::run_procedure), with its own time limit and without a check of the
+    /// grant: a stop is always allowed.
     pub(super) async fn switch(&mut self, procedure: Procedure, limit: Duration) -> Result<Duration, Error> {
         self.catch_up().await?;
         self.claim_motion(procedure.risk).await?;
@@ -83,7 +83,7 @@ impl Client {
         }
     }
 
-    /// The output image; `None` if another client owns it.
+    /// The output image; `None` if this is a monitoring connection.
     pub fn output_image(&self) -> Option<&Image> {
         (self.is_owner || self.is_shared).then_some(&self.output.next)
     }

@@ -38,7 +38,8 @@ fn jog() -> Order {
     order(Command::JogPulse.order().with(Key::Axes, "1").with(Key::Direction, 0).with(Key::Report, 1))
 }
 
-/// A peer that always sends the same image, independent of its input. With a time, it sends nothing after that time.
+/// A peer that always sends the same image and ignores what it receives. With a duration, it sends nothing after this
+/// time.
 #[derive(Debug)]
 struct Deaf(Option<Duration>);
 

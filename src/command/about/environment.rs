@@ -2,18 +2,18 @@
 
 /// Environment variables and their meaning.
 pub const VARIABLES: [(&str, &str); 13] = [
-    ("ARMCTL_TARGET", "URL or address of the controller, as -t"),
-    ("ARMCTL_ROBOT", "robots of the inventory, as -r: NAME, or NAME,NAME"),
-    ("ARMCTL_CONFIG", "the inventory, as --config"),
-    ("ARMCTL_OUTPUT", "output format, as -o: table, json, jsonl, csv or value"),
-    ("ARMCTL_TIMEOUT", "maximum wait for an answer, for each try, as --timeout"),
-    ("ARMCTL_RETRIES", "more tries of a read without an answer, as --retries"),
-    ("ARMCTL_ENCODING", "encoding of names and texts on the controller, as --encoding"),
-    ("NO_COLOR", "no color, unless --color is given"),
-    ("CLICOLOR_FORCE", "color also in files, unless it is 0 or NO_COLOR is set"),
-    ("TERM", "dumb: no color, no pager, no full-screen display"),
-    ("PAGER", "program that shows long help on a terminal; cat for none"),
-    ("XDG_CONFIG_HOME", "folder of armctl/robots.toml, instead of ~/.config"),
+    ("ARMCTL_TARGET", "URL or address of the controller; same as -t"),
+    ("ARMCTL_ROBOT", "robots of the inventory: NAME, or NAME,NAME; same as -r"),
+    ("ARMCTL_CONFIG", "path of the inventory; same as --config"),
+    ("ARMCTL_OUTPUT", "output format: table, json, jsonl, csv or value; same as -o"),
+    ("ARMCTL_TIMEOUT", "maximum wait for an answer, for each try; same as --timeout"),
+    ("ARMCTL_RETRIES", "number of retries of a read without an answer; same as --retries"),
+    ("ARMCTL_ENCODING", "encoding of names and texts on the controller; same as --encoding"),
+    ("NO_COLOR", "no color, unless --color is set"),
+    ("CLICOLOR_FORCE", "color also in files, unless the value is 0 or NO_COLOR is set"),
+    ("TERM", "`dumb` means no color, no pager and no full-screen display"),
+    ("PAGER", "program that shows long help on a terminal; `cat` means no pager"),
+    ("XDG_CONFIG_HOME", "folder that contains armctl/robots.toml, instead of ~/.config"),
     ("XDG_RUNTIME_DIR", "folder of the session sockets"),
 ];
 

@@ -59,7 +59,7 @@ fn has_page(path: &[&str], command: &Command) -> bool {
     path.is_empty() || command.has_subcommands()
 }
 
-/// Page names have hyphens.
+/// Page names have hyphens instead of blanks.
 fn name_of(path: &[&str]) -> String {
     [&["armctl"], path].concat().join("-")
 }

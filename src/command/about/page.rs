@@ -50,7 +50,7 @@ pub fn global_options(root: &Command) -> BTreeSet<&str> {
         .collect()
 }
 
-/// Usage in two lines if it is too long for one: the command's own part is on the second line.
+/// Usage in two lines if it is too long for one line: the command's own part is on the second line.
 fn needs_two_lines(usage: &StyledStr) -> Option<StyledStr> {
     const WIDTH: usize = 80;
     let is_long = usage.to_string().chars().count() > WIDTH;
@@ -96,7 +96,7 @@ fn with_template(mut command: Command, root: &Command, path: &[&str], is_long: b
     command.after_help(after.trim_end().to_owned())
 }
 
-/// Template with the subcommands below their headings. A subcommand without a heading follows the previous one.
+/// Template with the subcommands below their headings. A subcommand without a heading follows the previous subcommand.
 fn with_groups(command: &mut Command, headings: &[(Option<&'static str>, String)]) -> String {
     let (style, literal) = (*command.get_styles().get_header(), *command.get_styles().get_literal());
     let widest = command.get_subcommands().map(|word| word.get_name().len()).max().unwrap_or_default();

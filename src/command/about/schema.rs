@@ -194,7 +194,7 @@ fn extract_shared(reports: &mut BTreeMap<&str, Value>) -> Value {
     json!({
         "$schema": DIALECT,
         "title": "Shared",
-        "description": "What several reports have in common.",
+        "description": "Definitions that several reports use.",
         "$defs": definitions,
     })
 }

@@ -34,7 +34,10 @@ pub const EXAMPLES: &[(&str, &[&str])] = &[
     ("robots add", &["cell3 udp://192.168.1.31 --read-only", "loader serial:///dev/ttyUSB0 --with-tag line1"]),
     ("names list", &["-r cell3", "clamp"]),
     ("names set", &["clamp 27010 -r cell3", "parts B5"]),
-    ("robots set", &["cell3 read_only=off", "cell3 names.clamp=27010", "cell3 timeout=5s site=berlin line=3 tags=welding"]),
+    (
+        "robots set",
+        &["cell3 read_only=off", "cell3 names.clamp=27010", "cell3 timeout=5s site=berlin line=3 tags=welding"],
+    ),
     ("robots rename", &["cell3 press", "cell3 press --json"]),
     ("robots default", &["cell3", "cell3 --config plant.toml"]),
     ("robots edit", &["", "--config plant.toml"]),

@@ -23,7 +23,7 @@ pub enum Names {
                   the names that a yerc controller stores."
 )]
 pub struct List {
-    /// Only names with this text in name, kind, address or origin
+    /// Show only names with this text in the name, kind, address or origin
     filter: Option<String>,
 }
 
@@ -34,7 +34,7 @@ pub struct Set {
     /// The name, such as clamp
     #[arg(value_name = "NAME")]
     name: String,
-    /// The address: 27010, B5 (yerc); SO(20), DO12 (yrcx); IN2.1, CN05 (toyo)
+    /// The address, for example 27010 or B5 (yerc), SO(20) or DO12 (yrcx), IN2.1 or CN05 (toyo)
     #[arg(value_name = "ADDRESS")]
     address: String,
 }

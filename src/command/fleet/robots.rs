@@ -123,7 +123,7 @@ impl Show {
     }
 }
 
-/// Model that the controller reported earlier, if no setting names one.
+/// Model that the controller reported earlier, if no setting contains a model.
 fn told_model(robot: &Robot) -> Option<Value> {
     if robot.model.value.named().is_some() {
         return None;

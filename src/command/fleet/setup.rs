@@ -124,7 +124,8 @@ async fn ask_address(run: &Run) -> Result<FoundTarget, Failure> {
     ask_missing_parts(run, &input.parse()?, None).await
 }
 
-/// Searches for controllers, and lets the user select one; `None` if the wanted controller is not in the list.
+/// Searches for controllers, and lets the user select one of them; `None` if the user selects none because the right
+/// controller is not in the list.
 async fn search(run: &Run) -> Result<Option<(TargetArgument, Option<Family>)>, Failure> {
     let found = interruptible(Discover::default_arguments()?.find(run)).await??;
     let mut targets = found.places();
@@ -140,7 +141,10 @@ async fn search(run: &Run) -> Result<Option<(TargetArgument, Option<Family>)>, F
 
 async fn simulator(run: &Run) -> Result<FoundTarget, Failure> {
     let family = family(run).await?;
-    let question = format!("Address of a simulator that runs (`armctl sim {family}`), or sim: for the built-in one");
+    let question = format!(
+        "Address of a simulator that runs (`armctl sim {family}`), or `sim:` for the built-in \
+                            simulator"
+    );
     let input = line(run, question, Some(families::of(family).simulator())).await?;
     ask_missing_parts(run, &input.parse()?, Some(family)).await
 }
@@ -166,7 +170,7 @@ async fn family(run: &Run) -> Result<Family, Failure> {
     FAMILIES.get(at).map(|face| face.family()).ok_or_else(|| Failure::local("internal error: no such family"))
 }
 
-/// Checks each layer and shows it. Returns whether all succeeded.
+/// Checks each layer and shows it. Returns whether all layers succeeded.
 async fn check(run: &Run, found: &FoundTarget) -> Result<bool, Failure> {
     let robot = run.sources.at(&found.target, found.family)?;
     let access = Access { trace: run.trace.clone(), ..Access::reading(ConnectMode::Explicit) };

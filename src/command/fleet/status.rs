@@ -53,7 +53,7 @@ impl Link {
                     *self = Self::Open(face, connection);
                     return Ok(());
                 }
-                // Other commands can then share the link of this robot, as they can from the start of a watch.
+                // Connect again through a shared session, so that other commands can use the link of this robot.
                 connection.close(screen).await?;
                 let robot = open_shared_session(driver, &robot).await?;
                 *self = Fleet::connect(&robot, access, screen).await?;
@@ -114,7 +114,7 @@ impl Family for Fleet {
     }
 }
 
-/// Whether robots answer, their mode, servo, alarm and position.
+/// Shows for each robot whether it answers, and its mode, servo state, alarm and position.
 #[derive(Debug, Default, Args)]
 pub struct Overview {
     /// Also count the robots of each site, area, line or cell
@@ -142,7 +142,7 @@ impl Command for Overview {
         Ok(report)
     }
 
-    /// A robot that does not answer is a state.
+    /// A missing answer is a state of the robot here, and not a failure.
     fn without_answer(&self, robot: &Robot, failure: Failure) -> Result<OverviewReport, Failure> {
         if failure.kind != Kind::NoAnswer {
             return Err(failure);

@@ -48,11 +48,11 @@ pub struct Simulators {
 #[derive(Debug, Serialize, JsonSchema)]
 struct Simulator {
     family: &'static str,
-    /// The controllers that it simulates.
+    /// Controllers that the simulator simulates.
     controller: &'static str,
-    /// Command that starts it.
+    /// Command that starts the simulator.
     start: String,
-    /// Its target URL.
+    /// Target URL of the simulator.
     target: &'static str,
 }
 

@@ -17,15 +17,14 @@ const NOUNS: [&str; 7] = ["io", "var", "counter", "timer", "register", "port", "
 
 /// Wait until a condition is true for all selected robots, and print their state
 #[derive(Debug, Args)]
-#[command(after_help = "A condition is one of idle, running, held, faulted, homed and servo-on. It can also be \
-                        NAME=VALUE: NAME is a key of `armctl status`, or a signal, variable, counter or timer by name \
-                        or label. It can also be a jq filter over the JSON of `armctl status`; the filter begins with \
-                        a dot. A robot that cannot be reached ends the wait with exit code 4, except with \
-                        reachable=true.")]
+#[command(after_help = "A condition is one of idle, running, held, faulted, homed and servo-on, or NAME=VALUE, or a \
+                        jq filter over the JSON of `armctl status`. NAME is a key of `armctl status`, or a signal, \
+                        variable, counter or timer by name or label. A jq filter begins with a dot. If a robot cannot \
+                        be reached, the wait ends with exit code 4, except with reachable=true.")]
 pub struct Wait {
-    /// The condition: idle, servo-on, clamp=on, 'B5>=3', fault_code=4315, '.data.position.z_mm > 100'
+    /// The condition, for example idle, servo-on, clamp=on, 'B5>=3', fault_code=4315, or '.data.position.z_mm > 100'
     condition: String,
-    /// Longest wait, then exit code 8, or 4 without an answer [default: no limit]
+    /// Longest time to wait. After it, the exit code is 8, or 4 if the controller did not answer [default: no limit]
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
     within: Option<Duration>,
 }

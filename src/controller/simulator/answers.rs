@@ -42,7 +42,7 @@ impl<T> Answers<T> {
     }
 }
 
-/// Refuses a random share of the requests as busy. The same seed gives the same sequence.
+/// Random busy refusals of a share of the requests. The same seed gives the same sequence.
 #[derive(Debug, Clone)]
 pub(crate) struct Busy {
     share: f64,

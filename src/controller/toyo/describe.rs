@@ -18,7 +18,7 @@ use super::table::{Command, Instruction, Pallet, Parameter, Row};
 pub struct Description {
     /// One-line summary.
     pub title: String,
-    /// Section of the manual for a known command: `TO 2-2`.
+    /// Section of the manual if the command is known, for example `TO 2-2`.
     pub section: Option<String>,
     /// Command and values, in their order.
     pub fields: Vec<FieldNote>,
@@ -87,7 +87,8 @@ pub fn describe(line: &str, sender: Sender, request: Option<&Request>) -> Descri
     if let Some(row) = row {
         notes = describe_block(text, row, sender);
     }
-    // An error of the block as a whole is reported here. An error at a position of the line comes from the notes.
+    // Only an error of the block as a whole is reported here. If an error has a position in the line, the notes already
+    // contain it.
     let damage = match Request::parse(text) {
         Err(BlockError::Layout(_) | BlockError::Values(_) | BlockError::Unknown { .. } | BlockError::Other { .. }) => {
             None
@@ -141,7 +142,7 @@ fn describe_verdict(text: &str, what: &str, about: &'static str, request: Option
     Description { title, section: request.map(|request| citation(request.row())), fields: notes.fields, problem }
 }
 
-/// Command word of a block, with its table row.
+/// Command word of a block, and the table row of this command.
 fn command_of(text: &str) -> Option<(&str, &'static Row)> {
     let word = text.strip_prefix('@').unwrap_or(text).split(' ').next()?;
     Some((word, Row::named(word)?))
@@ -188,7 +189,7 @@ struct Notes<'t> {
 #[derive(Clone, Copy)]
 struct MessageContext {
     command: Command,
-    /// Page of STAS.
+    /// Page number in a STAS request or answer.
     page: Option<i32>,
     sender: Sender,
 }
@@ -218,10 +219,10 @@ impl<'t> Notes<'t> {
         start
     }
 
-    /// Adds the command, its values and their content, by one form.
+    /// Adds the command, its values and their content, decoded with the layout `form`.
     fn block(&mut self, row: &'static Row, form: &Layout, sender: Sender) -> Result<(), Damage> {
         let start = self.command(row);
-        // HTSK is parsed as CTSK, which has the same length.
+        // HTSK is another word for CTSK. Both words have the same length, so the byte ranges stay valid.
         let text = format!("{}{}", row.word, self.text.get(start + row.word.len()..).unwrap_or_default());
         let mut values = Vec::new();
         let end = form.scan(&text, |field, value, bytes| values.push((field, value, bytes)));
@@ -275,7 +276,7 @@ impl<'t> Notes<'t> {
         end.map_err(|error| self.damage(start, &error))
     }
 
-    /// Adds a value. A value from the host must be in range. A value from the controller may be out of range.
+    /// Adds a value. A value from the host must be in range; a value from the controller may be out of range.
     fn value(&mut self, of: MessageContext, field: &'static Field, value: &Value, bytes: Range<usize>) {
         let wrong = field.check(value).err().filter(|error| matches!(error, FieldError::Range { .. }));
         let mut meaning = meaning_of(of, field, value);

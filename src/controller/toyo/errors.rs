@@ -1,6 +1,7 @@
-//! The 104 error codes (TO 4-1) of STAS SNO=1 and EHTR.
+//! The 104 error codes (TO 4-1) in the answers to STAS SNO=1 (status page 1) and EHTR (error history).
 //!
-//! The manual has only their names. The causes and remedies are usual ones for machines of this kind.
+//! The manual has only the names of the codes. The causes and remedies are those that are usual for machines of this
+//! kind.
 
 use std::borrow::Cow;
 
@@ -12,9 +13,9 @@ pub const NONE: u8 = 0x00;
 pub struct Explanation {
     /// The code.
     pub code: u8,
-    /// Whether the table of the manual contains it.
+    /// Whether the error table of the manual contains this code.
     pub known: bool,
-    /// Name, with the axis.
+    /// Name of the error. It includes the axis of an axis error.
     pub name: Cow<'static, str>,
     /// Axis 1 to 4 of an axis error.
     pub axis: Option<u8>,
@@ -25,7 +26,7 @@ pub struct Explanation {
 }
 
 impl Explanation {
-    /// One line: `0x28: axis 1: beyond the plus soft limit while moving`.
+    /// Formats the explanation as one line, for example `0x28: axis 1: beyond the plus soft limit while moving`.
     pub fn in_a_line(&self) -> String {
         format!("{:02X}: {}", self.code, self.name)
     }
@@ -144,7 +145,7 @@ const OTHERS: [(u8, Text, Text, Text); 40] = [
         "the distance between the axes is too large",
         "check the mechanics and parameter P18 (sync-error)"),
     (0x66, "synchronized axes: wrong parameter",
-        "parameter E26 is not consistent",
+        "parameter E26 (sync-axes) is not consistent",
         "the driven axis must follow its drive axis"),
     (0x67, "synchronized axes: origin search failed", "the origin was not found", "check the origin sensors"),
     (0x90, "identification", "the stored identification is wrong", MEMORY),

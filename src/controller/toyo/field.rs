@@ -12,13 +12,13 @@ use thiserror::Error;
 /// A field of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Field {
-    /// Name in snake case: `ax1`, `x`, `station`.
+    /// Name in snake case, for example `ax1`, `x` or `station`.
     pub name: &'static str,
     /// Format.
     pub form: Form,
     /// Description.
     pub about: &'static str,
-    /// Unit of a number: `mm`, `mm/s`, `s`, `%`, …; empty if there is no unit.
+    /// Unit of a number, for example `mm`, `mm/s`, `s` or `%`. Empty if there is no unit.
     pub unit: &'static str,
     /// Whether the controller may send asterisks instead (TO 2-8, error history).
     pub starred: bool,
@@ -35,7 +35,8 @@ pub enum Form {
     Word(&'static [Word]),
     /// Eight digits `0` or `1`, bit 8 first (ambiguity C9).
     Bits,
-    /// Eight characters `0`, `1` or `.`, bit 8 first; a dot leaves its bit unchanged.
+    /// Eight characters `0`, `1` or `.`, bit 8 first. A condition ignores a bit with a dot; an action does not change
+    /// it.
     Mask,
     /// Text without blanks.
     Token,
@@ -43,7 +44,7 @@ pub enum Form {
     Text,
 }
 
-/// Number format. A value counts units of the last decimal: 12.34 is 1234.
+/// Number format. A value is an integer that counts units of the last decimal: 1234 means 12.34.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Number {
     /// Whether a sign is always written.
@@ -72,26 +73,26 @@ pub struct Word {
 /// A value, independent of a format.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Value {
-    /// In units of the last decimal.
+    /// A number, in units of the last decimal.
     Number(i32),
-    /// From two hexadecimal digits.
+    /// A byte, sent as two hexadecimal digits.
     Byte(u8),
-    /// Text in the protocol.
+    /// A word, as the protocol spells it.
     Word(&'static str),
     /// Eight bits; bit 1 of the manual is the least significant.
     Bits(u8),
-    /// Relevant bits and their states.
+    /// Eight bits of which a condition or action uses only some.
     Mask(Mask),
-    /// Text that has no form.
+    /// Text of a field without a fixed form. Also a received value that is not in the form of its field.
     Text(String),
     /// Asterisks instead of a value.
     Stars,
 }
 
-/// Conditions or actions for eight bits; bit 1 of the manual is the least significant.
+/// Conditions or actions for eight bits. Bit 1 of the manual is the least significant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Mask {
-    /// Bits that the condition or action uses.
+    /// Bits that the condition or action uses, as a mask.
     pub care: u8,
     /// States of these bits. The other bits are 0.
     pub bits: u8,
@@ -159,14 +160,14 @@ impl Number {
         Self { signed: true, whole, decimals, spare: 0, least, most }
     }
 
-    /// Adds decimals that may be received but are not sent. The values and the range count units of the last additional
-    /// decimal.
+    /// Adds decimals that the controller may send but armctl does not send. The values and the range count units of the
+    /// last additional decimal.
     #[must_use]
     pub const fn with_spare(self, spare: u8) -> Self {
         Self { spare, ..self }
     }
 
-    /// Number of value units in 1.
+    /// Number of value units in the number 1, for example 100 with two decimals.
     pub const fn scale(self) -> i32 {
         10_i32.pow(self.decimals as u32 + self.spare as u32)
     }
@@ -192,12 +193,12 @@ impl Number {
             || self.spare > 0 && fits(self.whole.saturating_sub(self.spare), self.decimals + self.spare)
     }
 
-    /// Number of value units between two neighboring values that can be sent.
+    /// Smallest difference of two values that can be sent, in value units.
     const fn step(self) -> i32 {
         10_i32.pow(self.spare as u32)
     }
 
-    /// Formats a value without padding: `-12.34`.
+    /// Formats a value without padding, for example `-12.34`.
     pub fn plain(self, value: i32) -> String {
         let sign = if value < 0 { "-" } else { "" };
         format!("{sign}{}", self.unsigned(value, 0))
@@ -250,7 +251,7 @@ impl Number {
         i32::try_from(sign * units).ok()
     }
 
-    /// Range as text: `-8000.00 to 8000.00`.
+    /// Range as text, for example `-8000.00 to 8000.00`.
     fn range(self) -> String {
         if self.least == self.most {
             format!("only {}", self.plain(self.least))
@@ -261,7 +262,7 @@ impl Number {
 }
 
 impl Mask {
-    /// All eight bits.
+    /// A mask that uses all eight bits.
     pub const fn all(bits: u8) -> Self {
         Self { care: 0xFF, bits }
     }
@@ -405,7 +406,7 @@ impl Field {
         Ok(value)
     }
 
-    /// Whether a value can be sent.
+    /// Checks that a value can be sent.
     pub fn check(&self, value: &Value) -> Result<(), FieldError> {
         self.emit(value).map(|_| ())
     }
@@ -415,7 +416,7 @@ impl Field {
         !matches!(value, Value::Text(_)) || matches!(self.form, Form::Token | Form::Text)
     }
 
-    /// Description of valid values: `a number 0000 to 9999`, `J or E`.
+    /// Description of valid values, for example `a number 0000 to 9999` or `J or E`.
     pub fn expected(&self) -> String {
         match self.form {
             Form::Number(number) if self.unit.is_empty() => format!("a number, {}", number.range()),
@@ -435,7 +436,7 @@ impl Field {
         }
     }
 
-    /// Readable value: `12.5 mm`, `absolute`.
+    /// Readable value, for example `12.5 mm` or `absolute`.
     pub fn meaning<'v>(&self, value: &'v Value) -> Cow<'v, str> {
         match (value, self.form) {
             (Value::Number(units), Form::Number(number)) => {
@@ -534,7 +535,7 @@ mod tests {
         for damaged in ["+010.00", "+0100.0", "0100.00 ", "+01000.0", "+01.0.00", "", "+"] {
             assert!(take(damaged).is_err(), "{damaged}");
         }
-        // A doubled digit shifts the rest of the text, which then does not fit.
+        // A doubled digit shifts the rest of the text, so the rest does not fit the format.
         assert_eq!(take("+01100.00 Y"), Err(X.take("+01100.00 Y").unwrap_err()));
     }
 

@@ -197,8 +197,8 @@ fn take_unlisted<'t>(text: &'t str, next: &str, is_last: bool) -> Option<(Value,
     (!own.is_empty()).then(|| (Value::Text(own.to_owned()), rest))
 }
 
-/// Skips the expected words. A blank in `words` matches one or more blanks. On a difference, the error is the text from
-/// the difference on.
+/// Skips the expected words. A blank in `words` matches one or more blanks. If the text differs, the error is the text
+/// from the first difference on.
 fn skip_words<'t>(words: &str, mut text: &'t str) -> Result<&'t str, &'t str> {
     for expected in words.chars() {
         let rest = text.strip_prefix(expected).ok_or(text)?;
@@ -233,7 +233,7 @@ impl Record {
         Self { layout: UNLISTED, values: vec![Value::Text(text.trim_matches(' ').to_owned())] }
     }
 
-    /// Replaces the value of a field, if the field exists.
+    /// Replaces the value of a field. Has no effect if the layout does not have this field.
     #[must_use]
     pub fn with(mut self, name: &str, value: Value) -> Self {
         if let Some(index) = self.layout.fields.iter().position(|field| field.name == name) {
@@ -247,32 +247,32 @@ impl Record {
         self.layout != UNLISTED && self.pairs().all(|(field, value)| field.is_listed(value))
     }
 
-    /// A number in units of its last decimal.
+    /// Value of a number field by name, in units of its last decimal.
     pub fn number(&self, name: &str) -> Option<i32> {
         if let Value::Number(number) = self.value(name)? { Some(*number) } else { None }
     }
 
-    /// Text of a word in the protocol.
+    /// Value of a word field by name, as the protocol spells it.
     pub fn word(&self, name: &str) -> Option<&'static str> {
         if let Value::Word(word) = self.value(name)? { Some(word) } else { None }
     }
 
-    /// A byte of two hexadecimal digits.
+    /// Value of a hexadecimal field by name.
     pub fn byte(&self, name: &str) -> Option<u8> {
         if let Value::Byte(byte) = self.value(name)? { Some(*byte) } else { None }
     }
 
-    /// The bits of a port.
+    /// Value of a port field by name, as eight bits.
     pub fn bits(&self, name: &str) -> Option<u8> {
         if let Value::Bits(bits) = self.value(name)? { Some(*bits) } else { None }
     }
 
-    /// Conditions or actions for a port.
+    /// Conditions or actions for a port, from the field with this name.
     pub fn mask(&self, name: &str) -> Option<Mask> {
         if let Value::Mask(mask) = self.value(name)? { Some(*mask) } else { None }
     }
 
-    /// A text without form.
+    /// Value of a text field by name.
     pub fn text(&self, name: &str) -> Option<&str> {
         if let Value::Text(text) = self.value(name)? { Some(text) } else { None }
     }

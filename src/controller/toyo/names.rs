@@ -1,9 +1,10 @@
-//! Addresses that inventory names can refer to: `IN2.1`, `OUT1.3` of the controller itself, `CN05`, `TN1`, `PT012`.
+//! Addresses that inventory names can refer to, for example `IN2.1`, `OUT1.3` (ports of the controller itself), `CN05`,
+//! `TN1` and `PT012`.
 
 use crate::names::{Grammar, Kind};
 use crate::typed::unsigned;
 
-/// Bits of internal ports and of ports of station 0, counters, timers and points.
+/// Address notation: bits of internal ports and of ports of station 0, counters, timers and points.
 pub const GRAMMAR: Grammar = Grammar { address, prefixes: &["IN", "OUT", "INT", "CN", "TN", "PT", "PN", "F"] };
 
 /// Highest number of a port (DOUT accepts 1 to 99), and of a counter.
@@ -38,27 +39,27 @@ fn address(text: &str) -> Option<(Kind, String)> {
     }
 }
 
-/// Address of an input bit: `IN2.1`.
+/// Formats the address of an input bit, for example `IN2.1`.
 pub fn input(port: u8, bit: u8) -> String {
     format!("IN{port}.{bit}")
 }
 
-/// Address of an output bit: `OUT1.3`.
+/// Formats the address of an output bit, for example `OUT1.3`.
 pub fn output(port: u8, bit: u8) -> String {
     format!("OUT{port}.{bit}")
 }
 
-/// Address of a counter: `CN05`.
+/// Formats the address of a counter, for example `CN05`.
 pub fn counter(number: u8) -> String {
     format!("CN{number:02}")
 }
 
-/// Address of a timer: `TN1`.
+/// Formats the address of a timer, for example `TN1`.
 pub fn timer(number: u8) -> String {
     format!("TN{number}")
 }
 
-/// Address of a point: `PT012`.
+/// Formats the address of a point, for example `PT012`.
 pub fn point(row: u16) -> String {
     format!("PT{row:03}")
 }
@@ -72,7 +73,7 @@ pub fn of_field(name: &str) -> Option<(Kind, &'static str)> {
     FIELDS.iter().find(|(field, ..)| *field == name).map(|(_, kind, prefix)| (*kind, *prefix))
 }
 
-/// The number in an address such as `PT012`.
+/// Returns the number in an address, for example 12 for `PT012`.
 pub fn number(address: &str) -> Option<i32> {
     address.trim_start_matches(|c: char| c.is_ascii_alphabetic()).parse().ok()
 }

@@ -1,4 +1,5 @@
-//! Blocks of host and controller: `@STAS SNO=0`, `@OK`, `@STAS SNO=0 ST1=22 ST2=00`.
+//! Blocks of the host (requests) and of the controller (answers), for example `@STAS SNO=0`, `@OK` and `@STAS SNO=0
+//! ST1=22 ST2=00`.
 
 use thiserror::Error;
 
@@ -69,7 +70,7 @@ pub enum BlockError {
         /// Name of the parameter, instruction or record.
         name: String,
     },
-    /// An answer to another request.
+    /// An answer that belongs to another request.
     #[error("it answers another request: {field} is {found}, not {asked}")]
     Other {
         /// The field that differs.
@@ -148,7 +149,7 @@ impl Request {
         let text = unwrapped(block)?;
         let word = text.split(' ').next().unwrap_or_default();
         let row = Row::named(word).ok_or_else(|| BlockError::Command { word: word.to_owned() })?;
-        // HTSK is parsed as CTSK.
+        // HTSK is another word for CTSK, and only CTSK is in the layouts.
         let text = text.replacen(word, row.word, 1);
         Ok(Self { row, record: fitting(row.requests, &text)? })
     }
@@ -340,7 +341,7 @@ fn parsed(layout: &Layout, text: &str, reading: Reading) -> Result<Record, Block
     })
 }
 
-/// Parses the instruction of a step: `MOVP a PT=001 CN=00 S V=00 POST`.
+/// Parses the instruction of a step, for example `MOVP a PT=001 CN=00 S V=00 POST`.
 pub fn instruction(text: &str) -> Result<Record, BlockError> {
     instruction_as(text, Reading::Strict)
 }
@@ -399,7 +400,7 @@ fn fitting(forms: &[Layout], text: &str) -> Result<Record, LayoutError> {
         }
     }
     let none = || LayoutError { at: 0, what: LayoutProblem::Rest { found: text.to_owned() } };
-    // The reported position counts from the `@` of the block.
+    // The layout error counts from the text after the `@`; the reported position counts from the `@`.
     Err(furthest.map_or_else(none, |error| LayoutError { at: error.at + 1, ..error }))
 }
 

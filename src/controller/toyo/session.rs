@@ -31,7 +31,7 @@ pub struct Counters {
     pub sent: u32,
     /// Blocks received, complete or not.
     pub received: u32,
-    /// Characters outside of blocks.
+    /// Characters received outside of blocks.
     pub noise: u32,
     /// Blocks with missing, changed or additional characters.
     pub garbled: u32,
@@ -50,7 +50,7 @@ pub enum ExchangeResult {
     Answered(String),
     /// No answer.
     NoAnswer,
-    /// Only invalid answers arrived. Contains the last one and the reason.
+    /// Only invalid answers arrived. Contains the last invalid answer and the reason.
     InvalidAnswer {
         /// The received block.
         block: String,
@@ -66,13 +66,14 @@ pub struct LineSession {
     framer: Framer,
     counters: Counters,
     state: State,
-    /// Number of pending answers of earlier requests, and their deadline.
+    /// Number of answers to earlier requests that may still arrive. The field below is the time until which they may
+    /// arrive.
     pending_answers: u32,
     pending_until: Now,
     /// Whether the line echoes the sent characters.
     echoes: bool,
-    /// Time at which the last line end of the controller is completely transmitted, so that the host may send (TO 1-3:
-    /// half duplex).
+    /// Time at which the last line end of the controller is completely transmitted. The host may send only after this
+    /// time (TO 1-3: half duplex).
     send_allowed_at: Now,
     /// Time of the last unexpected block.
     last_unexpected: Option<Now>,
@@ -84,7 +85,7 @@ pub struct LineSession {
 
 #[derive(Debug)]
 enum State {
-    /// Idle, or ended with this outcome.
+    /// No exchange is pending. Contains the outcome of the last exchange, if there was one.
     Ended(Option<ExchangeResult>),
     /// Waits until no answer is pending, then sends.
     Settling(Exchange),
@@ -133,9 +134,10 @@ impl AnsweredOrder {
     }
 }
 
-/// Required silence before a retry after a garbled block, and before an order after an unexpected block.
+/// Time for which the line must be quiet before a retry after a garbled block, and before an order after an unexpected
+/// block.
 const QUIET_TIME: Duration = Duration::from_millis(50);
-/// Maximum wait for that silence. After it, an order is sent even if the line is never quiet.
+/// Maximum wait for a quiet line. After this time, an order is sent even if the line is not quiet.
 const MAX_QUIET_WAIT: Duration = Duration::from_millis(500);
 /// Time to wait for the answer to a read, after an `@NG` that may be the answer to the order before the read.
 const LATE_ANSWER_WAIT: Duration = Duration::from_millis(200);
@@ -145,7 +147,8 @@ const CONTRADICTION_WINDOW: Duration = Duration::from_millis(500);
 /// read instead.
 const PROGRAM_STARTS: [Command; 4] = [Command::Spst, Command::Ppst, Command::Sesy, Command::Extp];
 /// Reason why an `@OK` is not valid.
-const CONTRADICTORY_ANSWERS: &str = "received both @OK and @NG: one of them is for another client of this line";
+const CONTRADICTORY_ANSWERS: &str = "received both @OK and @NG: one of the two answers is for another client of this \
+                                     line";
 
 impl LineSession {
     /// A line without pending answers.
@@ -165,7 +168,7 @@ impl LineSession {
         }
     }
 
-    /// Whether a contradicting answer to the last order may still arrive. This is so until a read is answered.
+    /// Whether a contradicting answer to the last order may still arrive. This is possible until a read is answered.
     pub fn is_open(&self) -> bool {
         self.last_order.is_some()
     }
@@ -328,7 +331,8 @@ impl LineSession {
         match exchange.accepts(&block) {
             Ok(()) => {
                 self.echoes |= exchange.echo.is_some();
-                // After retries, the answers to the other requests may arrive until this time.
+                // After retries, the controller may also answer the other attempts. These answers may arrive until this
+                // time.
                 self.pending_until = deadline;
                 if exchange.is_read() {
                     self.handle_read_answer(now, &mut exchange, &block);
@@ -422,7 +426,7 @@ const OK: &str = "@OK";
 const NG: &str = "@NG";
 
 /// Whether the session waits for a late `@NG` after an accepted order. It waits after memory clearing and after
-/// motions, except program starts. A jog must not wait, because the wait would delay the stop of the jog.
+/// motions, except starts of programs. A jog must not wait, because the wait would delay the stop of the jog.
 fn needs_contradiction_wait(order: &Request) -> bool {
     match order.command() {
         Command::Jgst => false,
@@ -439,7 +443,8 @@ fn contradicts(first: &str, second: &Framed) -> bool {
 }
 
 impl Exchange {
-    /// Whether the request is a read. Neither `@OK` nor the answer to another read can be mistaken for its answer.
+    /// Whether the request is a read. Neither an `@OK` nor the answer to another read can be mistaken for the answer to
+    /// a read.
     fn is_read(&self) -> bool {
         self.request.as_ref().is_some_and(|request| !request.row().is_order())
     }

@@ -103,15 +103,15 @@ bits! {
     card_reading 3 / 6 false "reading card";
     /// The card is being written.
     card_writing 3 / 7 false "writing to card";
-    /// Escape input.
+    /// The escape input is on.
     escape_input 4 / 0 false "escape input ON";
-    /// Continuous start input.
+    /// The continuous start input is on.
     continuous_input 4 / 1 false "continuous input ON";
     /// A program waits for an input.
     waits_for_input 4 / 2 false "waits for input";
-    /// Pause input.
+    /// The pause input is on.
     pause_input 4 / 3 false "pause input ON";
-    /// Ready output.
+    /// The ready output is on.
     ready_output 4 / 4 false "ready output";
 }
 
@@ -164,7 +164,7 @@ impl Status {
 }
 
 impl ProgramKind {
-    /// The two bits.
+    /// The two bits of the program type.
     pub const fn bits(self) -> u8 {
         self as u8
     }
@@ -181,7 +181,7 @@ impl ProgramKind {
 }
 
 impl RunMode {
-    /// The two bits, not shifted.
+    /// The two bits of the run mode, not shifted.
     pub const fn bits(self) -> u8 {
         self as u8
     }

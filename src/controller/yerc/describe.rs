@@ -18,7 +18,7 @@ use crate::text::hex;
 pub struct Description {
     /// One-line summary.
     pub title: String,
-    /// Manual and section of a known command.
+    /// Manual and section, if the command is known.
     pub section: Option<String>,
     /// All bytes in order.
     pub fields: Vec<FieldNote>,
@@ -53,13 +53,13 @@ pub enum Sender {
 }
 
 impl Sender {
-    /// Guesses the sender by the ACK flag and, for file frames, by the sub-header.
+    /// Guesses the sender from the ACK flag. For file frames, the sub-header decides.
     pub fn guess(frame: &[u8]) -> Self {
         if frame.get(ACK_AT).is_none_or(|&ack| ack == 0) {
             return Self::Client;
         }
         // In transfer frames of the client, the bytes of command, instance and attribute are 0. In an answer, the first
-        // of these bytes is the service.
+        // of these bytes is the service, which is never 0.
         match frame.get(24..30) {
             Some([0, 0, 0, 0, 0, service]) if *service != 0 => Self::Client,
             _ => Self::Controller,
@@ -67,7 +67,7 @@ impl Sender {
     }
 }
 
-/// Offset of the ACK flag.
+/// Offset of the ACK flag in a frame.
 const ACK_AT: usize = 10;
 
 /// Decodes a frame. `request` is the request that an answer belongs to, if it is known: an answer does not contain its
@@ -166,7 +166,7 @@ fn block_words(block: u32) -> String {
     }
 }
 
-/// Name of an instance in parentheses. If the name depends on the model, both names.
+/// Name of an instance in parentheses. Contains both names if the name depends on the model.
 fn instance_words(request: &Request) -> String {
     let label = |model| {
         let instances = request.row()?.instances;
@@ -194,7 +194,7 @@ impl<'a> Notes<'a> {
         Self { frame, at: 0, fields: Vec::new(), problem: None }
     }
 
-    /// Adds the next `size` bytes. After bytes were missing, adds nothing more.
+    /// Adds the next `size` bytes. If bytes are missing, or were missing before, adds no field.
     fn take(&mut self, size: usize, name: impl Into<String>, meaning: impl FnOnce(&[u8]) -> String) -> bool {
         let name = name.into();
         if self.problem.is_some() {
@@ -294,7 +294,7 @@ impl<'a> Notes<'a> {
         let word = |at: usize| u16::try_from(little(&bytes[at..at + 2])).unwrap_or_default();
         let division = self.frame.get(9);
         let data = self.frame.get(HEADER_LEN..).unwrap_or_default().to_vec();
-        // In a file frame, only the service matters.
+        // In a file frame, only the service has a meaning.
         let command = if division == Some(&2) { 0 } else { word(0) };
         Some(Request { command, instance: word(2), attribute: bytes[4], service: bytes[5], data })
     }

@@ -25,7 +25,7 @@ pub enum FileType {
     Prm,
     /// System data.
     Sys,
-    /// Lists: I/O ladder and the like.
+    /// Lists, for example the I/O ladder.
     Lst,
 }
 
@@ -45,7 +45,7 @@ impl FileType {
         }
     }
 
-    /// Filter of a list request, e.g. `*.JBI`.
+    /// Filter of a list request, for example `*.JBI`.
     pub fn filter(self) -> String {
         format!("*.{}", self.extension())
     }
@@ -77,7 +77,7 @@ impl fmt::Display for FileType {
 /// Why a file name or filter is invalid.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum FileNameError {
-    /// The name is empty, or only an extension.
+    /// The name is empty, or has only an extension.
     #[error("the file name is empty")]
     Empty,
     /// The name is longer than the data of a frame.
@@ -86,7 +86,8 @@ pub enum FileNameError {
         /// Length in bytes.
         len: usize,
     },
-    /// The name contains a NUL. Names are sent without a NUL, and controllers refuse a name with a NUL (E49D).
+    /// The name contains a NUL. Names are sent without a NUL, and controllers refuse a name with a NUL (added status
+    /// E49D).
     #[error("the file name '{name}' contains a NUL byte")]
     Nul {
         /// The name, escaped.
@@ -98,7 +99,8 @@ pub enum FileNameError {
         /// The name, escaped.
         name: String,
     },
-    /// The name contains a control character. CR or LF would split lists, and the others cannot be typed on a pendant.
+    /// The name contains a control character. CR or LF would split a list of names. The other control characters cannot
+    /// be typed on a pendant.
     #[error("the file name '{name}' contains a control character")]
     Control {
         /// The name, escaped.
@@ -110,7 +112,7 @@ pub enum FileNameError {
         /// The name, escaped.
         name: String,
     },
-    /// The extension is not one of the six extensions of files that can be sent.
+    /// The extension is not one of the six extensions of files that a client can send.
     #[error("the file name '{name}' must have the extension JBI, DAT, CND, PRM, SYS or LST to be sent")]
     Type {
         /// The name, escaped.
@@ -137,7 +139,7 @@ pub enum FileNameError {
 pub struct FileName(Vec<u8>);
 
 impl FileName {
-    /// Validates a name.
+    /// Checks a name and creates the file name.
     pub fn new(name: impl Into<Vec<u8>>) -> Result<Self, FileNameError> {
         let name = name.into();
         if name == BATCH_BACKUP_PATH {
@@ -157,7 +159,7 @@ impl FileName {
         FileType::from_name(&self.0)
     }
 
-    /// Checks the additional rules for the name of a file to be sent.
+    /// Checks the additional rules for a file that is sent to the controller.
     pub fn check_load(&self) -> Result<(), FileNameError> {
         check_load_name(&self.0)
     }
@@ -202,7 +204,7 @@ pub fn batch_backup() -> Request {
     Request::file(service::SAVE, BATCH_BACKUP_PATH)
 }
 
-/// A file block to the controller: a frame in ACK form with data.
+/// A file block to the controller: a frame with the ACK flag and with data.
 ///
 /// # Panics
 /// If `data` is longer than 479 bytes.
@@ -210,7 +212,7 @@ pub fn data_frame(id: u8, block: u32, data: &[u8]) -> Vec<u8> {
     transfer_frame(id, service::LOAD, block, data)
 }
 
-/// Acknowledges a block from the controller. `block` is the received number with its last-block bit.
+/// A frame that acknowledges a block from the controller. `block` is the received number with its last-block bit.
 pub fn ack_frame(id: u8, service: u8, block: u32) -> Vec<u8> {
     transfer_frame(id, service, block, &[])
 }
@@ -240,8 +242,8 @@ pub struct ListError {
     pub len: usize,
 }
 
-/// Splits the data of a list into names. In the manuals, each name ends with CR LF. A single CR or LF, NULs, and
-/// trailing blanks also separate names: none of these bytes is part of a multi-byte character.
+/// Splits the data of a list into names. In the manuals, each name ends with CR LF. A single CR or LF, NULs and
+/// trailing blanks also separate names. None of these bytes can be part of a multi-byte character.
 pub fn split_list(data: &[u8]) -> Result<Vec<&[u8]>, ListError> {
     let lines = data.split(|byte| matches!(byte, b'\r' | b'\n' | 0)).map(<[u8]>::trim_ascii_end);
     let mut names = Vec::new();
@@ -254,7 +256,7 @@ pub fn split_list(data: &[u8]) -> Result<Vec<&[u8]>, ListError> {
     Ok(names)
 }
 
-/// Checks the rules for names in requests. The path of the batch backup is allowed.
+/// Checks the rules for names in requests. The path of the batch backup is also allowed.
 pub fn check_name(name: &[u8]) -> Result<(), FileNameError> {
     if name == BATCH_BACKUP_PATH {
         return Ok(());

@@ -20,7 +20,7 @@ impl Group {
     /// The first robot.
     pub const R1: Self = Self::Robot(1);
 
-    /// Instance for pulses, torque and position error: 1, 11 or 21 for the first robot, base or station.
+    /// Instance for pulses, torque and position error: from 1 for robots, from 11 for bases, from 21 for stations.
     pub const fn instance(self) -> u16 {
         match self {
             Self::Robot(number) => number as u16,
@@ -29,7 +29,7 @@ impl Group {
         }
     }
 
-    /// Instance for cartesian coordinates: 101 or 111 for the first robot or base. Stations have none.
+    /// Instance for cartesian coordinates: from 101 for robots, from 111 for bases. `None` for stations.
     pub const fn cartesian_instance(self) -> Option<u16> {
         match self {
             Self::Robot(_) | Self::Base(_) => Some(100 + self.instance()),
@@ -47,7 +47,7 @@ impl Group {
         }
     }
 
-    /// Maximum number of robots, bases and stations.
+    /// Maximum numbers of robots, bases and stations.
     pub const fn counts(model: Model) -> (u8, u8, u8) {
         match model {
             Model::Fs100 => (2, 2, 3),

@@ -1,7 +1,8 @@
 //! Yaskawa FS100, DX100, DX200 and YRC1000: high-speed Ethernet server ("YERC", after the frame identifier).
 //!
-//! UDP, little-endian, one frame per datagram. Sources by short name: FS = FS100 manual HW1481031, DX = DX200 manual
-//! HW1481977. A section has the same number in both manuals unless noted otherwise.
+//! The protocol uses UDP and little-endian numbers, with one frame per datagram. Two manuals have short names here: FS
+//! = FS100 manual HW1481031, DX = DX200 manual HW1481977. A section number applies to both manuals unless noted
+//! otherwise.
 
 pub mod describe;
 pub mod files;

@@ -23,10 +23,10 @@ pub enum Model {
     Yrc1000,
 }
 
-/// Prefixes of the system software version by controller (0x89; FS and DX 3.3.26).
+/// Prefixes of the system software version, by controller (0x89; FS and DX 3.3.26).
 ///
 /// FS100: examples in FS. DX100: versions reported by users (ros-industrial/motoman, issue 651: `DS3.93.00(us/de)-14`,
-/// `DS4.42.00A(…)-14`). DX repeats such an example, but no DX200 with such a version is known. DX200, YRC1000,
+/// `DS4.42.00A(…)-14`). The DX manual has a similar example, but no DX200 with such a version is known. DX200, YRC1000,
 /// YRC1000micro: requirements of the maker's `MotoROS2` (`DN2.44.00-00`, `YAS2.80.00-00`, `YBS2.45.00-00`), and a
 /// captured `YAS2.02`.
 const SOFTWARE: [(&str, Model); 5] = [
@@ -51,7 +51,8 @@ impl Model {
         }
     }
 
-    /// The model for a system software version such as `YAS2.02.11A(JP/EN)-97`; `None` if the version is unknown.
+    /// Returns the model for a system software version, for example `YAS2.02.11A(JP/EN)-97`; `None` if the version is
+    /// unknown.
     pub fn from_software(version: &[u8]) -> Option<Self> {
         let letters = version.iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
         let (prefix, number) = version.split_at(letters);
@@ -60,7 +61,7 @@ impl Model {
         found.map(|(_, model)| *model)
     }
 
-    /// Whether S variables have 32 bytes, as from the DX200 on (DX 3.3).
+    /// Whether S variables have 32 bytes. They do on the DX200 and newer models (DX 3.3).
     pub const fn has_long_strings(self) -> bool {
         match self {
             Self::Fs100 | Self::Dx100 => false,
@@ -68,8 +69,8 @@ impl Model {
         }
     }
 
-    /// Parts of the profile that no source proves. The text completes "unproven: …". `None` if the profile comes from
-    /// the manual of the model.
+    /// Parts of the profile that no source proves. The text is the end of the message "unproven: …". `None` if the
+    /// profile comes from the manual of the model.
     pub const fn unproven(self) -> Option<&'static str> {
         match self {
             Self::Fs100 | Self::Dx200 => None,

@@ -26,10 +26,10 @@ use crate::typed::unsigned;
 /// Files with names, in the order of reading.
 pub const FILES: [&str; 4] = ["IONAME.DAT", "EXIONAME.DAT", "VARNAME.DAT", "IOMNAME.DAT"];
 
-/// Signals, variables and registers: `#27010`, `B5`, `M5`.
+/// Address notation of signals, variables and registers, for example `#27010`, `B5` or `M5`.
 pub const GRAMMAR: Grammar = Grammar { address, prefixes: &["B", "I", "D", "R", "S", "P", "BP", "EX", "M"] };
 
-/// Maximum number of names: a controller has 8192 signals, and some thousand variables of each kind.
+/// Maximum number of names in a file. A controller has 8192 signals, and some thousand variables of each kind.
 const MOST: usize = 1 << 16;
 
 /// Why a file cannot be read.
@@ -71,13 +71,13 @@ fn address(text: &str) -> Option<(Kind, String)> {
     }
 }
 
-/// Parses `M5` and `M005`.
+/// Parses a register, for example `M5` or `M005`.
 pub fn register(text: &str) -> Option<u16> {
     let digits = text.strip_prefix(['M', 'm'])?;
     unsigned(digits)
 }
 
-/// Address of a register: `M5`.
+/// Address of a register, for example `M5`.
 pub fn register_address(number: u16) -> String {
     format!("M{number}")
 }
@@ -104,14 +104,14 @@ pub fn read(file: &str, bytes: &[u8], encoding: Encoding) -> Result<FileNames, W
 enum Section {
     /// Four names per line, for the signals from this group on.
     Signals(u16),
-    /// One variable of this kind per line: `0012 1,0,NAME`.
+    /// One variable of this kind per line, for example `0012 1,0,NAME`.
     Variables(&'static str),
     /// One name per line, from register 0 on.
     Registers,
 }
 
-/// Sections by their first line. The groups are the signals of the protocol (FS and DX 3.3.9): general and external
-/// inputs and outputs.
+/// Sections by their first line. Each number is a group of signals of the protocol (FS and DX 3.3.9): general and
+/// external inputs and outputs.
 const SECTIONS: [(&[u8], Section); 13] = [
     (b"//IN", Section::Signals(1)),
     (b"//OUT", Section::Signals(1001)),
@@ -135,7 +135,7 @@ struct Reader<'a> {
     file: &'a str,
     encoding: Encoding,
     section: Option<Section>,
-    /// Line within the section.
+    /// Number of the line within the section.
     line: usize,
     found: FileNames,
     is_known: bool,
@@ -184,7 +184,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Parses `0012 1,0,NAME`. The meaning of `1` and `0` is unknown and not needed.
+    /// Parses a line of a variable, for example `0012 1,0,NAME`. The meaning of the values `1` and `0` is unknown and
+    /// not needed.
     fn variable(&mut self, letters: &str, line: &[u8]) {
         if line.is_empty() {
             return;
@@ -237,8 +238,8 @@ pub(in crate::yerc) fn written(head: &str, sections: &[(&str, Vec<String>)]) -> 
 mod tests {
     use super::*;
 
-    /// Reads hand-made files in the format of the published files, which may not be copied. The names and positions
-    /// differ, except for those that prove a position.
+    /// Reads hand-made files. They have the format of the published files, which may not be copied. Names and positions
+    /// are different, except the positions that prove a fact.
     fn read_text(file: &str, text: &str) -> Vec<String> {
         let found = read(file, &encode(text), Encoding::ShiftJis).unwrap();
         found.names.iter().map(|name| format!("{}={}", name.address, name.name)).collect()

@@ -38,7 +38,7 @@ pub trait Query {
     /// Builds the request. It passes [`Request::check`] for the model of the query.
     fn request(&self) -> Request;
 
-    /// Decodes the data of a successful answer.
+    /// Decodes the data of an answer. The controller must have accepted the request.
     fn decode(&self, data: &[u8]) -> Result<Self::Answer, PayloadError>;
 
     /// Risk of the request.
@@ -49,7 +49,7 @@ pub trait Query {
 
 /// A query whose answer contains only its status.
 pub trait WriteQuery {
-    /// Builds the request, as [`Query::request`] does.
+    /// Builds the request like [`Query::request`].
     fn write_request(&self) -> Request;
 }
 
@@ -72,25 +72,25 @@ pub enum QueryError {
     #[error("{group} does not exist on a {model}; it has R1-R{robots}, B1-B{bases}, S1-S{stations}",
         robots = Group::counts(*.model).0, bases = Group::counts(*.model).1, stations = Group::counts(*.model).2)]
     Group {
-        /// The group given.
+        /// The group in the query.
         group: Group,
-        /// The controller.
+        /// The model of the controller.
         model: Model,
     },
     /// A control group that this query does not support.
     #[error("{group} cannot be used here: {reason}")]
     GroupKind {
-        /// The group given.
+        /// The group in the query.
         group: Group,
         /// The reason.
         reason: &'static str,
     },
     /// A task that does not exist.
-    #[error("task {task} does not exist on a {model}; it has 0 (master) to {last}")]
+    #[error("task {task} does not exist on a {model}; it has tasks 0 (master) to {last}")]
     Task {
-        /// The task given.
+        /// The task in the query.
         task: u8,
-        /// The controller.
+        /// The model of the controller.
         model: Model,
         /// Last valid task.
         last: u8,
@@ -98,9 +98,9 @@ pub enum QueryError {
     /// A number out of range.
     #[error("{what} is {found}; allowed: {first} to {last}")]
     Range {
-        /// Name of the number.
+        /// What the number is.
         what: &'static str,
-        /// The number.
+        /// The number in the query.
         found: u32,
         /// Minimum.
         first: u32,
@@ -110,7 +110,7 @@ pub enum QueryError {
     /// A text that does not fit its field.
     #[error("{what}: {error}")]
     Text {
-        /// Name of the text.
+        /// What the text is.
         what: &'static str,
         /// The reason.
         error: TextError,
@@ -118,13 +118,13 @@ pub enum QueryError {
     /// A name that is missing.
     #[error("{what} is empty")]
     Empty {
-        /// Name of the text.
+        /// Which text is missing.
         what: &'static str,
     },
     /// A speed class that does not fit the kind of move.
     #[error("a {motion} move needs its speed in {expected}")]
     SpeedClass {
-        /// Link or straight.
+        /// Kind of move: link or straight.
         motion: &'static str,
         /// Valid classes.
         expected: &'static str,
@@ -140,10 +140,10 @@ pub enum QueryError {
         /// The bits.
         bits: u32,
     },
-    /// Values of different kinds in one plural write.
+    /// Several values for one plural write have different kinds.
     #[error("a plural write needs at least one value, and all values must have the same type")]
     MixedKinds,
-    /// A request that violates the table.
+    /// The request violates the command table.
     #[error(transparent)]
     Request(#[from] RequestError),
 }
@@ -154,7 +154,7 @@ fn checked<Q: Query>(model: Model, query: Q) -> Result<Q, QueryError> {
     Ok(query)
 }
 
-/// A request that reads, and therefore has no data.
+/// Builds a request that reads. A read has no data.
 fn reading(command: u16, instance: u16, attribute: u8, service: u8) -> Request {
     Request { command, instance, attribute, service, data: Vec::new() }
 }
@@ -173,9 +173,9 @@ fn read_plural(command: u16, first: u16, count: u16) -> Request {
     Request { command, instance: first, attribute: 0, service: service::READ_PLURAL, data }
 }
 
-/// A request that writes `count` consecutive elements.
+/// Builds a request that writes `count` consecutive elements.
 fn write_plural(command: u16, first: u16, count: usize, elements: impl IntoIterator<Item = u8>) -> Request {
-    // The check after the construction refuses a count that large.
+    // A count that does not fit 32 bits becomes the maximum. The check after the construction then refuses it.
     let mut data = u32::try_from(count).unwrap_or(u32::MAX).to_le_bytes().to_vec();
     data.extend(elements);
     Request { command, instance: first, attribute: 0, service: service::WRITE_PLURAL, data }

@@ -1,4 +1,4 @@
-//! Requests, and their validation by the table.
+//! Requests, and their validation with the command table.
 
 use thiserror::Error;
 
@@ -15,7 +15,7 @@ pub struct Request {
     pub command: u16,
     /// Instance of the command.
     pub instance: u16,
-    /// Attribute: a field of the instance.
+    /// Attribute: number of a field of the instance, or 0 for all fields.
     pub attribute: u8,
     /// Service.
     pub service: u8,
@@ -23,29 +23,29 @@ pub struct Request {
     pub data: Vec<u8>,
 }
 
-/// A request that the manuals do not allow.
+/// Why a request does not follow the manuals.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum RequestError {
     /// An unknown command.
     #[error("command {command:#06x} does not exist; known: 0x70 to 0x8c and 0x300 to 0x30c")]
     Command {
-        /// The number given.
+        /// The number in the request.
         command: u16,
     },
     /// An unknown file service.
     #[error("file service {found:#04x} does not exist; known: 0x09, 0x15, 0x16 and 0x32")]
     FileService {
-        /// The number given.
+        /// The number in the request.
         found: u8,
     },
     /// A command that the model does not have.
     #[error("command {command:#06x} ({name}) does not exist on a {model}")]
     Model {
-        /// The number given.
+        /// The number in the request.
         command: u16,
         /// Name of the command.
         name: &'static str,
-        /// The controller.
+        /// The model of the controller.
         model: Model,
     },
     /// A service that the command does not have.
@@ -55,7 +55,7 @@ pub enum RequestError {
         command: u16,
         /// Name of the command.
         name: &'static str,
-        /// The service given.
+        /// The service in the request.
         found: u8,
         /// Valid services.
         allowed: String,
@@ -63,11 +63,11 @@ pub enum RequestError {
     /// An instance that does not exist.
     #[error("instance {found} is outside {name} on a {model}; allowed: {allowed}")]
     Instance {
-        /// The command's name.
+        /// Name of the command.
         name: &'static str,
-        /// The instance given.
+        /// The instance in the request.
         found: u16,
-        /// The controller.
+        /// The model of the controller.
         model: Model,
         /// Valid ranges.
         allowed: String,
@@ -75,11 +75,11 @@ pub enum RequestError {
     /// An instance that is read-only.
     #[error("instance {found} ({class}) can only be read on a {model}; writable: {allowed}")]
     ReadOnly {
-        /// The instance given.
+        /// The instance in the request.
         found: u16,
-        /// Description.
+        /// Description of the instance.
         class: &'static str,
-        /// The controller.
+        /// The model of the controller.
         model: Model,
         /// Writable ranges.
         allowed: String,
@@ -87,11 +87,11 @@ pub enum RequestError {
     /// An attribute that does not exist.
     #[error("attribute {found} is not allowed for {name} with service {service:#04x}; allowed: {allowed}")]
     Attribute {
-        /// The command's name.
+        /// Name of the command.
         name: &'static str,
-        /// The attribute given.
+        /// The attribute in the request.
         found: u8,
-        /// The service.
+        /// The service in the request.
         service: u8,
         /// Valid attributes.
         allowed: String,
@@ -99,23 +99,23 @@ pub enum RequestError {
     /// Wrong data size.
     #[error("{name} with service {service:#04x} must have {allowed} data bytes, not {found}")]
     DataSize {
-        /// The command's name.
+        /// Name of the command.
         name: &'static str,
-        /// The service.
+        /// The service in the request.
         service: u8,
-        /// Bytes given.
+        /// Size of the data in the request, in bytes.
         found: usize,
-        /// Valid sizes.
+        /// Valid sizes in bytes.
         allowed: String,
     },
     /// An undefined value of a word.
     #[error("{field} of {name} is {found}; allowed: {allowed}")]
     Value {
-        /// The command's name.
+        /// Name of the command.
         name: &'static str,
-        /// The field.
+        /// Name of the field.
         field: &'static str,
-        /// The value given.
+        /// The value in the request.
         found: u32,
         /// Valid values.
         allowed: String,
@@ -123,9 +123,9 @@ pub enum RequestError {
     /// Wrong number of elements.
     #[error("{name}: count {found} is outside 1 to {max}")]
     Count {
-        /// The command's name.
+        /// Name of the command.
         name: &'static str,
-        /// The count given.
+        /// The count in the request.
         found: u32,
         /// Maximum count.
         max: u16,
@@ -133,21 +133,21 @@ pub enum RequestError {
     /// An odd count, although only even counts are valid.
     #[error("{name}: count {found} is odd; allowed: even counts from 2 to {max}")]
     OddCount {
-        /// The command's name.
+        /// Name of the command.
         name: &'static str,
-        /// The count given.
+        /// The count in the request.
         found: u32,
         /// Maximum count.
         max: u16,
     },
-    /// Elements beyond the end of the range that contains the first element.
+    /// The request goes beyond the end of the range that contains its first element.
     #[error("{name}: {count} elements from {first} end after the last element {last}")]
     Overrun {
-        /// The command's name.
+        /// Name of the command.
         name: &'static str,
         /// First instance.
         first: u16,
-        /// Requested elements.
+        /// Number of requested elements.
         count: u32,
         /// Last instance of the range.
         last: u16,
@@ -164,7 +164,7 @@ impl From<RequestFrame<'_>> for Request {
     }
 }
 
-/// The frame with id 0: sessions assign their own ids.
+/// Converts to a frame with request id 0. Sessions assign their own ids.
 impl<'a> From<&'a Request> for RequestFrame<'a> {
     fn from(request: &'a Request) -> Self {
         Self {
@@ -251,7 +251,7 @@ impl Request {
         }
     }
 
-    /// Checks the instance, and returns the last instance that a plural request can reach from it.
+    /// Checks the instance. Returns the last instance that a plural request can include if it begins there.
     fn check_instance(&self, row: &Row, service: &Service, model: Model) -> Result<u16, RequestError> {
         let span = row.instances.find(model, self.instance).ok_or_else(|| RequestError::Instance {
             name: row.name,
@@ -296,7 +296,7 @@ impl Request {
         if u32::from(self.instance) + count - 1 > u32::from(last) {
             return Err(RequestError::Overrun { name: row.name, first: self.instance, count, last });
         }
-        // The check above limits the count to at most 479, so the conversion and the product are in range.
+        // An earlier check limits the count to at most 479, so the conversion and the product are in range.
         let expected = if self.service == service::WRITE_PLURAL {
             usize::try_from(count).unwrap_or(MAX_DATA).saturating_mul(row.size())
         } else {

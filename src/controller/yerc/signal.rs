@@ -9,7 +9,7 @@ use super::Model;
 use super::table::{Row, Span};
 use crate::typed::unsigned;
 
-/// A signal by its logical number, whose last digit is 0 to 7.
+/// A signal, identified by its logical number. The last digit of this number is 0 to 7.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Signal {
     group: u16,
@@ -28,7 +28,7 @@ pub enum SignalError {
     /// A last digit above 7.
     #[error("signal {number} does not exist: the last digit must be from 0 to 7")]
     Digit {
-        /// The number given.
+        /// The number in the text.
         number: u32,
     },
 }
@@ -51,7 +51,7 @@ impl Signal {
         self.bit
     }
 
-    /// The logical number.
+    /// Logical number of the signal.
     pub fn number(self) -> u32 {
         u32::from(self.group) * 10 + u32::from(self.bit)
     }

@@ -20,7 +20,7 @@ use super::Model;
 use super::group::Group;
 use super::table::ALARM_KINDS;
 
-/// Format of a sub-code. Numbers that are not defined are kept.
+/// Format of a sub-code, by the number that the controller sends. Undefined numbers are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct AlarmKind(pub u32);
 
@@ -62,15 +62,15 @@ pub struct SubCode {
     pub data: u32,
     /// Name of the type.
     pub type_name: &'static str,
-    /// Text as on the pendant, such as `[1]` or `[SLU]`. If [`trust`](Self::trust) is raw, the bytes in hexadecimal,
-    /// lowest byte first. Empty without a sub-code.
+    /// Text as on the pendant, for example `[1]` or `[SLU]`. If [`trust`](Self::trust) is raw, the text is the bytes in
+    /// hexadecimal, lowest byte first. Empty without a sub-code.
     pub text: String,
     /// Trust level of the text.
     pub trust: Trust,
 }
 
 /// Renders the sub-code `data` of an alarm of type `kind`. The model limits the number of robots. Rendering never
-/// fails: unknown types and values that do not fit are rendered raw.
+/// fails: unknown types, and values that do not fit their type, are rendered raw.
 pub fn render(kind: AlarmKind, data: u32, model: Model) -> SubCode {
     let alarm_type = kind.0;
     let form = TYPES.iter().find(|(number, _)| *number == alarm_type).map_or(Form::Unknown, |(_, form)| *form);
@@ -79,7 +79,7 @@ pub fn render(kind: AlarmKind, data: u32, model: Model) -> SubCode {
     SubCode { alarm_type, data, type_name, text, trust }
 }
 
-/// Format of a type.
+/// Display format of an alarm type.
 #[derive(Debug, Clone, Copy)]
 enum Form {
     /// No sub-code.
@@ -90,21 +90,21 @@ enum Form {
     Signed16,
     /// Bit pattern of this width, in groups of four.
     Bits(u32),
-    /// A set of axes, from bit 0.
+    /// A set of named axes. Bit 0 is the first axis.
     Axes(&'static [&'static str]),
-    /// A set of control groups, robots first.
+    /// A set of control groups. The robots begin at bit 0.
     Groups,
     /// Fields in an unknown order.
     Unknown,
 }
 
-/// Axis names of a robot, in data order (DX 3.3.5; the eighth has no name).
+/// Axis names of a robot, in data order (DX 3.3.5). The eighth axis has no name.
 const ROBOT_AXES: &[&str] = &["S", "L", "U", "R", "B", "T", "E"];
 const SPACE_AXES: &[&str] = &["X", "Y", "Z"];
 const POSE_AXES: &[&str] = &["X", "Y", "Z", "Rx", "Ry", "Rz"];
 
-/// Formats of the types in FS and DX 3.3.1, in ascending order; the command table has their names. FS has the example
-/// `[R1: 1]` for type 27; DX repeats the example of type 25 there.
+/// Formats of the types in FS and DX 3.3.1, in ascending order. The command table has the names of the types. FS has
+/// the example `[R1: 1]` for type 27; DX repeats the example of type 25 for type 27.
 const TYPES: [(u32, Form); 19] = [
     (0, Form::Empty),
     (1, Form::Unsigned16),
@@ -137,7 +137,7 @@ impl Form {
                 Some((format!("[{number}]"), Trust::Printed))
             }
             Self::Signed16 => {
-                // A controller may send -1 as 0x0000FFFF, or extended to 0xFFFFFFFF.
+                // A controller may send -1 with 16 bits (0x0000FFFF) or extended to 32 bits (0xFFFFFFFF).
                 let number = u16::try_from(data).map(u16::cast_signed);
                 let number = number.or_else(|_| i16::try_from(data.cast_signed())).ok()?;
                 Some((format!("[{number}]"), Trust::Printed))
@@ -176,12 +176,12 @@ fn is_set(data: u32, bit: u32) -> bool {
     data >> bit & 1 == 1
 }
 
-/// Puts a set in brackets, as on the pendant. An empty set gives an empty text.
+/// Puts a set of names in brackets, as on the pendant. An empty set gives an empty text.
 fn bracketed(set: &str) -> String {
     if set.is_empty() { String::new() } else { format!("[{set}]") }
 }
 
-/// Bits as on the pendant, highest bit first: `[0000_0001]`.
+/// Formats bits as on the pendant, highest bit first, for example `[0000_0001]`.
 fn pattern(data: u32, width: u32) -> String {
     let mut text = String::from("[");
     for bit in (0..width).rev() {

@@ -49,11 +49,11 @@ pub const BATCH_BACKUP_PATH: &[u8] = b"/SPDRV/CMOSBK.BIN";
 /// Availability of a command by controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Availability {
-    /// All controllers.
+    /// DX200, and FS100 with system software FS1.14 or later.
     Both,
     /// DX200, and FS100 from system software FS1.14.
     Fs114,
-    /// From the DX200 on.
+    /// DX200 and newer models.
     Dx200,
 }
 
@@ -76,13 +76,13 @@ impl Availability {
 /// Valid attribute numbers of a service.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Attribute {
-    /// 0.
+    /// The attribute is 0.
     Zero,
-    /// 1.
+    /// The attribute is 1.
     One,
-    /// 1, as in the manuals. Controllers are known to accept 0 too.
+    /// The attribute is 1, as in the manuals. Controllers are known to accept 0 too.
     OneOrZero,
-    /// The number of a field, from 1.
+    /// The attribute is the number of a field, from 1.
     Field,
 }
 
@@ -91,24 +91,24 @@ pub enum Attribute {
 pub enum RiskRule {
     /// The risk does not depend on the data.
     Always(Risk),
-    /// The risk depends on the switch: servo power on and off is a motion, because an axis may sink. HOLD and HLOCK are
-    /// writes (3.3.20).
+    /// The risk depends on the switched object. Servo power on or off is a motion, because an axis may sink. HOLD and
+    /// HLOCK are writes (3.3.20).
     Switches,
 }
 
 /// Direction of the data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Action {
-    /// Data in the answer.
+    /// The answer contains the data.
     Read,
-    /// Data in the request.
+    /// The request contains the data.
     Write,
 }
 
 /// A service of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Service {
-    /// Protocol byte.
+    /// Number of the service in the protocol.
     pub number: u8,
     /// Readable name.
     pub meaning: &'static str,
@@ -116,7 +116,7 @@ pub struct Service {
     pub action: Action,
     /// Valid attribute numbers.
     pub attribute: Attribute,
-    /// Risk.
+    /// Rule for the risk of the service.
     pub risk: RiskRule,
 }
 
@@ -146,11 +146,12 @@ pub struct Row {
     pub services: &'static [Service],
     /// Valid instances.
     pub instances: Instances,
-    /// Fields of the data; for plural commands, the fields of one element. Attribute numbers count from 1.
+    /// Fields of the data. For a plural command, the fields of one element. Attribute numbers count these fields from
+    /// 1.
     pub fields: &'static [Field],
-    /// The 25-word layout of the cartesian move in the FS100 manual. It is valid only for an FS100.
+    /// Alternative fields: the 25-word layout of the cartesian move in the FS100 manual. Valid only for an FS100.
     pub alternative: Option<&'static [Field]>,
-    /// Limits, for plural commands.
+    /// Limits of a plural command; `None` for other commands.
     pub plural: Option<Plural>,
 }
 
@@ -160,7 +161,7 @@ impl Row {
         ROWS.iter().find(|row| row.division == Division::Robot && row.number == command)
     }
 
-    /// The row of a file service. `data` distinguishes a save from the batch backup.
+    /// The row of a file service. A save and the batch backup have the same service number; `data` distinguishes them.
     pub fn of_file(service: u8, data: &[u8]) -> Option<&'static Self> {
         let backup = service == service::SAVE && data == BATCH_BACKUP_PATH;
         ROWS.iter().find(|row| {
@@ -170,7 +171,7 @@ impl Row {
         })
     }
 
-    /// Manual and section, e.g. `DX 3.3.41`.
+    /// Manual and section, for example `DX 3.3.41`.
     pub fn citation(&self) -> String {
         match self.availability {
             Availability::Dx200 => format!("DX {}", self.section),
@@ -183,7 +184,7 @@ impl Row {
         self.services.iter().find(|service| service.number == number)
     }
 
-    /// Size of all fields in bytes; for plural commands, the size of one element.
+    /// Size of all fields in bytes. For a plural command, the size of one element.
     pub fn size(&self) -> usize {
         total(self.fields)
     }
@@ -199,7 +200,7 @@ impl Row {
         }
     }
 
-    /// Whether the row is the batch backup, which has the same service number as save.
+    /// Whether the row is the batch backup. Its service number is the same as that of a save.
     pub fn is_batch_backup(&self) -> bool {
         self.section == rows::BATCH_BACKUP_SECTION
     }

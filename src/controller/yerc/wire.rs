@@ -16,7 +16,7 @@ pub const MAX_DATA: usize = 479;
 pub const MAX_FRAME: usize = HEADER_LEN + MAX_DATA;
 /// Bit in the block number that marks the last frame of an answer or transfer.
 pub const LAST_BLOCK: u32 = 0x8000_0000;
-/// Bit in the service of an answer.
+/// Bit that is set in the service number of an answer.
 pub const ANSWER_BIT: u8 = 0x80;
 
 const IDENTIFIER: &[u8; 4] = b"YERC";
@@ -189,7 +189,7 @@ pub struct RequestFrame<'a> {
     pub ack: bool,
     /// Request id, copied into the answer.
     pub id: u8,
-    /// 0 for a request; the block number within a transfer.
+    /// Block number within a transfer; 0 for a request.
     pub block: u32,
     /// Command number; 0 for files.
     pub command: u16,
@@ -199,7 +199,7 @@ pub struct RequestFrame<'a> {
     pub attribute: u8,
     /// Service.
     pub service: u8,
-    /// At most [`MAX_DATA`] bytes.
+    /// Data of the frame, at most [`MAX_DATA`] bytes.
     pub data: &'a [u8],
 }
 
@@ -238,7 +238,7 @@ impl<'a> RequestFrame<'a> {
 /// Result code of an answer: status, and an optional added status.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Status {
-    /// 0x00 is success; 0x1F refers to the added status (DX chapter 4).
+    /// Status code: 0x00 is success, 0x1F refers to the added status (DX chapter 4).
     pub code: u8,
     /// Size of the added status in 16-bit words, 0 to 2.
     pub added_size: u8,
@@ -255,8 +255,8 @@ impl Status {
         Self { code: 0x1F, added_size: 1, added: added as u32 }
     }
 
-    /// Whether the controller carried out the request. An added status may still report that the object of the request
-    /// did not exist (DX: E29C, E2A7 with status 0).
+    /// Whether the controller carried out the request. With this status, an added status may still report that the
+    /// object of the request did not exist (DX: E29C, E2A7 with status 0).
     pub const fn is_ok(self) -> bool {
         self.code == 0
     }
@@ -267,17 +267,17 @@ impl Status {
 pub struct AnswerFrame<'a> {
     /// Robot or file server.
     pub division: Division,
-    /// `true` in all controller frames.
+    /// ACK flag; `true` in all controller frames.
     pub ack: bool,
     /// Request id, copied from the client frame.
     pub id: u8,
-    /// [`LAST_BLOCK`] in a single answer; the block number within a transfer.
+    /// Block number within a transfer. [`LAST_BLOCK`] in a single answer.
     pub block: u32,
     /// Service of the request plus [`ANSWER_BIT`].
     pub service: u8,
     /// Result code.
     pub status: Status,
-    /// At most [`MAX_DATA`] bytes.
+    /// Data of the frame, at most [`MAX_DATA`] bytes.
     pub data: &'a [u8],
 }
 
@@ -330,7 +330,7 @@ fn array<const N: usize>(bytes: &[u8], range: Range<usize>) -> [u8; N] {
     out
 }
 
-/// Encodes a size. It is at most 511, so it always fits.
+/// Encodes a size. The size is at most 511, so it always fits.
 fn le16(size: usize) -> [u8; 2] {
     u16::try_from(size).expect("frame sizes are at most 511").to_le_bytes()
 }

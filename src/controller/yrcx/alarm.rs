@@ -1,4 +1,4 @@
-//! Alarms: a group and a category, written `12.600` (chapter 2, section 1.2).
+//! Alarms: a group and a category, written as in `12.600` (chapter 2, section 1.2).
 //!
 //! The remote I/O manual names only a few alarms, and refers to the controller manual for the others. The names of
 //! groups and fieldbus alarms are general knowledge about these controllers. Causes and remedies follow from the remote
@@ -12,9 +12,9 @@ use thiserror::Error;
 /// An alarm number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Alarm {
-    /// Alarm group: WO1 after an abnormal end.
+    /// Alarm group. A controller sends it in WO1 after an abnormal end.
     pub group: u16,
-    /// Category within the group: WO2 after an abnormal end.
+    /// Category within the group. A controller sends it in WO2 after an abnormal end.
     pub category: u16,
 }
 
@@ -39,9 +39,9 @@ pub struct AlarmError {
     pub found: String,
 }
 
-/// The stop input ended a motion (4.2.6).
+/// Alarm after the stop input ended a motion (4.2.6).
 pub const STOP_INPUT: Alarm = Alarm::new(12, 400);
-/// The words of the command are invalid (4.2.1).
+/// Alarm if the words of the command are invalid (4.2.1).
 pub const INPUT_FORMAT: Alarm = Alarm::new(4, 202);
 
 impl Alarm {
@@ -60,7 +60,7 @@ impl Alarm {
         KNOWN.iter().find(|known| known.alarm == self)
     }
 
-    /// For an alarm of a lost link, the related alarm that the link was lost for too long.
+    /// For the alarm of a lost link: the alarm that follows if the link stays lost for too long.
     #[must_use]
     pub const fn too_long(self) -> Self {
         Self::new(self.group, self.category + 1)
@@ -90,7 +90,7 @@ impl FromStr for Alarm {
     }
 }
 
-/// Names of the groups.
+/// Names of the alarm groups, by group number.
 const GROUPS: [(u16, &str); 17] = [
     (0, "operation message"),
     (1, "system event"),
@@ -111,13 +111,16 @@ const GROUPS: [(u16, &str); 17] = [
     (28, "driver interface"),
 ];
 
-const LINK_CAUSES: &[&str] =
-    &["the master closed the connection or stopped sending", "cable, switch or power of the network"];
+const LINK_CAUSES: &[&str] = &[
+    "the master closed the connection or stopped sending",
+    "a cable, a switch or the power supply of the network \
+                                                              failed",
+];
 const LINK_REMEDIES: &[&str] =
-    &["keep the connection open with one session", "open the connection again, then reset the alarm"];
+    &["use a session to keep the connection open", "open the connection again, then reset the alarm"];
 const UNIT_REMEDIES: &[&str] = &["switch the controller off and on", "check the option unit and its settings"];
 
-/// Alarms that the sources name.
+/// Alarms that the sources name, with causes and remedies.
 pub const KNOWN: [Known; 19] = [
     Known {
         alarm: Alarm::new(2, 334),
@@ -142,7 +145,7 @@ pub const KNOWN: [Known; 19] = [
         alarm: Alarm::new(12, 76),
         text: "remote command not enabled",
         causes: &[
-            "the programming box has control: the controller accepts only references",
+            "the programming box has control: the controller accepts only commands that read (references)",
             "a safety setting disables the dedicated inputs and all remote commands",
         ],
         remedies: &["give control back at the programming box", "check mode and safety settings"],
@@ -154,13 +157,13 @@ pub const KNOWN: [Known; 19] = [
         remedies: &["switch SI(06) on again before the next motion"],
     },
     link(541, "DeviceNet link error"),
-    link(542, "DeviceNet link error, too long"),
+    link(542, "DeviceNet link error lasted too long"),
     link(551, "EtherNet/IP link error"),
-    link(552, "EtherNet/IP link error, too long"),
+    link(552, "EtherNet/IP link error lasted too long"),
     link(561, "PROFIBUS link error"),
-    link(562, "PROFIBUS link error, too long"),
+    link(562, "PROFIBUS link error lasted too long"),
     link(571, "PROFINET link error"),
-    link(572, "PROFINET link error, too long"),
+    link(572, "PROFINET link error lasted too long"),
     Known {
         alarm: Alarm::new(12, 600),
         text: "emergency stop on",

@@ -12,11 +12,11 @@ use super::value::{Value, Values};
 /// Status of a remote command in WO0 (chapter 2, 1.2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Status {
-    /// 0x0000: ready for a command.
+    /// 0x0000: the controller is ready for a command.
     Ready,
     /// 0x0100: a command runs. The controller may skip this status for a short command.
     Running,
-    /// 0x0200: the command was carried out. For a program start: the start was accepted.
+    /// 0x0200: the command was carried out. For the start of a program, only the start was accepted.
     NormalEnd,
     /// 0x4000: the command was refused or aborted, with an alarm.
     AbnormalEnd,
@@ -99,7 +99,7 @@ impl Answer {
         }
     }
 
-    /// Encodes the answer to `order`, as a controller does.
+    /// Encodes the answer to `order` as a controller does.
     pub fn words(&self, order: &Order) -> Result<Words, WordError> {
         let encode = |values| codec::encode(Side::Answer, order.row().answer(), values, Some(order.values()));
         let (status, mut words) = match self {

@@ -1,6 +1,7 @@
 //! Memory map of the image on each fieldbus (chapter 1, section 1), for the programmer of the master.
 //!
-//! The bit table of compact DeviceNet in the manual lacks bits 14 and 15. Here they are as in the full tables.
+//! In the manual, bits 14 and 15 are missing in the bit table of compact DeviceNet. Here they are as in the full
+//! tables.
 
 use super::image::{COMMAND_WORDS, DEDICATED_WORD};
 use super::signal::{Side, Signal};
@@ -10,7 +11,7 @@ use super::signal::{Side, Signal};
 pub enum Bus {
     /// DeviceNet with I/O size "Normal".
     DeviceNet,
-    /// DeviceNet with I/O size "Compact": two words of bits, no remote commands.
+    /// DeviceNet with I/O size "Compact": the image has two words of bits, and no remote commands.
     DeviceNetCompact,
     /// EtherNet/IP.
     EtherNetIp,
@@ -63,15 +64,15 @@ impl std::str::FromStr for Bus {
 pub struct MapRow {
     /// Direction. SI and WI are inputs of the controller, SO and WO are its outputs.
     pub side: Side,
-    /// Prefix of the address: `m` or `n` for words, `Im` or `Qn` for bytes.
+    /// Prefix of the address: `m` or `n` if addresses count words, `Im` or `Qn` if addresses count bytes.
     pub base: &'static str,
-    /// Words or bytes after the start address.
+    /// Number of words or bytes after the start address.
     pub offset: usize,
     /// The lowest bit of the row.
     pub low: u8,
     /// The highest bit of the row.
     pub high: u8,
-    /// Signals, such as `SI(20) to SI(27)`; empty if the bits are reserved.
+    /// Signals of the row, for example `SI(20) to SI(27)`; empty if the bits are reserved.
     pub signal: String,
     /// Readable name.
     pub meaning: String,
@@ -80,7 +81,7 @@ pub struct MapRow {
 }
 
 impl MapRow {
-    /// Address as in the manual, or relative to a start address of the master.
+    /// Address of the row as in the manual, or as a number if the start address of the master is given.
     pub fn address(&self, start: Option<u32>) -> String {
         match (start, self.offset) {
             (Some(start), offset) => {
@@ -92,7 +93,7 @@ impl MapRow {
         }
     }
 
-    /// Bits of the row: `3`, or `0 - 7`.
+    /// Bits of the row, for example `3` or `0 - 7`.
     pub fn bits(&self) -> String {
         if self.low == self.high { self.low.to_string() } else { format!("{} - {}", self.low, self.high) }
     }
@@ -156,7 +157,7 @@ fn half(bus: Bus, side: Side) -> Vec<MapRow> {
 /// Last word of general-purpose bits. A reserved word follows it.
 const LAST_GENERAL: usize = 22;
 
-/// Name and use of a word register.
+/// Name and use of a general-purpose word.
 fn register(side: Side, word: usize) -> (String, String) {
     let (name, way) = match side {
         Side::Input => ('I', "input"),

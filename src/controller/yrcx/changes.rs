@@ -6,7 +6,7 @@ use super::image::{COMMAND_WORDS, Image, Words};
 use super::signal::{Side, Signal};
 use super::table::STATUS_RESET;
 
-/// A difference.
+/// A difference between an image and the image before it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Change {
     /// The words of a command or an answer have changed.
@@ -28,7 +28,8 @@ pub enum Change {
 }
 
 impl Change {
-    /// One-line text with all words, or only with the words up to the last used word.
+    /// Formats the difference as one line. With `all`, the line contains all words; otherwise it ends with the last
+    /// word that is not 0.
     pub fn line(&self, all: bool) -> String {
         match self {
             Self::Words { side, words, summary } => {

@@ -10,7 +10,7 @@ use super::image::Words;
 use super::table::{Field, Form, Presence, Show, When};
 use super::value::{Key, Value, Values};
 
-/// Command or answer words.
+/// Direction of the words: a command, or the answer to a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Side {
     /// WI words: from the master to the controller.
@@ -32,7 +32,7 @@ impl fmt::Display for Side {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{place}{problem}")]
 pub struct WordError {
-    /// Word and field of the error, if any.
+    /// Location of the error, as far as it is known.
     pub place: FieldLocation,
     /// The problem.
     pub problem: String,
@@ -43,7 +43,7 @@ pub struct WordError {
 /// Location of an error.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldLocation {
-    /// WI or WO.
+    /// Command words (WI) or answer words (WO).
     pub side: Side,
     /// Word 0 to 15; `None` for a value without a word.
     pub word: Option<usize>,
@@ -77,8 +77,8 @@ pub(super) trait Layout: Iterator<Item = &'static Field> + Clone {}
 
 impl<I: Iterator<Item = &'static Field> + Clone> Layout for I {}
 
-/// Encodes values. `context` contains the values of the command, for an answer that depends on them. Word 0 gets only
-/// the values of its fields.
+/// Encodes values. If an answer depends on values of its command, `context` contains the values of the command. Word 0
+/// gets only the values of its fields, and no code or status.
 pub(super) fn encode(
     side: Side,
     layout: impl Layout,
@@ -98,8 +98,8 @@ pub(super) fn encode(
         };
         field.accept(&value).and_then(|()| field.write(&mut words, &value)).map_err(|problem| {
             let error = WordError::of_field(side, field, problem);
-            // The values request a position output in both units at once. The manual specifies an alarm only for this
-            // error (4.2.1).
+            // This error means that the values request a position output in both units at once. It is the only error
+            // for which the manual specifies an alarm (4.2.1).
             WordError { alarm: (field.key == Key::Report).then_some(INPUT_FORMAT), ..error }
         })?;
         used.insert(field.key);
@@ -110,7 +110,8 @@ pub(super) fn encode(
     }
 }
 
-/// Returns the given values, after the fields parsed their text, and with the flags that the values imply.
+/// Converts texts to values, and adds the flags that the given values imply. A field whose condition is not met is
+/// ignored.
 fn implied(side: Side, layout: impl Layout, given: &Values, context: Option<&Values>) -> Result<Values, WordError> {
     let mut state = Values::default();
     // Two passes, because the condition of a field may depend on a later field.
@@ -155,7 +156,7 @@ fn counts(field: &Field, look: impl Fn(Key) -> i32) -> bool {
     field.when.is_none_or(|when| holds(when, look(when.key)))
 }
 
-/// Whether a field may be missing. It is then 0.
+/// Whether a field may be missing. The words of a missing field are 0.
 fn may_be_missing(field: &Field, look: impl Fn(Key) -> i32) -> bool {
     match field.need {
         Presence::Required => false,
@@ -205,7 +206,7 @@ pub(super) fn strays(
     left.into_iter().enumerate().filter(|(_, bits)| *bits != 0)
 }
 
-/// Decodes a command, and accepts only valid values.
+/// Decodes a command. Accepts only values that the manual allows.
 pub(super) fn decode_strictly(layout: impl Layout, words: &Words) -> Result<Values, WordError> {
     let side = Side::Command;
     let mut values = Values::default();

@@ -29,7 +29,7 @@ pub struct Description {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 #[schemars(rename = "FieldRow")]
 pub struct FieldNote {
-    /// Word and bits, as in `WI1 bits 2-1`; `-` outside words.
+    /// Word and bits, for example `WI1 bits 2-1`; `-` for a part that is not in the words.
     pub place: String,
     /// Name of the field for programs; `None` for the code, the status and unused fields.
     #[serde(serialize_with = "key_name")]
@@ -44,7 +44,7 @@ pub struct FieldNote {
 }
 
 impl FieldNote {
-    /// A part of a message that is not a field of the command.
+    /// Describes a part of a message that is not a field of a command.
     pub fn of_message(place: &str, name: &str, raw: String, meaning: &str) -> Self {
         Self { place: place.to_owned(), key: None, name: name.to_owned(), raw, meaning: meaning.to_owned() }
     }
@@ -133,7 +133,7 @@ pub fn answer_summary(words: &Words) -> String {
     }
 }
 
-/// Values of a command. They may be invalid.
+/// Values of a command, which may be invalid. `None` if the command is unknown.
 fn values_of(words: &Words) -> Option<Values> {
     let row = Row::from_word(words[0])?;
     Some(codec::read(row.request(), words, None).map(|(field, value)| (field.key, value)).collect())
@@ -163,7 +163,7 @@ impl Notes<'_> {
         self.rest(|word| strays.iter().find(|(at, _)| *at == word).map_or(u16::MAX, |(_, bits)| !bits));
     }
 
-    /// Adds those of the words 1 to 15 that have bits outside of the fields.
+    /// Adds the words 1 to 15 that have set bits outside of the fields.
     fn rest(&mut self, accounted: impl Fn(usize) -> u16) {
         let alarm_words =
             if self.side == Side::Answer && Status::from_word(self.words[0]) == Status::AbnormalEnd { 3 } else { 1 };

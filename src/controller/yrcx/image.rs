@@ -11,10 +11,10 @@ pub const IMAGE_WORDS: usize = 24;
 /// Word of the dedicated signals (SI(00) to SI(17), SO(00) to SO(17)).
 pub const DEDICATED_WORD: usize = 16;
 
-/// Byte offset of the signals.
+/// Byte offset of the signals in the image.
 const SIGNALS_AT: usize = DEDICATED_WORD * 2;
 
-/// WI0 to WI15, or WO0 to WO15.
+/// Words of a remote command or of its answer: WI0 to WI15, or WO0 to WO15.
 pub type Words = [u16; COMMAND_WORDS];
 
 /// Image of one direction.
@@ -22,7 +22,7 @@ pub type Words = [u16; COMMAND_WORDS];
 pub struct Image(pub [u16; IMAGE_WORDS]);
 
 impl Image {
-    /// Size in bytes.
+    /// Size of an image in bytes.
     pub const BYTES: usize = IMAGE_WORDS * 2;
 
     /// Decodes an image of exactly [`Self::BYTES`] bytes, low byte first.
@@ -44,8 +44,8 @@ impl Image {
         bytes
     }
 
-    /// Size of an image with signals only (DeviceNet, I/O size "Compact"): the words of the dedicated signals and of
-    /// the first 16 general-purpose signals.
+    /// Size in bytes of an image with signals only (DeviceNet, I/O size "Compact"): the words of the dedicated signals
+    /// and of the first 16 general-purpose signals.
     pub const SIGNAL_BYTES: usize = 4;
 
     /// Whether an image of this size contains remote commands.
@@ -53,7 +53,8 @@ impl Image {
         bytes >= Self::BYTES
     }
 
-    /// Decodes link data: an image, perhaps with more data after it, or only signals (then all other words are 0).
+    /// Decodes link data. The data is a whole image, perhaps with more data after it, or only signals. In the second
+    /// case, all other words are 0.
     pub fn from_link(bytes: &[u8]) -> Option<Self> {
         if bytes.len() != Self::SIGNAL_BYTES {
             return Self::from_bytes(bytes.get(..Self::BYTES)?);
@@ -110,7 +111,7 @@ impl Output {
     /// Records that `next` was sent at `now`.
     pub fn sent(&mut self, now: Now) {
         for (at, edge) in (COMMAND_WORDS..).zip(&mut self.edges) {
-            // For the controller, every word of the first image may be a change.
+            // In the first image, the controller sees every word as a possible change.
             if self.sent.is_none_or(|sent| sent.0[at] != self.next.0[at]) {
                 *edge = Some(now);
             }
@@ -118,7 +119,7 @@ impl Output {
         self.sent = Some(self.next);
     }
 
-    /// Records that another client of the same image changed the bits under the mask at `now`.
+    /// Records that another client of the same image changed the bits under `mask` at `now`.
     pub fn changed(&mut self, now: Now, mask: &Image, value: &Image) {
         for (at, mask) in mask.0.iter().enumerate() {
             let bits = |word: u16| (word & !mask) | (value.0[at] & mask);
@@ -135,7 +136,7 @@ impl Output {
         }
     }
 
-    /// Records that the link is down. The next image is a new first image for the controller.
+    /// Records that the link is down. For the controller, the next image is then a first image.
     pub fn unlinked(&mut self) {
         self.sent = None;
     }
@@ -158,7 +159,8 @@ mod tests {
 
     #[test]
     fn the_low_byte_comes_first() {
-        // Chapter 2, 1.1: "12" in WI4 is 0x3231; 0x01234567 from WI4 is 0x4567, 0x0123.
+        // Examples of chapter 2, 1.1: the text "12" in WI4 is 0x3231; the number 0x01234567 from WI4 on is 0x4567,
+        // 0x0123.
         let mut image = Image::default();
         image.0[4] = 0x3231;
         let bytes = image.to_bytes();

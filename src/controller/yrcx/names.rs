@@ -1,11 +1,11 @@
-//! Addresses that inventory names can refer to: `SO(20)`, `SIW(2)`, `SGI5`, `DO2.1`.
+//! Addresses that inventory names can refer to, for example `SO(20)`, `SIW(2)`, `SGI5` or `DO2.1`.
 
 use super::register::Register;
 use super::signal::{Side, Signal};
 use crate::names::{Grammar, Kind};
 use crate::typed::unsigned;
 
-/// Signals and words, static variables, ports and their bits.
+/// Address notation: signals and words, static variables, ports and their bits.
 pub const GRAMMAR: Grammar = Grammar {
     address,
     prefixes: &["SI", "SO", "SIW", "SOW", "SID", "SOD", "SGI", "SGR", "DI", "DO", "MO", "LO", "TO"],
@@ -37,7 +37,7 @@ fn variable(text: &str) -> Option<(Kind, String)> {
     Some((Kind::Variable, format!("{letters}{number}")))
 }
 
-/// Parses `DO12`, `DO2.1`, `DO(21)`.
+/// Parses a port or a bit of a port, for example `DO12`, `DO2.1` or `DO(21)`.
 fn port(text: &str) -> Option<(Kind, String)> {
     let (letters, rest) = text.split_at_checked(2)?;
     let letters = PORTS.into_iter().find(|known| known.eq_ignore_ascii_case(letters))?;
@@ -46,7 +46,7 @@ fn port(text: &str) -> Option<(Kind, String)> {
         None => rest.split_once('.').map_or((rest, None), |(port, bit)| (port, Some(bit))),
     };
     let digit = |text: &str| unsigned::<u8>(text).filter(|_| text.bytes().all(|byte| byte.is_ascii_digit()));
-    // The port number is omitted in `DO(1)`. It is 0.
+    // In `DO(1)`, the port number is omitted. It is 0.
     let is_first = port.is_empty() && rest.starts_with('(');
     let port = digit(if is_first { "0" } else { port }).filter(|port| port % 10 < 8 && *port <= 27)?;
     let written = match bit {
@@ -56,7 +56,7 @@ fn port(text: &str) -> Option<(Kind, String)> {
     Some((Kind::Port, written))
 }
 
-/// The signal for a bit of port SI or SO: `SO2.1` is `SO(21)`.
+/// The signal for a bit of port SI or SO, for example `SO(21)` for `SO2.1`.
 pub fn signal_of_port(port: &str) -> Option<String> {
     let (place, bit) = port.split_once('.')?;
     let (letters, number) = place.split_at_checked(2)?;

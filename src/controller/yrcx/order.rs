@@ -23,7 +23,7 @@ pub struct Draft {
 }
 
 impl Command {
-    /// Starts an order: `Command::MovePtp.order().with(Key::Point, 19).with(Key::SpeedPercent, 50).build()`.
+    /// Starts an order. Example: `Command::MovePtp.order().with(Key::Point, 19).with(Key::SpeedPercent, 50).build()`.
     pub fn order(self) -> Draft {
         Draft { command: self, values: Values::default() }
     }
@@ -88,12 +88,12 @@ impl Order {
         &self.values
     }
 
-    /// WI0 to WI15.
+    /// Words WI0 to WI15 of the order.
     pub fn words(&self) -> &Words {
         &self.words
     }
 
-    /// Whether the controller sends output continuously until the status reset (4.7.4).
+    /// Whether the controller answers repeatedly until the status reset (continuous output, 4.7.4).
     pub fn is_continuous(&self) -> bool {
         self.values.int(Key::Continuous) == Some(1)
     }

@@ -3,7 +3,7 @@
 use super::image::{COMMAND_WORDS, Image};
 use super::signal::input;
 
-/// Whether the change from one image to the next contains no command, and switches nothing except a stop: SI(00) or
+/// Whether a change of the image only stops the robot. It must contain no command, and switch nothing except SI(00) or
 /// SI(06) off.
 pub fn only_stops(before: &[u8], after: &[u8]) -> bool {
     let image = |bytes: &[u8]| Image::from_link(bytes).unwrap_or_default();

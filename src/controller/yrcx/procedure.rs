@@ -7,7 +7,7 @@ use crate::Risk;
 /// A step of a procedure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
-    /// Requires that an output has this state. Otherwise the procedure does not begin or continue.
+    /// Requires that an output has this state. If it has not, the procedure does not begin or continue.
     Require {
         /// The output.
         signal: Signal,
@@ -37,13 +37,13 @@ pub enum Step {
 /// A procedure.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Procedure {
-    /// Name, such as `power-on`.
+    /// Name, for example `power-on`.
     pub name: &'static str,
-    /// Effect. The text completes "This will …".
+    /// Effect. The text is the end of the sentence "This will …".
     pub intent: String,
     /// Risk of the procedure.
     pub risk: Risk,
-    /// Section of the manual in chapter 1; empty if there is no timing chart.
+    /// Section of the manual in chapter 1. Empty if the manual has no timing chart for this procedure.
     pub section: &'static str,
     /// Steps in order.
     pub steps: Vec<Step>,
@@ -129,7 +129,7 @@ impl Procedure {
         Self::new("run", "run the robot program", Risk::Motion, "3.2, 3.3", &steps).breaking_on(output::ALARM)
     }
 
-    /// Stops the program. The stop input stays off until the next run.
+    /// Stops the program. The stop input then stays off until the next run.
     pub fn stop() -> Self {
         let steps = [set(input::STOP, false), wait(output::PROGRAM_RUNNING, false)];
         Self::new("stop", "stop the robot program", Risk::Write, "3.3", &steps)

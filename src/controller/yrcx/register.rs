@@ -26,7 +26,7 @@ const PREFIXES: [(&str, Side, bool); 4] = [
 ];
 
 impl Register {
-    /// Parses `SIW2`, `sow(15)`, `SID4`; `None` for other text.
+    /// Parses a word or double word, for example `SIW2`, `sow(15)` or `SID4`. Returns `None` for other text.
     ///
     /// # Errors
     /// If the word does not exist, or is not a general-purpose word.
@@ -83,7 +83,7 @@ impl Register {
         Ok(u32::try_from(number.rem_euclid(most + 1)).unwrap_or_default())
     }
 
-    /// Formats a value: `0x0005`, `0x00000005`.
+    /// Formats a value, for example `0x0005` (word) or `0x00000005` (double word).
     pub fn hex(self, value: u32) -> String {
         if self.is_double { format!("0x{value:08X}") } else { format!("0x{value:04X}") }
     }
@@ -95,7 +95,7 @@ impl fmt::Display for Register {
     }
 }
 
-/// The general-purpose words of an output image. They are zeros while a remote command uses the words.
+/// The general-purpose words of an output image. All of them are 0 while a remote command uses the words.
 pub fn general(words: &Words) -> Words {
     let mut general = *words;
     match words[0] {
@@ -134,7 +134,7 @@ mod tests {
 
     #[test]
     fn the_low_word_of_a_double_word_comes_first() {
-        // Chapter 2, 1.1: 0x01234567 from word 4 is 0x4567, 0x0123.
+        // Example of chapter 2, 1.1: 0x01234567 from word 4 on is 0x4567, 0x0123.
         let mut words = [0; COMMAND_WORDS];
         register("SID4").write(&mut words, 0x0123_4567);
         assert_eq!(words[4..6], [0x4567, 0x0123]);

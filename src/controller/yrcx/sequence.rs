@@ -21,7 +21,7 @@ pub enum Outcome {
         signal: Signal,
         /// Required state.
         on: bool,
-        /// Hint for the user.
+        /// Hint for the user: what to do about the state of the output.
         hint: &'static str,
         /// Whether the procedure had already switched an input.
         begun: bool,
@@ -33,7 +33,7 @@ pub enum Outcome {
         /// Expected state.
         on: bool,
     },
-    /// An output that aborts the procedure came on.
+    /// The output that aborts the procedure switched on.
     Broken {
         /// The output.
         signal: Signal,
@@ -42,7 +42,7 @@ pub enum Outcome {
     NoImage,
     /// The link was lost.
     LinkLost {
-        /// Whether the procedure may have switched an input before.
+        /// Whether the procedure may already have switched an input.
         begun: bool,
     },
 }
@@ -70,7 +70,7 @@ impl fmt::Display for Outcome {
 pub struct Sequence {
     procedure: Procedure,
     patience: Duration,
-    /// Maximum total duration, and start time.
+    /// Maximum total duration. The field below is the start time.
     longest: Duration,
     began: Option<Now>,
     at: usize,
@@ -78,7 +78,8 @@ pub struct Sequence {
     input: Option<Image>,
     linked: bool,
     begun: bool,
-    /// Input that was pulsed and is still on. If the procedure fails, the input must be switched off.
+    /// Input that the procedure pulses and that is still on. If the procedure fails, the session must switch this input
+    /// off.
     raised: Option<Signal>,
     outcome: Option<Outcome>,
 }
@@ -91,7 +92,7 @@ enum Advance {
 }
 
 impl Sequence {
-    /// Creates a session for `procedure`. It waits at most `patience` for each output.
+    /// Creates a session for `procedure`. The session waits at most `patience` for each output.
     pub fn new(procedure: Procedure, patience: Duration) -> Self {
         Self {
             procedure,
@@ -179,7 +180,7 @@ impl Sequence {
         }
     }
 
-    /// Ends the procedure. A pulsed input is switched off.
+    /// Ends the procedure. An input that is being pulsed is switched off.
     fn end(&mut self, output: &mut Output, outcome: Outcome) {
         if let Some(signal) = self.raised.take() {
             signal.set(&mut output.next, false);

@@ -25,7 +25,7 @@ pub enum Next<T> {
     Done(T),
 }
 
-/// A protocol exchange by images. [`Session`](crate::Session) is the same for bytes.
+/// A protocol exchange by images. [`Session`](crate::Session) is the corresponding trait for bytes.
 pub trait ImageSession {
     /// Result of the session.
     type Outcome;
@@ -33,29 +33,30 @@ pub trait ImageSession {
     /// Updates the output and returns the next wait.
     fn poll(&mut self, now: Now, output: &mut Output) -> Next<Self::Outcome>;
 
-    /// Handles an input image. At the start, pass the last received image: it may already contain the ready status.
+    /// Handles an input image. Pass the last received image at the start, because it may already contain the ready
+    /// status.
     fn handle(&mut self, now: Now, input: &Image);
 
     /// Records that the link was lost. The session receives no more images; poll for the outcome.
     fn lost(&mut self, now: Now);
 }
 
-/// Time limits of an exchange. Each is the maximum time until the named event.
+/// Time limits of an exchange. Each field is the maximum time until its event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Policy {
-    /// The controller is ready before the command.
+    /// Until the controller is ready for the command.
     pub ready: Duration,
-    /// The controller reacts to the command, or returns to a valid status.
+    /// Until the controller reacts to the command, or returns to a valid status.
     pub accept: Duration,
-    /// A quick command ends.
+    /// Until a quick command ends.
     pub quick: Duration,
-    /// A command that switches servos or motor power ends.
+    /// Until a command ends that switches servos or motor power.
     pub power: Duration,
-    /// A motion ends; `None` without a limit.
+    /// Until a motion ends; `None` without a limit.
     pub motion: Option<Duration>,
-    /// The controller is ready after the command.
+    /// Until the controller is ready again after the command.
     pub release: Duration,
-    /// An interrupted command ends.
+    /// Until an interrupted command ends.
     pub stop: Duration,
 }
 
@@ -84,8 +85,8 @@ impl Default for Policy {
     }
 }
 
-/// Minimum interval between two edges of dedicated inputs. The manual requires 100 ms or more at the controller
-/// (chapter 1, section 3). The rest covers a late packet and the scan time of 5 ms.
+/// Minimum interval between two edges of dedicated inputs. The manual requires at least 100 ms at the controller
+/// (chapter 1, section 3). The additional 20 ms allow for a late packet and for the scan time of 5 ms.
 pub const EDGE_INTERVAL: Duration = Duration::from_millis(120);
 
 /// Earliest time at which `signal` may change after the last edge in its word; `None` if it may change now.

@@ -40,13 +40,13 @@ pub struct Signal {
 /// When a dedicated signal is active.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Trigger {
-    /// Active while off. The signal is on in normal operation.
+    /// Active while the signal is off. In normal operation, the signal is on.
     WhileOff,
-    /// Active while on.
+    /// Active while the signal is on.
     WhileOn,
     /// Active at the edge from off to on.
     Rise,
-    /// An output, which is on while its state lasts.
+    /// An output that is on while its state lasts.
     State,
 }
 
@@ -59,11 +59,11 @@ pub struct Dedicated {
     pub name: &'static str,
     /// Name of the signal in the tables.
     pub text: &'static str,
-    /// Activation.
+    /// When the signal is active.
     pub trigger: Trigger,
-    /// Effect or meaning.
+    /// Effect of an input, or meaning of an output.
     pub effect: &'static str,
-    /// Risk of switching the input on; for an output, risk of reading it.
+    /// Risk of switching the input on. For an output, the risk of reading it.
     pub risk: Risk,
 }
 
@@ -77,7 +77,7 @@ pub enum SignalError {
     Unknown {
         /// The invalid text.
         found: String,
-        /// A valid name, similar to the text if possible.
+        /// A valid name. It is similar to the text, if there is a similar name.
         example: &'static str,
     },
     /// A reserved bit.
@@ -99,23 +99,23 @@ const LAST: u8 = 0o157;
 pub mod input {
     use super::{Side, Signal};
 
-    /// SI(00), on in normal operation.
+    /// Emergency stop, SI(00). It is on in normal operation.
     pub const EMERGENCY_STOP: Signal = Signal::at(Side::Input, 0o00);
-    /// SI(01).
+    /// Servo on, SI(01).
     pub const SERVO_ON: Signal = Signal::at(Side::Input, 0o01);
-    /// SI(06), on in normal operation.
+    /// Stop, SI(06). It is on in normal operation.
     pub const STOP: Signal = Signal::at(Side::Input, 0o06);
-    /// SI(10).
+    /// Sequence control, SI(10).
     pub const SEQUENCE_CONTROL: Signal = Signal::at(Side::Input, 0o10);
-    /// SI(12).
+    /// Start of automatic operation, SI(12).
     pub const AUTO_START: Signal = Signal::at(Side::Input, 0o12);
-    /// SI(14).
+    /// Return to origin, SI(14).
     pub const ORIGIN: Signal = Signal::at(Side::Input, 0o14);
-    /// SI(15).
+    /// Program reset, SI(15).
     pub const PROGRAM_RESET: Signal = Signal::at(Side::Input, 0o15);
-    /// SI(16).
+    /// Alarm reset, SI(16).
     pub const ALARM_RESET: Signal = Signal::at(Side::Input, 0o16);
-    /// SI(17).
+    /// Return to origin of absolute axes, SI(17).
     pub const ORIGIN_ABSOLUTE: Signal = Signal::at(Side::Input, 0o17);
 }
 
@@ -123,27 +123,27 @@ pub mod input {
 pub mod output {
     use super::{Side, Signal};
 
-    /// SO(00).
+    /// Emergency stop, SO(00).
     pub const EMERGENCY_STOP: Signal = Signal::at(Side::Output, 0o00);
-    /// SO(01).
+    /// CPU OK, SO(01).
     pub const CPU_OK: Signal = Signal::at(Side::Output, 0o01);
-    /// SO(02).
+    /// Servo on, SO(02).
     pub const SERVO_ON: Signal = Signal::at(Side::Output, 0o02);
-    /// SO(03).
+    /// Alarm, SO(03).
     pub const ALARM: Signal = Signal::at(Side::Output, 0o03);
-    /// SO(04).
+    /// MP ready, SO(04).
     pub const MP_READY: Signal = Signal::at(Side::Output, 0o04);
-    /// SO(10).
+    /// Automatic mode, SO(10).
     pub const AUTO_MODE: Signal = Signal::at(Side::Output, 0o10);
-    /// SO(11).
+    /// Return to origin complete, SO(11).
     pub const ORIGIN_COMPLETE: Signal = Signal::at(Side::Output, 0o11);
-    /// SO(12).
+    /// Sequence program running, SO(12).
     pub const SEQUENCE_RUNNING: Signal = Signal::at(Side::Output, 0o12);
-    /// SO(13).
+    /// Program running, SO(13).
     pub const PROGRAM_RUNNING: Signal = Signal::at(Side::Output, 0o13);
-    /// SO(14).
+    /// Program reset, SO(14).
     pub const PROGRAM_RESET: Signal = Signal::at(Side::Output, 0o14);
-    /// SO(15).
+    /// Warning, SO(15).
     pub const WARNING: Signal = Signal::at(Side::Output, 0o15);
 }
 
@@ -216,7 +216,7 @@ impl Signal {
         Self { side, index }
     }
 
-    /// The signal with this number, written as in the manual: 157 is SI(157).
+    /// The signal with this octal number, written as in the manual. For example, 157 is SI(157).
     pub fn new(side: Side, number: u16) -> Result<Self, SignalError> {
         let digits = [number / 100, number / 10 % 10, number % 10];
         let index = u8::try_from(digits[0] * 64 + digits[1] * 8 + digits[2]).ok();
@@ -282,12 +282,12 @@ impl Signal {
         DEDICATED.iter().find(|dedicated| dedicated.signal == self)
     }
 
-    /// Name and address: `servo-on (SI(01))`. A general-purpose signal has only an address.
+    /// Name and address, for example `servo-on (SI(01))`. A general-purpose signal has only an address.
     pub fn named(self) -> String {
         self.dedicated().map_or_else(|| self.to_string(), |dedicated| format!("{} ({self})", dedicated.name))
     }
 
-    /// Name, or the address `SI(20)` for a signal without a name.
+    /// Name of the signal. For a signal without a name, its address, for example `SI(20)`.
     pub fn name(self) -> String {
         self.dedicated().map_or_else(|| self.to_string(), |dedicated| dedicated.name.to_owned())
     }
@@ -313,7 +313,7 @@ impl Signal {
         *word = if on { *word | mask } else { *word & !mask };
     }
 
-    /// Dedicated signals of a side.
+    /// All dedicated signals of a side.
     pub fn of_side(side: Side) -> impl Iterator<Item = &'static Dedicated> {
         DEDICATED.iter().filter(move |dedicated| dedicated.signal.side == side)
     }

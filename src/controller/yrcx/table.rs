@@ -14,19 +14,19 @@ pub use rows::{Command, ROWS};
 use super::value::Key;
 use crate::Risk;
 
-/// Status reset in WI0. It also means "no command".
+/// Code of the status reset in WI0. It also means that there is no command.
 pub const STATUS_RESET: u16 = 0x0000;
 
 /// Duration class of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Pace {
-    /// Ends at once. A program start ends when the controller accepts it (chapter 2, 1.2).
+    /// The command ends at once. A start of a program ends when the controller accepts it (chapter 2, 1.2).
     Quick,
-    /// Ends when servos or motor power have switched.
+    /// The command ends when servos or motor power have switched.
     Power,
-    /// Ends with the motion, without a limit.
+    /// The command ends when the motion ends, without a time limit.
     Motion,
-    /// Runs until the stop input goes off (4.2.6).
+    /// The command runs until the stop input goes off (4.2.6).
     Jog,
 }
 
@@ -35,7 +35,7 @@ pub enum Pace {
 pub enum Rule {
     /// The product of X, Y and Z positions is at most 32767 (4.3.3).
     PalletSize,
-    /// An axis parameter needs one axis; a robot parameter needs none (4.4.2).
+    /// A parameter of an axis needs one axis; a parameter of the robot needs none (4.4.2).
     ParameterAxis,
     /// The value is within the range of the parameter (4.4.2).
     ParameterValue,
@@ -48,7 +48,7 @@ pub struct Row {
     pub command: Command,
     /// Bits 11 to 0 of WI0.
     pub code: u16,
-    /// Name for programs, such as `move-ptp`.
+    /// Name for programs, for example `move-ptp`.
     pub id: &'static str,
     /// Readable name.
     pub name: &'static str,
@@ -58,9 +58,9 @@ pub struct Row {
     pub risk: Risk,
     /// Duration class.
     pub pace: Pace,
-    /// Fields of WI.
+    /// Fields of the command words WI.
     pub request: &'static [&'static [Field]],
-    /// Fields of WO after a normal end.
+    /// Fields of the answer words WO after a normal end.
     pub answer: &'static [&'static [Field]],
     /// Constraints on several fields.
     pub rules: &'static [Rule],
@@ -70,13 +70,13 @@ pub struct Row {
 pub type Fields = std::iter::Flatten<std::iter::Copied<std::slice::Iter<'static, &'static [Field]>>>;
 
 impl Row {
-    /// The row for the code in WI0. If the command has a robot, WI0 may contain any robot.
+    /// The row for the code in WI0. The robot number in WI0 is ignored if the command has a robot.
     pub fn from_word(wi0: u16) -> Option<&'static Self> {
         let row = ROWS.iter().find(|row| row.code == wi0 & 0x0FFF)?;
         (wi0 & 0xF000 == 0 || row.has_robot()).then_some(row)
     }
 
-    /// The row of a name.
+    /// The row with this name.
     pub fn named(id: &str) -> Option<&'static Self> {
         ROWS.iter().find(|row| row.id == id)
     }
@@ -101,13 +101,14 @@ impl Row {
         self.request().any(|field| field.key == Key::Robot)
     }
 
-    /// Whether the controller accepts the command while the programming box has control. It accepts only references
-    /// (chapter 2, 3). The reference of program execution (4.6.4) is missing in that list, so it is not accepted.
+    /// Whether the controller accepts the command while the programming box has control. It then accepts only commands
+    /// that read data (chapter 2, 3). The read command of program execution (4.6.4) is missing in the list of the
+    /// manual, so it is not accepted.
     pub const fn enabled_under_programming_box(&self) -> bool {
         matches!(self.risk, Risk::Read) && !matches!(self.command, Command::ProgramShow)
     }
 
-    /// Whether the command, when it is repeated after a stop, continues to the old target. A setting of the controller
+    /// Whether the command continues to its old target if it is sent again after a stop. A setting of the controller
     /// can change this (4.2.2, 4.2.4).
     pub const fn keeps_target(&self) -> bool {
         matches!(
@@ -122,7 +123,7 @@ impl Row {
         )
     }
 
-    /// Code in the notation of the manual, such as `0xR001`.
+    /// Code in the notation of the manual, for example `0xR001`.
     pub fn code_text(&self) -> String {
         if self.has_robot() { format!("0xR{:03X}", self.code) } else { format!("0x{:04X}", self.code) }
     }

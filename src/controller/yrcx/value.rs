@@ -155,10 +155,10 @@ impl fmt::Display for Key {
 /// Value of a field.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// An integer in raw units, for example 0.001 mm or 0.01 %; or the number of a choice; or a set of axes as bits, in
-    /// which bit 0 is axis 1.
+    /// An integer: a number in raw units (for example 0.001 mm or 0.01 %), the number of a choice, or a set of axes as
+    /// bits. In a set, bit 0 is axis 1.
     Int(i32),
-    /// A single-precision number of a real static variable.
+    /// A single-precision number, the value of a real static variable.
     Real(f32),
     /// A comment or a program name. Other fields parse text with [`Field::parse`].
     ///
@@ -202,8 +202,8 @@ impl From<String> for Value {
     }
 }
 
-/// Values by key, in word order. Numbers are raw: pulses, percent and mm/s are integers, mm and degrees are in
-/// thousandths, percent of the maximum is in hundredths. [`Field::show`](super::table::Field::show) formats them.
+/// Values by key, in word order. Numbers are raw. Pulses, percent and mm/s are integers; mm and degrees are in
+/// thousandths; percent of the maximum is in hundredths. [`Field::show`](super::table::Field::show) formats them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Values(Vec<(Key, Value)>);
 
@@ -229,7 +229,7 @@ impl Values {
         }
     }
 
-    /// Numbers for all four axes: a position, or a state of each axis.
+    /// Numbers for all four axes, for example a position or the state of each axis.
     pub fn axes(&self) -> Option<[i32; 4]> {
         let [first, second, third, fourth] = Key::AXES.map(|key| self.int(key));
         Some([first?, second?, third?, fourth?])
@@ -244,7 +244,7 @@ impl Values {
         }
     }
 
-    /// All items, in order.
+    /// All keys with their values, in order.
     pub fn iter(&self) -> impl Iterator<Item = (Key, &Value)> {
         self.0.iter().map(|(key, value)| (*key, value))
     }

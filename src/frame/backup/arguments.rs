@@ -11,9 +11,9 @@ use crate::ValueKind;
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct BackupOptions {
-    /// Folder; created if it does not exist
+    /// Folder of the backup. armctl creates the folder if it does not exist
     folder: PathBuf,
-    /// Names of files or parts, such as '*.JBI' or 'points*' (repeatable)
+    /// Only these files or parts: names or patterns, for example '*.JBI' or 'points*' (repeatable)
     #[arg(long, value_name = "PATTERN", value_delimiter = ',')]
     only: Vec<String>,
     /// Continue an incomplete backup and keep its files
@@ -49,13 +49,13 @@ pub struct RestoreOptions {
     /// Folder of the backup
     #[arg(add = ValueKind::Backup)]
     folder: PathBuf,
-    /// Names of files or parts, such as '*.JBI' or 'points*' (repeatable)
+    /// Only these files or parts: names or patterns, for example '*.JBI' or 'points*' (repeatable)
     #[arg(long, value_name = "PATTERN", value_delimiter = ',')]
     only: Vec<String>,
     /// Also write data that changes the machine itself, such as parameters
     #[arg(long)]
     machine: bool,
-    /// Write the backup to another robot or model
+    /// Write the backup even if it comes from another robot or model
     #[arg(long)]
     force: bool,
 }

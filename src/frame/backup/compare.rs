@@ -26,7 +26,7 @@ pub struct BackupSide {
     pub folder: PathBuf,
     /// Manifest.
     pub manifest: Manifest,
-    /// Whether it was read from a controller for this comparison.
+    /// Whether this side was read from a controller for this comparison.
     pub is_controller: bool,
 }
 
@@ -56,7 +56,7 @@ pub struct Differences {
     /// Whether nothing differs, apart from the tolerance and ignored lines.
     equal: bool,
     tolerance: Tolerance,
-    /// Files and parts; `controller` is the data of the manifests about model and versions.
+    /// Files and parts. The entry `controller` compares the model and the versions in the two manifests.
     files: Vec<Difference>,
 }
 
@@ -75,7 +75,8 @@ struct Of {
 pub struct Compared {
     /// Result.
     pub state: State,
-    /// Differing lines that are ignored: `///DATE` of a job, which a controller rewrites; --exact ignores nothing.
+    /// Different lines that are ignored: the line `///DATE` of a job, which a controller rewrites. With --exact, no
+    /// line is ignored.
     pub ignored: Vec<&'static str>,
     /// Changes from the old file to the new file; null if one of them is not text, is too large or is missing.
     pub hunks: Option<Vec<Hunk>>,

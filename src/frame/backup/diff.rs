@@ -22,13 +22,13 @@ pub struct DiffOptions {
     /// Folder of another backup [default: the controller]
     #[arg(value_name = "OTHER")]
     pub(super) new: Option<PathBuf>,
-    /// Names of files or parts, such as '*.JBI' or 'points*' (repeatable)
+    /// Only these files or parts: names or patterns, for example '*.JBI' or 'points*' (repeatable)
     #[arg(long, value_name = "PATTERN", value_delimiter = ',')]
     only: Vec<String>,
-    /// Tolerance of positions: 0.05, or 0.1mm,0.05deg,5pulses
+    /// Tolerance of positions, for example 0.05, or 0.1mm,0.05deg,5pulses
     #[arg(long, value_name = "LIMIT", value_delimiter = ',', value_parser = Limit::parse)]
     tolerance: Vec<Limit>,
-    /// Compare all bytes, without tolerance and with the line ///DATE of jobs
+    /// Compare all bytes, without a tolerance, and including the line ///DATE of jobs
     #[arg(long, conflicts_with = "tolerance")]
     exact: bool,
 }
@@ -77,7 +77,7 @@ impl DiffOptions {
     ) -> Result<Differences, Failure> {
         let old = side(old)?;
         manifest::check_origin(&old.manifest, robot, true)?;
-        let temporary = tempfile::tempdir().context("the temporary folder")?;
+        let temporary = tempfile::tempdir().context("cannot create a temporary folder")?;
         let folder = temporary.path().join("controller");
         let options =
             SaveOptions { folder: folder.clone(), scope: Some(self.scope(&old)), resume: false, force: false };

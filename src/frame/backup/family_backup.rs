@@ -43,8 +43,8 @@ pub trait Backups: Family {
                   the parameters, points and programs of a toyo controller. With several robots, each robot has a \
                   folder with its name. manifest.json lists the files with sizes and hashes, and the missing data \
                   with the reason. `yrcx backup` and `toyo backup` have more options.\n\nTo save every task of a toyo \
-                  controller, armctl selects each task temporarily. That is a change, so armctl saves only the \
-                  current task of a read-only robot."
+                  controller, armctl selects each task temporarily. Selecting a task is a change, so armctl saves \
+                  only the current task of a read-only robot."
 )]
 pub struct Backup<F: Backups> {
     #[command(flatten)]
@@ -149,18 +149,19 @@ impl<F: Backups> Diff<F> {
         &self.options
     }
 
-    /// Whether robots may be read: not for a comparison of two folders.
+    /// Whether the command may read robots. A comparison of two folders reads no robot.
     pub fn may_ask_robots(&self) -> bool {
         self.options.new.is_none() || !self.options.names_folder()
     }
 
-    /// Two robots that are given instead of folders.
+    /// Two robots whose names were given instead of two folders.
     pub fn robots(&self, inventory: &Inventory) -> Option<[String; 2]> {
         let robots = [named(self.options.old.as_ref(), inventory)?, named(self.options.new.as_ref(), inventory)?];
         (!self.options.names_folder()).then_some(robots)
     }
 
-    /// A single robot that is given instead of a folder, which does not exist.
+    /// The robot whose name was given instead of a folder, if no folder with this name exists and the line has no
+    /// second folder.
     pub fn only_robot(&self, inventory: &Inventory) -> Option<String> {
         let is_folder = self.options.old.as_ref().is_some_and(|path| path.exists());
         named(self.options.old.as_ref(), inventory).filter(|_| self.options.new.is_none() && !is_folder)

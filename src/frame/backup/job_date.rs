@@ -101,8 +101,8 @@ impl DateFilter {
     }
 }
 
-/// Both jobs with the date of the first job, so that line numbers stay valid, and whether the dates differed. If only
-/// one job has a date, that date is removed.
+/// Returns both jobs with the date of the first job, so that line numbers stay valid. Also returns whether the dates
+/// differed. If only one job has a date, that date is removed.
 pub fn align_files(old: Vec<u8>, new: Vec<u8>) -> ([Vec<u8>; 2], bool) {
     let dates = |text: &[u8]| -> Vec<Vec<u8>> {
         lines(text).filter(|line| line.starts_with(DATE)).map(<[u8]>::to_vec).collect()

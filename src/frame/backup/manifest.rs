@@ -26,7 +26,7 @@ pub const MANIFEST: &str = "manifest.json";
 const FORMAT: &str = "armctl backup";
 /// Incremented if older programs would misread a newer manifest.
 const VERSION: u32 = 1;
-/// Maximum size of a manifest: no controller has that many files.
+/// Maximum size of a manifest. No controller has so many files that its manifest is larger.
 const MAX_LIST: u64 = 64 << 20;
 
 /// Manifest of a backup; `C` describes the controller.
@@ -35,7 +35,7 @@ pub struct Manifest<C = Value> {
     /// Format name, always the same.
     format: String,
     version: u32,
-    /// Version of armctl that wrote it.
+    /// Version of armctl that wrote the manifest.
     armctl: String,
     /// `yerc`, `yrcx` or `toyo`.
     pub family: String,
@@ -62,7 +62,7 @@ pub struct Manifest<C = Value> {
 pub struct Entry {
     /// Name on the controller, or name of the part: `TESTJOB.JBI`, `points-1`.
     pub name: String,
-    /// Name in bytes, if names have an encoding; it has priority.
+    /// Bytes of the name in hexadecimal, if names of the family have an encoding. They have priority over `name`.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub name_hex: Option<String>,
     /// Content: `jbi`, `program`, `points 0..999`.
@@ -81,7 +81,7 @@ pub struct Entry {
 /// An item that is not in a file, or not on a controller.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct LeftOut {
-    /// `P05`, `T2.7`.
+    /// Name of the item, for example `P05` or `T2.7`.
     pub key: String,
     /// Reason.
     pub why: String,
@@ -266,8 +266,9 @@ pub fn inspect_folder<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Fa
     }
 }
 
-/// Earlier backup in a folder that a new backup continues, if there is one. With `resume`, it must have the same target
-/// and scope; `scope` is the new selection, `None` if not given. With `force`, the new backup replaces it.
+/// Earlier backup in a folder, if there is one that the new backup continues. With `resume`, the earlier backup must
+/// have the same target and scope. `scope` is the new selection; `None` if the user gave none. With `force`, the new
+/// backup replaces the earlier backup.
 pub fn find_earlier_backup<C: About>(
     folder: &Path,
     robot: &Robot,
@@ -289,7 +290,7 @@ pub fn find_earlier_backup<C: About>(
     if scope.is_some_and(|scope| scope != earlier.scope) {
         let asked = if earlier.scope.is_empty() { "everything".to_owned() } else { earlier.scope.join(", ") };
         return Err(Failure::usage(format!(
-            "{} is a backup of {asked}, which differs from the selection",
+            "{} is a backup of {asked}, but this command selects other data",
             folder.display()
         ))
         .hint("use only --resume to continue the earlier selection, or use another folder"));

@@ -26,7 +26,7 @@ use crate::prelude::basics::*;
 use crate::settings::inventory::matches_pattern;
 use armctl_controller::nearest::nearest;
 
-/// Selection of files or parts by name patterns; empty selects all.
+/// Selection of files or parts by name patterns; an empty list selects all.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Only(pub Vec<String>);
 
@@ -51,7 +51,7 @@ impl Only {
         Self(scope.iter().filter_map(|word| word.strip_prefix(ONLY)).map(ToOwned::to_owned).collect())
     }
 
-    /// Rejects patterns without a match, such as mistyped ones.
+    /// Rejects patterns without a match, such as mistyped patterns.
     pub fn check<S: AsRef<str>>(&self, names: &[S]) -> Result<(), Failure> {
         let unknown = self.0.iter().find(|pattern| !names.iter().any(|name| matches_pattern(pattern, name.as_ref())));
         let Some(pattern) = unknown else { return Ok(()) };
@@ -70,8 +70,8 @@ const ONLY: &str = "only ";
 pub struct SaveOptions {
     /// Target folder.
     pub folder: PathBuf,
-    /// Selection in the notation of the manifest: patterns as in `only points*`, and family selections such as
-    /// `points 0..999`. Empty selects everything; `None` if not given.
+    /// Selection in the notation of the manifest: patterns as in `only points*`, and family selections such as `points
+    /// 0..999`. An empty selection selects everything. `None` means that the user gave no selection.
     pub scope: Option<Vec<String>>,
     /// Continue an existing backup.
     pub resume: bool,
@@ -121,7 +121,7 @@ pub fn would_leave(item: impl fmt::Display, why: &str) -> Value {
 /// Reason for an item that is not selected.
 pub const NOT_CHOSEN: &str = "not selected";
 /// Reason for an item that changes the machine itself.
-pub const NOT_MACHINE: &str = "changes the machine itself; armctl writes it only with --machine";
+pub const NOT_MACHINE: &str = "changes the machine itself; armctl writes such data only with --machine";
 
 /// Adds the way to continue the work to the hint of a failure.
 pub fn add_hint(failure: Failure, again: &str) -> Failure {
@@ -179,8 +179,8 @@ pub struct Restored {
     folder: String,
     #[serde(flatten)]
     files: Files,
-    /// Machine parameters were changed and nothing else was written: first switch the controller's power off and on
-    /// (toyo).
+    /// Whether the controller's power must be switched off and on first. This is the case if machine parameters were
+    /// changed, so that nothing else was written yet (toyo).
     pub needs_power_cycle: bool,
 }
 

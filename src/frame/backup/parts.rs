@@ -63,7 +63,7 @@ pub async fn write_all<'p, F: Family>(
     }
 }
 
-/// Records the result of a part. Returns whether the next one can be tried.
+/// Records the result of a part. Returns whether the next part can be tried.
 pub fn settle(result: &mut FileItem, outcome: Result<PartResult, Failure>) -> bool {
     let PartResult { written, unchanged, left_out, failure } = match outcome {
         Ok(outcome) => outcome,
@@ -99,16 +99,17 @@ impl Replaced {
     }
 }
 
-/// Number of values that a question shows one by one; more are counted by parts.
+/// Maximum number of values that a question shows one by one. If there are more, the question shows their number per
+/// part.
 const SHOWN: usize = 10;
 
-/// Change to confirm: a few values one by one, many by parts.
+/// Change to confirm. It shows a few values one by one, but of many values only their number per part.
 pub fn overwriting(folder: &Path, replaced: &[Replaced]) -> Change {
     let (total, folder) = (replaced.iter().map(|part| part.values.len()).sum::<usize>(), folder.display());
     let change = match total {
         0 => return Change::none(),
-        1 => Change::new(format!("overwrite a value with that of {folder}")),
-        _ => Change::new(format!("overwrite {total} values with those of {folder}")),
+        1 => Change::new(format!("overwrite a value with the value in {folder}")),
+        _ => Change::new(format!("overwrite {total} values with the values in {folder}")),
     };
     let change = replaced.iter().flat_map(|part| part.notes.iter().cloned()).fold(change, Change::note);
     replaced.iter().filter(|part| !part.values.is_empty()).fold(

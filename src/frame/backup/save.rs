@@ -36,7 +36,7 @@ pub struct SavedPart {
     pub holds: Option<String>,
     /// Items that are not in the file.
     pub left_out: Vec<LeftOut>,
-    /// Items that the controller does not have, only for the manifest.
+    /// Items that the controller does not have. Only the manifest lists them.
     pub is_absent: Vec<LeftOut>,
     /// Notes.
     pub notes: Vec<String>,
@@ -59,7 +59,7 @@ impl SavedPart {
 }
 
 impl<C: About> Task<C> {
-    /// Reads the target folder; an existing backup supplies the selection if none is given.
+    /// Reads the target folder. If the user gave no selection, an existing backup supplies the selection.
     pub fn new(making: SaveOptions, robot: &Robot, several: bool) -> Result<Self, Failure> {
         let SaveOptions { folder, scope, resume, force } = making;
         let folder = private_folder(&folder, &robot.name, several);
@@ -182,7 +182,7 @@ impl<C: About> BackupWriter<'_, C> {
         file.from_copy(self.folder, copy)
     }
 
-    /// Ends the backup; `rest` was not read.
+    /// Ends the backup. `rest` are the parts that were not read.
     pub fn end(mut self, rest: impl IntoIterator<Item = FileItem>) -> Result<BackedUp, Failure> {
         self.is_closed = true;
         self.files.extend(rest);

@@ -76,7 +76,8 @@ impl Tolerance {
         (one - other).abs() <= most + SLACK
     }
 
-    /// New text, with the old line for each position within the tolerance. Files without positions are unchanged.
+    /// Returns the new text, in which the old line replaces each line whose position is within the tolerance. Files
+    /// without positions are unchanged.
     pub fn align(self, entry: &Entry, old: &[u8], new: &[u8]) -> Vec<u8> {
         let ending = entry.copy.as_ref().and_then(|copy| copy.file.rsplit_once('.'));
         let is_table = ending.is_some_and(|(_, ending)| ending == "csv");
@@ -110,7 +111,7 @@ impl Tolerance {
     }
 
     /// Whether two lines like `C00001=1,2,3` are equal, apart from numbers within the tolerance. Whole numbers are
-    /// pulses; of the others, the first three are millimetres.
+    /// pulses. Of the decimal numbers, the first three are millimeters.
     fn allows_position(self, one: &str, other: &str) -> bool {
         let numbers = |line: &str| {
             let (_, numbers) = line.trim_end().split_once('=')?;
@@ -137,7 +138,7 @@ fn position_key(line: &str) -> Option<&str> {
     (is_position && digits.bytes().all(|byte| byte.is_ascii_digit())).then_some(name)
 }
 
-/// New lines, with the old line for each position with the same key within the tolerance.
+/// Returns the new lines. A line whose position is within the tolerance is replaced by the old line with the same key.
 fn aligned(
     old: &[u8],
     new: &[u8],

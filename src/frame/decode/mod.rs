@@ -62,7 +62,7 @@ pub fn stdin() -> Result<String, Failure> {
 
 /// Bytes on stdin.
 pub fn stdin_bytes() -> Result<Vec<u8>, Failure> {
-    /// Maximum size: thousands of frames.
+    /// Maximum size. It is enough for thousands of frames.
     const MOST: u64 = 16 << 20;
 
     Ok(files::stdin(MOST).context("stdin")?)
@@ -79,8 +79,8 @@ pub trait Field: Serialize + JsonSchema {
     fn cells(&self) -> Vec<Cell>;
 }
 
-/// Declares `FieldRow`: a field of a family's decoder, in a type of the family's crate, for [`Field`]. JSON and schema
-/// are those of the field.
+/// Declares `FieldRow`, the type of the family's crate that implements [`Field`] for a field of the family's decoder.
+/// Its JSON and schema are the JSON and schema of this field.
 #[macro_export]
 macro_rules! field_row {
     ($note:ty) => {
@@ -135,6 +135,6 @@ pub fn damage<'a>(what: &str, problems: impl ExactSizeIterator<Item = Option<&'a
         1 => format!("the {what} is damaged: {first}"),
         _ => format!("{} of {all} {what}s are damaged; the first: {first}", problems.len()),
     };
-    let hint = "read the fields before the damage, which the command shows";
+    let hint = "see the output for the fields before the damage";
     Some(Failure::new(Kind::Malformed, message).hint(hint))
 }

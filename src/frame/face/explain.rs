@@ -18,13 +18,13 @@ use crate::{Access, Command, ConnectMode, Context, Entry, Report};
 pub trait Explain {
     /// Report type.
     type Report: Report + 'static;
-    /// `explain.yerc`.
+    /// Name in envelopes and schemas, such as `explain.yerc`.
     const ID: &'static str;
 
     /// Meaning of the code without reading a robot; `alarms` has the site's texts.
     fn explain(&self, alarms: &alarms::Alarms, origin: Origin<'_>) -> Result<Self::Report, Failure>;
 
-    /// The alarm in the notation of controllers; none if the code is not an alarm.
+    /// The alarm in the notation of controllers; `None` if the code is not an alarm.
     fn alarm(&self) -> Option<String>;
 }
 
@@ -109,7 +109,7 @@ const PRESENT: &str = "present";
 /// An alarm that a controller has or had.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Occurrence {
-    /// `present`, or list and index of a past alarm: `major 3`.
+    /// `present`, or list and index of a past alarm, for example `major 3`.
     pub place: String,
     /// Alarm.
     #[serde(flatten)]

@@ -24,7 +24,7 @@ pub enum ParsedCommand {
     Nothing,
 }
 
-/// Word after the family name. Without one, an interactive terminal gets the prompt.
+/// Word after the family name. Without such a word, an interactive terminal gets the prompt.
 #[derive(Debug, Subcommand)]
 enum Verb<C: Subcommand> {
     /// A command of the family

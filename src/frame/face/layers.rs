@@ -123,7 +123,7 @@ impl Layers {
         self.found
     }
 
-    /// A later finding replaces an earlier one.
+    /// Adds a finding. A later finding replaces an earlier finding of the same layer.
     fn add(&mut self, layer: &'static str, state: State, found: String, advice: Option<String>) {
         self.found.retain(|known| known.layer != layer);
         let advice = advice.map(|advice| pasteable(&advice));

@@ -98,9 +98,9 @@ pub trait Face: Sync {
     fn stop(&self) -> &'static [&'static str];
     /// Filter of the requests that may reach a read-only robot through a session.
     fn guard(&self) -> Guard;
-    /// Whether a session records the traffic; otherwise each command does.
+    /// Whether a session records the traffic; otherwise each command records its own traffic.
     fn session_records(&self) -> bool;
-    /// Whether an open session commands the controller, which a read-only robot does not allow.
+    /// Whether an open session commands the controller. A read-only robot does not allow such a session.
     fn session_commands(&self) -> bool;
 
     /// Risk of reading all data of a controller.
@@ -140,7 +140,7 @@ pub trait Watch {
 pub struct HeldLink {
     /// The link.
     pub held: SharedLink,
-    /// Action after the link is closed: end of the trace.
+    /// Action after the link is closed: the end of the trace.
     pub finish: Option<Box<dyn FnOnce() -> Result<(), Failure>>>,
 }
 

@@ -50,7 +50,7 @@ impl Traffic {
     }
 }
 
-/// Text of the non-zero counts; none if all are zero.
+/// Text of the non-zero counts; `None` if all counts are zero.
 pub fn counter(counts: &[(u64, &str)]) -> Option<String> {
     let counted = counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}"));
     Some(counted.collect::<Vec<_>>().join(", ")).filter(|counted| !counted.is_empty())

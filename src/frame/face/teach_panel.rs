@@ -11,7 +11,7 @@ pub struct Panel {
     pub position: &'static [&'static str],
     /// Command that stops the robot.
     pub stop: &'static [&'static str],
-    /// Command that enables motion after a stop, and may continue a stopped motion; none if the controller needs no
+    /// Command that enables motion after a stop, and may continue a stopped motion; `None` if the controller needs no
     /// such command.
     pub release: Option<&'static [&'static str]>,
     /// Command that reads a point.
@@ -31,7 +31,7 @@ pub struct Panel {
 pub struct SmallStep {
     /// Command that reads the inching step.
     pub words: &'static [&'static str],
-    /// Size in the answer, for axis 0, 1 and so on.
+    /// Step size of an axis, found in the answer to this command. The axes are counted from 0.
     pub size: fn(&Value, usize) -> Option<f64>,
 }
 
@@ -42,7 +42,7 @@ pub struct System {
     pub name: &'static str,
     /// Axes, with the unit of their steps.
     pub axes: &'static [(&'static str, &'static str)],
-    /// Step sizes, the smallest first; the last one is the maximum per key press.
+    /// Step sizes, the smallest first. The last size is the maximum per key press.
     pub steps: &'static [f64],
     /// Speeds, the lowest first; empty if the controller has its own speed for inching.
     pub speeds: &'static [u32],

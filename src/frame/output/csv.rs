@@ -54,7 +54,7 @@ struct Column {
 }
 
 impl Column {
-    /// Value of this column in a report or an entry; none if the value has columns of its own.
+    /// Value of this column in a report or an entry; `None` if the value has columns of its own.
     fn find<'v>(&self, entry: &'v Value) -> Option<&'v Value> {
         entry.pointer(&self.pointer).filter(|value| !(self.has_fields && value.is_object()))
     }
@@ -224,7 +224,8 @@ fn add(root: &Value, name: &str, place: &str, variants: &[&Value], depth: usize,
     }
 }
 
-/// Returns the properties of values with these schemas, in order. Each property has its own schemas.
+/// Returns the properties in `variants`, in the order of their first appearance. Each property has the schemas from all
+/// variants that have this property.
 fn fields<'a>(root: &'a Value, variants: &[&'a Value]) -> Vec<(String, Vec<&'a Value>)> {
     let mut all: Vec<(String, Vec<&Value>)> = Vec::new();
     for schema in variants.iter().flat_map(|one| resolve_references(root, one)) {

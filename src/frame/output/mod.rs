@@ -300,7 +300,7 @@ impl Screen {
         }
     }
 
-    /// An error is ignored, because it cannot be reported. The exit code still shows the result.
+    /// Writes to stderr. An error is ignored, because it cannot be reported. The exit code still shows the result.
     fn stderr(text: &str) {
         let _ = io::stderr().lock().write_all(text.as_bytes());
     }

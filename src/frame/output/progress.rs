@@ -89,7 +89,7 @@ impl Progress {
         }
     }
 
-    /// Prints a line if it is time for one.
+    /// Prints a line if the next line is due.
     fn line(&mut self, now: Instant) {
         let (what, done) = (&self.label, self.completed);
         match &mut self.next_line {

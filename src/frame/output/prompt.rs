@@ -18,7 +18,7 @@ impl Screen {
         Self::prose(&format!("{}\n", super::escape::lines(text)));
     }
 
-    /// Asks a yes/no question. An empty answer means no. The terminal settings are not changed, so nothing must be
+    /// Asks a yes/no question. An empty answer means `no`. The terminal settings are not changed, so nothing must be
     /// restored afterwards.
     pub fn confirm(&self, question: &str) -> Result<bool, Failure> {
         Self::ask(&format!("{question} [y/N]")).map(|answer| is_yes(&answer))
@@ -58,7 +58,8 @@ pub fn restore() {
     use rustix::termios::{LocalModes, tcgetattr};
 
     if let Some(found) = &*SAVED_MODES.lock().unwrap_or_else(PoisonError::into_inner) {
-        // If another program has set raw mode, it has also switched on bracketed paste.
+        // A line editor that has set raw mode has also switched on bracketed paste, so bracketed paste is switched off
+        // here.
         if tcgetattr(std::io::stdin()).is_ok_and(|now| !now.local_modes.contains(LocalModes::ICANON)) {
             Screen::stderr("\x1b[?2004l");
         }

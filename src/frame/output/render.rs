@@ -166,8 +166,8 @@ impl Layout {
         words.sum::<usize>() + self.gaps()
     }
 
-    /// Assigns the width. Narrow columns get the width that they need, and the others share the rest. No column is
-    /// narrower than its longest word.
+    /// Assigns the width. Narrow columns get the width that they need, and the other columns share the remaining width.
+    /// No column is narrower than its longest word.
     #[must_use]
     pub fn fit_width(mut self, width: u16) -> Self {
         self.width = width;

@@ -120,7 +120,7 @@ impl Table {
 }
 
 impl Table {
-    /// Joins tables. The first column contains the names of the tables. The other columns are those of the widest
+    /// Joins tables. The first column contains the names of the tables. The other columns are the columns of the widest
     /// table; the other tables may have fewer columns. `None` if a table has a column that the widest table does not
     /// have.
     pub fn joined(name: &'static str, tables: &[(&str, &Self)]) -> Option<Self> {

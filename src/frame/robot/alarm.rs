@@ -7,7 +7,7 @@ use crate::prelude::basics::*;
 use crate::settings::alarms::Explanation;
 use crate::settings::target::Family;
 
-/// An alarm or error. Null means that the protocol does not report it, or that it is unknown.
+/// An alarm or error. A field is null if the protocol does not report it, or if its value is unknown.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Alarm {
     /// Code in the notation of the controller: `4315`, `12.600`, `28`.
@@ -133,7 +133,7 @@ pub struct Alarms<T, S = Nothing> {
 pub struct Row<T> {
     /// List of the history, if a controller has several: `major`, `monitor`, `system`, `user`, `offline` (yerc).
     pub list: Option<&'static str>,
-    /// 1 is the latest.
+    /// Number of the entry. The latest entry has number 1.
     pub index: u16,
     /// Alarm, or the reason why it could not be read.
     #[serde(flatten)]
@@ -250,7 +250,7 @@ impl<T: ExtraColumns + Serialize + JsonSchema, S: AlarmState + Serialize + JsonS
     }
 }
 
-/// Shows a single alarm with all fields, several as a table; `none` is the text for an empty list.
+/// Shows a single alarm with all fields, and several alarms as a table. `none` is the text for an empty list.
 fn shown<T: ExtraColumns>(rows: &[Row<T>], none: &str) -> View {
     let known = || rows.iter().filter_map(|row| row.outcome.data());
     let entry_text: Vec<Cell> = known().filter_map(|entry| add_site_text(&entry.alarm)).map(Cell::from).collect();

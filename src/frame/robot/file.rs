@@ -65,7 +65,7 @@ impl<M> FileItem<M> {
 /// Fields of a file that is transferred, deleted, saved or written back.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Transfer {
-    /// Bytes of the name, if the text does not convert back to them.
+    /// Bytes of the name in hexadecimal, if the text cannot be converted back to these bytes.
     pub name_hex: Option<String>,
     /// Progress.
     pub state: State,
@@ -219,7 +219,8 @@ impl<M> Files<M> {
         Self { asked: files.len(), files, show }
     }
 
-    /// Sets the number of requested results, if it differs from the number of files, as for lists of files.
+    /// Sets the number of requested results, if this number differs from the number of files. This is the case for
+    /// lists of files.
     #[must_use]
     pub fn asked(self, asked: usize) -> Self {
         Self { asked, ..self }
@@ -244,7 +245,8 @@ impl<M> Files<M> {
         (self.show)(&self.files)
     }
 
-    /// Failure of the report: some failed and some did not, unless an outcome is unknown or the work was interrupted.
+    /// Failure of the report: some files failed and some did not, unless an outcome is unknown or the work was
+    /// interrupted.
     pub fn failure(&self) -> Option<Failure> {
         let most_severe = self.most_severe()?;
         if self.asked <= 1 {

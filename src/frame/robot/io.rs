@@ -18,7 +18,7 @@ pub struct Filter {
     /// Only outputs
     #[arg(long)]
     out: bool,
-    /// Also signals that are off and unnamed
+    /// Also signals that are off and have no name
     #[arg(long)]
     off: bool,
 }
@@ -69,7 +69,7 @@ pub struct IoItem {
     pub name: String,
     /// Name in `robots.toml` or on the controller; null if there is none.
     pub label: Option<String>,
-    /// Side that sets it.
+    /// Side that sets the signal.
     pub kind: IoKind,
     /// Notation of the controller's manuals: `#20010`, `SO(02)`, `PN01.3`.
     pub address: String,
@@ -102,11 +102,11 @@ pub struct IoRow {
     /// Signal.
     #[serde(flatten)]
     pub item: IoItem,
-    /// Whether it was read.
+    /// Whether the signal was read.
     ok: bool,
-    /// Value; null if it was not read.
+    /// Value; null if the signal was not read.
     value: Option<IoValue>,
-    /// Reason why it was not read.
+    /// Reason why the signal was not read.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "ItemError")]
     error: Option<ItemError>,
@@ -179,7 +179,7 @@ pub struct WrittenSignal {
     old: Option<IoValue>,
     /// New value.
     new: IoValue,
-    /// Whether it was written.
+    /// Whether the signal was written.
     written: bool,
 }
 
@@ -189,7 +189,7 @@ impl WrittenSignal {
         Self::with_outcome(item, old, new, Ok(true))
     }
 
-    /// Whether it was written, or the reason why it was not.
+    /// Result of a write that succeeded, or failed for this reason.
     pub fn with_outcome(item: IoItem, old: Option<IoValue>, new: IoValue, outcome: Result<bool, Failure>) -> Self {
         let written = outcome == Ok(true);
         Self { row: IoRow::new(item, outcome.map(|_| new)), old, new, written }

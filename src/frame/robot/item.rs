@@ -140,7 +140,7 @@ fn table<'i, V: 'i, M: 'i>(columns: &Columns, items: impl Iterator<Item = &'i It
     rows_table(columns, has_errors.then_some("error"), rows)
 }
 
-/// Table of items, each with its cells and those of a last column.
+/// Table of items. Each row has the cells of the item, and a cell of the last column if the table has one.
 fn rows_table<'i, V: 'i, M: 'i>(
     Columns { name, values, empty }: &Columns,
     last: Option<&'static str>,
@@ -247,7 +247,7 @@ impl<V, M> Written<V, M> {
         Self { old_cells, ..self }
     }
 
-    /// Table cells of what was written: where the old value differs, both.
+    /// Table cells of the change. If a value was written, its cell contains the old and the new value.
     fn change_cells(&self) -> Vec<Cell> {
         let cell = |(at, new): (usize, &Cell)| match self.old_cells.get(at) {
             Some(old) if self.written && old.text != new.text => {

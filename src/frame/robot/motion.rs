@@ -3,7 +3,7 @@
 use super::position::Position;
 use crate::prelude::basics::*;
 
-/// A motion. Null means that the protocol does not report it, that it does not follow from the command, or that the
+/// A motion. A field is null if the protocol does not report it, if it does not follow from the command, or if the
 /// command did not wait.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct Motion {

@@ -11,8 +11,8 @@ use crate::items::{ItemError, verdict};
 use crate::plot::{Plot, SeriesHistory};
 use crate::prelude::basics::*;
 
-/// A position of a robot in one frame. Null means that the frame has no such coordinate, or that the protocol does
-/// not report it.
+/// A position of a robot in one frame. A field is null if the frame has no such coordinate, or if the protocol does not
+/// report it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct Position {
     /// Group: `R1` (yerc), `unit 1` (yrcx, toyo); null for a stored point.
@@ -186,12 +186,12 @@ pub fn joint_table(joints: &[Joint]) -> Table {
 /// A position, or the reason why it was not read.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Row {
-    /// Position; group and frame are present even if it was not read.
+    /// Position. Its group and frame are present even if the position was not read.
     #[serde(flatten)]
     pub position: Position,
-    /// Whether it was read.
+    /// Whether the position was read.
     ok: bool,
-    /// Reason why it was not read.
+    /// Reason why the position was not read.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "ItemError")]
     error: Option<ItemError>,

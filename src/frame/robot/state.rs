@@ -4,7 +4,7 @@ use crate::prelude::basics::*;
 use crate::robot::alarm::Alarm;
 use crate::settings::alarms;
 
-/// State that is common to all robots. Null means that the protocol does not report it, or that it was not read.
+/// State that is common to all robots. A field is null if the protocol does not report it, or if it was not read.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct State {
     /// Whether the robot answers; if false, all following fields are null.
@@ -14,15 +14,15 @@ pub struct State {
     /// Mode in the terms of the controller: `teach`, `play` (yerc); `auto`, `manual` (yrcx); `automatic`, `step`,
     /// `program` (toyo).
     pub controller_mode: Option<&'static str>,
-    /// Servo power, or motor power.
+    /// Whether servo power, or motor power, is on.
     pub servo_on: Option<bool>,
-    /// A job or program is running, or an axis is moving.
+    /// Whether a job or program is running, or an axis is moving.
     pub running: Option<bool>,
-    /// Held or paused.
+    /// Whether the work is held or paused.
     pub held: Option<bool>,
-    /// Origin known.
+    /// Whether the origin is known.
     pub homed: Option<bool>,
-    /// Emergency stop.
+    /// Whether the emergency stop is active.
     pub emergency_stop: Option<bool>,
     /// Fault.
     #[serde(flatten)]

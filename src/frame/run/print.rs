@@ -269,7 +269,7 @@ fn sheet_of(report: &dyn AnyReport) -> Sheet {
 /// Maximum number of robots that failed alike and are listed individually.
 const MIN_GROUP: usize = 5;
 
-/// View of a robot, among others.
+/// View of one of several robots.
 struct RobotView<'r> {
     robot: &'r Robot,
     view: View,
@@ -285,7 +285,7 @@ impl RobotView<'_> {
     }
 }
 
-/// Merges views of many robots that failed alike. A robot that works always has its own.
+/// Merges views of many robots that failed alike. A robot that works always has its own view.
 fn fold_failed(views: Vec<RobotView<'_>>) -> Vec<RobotView<'_>> {
     let mut groups: Vec<(View, usize)> = Vec::new();
     let group_of = |groups: &[(View, usize)], view: &View| groups.iter().position(|(other, _)| other == view);

@@ -10,7 +10,8 @@ use crate::interrupt::interruptible;
 use crate::prelude::basics::*;
 use crate::settings::duration;
 
-/// Time that every look has, even if `--for` ends earlier: a robot that answers at once is not missed.
+/// Minimum time of each read, even if `--for` ends earlier. Otherwise a robot that answers at once could count as a
+/// robot that does not answer.
 const SHORTEST_LOOK: Duration = Duration::from_millis(250);
 
 /// Repetition options: `--watch`, `--count`, `--until`, `--for`.
@@ -36,8 +37,8 @@ impl Repeat {
         self.every.is_some() || self.count.is_some() || self.until.is_some()
     }
 
-    /// Whether a failure of a robot ends a wait. Any failure in the first round does. Later, a missing answer does not
-    /// end the wait, because a robot that answered before may be unreachable for a while.
+    /// Whether a failure of a robot ends a wait. In the first round, any failure ends the wait. Later, a missing answer
+    /// does not end the wait, because a robot that answered before may be unreachable for a while.
     pub fn ends_with(&self, failure: &Failure, is_first: bool) -> bool {
         self.is_quiet && !self.allows(failure) && (is_first || failure.kind != Kind::NoAnswer)
     }
@@ -48,12 +49,12 @@ impl Repeat {
     }
 }
 
-/// End of `--for`. Everything that waits for a robot takes one, so that no wait can outlast it.
+/// End of `--for`. Each function that waits for a robot has a deadline as an argument, so that no wait lasts longer.
 #[derive(Debug, Clone, Copy)]
 pub struct Deadline(Option<(Instant, Duration)>);
 
 impl Deadline {
-    /// For a command that runs once.
+    /// No deadline, for a command that runs once.
     pub const NONE: Self = Self(None);
 
     /// Result of `work` with a robot, or a missing answer when the time is over.
@@ -93,8 +94,8 @@ impl<'a> Rounds<'a> {
         Deadline(self.repeat.within.map(|within| (self.began + within, within)))
     }
 
-    /// Whether `--for` ended during a round in which a robot did not answer. Only the first round counts then: it is
-    /// not known whether a robot that answered before would have answered.
+    /// Whether `--for` ended a later round before a robot answered. Such a round is no missing answer, because a robot
+    /// that answered before might have answered with more time. A missing answer in the first round always counts.
     pub fn is_cut(&self, failure: &Failure) -> bool {
         !self.is_first() && failure.kind == Kind::NoAnswer && self.deadline().is_over()
     }
@@ -179,7 +180,8 @@ mod tests {
         let failure = rounds.deadline().bound(&robot, silent()).await.unwrap_err();
         assert_eq!((failure.kind, rounds.began.elapsed()), (Kind::NoAnswer, within), "{failure}");
         assert!(!rounds.is_cut(&failure), "the robot never answered");
-        // A look that begins at the end is short, and says nothing about a robot that answered before.
+        // A read that begins just before the end has little time. If it fails, a robot that answered before may still
+        // be reachable.
         rounds.completed = 1;
         rounds.deadline().bound(&robot, silent()).await.unwrap_err();
         assert_eq!(rounds.began.elapsed(), within + SHORTEST_LOOK);

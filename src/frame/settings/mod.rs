@@ -132,7 +132,7 @@ impl Robot {
         self.model.value.named().or_else(cached).or_else(simulated)
     }
 
-    /// What a command line calls it: its name in the inventory, or its URL.
+    /// Name of the robot on a command line: its name in the inventory, or its URL.
     pub fn as_typed(&self) -> &str {
         if self.target.origin == Origin::Robot { &self.name } else { self.target.value.url() }
     }
@@ -208,7 +208,7 @@ impl Selection {
         !self.from_environment && self.robots.iter().any(|robot| robot == name)
     }
 
-    /// Whether the command line can select several robots. The answer is then a list.
+    /// Whether the command line can select several robots. The output is then a list.
     pub fn is_plural(&self) -> bool {
         self.all
             || self.sim && self.every_simulator

@@ -64,7 +64,7 @@ pub struct ReportedModel {
     #[serde(with = "by_name")]
     model: Model,
     software: String,
-    /// When the controller reported it, in seconds since 1970.
+    /// When the controller reported the model, in seconds since 1970.
     at: u64,
 }
 

@@ -252,7 +252,7 @@ impl CacheFile {
         };
         let kept: CachedNames = serde_json::from_str(&text).map_err(|error| damaged(error.to_string()))?;
         if kept.format != FORMAT || kept.version != VERSION || kept.address != self.address {
-            return Err(damaged("it is not the file for this controller".to_owned()));
+            return Err(damaged("the file belongs to another controller".to_owned()));
         }
         Ok(Some(kept))
     }

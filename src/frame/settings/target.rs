@@ -186,8 +186,8 @@ pub struct Sim {
     pub state: Option<PathBuf>,
     /// Faults of link and device, in the format of `armctl sim --fault`.
     pub fault: Option<String>,
-    /// Fieldbus of a yrcx controller: one of [`bus::simulators`]. Without it, a network is simulated only if the
-    /// network has faults.
+    /// Fieldbus of a yrcx controller: one of [`bus::simulators`]. Without this setting, a network is simulated only if
+    /// the network has faults.
     pub bus: Option<&'static str>,
 }
 
@@ -336,8 +336,11 @@ fn udp(place: &str, query: &mut Query) -> Result<Udp, String> {
     };
     let file_port = match query.take("file_port") {
         Some(port) => self::port("file_port", &port)?,
-        // The default is the next port. With port forwarding, this is the port after the forwarded one.
-        None => port.checked_add(1).ok_or("port 65535 has no next port for files; set one with file_port=PORT")?,
+        // The default is the next port. With port forwarding, this is the port after the forwarded port.
+        None => port.checked_add(1).ok_or(
+            "port 65535 is the last port, so there is no next port for files; set the \
+                                           port for files with file_port=PORT",
+        )?,
     };
     Ok(Udp { host, port, file_port, traits: traits(query)? })
 }

@@ -47,7 +47,7 @@ pub struct TableWrite<'a, S: Store> {
 pub struct ComparedRow<S: Store> {
     /// Key of the row.
     pub key: S::Key,
-    /// Content on the controller; none if it is unknown.
+    /// Content on the controller; `None` if it is unknown.
     pub old: Option<S::Wire>,
     /// New content.
     pub new: S::Wire,
@@ -132,7 +132,7 @@ pub async fn compare<S: Writable>(
     rows: &[Row<S>],
 ) -> Result<Option<Vec<ComparedRow<S>>>, Failure> {
     let read = match table.read_old(link, screen, rows).await {
-        // The controller refused all rows with one refusal. Each row is judged below.
+        // The controller refused all rows at once. This refusal is the answer for each row below.
         Err(failure) if failure.kind == Kind::Refused => {
             let refused = rows.iter().map(|_| Err(failure.clone()));
             Ok(Answers { rows: refused.collect(), asked: rows.len() })
@@ -145,7 +145,7 @@ pub async fn compare<S: Writable>(
         let old = match old {
             Ok(old) => old,
             Err(failure) if S::risk(*key) < Risk::Destroy && failure.kind == Kind::Refused => {
-                // Without the old row, only a complete one can be written.
+                // Without the old row, only a complete new row can be written.
                 if table.complete_draft(*key, draft, None).is_err() {
                     return Err(nothing_written(describe_request(&S::asked(*key), failure)));
                 }

@@ -15,7 +15,7 @@ pub struct Copy<S: Writable> {
     /// Row to copy
     #[arg(value_name = "FROM", value_parser = Rows::<S>::parse)]
     from: Rows<S>,
-    /// Rows to write
+    /// Rows that get the content of this row
     #[arg(required = true, value_name = "TO", value_delimiter = ',', value_parser = Rows::<S>::parse)]
     to: Vec<Rows<S>>,
     #[command(flatten)]
@@ -38,7 +38,7 @@ impl<S: Writable> Command for Copy<S> {
         let copy_one = S::WORDS.nouns[0];
         let [from] = self.from.0[..] else {
             return Err(Failure::usage(format!("only one {copy_one} can be copied at a time"))
-                .hint("type one row, then the rows to write"));
+                .hint("type the row to copy, then the rows to write"));
         };
         let name = as_requested(copy_one, &S::name(from));
         let to = Rows::of(&self.to);

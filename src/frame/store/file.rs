@@ -21,7 +21,7 @@ use armctl_controller::sheet::{Column, Sheet};
 #[command(
     after_help = "The file has one row per line: the name of the row, then its values, each value in its own column. \
                   `restore` writes the rows back. Empty rows are omitted. With --update, an existing file keeps its \
-                  own columns (names that begin with comment) and the order of its rows."
+                  own columns (columns whose names begin with `comment`) and the order of its rows."
 )]
 pub struct Dump<S: Store> {
     /// CSV file to write
@@ -176,10 +176,10 @@ pub fn rows_of_file<S: Writable>(table: &S, path: &Path) -> Result<Vec<Row<S>>, 
 /// Keys of the rows in a file, in the order of the file.
 pub fn keys_of<S: Store>(path: &Path, bytes: &[u8]) -> Result<Vec<S::Key>, Failure> {
     let (mut findings, mut keys) = (Findings::default(), Vec::new());
-    let expected = "the first column is name";
+    let expected = "the first column is `name`";
     if let Some(sheet) = Sheet::read(bytes, expected, &mut findings) {
         let Some(at) = sheet.column("name") else {
-            let message = format!("column name is missing ({expected})");
+            let message = format!("column `name` is missing ({expected})");
             return Err(Failure::usage(format!("{}: {message}", text_files::display_path(path)))
                 .hint("add --force to replace the file; nothing was read from the controller"));
         };
@@ -241,10 +241,10 @@ impl Report for Dumped {
 #[command(
     after_help = "armctl checks the whole file before it sends anything. A value without a column stays as it is on \
                   the controller. armctl does not write values that are already stored, so the same command continues \
-                  after an interruption. Columns whose names begin with comment are for your own use."
+                  after an interruption. Columns whose names begin with `comment` are for your own use."
 )]
 pub struct Restore<S: Writable> {
-    /// A file that `dump` wrote, or a table of the same form; - is stdin
+    /// CSV file that `dump` wrote, or with the same columns; - means stdin
     file: PathBuf,
     #[command(flatten)]
     options: S::Options,
@@ -314,7 +314,7 @@ pub fn parse<S: Writable>(table: &S, bytes: &[u8], findings: &mut Findings) -> V
     let Some(sheet) = Sheet::read(bytes, &expected, findings) else { return rows };
     let places = sheet.columns(&names, &expected, findings);
     let Some(of_name) = places[0] else {
-        findings.error(sheet.end_of_head(), "column name is missing".to_owned(), Some(expected));
+        findings.error(sheet.end_of_head(), "column `name` is missing".to_owned(), Some(expected));
         return rows;
     };
     let (fields, mut seen) = (table.fields(), HashMap::new());

@@ -125,7 +125,7 @@ impl<S: Store> Command for List<S> {
     }
 }
 
-/// In a list of all rows, a refusal because a row is not defined counts as an answer.
+/// Converts the refusal of a row that is not defined to `None`. In a list of all rows, such a row is not an error.
 pub fn defined<S: Store>(outcome: Result<Option<S::Wire>, Failure>) -> Result<Option<S::Wire>, Failure> {
     match outcome {
         Err(failure) if S::is_undefined(&failure) => Ok(None),

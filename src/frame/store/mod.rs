@@ -53,7 +53,7 @@ impl Field {
         Self { name: Cow::Borrowed(name), alias: None, heading, is_number: false, is_optional: false }
     }
 
-    /// Marks the field as one that only some rows have.
+    /// Marks the field as a field that only some rows have.
     #[must_use]
     pub fn optional(self) -> Self {
         Self { is_optional: true, ..self }
@@ -111,26 +111,26 @@ macro_rules! ids {
 }
 pub use ids;
 
-/// Declares the commands of a table: the generic commands, and then additional ones.
+/// Declares the commands of a table: the generic commands, and then additional commands.
 #[macro_export]
 macro_rules! table_commands {
     ($(#[$meta:meta])* $name:ident of $store:ty { $($(#[$doc:meta])* $variant:ident($arguments:ty),)* }) => {
         $crate::commands! {
             $(#[$meta])*
             pub enum $name {
-                /// Read by number or range
+                /// Read rows by number or range
                 Get($crate::store::Get<$store>),
-                /// List all that are not empty
+                /// List all rows that are not empty
                 List($crate::store::List<$store>),
-                /// Print each change
+                /// Print rows, then each change of a row
                 Watch($crate::watch::Watch<$crate::store::Get<$store>>),
-                /// Set an item: its number, then its values
+                /// Write a row: type its number, then its values
                 Set($crate::store::Set<$store>),
-                /// Copy an item to others: 5 6-8
+                /// Copy a row to other rows, for example `5 6-8`
                 Copy($crate::store::Copy<$store>),
-                /// Save to a CSV file
+                /// Save rows to a CSV file
                 Dump($crate::store::Dump<$store>),
-                /// Write from a CSV file
+                /// Write rows from a CSV file
                 Restore($crate::store::Restore<$store>),
                 $($(#[$doc])* $variant($arguments),)*
             }
@@ -139,7 +139,8 @@ macro_rules! table_commands {
 }
 pub use table_commands;
 
-/// Results of rows. Each is the content, `None` if the row is not defined, or the reason why the row was not read.
+/// Results of rows. Each result is the content, `None` if the row is not defined, or the reason why the row was not
+/// read.
 #[derive(Debug)]
 pub struct Answers<W> {
     /// One result for each row, in the requested order.
@@ -372,7 +373,7 @@ pub trait Writable: Store {
         Self::RISK
     }
 
-    /// What a row shall hold, from the text of each field; a field without text stays.
+    /// Creates the new content of a row from the text of each field. A field without a text keeps its old value.
     ///
     /// # Errors
     /// If the content is not valid.
@@ -397,7 +398,8 @@ pub trait Writable: Store {
         old: Option<&Self::Wire>,
     ) -> Result<Self::Wire, Failure>;
 
-    /// Reads rows before a write. A dry run can show another purpose for these requests.
+    /// Reads rows before a write. An implementation can override this function, so that a dry run shows its own purpose
+    /// for these requests.
     ///
     /// # Errors
     /// As [`read`](Store::read).

@@ -140,7 +140,7 @@ impl<S: Writable> Part<S> {
     }
 }
 
-/// Text of rows that were read. A row is in it only if `restore` can read it there.
+/// Text of rows that were read. The text contains a row only if `restore` can read the row from it.
 ///
 /// # Errors
 /// The connection was lost: the part is not complete.
@@ -181,7 +181,7 @@ pub fn part_text<S: Writable>(
     Ok(Text { text, left_out, undefined: by_reason::<S>(refused) })
 }
 
-/// Rows with the same reason, in an entry each.
+/// Entries for these rows. Rows with the same reason share one entry.
 fn by_reason<S: Store>(rows: Vec<(S::Key, String)>) -> Vec<LeftOut> {
     let mut groups: Vec<(String, Vec<S::Key>)> = Vec::new();
     for (key, why) in rows {

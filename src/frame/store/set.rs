@@ -18,7 +18,7 @@ pub struct Set<S: Writable> {
     options: S::Options,
     #[arg(value_name = S::WORDS.placeholder, value_parser = one::<S>, help = S::WORDS.range, add = S::COMPLETE)]
     row: SingleRow<S>,
-    /// All values in their order, or some as NAME=VALUE; the others keep their value
+    /// All values in their order, or some values as NAME=VALUE. The other values do not change
     #[arg(required = true, value_name = "VALUE", allow_negative_numbers = true, allow_hyphen_values = S::IS_TEXT,
         action = if S::IS_TEXT { ArgAction::Set } else { ArgAction::Append },
         num_args = if S::IS_TEXT { ValueRange::SINGLE } else { ValueRange::from(1..) })]

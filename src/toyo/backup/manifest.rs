@@ -18,13 +18,13 @@ pub struct Controller {
     pub robot_type: String,
     /// Version of the controller, such as `3.36`.
     pub version: String,
-    /// Axes of the tasks, one digit for each task (E19), such as `2000`.
+    /// Axes of the tasks, one digit for each task (parameter E19), such as `2000`.
     pub task_axes: String,
-    /// Letters of the axes (E01), such as `X Y Z R`; null if the controller refused to report them, or if an older
-    /// armctl made the backup.
+    /// Letters of the axes (parameter E01), such as `X Y Z R`; null if the controller refused to report them, or if an
+    /// older armctl made the backup.
     #[serde(default)]
     pub axis_letters: Option<String>,
-    /// Number of steps of each task (E22).
+    /// Number of steps of each task (parameter E22).
     pub task_steps: [u16; 4],
     /// Speed override; null if the controller refused to report it.
     pub speed_override_percent: Option<u8>,

@@ -28,7 +28,7 @@ use armctl_frame::store::PartResult;
 #[derive(Debug, Args)]
 #[command(after_help = "armctl first checks all files: their hashes and their content. It compares each value before \
                         the write. It does not write equal values, because an EEPROM cell wears out after about a \
-                        million writes. After an interrupted restore, the same command continues.\n\nMachine \
+                        million writes. To continue after an interruption, run the same command again.\n\nMachine \
                         parameters (E) and special parameters (U) need --machine. armctl writes them first. After a \
                         change of a machine parameter (E), armctl writes nothing else, because the controller \
                         executes no command until a restart. Restart the controller, then restore again without \
@@ -36,7 +36,7 @@ use armctl_frame::store::PartResult;
 pub struct Restore {
     #[command(flatten)]
     options: RestoreOptions,
-    /// Continue an interrupted restore; with a part, do not compare the parts before it
+    /// Continue an interrupted restore. With the name of a part, do not compare the parts before this part
     #[arg(long, value_name = "PART", num_args = 0..=1, require_equals = true, default_missing_value = "parameters")]
     resume: Option<Part>,
 }
@@ -160,7 +160,8 @@ impl Asked {
         }
         if let Some(resume) = self.resume {
             let first = parts.iter().position(|part| *part == resume);
-            // The parameters are always the first part, so without them all parts are restored.
+            // The parameters are always the first part. If they are not selected, the restore starts with the first
+            // selected part.
             let first = first.or_else(|| (resume == Part::Parameters).then_some(0));
             let first = first.ok_or_else(|| {
                 Failure::usage(format!("--resume={resume}: the backup does not contain this part"))
@@ -340,8 +341,9 @@ async fn write_speed(
     Ok(PartResult { written: 1, ..PartResult::default() })
 }
 
-/// Checks that the controller is the machine of the backup: its robot type (SYSP), the axes of each task (E19), and the
-/// letters of the axes (E01). With `machine`, E19 and E01 are restored, so they are not compared.
+/// Checks that the controller is the machine of the backup: its robot type (SYSP), the axes of each task (parameter
+/// E19), and the letters of the axes (parameter E01). With `machine`, E19 and E01 are restored, so they are not
+/// compared.
 fn identify(backup: &Controller, found: &Controller, machine: bool) -> Result<(), Failure> {
     let none = String::new();
     let letters = [backup, found].map(|one| one.axis_letters.as_ref());

@@ -21,12 +21,12 @@ use armctl_frame::robot::file::FileItem;
                   of each task. manifest.json lists these parts with sizes and hashes, and the reason for missing \
                   parts. At 9600 baud a backup takes some minutes: half a minute for the parameters. Each task takes \
                   a minute and a half for the points, and 35 ms for each step.\n\narmctl selects each task \
-                  temporarily, which is a change: use --current-task for a read-only robot."
+                  temporarily. Selecting a task is a change: for a read-only robot, use --current-task."
 )]
 pub struct Backup {
     #[command(flatten)]
     options: BackupOptions,
-    /// Only points and program of the current task, so that nothing is changed on the controller
+    /// Save only the points and the program of the current task, so that armctl changes nothing on the controller
     #[arg(long)]
     current_task: bool,
 }

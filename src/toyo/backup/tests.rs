@@ -326,7 +326,7 @@ fn axes_of_another_machine_are_refused_before_anything_is_written() {
         assert!(!heard.borrow().iter().any(|block| block.starts_with("@W")));
         bench.data(&["restore", &folder, "--only", "parameters", "--force"]);
     }
-    // Robot name and address must be those of the manifest, as with `armctl restore`.
+    // Robot name and address must be equal to the name and address in the manifest, as with `armctl restore`.
     let failed = blocks(&["restore", &folder]).unwrap_err();
     assert_eq!(failed.kind, Kind::Rejected);
     assert!(failed.message.contains("the backup is from sim (sim:), not from tcp://127.0.0.1:1"), "{failed}");

@@ -11,7 +11,7 @@ use armctl_frame::decode::capture::{CaptureDecoder, DecodedCapture, DecodedMessa
 use armctl_transport::capture::{Carrier, Message};
 use armctl_transport::tap::Direction;
 
-/// All streams that may be host communication. At the end, their lines decide whether they are.
+/// All streams that may be host communication. At the end, their lines decide whether they are host communication.
 #[derive(Debug, Default)]
 pub struct LineDecoder {
     conversations: BTreeMap<Connection, Conversation>,

@@ -15,11 +15,11 @@ use armctl_frame::store::{Dump, Get, List, Restore, Set};
 commands! {
     /// Commands for easy programs.
     pub enum Easy {
-        /// Read programs: 1-3; without any, all 8
+        /// Read programs, for example 1-3. Without a number, armctl reads all 8 programs
         Get(Get<Rows<Numbered>>),
         /// List programs that are not empty
         List(List<Rows<Numbered>>),
-        /// Write a program: 1 START LOOP END
+        /// Write a program: type its number, start tag, repetitions and end tag
         Set(Set<Rows<Numbered>>),
         /// Copy a program to another number
         Copy(Copy<Numbered>),

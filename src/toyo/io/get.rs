@@ -15,7 +15,7 @@ use armctl_frame::watch;
 #[derive(Debug, Args)]
 #[command(after_help = BITS)]
 pub struct Get {
-    /// Signals, for example IN1.3, OUT1.1..OUT1.8, INT2 or IN1..3; or names
+    /// Signals, for example IN1.3, OUT1.1..OUT1.8, INT2 or IN1..3, or names of signals
     #[arg(required = true, value_name = "SIGNAL", value_delimiter = ',', add = complete::SIGNAL)]
     signals: Vec<SignalRange>,
     #[command(flatten)]
@@ -51,7 +51,8 @@ async fn get(
 #[derive(Debug, Args)]
 #[command(after_help = BITS)]
 pub struct Watched {
-    /// Signals, for example IN1.3, OUT1.1..OUT1.8, INT2 or IN1..3; or names. Default: all inputs and outputs
+    /// Signals, for example IN1.3, OUT1.1..OUT1.8, INT2 or IN1..3, or names of signals [default: all inputs and
+    /// outputs]
     #[arg(value_name = "SIGNAL", value_delimiter = ',', add = complete::SIGNAL)]
     signals: Vec<SignalRange>,
     #[command(flatten)]

@@ -19,9 +19,9 @@ use crate::prelude::*;
 commands! {
     /// Commands for signals.
     pub enum Io {
-        /// Read signals: IN1.3, OUT1.1..OUT1.8, INT2
+        /// Read signals, for example IN1.3, OUT1.1..OUT1.8 or INT2
         Get(get::Get),
-        /// Set outputs: OUT1.3=on, or OUT1=.......1 for the bits of a whole port
+        /// Set outputs, for example OUT1.3=on, or OUT1=.......1 for all bits of a port
         Set(set::Set),
         /// List the signals that are on or have a name
         List(list::List),

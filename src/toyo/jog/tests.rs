@@ -56,7 +56,7 @@ fn inching_steps_are_sent_one_by_one() {
     assert_stop_is_last(&received);
 }
 
-/// Result of `LOW` if this fault occurs. The stop must be sent, and the axis must stand still.
+/// Result of `LOW` if this fault occurs. The stop must be sent, and the axis must be at rest.
 #[track_caller]
 fn with_faults(
     fault: impl FnMut(&str, usize) -> Fault + Send + 'static,

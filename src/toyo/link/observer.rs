@@ -77,7 +77,7 @@ impl Watcher<Event> for SharedObserver {
 
 impl Observer {
     /// Prints a notice if the host is ON and this user did not switch it ON. If the controller executes something while
-    /// the host is ON, a host has started it.
+    /// the host is ON, a host has started the execution.
     fn report_foreign_host(&mut self, status: Status, is_taken: bool) {
         let Some(choice) = self.choices.get() else { return };
         if !status.host_on() {

@@ -24,17 +24,17 @@ use armctl_frame::store::{Dump, Get, List, Restore, Set};
 commands! {
     /// Commands for palletizing programs.
     pub enum Palletizing {
-        /// Read the records of a program: 3 source-p1
+        /// Read the records of a program, for example `3 source-p1`
         Get(Get<Records>),
-        /// List records of a program that are not empty
+        /// List the records of a program that contain data
         List(List<Records>),
-        /// Write a record: 1 source-p1 x=100
+        /// Write a record, for example `1 source-p1 x=100`
         Set(Set<Records>),
         /// Copy a program to another number
         Copy(Copy<Numbered>),
-        /// Save a program to a CSV file: FILE 3
+        /// Save a program to a CSV file, for example `pallet3.csv 3`
         Dump(Dump<Records>),
-        /// Write a program from a CSV file: FILE 3
+        /// Write a program from a CSV file, for example `pallet3.csv 3`
         Restore(Restore<Records>),
         /// Select the program that `run palletizing` starts
         Select(Select<Numbered>),
@@ -154,7 +154,7 @@ impl Store for Records {
     const WORDS: TableWords = TableWords {
         nouns: ["record", "records"],
         placeholder: "RECORD",
-        range: "Records by name or number: start source-p0 6",
+        range: "Records by name or number, such as start source-p0 6",
         reading: None,
         writing: Some(
             "Type all values of a record in order, or only some values by name; the other values stay: `palletizing \

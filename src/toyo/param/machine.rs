@@ -3,7 +3,7 @@
 use crate::prelude::*;
 use armctl_controller::toyo::table::Group;
 
-/// Maximum number of steps of all tasks together (TO 2-4, E22).
+/// Maximum number of steps of all tasks together (TO 2-4, parameter E22).
 const MOST_STEPS: i32 = 5000;
 /// Maximum number of steps if there are easy programs.
 const BESIDE_EASY: i32 = 2000;

@@ -24,13 +24,13 @@ use armctl_frame::store::{Dump, Get, List, Restore, Set};
 commands! {
     /// Commands for parameters.
     pub enum Param {
-        /// Read parameters by name, id or group: soft-limit-plus P01 axis
+        /// Read parameters by name, id or group, for example soft-limit-plus, P01 or axis
         Get(Get<Parameters>),
         /// Read all parameters, or a group of them
         List(List<Parameters>),
         /// Print each change of parameters
         Watch(Watch<Get<Parameters>>),
-        /// Change a parameter: soft-limit-plus 100 200 0 0
+        /// Change a parameter, for example `soft-limit-plus 100 200 0 0`
         Set(Set<Parameters>),
         /// Save all parameters and tables to a CSV file
         Dump(Dump<Parameters>),
@@ -200,7 +200,7 @@ impl Store for Parameters {
     const WORDS: TableWords = TableWords {
         nouns: ["parameter", "parameters"],
         placeholder: "NAME",
-        range: "Names or ids such as soft-limit-plus, P01; or a group: mode, axis, table, machine, special",
+        range: "Names or ids, such as soft-limit-plus or P01, or a group: mode, axis, table, machine, special",
         reading: Some(
             "`param list` shows the names of the parameters of this controller. In JSON, each parameter has the unit, \
              the protocol text and the meaning of its value.",

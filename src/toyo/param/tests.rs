@@ -157,7 +157,7 @@ fn a_dump_names_values_that_cannot_be_written_back() {
     assert!(!std::fs::read_to_string(&file).unwrap().contains("cc-link"));
 }
 
-/// A value for a field. `pick` selects which one.
+/// A value for a field. `pick` selects the value.
 fn value(field: &Field, pick: u32) -> Value {
     let [low, high, ..] = pick.to_le_bytes();
     match field.form {
@@ -183,7 +183,7 @@ proptest! {
             let Ok(cell) = Parameters.cell(key, values) else { continue };
             let texts = Parameters.texts(&cell.wanted);
             let texts: Vec<Option<&str>> = texts.iter().map(|text| Some(text.as_str())).collect();
-            // The total number of steps of all tasks is limited, so some values of E22 are rejected.
+            // The total number of steps of all tasks is limited, so some values of parameter E22 are rejected.
             let Ok(draft) = Parameters.draft(key, &texts) else {
                 prop_assert!(key.parameter.id == "E22", "{}: {texts:?}", key_text(key));
                 continue;

@@ -63,7 +63,8 @@ impl Points {
 /// Argument that selects the task of the points.
 #[derive(Debug, Clone, Args)]
 pub struct TaskOptions {
-    /// Task, 1 to 4; default: the current task. armctl selects it temporarily, which a read-only robot does not allow
+    /// Task, 1 to 4. armctl selects another task temporarily, which a read-only robot does not allow [default: the
+    /// current task]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     pub task: Option<u8>,
 }
@@ -114,14 +115,15 @@ impl Store for Points {
     const WORDS: TableWords = TableWords {
         nouns: ["point", "points"],
         placeholder: "POINT",
-        range: "Rows of the coordinate table, 1 to 999: 1-10,20; or names",
+        range: "Rows of the coordinate table (1 to 999), such as 1-10,20, or names",
         reading: Some("At 9600 baud, a read of 999 points takes a minute and a half."),
         writing: Some(
             "The values are x, y, z and r in mm. Type all values in this order, or only some values by name; the \
-             other values stay: z=12.5. The names are the letters on the teach pendant (E01). If the letters are not \
-             X, Y, Z and R in this order, names are necessary. ax1 to ax4 are axes 1 to 4 on every machine. @FILE \
-             reads the output of `position --json`, @- reads it from stdin, `here` is the current position. armctl \
-             does not write equal values, because an EEPROM cell wears out after about a million writes.",
+             other values stay: z=12.5. The names are the letters on the teach pendant (parameter E01). If the \
+             letters are not X, Y, Z and R in this order, names are necessary. ax1 to ax4 are axes 1 to 4 on every \
+             machine. @FILE reads the output of `position --json`, @- reads it from stdin, `here` is the current \
+             position. armctl does not write equal values, because an EEPROM cell wears out after about a million \
+             writes.",
         ),
     };
     const IDS: Ids = ids!("toyo.point");

@@ -20,22 +20,22 @@ use armctl_frame::store::keys_of;
     after_help = "The exit code is 0 if all files are valid programs, 8 if a file has errors, and 1 if a file cannot \
                   be read. `program put` and `sim run` also check the file, and end with exit code 2 after an \
                   error.\n\nForm of a file: one step per line, # or ; begins a comment, a label can replace a tag, \
-                  numbers can be short. Warnings show where a controller stops: a RET without a call, a call that \
-                  leads back to itself, an incomplete arc, a missing point, or an error in an offline run of some \
-                  seconds.\n\n      SPD V=5\nnext: MOVP a PT=1 CN=0 S V=0 POST\n      JMPI TAG=next STN=0 \
+                  numbers need no leading zeros. Warnings show where a controller stops: a RET without a call, a call \
+                  that leads back to itself, an incomplete arc, a missing point, or an error in an offline run of \
+                  some seconds.\n\n      SPD V=5\nnext: MOVP a PT=1 CN=0 S V=0 POST\n      JMPI TAG=next STN=0 \
                   PN1=.......1   ; while the gripper is full\n      END"
 )]
 pub struct Check {
-    /// Program files; - is stdin
+    /// Program files; - means stdin
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     /// Number of steps of the task
     #[arg(long, value_name = "STEPS", default_value_t = 5000, value_parser = clap::value_parser!(u16).range(1..=5000))]
     room: u16,
-    /// CSV file of the taught points from `point dump`; a move to a point that is not in it causes a warning
+    /// CSV file of the taught points from `point dump`. A move to a point that is not in this file causes a warning
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
-    /// Name of a point, a counter or a timer, in the form of robots.toml: pick=PT1 (repeatable)
+    /// Name of a point, a counter or a timer, in the form of robots.toml, for example pick=PT1 (repeatable)
     #[arg(long, value_name = "NAME=ADDRESS", value_parser = text::name)]
     name: Vec<Name>,
     /// Treat warnings as errors

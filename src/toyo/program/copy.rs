@@ -25,10 +25,10 @@ pub struct Copy {
     /// First step to overwrite
     #[arg(long, value_name = "STEP", value_parser = clap::value_parser!(u16).range(1..=5000))]
     at: u16,
-    /// Task to copy from, 1 to 4; default: the current task
+    /// Task to copy from, 1 to 4 [default: the current task]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     from_task: Option<u8>,
-    /// Task to copy to, 1 to 4; default: the task to copy from
+    /// Task to copy to, 1 to 4 [default: the task to copy from]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     to_task: Option<u8>,
 }

@@ -21,7 +21,7 @@ pub struct Delete {
     /// Last of several steps to delete
     #[arg(long, value_name = "STEP", value_parser = clap::value_parser!(u16).range(1..=5000))]
     to: Option<u16>,
-    /// Task, 1 to 4; default: the current task
+    /// Task, 1 to 4 [default: the current task]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
 }

@@ -20,15 +20,15 @@ use armctl_frame::robot::file::{FILES, FileItem};
 #[derive(Debug, Args)]
 #[command(after_help = "The comparison ignores labels, comments, the form of numbers, and NOPs at the end. It reads \
                         all steps of the task, which takes about 35 ms per step at 9600 baud. If the task is not the \
-                        current task, armctl selects it temporarily. This is a change, which a read-only robot does \
-                        not allow.")]
+                        current task, armctl selects the task temporarily. A read-only robot does not allow this \
+                        change.")]
 pub struct Diff {
-    /// A program file; - is stdin
+    /// A program file; - means stdin
     file: PathBuf,
-    /// Task, 1 to 4; default: the current task
+    /// Task, 1 to 4 [default: the current task]
     #[arg(value_name = "TASK", value_parser = clap::value_parser!(u8).range(1..=4))]
     number: Option<u8>,
-    /// Task as an option
+    /// Task, as an option instead of an argument
     #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
 }

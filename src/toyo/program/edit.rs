@@ -23,7 +23,7 @@ use armctl_frame::editor_session::EditedText;
      armctl keeps your text in a file, and the message shows the path."
 ))]
 pub struct Edit {
-    /// Task, 1 to 4; default: the current task
+    /// Task, 1 to 4 [default: the current task]
     #[arg(value_name = "TASK", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
 }

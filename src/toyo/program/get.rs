@@ -24,25 +24,25 @@ use armctl_frame::robot::item::Plain;
 #[derive(Debug, Args)]
 #[command(
     after_help = "All steps are read, because subroutines can follow END. The text omits NOPs at the end. A step \
-                  takes about 35 ms at 9600 baud. If the task is not the current task, armctl selects it temporarily. \
-                  This is a change, which a read-only robot does not allow.\n\nA controller stores neither labels nor \
-                  comments. If the controller has the steps that the last `program put` on this computer wrote, the \
-                  command prints the text of that file. Otherwise the command prints a note and the steps.\n\nIf the \
-                  controller refuses a step, the text has ? in its place. Such a text is not a valid program, and \
+                  takes about 35 ms at 9600 baud. If the task is not the current task, armctl selects the task \
+                  temporarily. A read-only robot does not allow this change.\n\nA controller stores neither labels \
+                  nor comments. If the controller has the steps that the last `program put` on this computer wrote, \
+                  the command prints the text of that file. Otherwise the command prints a note and the steps.\n\nIf \
+                  the controller refuses a step, the text has ? in its place. Such a text is not a valid program, and \
                   armctl writes no file."
 )]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag")]
 pub struct Get {
-    /// New file for the program; default: stdout
+    /// New file for the program [default: stdout]
     #[arg(value_parser = parse_file)]
     file: Option<PathBuf>,
-    /// Task, 1 to 4; default: the current task
+    /// Task, 1 to 4 [default: the current task]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
     /// First step to read
     #[arg(long, value_name = "STEP", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=5000))]
     from: u16,
-    /// Last step; default: the last step of the task
+    /// Last step to read [default: the last step of the task]
     #[arg(long, value_name = "STEP", value_parser = clap::value_parser!(u16).range(1..=5000))]
     to: Option<u16>,
     /// Stop at the first END
@@ -62,7 +62,8 @@ pub struct Get {
     force: bool,
 }
 
-/// Parses the name of a file. A number is meant as a step.
+/// Parses the name of a file. A word with the form of a step number is rejected, because the user probably means a
+/// step.
 fn parse_file(text: &str) -> Result<PathBuf, String> {
     let is_step = text.starts_with(|first: char| first.is_ascii_digit())
         && text.chars().all(|one| one.is_ascii_digit() || ",.-".contains(one));
@@ -89,7 +90,7 @@ impl Command for Get {
         }
         if let Some(file) = self.file.as_ref().filter(|_| several) {
             return Err(Failure::usage(format!("{} needs one robot", file.display()))
-                .hint("run the command once for each robot, or `toyo backup` for all of them"));
+                .hint("run the command once for each robot, or `toyo backup` for all robots"));
         }
         let target = self.file.clone().map(|file| Target::new(file, self.force)).transpose()?;
         if link.is_dry() {

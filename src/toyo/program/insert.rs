@@ -23,10 +23,10 @@ pub struct Insert {
     /// Number of the new step
     #[arg(value_parser = clap::value_parser!(u16).range(1..=5000))]
     step: u16,
-    /// Instruction, for example MOVP pick or OUT STN=0 PN1=.......1; quote < and >
+    /// Instruction, for example MOVP pick or OUT STN=0 PN1=.......1. Quote the characters < and >
     #[arg(num_args = 0.., default_value = "NOP", add = complete::INSTRUCTION)]
     instruction: Vec<String>,
-    /// Task, 1 to 4; default: the current task
+    /// Task, 1 to 4 [default: the current task]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
 }

@@ -61,7 +61,7 @@ impl Source {
         self.steps.len()
     }
 
-    /// Whether the steps from the first one on are equal to the steps of the text.
+    /// Whether the steps from the first step on are equal to the steps of the text.
     pub fn is(&self, steps: &[Record]) -> bool {
         self.differences(steps) == 0
     }
@@ -75,8 +75,8 @@ impl Source {
 
     /// Whether the steps after the program need not be read before these steps are written. This is possible if the
     /// steps of the stored program are unchanged and all later steps were NOP. Someone may have edited the later steps
-    /// on the pendant in the meantime, and this edit is not noticed. For this reason it must not matter for the new
-    /// program. The new program defines no tag that may exist twice, jumps only to its own tags, and does not run
+    /// on the pendant in the meantime, and this edit is not noticed. For this reason, the edit must not matter for the
+    /// new program. The new program defines no tag that may exist twice, jumps only to its own tags, and does not run
     /// beyond its end.
     pub fn knows_rest(&self, steps: &[Record], room: u16) -> bool {
         let known: Vec<Record> = self.steps.iter().filter_map(|step| instruction(step).ok()).collect();

@@ -13,7 +13,7 @@ use armctl_frame::items::{ItemError, verdict};
 #[derive(Debug, Args)]
 #[command(
     after_help = "With --used, armctl reads every step of every task, which takes about 35 ms per step at 9600 baud. \
-                  armctl selects each task temporarily. This is a change, which a read-only robot does not allow."
+                  armctl selects each task temporarily. A read-only robot does not allow this change."
 )]
 pub struct List {
     /// Read the programs to count their steps and list their tags
@@ -83,7 +83,7 @@ struct Task {
     task: u8,
     /// Whether the task is the current task.
     current: bool,
-    /// Number of steps of the task (E22).
+    /// Number of steps of the task (parameter E22).
     room_steps: u16,
     /// Number of steps up to the last step that is not a NOP; null if the steps were not read.
     used_steps: Option<usize>,

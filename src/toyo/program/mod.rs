@@ -33,7 +33,7 @@ commands! {
         Diff(diff::Diff),
         /// Edit a program in your editor, and write it back
         Edit(edit::Edit),
-        /// Insert a step; later steps move by one
+        /// Insert a step; later steps move down by one step
         Insert(insert::Insert),
         /// Delete steps; later steps move up
         Delete(delete::Delete),

@@ -28,18 +28,18 @@ use armctl_frame::robot::item::Plain;
 #[derive(Debug, Args)]
 #[command(after_help = and_mode(HELP))]
 pub struct Put {
-    /// File from `program get` or an editor; - is stdin
+    /// File from `program get` or an editor; - means stdin
     file: PathBuf,
-    /// Task, 1 to 4; default: the current task
+    /// Task, 1 to 4 [default: the current task]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
-    /// Write the file as a part of a program, from this step on; other steps do not change
+    /// Write the file as a part of a program, from this step on. Other steps do not change
     #[arg(long, value_name = "STEP", value_parser = clap::value_parser!(u16).range(1..=5000))]
     at: Option<u16>,
     /// Keep the steps after the last step of the file
     #[arg(long, conflicts_with = "at")]
     keep_rest: bool,
-    /// Continue an interrupted put; with a step, do not compare the steps before it
+    /// Continue an interrupted put. With a step number, do not compare the steps before this step
     #[arg(long, value_name = "STEP", num_args = 0..=1, require_equals = true, default_missing_value = "1",
           value_parser = clap::value_parser!(u16).range(1..=5000))]
     resume: Option<u16>,
@@ -55,10 +55,11 @@ const HELP: &str = "armctl checks the whole file before it sends anything. The f
                     later steps of the task become NOP, so that no tag of an older program exists twice. With --at, \
                     the file is only a part of the program, and the other steps stay.\n\narmctl reads the steps of \
                     the file and the later steps, and writes only different steps. If the controller has the program \
-                    that armctl wrote last, the later steps are NOP. armctl then does not read them, unless the new \
-                    program has other tags or continues after its last step; --read-all reads them. This computer \
-                    stores the text, so that `program get` shows labels and comments again.\n\nNames of points, \
-                    counters and timers (robots.toml) can replace their numbers: PT=pick.";
+                    that armctl wrote last, the later steps are NOP. armctl then does not read the later steps, \
+                    unless the new program has other tags or continues after its last step. With --read-all, armctl \
+                    always reads the later steps. This computer stores the text, so that `program get` shows labels \
+                    and comments again.\n\nNames of points, counters and timers (robots.toml) can replace their \
+                    numbers: PT=pick.";
 
 /// A step to write.
 struct Edit {

@@ -20,7 +20,7 @@ pub struct Search {
     /// Number of the tag
     #[arg(value_name = "TAG", value_parser = clap::value_parser!(u16).range(1..=999))]
     number: u16,
-    /// Task, 1 to 4; default: the current task
+    /// Task, 1 to 4 [default: the current task]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
     task: Option<u8>,
 }

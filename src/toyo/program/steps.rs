@@ -12,7 +12,7 @@ use armctl_controller::toyo::table::{Command, Op};
 
 const READING: &str = "reading steps";
 
-/// Reads the number of steps of each task (TO 2-4, E22).
+/// Reads the number of steps of each task (TO 2-4, parameter E22).
 pub async fn rooms(link: &mut Link) -> Result<[u16; 4], Failure> {
     let record = link.ask(&rooms_request()).await?;
     let room = |task| record.number(task).and_then(|steps| u16::try_from(steps).ok()).unwrap_or_default();

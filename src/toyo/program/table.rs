@@ -92,7 +92,7 @@ impl Writable for Steps {
     const RISK: Risk = Risk::Destroy;
 
     fn draft(&self, step: u16, _texts: &[Option<&str>]) -> Result<Record, String> {
-        Err(format!("step {step}: steps are written by `toyo program put`"))
+        Err(format!("step {step}: use `toyo program put` to write steps"))
     }
 
     /// A step that the manual does not list cannot be written. If the controller has another step there, the result

@@ -27,12 +27,13 @@ use armctl_frame::store::rows_of_file;
                         error (exit code 2).\n\n  armctl toyo sim run pick.txt --points points.csv --input 'at 2s \
                         0/01/3 on'")]
 pub struct Run {
-    /// Program of task 1; - is stdin
+    /// Program of task 1; - means stdin
     file: PathBuf,
     /// Program file of another task, which a TSTR step starts, for example 2=gate.txt (repeatable)
     #[arg(long, value_name = "TASK=FILE", value_parser = other_task)]
     task: Vec<(usize, PathBuf)>,
-    /// Points (CSV) from `point dump`; for a task other than 1, with its number, for example 2=gate.csv (repeatable)
+    /// CSV file of points from `point dump`. For a task other than 1, type the task number before the file, for example
+    /// 2=gate.csv (repeatable)
     #[arg(long, value_name = "[TASK=]FILE", value_parser = points_of)]
     points: Vec<(usize, PathBuf)>,
     /// Parameters and tables (CSV) from `param dump`
@@ -45,7 +46,7 @@ pub struct Run {
     /// (repeatable)
     #[arg(long, value_name = "EVENT", value_parser = input)]
     input: Vec<Input>,
-    /// Name of a point, a counter or a timer, in the form of robots.toml: pick=PT1 (repeatable)
+    /// Name of a point, a counter or a timer, in the form of robots.toml, for example pick=PT1 (repeatable)
     #[arg(long, value_name = "NAME=ADDRESS", value_parser = text::name)]
     name: Vec<Name>,
     /// Step to start with
@@ -54,7 +55,7 @@ pub struct Run {
     /// Time limit of the program [default: 10 minutes]
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse)]
     within: Option<Duration>,
-    /// Print the position at this interval as well
+    /// Also print the position at this interval
     #[arg(long = "trace-every", value_name = "TIME", value_parser = every)]
     every: Option<Duration>,
     /// Maximum number of rows; if there are more, only the last rows are printed

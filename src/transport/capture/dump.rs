@@ -9,7 +9,8 @@ use crate::tap::LINKTYPE_PROFIBUS_DL;
 
 /// Maximum length of a line of a hexadecimal dump.
 const MOST_LINE: usize = 16 << 20;
-/// A length greater than that of any telegram. If these many bytes are not a complete telegram, more bytes do not help.
+/// A length greater than that of any telegram. If this many bytes do not contain a complete telegram, more bytes do not
+/// help.
 const MOST_TELEGRAM: usize = 512;
 /// Maximum number of noise bytes that are kept in memory.
 const MOST_NOISE: usize = 1 << 16;
@@ -30,7 +31,7 @@ impl Form {
         if beginning.iter().all(is_digits) && beginning.iter().any(u8::is_ascii_hexdigit) {
             return Some(Self::Hexadecimal);
         }
-        // Only whole frames identify a dump: tokens and short acknowledgements (one byte) also occur in other files by
+        // Only whole frames identify a dump. Tokens and acknowledgements of one byte also occur in other files by
         // chance.
         let begins = |at| matches!(Telegram::parse(&beginning[at..]), Ok(Parsed::Whole(Telegram::Frame(_), _)));
         (0..beginning.len().min(MOST_TELEGRAM)).any(begins).then_some(Self::Bytes)
@@ -90,15 +91,15 @@ fn line(file: &mut impl BufRead) -> Result<Vec<u8>, &'static str> {
 #[derive(Debug, Default)]
 struct Pieces {
     bytes: Vec<u8>,
-    /// Number of bytes already delivered.
+    /// Number of bytes that were already delivered.
     start: usize,
-    /// Number of noise bytes after the delivered bytes: no telegram begins with any of them.
+    /// Number of noise bytes after the delivered bytes. No telegram begins at any of these bytes.
     noise: usize,
     summary: Summary,
 }
 
 impl Pieces {
-    /// Delivers the complete telegrams. At the end of the file, delivers the rest too.
+    /// Delivers the complete telegrams. At the end of the file, also delivers the remaining bytes.
     fn take(&mut self, is_end: bool, each: &mut impl FnMut(&Message<'_>)) {
         loop {
             let rest = &self.bytes[self.start + self.noise..];
@@ -109,8 +110,8 @@ impl Pieces {
                 Ok(Parsed::Whole(_, len)) => len,
                 Ok(Parsed::Part(_)) if !is_end && rest.len() < MOST_TELEGRAM => break,
                 Ok(Parsed::Part(_)) => rest.len(),
-                // Skip the whole damaged telegram. Its content could be mistaken for acknowledgements and tokens, which
-                // have no checksum.
+                // The whole damaged telegram is skipped. Its content could be mistaken for acknowledgements and tokens,
+                // which have no checksum.
                 Err(error) if error.field == CHECKSUM => error.offset + 2,
                 Err(_) => {
                     self.noise += 1;
@@ -142,7 +143,7 @@ impl Pieces {
     }
 }
 
-/// Whether a telegram, damaged or not, begins anywhere in these bytes.
+/// Whether a telegram, even a damaged one, begins anywhere in these bytes.
 pub fn holds_telegram(bytes: &[u8]) -> bool {
     (0..bytes.len()).any(|at| !matches!(Telegram::parse(&bytes[at..]), Err(error) if error.field == START))
 }
@@ -152,8 +153,8 @@ fn is_between(c: char) -> bool {
     c.is_whitespace() || matches!(c, ':' | ',' | '-' | '_')
 }
 
-/// Parses hexadecimal digits in the formats of common tools: without separators, with `0x`, or with colons, commas or
-/// dashes.
+/// Parses hexadecimal digits in the formats of common tools. They can have no separators, `0x` prefixes, or colons,
+/// commas or dashes.
 pub fn parse_hex(text: &str) -> Result<Vec<u8>, String> {
     /// Maximum number of digits that an error message quotes.
     const MOST: usize = 24;
@@ -184,7 +185,7 @@ mod tests {
     fn pieces(file: &[u8]) -> (Vec<Vec<u8>>, Summary) {
         let form = Form::of(file).unwrap();
         let mut all = Vec::new();
-        // The reader returns a few bytes per read, as a pipe can do.
+        // The reader returns only a few bytes per read, as a pipe can do.
         let file = std::io::BufReader::with_capacity(5, file);
         let summary = read(file, form, |message| all.push(message.bytes.to_vec()));
         (all, summary)
@@ -202,7 +203,8 @@ mod tests {
 
     #[test]
     fn damage_stays_one_piece_and_what_follows_is_found() {
-        // A telegram with a wrong checksum and an acknowledgement inside, noise, a telegram, an incomplete telegram.
+        // The bytes are a telegram with a wrong checksum and an acknowledgement inside, noise, a telegram, and an
+        // incomplete telegram.
         let (all, _) = pieces(b"68 05 05 68 85 82 E5 3C 3E 00 16 FF 16 10 05 02 49 50 16 68 05 05 68 85");
         let lengths: Vec<_> = all.iter().map(Vec::len).collect();
         assert_eq!(lengths, [11, 2, 6, 5]);

@@ -12,13 +12,13 @@ pub struct Packet<'a> {
     pub number: u64,
     /// Section of the pcapng file, from 1.
     pub section: usize,
-    /// Time since 1970. A packet without a time gets the time of the packet before it.
+    /// Time since 1970. A packet without a time gets the time of the previous packet.
     pub time: Duration,
     /// Link type number (`LINKTYPE_…`).
     pub link_type: u16,
     /// The recorded bytes.
     pub bytes: &'a [u8],
-    /// Whether the packet was longer than the recorded bytes.
+    /// Whether only a part of the packet was recorded.
     pub is_cut: bool,
 }
 
@@ -38,10 +38,10 @@ pub enum OpenError {
     /// The file is compressed by gzip or zstd.
     #[error("the file is compressed")]
     Compressed,
-    /// Not a pcap or pcapng file.
+    /// The file is not a pcap or pcapng file.
     #[error("the file is not pcap or pcapng")]
     Other,
-    /// A read failed.
+    /// Reading the file failed.
     #[error("cannot read the file")]
     Unreadable,
 }
@@ -53,11 +53,11 @@ const INTERFACE: u32 = 1;
 const OLD_PACKET: u32 = 2;
 const SIMPLE_PACKET: u32 = 3;
 const ENHANCED_PACKET: u32 = 6;
-/// Option codes of an Interface Description Block.
+/// Option code that ends the options of an Interface Description Block. The other option codes of this block follow.
 const END_OF_OPTIONS: u16 = 0;
 const TIME_RESOLUTION: u16 = 9;
 const TIME_OFFSET: u16 = 14;
-/// Length of the header of a pcap file, and of the header of each packet.
+/// Length of the header of a pcap file. The constant below is the length of the header of each packet.
 const FILE_HEADER: usize = 24;
 const PACKET_HEADER: usize = 16;
 /// Upper limit of a packet length. A larger value means a damaged file.
@@ -92,7 +92,7 @@ impl ByteOrder {
     }
 }
 
-/// Time resolution and offset of an interface.
+/// Time resolution and time offset of an interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Clock {
     /// Ticks per second.
@@ -118,7 +118,8 @@ impl Clock {
         let seconds = u64::try_from(count / self.ticks).unwrap_or(u64::MAX);
         let nanos = (count % self.ticks).saturating_mul(1_000_000_000) / self.ticks;
         let nanos = u32::try_from(nanos).unwrap_or_default().min(999_999_999);
-        // The offset is signed. In two's complement, the unsigned addition has the same result.
+        // The offset is signed, but the unsigned addition gives the same result, because the offset is in two's
+        // complement.
         Duration::new(seconds.wrapping_add(self.offset), nanos)
     }
 }
@@ -126,7 +127,7 @@ impl Clock {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Interface {
     link_type: u16,
-    /// Maximum number of recorded bytes per packet (snapshot length); 0 means no limit.
+    /// Maximum number of recorded bytes per packet (snapshot length). 0 means that there is no limit.
     most: usize,
     clock: Clock,
 }
@@ -146,7 +147,7 @@ pub fn is_capture(beginning: &[u8]) -> bool {
 /// Number of bytes per read.
 const PIECE: usize = 1 << 16;
 
-/// A window of a file: only the bytes of one packet are in memory.
+/// The part of a file that is in memory. It contains the bytes of only one packet.
 #[derive(Debug)]
 struct Window<R> {
     file: R,
@@ -171,7 +172,7 @@ impl<R: Read> Window<R> {
         Ok(&rest[..rest.len().min(len)])
     }
 
-    /// Bytes that `look` has loaded.
+    /// Bytes that the last `look` has loaded.
     fn seen(&self) -> &[u8] {
         &self.bytes[self.start..]
     }
@@ -194,7 +195,7 @@ pub struct Packets<R> {
     is_over: bool,
 }
 
-/// A packet, with the range of its bytes in the record or block.
+/// Metadata of a packet, and the range of its bytes in the record or block.
 struct PacketSpan {
     interface: Interface,
     time: Option<Duration>,
@@ -257,7 +258,7 @@ impl<R: Read> Packets<R> {
         let (number, section, time) = (self.number, self.section, self.time);
         let before = self.file.start;
         self.file.pass(len);
-        // The consumed bytes stay in the buffer until the next `look`.
+        // The bytes stay in the buffer until the next `look`, although they count as consumed.
         let bytes = self.file.bytes.get(before + bytes.start..before + bytes.end).unwrap_or_default();
         let is_cut = bytes.len() < original;
         Some(Ok(Packet { number, section, time, link_type: interface.link_type, bytes, is_cut }))
@@ -284,13 +285,14 @@ impl<R: Read> Packets<R> {
         Ok((PacketSpan { interface, time, bytes: PACKET_HEADER..whole, original }, whole))
     }
 
-    /// Reads the next block of a pcapng file. Returns its packet, if it has one, and its length.
+    /// Reads the next block of a pcapng file. Returns the packet in the block, if there is one, and the length of the
+    /// block.
     fn block(&mut self) -> Result<(Option<PacketSpan>, usize), &'static str> {
         let short = "the file ends inside a block";
         let head = self.file.look(12).map_err(|_| UNREADABLE)?;
         let kind = self.byte_order.word(head, 0).ok_or(short)?;
         if kind == SECTION_HEADER {
-            // The type of this block is the same in both byte orders. The magic number of the block decides the byte
+            // The type of this block is the same in both byte orders. The magic number in the block shows the byte
             // order.
             let magic = ByteOrder::Big.word(head, 8).ok_or(short)?;
             self.byte_order = match magic {
@@ -345,7 +347,7 @@ impl<R: Read> Packets<R> {
         };
         let interface = number.and_then(|number| interfaces.get(number).copied());
         let interface = interface.ok_or("a packet of an undefined interface")?;
-        // Returns time, offset in the body, recorded length and original length of the packet.
+        // Returns the time of the packet, its offset in the body, its recorded length and its original length.
         let parts = || {
             if kind == SIMPLE_PACKET {
                 let original = order.size(body, 0)?;

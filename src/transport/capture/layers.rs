@@ -11,7 +11,7 @@ use crate::tap::{Direction, LINKTYPE_PROFIBUS_DL};
 /// Content of a packet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PacketContent<'a> {
-    /// UDP or TCP.
+    /// A UDP or TCP packet.
     Packet {
         /// Sender.
         from: SocketAddr,
@@ -19,7 +19,7 @@ pub enum PacketContent<'a> {
         to: SocketAddr,
         /// Payload.
         payload: Payload<'a>,
-        /// Whether the headers announce more bytes than were recorded.
+        /// Whether the headers state more bytes than were recorded.
         is_cut: bool,
     },
     /// Bytes of a serial line.
@@ -40,9 +40,9 @@ pub enum PacketContent<'a> {
 /// Payload of an IP packet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Payload<'a> {
-    /// UDP.
+    /// Payload of a UDP datagram.
     Datagram(&'a [u8]),
-    /// TCP.
+    /// Payload of a TCP segment.
     Segment(Segment<'a>),
 }
 
@@ -57,11 +57,11 @@ pub struct Segment<'a> {
     pub bytes: &'a [u8],
 }
 
-/// Decodes a packet of a link type.
+/// Decodes a packet with this link type.
 pub fn content_of(link_type: u16, packet: &[u8]) -> PacketContent<'_> {
     let content = match link_type {
-        // BSD loopback: 4 bytes of address family in the byte order of the host. They are skipped, because the IP
-        // header contains the version.
+        // BSD loopback: the packet starts with 4 bytes of address family, in the byte order of the host. They are
+        // skipped, because the IP header contains the IP version.
         0 | 108 => packet.get(4..).and_then(ip),
         super::LINKTYPE_ETHERNET if Frame::parse(packet).is_ok() => Some(PacketContent::Frame),
         super::LINKTYPE_ETHERNET => ethernet(packet, 12..14),
@@ -88,12 +88,12 @@ fn serial(packet: &[u8]) -> Option<PacketContent<'_>> {
     Some(PacketContent::Serial { direction, bytes })
 }
 
-/// Decodes a frame whose EtherType is at `kind`.
+/// Decodes a frame whose EtherType is at the byte range `kind`.
 fn ethernet(frame: &[u8], kind: Range<usize>) -> Option<PacketContent<'_>> {
     of_type(frame.get(kind.clone()), frame.get(kind.end..))
 }
 
-/// Decodes the content after an EtherType, with or without VLAN tags.
+/// Decodes the content that follows an EtherType, with or without VLAN tags.
 fn of_type<'a>(kind: Option<&[u8]>, content: Option<&'a [u8]>) -> Option<PacketContent<'a>> {
     let kind = u16::from_be_bytes(*kind?.first_chunk()?);
     transport(&LaxSlicedPacket::from_ether_type(EtherType(kind), bounded(content?)))
@@ -103,8 +103,8 @@ fn ip(packet: &[u8]) -> Option<PacketContent<'_>> {
     transport(&LaxSlicedPacket::from_ip(bounded(packet)).ok()?)
 }
 
-/// Cuts the packet to its IP length. An IP length of 0 sets no limit: it is valid in a capture, because the network
-/// card fills the length in later.
+/// Cuts the packet to the length in its IP header. A length of 0 sets no limit: it is valid in a capture, because the
+/// network card fills the length in later.
 fn bounded(packet: &[u8]) -> &[u8] {
     const LONGEST: usize = 40 + 0xFFFF;
 
@@ -140,7 +140,8 @@ fn transport<'a>(packet: &LaxSlicedPacket<'a>) -> Option<PacketContent<'a>> {
 mod tests {
     use super::*;
 
-    /// An IP packet with UDP from 10.0.0.1:1000 to 10.0.0.2:10040: "hi", and two bytes of padding.
+    /// An IP packet with a UDP datagram from 10.0.0.1:1000 to 10.0.0.2:10040. The payload is "hi", and two bytes of
+    /// padding follow.
     const IP: [u8; 32] = [
         0x45, 0, 0, 30, 0, 0, 0x40, 0, 64, 17, 0, 0, 10, 0, 0, 1, 10, 0, 0, 2, 0x03, 0xE8, 0x27, 0x38, 0, 10, 0, 0,
         b'h', b'i', 0, 0,

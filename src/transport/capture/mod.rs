@@ -38,7 +38,7 @@ pub struct Message<'a> {
     pub carrier: Carrier,
     /// Bytes of the message; never empty.
     pub bytes: &'a [u8],
-    /// Whether the packet was longer than the recorded bytes.
+    /// Whether only a part of the packet was recorded.
     pub is_cut: bool,
 }
 
@@ -58,7 +58,7 @@ pub enum Carrier {
         from: SocketAddr,
         /// Receiver.
         to: SocketAddr,
-        /// Whether these are the first bytes of a connection that was opened in the file.
+        /// Whether these are the first bytes of a connection whose opening is in the file.
         begins: bool,
         /// Number of bytes that are missing before these bytes.
         lost: u32,
@@ -67,12 +67,12 @@ pub enum Carrier {
     Line {
         /// Direction of the bytes.
         direction: Direction,
-        /// Section of the file; each recorded command has one.
+        /// Number of the section in the file. Each recorded command has one section.
         section: usize,
     },
     /// A whole frame whose link type has its own frame format.
     Frame {
-        /// Link type, such as [`LINKTYPE_CAN`].
+        /// Link type of the frame, for example [`LINKTYPE_CAN`].
         link_type: u16,
     },
 }
@@ -98,13 +98,13 @@ impl Carrier {
 pub struct Summary {
     /// Number of packets.
     pub packets: u64,
-    /// Time of the first packet since 1970.
+    /// Time of the first packet, counted from 1970.
     pub first: Duration,
     /// Number of IP fragments. The reader skips them.
     pub fragments: u64,
     /// Number of repeated TCP segments.
     pub repeated: u64,
-    /// Position of the damage, if the file is damaged. The reader has read everything before it.
+    /// Position of the damage; `None` if the file is not damaged. The reader has read everything before this position.
     pub damage: Option<Damage>,
 }
 
@@ -118,7 +118,8 @@ pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summa
     if beginning.starts_with(b"(") {
         return Ok(candump(file, each));
     }
-    // A packet capture can contain PROFIBUS telegrams, so the capture formats are checked first.
+    // The capture formats are checked before the PROFIBUS dumps, because a packet capture can contain PROFIBUS
+    // telegrams.
     if let Some(form) = Form::of(beginning).filter(|_| !is_capture(beginning)) {
         return Ok(dump::read(file, form, each));
     }
@@ -183,7 +184,7 @@ fn candump(mut file: impl BufRead, mut each: impl FnMut(&Message<'_>)) -> Summar
         };
         offset += len;
         summary.packets += 1;
-        // Extended and remote frames are valid, but not decoded here.
+        // Extended and remote frames are valid in a log, but this reader does not decode them.
         let Some((time, frame)) = Frame::from_candump(&String::from_utf8_lossy(&line)) else { continue };
         let time = time.unwrap_or_default();
         if summary.first.is_zero() {

@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use super::layers::Segment;
 
-/// Key of one direction of a stream: section of the file, sender, receiver. The section is part of the key, because
-/// each section is a separate recording with its own sequence numbers.
+/// Key of one direction of a stream: section of the file, sender, receiver. The section is included, because each
+/// section is a separate recording with its own sequence numbers.
 pub type StreamKey = (usize, SocketAddr, SocketAddr);
 /// Packet that delivered the bytes: its number, its time, and whether it was cut.
 pub type Origin = (u64, Duration, bool);
@@ -19,7 +19,7 @@ pub struct Piece<'a> {
     pub key: StreamKey,
     /// Packet that delivered the bytes.
     pub origin: Origin,
-    /// Whether these are the first bytes of a stream that was opened in the file.
+    /// Whether these are the first bytes of a stream whose opening is in the file.
     pub begins: bool,
     /// Number of bytes that are missing before these bytes.
     pub lost: u32,
@@ -27,11 +27,12 @@ pub struct Piece<'a> {
     pub bytes: &'a [u8],
 }
 
-/// Maximum number of waiting segments per direction. Above it, the missing bytes before them count as lost.
+/// Maximum number of waiting segments per direction. If more segments wait, the missing bytes before them count as
+/// lost.
 const MOST_WAITING: usize = 64;
 
-/// Maximum number of streams, and of waiting bytes. Above them, all missing bytes count as lost, and each stream starts
-/// again.
+/// Maximum number of streams. The constant below is the maximum number of waiting bytes. Above a limit, all missing
+/// bytes count as lost, and each stream starts again.
 const MOST_STREAMS: usize = 1 << 16;
 const MOST_HELD: usize = 32 << 20;
 
@@ -50,9 +51,10 @@ struct Stream {
     /// Next expected sequence number.
     next: Option<u32>,
     begins: bool,
-    /// Early segments, by their position in the stream.
+    /// Segments that arrived before the bytes in front of them, by their position in the stream.
     waiting: BTreeMap<u64, (Origin, Vec<u8>)>,
-    /// Number of bytes delivered or lost. Positions count from the start of the stream, because sequence numbers wrap.
+    /// Number of bytes that were delivered or lost. Positions count from the start of the stream, because sequence
+    /// numbers wrap around.
     passed: u64,
     /// Number of waiting bytes.
     held: usize,
@@ -103,7 +105,7 @@ impl Streams {
         }
     }
 
-    /// Delivers all waiting segments, with their gaps.
+    /// Delivers all waiting segments, and the lengths of the gaps before them.
     pub fn finish(&mut self, give: &mut impl FnMut(&Piece<'_>)) {
         let mut left: Vec<_> = self.streams.iter_mut().filter(|(_, stream)| !stream.waiting.is_empty()).collect();
         left.sort_by_key(|(key, _)| **key);
@@ -143,7 +145,7 @@ impl Stream {
         repeated
     }
 
-    /// Declares the bytes before the first waiting segment lost.
+    /// Declares the bytes before the first waiting segment as lost.
     fn jump(&mut self, key: StreamKey, give: &mut impl FnMut(&Piece<'_>)) {
         if let Some((at, (origin, bytes))) = self.waiting.pop_first() {
             self.held -= bytes.len();
@@ -203,7 +205,7 @@ mod tests {
         let bytes = vec![0; 60_000];
         for number in 0..3000u32 {
             let key = (usize::try_from(number).unwrap(), key().1, key().2);
-            // The first segment opens the stream. The second segment waits, because bytes before it are missing.
+            // The first segment opens the stream. The second segment waits, because the bytes before it are missing.
             for (sequence, bytes) in [(1, &bytes[..1]), (9, &bytes[..])] {
                 let segment = Segment { sequence, opens: false, bytes };
                 let origin = (number.into(), Duration::ZERO, false);

@@ -11,7 +11,7 @@ use crate::image::view::BusError;
 /// An error that prevented or ended a connection.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Error {
-    /// Another node on the bus has the MAC of this master.
+    /// Another node on the bus has the same MAC as this master.
     #[error("another node has MAC {mac} of this master: vendor {vendor}, serial {serial:08X}")]
     Duplicate {
         /// MAC that both nodes have.
@@ -24,13 +24,13 @@ pub enum Error {
     /// Another master owns the connections of the slave.
     #[error("another master owns the connections of MAC {mac}")]
     Owned {
-        /// The slave.
+        /// MAC of the slave.
         mac: Mac,
     },
     /// The image sizes of the slave do not match any of the expected profiles.
     #[error("MAC {mac} receives {consumed} bytes and sends {produced}; armctl supports {known}")]
     Size {
-        /// The slave.
+        /// MAC of the slave.
         mac: Mac,
         /// Size of the image from the slave, in bytes.
         produced: u16,
@@ -44,17 +44,17 @@ pub enum Error {
     Refused {
         /// The request.
         what: &'static str,
-        /// The slave.
+        /// MAC of the slave.
         mac: Mac,
-        /// The general code.
+        /// General error code of the slave.
         general: u8,
-        /// The additional code.
+        /// Additional error code of the slave.
         additional: u8,
     },
     /// The slave did not answer.
     #[error("no answer from MAC {mac} to {what}: {}", silence(*is_bus_alive, *state))]
     Silent {
-        /// The slave.
+        /// MAC of the slave.
         mac: Mac,
         /// The request.
         what: &'static str,
@@ -67,7 +67,7 @@ pub enum Error {
     #[error("no answer from MAC {mac} to a poll for {} ms: {}", after.as_millis(),
         if *is_heard { "frames arrive, but no complete image" } else { silence(*is_bus_alive, *state) })]
     Lost {
-        /// The slave.
+        /// MAC of the slave.
         mac: Mac,
         /// Time without an answer.
         after: Duration,
@@ -78,10 +78,10 @@ pub enum Error {
         /// Error state of the adapter.
         state: BusState,
     },
-    /// The slave sent an invalid answer.
+    /// The answer of the slave is invalid.
     #[error("MAC {mac} sent an invalid answer to {what}: {why}")]
     Senseless {
-        /// The slave.
+        /// MAC of the slave.
         mac: Mac,
         /// The request.
         what: &'static str,
@@ -97,7 +97,8 @@ pub enum Error {
     /// The settings are invalid or contradict each other.
     #[error("{0}")]
     Settings(String),
-    /// The link was lost, and the caller has not seen the loss yet: its image belongs to an older generation.
+    /// The link was lost, and the caller has not noticed the loss yet: the image that it wants to send belongs to an
+    /// earlier generation of the link.
     #[error("the connection was lost")]
     Outdated,
     /// The connection is closed.
@@ -114,7 +115,7 @@ impl BusError for Error {
 const fn silence(is_bus_alive: bool, state: BusState) -> &'static str {
     match (is_bus_alive, state) {
         (_, BusState::Off) => "the adapter is bus-off",
-        (true, _) => "other nodes send",
+        (true, _) => "other nodes send frames",
         (false, BusState::Passive) => "no traffic on the bus, and no node acknowledges (adapter error passive)",
         (false, BusState::Warning) => "no traffic on the bus, and the adapter counts errors",
         (false, BusState::Active) => "no traffic on the bus",

@@ -22,7 +22,8 @@ use super::device::{Application, Device, DeviceFault};
 use crate::fault::Faults;
 use crate::pty::Pty;
 
-/// Maximum number of bytes that wait for a client. Further frames are lost, as in the full queue of a real adapter.
+/// Maximum number of bytes that wait for a client. Further frames for this client are lost, as in the full queue of a
+/// real adapter.
 const MOST_WAITING: usize = 64 * 1024;
 /// Maximum number of clients. Further clients are disconnected at once.
 const MOST_CLIENTS: usize = 64;
@@ -66,9 +67,9 @@ struct Inside<A> {
     device: Option<Device<A>>,
     clients: BTreeMap<u64, Client>,
     last: u64,
-    /// Fault injection for frames: to the slave, from the slave.
+    /// Faults to inject: first for frames to the slave, then for frames from the slave.
     faults: Option<(Faults, Faults)>,
-    /// Delayed frames: due time, whether the frame goes to the slave, frame.
+    /// Frames that fault injection delays: due time, whether the frame goes to the slave, frame.
     delayed: Vec<(Now, bool, Frame)>,
 }
 
@@ -110,7 +111,7 @@ impl<A: Application + 'static> Hub<A> {
             runtime.block_on(async {
                 tokio::select! {
                     () = turn(&shared) => {}
-                    // An error means that the hub was dropped, so the thread must also end.
+                    // An error means that the hub was dropped. The thread must then end too.
                     _ = quits => {}
                 }
             });
@@ -129,7 +130,8 @@ impl<A: Application + 'static> Hub<A> {
         self.inner.lock().faults = faults;
     }
 
-    /// Calls `look` with the slave and the current time. Returns `None` without a slave.
+    /// Calls `look` with the slave and the current time, and returns its result. Returns `None` if the hub has no
+    /// slave.
     pub fn with<T>(&self, look: impl FnOnce(&mut Device<A>, Now) -> T) -> Option<T> {
         let now = self.inner.start.elapsed();
         let result = self.inner.lock().device.as_mut().map(|device| look(device, now));
@@ -142,7 +144,7 @@ impl<A: Application + 'static> Drop for Hub<A> {
     fn drop(&mut self) {
         self.quit = None;
         if let Some(thread) = self.thread.take() {
-            // If the thread panicked, the panic was already printed.
+            // An error means that the thread panicked. The panic was already printed.
             let _ = thread.join();
         }
     }
@@ -186,7 +188,7 @@ async fn accept<A: Application + 'static>(inner: Arc<Inner<A>>, listener: TcpLis
         if inner.lock().clients.len() >= MOST_CLIENTS {
             continue;
         }
-        // The client may already be disconnected.
+        // The client may already have disconnected.
         let Ok(mut pipe) = Pipe::tcp(stream) else { continue };
         let inner = Arc::clone(&inner);
         tokio::spawn(async move {
@@ -299,7 +301,7 @@ impl<A: Application> Inside<A> {
             Command::Flags if client.mode != Mode::Closed => {
                 let flags = match (is_off, is_right && !is_alone) {
                     (true, _) => flag::BUS_ERROR | flag::PASSIVE | flag::WARNING,
-                    // No other node acknowledges the frames of this client.
+                    // No other node is on the bus to acknowledge the frames of this client.
                     (_, false) if client.mode == Mode::Open => flag::BUS_ERROR | flag::PASSIVE,
                     _ => 0,
                 };
@@ -360,7 +362,7 @@ impl<A: Application> Inside<A> {
         }
     }
 
-    /// Executes the work that is due. Returns the time of the next call.
+    /// Executes the work that is due. Returns the time at which it must be called again.
     fn advance(&mut self, now: Now) -> Option<Now> {
         let due: Vec<(Now, bool, Frame)> = self.delayed.extract_if(.., |(at, ..)| *at <= now).collect();
         let is_off = self.device.as_ref().is_some_and(|device| device.fault() == Some(DeviceFault::BusOff));
@@ -388,7 +390,7 @@ impl<A: Application> Inside<A> {
     }
 }
 
-/// Digit of the SLCAN command for this bit rate.
+/// Digit of the SLCAN command that selects this bit rate.
 const fn digit(bitrate: Bitrate) -> u8 {
     match bitrate {
         Bitrate::K125 => 4,

@@ -1,5 +1,5 @@
-//! DeviceNet as a fieldbus of images. There are three kinds of connection: a polled slave, the observed traffic of
-//! another master, and a slave that is read with explicit messages.
+//! DeviceNet as a fieldbus of images. There are three kinds of connection: a polled slave, the observed traffic between
+//! another master and a slave, and a slave that is read with explicit messages.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -17,7 +17,7 @@ use super::wire::{Answer, Mac, Request, class, connection};
 use crate::image::cyclic::{Bus, Cyclic};
 use crate::image::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
 
-/// Multiple of the packet rate after which a slave without polls clears its outputs.
+/// After this multiple of the packet rate without a poll, a slave clears its outputs.
 const WATCHDOG: u32 = 4;
 
 /// A polled slave.
@@ -27,7 +27,7 @@ impl Polled {
     /// Opens the connection.
     ///
     /// # Errors
-    /// The slave does not answer, refuses, or has other image sizes.
+    /// The slave does not answer, refuses, or does not have the expected image sizes.
     pub async fn open(network: &Network, settings: Settings) -> Result<Self, Error> {
         let connection = network.connect(settings).await?;
         let size = connection.view().details.size;
@@ -76,13 +76,14 @@ impl Bus for Connection {
     }
 }
 
-/// Images that another master and a slave exchange. This node sends nothing, not even acknowledgements.
+/// Images that another master and a slave exchange. This node only listens: it sends nothing, not even
+/// acknowledgements.
 #[derive(Debug)]
 pub struct Listened {
     network: Network,
     slave: Mac,
     size: usize,
-    /// Silence after which the last images are out of date.
+    /// Time without an image after which the last images are out of date.
     patience: Duration,
     seen: u64,
 }
@@ -135,8 +136,8 @@ impl ImageConnection for Listened {
     }
 }
 
-/// Image of a slave, read with explicit messages at an interval. The poll connection is not established, so its end
-/// cannot stop a robot.
+/// Image of a slave, read with explicit messages at an interval. This reader does not establish the poll connection.
+/// Therefore the end of the reader cannot stop a robot.
 #[derive(Debug)]
 pub struct Reading {
     connection: Connection,
@@ -217,7 +218,7 @@ pub async fn produced(connection: &Connection, mac: Mac) -> Result<Request, Erro
     let instance = u16::from(connection::POLL_INSTANCE);
     let path = read(connection, mac, &Request::get(class::CONNECTION, instance, PRODUCED_PATH)).await?;
     match path.as_slice() {
-        // The path has a class, an instance and an attribute, each in one byte.
+        // The path consists of a class, an instance and an attribute. Each of them has one byte.
         [0x20, class, 0x24, instance, 0x30, attribute] => Ok(Request::get(*class, (*instance).into(), *attribute)),
         [0x20, class, 0x24, instance] => Ok(Request::get(*class, (*instance).into(), 3)),
         _ => Err(Error::Senseless { mac, what: IMAGE, why: "the path does not lead to an attribute" }),
@@ -232,7 +233,7 @@ pub async fn read(connection: &Connection, mac: Mac, request: &Request) -> Resul
     }
 }
 
-/// Returns the advice for an error, if the advice for the kind of the error is not enough.
+/// Returns the advice for an error. `None` if the general advice for its kind is enough.
 fn advice(error: &Error) -> Option<std::borrow::Cow<'static, str>> {
     Some(match error {
         Error::Duplicate { .. } => {

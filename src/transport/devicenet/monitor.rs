@@ -6,7 +6,7 @@ use super::Now;
 use super::can::Frame;
 use super::wire::{Assembler, Fragment, Id, Kind, Mac, Piece};
 
-/// Size in bytes of an image that is sent in fragments. Other images are sent in a single frame.
+/// Size in bytes of an image that is sent in fragments. Images of any other size are sent in a single frame.
 const WHOLE: usize = 48;
 /// Size in bytes of an image in a single frame.
 const BARE: usize = 4;
@@ -80,8 +80,8 @@ impl Monitor {
         *(if is_input { &mut slave.sight.heard } else { &mut slave.sight.asked }) = Some(now);
         let assembler = if is_input { &mut slave.input } else { &mut slave.output };
         let image = match frame.data() {
-            // A fragment of this length would be the last one of a 45-byte image. No image has 45 bytes, so this is a
-            // 4-byte image.
+            // As a fragment, a frame of this length would be the last fragment of a 45-byte image. No image has 45
+            // bytes, so the frame is a 4-byte image.
             data @ [_, _, _, _] if data.len() == BARE && !assembler.is_partial() => data.to_vec(),
             data => match assembler.take(data) {
                 Piece::Whole(image) => image,
@@ -98,7 +98,7 @@ impl Monitor {
         self.slaves.get(&slave).map(|slave| slave.sight.clone()).unwrap_or_default()
     }
 
-    /// Slaves with traffic.
+    /// Slaves whose traffic was seen.
     pub fn slaves(&self) -> Vec<Mac> {
         self.slaves.keys().copied().collect()
     }

@@ -1,5 +1,5 @@
-//! Shared CAN adapters. A thread per adapter runs the master, so that polls do not depend on the rest of the program. A
-//! prompt that waits for input must not stop a robot.
+//! Shared CAN adapters. Each adapter has a thread that runs the master, so that the polls do not depend on the rest of
+//! the program. For example, a prompt that waits for input must not stop a robot.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
@@ -30,7 +30,7 @@ use crate::serial::{self, Line};
 const REOPEN: Duration = Duration::from_secs(1);
 /// Time limit for a connection to an SLCAN server.
 const CONNECT: Duration = Duration::from_secs(5);
-/// Time for the adapter to process the last command before it is closed.
+/// Time for the adapter to process the last command before the port is closed.
 const FAREWELL: Duration = Duration::from_millis(20);
 /// Interval of the checks for traffic in [`Network::listen`].
 const LISTENED: Duration = Duration::from_millis(50);
@@ -54,7 +54,7 @@ pub enum Place {
     },
     /// A Linux CAN interface.
     SocketCan {
-        /// Interface name: `can0`.
+        /// Interface name, for example `can0`.
         interface: String,
     },
 }
@@ -72,7 +72,7 @@ impl fmt::Display for Place {
 /// An adapter and its configuration.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Adapter {
-    /// Location.
+    /// Location of the adapter.
     pub place: Place,
     /// The bit rate of the bus.
     pub bitrate: Bitrate,
@@ -107,7 +107,7 @@ struct Inner {
 /// State shared by the thread and its callers.
 #[derive(Debug)]
 struct Inside {
-    /// `None` in listen-only mode.
+    /// The master; `None` in listen-only mode.
     scanner: Option<Scanner>,
     monitor: Monitor,
     health: Health,
@@ -115,7 +115,7 @@ struct Inside {
     asked: HashMap<Token, oneshot::Sender<Result<Answer, Error>>>,
     found: Option<oneshot::Sender<Vec<Found>>>,
     taps: Vec<Tap>,
-    /// Current failure of the adapter.
+    /// Current failure of the adapter; `None` while the adapter works.
     trouble: Option<Error>,
     frames: u64,
     is_over: bool,
@@ -128,7 +128,7 @@ impl Network {
     /// # Errors
     /// The adapter cannot be opened, or is already open with other settings.
     pub async fn open(adapter: &Adapter, tap: Tap) -> Result<Self, Error> {
-        // The lock is held while an adapter opens, so that a concurrent caller waits and shares the adapter.
+        // This lock is held while an adapter opens. A concurrent caller then waits and shares the adapter.
         static SHARED: tokio::sync::Mutex<Vec<Weak<Owner>>> = tokio::sync::Mutex::const_new(Vec::new());
         let mut shared = SHARED.lock().await;
         {
@@ -136,7 +136,7 @@ impl Network {
             let same = |owner: &Arc<Owner>| owner.inner.adapter.place == adapter.place;
             if let Some(owner) = shared.iter().filter_map(Weak::upgrade).find(same) {
                 let other = &owner.inner.adapter;
-                // A listen-only user can share the adapter of a master.
+                // A user that only listens can share the adapter of a master.
                 let fits = adapter.identity.is_none() || adapter.identity == other.identity;
                 if !fits || adapter.bitrate != other.bitrate {
                     let place = &adapter.place;
@@ -193,8 +193,8 @@ impl Network {
     /// Opens a connection to a slave. The connection stays open until it is closed or dropped.
     ///
     /// # Errors
-    /// The slave does not answer, or refuses. The first opening is not repeated. If the connection is lost later, this
-    /// is not an error but a state of the view.
+    /// The slave does not answer, or refuses. A failed first opening is not repeated. A later loss of the connection is
+    /// not an error here, but a state of the view.
     pub async fn connect(&self, settings: Settings) -> Result<Connection, Error> {
         let inner = &self.owner.inner;
         let number = inner.last.fetch_add(1, Ordering::Relaxed);
@@ -258,7 +258,8 @@ impl Network {
         self.owner.inner.now()
     }
 
-    /// Waits for bus activity after `seen`, and updates `seen`. Returns at once if there was activity in the meantime.
+    /// Waits until the counter of bus events differs from `seen`, and updates `seen`. Returns at once if the counter
+    /// already differs.
     pub async fn changed(&self, seen: &mut u64) {
         let mut news = self.owner.inner.news.subscribe();
         // `self` keeps the sender alive, so this wait cannot fail.
@@ -352,8 +353,8 @@ impl Drop for Owner {
     fn drop(&mut self) {
         self.inner.lock().is_over = true;
         self.inner.wake.notify_one();
-        // Wait for the thread, which first releases open connections. If this drop runs on that thread, it must not
-        // wait for itself.
+        // The drop waits for the thread, which first releases open connections. If the drop runs on this thread itself,
+        // it must not wait.
         if let Some(thread) = self.thread.take().filter(|thread| thread.thread().id() != thread::current().id()) {
             let _ = thread.join();
         }
@@ -381,7 +382,7 @@ impl Inside {
         }
         while let Some(Reply { token, result, .. }) = scanner.reply() {
             if let Some(answer) = self.asked.remove(&token) {
-                // The caller may already be gone.
+                // An error means that the caller no longer waits for the answer.
                 let _ = answer.send(result);
             }
         }
@@ -417,7 +418,7 @@ async fn run(inner: Arc<Inner>, opened: oneshot::Sender<Result<(), Error>>) {
     let mut port = match open(&inner.adapter, tap).await {
         Ok(port) => port,
         Err(error) => {
-            // The caller may already be gone.
+            // An error means that the caller no longer waits for the result.
             let _ = opened.send(Err(Error::Port(error)));
             return;
         }
@@ -471,7 +472,8 @@ async fn exchange(inner: &Inner, port: &mut dyn CanPort) -> Result<(), PortError
             if let Some(scanner) = scanner {
                 scanner.handle_health(now, port.health());
                 while let Some(frame) = scanner.poll(now) {
-                    // The frame is recorded before it is sent, so that a trace never has an answer before its request.
+                    // The frame is recorded before it is sent. Otherwise, a trace could show the answer before the
+                    // request.
                     pass(taps, &frame);
                     port.send(&frame)?;
                 }
@@ -507,7 +509,7 @@ async fn exchange(inner: &Inner, port: &mut dyn CanPort) -> Result<(), PortError
                         scanner.handle(now, &frame);
                     }
                 }
-                // Nothing to do here: every pass of the loop reads the health first.
+                // Nothing to do here: the loop reads the health again in every pass.
                 Heard::Health(_) => {}
             }
         }

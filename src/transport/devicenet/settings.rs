@@ -8,10 +8,11 @@ use super::wire::Mac;
 
 /// Valid poll intervals.
 pub const CYCLES: std::ops::RangeInclusive<Duration> = Duration::from_millis(1)..=Duration::from_secs(10);
-/// Valid packet rates. The rate is in attribute 9 with 16 bits of milliseconds; 0 would switch the watchdog off.
+/// Valid packet rates. Attribute 9 contains the rate as 16 bits of milliseconds. A rate of 0 would switch the watchdog
+/// off.
 pub const RATES: std::ops::RangeInclusive<Duration> = Duration::from_millis(1)..=Duration::from_millis(65_535);
-/// Minimum of the default packet rate. With a shorter packet rate, the robot could stop when this computer is busy for
-/// a short time.
+/// Minimum of the default packet rate. With a shorter rate, the robot could stop if this computer is busy for a short
+/// time.
 const LEAST_RATE: Duration = Duration::from_millis(100);
 
 /// Settings of a connection to a slave.
@@ -21,7 +22,7 @@ pub struct Settings {
     pub slave: Mac,
     /// Purpose of the connection.
     pub purpose: Purpose,
-    /// Time limit for an answer. After it, the request is repeated once.
+    /// Time limit for an answer. After this time, the request is sent once more.
     pub timeout: Duration,
 }
 
@@ -30,7 +31,7 @@ pub struct Settings {
 pub enum Purpose {
     /// Control: images in both directions.
     Images(Images),
-    /// Explicit messages only. The poll connection can be allocated, but it is not established.
+    /// Explicit messages only. The poll connection can be allocated, but it is never established.
     Messages {
         /// Whether to allocate the poll connection, so that its image sizes can be read.
         with_poll: bool,
@@ -53,12 +54,12 @@ pub struct Images {
 pub struct Profile {
     /// Name of the profile.
     pub name: &'static str,
-    /// First image after every opening of the connection. Its length is the image size.
+    /// Image that the master sends first after every opening of the connection. Its length is the image size.
     pub resting: Vec<u8>,
 }
 
 impl Images {
-    /// Default settings for a bit rate.
+    /// Default settings of the image exchange for a bit rate.
     pub fn usual(profiles: Vec<Profile>, bitrate: Option<Bitrate>) -> Self {
         let cycle = Duration::from_millis(if bitrate == Some(Bitrate::K125) { 50 } else { 20 });
         Self { profiles, cycle, rate: Self::rate_of(cycle) }

@@ -15,7 +15,7 @@ pub(super) struct Producer {
     sequence: u32,
     count: u16,
     pub(super) sent: u64,
-    /// Number of send times that were omitted, because a whole interval was missed.
+    /// Number of datagrams that were omitted, because a whole interval was missed.
     pub(super) skipped: u64,
 }
 
@@ -29,8 +29,8 @@ impl Producer {
         self.due
     }
 
-    /// Returns the datagram due at `now`. The next datagram is due one interval after the due time of this one, so
-    /// there is no drift. Missed intervals are omitted, so there is no burst.
+    /// Returns the datagram that is due at `now`. The next datagram is due one interval after the due time of this
+    /// datagram, so there is no drift. Missed intervals are omitted, so there is no burst.
     pub(super) fn produce(&mut self, now: Now, header: Option<u32>, image: &[u8]) -> Vec<u8> {
         self.sequence = self.sequence.wrapping_add(1);
         self.count = self.count.wrapping_add(1);
@@ -49,13 +49,13 @@ impl Producer {
 pub(super) enum Verdict<'a> {
     /// A new image.
     Image {
-        /// Run bit. It is `true` for streams without a run/idle header.
+        /// Run bit. If the stream has no run/idle header, it is always `true`.
         run: bool,
         image: &'a [u8],
     },
-    /// A datagram without an image: a heartbeat, or a sender that has no data. It restarts the timeout.
+    /// A datagram without an image: a heartbeat, or a datagram of a sender that has no data. It restarts the timeout.
     Alive,
-    /// An old or duplicate datagram.
+    /// An old or a duplicate datagram.
     Stale,
     /// A datagram whose size is not the agreed size.
     WrongSize,
@@ -71,15 +71,15 @@ pub(super) struct Consumer {
     timeout: Duration,
     until: Now,
     last: Option<(u32, Now)>,
-    /// Number of valid datagrams.
+    /// Number of valid datagrams that were received.
     pub(super) received: u64,
-    /// Number of missing sequence numbers.
+    /// Number of sequence numbers that were never received.
     pub(super) lost: u64,
     /// Number of datagrams that arrived more than half an interval late.
     pub(super) late: u64,
     /// Number of old and duplicate datagrams.
     pub(super) stale: u64,
-    /// Number of datagrams of a wrong size.
+    /// Number of datagrams with a wrong size.
     pub(super) misfit: u64,
 }
 
@@ -113,7 +113,7 @@ impl Consumer {
         self.until
     }
 
-    /// Current timeout.
+    /// Timeout that applies to the next datagram.
     pub(super) fn patience(&self) -> Duration {
         if self.last.is_some() { self.timeout } else { self.timeout.max(FIRST_PACKET) }
     }
@@ -150,7 +150,7 @@ impl Consumer {
     }
 }
 
-/// Whether `one` comes after `other` in serial number arithmetic, which wraps around.
+/// Whether `one` comes after `other`. Sequence numbers wrap around, so the comparison uses serial number arithmetic.
 const fn is_after(one: u32, other: u32) -> bool {
     let ahead = one.wrapping_sub(other);
     ahead != 0 && ahead < 1 << 31

@@ -12,9 +12,9 @@ use super::session::{Ask, Session, Step, Token};
 use super::tap::Tap;
 use super::wire::{Command, Identity, Services};
 
-/// Token of the one request in progress.
+/// Token of the request in progress. There is only one request at a time.
 const TOKEN: Token = Token(0);
-/// Time for a busy device to free a session, in multiples of the timeout.
+/// Time for which the client waits until a busy device has a free session, in multiples of the timeout.
 pub const PATIENCE: u32 = 4;
 /// Bytes per read.
 const BUFFER: usize = 4096;
@@ -67,7 +67,7 @@ impl Client {
         self.session.end();
         while let Some(step) = self.session.poll(self.start.elapsed()) {
             if let Step::Send(bytes) = step {
-                // An error is ignored: the device also detects the closed TCP connection.
+                // An error is ignored, because the closed TCP connection also ends the session.
                 let _ = self.write(&bytes).await;
             }
         }
@@ -100,8 +100,8 @@ impl Client {
         let until = Instant::now() + self.timeout;
         match timeout_at(until, TcpStream::connect(self.target)).await {
             Ok(Ok(stream)) => {
-                // An error is ignored. Without this option, a request may wait for the acknowledgement of the previous
-                // request.
+                // An error is ignored: the option only saves time. Without it, a request may wait for the
+                // acknowledgement of the previous request.
                 let _ = stream.set_nodelay(true);
                 self.stream = Some(stream);
                 self.session.connected(self.start.elapsed());
@@ -121,7 +121,7 @@ impl Client {
         stream.write_all(bytes).await
     }
 
-    /// Reads once from the TCP connection, or waits until the session has work to do.
+    /// Reads once from the TCP connection. Ends early if the session has work to do.
     async fn read(&mut self, what: &'static str) {
         let until = self.session.wake().map_or_else(|| Instant::now() + self.timeout, |wake| self.start + wake);
         let Some(stream) = &mut self.stream else { return sleep_until(until).await };

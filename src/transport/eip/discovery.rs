@@ -10,7 +10,7 @@ use tokio::time::{Instant, timeout_at};
 use super::tap::Tap;
 use super::wire::{Command, Frame, Identity};
 
-/// Time within which devices answer a broadcast, each after its own delay (volume 2, 2-4.2.2).
+/// Time within which devices answer a broadcast. Each device waits for its own delay (volume 2, 2-4.2.2).
 const SPREAD: Duration = Duration::from_millis(500);
 const BUFFER: usize = 2048;
 /// Maximum number of reported devices.
@@ -19,15 +19,15 @@ const MOST: usize = 1024;
 /// A device that answered.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Found {
-    /// Address of the sender.
+    /// Address from which the answer came.
     pub address: SocketAddrV4,
     /// Identity of the device.
     pub identity: Identity,
 }
 
 /// Sends ListIdentity from a local address (0.0.0.0 means any) to devices and broadcast addresses. Collects answers
-/// until `wait` has passed, or until all targets that are single devices have answered. Devices answer a broadcast
-/// within half a second; `wait` should be 2 s or more.
+/// until `wait` has passed, or until every target that is a single device has answered. Devices answer a broadcast
+/// within half a second, so `wait` should be at least 2 s.
 ///
 /// # Errors
 /// No socket can be opened, or nothing can be sent to any target.
@@ -45,7 +45,7 @@ pub async fn list_identity(
     let request = request.emit();
     let start = Instant::now();
     let mut found: Vec<Found> = Vec::new();
-    // Datagrams can be lost. Therefore the request is sent again after half of the time to targets that have not
+    // Datagrams can be lost. Therefore, after half of the time, the request is sent again to the targets that have not
     // answered.
     for until in [start + wait / 2, start + wait] {
         let mut failure = None;
@@ -67,8 +67,8 @@ pub async fn list_identity(
     Ok(found)
 }
 
-/// Returns the broadcast addresses of the local networks. Without a default route, only these addresses reach all
-/// devices.
+/// Returns the broadcast addresses of the local networks. Without a default route, a broadcast reaches all devices only
+/// at these addresses.
 #[cfg(target_os = "linux")]
 pub fn broadcasts() -> io::Result<Vec<Ipv4Addr>> {
     use nix::net::if_::InterfaceFlags;
@@ -96,7 +96,7 @@ async fn gather(
     while found.len() < MOST && !targets.iter().all(|target| found.iter().any(|found| found.address == *target)) {
         let (len, address) = match timeout_at(until, socket.recv_from(&mut buffer)).await {
             Ok(Ok((len, SocketAddr::V4(address)))) => (len, address),
-            // On Windows, this is "port unreachable" from one device. Other devices may still answer.
+            // On Windows, the error "port unreachable" comes from one device. Other devices may still answer.
             Ok(_) => continue,
             Err(_) => return,
         };

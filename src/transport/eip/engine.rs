@@ -1,8 +1,8 @@
-//! Two threads that run a scanner or server: one thread for sockets and one for timing.
+//! Two threads that run a scanner or a server: one thread for sockets and one thread for timing.
 //!
-//! The exchange of images does not depend on the rest of the program: a prompt that waits for input must not stop a
-//! robot. The timing has its own thread, because tokio timers have a resolution of 1 ms. A parked thread wakes within
-//! 0.1 ms.
+//! The exchange of images does not depend on the rest of the program. For example, a prompt that waits for input must
+//! not stop a robot. The timing has its own thread, because tokio timers have a resolution of 1 ms. A parked thread
+//! wakes within 0.1 ms.
 
 use std::future::Future;
 use std::io;
@@ -16,11 +16,11 @@ use tokio::sync::oneshot;
 
 use super::Now;
 
-/// Wakes the timing thread earlier than planned.
+/// Handle that wakes the timing thread earlier than planned.
 #[derive(Debug, Default)]
 pub(super) struct Alarm {
-    /// Planned wake-up time in nanoseconds. While the thread runs, this is the maximum, so that every alarm wakes the
-    /// thread.
+    /// Planned wake-up time in nanoseconds. While the thread runs, this is the maximum value, so that every alarm wakes
+    /// the thread.
     planned: AtomicU64,
     thread: OnceLock<Thread>,
     is_over: AtomicBool,
@@ -37,9 +37,9 @@ impl Alarm {
         }
     }
 
-    /// Calls `turn` in a loop, each time at the time that the last call returned, or after an alarm.
+    /// Calls `turn` in a loop. The next call is at the time that the last call returned, or after an alarm.
     fn run(&self, start: Instant, mut turn: impl FnMut() -> Option<Now>) {
-        // The thread is set only here, so this cannot fail.
+        // This cannot fail, because the thread is set only here.
         let _ = self.thread.set(thread::current());
         while !self.is_over.load(Ordering::SeqCst) {
             self.planned.store(u64::MAX, Ordering::SeqCst);
@@ -73,15 +73,15 @@ pub(super) struct Engine {
     threads: Vec<JoinHandle<()>>,
 }
 
-/// The runtime of the socket thread, before the thread starts. Sockets can be opened on this runtime.
+/// The runtime of the socket thread, before the thread starts. Sockets can already be opened on this runtime.
 #[derive(Debug)]
 pub(super) struct Prepared {
-    /// `None` after the thread has started.
+    /// The runtime; `None` after the thread has started.
     runtime: Option<Runtime>,
     handle: Handle,
 }
 
-/// Without a start, this drop may run inside another runtime. It must not block there.
+/// If the thread was never started, this drop may run inside another runtime, and must not block there.
 impl Drop for Prepared {
     fn drop(&mut self) {
         if let Some(runtime) = self.runtime.take() {
@@ -100,7 +100,8 @@ impl Prepared {
         &self.handle
     }
 
-    /// Starts both threads. `turn` executes the work that is due, and returns the time of its next call.
+    /// Starts both threads. `turn` executes the work that is due, and returns the time at which it must be called
+    /// again.
     pub(super) fn start(
         mut self,
         name: &str,
@@ -113,7 +114,7 @@ impl Prepared {
         let runtime = self.runtime.take();
         let sockets = thread::Builder::new().name(format!("{name}-io"));
         engine.threads.push(sockets.spawn(move || {
-            // An error means that the engine was dropped, so the thread must also end.
+            // An error means that the engine was dropped. The thread must then end too.
             let _ = runtime.map(|runtime| runtime.block_on(quits));
         })?);
         let clock = thread::Builder::new().name(format!("{name}-clock"));
@@ -127,7 +128,7 @@ impl Drop for Engine {
         self.alarm.stop();
         self.quit = None;
         for thread in self.threads.drain(..) {
-            // If the thread panicked, the panic was already printed.
+            // An error means that the thread panicked. The panic was already printed.
             let _ = thread.join();
         }
     }

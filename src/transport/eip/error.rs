@@ -26,7 +26,7 @@ pub enum EipError {
         /// Host name.
         host: String,
     },
-    /// TCP connection refused or timed out.
+    /// The TCP connection was refused or timed out.
     #[error("no TCP connection: {text}")]
     Unreachable {
         /// Kind of the system error.
@@ -37,29 +37,29 @@ pub enum EipError {
     /// The TCP connection was closed before the answer.
     #[error("the TCP connection ended before the answer to {what}")]
     Hangup {
-        /// The request.
+        /// Name of the request.
         what: &'static str,
     },
     /// The device did not answer in time.
     #[error("no answer to {what} within {} ms", after.as_millis())]
     NoAnswer {
-        /// The request.
+        /// Name of the request.
         what: &'static str,
-        /// Time waited.
+        /// Time for which the client waited.
         after: Duration,
     },
-    /// Encapsulation error.
+    /// The device answered with an encapsulation error.
     #[error("{what} was refused: {} ({status:#04x})", status::encapsulation(*status).map_or("an unknown status", |code| code.name))]
     Encapsulation {
-        /// The request.
+        /// Name of the request.
         what: &'static str,
         /// Encapsulation status.
         status: u32,
     },
-    /// CIP error response.
+    /// The device answered with a CIP error.
     #[error("{what} was refused: {}", status::describe(status))]
     Refused {
-        /// The request.
+        /// Name of the request.
         what: &'static str,
         /// CIP status.
         status: Status,
@@ -67,15 +67,15 @@ pub enum EipError {
     /// The answer cannot be decoded.
     #[error("cannot decode the answer to {what}: {error}")]
     Malformed {
-        /// The request.
+        /// Name of the request.
         what: &'static str,
-        /// The field that is wrong.
+        /// The wrong field, and what is wrong with it.
         error: WireError,
     },
     /// The answer can be decoded, but is not valid.
     #[error("invalid answer to {what}: {why}")]
     Senseless {
-        /// The request.
+        /// Name of the request.
         what: &'static str,
         /// What is wrong with the answer.
         why: &'static str,
@@ -83,18 +83,19 @@ pub enum EipError {
     /// The device stopped sending its image, and the connection timed out.
     #[error("no image received for {} ms", after.as_millis())]
     Silent {
-        /// Time waited.
+        /// Time for which no image arrived.
         after: Duration,
     },
-    /// The connection was lost, and the caller has not seen the loss yet: its image belongs to an older generation.
+    /// The connection was lost, and the caller has not noticed the loss yet: the image that it wants to send belongs to
+    /// an older generation.
     #[error("the connection was lost")]
     Outdated,
     /// An assembly does not have the expected size.
     #[error("the input assembly has {found} bytes, not {expected}")]
     WrongSize {
-        /// Size in bytes.
+        /// Size of the assembly in bytes.
         found: usize,
-        /// Expected size.
+        /// Expected size in bytes.
         expected: u16,
     },
     /// The connection was closed by this program.
@@ -106,7 +107,7 @@ pub enum EipError {
     /// The settings or the request are invalid; nothing was sent.
     #[error("{0}")]
     Impossible(
-        /// The reason.
+        /// The reason, as text.
         String,
     ),
 }

@@ -3,7 +3,7 @@
 use super::error::EipError;
 use super::wire::{Path, Reply, Request, RrData, Status, service};
 
-/// Maximum length of the request data, so that the message fits into a frame. Devices accept less.
+/// Maximum length of the request data in bytes, so that the message fits into a frame. Most devices accept less.
 const MOST_DATA: usize = 60_000;
 /// Maximum length of a path in bytes: the length field of a path is one byte and counts words.
 const MOST_PATH: usize = 510;
@@ -20,24 +20,24 @@ pub struct Message {
 }
 
 impl Message {
-    /// Creates a message Get_Attribute_Single.
+    /// Creates a Get_Attribute_Single message.
     pub fn get(class: u32, instance: u32, attribute: u32) -> Self {
         let path = Path::attribute(class, instance, attribute);
         Self { service: service::ATTRIBUTE_SINGLE, path, data: Vec::new() }
     }
 
-    /// Creates a message Get_Attributes_All.
+    /// Creates a Get_Attributes_All message.
     pub fn get_all(class: u32, instance: u32) -> Self {
         Self { service: service::ATTRIBUTES_ALL, path: Path::object(class, instance), data: Vec::new() }
     }
 
-    /// Creates a message Set_Attribute_Single.
+    /// Creates a Set_Attribute_Single message.
     pub fn set(class: u32, instance: u32, attribute: u32, value: &[u8]) -> Self {
         let path = Path::attribute(class, instance, attribute);
         Self { service: service::SET_ATTRIBUTE_SINGLE, path, data: value.to_vec() }
     }
 
-    /// Encodes the frame data.
+    /// Encodes the message as the data of a frame.
     pub fn emit(&self) -> Result<Vec<u8>, EipError> {
         if self.data.len() > MOST_DATA || self.path.emit().len() > MOST_PATH {
             let text = format!("a message can have at most {MOST_DATA} bytes of data and {MOST_PATH} bytes of path");
@@ -46,7 +46,7 @@ impl Message {
         Ok(RrData::new(&self.request()).emit())
     }
 
-    /// Encodes the message: service, path, data.
+    /// Encodes the message itself: service, path, data.
     pub fn request(&self) -> Vec<u8> {
         Request { service: self.service, path: self.path.clone(), data: &self.data }.emit()
     }
@@ -57,12 +57,12 @@ impl Message {
 pub struct Answer {
     /// CIP status.
     pub status: Status,
-    /// Response data, or details of a refusal.
+    /// Response data. If the device refuses, details of the refusal.
     pub data: Vec<u8>,
 }
 
 impl Answer {
-    /// Decodes the answer to `what` from the data of a frame.
+    /// Decodes an answer from the data of a frame. `what` is the name of the request in errors.
     pub fn parse(what: &'static str, data: &[u8]) -> Result<Self, EipError> {
         let malformed = |error| EipError::Malformed { what, error };
         let message = RrData::parse_answer(data).map_err(malformed)?.message;

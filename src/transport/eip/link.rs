@@ -25,7 +25,7 @@ pub type Class1 = Cyclic<Device>;
 #[derive(Debug)]
 pub struct Device {
     connection: Connection,
-    /// What the device does with its outputs after a loss.
+    /// What the device does with its outputs after a loss of the connection.
     outputs: Outputs,
 }
 
@@ -56,7 +56,7 @@ impl Bus for Device {
 
     fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, EipError> {
         let change = self.connection.set_image(generation, image)?;
-        // After every opening, the first image also sets the device to run.
+        // The device starts in idle mode after every opening. The first image then also sets the run bit.
         let runs = self.connection.view().details.run;
         if runs { Ok(change) } else { self.connection.set_run(generation, true) }
     }
@@ -141,9 +141,9 @@ pub async fn resolve(host: &str, port: u16) -> Result<SocketAddrV4, EipError> {
     first.ok_or_else(|| EipError::NotIpv4 { host: host.to_owned() })
 }
 
-/// Extended status: another originator owns the outputs.
+/// Extended status that means: another originator owns the outputs.
 const OWNED: u32 = 0x0106;
-/// URL options that can be the cause of a refusal.
+/// URL options that can cause a refusal of the connection.
 const CONNECTION: &[&str] = &["in", "out", "config", "in_size", "out_size"];
 
 impl From<EipError> for LinkError {
@@ -178,7 +178,7 @@ impl From<EipError> for LinkError {
     }
 }
 
-/// Converts a remedy to the format of an advice: lower case, no period at the end.
+/// Converts a remedy to the format of an advice, which starts with a lower-case letter and has no period at its end.
 pub fn as_advice(remedy: &str) -> String {
     let mut chars = remedy.trim_end_matches('.').chars();
     chars.next().map(|first| first.to_lowercase().chain(chars).collect()).unwrap_or_default()

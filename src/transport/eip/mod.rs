@@ -31,5 +31,6 @@ pub const PORT: u16 = 44818;
 pub const IO_PORT: u16 = 2222;
 /// Class code of the assembly object.
 pub const ASSEMBLY: u32 = 4;
-/// Vendor id of this program. ODVA has not assigned a vendor id to it; targets use it only to identify originators.
+/// Vendor id of this program. ODVA has not assigned an id to it. Targets use the vendor id only to identify
+/// originators.
 pub const UNREGISTERED_VENDOR: u16 = 0xFFFF;

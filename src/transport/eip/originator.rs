@@ -2,8 +2,8 @@
 //! The originator has no sockets and no clock.
 //!
 //! Each opening starts a new generation. The caller must name the generation with every image. After a loss, the
-//! originator sends the resting image in idle mode until a caller that has seen the loss sets another image. Therefore
-//! it never sends an image from before the loss again.
+//! originator sends the resting image in idle mode. It sends another image only when a caller that has seen the loss
+//! sets one. Therefore an image from before the loss is never sent again.
 
 use std::collections::VecDeque;
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -30,7 +30,7 @@ const FORWARD_OPEN: &str = "ForwardOpen";
 const FORWARD_CLOSE: &str = "ForwardClose";
 /// Transport class 1, cyclic.
 const TRANSPORT: u8 = 1;
-/// Extended status of a ForwardClose: no such connection.
+/// Extended status of a refused ForwardClose: the connection does not exist.
 const NOT_FOUND: u16 = 0x0107;
 /// Pauses before attempts to reopen the connection. The last pause repeats.
 const BACKOFF: [Duration; 5] = [
@@ -56,7 +56,7 @@ pub enum Action {
     Join(Ipv4Addr),
     /// Leave this multicast group.
     Leave(Ipv4Addr),
-    /// Deliver the answer to a caller's message.
+    /// Deliver the answer to a message of the caller.
     Answer(Token, Result<Vec<u8>, EipError>),
 }
 
@@ -71,18 +71,19 @@ struct Io {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
-    /// Before the first poll.
+    /// The originator has not been polled yet.
     New,
-    /// ForwardOpen was sent.
+    /// ForwardOpen was sent; its answer is pending.
     Opening,
     Open,
-    /// Sending one last image in idle mode before the close. The number is the number of datagrams sent before.
+    /// One last image is sent in idle mode before the close. The number is the number of datagrams that were sent
+    /// before it.
     Parting(u64),
-    /// ForwardClose was sent. After that, the connection ends, or opens again if `again`.
+    /// ForwardClose was sent. After its answer, the connection ends. If `again` is `true`, it opens again.
     Closing {
         again: bool,
     },
-    /// Waiting until the next attempt.
+    /// The originator waits until the next attempt to open the connection.
     Waiting(Now),
     Ended,
 }
@@ -104,7 +105,7 @@ pub struct Originator {
     /// Whether the caller has closed the connection.
     is_over: bool,
     tries: usize,
-    /// Counters of earlier generations.
+    /// Sum of the counters of earlier generations.
     before: Statistics,
     view: View,
     has_changed: bool,
@@ -151,7 +152,7 @@ impl Originator {
         view
     }
 
-    /// Whether the view changed since the last call.
+    /// Whether the view has changed after the last call.
     pub const fn take_changed(&mut self) -> bool {
         std::mem::replace(&mut self.has_changed, false)
     }
@@ -161,8 +162,8 @@ impl Originator {
         self.phase == Phase::Ended && self.actions.is_empty()
     }
 
-    /// Sends this image, starting with the next interval. Returns the number of the change. The image was sent when
-    /// `sent` of the view has reached this number.
+    /// Sends this image, starting with the next interval. Returns the number of the change. When `sent` of the view has
+    /// reached this number, the image was sent.
     ///
     /// # Errors
     /// The connection is not open in this generation, or the image has another size.
@@ -210,7 +211,7 @@ impl Originator {
                 self.show(State::Closing);
             }
             Phase::New | Phase::Waiting(_) => self.finish(None),
-            // Wait for the pending answer first.
+            // The close follows after the pending answer.
             Phase::Opening | Phase::Closing { .. } => self.show(State::Closing),
             Phase::Parting(_) | Phase::Ended => {}
         }
@@ -231,7 +232,7 @@ impl Originator {
         self.session.received(now, bytes);
     }
 
-    /// Handles a failed action on a local socket. The connection continues until it times out.
+    /// Handles an action that failed on a local socket. The connection continues until it times out.
     pub fn failed(&mut self, trouble: EipError) {
         self.view.trouble = Some(trouble);
         self.has_changed = true;
@@ -339,20 +340,21 @@ impl Originator {
             transport: TRANSPORT,
             path: self.settings.opening_path(),
         };
-        // For multicast, the device selects the port of the group. Otherwise, the request contains our own port.
+        // For multicast, the device selects the port of the group. For a point-to-point connection, the request
+        // contains the UDP port of this program.
         let own = (open.t_o.net == Net::PointToPoint).then(|| SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, self.port));
         let data = RrData { t_o: own, ..RrData::new(&open.emit()) }.emit();
         self.session.ask(Ask { token: OPEN, what: FORWARD_OPEN, command: Command::SEND_RR_DATA, data });
     }
 
-    /// Handles the outcome of ForwardOpen.
+    /// Handles the outcome of ForwardOpen. `sent` says whether the request was sent.
     fn answered(&mut self, now: Now, sent: bool, result: Result<Vec<u8>, EipError>) {
         let trouble = match result.and_then(|data| self.opened(now, &data)) {
             Ok(()) if self.is_over => return self.ask_close(false),
             Ok(()) => return,
             Err(trouble) => trouble,
         };
-        // If the device did not refuse, it may have opened the connection.
+        // Without a refusal, the device may have opened the connection.
         let is_refusal = matches!(trouble, EipError::Refused { .. } | EipError::Encapsulation { .. });
         let again = self.view.generation > 0 && !self.is_over;
         self.view.trouble = Some(trouble);
@@ -399,8 +401,8 @@ impl Originator {
         let intervals = self.settings.multiplier.intervals();
         let size = usize::from(self.settings.input_size);
         self.io = Some(Io {
-            // A device starts to send when it answers. We start half an interval later, so that the next image of the
-            // device already contains the reaction to our image.
+            // A device starts to send when it answers. The originator starts half an interval later, so that the next
+            // image of the device already contains the reaction to the image of the originator.
             producer: Producer::new(opened.o_t_id, to, now.saturating_add(to / 2)),
             consumer: Consumer::new(opened.t_o_id, size, false, from, intervals, now),
             destination,
@@ -423,8 +425,8 @@ impl Originator {
                 self.image.clone_from(&self.settings.resting);
                 self.view.details.run = false;
                 self.show(State::Lost);
-                // Perhaps only the path from the device to us is broken. ForwardClose closes the old connection in the
-                // device, so that the next opening succeeds.
+                // Perhaps only the path from the device to this program is broken. ForwardClose closes the old
+                // connection in the device, so that the next opening succeeds.
                 self.ask_close(true);
             }
             Phase::Parting(_) => self.ask_close(false),
@@ -449,7 +451,7 @@ impl Originator {
         let outcome = result.and_then(|data| Answer::parse(FORWARD_CLOSE, &data)).and_then(|answer| {
             if answer.status.extended.first() == Some(&NOT_FOUND) { Ok(Vec::new()) } else { answer.done(FORWARD_CLOSE) }
         });
-        // The error of a failed close is reported, unless there was an earlier error.
+        // An error of the close is reported only if there was no earlier error.
         self.finish(outcome.err());
     }
 

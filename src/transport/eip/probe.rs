@@ -1,8 +1,9 @@
 //! Search for the assemblies of a device, their sizes, and a combination of assemblies for a connection.
 //!
-//! A survey only reads assemblies. A probe also requests connections with a size that no assembly has. The device
-//! refuses them, and the reason of the refusal names missing instances and correct sizes. If a device accepts such a
-//! connection, this program is its master until the connection is closed. A probe can therefore take control.
+//! A survey only reads assemblies. A probe also requests connections, with a size that no assembly has. The device
+//! refuses these connections, and the reason of the refusal reveals missing instances and correct sizes. If a device
+//! accepts such a connection, this program is its master until the connection is closed. A probe can therefore take
+//! control of the device.
 
 use std::fmt;
 use std::time::Duration;
@@ -14,14 +15,14 @@ use super::settings::Settings;
 use super::wire::{Close, Command, Identity, Open, Opened, RrData, Status, Triad};
 use super::{ASSEMBLY, UNREGISTERED_VENDOR};
 
-/// Attributes of an assembly.
+/// Attribute numbers of an assembly.
 const DATA: u32 = 3;
 const SIZE: u32 = 4;
 /// Instances that the survey reads: all 8-bit numbers.
 pub const INSTANCES: std::ops::RangeInclusive<u32> = 1..=255;
 /// Configuration instances that the probe tries; `None` means no configuration.
 const CONFIGURATIONS: [Option<u32>; 5] = [Some(1), Some(5), Some(151), Some(199), None];
-/// Status codes of refusals.
+/// General status codes of refusals. The codes below are extended status codes.
 const NO_SUCH_OBJECT: [u8; 2] = [0x05, 0x16];
 const SIZES: u16 = 0x0109;
 const O_T_SIZE: u16 = 0x0127;
@@ -29,8 +30,8 @@ const T_O_SIZE: u16 = 0x0128;
 const OWNED: u16 = 0x0106;
 /// Requested packet interval. All devices support it.
 const RPI: Duration = Duration::from_millis(100);
-/// Number of bytes before the image. To the device: sequence count and run/idle header. From the device: sequence
-/// count.
+/// Number of bytes before the image. To the device, these are the sequence count and the run/idle header. From the
+/// device, it is only the sequence count.
 const O_T_EXTRA: u16 = 6;
 const T_O_EXTRA: u16 = 2;
 /// A size that no assembly has.
@@ -57,7 +58,7 @@ pub struct Instances {
 }
 
 impl fmt::Display for Instances {
-    /// Format: "out 150, in 100, config 1".
+    /// Formats the instances, for example "out 150, in 100, config 1".
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "out {}, in {}, ", self.output, self.input)?;
         match self.configuration {
@@ -102,11 +103,11 @@ pub struct Findings {
     pub connectable: Option<Connectable>,
 }
 
-/// Reads every assembly of [`INSTANCES`], without a connection. `thought` contains likely instances, the likeliest
-/// first. The first of them whose assemblies can all be read is reported as connectable.
+/// Reads every assembly of [`INSTANCES`], without a connection. `thought` contains combinations of likely instances,
+/// the likeliest first. The result reports as connectable the first combination whose assemblies can all be read.
 ///
 /// # Errors
-/// The device does not answer, or its answer is invalid. A refusal is a result.
+/// The device does not answer, or its answer is invalid. A refusal is a result, not an error.
 pub async fn survey(client: &mut Client, thought: &[Instances]) -> Result<Findings, EipError> {
     let identity = match client.identity().await {
         Err(EipError::Encapsulation { .. }) => None,
@@ -126,9 +127,9 @@ pub async fn survey(client: &mut Client, thought: &[Instances]) -> Result<Findin
     Ok(Findings { identity, assemblies, attempts: Vec::new(), connectable })
 }
 
-/// Makes a survey, then requests connections of likely instances, beginning with `thought`. Stops when the device would
-/// accept a connection with correct sizes. If a device accepts wrong sizes, this program controls the device until the
-/// connection is closed.
+/// Makes a survey, then requests connections with likely instances, beginning with `thought`. Stops when it has found
+/// instances with which the device would accept a connection of the correct sizes. If a device accepts wrong sizes,
+/// this program controls the device until the connection is closed.
 ///
 /// # Errors
 /// The errors of [`survey`].
@@ -147,7 +148,7 @@ pub async fn probe(client: &mut Client, thought: Instances) -> Result<Findings, 
 pub enum Presence {
     /// The instance does not exist.
     Absent,
-    /// The device reports neither data nor size.
+    /// The instance may exist, but the device reports neither its data nor its size.
     Unknown,
     /// The data or the size can be read.
     Readable(Assembly),
@@ -166,15 +167,15 @@ pub async fn assembly(client: &mut Client, instance: u32) -> Result<Presence, Ei
     if NO_SUCH_OBJECT.contains(&answer.status.general) {
         return Ok(Presence::Absent);
     }
-    // The assembly exists, but its data cannot be read. Perhaps its size can be read.
+    // The assembly exists, but its data cannot be read. The device may still report its size.
     let answer = client.ask(what, &Message::get(ASSEMBLY, instance, SIZE)).await?;
     let size = answer.data.first_chunk().filter(|_| answer.status.is_ok()).map(|bytes| u16::from_le_bytes(*bytes));
-    // If the device refuses both requests, nothing is known.
+    // If the device refuses both requests, nothing is known about the assembly.
     Ok(size.map_or(Presence::Unknown, |size| Presence::Readable(Assembly { instance, size: Some(size) })))
 }
 
-/// Returns the candidates: the instances `thought`, the same instances with input and output exchanged, then pairs of
-/// the assemblies found. Each pair is combined with likely configurations.
+/// Returns the combinations to try: the instances `thought`, the same instances with input and output exchanged, then
+/// pairs of the assemblies that were found. Each pair is combined with likely configurations.
 fn likely(thought: Instances, assemblies: &[Assembly]) -> Vec<Instances> {
     let exchanged = (thought.input, thought.output);
     let mut pairs = vec![(thought.output, thought.input), exchanged];
@@ -195,7 +196,7 @@ fn likely(thought: Instances, assemblies: &[Assembly]) -> Vec<Instances> {
     all
 }
 
-/// Maximum number of assemblies that are combined to pairs.
+/// Maximum number of assemblies of which pairs are formed.
 const MOST_PAIRED: usize = 6;
 
 /// Requests connections of these instances until the sizes are known, or the device reports that the instances are
@@ -230,7 +231,7 @@ async fn attempt(
 struct Guess {
     output: Option<u16>,
     input: Option<u16>,
-    /// A size that the device reported without a direction, and the direction that is tried with this size.
+    /// A size that the device reported without a direction, and the direction for which this size is tried first.
     unclear: Option<(u16, Way)>,
     tries: u8,
 }
@@ -243,7 +244,7 @@ enum Way {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Progress {
-    /// Send another request with the next sizes.
+    /// The next request must be sent, with the next sizes.
     Again,
     /// The device reports that a connection with these instances is not possible.
     Wrong,
@@ -267,8 +268,8 @@ impl Guess {
 
     fn take(&mut self, status: &Status) -> Progress {
         let (code, right) = match status.extended[..] {
-            // The device accepts the connection, or another originator already has a connection with these instances.
-            // Both mean that the instances are correct.
+            // Either the device accepts the connection, or another originator already has a connection with these
+            // instances. In both cases the instances are correct.
             _ if status.is_ok() => return Progress::Known,
             [OWNED, ..] if status.general == 1 => return Progress::Known,
             [code @ (SIZES | O_T_SIZE | T_O_SIZE), ref more @ ..] if status.general == 1 => {
@@ -281,13 +282,13 @@ impl Guess {
             (O_T_SIZE, _) => self.output = Some(right.saturating_sub(O_T_EXTRA)),
             (T_O_SIZE, _) => self.input = Some(right.saturating_sub(T_O_EXTRA)),
             (_, None) => self.unclear = Some((right, Way::Out)),
-            // The size was correct for the direction to the device. The device now reports the size of the other
+            // The size was correct for the direction to the device. So the device now reports the size of the other
             // direction.
             (_, Some((size, Way::Out))) if size != right => {
                 self.output = Some(size.saturating_sub(O_T_EXTRA));
                 self.input = Some(right.saturating_sub(T_O_EXTRA));
             }
-            // The device reported the same size again, so this size belongs to the other direction.
+            // The device reported the same size again. So this size belongs to the direction from the device.
             (_, Some((size, Way::Out))) => self.unclear = Some((size, Way::In)),
             (_, Some((size, Way::In))) if size != right => {
                 self.input = Some(size.saturating_sub(T_O_EXTRA));
@@ -349,8 +350,8 @@ async fn open(
 mod tests {
     use super::*;
 
-    /// Simulates a device with 48 bytes of output and `input` bytes of input. The device checks the direction `first`
-    /// first.
+    /// Simulates a device with 48 bytes of output and `input` bytes of input. The device checks the size of the
+    /// direction `first` before the size of the other direction.
     fn sizes(first: Way, input: u16, codes: (u16, u16)) -> (Guess, u8) {
         let mut guess = Guess::default();
         loop {

@@ -1,7 +1,7 @@
 //! Image of a device, read with explicit messages at an interval.
 //!
-//! No I/O connection is opened, so the end of the program has no effect on the device. The reads also work if another
-//! originator owns the outputs of the device.
+//! The reader opens no I/O connection, so its end has no effect on the device. It also works if another originator owns
+//! the outputs of the device.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -16,7 +16,7 @@ use super::explicit::Message;
 
 /// Attribute 3 of an assembly: its data.
 const IMAGE: u32 = 3;
-/// Pause after a failure.
+/// Pause after a failed read.
 const PAUSE: Duration = Duration::from_millis(500);
 
 /// The assembly to read.
@@ -58,7 +58,7 @@ impl Reader {
     /// Waits for the next reading.
     pub async fn changed(&mut self) {
         if self.readings.changed().await.is_err() {
-            // The task has ended, so there are no further readings.
+            // The task has ended, so no more readings follow. This wait never ends.
             std::future::pending::<()>().await;
         }
     }
@@ -66,7 +66,7 @@ impl Reader {
     /// Stops the reads, and closes the session.
     pub async fn close(self) {
         drop(self.readings);
-        // An error means that the task panicked. The task has ended in this case too.
+        // An error means that the task panicked. The task has then ended too.
         let _ = self.task.await;
     }
 }

@@ -25,15 +25,15 @@ mod tcp;
 
 use tcp::Line;
 
-/// First token for messages of callers. The originator uses the lower tokens.
+/// First token for messages of callers. The originator itself uses the lower tokens.
 const FIRST_TOKEN: u64 = 2;
 /// Maximum number of datagrams that are handled before other tasks can run.
 const AT_ONCE: usize = 64;
 /// Size of the receive buffer: the size of the largest datagram.
 const BUFFER: usize = 65_536;
 
-/// Scanner with its connections. Clones are cheap and share the connections. The threads of the scanner stop with the
-/// last clone and the last connection.
+/// Scanner with its connections. Clones are cheap and share the connections. The threads of the scanner stop when the
+/// last clone and the last connection are dropped.
 #[derive(Debug, Clone)]
 pub struct Scanner {
     owner: Arc<Owner>,
@@ -42,7 +42,8 @@ pub struct Scanner {
 #[derive(Debug)]
 struct Owner {
     inner: Arc<Inner>,
-    /// Stops the threads when it is dropped. The threads also have a reference to `inner`.
+    /// Dropping this value stops the threads. `inner` alone cannot do this, because the threads also hold a reference
+    /// to it.
     _engine: Engine,
 }
 
@@ -56,7 +57,7 @@ struct Inner {
     numbers: Arc<Numbers>,
     slots: Mutex<BTreeMap<u64, Slot>>,
     last: AtomicU64,
-    /// Multicast memberships: number of connections, by group and interface.
+    /// Memberships in multicast groups: number of connections for each group and interface.
     groups: Mutex<HashMap<(Ipv4Addr, Ipv4Addr), usize>>,
 }
 
@@ -66,7 +67,7 @@ struct Slot {
     core: Originator,
     tap: Tap,
     line: Option<Line>,
-    /// Local address of the path to the device. It is unspecified until it is known.
+    /// Local address from which the device is reached. Unspecified until it is known.
     here: Ipv4Addr,
     view: watch::Sender<View>,
     answers: HashMap<Token, oneshot::Sender<Result<Vec<u8>, EipError>>>,
@@ -130,8 +131,8 @@ impl Scanner {
     /// Opens a connection to the device at this TCP address. The connection stays open until it is closed or dropped.
     ///
     /// # Errors
-    /// The device does not answer, or refuses. The first opening is not repeated. If the connection is lost later, this
-    /// is not an error but a state of the view.
+    /// The device does not answer, or refuses. A failed first opening is not repeated. A later loss of the connection
+    /// is not an error here, but a state of the view.
     pub async fn open(&self, target: SocketAddrV4, settings: Settings, tap: Tap) -> Result<Connection, EipError> {
         let inner = &self.owner.inner;
         if settings.multicast && self.port() != IO_PORT {
@@ -232,7 +233,7 @@ impl Inner {
         self.slots.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Calls `change` with a connection, then executes the resulting actions. Returns `None` if the connection is
+    /// Calls `change` with a connection, then executes the actions that result. Returns `None` if the connection is
     /// closed.
     fn with<T>(self: &Arc<Self>, id: u64, change: impl FnOnce(&mut Slot, Now) -> T) -> Option<T> {
         let mut slots = self.slots();
@@ -247,7 +248,7 @@ impl Inner {
         Some(result)
     }
 
-    /// Executes the work that is due. Returns the time of the next call.
+    /// Executes the work that is due. Returns the time at which it must be called again.
     fn turn(self: &Arc<Self>) -> Option<Now> {
         let mut slots = self.slots();
         let now = self.now();
@@ -279,7 +280,7 @@ impl Inner {
                 }
                 Action::Disconnect => slot.line = None,
                 Action::Datagram(to, bytes) => {
-                    // The datagram is recorded before it is sent, so that a trace never has an answer before its
+                    // The datagram is recorded before it is sent. Otherwise, a trace could show the answer before the
                     // request.
                     slot.tap.pass(false, SocketAddrV4::new(slot.here, self.local.port()), to, &bytes);
                     if let Err(error) = self.socket.send_to(&bytes, to) {
@@ -294,7 +295,7 @@ impl Inner {
                 Action::Leave(group) => self.leave(group, slot.here),
                 Action::Answer(token, result) => {
                     if let Some(answer) = slot.answers.remove(&token) {
-                        // The caller may already be gone.
+                        // An error means that the caller no longer waits for the answer.
                         let _ = answer.send(result);
                     }
                 }
@@ -338,7 +339,7 @@ impl Inner {
         let Some(members) = groups.get_mut(&(group, here)).filter(|members| **members > 0) else { return };
         *members -= 1;
         if *members == 0 {
-            // An error is ignored: the interface is gone, and its membership has ended with it.
+            // An error is ignored: if the interface is gone, its membership has ended too.
             let _ = self.socket.leave_multicast_v4(&group, &here);
         }
     }
@@ -355,7 +356,7 @@ async fn hear(inner: Arc<Inner>, socket: tokio::net::UdpSocket) {
             match socket.try_recv_from(&mut buffer) {
                 Ok((len, SocketAddr::V4(from))) => inner.heard(from, &buffer[..len]),
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => break,
-                // An error concerns one device (Windows: port unreachable). The other devices are not affected.
+                // An error concerns only one device (Windows: port unreachable). The other devices are not affected.
                 Ok(_) | Err(_) => {}
             }
         }

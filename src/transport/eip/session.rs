@@ -11,13 +11,13 @@ use super::wire::{Command, Frame, Frames};
 
 /// Maximum number of queued requests.
 const MOST_WAITING: usize = 64;
-/// Status of RegisterSession: the device has no free session.
+/// Status of a refused RegisterSession: the device has no free session.
 const NO_ROOM: u32 = 0x02;
-/// Longest pause before another attempt to register; the first pause is a sixteenth of it. A random factor shortens
-/// every pause, so that clients that were refused at the same time do not retry at the same time.
+/// Longest pause before another attempt to register. The first pause is a sixteenth of this time. A random factor
+/// shortens every pause: clients that were refused at the same time then retry at different times.
 const MOST_PAUSE: Duration = Duration::from_millis(800);
 
-/// Identifies the request to which an answer belongs.
+/// Number that identifies the request to which an answer belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Token(
     /// A number that the caller selects.
@@ -44,7 +44,7 @@ pub enum Step {
     Connect,
     /// Send these bytes.
     Send(Vec<u8>),
-    /// Close the TCP connection. The driver must drop bytes that still arrive from this connection.
+    /// Close the TCP connection. If bytes still arrive from this connection, the driver must drop them.
     Disconnect,
     /// A request is complete.
     Answer {
@@ -66,7 +66,7 @@ enum Phase {
     Registering {
         until: Now,
     },
-    /// The device has no free session. The session waits until the next attempt.
+    /// The device has no free session. The session waits for the next attempt to register.
     Full {
         until: Now,
     },
@@ -81,13 +81,14 @@ pub struct Session {
     frames: Frames,
     waiting: VecDeque<Ask>,
     pending: Option<(Ask, Now)>,
-    /// Number of the current request. The number is the sender context of the request, so that a late answer is
+    /// Number of the current request. The sender context of the request contains this number, so that a late answer is
     /// detected.
     number: u64,
     timeout: Duration,
-    /// Time for retries if the device has no free session.
+    /// Time for which the session retries if the device has no free session.
     patience: Duration,
-    /// Time of the first refusal because the device has no free session, and the number of attempts since then.
+    /// Time at which the device first refused because it has no free session, and the number of attempts after this
+    /// time.
     full: Option<(Now, u32)>,
     steps: VecDeque<Step>,
 }
@@ -109,8 +110,8 @@ impl Session {
         }
     }
 
-    /// Sets the time for retries if the device has no free session. The device has not executed any request in this
-    /// case.
+    /// Sets the time for which the session retries if the device has no free session. A retry is safe, because the
+    /// device has not executed any request.
     #[must_use]
     pub fn patient(self, patience: Duration) -> Self {
         Self { patience, ..self }
@@ -172,7 +173,8 @@ impl Session {
         if let Some((ask, _)) = self.pending.take() {
             self.answer(ask.token, true, Err(EipError::Hangup { what: ask.what }));
         }
-        // Without a session, queued requests fail at once. After the end of a session, they use a new TCP connection.
+        // If no session was open, queued requests fail at once. If an open session ended, the queued requests use a new
+        // TCP connection.
         if !was_up {
             self.fail_waiting(why);
         }
@@ -200,7 +202,7 @@ impl Session {
                 Some((ask, until)) if now >= *until => {
                     let (token, what) = (ask.token, ask.what);
                     self.pending = None;
-                    // A late answer must be ignored, so the next request uses a new connection.
+                    // An answer that arrives late must be ignored, so the next request uses a new TCP connection.
                     self.disconnect();
                     self.answer(token, true, Err(EipError::NoAnswer { what, after: self.timeout }));
                 }
@@ -260,7 +262,7 @@ impl Session {
                 let result = if frame.status == 0 {
                     Ok(frame.data.to_vec())
                 } else {
-                    // Perhaps the session itself is invalid, so the next request opens a new session.
+                    // The session itself may be invalid, so the next request opens a new session.
                     self.disconnect();
                     Err(EipError::Encapsulation { what: ask.what, status: frame.status })
                 };
@@ -408,7 +410,8 @@ mod tests {
         assert!(now < NOW + TIMEOUT, "not longer than its timeout");
         let trouble = EipError::Encapsulation { what: "RegisterSession", status: NO_ROOM };
         assert_eq!(result, (false, Err(trouble)));
-        // A refusal with another status is reported at once, and so is every refusal without time for retries.
+        // A refusal with another status is reported at once. Without time for retries, every refusal is reported at
+        // once.
         for (patience, status) in [(TIMEOUT, 0x69), (Duration::ZERO, NO_ROOM)] {
             let mut session = Session::new(TIMEOUT).patient(patience);
             session.ask(ask(1));

@@ -5,9 +5,9 @@ use std::time::Duration;
 use super::error::EipError;
 use super::wire::{Flow, Key, Net, Path, Segment};
 
-/// Size of the sequence count before the data, in bytes.
+/// Size in bytes of the sequence count, which comes before the data.
 const COUNT: u16 = 2;
-/// Size of the run/idle header before data to the target, in bytes.
+/// Size in bytes of the run/idle header, which comes before the data to the target.
 const HEADER: u16 = 4;
 /// Maximum size of an image in bytes, so that the image fits into a datagram.
 pub const MOST_IMAGE: u16 = 65_000;
@@ -25,12 +25,12 @@ const SCHEDULED: u8 = 2;
 /// Type of a connection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Role {
-    /// The originator receives the inputs and is the only one that sets the outputs.
+    /// The originator receives the inputs. It is the only originator that sets the outputs.
     ExclusiveOwner,
-    /// The originator receives the inputs. The output instance is the heartbeat.
+    /// The originator receives the inputs. Its output instance is a heartbeat without data.
     InputOnly,
-    /// The originator receives the inputs while another connection to the device exists. The output instance is the
-    /// heartbeat.
+    /// The originator receives the inputs, but only while another connection to the device exists. Its output instance
+    /// is a heartbeat without data.
     ListenOnly,
 }
 
@@ -44,7 +44,7 @@ impl Multiplier {
         (0..8).map(Self).find(|multiplier| multiplier.intervals() == intervals)
     }
 
-    /// Decodes a multiplier; codes above 7 are reserved.
+    /// Decodes the code of a multiplier. Returns `None` for codes above 7, which are reserved.
     pub const fn from_code(code: u8) -> Option<Self> {
         if code < 8 { Some(Self(code)) } else { None }
     }
@@ -65,7 +65,7 @@ impl Multiplier {
 pub struct Settings {
     /// Type of a connection.
     pub role: Role,
-    /// Assembly that the device consumes, or its heartbeat instance.
+    /// Assembly that the device consumes. For connections without outputs, the heartbeat instance.
     pub output: u32,
     /// Assembly that the device produces.
     pub input: u32,
@@ -83,16 +83,17 @@ pub struct Settings {
     pub multiplier: Multiplier,
     /// Whether the device sends its images to a multicast group.
     pub multicast: bool,
-    /// Electronic key, if the device checks it.
+    /// Electronic key. `None` if the device need not check the identity.
     pub key: Option<Key>,
-    /// First image after every opening. It is sent in idle mode.
+    /// Image that is sent first after every opening, in idle mode.
     pub resting: Vec<u8>,
     /// Time limit for the TCP connection and for each answer.
     pub timeout: Duration,
 }
 
 impl Default for Settings {
-    /// Exclusive owner with empty images: output 150, input 100, configuration 1, 20 ms, 16 intervals.
+    /// Exclusive owner with empty images. Output 150, input 100, configuration 1, an interval of 20 ms, and a timeout
+    /// of 16 intervals.
     fn default() -> Self {
         Self {
             role: Role::ExclusiveOwner,
@@ -155,8 +156,8 @@ impl Settings {
         path
     }
 
-    /// Parameters of the direction to the device. The size includes the sequence count. For an owner, it also includes
-    /// the run/idle header and the image.
+    /// Parameters of the direction to the device. The size includes the sequence count. For an owner, the size also
+    /// includes the run/idle header and the image.
     pub fn o_t(&self) -> Flow {
         let size = match self.role {
             Role::ExclusiveOwner => COUNT + HEADER + self.output_size.min(MOST_IMAGE),

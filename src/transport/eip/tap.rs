@@ -21,7 +21,7 @@ pub struct Passed<'a> {
 
 type Look = dyn Fn(&Passed<'_>) + Send + Sync;
 
-/// Function that is called with all traffic, on the threads that send and receive it. The function must not block.
+/// Function that is called with all traffic, on the threads that send and receive. The function must not block.
 #[derive(Clone, Default)]
 pub struct Tap(Option<Arc<Look>>);
 

@@ -1,9 +1,9 @@
 //! Fault injection for datagrams.
 //!
-//! The fault `corrupt` is limited on purpose. UDP's checksum detects nearly all damage on the network. Damage that
-//! remains comes from faulty network stacks, wrong senders and wrong ports. Therefore a corrupt datagram is cut,
-//! extended, zeroed, changed in its first eight bytes (where protocols have identifiers and sizes) or replaced by
-//! noise. A changed payload is not simulated, because a protocol without a checksum cannot detect it.
+//! The fault `corrupt` is limited on purpose. UDP's checksum detects nearly all damage that occurs on the network. The
+//! damage that it does not detect comes from faulty network stacks, wrong senders and wrong ports. Therefore a corrupt
+//! datagram is cut, extended, zeroed, changed in its first eight bytes (where protocols have identifiers and sizes) or
+//! replaced by noise. A changed payload is not simulated, because a protocol without a checksum cannot detect it.
 
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -23,25 +23,25 @@ const MOST_NOISE: usize = 600;
 const MOST_EXTRA: usize = 32;
 /// Number of bytes at the start of a datagram that may be changed.
 const HEAD: usize = 8;
-/// Extra delay of a reordered datagram. It is longer than a fast answer takes, and may exceed the usual retry time. The
-/// datagram therefore arrives during the next exchange, or after its own retransmission.
+/// Extra delay of a reordered datagram. The delay is longer than a fast answer takes, and may be longer than the usual
+/// retry time. Therefore the datagram arrives during the next exchange, or after its own retransmission.
 const HOLD: RangeInclusive<Duration> = Duration::from_millis(20)..=Duration::from_millis(400);
 
-/// Fault rates. Text form: `drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,busy=4%,seed=7`; every part is optional.
+/// Fault rates. The text form is, for example, `drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,busy=4%,seed=7`.
+/// Every part is optional.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FaultSpec {
     /// Share of datagrams that are lost.
     pub drop: Share,
     /// Share of datagrams that are doubled. The copy has its own delay.
     pub dup: Share,
-    /// Transmission time. A delay without `reorder` keeps the order of the datagrams.
+    /// Transmission time. Without `reorder`, a delay does not change the order of the datagrams.
     pub delay: RangeInclusive<Duration>,
     /// Share of datagrams that arrive after later datagrams.
     pub reorder: Share,
     /// Share of datagrams that are damaged.
     pub corrupt: Share,
-    /// Share of requests that a simulated controller refuses as busy. The simulator applies this fault, not this
-    /// module.
+    /// Share of requests that a simulated controller refuses as busy. The simulator itself applies this fault.
     pub busy: Share,
     /// Seed of the random sequence.
     pub seed: u64,
@@ -97,7 +97,7 @@ impl fmt::Display for FaultSpec {
 pub struct Faults {
     spec: FaultSpec,
     rng: Rng,
-    /// Arrival time of the last datagram that was not reordered.
+    /// Time at which the last datagram that was not reordered arrives.
     last: Duration,
 }
 
@@ -117,7 +117,7 @@ impl Faults {
     }
 
     /// Applies the faults to a datagram that is sent at `now`. Returns the arrival time and the bytes of each copy, in
-    /// any order. The arrival times have the same origin as `now`.
+    /// any order. Arrival times count from the same origin as `now`.
     pub fn pass(&mut self, now: Duration, bytes: &[u8]) -> Vec<(Duration, Vec<u8>)> {
         if self.spec.drop.hits(&mut self.rng) {
             return Vec::new();

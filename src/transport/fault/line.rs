@@ -13,11 +13,11 @@ use super::{
     write_delay, write_shares,
 };
 
-/// Fault rates. Text form: `noise=1%,parity=1%,drop=1%,dup=1%,delay=0..50ms,busy=4%,echo,seed=7`; every part is
-/// optional. Rates are per character.
+/// Fault rates. The text form is, for example, `noise=1%,parity=1%,drop=1%,dup=1%,delay=0..50ms,busy=4%,echo,seed=7`.
+/// Every part is optional. Rates are per character.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LineFaultSpec {
-    /// Share of characters that are changed, or that have a random character inserted before them.
+    /// Share of characters with noise: the character is changed, or a random character is inserted before it.
     pub noise: Share,
     /// Share of characters with a parity error. The receiver detects the error.
     pub parity: Share,
@@ -27,11 +27,10 @@ pub struct LineFaultSpec {
     pub dup: Share,
     /// Delay of each write. The writes keep their order.
     pub delay: RangeInclusive<Duration>,
-    /// Share of requests that a simulated controller refuses as busy. The simulator applies this fault, not this
-    /// module.
+    /// Share of requests that a simulated controller refuses as busy. The simulator itself applies this fault.
     pub busy: Share,
-    /// Whether the host receives an echo of the bytes that it sends. Some RS-485 adapters and a loop-back plug cause
-    /// such an echo.
+    /// Whether the host receives an echo of the bytes that it sends. For example, some RS-485 adapters and a loop-back
+    /// plug cause such an echo.
     pub echo: bool,
     /// Seed of the random sequence.
     pub seed: u64,
@@ -95,7 +94,7 @@ pub struct LineFaults {
     rng: Rng,
 }
 
-/// Characters of one write after the faults.
+/// Characters of one write, as they arrive after the faults.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Passed {
     /// Delay of the write.
@@ -142,7 +141,8 @@ impl LineFaults {
         if is_noisy {
             passed.bytes.push(self.rng.u8(..));
         }
-        // Half of the noise replaces the character; the other half is inserted before the character.
+        // In half of the cases, the noise replaces the character. In the other cases, it is inserted before the
+        // character.
         if is_noisy && self.rng.bool() {
             return;
         }
@@ -152,8 +152,8 @@ impl LineFaults {
         passed.bytes.push(byte);
     }
 
-    /// Whether a fault with this rate occurs. A rate of 0 needs no random number, so a line without faults costs
-    /// nothing.
+    /// Whether a fault with this rate occurs now. For a rate of 0, no random number is drawn, so a line without faults
+    /// costs nothing.
     fn hits(&mut self, share: Share) -> bool {
         share != Share::NONE && share.hits(&mut self.rng)
     }

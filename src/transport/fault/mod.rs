@@ -1,7 +1,7 @@
 //! Fault injection with a seed, without sockets and clock: [`Faults`] for datagrams, [`LineFaults`] for a serial line.
 //! [`SimulatorFaults`] adds the faults of the simulated device itself.
 //!
-//! The input is the traffic that is sent, the output is the traffic that arrives. The same seed and the same traffic
+//! The input is the traffic that is sent. The output is the traffic that arrives. The same seed and the same traffic
 //! give the same faults on every computer.
 
 mod datagram;
@@ -42,17 +42,17 @@ const LONGEST_DELAY: Duration = Duration::from_secs(60);
 pub struct Share(u16);
 
 impl Share {
-    /// 0 %.
+    /// A rate of 0 %.
     pub const NONE: Self = Self(0);
-    /// 100 %.
+    /// A rate of 100 %.
     pub const ALL: Self = Self(10_000);
 
-    /// The rate in 1/10,000.
+    /// The rate in steps of 1/10,000.
     pub const fn per_10_000(self) -> u16 {
         self.0
     }
 
-    /// The rate from 0.0 to 1.0.
+    /// The rate as a number from 0.0 to 1.0.
     pub fn fraction(self) -> f64 {
         f64::from(self.0) / f64::from(Self::ALL.0)
     }
@@ -61,7 +61,7 @@ impl Share {
         rng.u16(0..Self::ALL.0) < self.0
     }
 
-    /// Parses "5%" or "0.25%".
+    /// Parses a rate, for example "5%" or "0.25%".
     fn parse(text: &str) -> Option<Self> {
         let number = text.strip_suffix('%')?;
         let (whole, fraction) = number.split_once('.').unwrap_or((number, "0"));
@@ -88,7 +88,7 @@ impl fmt::Display for Share {
 /// Error of a [`FaultSpec`] or [`LineFaultSpec`] text.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum FaultSpecError {
-    /// A fault without its value.
+    /// A fault that needs a value has none.
     #[error("{key} needs a value: {form}")]
     NoValue {
         /// The key.
@@ -96,7 +96,7 @@ pub enum FaultSpecError {
         /// Valid form of the value.
         form: &'static str,
     },
-    /// An unknown fault.
+    /// The text contains an unknown fault.
     #[error("unknown fault '{name}'; the faults are {known}")]
     Unknown {
         /// The name.
@@ -104,7 +104,7 @@ pub enum FaultSpecError {
         /// The valid names.
         known: String,
     },
-    /// Two faults of the device. A device can have only one fault at a time.
+    /// The text contains two faults of the device. A device can have only one fault at a time.
     #[error("{first} and {second} cannot be used together")]
     TwoOfDevice {
         /// The first fault.
@@ -112,13 +112,13 @@ pub enum FaultSpecError {
         /// The second fault.
         second: &'static str,
     },
-    /// A repeated key.
+    /// The text contains a key twice.
     #[error("{key} appears twice")]
     Twice {
         /// The key.
         key: &'static str,
     },
-    /// A value that is not valid for its key.
+    /// The value is not valid for its key.
     #[error("{key}: '{value}' is not {form}")]
     Value {
         /// The key.
@@ -128,7 +128,7 @@ pub enum FaultSpecError {
         /// Valid form of the value.
         form: &'static str,
     },
-    /// A value for a key that has no value.
+    /// A key that has no value was given one.
     #[error("{key} takes no value, but has the value '{value}'")]
     NeedlessValue {
         /// The key.
@@ -142,7 +142,7 @@ const SHARE_FORM: &str = "a percentage from 0% to 100% with at most two decimals
 const DELAY_FORM: &str = "a time or range of up to 60s in us, ms or s, for example 20ms or 0..50ms";
 const SEED_FORM: &str = "a whole number from 0 to 18446744073709551615";
 
-/// Faults of a link that have a text form.
+/// Faults of a link that can be written as text.
 pub trait FaultText: Default + 'static {
     /// Names of the faults, each with the function that sets its value.
     const KEYS: &'static [Key<Self>];
@@ -154,8 +154,8 @@ pub type Key<S> = (&'static str, Setter<S>);
 /// Function that sets one value of `S`.
 #[derive(Debug)]
 pub enum Setter<S> {
-    /// Description of the valid values, and the function that parses and sets a value. The function returns `None` for
-    /// an invalid value.
+    /// A key with a value. The text describes the valid values. The function parses and sets a value, and returns
+    /// `None` if the value is invalid.
     Value(&'static str, fn(&mut S, &str) -> Option<()>),
     /// A key without a value.
     Flag(fn(&mut S)),
@@ -186,7 +186,7 @@ pub struct FaultNames<D: 'static> {
 }
 
 impl<D: Copy> FaultNames<D> {
-    /// Parses a text such as `drop=5%,stall,seed=7`.
+    /// Parses a text, for example `drop=5%,stall,seed=7`.
     ///
     /// # Errors
     /// [`FaultSpecError`] for an unknown name, a repeated name or an invalid value. The error for an unknown name
@@ -213,13 +213,14 @@ impl<D: Copy> FaultNames<D> {
     }
 }
 
-/// Parses the faults of a link. All names of the link are valid.
+/// Parses the faults of a link. All names in [`FaultText::KEYS`] are valid.
 fn parse_link<S: FaultText>(text: &str) -> Result<S, FaultSpecError> {
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
     parse(&parts, &S::KEYS.iter().collect::<Vec<_>>(), [])
 }
 
-/// Parses the parts of a text. Each name may occur once. `others` are further valid names; they are only for the error.
+/// Parses the parts of a text. Each name may occur once. `others` contains more valid names that are not in `keys`;
+/// only the error for an unknown name uses them.
 fn parse<S: Default>(
     parts: &[&str],
     keys: &[&'static Key<S>],
@@ -257,7 +258,7 @@ fn write_shares(f: &mut fmt::Formatter<'_>, shares: &[(&str, Share)]) -> fmt::Re
     some.try_for_each(|(key, share)| write!(f, "{key}={share},"))
 }
 
-/// Writes a delay that is not 0, followed by a comma.
+/// Writes a delay, followed by a comma. Writes nothing if the delay is 0.
 fn write_delay(f: &mut fmt::Formatter<'_>, delay: &RangeInclusive<Duration>) -> fmt::Result {
     let (least, most) = (delay.start(), delay.end());
     match least == most {
@@ -282,8 +283,8 @@ impl fmt::Display for Time {
 
 const UNITS: [(&str, u64); 3] = [("us", 1), ("ms", 1_000), ("s", 1_000_000)];
 
-/// Parses a delay such as "20ms", "0..50ms" or "500us..2ms". A lower limit without a unit has the unit of the upper
-/// limit.
+/// Parses a delay, for example "20ms", "0..50ms" or "500us..2ms". A lower limit without a unit has the unit of the
+/// upper limit.
 fn delay(text: &str) -> Option<RangeInclusive<Duration>> {
     let Some((least, most)) = text.split_once("..") else {
         let (number, unit) = number_and_unit(text);
@@ -310,7 +311,7 @@ fn time(number: &str, unit: &str) -> Option<Duration> {
 fn between(rng: &mut Rng, range: &RangeInclusive<Duration>) -> Duration {
     let micros = |time: &Duration| u64::try_from(time.as_micros()).unwrap_or(u64::MAX);
     let (least, most) = (micros(range.start()), micros(range.end()));
-    // A specification that was not parsed from text can have its limits in the wrong order.
+    // The limits can be in the wrong order only in a specification that was not parsed from text.
     Duration::from_micros(if least < most { rng.u64(least..=most) } else { least })
 }
 

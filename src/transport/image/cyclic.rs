@@ -21,8 +21,8 @@ pub trait Bus: fmt::Debug + 'static {
     /// State of the connection.
     fn views(&mut self) -> &mut Views<Self::Error, Self::Statistics, Self::Details>;
 
-    /// Sends this image to the device in this generation. Returns the number of the change. The image was sent when
-    /// `sent` of the view has reached this number.
+    /// Sends this image to the device in this generation. Returns the number of the change. When `sent` of the view has
+    /// reached this number, the image was sent.
     ///
     /// # Errors
     /// The connection is not open in this generation, or the image has another size.
@@ -94,14 +94,14 @@ impl<B: Bus> ImageConnection for Cyclic<B> {
     }
 
     fn set_output(&mut self, image: &[u8]) -> Result<(), LinkError> {
-        // The previous image is no longer reported as sent, even if this call fails.
+        // The previous image must not be reported as sent after this call, even if the call fails.
         self.pending = None;
         match self.bus.set_image(self.generation, image) {
             Ok(change) => {
                 self.pending = Some(change);
                 Ok(())
             }
-            // This error means that the connection was lost; `next` reports the loss.
+            // This error means that the connection was lost. `next` reports the loss.
             Err(error) if error == B::Error::OUTDATED || error == B::Error::ENDED => Ok(()),
             Err(error) => Err(error.into()),
         }

@@ -1,5 +1,5 @@
-//! Errors of image links. The kinds of error are the same on every fieldbus. The code of the device and the options to
-//! check are data in the error.
+//! Errors of image links. The kinds of error are the same on every fieldbus. The error contains the code of the device
+//! and the options to check as data.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -10,19 +10,19 @@ use thiserror::Error;
 /// An error that prevented or ended a link.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum LinkError {
-    /// Another master controls the device. The device accepts only one master.
+    /// The device already has another master, and accepts only one.
     #[error("{0}")]
     Owned(Cause),
-    /// The device has images of another size.
+    /// The image sizes of the device are not the expected sizes.
     #[error("{0}")]
     Size(Cause),
-    /// The device refuses for another reason.
+    /// The device refuses for a reason that is not one of the others.
     #[error("{0}")]
     Refused(Cause),
     /// The device does not answer.
     #[error("{0}")]
     Silent(Cause),
-    /// The answer is not the answer of such a device.
+    /// The answer is not valid for a device of this kind.
     #[error("{0}")]
     Malformed(Cause),
     /// The link was open, and was lost. It opens again automatically.
@@ -33,7 +33,7 @@ pub enum LinkError {
         /// State of the outputs after the loss.
         outputs: Outputs,
     },
-    /// Invalid settings; nothing was sent.
+    /// The settings are invalid; nothing was sent.
     #[error("{0}")]
     Settings(Cause),
     /// A local adapter, port or socket failed.
@@ -44,13 +44,13 @@ pub enum LinkError {
 /// Cause of an error, as text and data.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Cause {
-    /// The request and its answer, or the missing answer.
+    /// Description of the request and of its answer, or of the missing answer.
     pub text: String,
     /// Error code of the device, for example `0x0106`.
     pub code: Option<String>,
     /// Names of the URL options that may be wrong.
     pub options: &'static [&'static str],
-    /// Further advice: in lower case, without a period at the end.
+    /// More advice: in lower case, without a period at the end.
     pub advice: Option<Cow<'static, str>>,
 }
 
@@ -61,7 +61,7 @@ pub enum Outputs {
     Never,
     /// The device has cleared the outputs.
     Released,
-    /// The device keeps the outputs, and clears them after this time without contact.
+    /// The device keeps the outputs at first. It clears them after this time without contact.
     ReleasedWithin(Duration),
 }
 
@@ -71,7 +71,7 @@ impl Cause {
         Self { text: text.to_string(), ..Self::default() }
     }
 
-    /// Creates the cause of a loss. If there is no error, the connection was reopened in the meantime.
+    /// Creates the cause of a loss. `trouble` is `None` if the connection is open again.
     pub fn of_loss(trouble: Option<impl fmt::Display>) -> Self {
         trouble.map_or_else(|| Self::new("armctl opened the connection again"), Self::new)
     }

@@ -11,11 +11,11 @@ use super::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes};
 
 /// Peer of an in-process connection, for example a simulated controller.
 pub trait ImagePeer: fmt::Debug {
-    /// Handles an image that arrives at `now`. `None` means that the master is gone.
+    /// Handles an image that arrives at `now`. `None` means that the connection to the master has ended.
     fn input(&mut self, now: Duration, image: Option<&[u8]>);
     /// Returns the image of the peer at `now`; `None` while the link is down.
     fn output(&mut self, now: Duration) -> Option<Vec<u8>>;
-    /// Time when the output of the peer next changes without an input.
+    /// Time at which the output of the peer next changes if it receives no input.
     fn wake(&self) -> Option<Duration>;
 }
 
@@ -67,7 +67,7 @@ impl InProcess {
             if let Some(image) = last_output.filter(|image| known.is_new(image)) {
                 return Event::Image(image.into());
             }
-            // A peer that is always due is polled once per cycle.
+            // A peer whose time is never in the future is polled once per cycle.
             let wake = self.peer.wake().map(|wake| if wake > now { wake } else { now + CYCLE });
             let leave = self.pending.as_ref().filter(|_| known.is_up).map(|_| self.due);
             match wake.into_iter().chain(leave).min() {

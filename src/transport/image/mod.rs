@@ -9,7 +9,7 @@
 //! connection that only reads. Errors of devices are converted to [`LinkError`]. [`InProcess`] is a connection to a
 //! peer in this process, for example a simulated controller.
 //!
-//! The connection can belong to another process, which shares it; see [`session`](super::session).
+//! The connection of a link can also belong to another process that shares it: see [`session`](super::session).
 
 pub mod cyclic;
 mod error;
@@ -37,7 +37,7 @@ use super::session::wire::Change;
 pub enum Event {
     /// The last image of [`ImageLink::set_output`] was sent.
     Sent,
-    /// A new image of the peer, or its first image after the link opened.
+    /// A new image arrived from the peer, or its first image after the link opened.
     Image(Arc<[u8]>),
     /// The link was lost.
     Lost(LinkError),
@@ -51,26 +51,27 @@ pub enum Event {
     Timeout,
 }
 
-/// A connection over a fieldbus. The connection is already open when it is created. After a loss, it reopens
-/// automatically until it is closed.
+/// A connection over a fieldbus. It is already open when it is created. After a loss, it opens again automatically,
+/// until it is closed.
 pub trait ImageConnection: fmt::Debug {
     /// Image sizes of the device in bytes.
     fn sizes(&self) -> Sizes;
 
-    /// Sends this image, starting with the next cycle; `next` reports when it was sent. While the connection is down,
-    /// the image is dropped.
+    /// Sends this image, starting with the next cycle. `next` reports when the image was sent. While the connection is
+    /// down, the image is dropped.
     ///
     /// # Errors
-    /// The image has another size, or the connection is read-only. A loss is not an error here; `next` reports it.
+    /// The image has another size, or the connection is read-only. A loss is not an error here, because `next` reports
+    /// it.
     fn set_output(&mut self, _image: &[u8]) -> Result<(), LinkError> {
         Err(LinkError::Settings(Cause::new("a read-only connection sends no outputs")))
     }
 
     /// Waits for an event that the caller does not know yet: [`Event::Sent`], [`Event::Image`], [`Event::Lost`] or
-    /// [`Event::Reopened`]. Cancel safe.
+    /// [`Event::Reopened`]. The future is cancel safe.
     fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event>;
 
-    /// Counters; `None` for a connection without a cycle.
+    /// Counters of the connection; `None` for a connection without a cycle.
     fn traffic(&self) -> Option<Traffic> {
         None
     }
@@ -84,7 +85,7 @@ pub trait ImageConnection: fmt::Debug {
 /// Image sizes in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sizes {
-    /// Size of the image to the device; 0 for a read-only connection.
+    /// Size of the image to the device. 0 for a read-only connection.
     pub output: usize,
     /// Size of the image from the device.
     pub input: usize,
@@ -113,9 +114,9 @@ pub struct Traffic {
     pub sent: u64,
     /// Images received.
     pub received: u64,
-    /// Intervals of the images to and from the device, if the fieldbus agrees on intervals.
+    /// Intervals of the images to the device and from the device, if the fieldbus uses agreed intervals.
     pub intervals: Option<(Duration, Duration)>,
-    /// Numbers of irregular events with their names, for example `(2, "late")`.
+    /// Irregular events: their number and their name, for example `(2, "late")`.
     pub irregular: Vec<(u64, &'static str)>,
 }
 
@@ -123,10 +124,10 @@ pub struct Traffic {
 #[derive(Debug)]
 pub struct ImageLink {
     end: End,
-    /// Last image from the peer, for the detection of changes.
+    /// Last image from the peer. The link compares new images with it.
     last_input: Option<Arc<[u8]>>,
     is_up: bool,
-    /// Value that must stay alive as long as the link, for example an in-process peer.
+    /// A value that must live as long as the link, for example an in-process peer.
     keep_alive: Option<Box<dyn fmt::Debug>>,
 }
 
@@ -180,7 +181,7 @@ impl ImageLink {
         }
     }
 
-    /// Waits until `until` for exclusive control of the shared outputs by this process.
+    /// Waits until `until` for exclusive control of the outputs that the processes of a session share.
     pub async fn acquire(&mut self, until: Instant) -> Result<(), SessionBusy> {
         match &mut self.end {
             End::Session(attached) => attached.acquire(until).await,
@@ -195,15 +196,15 @@ impl ImageLink {
         }
     }
 
-    /// Sets the last will: the bits (mask and value) that the session sends if this process is killed. `None` clears
-    /// the last will. Without a session, the link ends with the process.
+    /// Sets the last will: bits (mask and value) that the session sends if this process is killed. `None` clears the
+    /// last will. Without a session, this has no effect, because the link ends with the process.
     pub fn set_last_will(&mut self, bits: Option<(&[u8], &[u8])>) {
         if let End::Session(attached) = &mut self.end {
             attached.set_last_will(bits);
         }
     }
 
-    /// Claims motion for this process: no other process of the session may then move the robot.
+    /// Claims motion for this process, so that no other process of the session may move the robot.
     pub async fn claim_motion(&mut self) -> Result<(), SessionBusy> {
         match &mut self.end {
             End::Session(attached) => attached.claim_motion().await,
@@ -219,14 +220,14 @@ impl ImageLink {
         }
     }
 
-    /// Sends this image, starting with the next cycle; [`Event::Sent`] reports when it was sent. While the link is
-    /// down, the image is dropped.
+    /// Sends this image, starting with the next cycle. [`Event::Sent`] reports when the image was sent. While the link
+    /// is down, the image is dropped.
     ///
     /// # Errors
     /// The image has another size.
     pub fn set_output(&mut self, image: &[u8]) -> Result<(), LinkError> {
         match &mut self.end {
-            // The image may be from before a loss, and must not be sent after the loss.
+            // While the link is down, the image is dropped. It must not be sent after the loss.
             End::Local(_) if !self.is_up => Ok(()),
             End::Local(connection) => connection.set_output(image),
             End::Session(attached) => {
@@ -236,7 +237,7 @@ impl ImageLink {
         }
     }
 
-    /// Waits until `until` for the next event. Cancel safe.
+    /// Waits until `until` for the next event. The future is cancel safe.
     pub async fn next(&mut self, until: Instant) -> Event {
         let event = match &mut self.end {
             End::Local(connection) => {
@@ -258,7 +259,7 @@ impl ImageLink {
         event
     }
 
-    /// Counters; `None` for a link without its own network connection.
+    /// Counters of the link; `None` for a link without its own network connection.
     pub fn traffic(&self) -> Option<Traffic> {
         match &self.end {
             End::Local(connection) => connection.traffic(),
@@ -289,7 +290,8 @@ impl From<client::Event> for Event {
             client::Event::Image(image) => Self::Image(image.into()),
             client::Event::OutputChanged(change) => Self::OutputChanged(change),
             client::Event::Denied => Self::Denied,
-            // The session host has already reported the state of the outputs, if it was able to do so.
+            // No cause with more details is needed: the session host has already reported the state of the outputs, if
+            // it was able to do so.
             client::Event::Lost(why) => Self::Lost(LinkError::Silent(Cause::new(why))),
             client::Event::Reopened => Self::Reopened,
             client::Event::Timeout => Self::Timeout,

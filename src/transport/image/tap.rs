@@ -27,20 +27,20 @@ pub enum Passage {
         /// Bytes of the piece.
         bytes: Vec<u8>,
     },
-    /// Bytes to or from an adapter on this computer during its setup. They are not part of a recording.
+    /// Bytes to or from an adapter on this computer, while it is being set up. A recording does not contain them.
     Adapter {
         /// Direction: to the adapter, or from the adapter.
         direction: Direction,
         /// The bytes.
         bytes: Vec<u8>,
     },
-    /// A whole frame of a link with its own frame format. The link type of the recording says which format this is.
+    /// A whole frame of a link that has its own frame format. The link type of the recording identifies this format.
     Frame(Vec<u8>),
 }
 
 type Look = dyn Fn(Passage) + Send + Sync;
 
-/// Function that is called with all traffic, on the threads that send and receive it. The function must not block.
+/// Function that is called with all traffic, on the threads that send and receive. The function must not block.
 #[derive(Clone, Default)]
 pub struct Tap(Option<Arc<Look>>);
 

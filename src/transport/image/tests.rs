@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use super::*;
 
-/// Received images with their times; `None` means that the master is gone.
+/// Received images with their times; `None` means that the connection to the master has ended.
 type Heard = Vec<(Duration, Option<Vec<u8>>)>;
 
 /// Echo peer: returns each image 3 ms later. The peer is not reachable between the two times in `gone`.

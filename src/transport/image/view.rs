@@ -14,7 +14,7 @@ pub enum State {
     Opening,
     /// The connection is open: images are exchanged, or requests are possible.
     Open,
-    /// The connection was lost, or its data is invalid. It is being reopened.
+    /// The connection was lost, or its data is invalid. It is opening again.
     Lost,
     /// The connection is being closed.
     Closing,
@@ -48,11 +48,12 @@ pub struct View<E, S, D> {
     pub state: State,
     /// Number of times that the connection was opened; 0 before the first opening.
     pub generation: u32,
-    /// Newest image of the device. It may be from before the last loss: compare the generation.
+    /// Newest image from the device. It may have arrived before the last loss; its generation shows this.
     pub input: Option<Input>,
-    /// Number of the newest change that was sent. If the bus has confirmations, number of the newest confirmed change.
+    /// Number of the newest change that was sent. If the fieldbus has confirmations, the number of the newest confirmed
+    /// change.
     pub sent: u64,
-    /// Cause of the last loss or failed opening. While the connection is open, this is the last local error.
+    /// Cause of the last loss or of the failed opening. While the connection is open, the last local error.
     pub trouble: Option<E>,
     /// Counters over all generations.
     pub statistics: S,
@@ -105,7 +106,7 @@ impl<E: BusError, S: Clone, D: Clone> Views<E, S, D> {
 
     /// Waits for a change of the image or the state. After the connection is closed, this function never returns.
     pub async fn changed(&mut self) {
-        // The sender ends with the connection, so there are no further changes.
+        // The sender was dropped with the connection, so no more changes follow.
         if self.0.changed().await.is_err() {
             std::future::pending::<()>().await;
         }

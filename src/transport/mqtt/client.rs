@@ -16,7 +16,7 @@ use super::{Event, Hello, Loss, Message, SendError, Session};
 
 /// Bytes per read.
 const CHUNK: usize = 16 * 1024;
-/// Time after which a broker that reads no bytes counts as blocked.
+/// Time after which a broker counts as blocked if it reads no bytes.
 const UNREAD: Duration = Duration::from_secs(30);
 
 /// Address of a broker.
@@ -40,13 +40,13 @@ pub struct Client {
     session: Session,
     buffer: Vec<u8>,
     is_flushed: bool,
-    /// Time since which the connection has accepted no bytes; `None` if it accepts bytes.
+    /// Time since which the connection accepts no bytes; `None` while it accepts bytes.
     stuck_since: Option<Instant>,
 }
 
 impl Client {
-    /// Connects and sends CONNECT. The first event is the answer of the broker. `within` is the time limit for
-    /// connecting and for this answer.
+    /// Connects to a broker and sends CONNECT. The first event is the answer of the broker. `within` is the time limit
+    /// for connecting and for this answer.
     pub async fn open(endpoint: &Endpoint, hello: &Hello, within: Duration) -> Result<Self, Loss> {
         let by = Instant::now() + within;
         let opened = timeout_at(by, stream(endpoint)).await.unwrap_or(Err(ConnectError::TimedOut.into()))?;
@@ -55,7 +55,7 @@ impl Client {
         Ok(Self { stream: opened, session, buffer: vec![0; CHUNK], is_flushed: true, stuck_since: None })
     }
 
-    /// Waits for the next event. Cancel safe. There are no more events after [`Event::Lost`].
+    /// Waits for the next event. The future is cancel safe. No more events follow after [`Event::Lost`].
     pub async fn next(&mut self) -> Event {
         loop {
             if let Some(event) = self.session.next_event() {
@@ -102,11 +102,11 @@ impl Client {
         self.session.outgoing().len()
     }
 
-    /// Sends DISCONNECT, so that the broker does not publish the last will, and closes the connection. The caller sets
-    /// the time limit.
+    /// Sends DISCONNECT, so that the broker does not publish the last will, and closes the connection. This can take
+    /// any time, so the caller must set a time limit.
     pub async fn close(mut self) {
         self.session.disconnect(Instant::now());
-        // An error is ignored: if the broker is already gone, DISCONNECT is not needed.
+        // An error is ignored: if the connection to the broker is already lost, DISCONNECT is not needed.
         let _closed: io::Result<()> = poll_fn(|cx| {
             ready!(self.flush(cx))?;
             Pin::new(&mut *self.stream).poll_shutdown(cx)
@@ -195,7 +195,7 @@ mod tests {
         };
         let now = Instant::now();
         let session = Session::new(&hello, now, now + Duration::from_secs(10)).unwrap();
-        // The buffer is smaller than CONNECT.
+        // The buffer is smaller than CONNECT, so the client needs more than one write.
         let (stream, mut broker) = tokio::io::duplex(8);
         let mut client =
             Client { stream: Box::new(stream), session, buffer: vec![0; CHUNK], is_flushed: true, stuck_since: None };

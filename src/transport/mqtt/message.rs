@@ -26,7 +26,7 @@ pub struct Message {
     pub payload: Vec<u8>,
     /// Whether the broker keeps the message for later subscribers.
     pub retain: bool,
-    /// Whether the broker acknowledges the message (`QoS` 1) or not (`QoS` 0).
+    /// Whether the broker acknowledges the message: `QoS` 1 if it does, `QoS` 0 if not.
     pub acknowledged: bool,
 }
 
@@ -37,7 +37,7 @@ impl fmt::Debug for Message {
     }
 }
 
-/// Last will: the message that the broker publishes when the client is gone (`QoS` 1).
+/// Last will: a message with `QoS` 1 that the broker publishes if the connection to the client is lost.
 pub type Will = Message;
 
 /// Contents of CONNECT.
@@ -74,7 +74,7 @@ pub struct Refusal {
     pub code: u8,
     /// Reason text of the broker.
     pub reason: Option<String>,
-    /// Other server that the broker recommends.
+    /// Name of another server that the broker recommends.
     pub server: Option<String>,
 }
 
@@ -85,7 +85,8 @@ pub enum Event {
     Connected,
     /// The broker refused the client.
     Refused(Refusal),
-    /// The broker acknowledged the message with this number, or rejected it with this code.
+    /// The broker acknowledged the message with this number. If there is a code, the broker rejected the message with
+    /// this code.
     Acknowledged(u64, Option<u8>),
     /// A subscription was accepted or refused.
     Subscribed(bool),

@@ -1,5 +1,5 @@
-//! MQTT client for versions 3.1.1 and 5: acknowledged messages out, limited messages in. This module does not interpret
-//! payloads.
+//! MQTT client for versions 3.1.1 and 5. It sends acknowledged messages, and limits the size and number of received
+//! messages. This module does not interpret payloads.
 //!
 //! | file | contents |
 //! |---|---|
@@ -21,8 +21,8 @@ pub use self::session::{LARGEST, Session};
 pub use self::tls::{Identity, Tls, TlsError, Trust};
 use super::tcp::ConnectError;
 
-/// Flood limit: number of packets and number of bytes, within this number of seconds. Answers to our own packets do not
-/// count.
+/// Flood limit: maximum number of packets and of bytes, and the number of seconds in which they are counted. Answers to
+/// packets of this client do not count.
 const FLOOD: (u32, u32, u64) = (1000, 4 << 20, 10);
 
 /// Reason why there is no connection to the broker.
@@ -35,16 +35,16 @@ pub enum Loss {
     #[error("{0}")]
     Tls(TlsError),
     /// The broker accepted the connection but did not answer.
-    #[error("it accepts the connection, but does not answer")]
+    #[error("the broker accepts the connection, but does not answer")]
     Unanswered,
-    /// The broker stopped answering.
-    #[error("it does not answer any longer")]
+    /// The broker stopped answering pings.
+    #[error("the broker does not answer any longer")]
     Silent,
     /// The broker closed the connection.
-    #[error("it closed the connection")]
+    #[error("the broker closed the connection")]
     Closed,
     /// The broker closed the connection with a reason.
-    #[error("it closed the connection: {}", goodbye(*code, reason.as_deref()))]
+    #[error("the broker closed the connection: {}", goodbye(*code, reason.as_deref()))]
     Goodbye {
         /// MQTT 5 reason code.
         code: u8,
@@ -52,19 +52,19 @@ pub enum Loss {
         reason: Option<String>,
     },
     /// The received bytes are not MQTT, or not valid.
-    #[error("it does not send MQTT ({0})")]
+    #[error("the broker does not send MQTT ({0})")]
     Garbage(String),
     /// The broker violated the MQTT protocol.
-    #[error("it does not follow the MQTT protocol: {0}")]
+    #[error("the broker does not follow the MQTT protocol: {0}")]
     Protocol(&'static str),
-    /// The broker sends too much data; see the flood limit.
-    #[error("it sends too much: more than {} packets or {} bytes in {} s without a request", FLOOD.0, FLOOD.1, FLOOD.2)]
+    /// The broker sends too much data. See the flood limit.
+    #[error("the broker sends too much: more than {} packets or {} bytes in {} s without a request", FLOOD.0, FLOOD.1, FLOOD.2)]
     Flood,
     /// The broker does not read the bytes that are sent to it.
-    #[error("it does not read the sent data")]
+    #[error("the broker does not read the sent data")]
     Unread,
-    /// The broker sent a packet above the size limit.
-    #[error("it sends a packet that is longer than {LARGEST} bytes")]
+    /// The broker sent a packet that is larger than the limit.
+    #[error("the broker sends a packet that is longer than {LARGEST} bytes")]
     TooLarge,
     /// Error of the connection.
     #[error("{0}")]
@@ -84,8 +84,8 @@ fn goodbye(code: u8, reason: Option<&str>) -> String {
         (0x81, "malformed packet"),
         (0x82, "protocol error"),
         (0x87, "not authorized"),
-        (0x89, "it is busy"),
-        (0x8b, "it is shutting down"),
+        (0x89, "the broker is busy"),
+        (0x8b, "the broker is shutting down"),
         (0x8d, "keep-alive timeout"),
         (0x8e, "another client connected with the same name"),
         (0x90, "invalid topic"),
@@ -94,9 +94,9 @@ fn goodbye(code: u8, reason: Option<&str>) -> String {
         (0x96, "message rate too high"),
         (0x97, "quota exceeded"),
         (0x98, "administrative action"),
-        (0x9a, "it stores no retained messages"),
+        (0x9a, "the broker stores no retained messages"),
         (0x9c, "use another server"),
-        (0x9d, "it has a new address"),
+        (0x9d, "the broker has a new address"),
     ];
     let name = CODES.iter().find(|(known, _)| *known == code).map_or("unspecified", |(_, name)| name);
     match reason {

@@ -16,17 +16,17 @@ use super::{FLOOD, Loss};
 
 /// Maximum size of a packet from a broker, in bytes. Commands and states need a few hundred bytes.
 pub const LARGEST: u32 = 256 * 1024;
-/// Receive maximum: number of unacknowledged messages that a broker may send at a time.
+/// Receive maximum: number of messages that a broker may send before this client has acknowledged them.
 const RECEIVE_MAXIMUM: u16 = 16;
 /// Time limit for the answer to a ping.
 const PONG_WITHIN: Duration = Duration::from_secs(10);
-/// First byte from a broker (3.1.1, section 3.2.1; version 5 has the same byte).
+/// First byte that a broker sends, in version 3.1.1 (section 3.2.1) and also in version 5.
 const CONNACK: u8 = 0x20;
 /// Size limit of a usual answer of a broker. An answer up to this size does not count as flood.
 const ANSWER: u32 = 256;
-/// Maximum number of bytes of acknowledgements that wait for a broker that reads nothing.
+/// Maximum number of bytes of acknowledgements that wait to be sent to a broker.
 const REPLIES: usize = 64 * 1024;
-/// Maximum number of characters of a broker's text in a report.
+/// Maximum number of characters that a report contains of a text from a broker.
 const LONGEST_TEXT: usize = 200;
 
 /// A session, from CONNECT to its end. A session cannot be used again.
@@ -36,22 +36,22 @@ pub struct Session {
     outgoing: Vec<u8>,
     events: VecDeque<Event>,
     timers: Vec<(TimerKind, Instant)>,
-    /// Messages in progress: their packet identifiers, with our own numbers. An identifier is free again after the
-    /// acknowledgement, even if the event of the acknowledgement is still in the queue.
+    /// Messages in progress: packet identifier, and number of the message in this client. After the acknowledgement,
+    /// the identifier is free again, even if the event of the acknowledgement is still in the queue.
     under_way: HashMap<u16, u64>,
     published: u64,
     answer_by: Option<Instant>,
-    /// Numbers of pings sent and answered.
+    /// Number of the last ping that was sent. The field below is the number of the last answered ping.
     pings: u64,
     pongs: u64,
     has_heard: bool,
     flood: Flood,
-    /// Number of bytes of replies since the connection last accepted all output.
+    /// Number of bytes of replies that were queued after the connection last accepted all output.
     replies: usize,
     is_over: bool,
 }
 
-/// Counters of unsolicited traffic since the time `since`.
+/// Counters of unsolicited traffic, counted from `since`.
 #[derive(Debug)]
 struct Flood {
     since: Instant,
@@ -128,7 +128,7 @@ impl Session {
         &mut self.outgoing
     }
 
-    /// Time of the next [`poll`](Self::poll).
+    /// Time at which [`poll`](Self::poll) must be called again.
     pub fn due(&self) -> Option<Instant> {
         self.timers.iter().map(|(_, at)| *at).chain(self.answer_by).min()
     }
@@ -151,7 +151,8 @@ impl Session {
 
     /// Handles bytes from the broker.
     pub fn handle(&mut self, now: Instant, bytes: &[u8]) {
-        // A server of another protocol would never send a CONNACK, so the error is reported now.
+        // Only a server of another protocol begins with another byte than CONNACK. The error is reported now, because
+        // such a server would never send a CONNACK.
         if let (Some(first), false) = (bytes.first(), std::mem::replace(&mut self.has_heard, true))
             && *first != CONNACK
         {
@@ -245,13 +246,14 @@ impl Session {
         self.send(now, packet)
     }
 
-    /// Queues a ping and returns its number. The answer shows that everything before the ping has arrived.
+    /// Queues a ping and returns its number. The answer shows that everything before the ping has arrived at the
+    /// broker.
     pub fn ping(&mut self, now: Instant) -> u64 {
         let packet: Result<Packet, MqttError> = match self.version {
             Version::V3 => v3_1_1::Pingreq::builder().build().map(Into::into),
             Version::V5 => v5_0::Pingreq::builder().build().map(Into::into),
         };
-        // A ping has no variable content. If it does not fit into the output, it is not counted.
+        // A ping has no variable content, so it is always valid. If it does not fit into the output, it is not counted.
         let _sent = packet.map_err(SendError::from).and_then(|packet| self.send(now, packet));
         self.pings
     }
@@ -262,7 +264,7 @@ impl Session {
             Version::V3 => v3_1_1::Disconnect::builder().build().map(Into::into),
             Version::V5 => v5_0::Disconnect::builder().build().map(Into::into),
         };
-        // An error is ignored: the caller closes the connection next.
+        // An error is ignored, because the caller closes the connection next.
         let _sent = packet.map_err(SendError::from).and_then(|packet| self.send(now, packet));
         self.timers.clear();
     }
@@ -300,9 +302,10 @@ impl Session {
                 connection::Event::NotifyPacketIdReleased(_) => {}
             }
         }
-        // If there was no error with a reason before, the session ends with this general reason.
+        // If an earlier error has ended the session, that error is kept. Otherwise the session ends with this general
+        // reason.
         if closes {
-            self.lose(Loss::Garbage("it does not follow the protocol".to_owned()));
+            self.lose(Loss::Garbage("the broker does not follow the protocol".to_owned()));
         }
     }
 
@@ -361,7 +364,7 @@ impl Session {
                 acknowledged: publish.qos() != Qos::AtMostOnce,
             }),
             Packet::V3_1_1Pingresp(_) | Packet::V5_0Pingresp(_) => {
-                // An answer without a ping is ignored.
+                // An answer is ignored if no ping is waiting for it.
                 self.pongs = self.pings.min(self.pongs + 1);
                 Event::Pong(self.pongs)
             }
@@ -461,8 +464,8 @@ mod tests {
 
     #[test]
     fn hello_is_as_the_standard_has_it() {
-        // Expected bytes from MQTT 3.1.1, sections 3.1.1 to 3.1.3: clean session, will with QoS 1 and retain, user name
-        // and password.
+        // The expected bytes follow MQTT 3.1.1, sections 3.1.1 to 3.1.3: clean session, will with QoS 1 and retain,
+        // user name and password.
         let (mut session, _) = started(Version::V3);
         let fields = [&b"cell7"[..], b"armctl/cell7/state", b"offline", b"plant", b"secret"];
         let mut expected = vec![0x10, 0, 0, 4];
@@ -496,7 +499,7 @@ mod tests {
             assert!(!numbers.contains(&third));
             assert_eq!(session.publish(now, &message(false)), Ok(None));
         }
-        // In MQTT 5, a broker can reject a message: "not authorized". "No subscribers" is not a rejection.
+        // In MQTT 5, a broker can reject a message. "Not authorized" is a rejection; "no subscribers" is not.
         let (mut session, now) = connected(Version::V5);
         session.publish(now, &message(true)).unwrap();
         session.handle(now, &[0x40, 3, 0, 1, 0x87]);
@@ -535,7 +538,7 @@ mod tests {
     #[test]
     fn what_is_too_large_or_makes_no_sense_ends_it() {
         let (mut session, now) = connected(Version::V3);
-        // A PUBLISH with a length of 256 MB.
+        // A PUBLISH that states a length of 256 MB.
         session.handle(now, &[0x30, 0xff, 0xff, 0xff, 0x7f, 1, 2, 3]);
         assert!(matches!(session.next_event(), Some(Event::Lost(Loss::TooLarge))));
         let (mut session, now) = started(Version::V5);
@@ -558,8 +561,8 @@ mod tests {
         }
     }
 
-    /// Sends the same packet every `apart`. Returns the number of packets that the session accepted, and the reason of
-    /// its end.
+    /// Handles the same packet again and again, with the pause `apart`. Returns the number of packets that the session
+    /// accepted, and the reason for which it ended.
     fn taken(packet: &[u8], apart: Duration, most: usize) -> (usize, Option<String>) {
         let (mut session, now) = connected(Version::V3);
         let mut at = now;
@@ -590,12 +593,12 @@ mod tests {
     #[test]
     fn answers_are_no_flood() {
         let (mut session, now) = connected(Version::V5);
-        // Each acknowledgement has a reason of 100 letters.
+        // Each acknowledgement contains a reason of 100 letters.
         let mut puback = vec![0x40, 107, 0, 0, 0, 103, 0x1f, 0, 100];
         puback.extend([b'x'; 100]);
         for _ in 0..100_000 {
             let number = session.publish(now, &message(true)).unwrap();
-            // PUBLISH: type, length, topic with its length, identifier.
+            // Layout of PUBLISH: type, length, topic with its length, identifier.
             let id = [session.outgoing()[7], session.outgoing()[8]];
             session.outgoing().clear();
             puback[2..4].copy_from_slice(&id);
@@ -609,7 +612,7 @@ mod tests {
     fn replies_that_are_not_read_are_bounded() {
         let (mut session, now) = connected(Version::V3);
         session.outgoing().clear();
-        // One packet every 100 ms does not count as flood. The connection accepts no output.
+        // One packet every 100 ms does not count as flood. The test sends no output, so the replies wait.
         for number in 1..u16::MAX {
             let [high, low] = number.to_be_bytes();
             session.handle(now + Duration::from_millis(100) * number.into(), &[0x32, 5, 0, 1, b'a', high, low]);

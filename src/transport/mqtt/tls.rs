@@ -15,9 +15,9 @@ pub enum Trust {
 /// Client certificate, in PEM format.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Identity {
-    /// The certificate and its chain.
+    /// The certificate and its chain, in PEM format.
     pub certificates: Vec<u8>,
-    /// The private key.
+    /// The private key, in PEM format.
     pub key: Vec<u8>,
 }
 
@@ -25,28 +25,28 @@ pub struct Identity {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum TlsError {
     /// The issuer of the broker's certificate is not trusted.
-    #[error("this computer does not trust the issuer of its certificate")]
+    #[error("this computer does not trust the issuer of the broker's certificate")]
     UnknownIssuer,
     /// The certificate is for another host name.
-    #[error("its certificate is for another name")]
+    #[error("the broker's certificate is for another name")]
     WrongName,
     /// The certificate has expired.
-    #[error("its certificate has expired")]
+    #[error("the broker's certificate has expired")]
     Expired,
     /// The certificate is not valid yet.
-    #[error("its certificate is not valid yet")]
+    #[error("the broker's certificate is not valid yet")]
     NotYetValid,
     /// The certificate was revoked.
-    #[error("its certificate was revoked")]
+    #[error("the broker's certificate was revoked")]
     Revoked,
     /// The certificate is not valid for another reason.
-    #[error("its certificate is not valid: {0}")]
+    #[error("the broker's certificate is not valid: {0}")]
     Certificate(String),
     /// The port does not use TLS.
-    #[error("it does not use TLS on this port")]
+    #[error("the broker does not use TLS on this port")]
     NoTls,
     /// The broker rejects the certificate of this client, or requires a certificate.
-    #[error("it does not accept this client's certificate ({0})")]
+    #[error("the broker does not accept this client's certificate ({0})")]
     Rejected(String),
     /// The two sides have no common TLS version or cipher.
     #[error("no common TLS version or cipher ({0})")]
@@ -54,7 +54,7 @@ pub enum TlsError {
     /// A local certificate or key is not valid.
     #[error("{0}")]
     Setup(String),
-    /// Another TLS error.
+    /// Any other TLS error.
     #[error("TLS: {0}")]
     Other(String),
 }
@@ -156,7 +156,7 @@ mod rustls_link {
     }
 
     impl TlsError {
-        /// Converts an error of rustls; `None` for other errors.
+        /// Returns the TLS error in an I/O error; `None` if the error does not come from rustls.
         pub(in super::super) fn of(error: &io::Error) -> Option<Self> {
             let error = error.get_ref()?.downcast_ref::<Error>()?;
             Some(match error {
@@ -192,12 +192,12 @@ mod rustls_link {
 
     use super::{Identity, TlsError, Trust};
 
-    /// TLS settings; not available in this build.
+    /// TLS settings. They cannot be created, because this build has no TLS.
     #[derive(Debug)]
     pub enum Tls {}
 
     impl Tls {
-        /// Returns the error that TLS is not available.
+        /// Returns the error that this build has no TLS.
         pub fn new(_: &str, _: &Trust, _: Option<&Identity>) -> Result<Self, TlsError> {
             Err(TlsError::Setup("this armctl was built without TLS (feature plant-tls)".to_owned()))
         }

@@ -1,4 +1,4 @@
-//! Driver that runs a master on its own thread, so that the data exchange does not depend on the rest of the program.
+//! Driver that runs a master on its own thread. The data exchange then does not depend on the rest of the program.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -26,7 +26,7 @@ pub type Opener = Box<dyn FnMut() -> Result<Box<dyn Port>, ProfibusError> + Send
 /// Function that records each telegram.
 pub type Tap = Box<dyn Fn(&[u8]) + Send>;
 
-/// An open link. When the link is dropped, the slave is released.
+/// An open link. When it is dropped, the driver releases the slave.
 #[derive(Debug)]
 pub struct Connection {
     shared: Arc<Shared>,
@@ -46,8 +46,8 @@ impl Connection {
     /// Opens the port and the link.
     ///
     /// # Errors
-    /// The port or the link cannot be opened. The first opening is not repeated. If the link is lost later, this is not
-    /// an error but a state of the view.
+    /// The port or the link cannot be opened. A failed first opening is not repeated. A later loss of the link is not
+    /// an error here, but a state of the view.
     pub async fn open(settings: Settings, mut opener: Opener, tap: Option<Tap>) -> Result<Self, ProfibusError> {
         let master = Master::new(Duration::ZERO, settings)?;
         let port = opener()?;
@@ -96,7 +96,7 @@ impl Drop for Connection {
         self.shared.master().close(now);
         self.shared.is_over.store(true, Ordering::SeqCst);
         if let Some(thread) = self.thread.take() {
-            // If the thread panicked, the panic was already printed.
+            // An error means that the thread panicked. The panic was already printed.
             let _ = thread.join();
         }
     }
@@ -108,7 +108,7 @@ impl Shared {
     }
 }
 
-/// Transfers characters between the master and its port.
+/// Driver that transfers characters between the master and its port.
 struct Driver {
     shared: Arc<Shared>,
     port: Option<Box<dyn Port>>,
@@ -172,7 +172,7 @@ impl Driver {
         }
         let now = self.shared.start.elapsed();
         if self.shared.master().view().state != State::Lost {
-            // The link is being closed. Without a port, the slave cannot be released.
+            // The link is being closed, but there is no port through which the slave could be released.
             self.shared.master().port_failed(now, ProfibusError::Ended);
             return;
         }
@@ -189,7 +189,7 @@ impl Driver {
     }
 }
 
-/// Splits the traffic into telegrams and passes them to a tap.
+/// Recorder that splits the traffic into telegrams and passes them to a tap.
 pub(super) struct Record {
     tap: Tap,
     stream: Stream,

@@ -27,18 +27,18 @@ pub enum ProfibusError {
     /// The adapter was disconnected.
     #[error("the adapter was disconnected: {text}")]
     Gone {
-        /// Reason of the system.
+        /// Reason that the system reports.
         text: String,
     },
-    /// Another master is on the bus. After its traffic was received, this master sent nothing.
+    /// Another master is on the bus. This master has sent nothing after it received traffic of the other master.
     #[error("another master is on the bus: station {master} ({heard})")]
     OtherMaster {
-        /// Address of the master.
+        /// Address of the other master.
         master: u8,
         /// The received traffic that shows the other master.
         heard: &'static str,
     },
-    /// Unreadable traffic is on the bus. Nothing was sent.
+    /// The traffic on the bus is unreadable. Nothing was sent.
     #[error("cannot decode the traffic on the bus at this bit rate ({bytes} bytes)")]
     Unreadable {
         /// Number of unreadable bytes.
@@ -49,11 +49,11 @@ pub enum ProfibusError {
     NoAnswer {
         /// Address of the station.
         station: u8,
-        /// The request.
+        /// Name of the request.
         asked: &'static str,
         /// Number of attempts.
         attempts: u8,
-        /// Waiting time per attempt.
+        /// Time limit per attempt.
         slot: Duration,
         /// What was received instead.
         heard: Heard,
@@ -69,7 +69,7 @@ pub enum ProfibusError {
     Refused {
         /// Address of the station.
         station: u8,
-        /// The request.
+        /// Name of the request.
         asked: &'static str,
         /// Status of the answer.
         status: Status,
@@ -79,12 +79,12 @@ pub enum ProfibusError {
     Malformed {
         /// Address of the station.
         station: u8,
-        /// The request.
+        /// Name of the request.
         asked: &'static str,
         /// What is wrong with the answer.
         why: String,
     },
-    /// The ident number of the slave is not the one in the settings.
+    /// The ident number of the slave is not the ident number in the settings.
     #[error("station {station} has ident number {found:#06x}, not {expected:#06x}")]
     Ident {
         /// Address of the station.
@@ -105,13 +105,13 @@ pub enum ProfibusError {
         station: u8,
         /// Identifier bytes of the configuration.
         configuration: Vec<u8>,
-        /// Bytes from the slave.
+        /// Number of bytes from the slave.
         input: usize,
-        /// Bytes to the slave.
+        /// Number of bytes to the slave.
         output: usize,
-        /// Expected bytes from the slave.
+        /// Expected number of bytes from the slave.
         expected_input: usize,
-        /// Expected bytes to the slave.
+        /// Expected number of bytes to the slave.
         expected_output: usize,
     },
     /// The data of an exchange had a wrong length.
@@ -160,7 +160,7 @@ pub enum ProfibusError {
         /// Last diagnosis of the slave.
         diagnosis: Box<Diagnosis>,
     },
-    /// The slave has left data exchange.
+    /// The slave has left data exchange, so it no longer uses the images.
     #[error("station {station} has left data exchange: {why}")]
     Left {
         /// Address of the station.
@@ -168,7 +168,7 @@ pub enum ProfibusError {
         /// Reason, as text.
         why: String,
     },
-    /// No data exchange between the station and a master was received. Nothing was sent.
+    /// No data exchange between the station and a master was received. This master has sent nothing.
     #[error("no data exchange between station {station} and a master within {} ms ({telegrams} telegrams, {noise} \
              bytes of noise)", after.as_millis())]
     NotHeard {
@@ -181,7 +181,8 @@ pub enum ProfibusError {
         /// Number of bytes that are not part of a telegram.
         noise: u64,
     },
-    /// The link was lost, and the caller has not seen the loss yet: its image belongs to an older generation.
+    /// The link was lost, and the caller has not noticed the loss yet: the image that it wants to send belongs to an
+    /// older generation.
     #[error("the connection was lost")]
     Outdated,
     /// The link was closed by this program.
@@ -194,7 +195,7 @@ impl BusError for ProfibusError {
     const ENDED: Self = Self::Ended;
 }
 
-/// Bytes that were received instead of an answer.
+/// What was received instead of an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Heard {
     /// Whether noise or a damaged telegram was received.
@@ -214,7 +215,7 @@ impl std::fmt::Display for Heard {
     }
 }
 
-/// Formats bytes as in the options of a URL.
+/// Formats bytes in hexadecimal, as in the options of a URL.
 pub fn hex(bytes: &[u8]) -> String {
     if bytes.is_empty() { "(empty)".to_owned() } else { bytes.iter().map(|byte| format!("{byte:02X}")).collect() }
 }

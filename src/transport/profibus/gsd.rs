@@ -1,7 +1,7 @@
 //! Parser for GSD files. A GSD file describes a slave: ident number, bit rates, modules, user parameters.
 //!
-//! Lines have the form `Keyword = value`. A `\` at the end of a line continues the line, a `;` starts a comment,
-//! `Module` to `EndModule` is a block. Keywords are not case-sensitive. Unknown keywords are skipped.
+//! Lines have the form `Keyword = value`. A `\` at the end of a line continues the line. A `;` starts a comment. A
+//! block of lines extends from `Module` to `EndModule`. Keywords are not case-sensitive. Unknown keywords are skipped.
 
 use thiserror::Error;
 
@@ -20,7 +20,7 @@ pub struct Gsd {
     pub model: String,
     /// Ident number.
     pub ident: u16,
-    /// Slave family; 0 is general.
+    /// Slave family (main family); 0 means general.
     pub family: Option<u8>,
     /// Bit rates that both the slave and this program support.
     pub rates: Vec<Rate>,
@@ -37,7 +37,7 @@ pub struct Gsd {
 pub struct Module {
     /// Name of the module.
     pub name: String,
-    /// Identifier bytes.
+    /// Identifier bytes of the module.
     pub configuration: Vec<u8>,
     /// User parameters of the module.
     pub parameters: Vec<u8>,
@@ -49,7 +49,7 @@ pub struct Module {
 pub struct GsdError {
     /// Line number, from 1.
     pub line: usize,
-    /// The keyword.
+    /// The keyword of the line.
     pub keyword: String,
     /// Description of the problem.
     pub problem: String,
@@ -71,7 +71,7 @@ impl Entry<'_> {
         self.keyword.eq_ignore_ascii_case(keyword)
     }
 
-    /// Parses `0x1F` or `31`.
+    /// Parses a number, for example `0x1F` or `31`.
     fn number(&self, text: &str) -> Result<u32, GsdError> {
         let text = text.trim();
         let hex = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X"));
@@ -99,7 +99,7 @@ impl Entry<'_> {
         rest.split_once('"').ok_or_else(wrong)
     }
 
-    /// Parses bytes of user parameters. The number after the keyword, for example `(3)`, is their offset.
+    /// Parses bytes of user parameters. The number after the keyword is their offset, for example `(3)`.
     fn place(&self, parameters: &mut Vec<u8>) -> Result<bool, GsdError> {
         let Some((keyword, rest)) = self.keyword.split_once('(') else { return Ok(false) };
         if !keyword.trim().eq_ignore_ascii_case("Ext_User_Prm_Data_Const") {
@@ -197,7 +197,7 @@ impl Gsd {
         } else if entry.is("Modular_Station") {
             self.is_modular = entry.number(entry.value)? != 0;
         } else if entry.is("Slave_Family") {
-            // A sub-family may follow after an `@`.
+            // After the family, an `@` and a sub-family may follow.
             self.family = Some(entry.byte(entry.value.split('@').next().unwrap_or_default())?);
         } else if entry.is("User_Prm_Data_Len") || entry.is("Max_User_Prm_Data_Len") && !self.is_modular {
             entry.length(&mut self.parameters)?;
@@ -238,7 +238,8 @@ impl Gsd {
         Ok((configuration, parameters))
     }
 
-    /// Returns the module (or set of modules) with these sizes. `None` if there is no such module, or more than one.
+    /// Returns the module (or set of modules) with these image sizes. Returns `None` if no module fits, or more than
+    /// one.
     pub fn fitting(&self, input: usize, output: usize) -> Option<&Module> {
         let mut fitting = self.modules.iter().filter(|module| {
             Configuration::parse(&module.configuration)
@@ -249,7 +250,7 @@ impl Gsd {
     }
 }
 
-/// Bit rate of a keyword, for example `45.45_supp`.
+/// Bit rate that a keyword stands for, for example `45.45_supp`.
 fn rate(keyword: &str) -> Option<Rate> {
     let name = keyword.to_ascii_lowercase();
     let name = name.strip_suffix("_supp")?;
@@ -259,7 +260,7 @@ fn rate(keyword: &str) -> Option<Rate> {
     })
 }
 
-/// Returns the logical lines without comments, each with the number of its first line in the file.
+/// Returns the logical lines without comments. Each line has the number of its first line in the file.
 fn logical_lines(text: &str) -> Vec<(usize, String)> {
     let mut lines = Vec::new();
     let mut open: Option<(usize, String)> = None;

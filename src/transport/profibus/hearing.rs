@@ -99,7 +99,7 @@ impl Drop for Hearing {
     fn drop(&mut self) {
         self.is_over.store(true, Ordering::SeqCst);
         if let Some(thread) = self.thread.take() {
-            // If the thread panicked, the panic was already printed.
+            // An error means that the thread panicked. The panic was already printed.
             let _ = thread.join();
         }
     }

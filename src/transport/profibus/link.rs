@@ -1,5 +1,5 @@
-//! PROFIBUS as a fieldbus of images. There are two kinds of link: one controls the slave, the other listens to the data
-//! exchange of a PLC.
+//! PROFIBUS as a fieldbus of images. There are two kinds of link: one controls the slave, and the other only receives
+//! the data exchange between a PLC and the slave.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -16,10 +16,10 @@ use crate::image::cyclic::{Bus, Cyclic};
 use crate::image::tap::{Passage, Tap};
 use crate::image::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
 
-/// Byte order of an image: some boards send a part of the words with exchanged bytes.
+/// Byte order of an image. Some boards send the two bytes of a word in exchanged order, in a part of the image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Swapped {
-    /// Number of bytes, from the start of the image, whose pairs are swapped.
+    /// Number of bytes at the start of the image whose pairs are exchanged.
     pub bytes: usize,
 }
 
@@ -107,7 +107,7 @@ impl Bus for Slave {
     }
 }
 
-/// Images that a slave exchanges with another master. This link sends nothing.
+/// Images that a slave exchanges with another master. This link only receives, and sends nothing.
 #[derive(Debug)]
 pub struct Listening {
     hearing: Hearing,
@@ -150,7 +150,7 @@ impl Listening {
                     let cause = LinkError::from(error).cause().clone();
                     return Event::Lost(LinkError::Lost { cause, outputs: Outputs::Never });
                 }
-                // Without a port, no more data can arrive.
+                // Without a port, no more data can arrive, so this wait never ends.
                 Err(ProfibusError::Gone { .. }) => std::future::pending().await,
                 Ok(_) | Err(_) => {}
             }

@@ -27,7 +27,7 @@ pub struct Heard {
 pub struct Listener {
     station: u8,
     stream: Stream,
-    /// Last request for a data exchange: its master and the output image.
+    /// Last request for a data exchange that has no answer yet: its master, and the output image.
     asked: Option<(u8, Vec<u8>)>,
     heard: Heard,
 }
@@ -67,7 +67,7 @@ impl Listener {
             {
                 self.asked = Some((from, data));
             }
-            // A data exchange is complete only when the answer to the last request arrives. Before that, the slave may
+            // A data exchange is complete only when the answer to the last request arrives. Until then, the slave may
             // not have accepted the image.
             Frame {
                 to,
@@ -103,7 +103,7 @@ mod tests {
             "68 05 05 68 02 07 08 01 02 14 16",
         ));
         let mut listener = Listener::new(5);
-        // The bytes arrive one at a time.
+        // The test passes the bytes one at a time.
         let news = line.iter().filter(|byte| listener.handle(&[**byte])).count();
         let heard = listener.heard();
         assert_eq!((news, heard.exchanges, heard.telegrams, heard.noise), (1, 1, 6, 1));
@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn an_answer_to_something_else_is_no_image() {
         let mut listener = Listener::new(5);
-        // The request to this answer was not received, or another station answered.
+        // Either the request to this answer was not received, or another station answered. So the answer is not used.
         assert!(!listener.handle(&hex("68 05 05 68 02 05 08 AA BB 74 16")));
         assert!(!listener.handle(&hex("68 05 05 68 05 02 7D 01 02 87 16 10 05 02 49 50 16")));
         assert!(!listener.handle(&hex("68 05 05 68 02 05 08 AA BB 74 16")));

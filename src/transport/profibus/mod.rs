@@ -1,4 +1,4 @@
-//! PROFIBUS DP master of one slave, as the only master on an RS-485 line, and a simulated slave.
+//! PROFIBUS DP master of one slave, and a simulated slave. The master must be the only master on its RS-485 line.
 //!
 //! This module handles the bytes of images, and nothing specific to robots.
 

@@ -20,10 +20,11 @@ use crate::vanished;
 
 /// Maximum deviation of the bit rate that the bus allows, in thousandths.
 const MOST_OFF: u32 = 3;
-/// Longest latency timer, in ms, that is not longer than the slot time.
+/// Longest latency timer of a USB adapter, in ms, that is acceptable. A longer timer can delay an answer by more than
+/// the slot time.
 const LATENCY: u32 = 1;
 
-/// Size limit of the file with the latency timer.
+/// Size limit of the file that contains the latency timer.
 const LONGEST_TIME: u64 = 64;
 
 /// A port with blocking reads.
@@ -76,7 +77,7 @@ impl Port for Serial {
     }
 
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
-        // With some drivers, a timeout of 0 means no timeout.
+        // A timeout of 0 is avoided, because some drivers then wait without limit.
         self.port.set_timeout(wait.max(Duration::from_micros(50))).map_err(vanished)?;
         match io::Read::read(&mut self.port, buffer) {
             Ok(0) => Err(vanished("the port was closed")),
@@ -94,7 +95,8 @@ impl Port for Serial {
     }
 }
 
-/// Latency timer of a USB adapter in ms. `None` if it is short enough, or if the adapter has none that can be changed.
+/// Latency timer of a USB adapter in ms, if it is too long. `None` if it is short enough, or if the adapter has no
+/// timer that can be changed.
 pub fn latency_timer(path: &str) -> Option<u32> {
     let path = std::fs::canonicalize(path).ok()?;
     let name = path.file_name()?;
@@ -103,7 +105,7 @@ pub fn latency_timer(path: &str) -> Option<u32> {
     text.trim().parse().ok().filter(|time| *time > LATENCY)
 }
 
-/// An in-process peer behind a simulated line.
+/// A peer in this process, behind a simulated line.
 #[derive(Debug)]
 pub struct InProcess<P> {
     peer: P,

@@ -1,11 +1,11 @@
-//! Check for other traffic before the first telegram. If another master is on the line, our telegrams would disturb its
-//! control of the slaves.
+//! Check for other traffic before the first telegram. If another master is on the line, telegrams of this master would
+//! disturb its control of the slaves.
 
 use super::Now;
 use super::error::ProfibusError;
 use super::wire::{Control, Piece, Stream, Telegram};
 
-/// Number of noise characters that are accepted. Opening a port, for example, can cause noise.
+/// Number of noise characters that are accepted. For example, opening a port can cause noise.
 const GLITCH: usize = 2;
 /// Length of a token in bytes.
 const TOKEN: usize = 3;
@@ -21,12 +21,12 @@ pub struct Quiet {
 }
 
 impl Quiet {
-    /// Creates a check that listens until this time.
+    /// Creates a check that listens until `until`.
     pub fn until(until: Now) -> Self {
         Self { until, ..Self::default() }
     }
 
-    /// End of the check; `None` if it never ends.
+    /// Time at which the check ends; `None` if it never ends.
     pub fn due(&self) -> Option<Now> {
         Some(self.until).filter(|until| *until < Now::MAX)
     }
@@ -39,7 +39,8 @@ impl Quiet {
         self.stream.push(bytes);
         while let Some(piece) = self.stream.next_piece() {
             let (master, heard) = match piece {
-                // A token has three bytes and no checksum, so noise can look like a token.
+                // A token has three bytes and no checksum, so noise can look like a token. One token alone is therefore
+                // no proof of another master.
                 Piece::Telegram(Telegram::Token { from, .. }, _) => {
                     self.tokens.push(from);
                     continue;
@@ -48,7 +49,7 @@ impl Quiet {
                     Control::Request(..) => (frame.from, "it sent a request"),
                     Control::Answer(..) => (frame.to, "a station answered it"),
                 },
-                // A short acknowledgement is one byte, which can be noise.
+                // A short acknowledgement is a single byte, so it can also be noise.
                 Piece::Telegram(Telegram::ShortAcknowledge, _) | Piece::Noise(..) => {
                     self.unreadable = self.unreadable.saturating_add(1);
                     continue;
@@ -62,7 +63,8 @@ impl Quiet {
     /// Result of the check; `None` until the check is complete.
     ///
     /// # Errors
-    /// [`ProfibusError::OtherMaster`], or [`ProfibusError::Unreadable`] if only noise was received.
+    /// [`ProfibusError::OtherMaster`] if another master was received, [`ProfibusError::Unreadable`] if only noise was
+    /// received.
     pub fn poll(&mut self, now: Now) -> Option<Result<(), ProfibusError>> {
         if now < self.until {
             return None;

@@ -22,8 +22,8 @@ pub struct Rate {
     pub max_tsdr: u32,
     /// Time limit for the start of an answer (slot time, TSL).
     pub slot: u32,
-    /// Minimum slot time with an adapter, in ms. It is longer than the slot time, because drivers and converters delay
-    /// characters.
+    /// Minimum slot time with an adapter, in ms. It is longer than the slot time of the bus, because drivers and
+    /// converters delay characters.
     pub adapter_ms: u64,
     /// Default time between two data exchanges, in ms.
     pub cycle_ms: u64,
@@ -55,7 +55,7 @@ impl Rate {
         RATES.into_iter().find(|rate| rate.name == name)
     }
 
-    /// Character rate.
+    /// Speed of a line with this bit rate, in characters per time.
     pub fn pace(self) -> Pace {
         Pace::new(self.baud, CHARACTER)
     }
@@ -65,9 +65,9 @@ impl Rate {
         Duration::from_nanos((u64::from(bits) * 1_000_000_000).div_ceil(u64::from(self.baud.max(1))))
     }
 
-    /// Longest duration of a data exchange: both telegrams, the pause before them, and the delay of the answer.
+    /// Longest duration of a data exchange: the pause before it, the request, the delay of the answer, and the answer.
     pub fn exchange(self, output: usize, input: usize) -> Duration {
-        // Start, lengths, addresses, function code, checksum, end.
+        // Number of bytes of a frame without data: start, lengths, addresses, function code, checksum, end.
         const FRAME: usize = 9;
         self.pace().time(output + input + 2 * FRAME) + self.bits(IDLE + self.max_tsdr)
     }

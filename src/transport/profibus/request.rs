@@ -1,8 +1,8 @@
 //! Requests of a master that is alone on its line. The master sends one request at a time, and repeats it until it is
-//! answered.
+//! answered or all attempts have failed.
 //!
-//! For each station, the frame count bit distinguishes a repeated request from a new one. The frame count is reset
-//! after a loss. Otherwise the station could answer a new request with an old answer.
+//! For each station, the frame count bit distinguishes a repeated request from a new one. After a loss, the frame count
+//! is reset. Otherwise the station could answer a new request with an old answer.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
@@ -17,7 +17,7 @@ const REMEMBERED: usize = 4;
 /// Maximum length of an answer in characters.
 const LONGEST: usize = 255;
 
-/// Outcome of a request, or traffic of another master.
+/// Outcome of a request. Also reports traffic of another master.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outcome {
     /// The station answered.
@@ -29,7 +29,7 @@ pub enum Outcome {
         /// What was received instead.
         heard: Heard,
     },
-    /// Another master is active: its address, and the traffic that shows this.
+    /// Another master is active. Contains its address, and the traffic that shows this.
     Foreign(u8, &'static str),
 }
 
@@ -45,11 +45,11 @@ pub enum Answer {
 /// Counters of the requests and answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counted {
-    /// Repeated requests.
+    /// Number of repeated requests.
     pub repeated: u64,
     /// Number of bytes that are not part of a telegram.
     pub noise: u64,
-    /// Answers without a pending request, for example late answers.
+    /// Number of answers without a pending request, for example late answers.
     pub unexpected: u64,
 }
 
@@ -66,7 +66,7 @@ pub struct Requester {
     /// The last telegrams that were sent.
     sent: VecDeque<Vec<u8>>,
     echoes: bool,
-    /// Whether noise was received since the last send. The next bytes may be the inside of a damaged telegram.
+    /// Whether noise was received after the last send. If so, the next bytes may be the inside of a damaged telegram.
     is_spoilt: bool,
     /// Sender and time of the last token.
     token: Option<(u8, Now)>,
@@ -81,7 +81,7 @@ struct Pending {
     bytes: Vec<u8>,
     attempts: u8,
     deadline: Now,
-    /// Latest time of the deadline. Received characters can extend the deadline up to this time.
+    /// Latest possible deadline. Each received character extends the deadline, but not beyond this time.
     latest: Now,
     heard: Heard,
 }
@@ -126,7 +126,7 @@ impl Requester {
         self.pending.as_ref().map_or(self.free, |pending| pending.deadline)
     }
 
-    /// Creates a request with data. The request is for a service access point (SAP) of a station, or has no SAP.
+    /// Creates a request with data. With `sap`, the request is for this service access point of the station.
     pub fn request(&self, service: Service, station: u8, sap: Option<u8>, data: Vec<u8>) -> Frame {
         Frame {
             to: station,
@@ -149,7 +149,7 @@ impl Requester {
         {
             *count = *self.counts.entry(frame.to).or_insert(FrameCount::First);
         }
-        // Bytes that arrived before do not belong to this request.
+        // Bytes that arrived earlier do not belong to this request.
         self.stream.clear();
         let bytes = frame.emit();
         let (deadline, latest) = self.deadlines(now, bytes.len());
@@ -167,7 +167,7 @@ impl Requester {
         bytes
     }
 
-    /// Resets the frame count of a station, and cancels its pending request.
+    /// Cancels the pending request to a station, and resets the frame count of the station.
     pub fn forget(&mut self, station: u8) {
         self.counts.remove(&station);
         self.pending.take_if(|pending| pending.frame.to == station);
@@ -191,7 +191,8 @@ impl Requester {
             outcome = self.take(now, piece);
         }
         if let Some(pending) = self.pending.as_mut().filter(|_| !bytes.is_empty()) {
-            // The missing characters arrive at the bit rate of the line, plus the delay of the adapter.
+            // The deadline allows for the missing characters at the bit rate of the line, and for the delay of the
+            // adapter.
             let rest = self.rate.pace().time(self.stream.missing()) + self.slot;
             pending.deadline = (now + rest).max(pending.deadline).min(pending.latest);
         }
@@ -222,7 +223,7 @@ impl Requester {
         Some(Ok(bytes))
     }
 
-    /// Deadline for the start of an answer, and latest time for its end.
+    /// Deadline for the start of an answer, and latest deadline for its end.
     fn deadlines(&self, now: Now, len: usize) -> (Now, Now) {
         let begun = now + self.rate.pace().time(len) + self.slot;
         (begun, begun + self.rate.pace().time(LONGEST) + self.slot)
@@ -253,7 +254,8 @@ impl Requester {
             return None;
         }
         let answer = match telegram {
-            // These two telegrams have no checksum, so they may be a part of a damaged telegram.
+            // Tokens and short acknowledgements have no checksum. After noise, they may be a part of a damaged
+            // telegram.
             Telegram::Token { .. } | Telegram::ShortAcknowledge if self.is_spoilt => return None,
             Telegram::Token { from, .. } => return self.heard_token(now, from),
             Telegram::Frame(frame) => match frame.control {
@@ -271,8 +273,8 @@ impl Requester {
         {
             self.counts.insert(pending.frame.to, count.next());
         }
-        // After a repetition, the answer to the earlier attempt may still arrive. It must not be mistaken for the
-        // answer to the next request.
+        // After a repetition, the answer to the earlier attempt may still arrive. The longer pause ensures that it is
+        // not mistaken for the answer to the next request.
         let pause = if pending.attempts > 1 { self.slot } else { self.rate.bits(IDLE) };
         self.free = now + pause;
         Some(Outcome::Answer(answer))
@@ -285,13 +287,13 @@ impl Requester {
     }
 }
 
-/// Two tokens of the same master within this time cannot be noise.
+/// If two tokens of the same master arrive within this time, they cannot be noise.
 const CHANCE: Duration = Duration::from_secs(1);
 
 /// Whether this is a possible answer to the request.
 fn answers(asked: &Frame, answer: &Answer) -> bool {
     match answer {
-        // A short acknowledgement has no sender. It is not valid for an FDL status request.
+        // A short acknowledgement does not contain its sender. It is not a valid answer to an FDL status request.
         Answer::Short => asked.control != Control::Request(Service::FdlStatus, FrameCount::None),
         Answer::Frame(frame) => {
             let is_from = frame.from == asked.to && frame.to == asked.from;
@@ -300,7 +302,7 @@ fn answers(asked: &Frame, answer: &Answer) -> bool {
                 Control::Answer(_, Status::NoService | Status::UserError | Status::NoResource | Status::NoData)
             );
             let saps = (frame.to_sap, frame.from_sap);
-            // A refusal can omit the service access points.
+            // A refusal may omit the service access points.
             is_from && (saps == (asked.from_sap, asked.to_sap) || refuses && saps == (None, None))
         }
     }

@@ -6,11 +6,11 @@ use super::error::ProfibusError;
 use super::rates::Rate;
 use super::wire::{Configuration, MAX_DATA, MAX_STATION, Parameters, Watchdog};
 
-/// Default address of this master. PLCs usually have address 2 too, but there is no PLC on this line.
+/// Default address of this master. PLCs usually have address 2 too, but this line has no PLC.
 pub const MASTER: u8 = 2;
 /// Minimum of the default watchdog time.
 const WATCHDOG: Duration = Duration::from_millis(500);
-/// Default number of repetitions of a request. USB converters lose some characters.
+/// Default number of repetitions of a request. Repetitions are needed, because USB converters lose some characters.
 const RETRIES: u8 = 3;
 /// Minimum watchdog time in cycles.
 const CYCLES: u32 = 5;
@@ -44,7 +44,7 @@ pub struct Settings {
     pub output_size: usize,
     /// Size of the image from the slave in bytes.
     pub input_size: usize,
-    /// First image after every opening.
+    /// Image that is sent first after every opening.
     pub resting: Vec<u8>,
 }
 
@@ -57,7 +57,7 @@ pub struct Timing {
     pub cycle: Duration,
     /// Watchdog time of the slave.
     pub watchdog: Watchdog,
-    /// Time to listen before the first telegram.
+    /// Time for which the master listens before its first telegram.
     pub listen: Duration,
 }
 
@@ -130,7 +130,7 @@ impl Settings {
         let Some(watchdog) = Watchdog::at_least(wanted) else {
             return wrong("the watchdog must be at most 650 s".to_owned());
         };
-        // The token timeout increases with the address of the master: 6 + 2 x address slot times.
+        // The token timeout of the standard increases with the address of the master: 6 + 2 x address slot times.
         let listen = self.rate.bits(self.rate.slot * (6 + 2 * u32::from(self.master))).max(Duration::from_millis(100));
         Ok(Timing { slot, cycle, watchdog, listen })
     }

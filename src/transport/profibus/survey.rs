@@ -1,6 +1,5 @@
 //! Survey of the stations on a line: type, diagnosis, configuration. The survey locks no slave and changes nothing,
-//! even in a slave that has a master. But the survey sends telegrams, so it must only be used on a line without a
-//! master.
+//! even in a slave that has a master. But it sends telegrams, so use it only on a line without a master.
 
 use super::Now;
 use super::error::ProfibusError;
@@ -106,7 +105,7 @@ impl Survey {
         self.timing.slot
     }
 
-    /// Time of the next [`Survey::poll`].
+    /// Time at which [`Survey::poll`] must be called again.
     pub fn due(&self) -> Now {
         self.quiet.as_ref().map_or_else(|| self.requester.due(), |quiet| quiet.due().unwrap_or_default())
     }

@@ -18,21 +18,21 @@ use super::wire::record::{self, Im0, RealModule, Record, index};
 use super::wire::rpc::{self, Datagram, operation};
 use super::wire::{Mac, Uuid, arp};
 
-/// Time within which stations answer a broadcast, each after its own delay, in steps of 10 ms.
+/// Time within which stations answer a broadcast, in steps of 10 ms. Each station waits for its own delay.
 const SPREAD: u16 = 128;
-/// Time limit per attempt to reach a single station, and the number of attempts.
+/// Time limit per attempt to reach a single station. The constant below is the number of attempts.
 const PATIENCE: Duration = Duration::from_secs(1);
 const TRIES: u32 = 3;
-/// Waiting time after the first answer. A second station with the same name can answer within this time.
+/// Waiting time after the first answer, in which a second station with the same name can answer.
 const TWIN: Duration = Duration::from_millis(250);
 /// Time limit of each ARP attempt.
 const ARP: Duration = Duration::from_millis(300);
-/// Interval and time limit of the checks that a setting is active.
+/// Interval of the checks whether a setting is active. The constant below is the time limit of these checks.
 const LOOK: Duration = Duration::from_millis(200);
 const SETTLE: Duration = Duration::from_secs(5);
 /// Maximum number of reported stations. A network has a few hundred.
 const MOST: usize = 4096;
-/// Buffer size for a record.
+/// Size in bytes of the buffer for a record.
 const ROOM: u32 = 4000;
 
 /// A station that answered. The texts from the station are untrusted.
@@ -78,7 +78,7 @@ pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<Found, 
             };
             match &first {
                 _ if !is_it => {}
-                // A MAC address is unique, so no second station is searched.
+                // A MAC address is unique, so the search for a second station is not needed.
                 None if matches!(wanted, settings::Station::Mac(_)) => return Ok(found),
                 None => {
                     until = until.min(frames.now() + TWIN);
@@ -98,7 +98,7 @@ pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<Found, 
     Err(ProfinetError::NotFound { station: wanted.to_string(), after: PATIENCE * TRIES })
 }
 
-/// Searches for another station with the same name, and returns its MAC address.
+/// Searches for another station with the same name as the station `than`, and returns its MAC address.
 pub fn other(interface: &Interface, named: &settings::Station, than: Mac) -> Result<Option<Mac>, ProfinetError> {
     let frames = Frames::open(interface)?;
     for _ in 0..TRIES {
@@ -114,8 +114,8 @@ pub fn other(interface: &Interface, named: &settings::Station, than: Mac) -> Res
     Ok(None)
 }
 
-/// Returns the DCP request that searches for a station. The request for a MAC address goes to all stations, because not
-/// every station supports Get.
+/// Returns the DCP request that searches for a station. If the station is identified by its MAC address, the request
+/// goes to all stations, because not every station supports Get.
 pub fn looking_for(wanted: &settings::Station, xid: u32) -> Dcp {
     match wanted {
         settings::Station::Name(name) => Dcp::identify(xid, name),
@@ -136,7 +136,7 @@ pub fn set(source: Mac, destination: Mac, xid: u32, block: &Block) -> Vec<u8> {
 }
 
 /// Sets a value of a station: the name, the address, or blinking. Without an answer, the request is sent up to three
-/// times. Repeating it is harmless.
+/// times. A repetition is harmless.
 pub fn change(interface: &Interface, mac: Mac, what: &'static str, block: &Block) -> Result<(), ProfinetError> {
     let frames = Frames::open(interface)?;
     let request = set(interface.mac, mac, fastrand::u32(1..), block);
@@ -144,7 +144,7 @@ pub fn change(interface: &Interface, mac: Mac, what: &'static str, block: &Block
         frames.send(&request)?;
         let answer = frames.hear(frames.now() + PATIENCE, |frame| {
             let is_its = frame.source == mac && frame.destination == interface.mac && frame.id == id::DCP_GET_SET;
-            // The Xid is not checked, because some stations do not copy it.
+            // The Xid (transaction id) is not checked, because some stations do not copy it into the answer.
             let dcp = Dcp::parse(frame.payload).ok().filter(|dcp| is_its && dcp.service == Service::Set)?;
             match dcp.kind {
                 Kind::Request => None,
@@ -166,7 +166,7 @@ pub fn change(interface: &Interface, mac: Mac, what: &'static str, block: &Block
 /// Waits until the station reports the new value.
 ///
 /// # Errors
-/// The station does not report the new value within some seconds, or the interface cannot be used.
+/// The station did not report the new value within some seconds, or the interface cannot be used.
 pub fn settled(
     interface: &Interface,
     mac: Mac,
@@ -190,7 +190,7 @@ pub fn settled(
 
 /// Returns the MAC address of a station, other than `except`, that answers an ARP request for this IP address.
 pub fn holder(interface: &Interface, address: Ipv4Addr, except: Mac) -> Result<Option<Mac>, ProfinetError> {
-    // The operating system of this computer does not answer this ARP request.
+    // The operating system of this computer does not answer an ARP request from this computer itself.
     if interface.ip.is_some_and(|own| own.address == address) {
         return Ok(Some(interface.mac));
     }
@@ -225,16 +225,17 @@ fn identified(
 /// Identity records of a device. Each record has its own result.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Identity {
-    /// I&M0.
+    /// I&M0 record: order number, serial number and revisions of the device.
     pub im0: Result<Im0, ProfinetError>,
-    /// Modules that are really plugged in the device.
+    /// Modules that are really plugged into the device.
     pub modules: Result<Vec<RealModule>, ProfinetError>,
 }
 
 /// Reads the identity and module records of a device without a connection.
 ///
 /// # Errors
-/// No socket can be opened. If a record is refused or not answered, the error is in the field of the record.
+/// No socket can be opened. If the device refuses a record or does not answer, the field of this record contains the
+/// error.
 pub fn identity(interface: &Interface, found: &Found) -> Result<Identity, ProfinetError> {
     let station = || format!("station '{}'", found.station.name);
     let address = found.station.address().ok_or_else(|| ProfinetError::NoAddress { station: station() })?;

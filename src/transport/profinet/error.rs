@@ -18,7 +18,7 @@ pub enum ProfinetError {
     /// No station has this name or MAC address.
     #[error("{station} was not found: no answer to DCP Identify within {} s", after.as_secs())]
     NotFound {
-        /// The station.
+        /// Name or MAC address of the station.
         station: String,
         /// Total waiting time.
         after: Duration,
@@ -26,21 +26,21 @@ pub enum ProfinetError {
     /// Two stations have the same name.
     #[error("{station} exists twice: {} and {}", cards.0, cards.1)]
     Duplicate {
-        /// The station.
+        /// Name of the stations.
         station: String,
-        /// MAC addresses of two of these stations.
+        /// MAC addresses of two stations with this name.
         cards: (Mac, Mac),
     },
     /// The device has no IP address, and the settings contain none.
     #[error("{station} has no IP address")]
     NoAddress {
-        /// The station.
+        /// Name of the station.
         station: String,
     },
     /// This computer and the device are in different IP networks.
     #[error("{station} has the address {device}, but this computer has {here} in another network")]
     OtherNetwork {
-        /// The station.
+        /// Name of the station.
         station: String,
         /// IP address of the device.
         device: Ipv4Addr,
@@ -50,7 +50,7 @@ pub enum ProfinetError {
     /// Another station has the same IP address.
     #[error("{station} reports that another station has the same address {address}")]
     AddressConflict {
-        /// The station.
+        /// Name of the station.
         station: String,
         /// The IP address that both stations have.
         address: Ipv4Addr,
@@ -58,7 +58,7 @@ pub enum ProfinetError {
     /// The station refused a DCP setting.
     #[error("{what} was refused: {}", dcp::describe_error(*error))]
     Dcp {
-        /// The setting.
+        /// Name of the setting.
         what: &'static str,
         /// DCP error code.
         error: u8,
@@ -66,7 +66,7 @@ pub enum ProfinetError {
     /// The device did not answer in time.
     #[error("no answer to {what} within {} s", after.as_secs())]
     NoAnswer {
-        /// The request.
+        /// Name of the request.
         what: &'static str,
         /// Total waiting time.
         after: Duration,
@@ -74,7 +74,7 @@ pub enum ProfinetError {
     /// The device refused.
     #[error("{what} was refused: {status}")]
     Refused {
-        /// The request.
+        /// Name of the request.
         what: &'static str,
         /// Status of the answer.
         status: Status,
@@ -82,23 +82,23 @@ pub enum ProfinetError {
     /// The RPC server rejected the call.
     #[error("{what} was rejected by the RPC server ({status:#010x})")]
     Rejected {
-        /// The request.
+        /// Name of the request.
         what: &'static str,
-        /// Reject status.
+        /// Status in the reject message.
         status: u32,
     },
     /// The answer cannot be decoded.
     #[error("cannot decode the answer to {what}: {error}")]
     Malformed {
-        /// The request.
+        /// Name of the request.
         what: &'static str,
-        /// The field that is wrong.
+        /// The wrong field, and what is wrong with it.
         error: WireError,
     },
     /// The answer can be decoded, but is not valid.
     #[error("invalid answer to {what}: {why}")]
     Senseless {
-        /// The request.
+        /// Name of the request.
         what: &'static str,
         /// What is wrong with the answer.
         why: &'static str,
@@ -123,7 +123,7 @@ pub enum ProfinetError {
         /// Reason why the data is not usable.
         missing: Unusable,
     },
-    /// The device is running, but its data is not usable at the moment.
+    /// The connection is open, but the data of the device is not usable at the moment.
     #[error("the data of the device is not usable: {0}")]
     Unusable(
         /// The reason.
@@ -141,7 +141,7 @@ pub enum ProfinetError {
         /// The reason.
         Status,
     ),
-    /// A module was plugged in. The device needs its parameters again.
+    /// A module was plugged into the device. The device needs the parameters of this module again.
     #[error("a module was plugged in slot {slot}")]
     Plugged {
         /// The slot.
@@ -150,7 +150,8 @@ pub enum ProfinetError {
     /// The device did not accept the acknowledgement of an alarm.
     #[error("the device did not accept the acknowledgement of an alarm")]
     AlarmUnanswered,
-    /// The connection was lost, and the caller has not seen the loss yet: its image belongs to an older generation.
+    /// The connection was lost, and the caller has not noticed the loss yet: the image that it wants to send belongs to
+    /// an older generation.
     #[error("the connection was lost")]
     Outdated,
     /// The connection was closed by this program.
@@ -213,9 +214,9 @@ impl ProfinetError {
 /// A difference between the device and the layout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ModuleMismatch {
-    /// Slot.
+    /// Slot number.
     pub slot: u16,
-    /// Subslot, if the difference is in a submodule.
+    /// Subslot number if the difference is in a submodule; `None` if the difference is in the module.
     pub subslot: Option<u16>,
     /// Ident number in the device; `None` if the slot or subslot is empty.
     pub found: Option<u32>,
@@ -248,7 +249,7 @@ impl fmt::Display for ModuleMismatch {
 pub enum Unusable {
     /// No data was received.
     Missing,
-    /// The data status or transfer status of the whole frame is bad. The values are both statuses.
+    /// The data status or the transfer status of the whole frame is bad. Contains both statuses.
     Status(u8, u8),
     /// The provider status of this slot and subslot is bad.
     Provider(u16, u16),

@@ -1,8 +1,8 @@
 //! Parser for GSDML files. A GSDML file is the manufacturer's description of a device: access points, modules, data,
 //! parameters.
 //!
-//! The content is untrusted: sizes are limited, and entities are not expanded. An error contains the line and the
-//! element.
+//! The content is untrusted, so its size is limited and its entities are not expanded. An error contains the line and
+//! the element.
 
 use std::borrow::Cow;
 
@@ -51,19 +51,19 @@ pub struct Gsdml {
 /// Device access point (DAP): the module in slot 0.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Head {
-    /// Id in the file.
+    /// Id of the access point in the file.
     pub id: String,
     /// Display name.
     pub name: String,
     /// Station name of a new device.
     pub dns_name: String,
-    /// Ident number.
+    /// Ident number of the access point module.
     pub ident: u32,
-    /// Instance in the object UUID.
+    /// Instance number in the object UUID.
     pub instance: u16,
     /// Shortest cycle that the device supports, in units of 31.25 us.
     pub shortest: u16,
-    /// Whether the device supports the startup modes: advanced, legacy.
+    /// Whether the device supports the advanced startup mode, and whether it supports the legacy startup mode.
     pub startup: (bool, bool),
     /// Submodules of the access point.
     pub submodules: Vec<Item>,
@@ -76,7 +76,7 @@ pub struct Head {
 pub struct Fitting {
     /// Slots in which the module can be used.
     pub slots: Vec<u16>,
-    /// Slots in which the module is always plugged.
+    /// Slots in which the device always has the module.
     pub fixed: Vec<u16>,
     /// The module.
     pub module: Module,
@@ -85,11 +85,11 @@ pub struct Fitting {
 /// A module.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Module {
-    /// Id in the file.
+    /// Id of the module in the file.
     pub id: String,
     /// Display name.
     pub name: String,
-    /// Ident number.
+    /// Ident number of the module.
     pub ident: u32,
     /// Submodules of the module.
     pub submodules: Vec<Item>,
@@ -98,15 +98,15 @@ pub struct Module {
 /// A submodule.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Item {
-    /// Subslot.
+    /// Subslot in which the submodule is plugged.
     pub subslot: u16,
-    /// Ident number.
+    /// Ident number of the submodule.
     pub ident: u32,
     /// Bytes of input data.
     pub input: u16,
     /// Bytes of output data.
     pub output: u16,
-    /// Parameter records that the controller writes at the start: index and data.
+    /// Parameter records that the controller writes when the connection opens: index and data.
     pub parameters: Vec<(u16, Vec<u8>)>,
 }
 
@@ -124,7 +124,7 @@ impl Gsdml {
         };
         let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
         let document = Document::parse_with_options(&text, options).map_err(|error| {
-            // The error of a truncated file contains no position, so the last line is used.
+            // The error of a truncated file has no position, so the last line is used.
             let end = u32::try_from(text.lines().count()).unwrap_or(u32::MAX);
             let line = if matches!(error, Error::UnexpectedEndOfStream) { end } else { error.pos().row };
             GsdmlError { line, element: "file".to_owned(), problem: format!("it is not XML: {error}") }
@@ -134,7 +134,8 @@ impl Gsdml {
 }
 
 impl Head {
-    /// Returns the layout with these modules in these slots. Fixed modules are added automatically.
+    /// Returns the layout with these modules in these slots. Modules that the device always has are added
+    /// automatically.
     ///
     /// # Errors
     /// A module does not fit into its slot, or the data does not fit into a frame.
@@ -184,8 +185,8 @@ impl Head {
         Ok(head.chain(modules).collect())
     }
 
-    /// Selects modules for these image sizes. The possible selections are: only the fixed modules, one more module, or
-    /// one more module per direction. `None` if there is no unique selection.
+    /// Selects modules for these image sizes. The selection consists of only the fixed modules, of one more module, or
+    /// of one more module per direction. Returns `None` if no selection fits, or more than one.
     pub fn choose(&self, input: usize, output: usize) -> Option<Vec<(u16, &Fitting)>> {
         let fits = |chosen: &[(u16, &Fitting)]| {
             self.layout(chosen)
@@ -194,7 +195,7 @@ impl Head {
         if fits(&[]) {
             return Some(Vec::new());
         }
-        // A slot with a fixed module is occupied.
+        // A slot with a fixed module is not free.
         let is_taken = |slot: &u16| *slot == 0 || self.modules.iter().any(|module| module.fixed.contains(slot));
         let first = |fitting: &Fitting, other: Option<u16>| {
             fitting.slots.iter().copied().find(|slot| !is_taken(slot) && Some(*slot) != other)
@@ -313,8 +314,8 @@ impl<'a, 'input> Reader<'a, 'input> {
         Ok(Fitting { slots: allowed, fixed, module })
     }
 
-    /// Returns the submodules of a module or access point. A referenced submodule is included only if it is fixed in a
-    /// subslot.
+    /// Returns the submodules of a module or access point. A referenced submodule is included only if it is always in
+    /// the same subslot.
     fn items(&self, node: Node<'a, 'input>) -> GsdmlResult<Vec<Item>> {
         let mut items = Vec::new();
         let add = |items: &mut Vec<Item>, node, subslot| {
@@ -352,7 +353,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         })
     }
 
-    /// Number of data bytes in a direction.
+    /// Number of data bytes of a submodule in a direction.
     fn length(&self, node: Node<'a, 'input>, direction: &str) -> GsdmlResult<u16> {
         let Some(data) = node.descendants().find(|item| item.has_tag_name_local(direction)) else { return Ok(0) };
         let mut bytes = 0u16;
@@ -363,7 +364,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         Ok(bytes)
     }
 
-    /// Number of bytes of a value.
+    /// Number of bytes of a value, according to its data type.
     fn size(&self, node: Node<'a, 'input>) -> GsdmlResult<u16> {
         let kind = self.text(node, "DataType")?;
         Ok(match kind {
@@ -377,7 +378,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         })
     }
 
-    /// Returns a parameter record with its default values.
+    /// Returns a parameter record that contains the default values.
     fn record(&self, node: Node<'a, 'input>) -> GsdmlResult<(u16, Vec<u8>)> {
         let index = self.number(node, "Index")?;
         let length = usize::from(self.number(node, "Length")?);
@@ -408,7 +409,8 @@ impl<'a, 'input> Reader<'a, 'input> {
         bytes.ok_or_else(|| self.wrong(node, format!("'{text}' is not a list of bytes")))
     }
 
-    /// Returns the default value. A value of single bits is combined with the existing byte.
+    /// Returns the default value of a parameter. A value of single bits is combined with `byte`, which already contains
+    /// the other bits.
     fn value(&self, node: Node<'a, 'input>, byte: u8) -> GsdmlResult<Option<Vec<u8>>> {
         let Some(text) = node.attribute("DefaultValue") else { return Ok(None) };
         let kind = self.text(node, "DataType")?;
@@ -436,7 +438,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         let value = text.parse::<i64>().ok().or_else(|| parse(text).map(i64::from)).ok_or_else(wrong)?;
         let bytes = value.to_be_bytes();
         let (upper, lower) = bytes.split_at(bytes.len().saturating_sub(size));
-        // The upper bytes may only contain the sign.
+        // The value fits if the upper bytes contain only the sign.
         let fits = upper.iter().all(|byte| *byte == 0) || upper.iter().all(|byte| *byte == 0xFF);
         if fits { Ok(Some(lower.to_vec())) } else { Err(wrong()) }
     }
@@ -472,7 +474,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         node.attribute(name).map(|_| self.number(node, name)).transpose()
     }
 
-    /// Parses a list of numbers and ranges, such as `0..4 7`.
+    /// Parses a list of numbers and ranges, for example `0..4 7`.
     fn slots(&self, node: Node<'a, 'input>, name: &str) -> GsdmlResult<Vec<u16>> {
         let mut slots = Vec::new();
         for part in node.attribute(name).unwrap_or_default().split_whitespace() {

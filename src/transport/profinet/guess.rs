@@ -7,8 +7,8 @@ use super::wire::record::RealModule;
 /// Maximum number of candidates.
 const MOST: usize = 8;
 
-/// Returns candidate layouts for images of `size` bytes, the likeliest first. The candidates are combinations of the
-/// real modules of a device, because the real modules show neither the direction nor the size of the data.
+/// Returns candidate layouts for images of `size` bytes, the likeliest first. A device reports its real modules, but
+/// neither the direction nor the size of their data. Therefore the candidates are combinations of these modules.
 pub fn layouts(real: &[RealModule], size: u16) -> Vec<Layout> {
     let all = real.iter().flat_map(|module| module.submodules.iter().map(move |submodule| (module, *submodule)));
     let bare: Vec<Submodule> = all
@@ -21,7 +21,7 @@ pub fn layouts(real: &[RealModule], size: u16) -> Vec<Layout> {
             output: 0,
         })
         .collect();
-    // Slot 0 is the access point. Interfaces and ports have no data.
+    // These positions can have data. Slot 0 is the access point, and interfaces and ports have no data.
     let places: Vec<usize> =
         (0..bare.len()).filter(|at| bare[*at].slot != 0 && bare[*at].subslot < FIRST_PORT).collect();
     let mut layouts = Vec::new();
@@ -47,7 +47,7 @@ pub fn layouts(real: &[RealModule], size: u16) -> Vec<Layout> {
 const FIRST_PORT: u16 = 0x8000;
 
 /// Corrects a layout with the differences that the device reported. Modules that the device does not have are removed.
-/// `None` if this does not change the layout.
+/// Returns `None` if the layout does not change.
 pub fn adjusted(layout: &Layout, mismatches: &[ModuleMismatch]) -> Option<Layout> {
     let fitted = layout.submodules().iter().filter_map(|submodule| {
         let mut submodule = *submodule;

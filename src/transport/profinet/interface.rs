@@ -29,7 +29,7 @@ pub struct Interface {
     pub is_up: bool,
     /// Whether the interface has a carrier (a cable and a peer).
     pub has_carrier: bool,
-    /// Recorder of traffic outside of connections.
+    /// Recorder for traffic that belongs to no connection.
     pub tap: Tap,
     link: Link,
 }
@@ -69,7 +69,7 @@ impl Interface {
         Err(ProfinetError::Interface { name: self.name.clone(), problem })
     }
 
-    /// Returns the IP address of the interface. RPC calls need it.
+    /// Returns the IP address of the interface, which RPC calls need.
     pub fn address(&self) -> Result<IpSuite, ProfinetError> {
         let problem = "has no IPv4 address, but PROFINET needs one";
         self.ip.ok_or_else(|| ProfinetError::Interface { name: self.name.clone(), problem })

@@ -10,7 +10,7 @@ use super::wire::connect::{DataDescription, ExpectedModule, ExpectedSubmodule, M
 const SHORTEST: u16 = 40;
 /// Maximum data length of a frame.
 const LONGEST: u16 = 1440;
-/// Maximum number of submodules, because they increase the size of Connect.
+/// Maximum number of submodules. Each submodule makes the Connect call longer.
 const MOST: usize = 64;
 
 /// A submodule and its data.
@@ -33,7 +33,7 @@ pub struct Submodule {
 /// Submodules of a device, sorted by slot and subslot.
 ///
 /// The text form is a comma-separated list of `SLOT[.SUBSLOT]:MODULE[/SUBMODULE][:iBYTES][oBYTES]`, for example
-/// `0:1,0.0x8000:1/0x8000,1:0x101:i48,2:0x102:o48`. The default of subslot and submodule is 1.
+/// `0:1,0.0x8000:1/0x8000,1:0x101:i48,2:0x102:o48`. If the subslot or the submodule is missing, it is 1.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct Layout(Vec<Submodule>);
 
@@ -49,11 +49,11 @@ pub enum Direction {
 /// Positions of the data in the frames of one direction.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct FrameLayout {
-    /// Data objects with their lengths. A provider status follows each data object.
+    /// Positions and lengths of the data objects. A provider status follows after each data object.
     pub objects: Vec<(Offset, u16)>,
     /// Positions of the consumer statuses.
     pub consumers: Vec<Offset>,
-    /// Total length with padding.
+    /// Total length of the data in the frame, with padding.
     pub length: u16,
 }
 
@@ -103,7 +103,7 @@ impl Layout {
         &self.0
     }
 
-    /// Image size in bytes.
+    /// Size of the image in a direction, in bytes.
     pub fn size(&self, direction: Direction) -> usize {
         self.0.iter().map(|submodule| usize::from(submodule.length(direction))).sum()
     }
@@ -152,14 +152,15 @@ impl Layout {
         modules
     }
 
-    /// Returns the differences between this layout and the answer of a device. They may also concern modules without
-    /// data.
+    /// Returns the differences between this layout and the answer of a device. A difference may also concern a module
+    /// without data.
     pub fn mismatches(&self, modules: &[ModuleDiff]) -> Vec<ModuleMismatch> {
         let mut mismatches = Vec::new();
         for module in modules {
             let expected = self.0.iter().find(|submodule| submodule.slot == module.slot);
             let expected = expected.map(|submodule| submodule.module);
-            // A substitute module works like the expected module. A correct module may still have wrong submodules.
+            // Only missing and wrong modules are reported here. A substitute module works like the expected module. A
+            // correct module may still have wrong submodules.
             if module.state < 2 {
                 let found = (module.state == 1).then_some(module.ident);
                 mismatches.push(ModuleMismatch { slot: module.slot, subslot: None, found, expected });
@@ -193,7 +194,7 @@ impl Direction {
 }
 
 impl Submodule {
-    /// Number of data bytes in a direction.
+    /// Number of data bytes of the submodule in a direction.
     pub const fn length(&self, direction: Direction) -> u16 {
         match direction {
             Direction::Input => self.input,
@@ -201,8 +202,8 @@ impl Submodule {
         }
     }
 
-    /// Whether frames of this direction contain the data of this submodule. A submodule without data has its status in
-    /// the input frames.
+    /// Whether frames of this direction contain the data of this submodule. For a submodule without data, the input
+    /// frames contain its status.
     pub const fn provides(&self, direction: Direction) -> bool {
         match direction {
             Direction::Input => self.input > 0 || self.output == 0,
@@ -315,7 +316,7 @@ impl fmt::Display for Submodule {
 mod tests {
     use super::*;
 
-    /// Expected positions in both data blocks, from the worked example in the notes.
+    /// The expected positions in both data blocks are from the worked example in the notes.
     #[test]
     fn places_in_frames_are_those_of_the_example() {
         let layout = Layout::two_modules(0x101, 0x102);

@@ -47,7 +47,7 @@ impl Bus for Device {
 
     fn loss(&self, view: View) -> (Cause, Outputs) {
         let outputs = match view.trouble {
-            // In these cases, the device no longer uses the last image.
+            // In these cases, the device has already stopped using the last image.
             Some(ProfinetError::Unusable(_) | ProfinetError::Aborted(_)) => Outputs::Released,
             _ => Outputs::ReleasedWithin(self.settings.watchdog_time()),
         };

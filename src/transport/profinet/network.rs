@@ -1,7 +1,7 @@
 //! Driver for any number of connections on one interface: one raw socket, one UDP socket, one thread.
 //!
-//! The exchange of images does not depend on the rest of the program: a prompt that waits for input must not stop a
-//! robot. The thread waits for sockets and clock at the same time, with a resolution below 1 ms.
+//! The exchange of images does not depend on the rest of the program. For example, a prompt that waits for input must
+//! not stop a robot. The thread waits for the sockets and for the clock at the same time, with a resolution below 1 ms.
 
 use std::collections::BTreeMap;
 use std::net::SocketAddrV4;
@@ -28,7 +28,7 @@ use crate::image::tap::{Passage, Tap};
 use crate::local::LocalError;
 
 /// Network interface with its connections. Clones are cheap and share the connections. The thread of the interface
-/// stops with the last clone and the last connection.
+/// stops when the last clone and the last connection are dropped.
 #[derive(Debug, Clone)]
 pub struct Network {
     owner: Arc<Owner>,
@@ -96,7 +96,7 @@ impl Network {
     /// Opens a connection. The connection stays open until it is closed or dropped.
     ///
     /// # Errors
-    /// The device is not found, does not answer or refuses. If the connection is lost later, this is not an error but a
+    /// The device is not found, does not answer, or refuses. A later loss of the connection is not an error here, but a
     /// state of the view.
     pub async fn open(&self, settings: Settings, tap: Tap) -> Result<Connection, ProfinetError> {
         let inner = &self.owner.inner;
@@ -116,7 +116,7 @@ impl Drop for Owner {
         self.inner.is_over.store(true, Ordering::SeqCst);
         self.inner.sockets.ring();
         if let Some(thread) = self.thread.take() {
-            // If the thread panicked, the panic was already printed.
+            // An error means that the thread panicked. The panic was already printed.
             let _ = thread.join();
         }
     }
@@ -136,7 +136,7 @@ impl Connection {
         self.views.now()
     }
 
-    /// Current counters. The counters in the view are those of its last change.
+    /// Current counters. The view has counters too, but they are as old as the last change of the view.
     pub fn statistics(&self) -> Statistics {
         self.with(|core, _| core.statistics()).unwrap_or_else(|| self.view().statistics)
     }
@@ -156,8 +156,8 @@ impl Connection {
         self.with(|core, _| core.take_alarm()).flatten()
     }
 
-    /// Closes the connection. Cyclic frames continue until the device answers the release. Fails if the device does not
-    /// answer.
+    /// Closes the connection. Cyclic frames continue until the device has answered the release. Fails if the device
+    /// does not answer.
     pub async fn close(mut self) -> Result<(), ProfinetError> {
         let before = self.view().trouble;
         self.with(Controller::close);
@@ -202,7 +202,7 @@ impl Inner {
         }
     }
 
-    /// Executes the work that is due. Returns the time of the next call.
+    /// Executes the work that is due. Returns the time at which it must be called again.
     fn turn(&self) -> Option<Now> {
         let mut slots = self.slots();
         let now = self.now();
@@ -261,15 +261,15 @@ impl Inner {
     }
 }
 
-/// Wraps a datagram into its Ethernet frame for a recording. The reader of the recording identifies connections by MAC
-/// address.
+/// Puts a datagram into its Ethernet frame, for a recording. A reader of the recording needs the MAC addresses to
+/// identify the connections.
 pub(super) fn in_frame(source: Mac, destination: Mac, from: SocketAddrV4, to: SocketAddrV4, bytes: &[u8]) -> Vec<u8> {
     const HOPS: u8 = 64;
     let headers = PacketBuilder::ethernet2(source.0, destination.0)
         .ipv4(from.ip().octets(), to.ip().octets(), HOPS)
         .udp(from.port(), to.port());
     let mut frame = Vec::with_capacity(headers.size(bytes.len()));
-    // An error is not possible: a datagram always fits into a packet.
+    // This cannot fail, because a datagram always fits into a packet.
     let _ = headers.write(&mut frame, bytes);
     frame
 }

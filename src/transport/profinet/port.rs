@@ -170,7 +170,7 @@ impl Calls {
                 let timed = socket.set_read_timeout(Some(wait));
                 timed.map_err(|error| LocalError::new("cannot call the device", &error))?;
                 let mut buffer = vec![0; BUFFER];
-                // This is a timeout or a signal; the caller checks the time.
+                // This is a timeout or a signal. The caller checks the time.
                 let Ok((length, SocketAddr::V4(from))) = socket.recv_from(&mut buffer) else { return Ok(None) };
                 buffer.truncate(length);
                 (buffer, from)

@@ -13,7 +13,7 @@ use super::wire::record::Parameter;
 pub const SEND_CLOCK: u16 = 32;
 /// Longest watchdog time.
 pub const LONGEST_WATCHDOG: Duration = Duration::from_millis(1920);
-/// Minimum watchdog time in cycles. A single lost frame must not end a connection.
+/// Minimum watchdog time in cycles. The connection must survive a single lost frame.
 const FEWEST_CYCLES: u128 = 3;
 
 /// Identification of a device.
@@ -49,7 +49,8 @@ pub enum Startup {
 pub struct Settings {
     /// The device.
     pub station: Station,
-    /// IP address to assign to the device, if the device has another address.
+    /// IP address that the device must have. If it has another address, the controller assigns this one. `None` keeps
+    /// the address of the device.
     pub ip: Option<IpSuite>,
     /// Module layout.
     pub layout: Layout,
@@ -61,11 +62,11 @@ pub struct Settings {
     pub watchdog: Duration,
     /// Parameter records that the controller writes at the start.
     pub parameters: Vec<Parameter>,
-    /// First image after every opening.
+    /// Image that is sent first after every opening.
     pub resting: Vec<u8>,
-    /// Number of bytes, from the start of both images, whose pairs are swapped on the network.
+    /// Number of bytes at the start of both images whose pairs are swapped on the network.
     pub swapped: usize,
-    /// Name of this controller.
+    /// Station name of this controller.
     pub name: String,
 }
 
@@ -140,7 +141,7 @@ impl Settings {
         (is_whole && millis.is_power_of_two() && millis <= 512).then_some(millis)
     }
 
-    /// Watchdog time in cycles. It is rounded up, but not above the limit.
+    /// Watchdog time in cycles. It is rounded up, but not above the longest watchdog time.
     pub fn watchdog_factor(&self) -> u16 {
         let cycle = self.cycle.as_nanos().max(1);
         let up = self.watchdog.as_nanos().div_ceil(cycle);
@@ -148,7 +149,7 @@ impl Settings {
         u16::try_from(up.min(most)).unwrap_or(u16::MAX)
     }
 
-    /// Watchdog time that results from the rounding.
+    /// Watchdog time that results from [`watchdog_factor`](Self::watchdog_factor).
     pub fn watchdog_time(&self) -> Duration {
         self.cycle * u32::from(self.watchdog_factor())
     }

@@ -1,5 +1,5 @@
-//! In-process network with one device, this computer, and a virtual clock. Requests to the device are answered at once.
-//! An open connection follows the clock of the program.
+//! In-process network with one device, this computer, and a virtual clock. The device answers requests at once. An open
+//! connection follows the clock of the program.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt;
@@ -30,7 +30,7 @@ const THERE: (Mac, IpSuite) = (Mac([2, 0, 0, 0, 0, 2]), suite(2));
 /// Maximum virtual time for opening or closing a connection.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Returns a documentation address. No real network has such addresses (RFC 5737).
+/// Returns an address from a range that is reserved for documentation (RFC 5737). No real network has such addresses.
 const fn suite(host: u8) -> IpSuite {
     let address = Ipv4Addr::new(192, 0, 2, host);
     IpSuite { address, mask: Ipv4Addr::new(255, 255, 255, 0), gateway: Ipv4Addr::UNSPECIFIED }
@@ -42,7 +42,7 @@ trait Station: Send {
     fn datagram(&mut self, now: Now, from: SocketAddrV4, bytes: &[u8]);
     fn poll(&mut self, now: Now) -> Option<Action>;
     fn wake(&self) -> Option<Now>;
-    /// Sender address of the answers of the device, if they have another address.
+    /// Address from which the device answers, if this is not its own address.
     fn answers_from(&self) -> Option<Ipv4Addr>;
 }
 
@@ -68,7 +68,7 @@ impl<A: Application + Send> Station for Device<A> {
     }
 }
 
-/// An in-process network. It exists as long as a clone exists.
+/// An in-process network. It exists until its last clone is dropped.
 #[derive(Debug, Clone)]
 pub struct Network {
     name: String,
@@ -81,7 +81,7 @@ struct Inner {
     /// Frames from the device that were not read yet.
     frames: VecDeque<Vec<u8>>,
     datagrams: VecDeque<(SocketAddrV4, Vec<u8>)>,
-    /// Fault injection for traffic to the device and from the device.
+    /// Faults to inject: first for traffic to the device, then for traffic from the device.
     faults: Option<(Faults, Faults)>,
     /// Frames and datagrams in transit, by arrival time and sequence number.
     on_the_way: BTreeMap<(Now, u64), (Way, Vec<u8>)>,
@@ -114,14 +114,14 @@ fn all() -> MutexGuard<'static, Vec<(String, Weak<Mutex<Inner>>)>> {
 }
 
 impl Network {
-    /// Creates a network with a device. The device gets its MAC and IP address, and the faults apply to both
-    /// directions.
+    /// Creates a network with a device. The device gets its MAC and IP address from the network. The faults apply to
+    /// both directions.
     pub fn new<A: Application + Send + 'static>(
         device: impl FnOnce(Mac, IpSuite) -> Device<A>,
         faults: Option<FaultSpec>,
     ) -> Self {
         static COUNT: AtomicU32 = AtomicU32::new(1);
-        // A Linux interface cannot have this name, because its name cannot contain a colon.
+        // The name contains a colon. No Linux interface can have such a name.
         let name = format!("sim:{}", COUNT.fetch_add(1, Ordering::Relaxed));
         let station = Box::new(device(THERE.0, THERE.1));
         let inner = Inner {
@@ -146,7 +146,7 @@ impl Network {
         Some(Self { name: name.to_owned(), inner })
     }
 
-    /// The interface of this computer.
+    /// The interface of this computer to the network.
     pub fn interface(&self) -> Interface {
         Interface::simulated(self.name.clone(), HERE, self.clone())
     }
@@ -269,7 +269,7 @@ pub struct Link {
 }
 
 impl Link {
-    /// Executes the work that is due. Returns the time of the next call.
+    /// Executes the work that is due. Returns the time at which it must be called again.
     fn settle(&mut self, inner: &mut Inner) -> Option<Now> {
         let controller = &mut self.controller;
         loop {
@@ -324,9 +324,9 @@ impl ImagePeer for Link {
         };
         self.run(self.start + now, |_| false);
         let generation = self.controller.view().generation;
-        // After a loss, the image is too old and is not sent.
+        // An error means that the link was lost. The image is then too old and is not sent.
         if let Ok(change) = self.controller.set_image(generation, image) {
-            // This function must return only after the image was sent. The virtual clock may therefore advance by a
+            // This function may return only after the image was sent. For this, the virtual clock may advance by a
             // cycle.
             let (before, until) = (self.network.now(), self.network.now() + self.controller.settings().watchdog);
             self.run(until, |controller| controller.view().sent >= change || controller.view().state != State::Open);

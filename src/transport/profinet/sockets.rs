@@ -16,14 +16,14 @@ use crate::local::LocalError;
 
 /// Maximum number of frames or datagrams that are handled before the clock is checked.
 const AT_ONCE: usize = 64;
-/// Buffer size that the longest datagram requires.
+/// Size of the receive buffer: the size of the longest datagram.
 pub(super) const BUFFER: usize = 65_536;
 
 #[derive(Debug)]
 pub(super) struct Sockets {
     raw: RawSocket,
     udp: UdpSocket,
-    /// Write end of a socket pair: a byte written here wakes the thread.
+    /// Write end of a socket pair. A byte that is written here wakes the thread.
     bell: UnixStream,
     heard: UnixStream,
 }
@@ -58,11 +58,11 @@ impl Sockets {
 
     /// Wakes the thread.
     pub fn ring(&self) {
-        // If the buffer is full, an earlier byte already wakes the thread.
+        // An error means that the buffer is full. An earlier byte then already wakes the thread.
         let _ = (&self.bell).write(&[0]);
     }
 
-    /// Waits for a wake-up, frame or datagram, at most for `most`.
+    /// Waits for a wake-up, a frame or a datagram, but at most for `most`.
     pub fn wait(&self, most: Option<Duration>) {
         let most = most.map(|most| Timespec::try_from(most).unwrap_or(Timespec { tv_sec: 1, tv_nsec: 0 }));
         let mut sources = [
@@ -71,7 +71,7 @@ impl Sockets {
             PollFd::new(&self.heard, PollFlags::IN),
         ];
         if poll(&mut sources, most.as_ref()).is_err_and(|error| error != rustix::io::Errno::INTR) {
-            // After an error, this pause avoids a busy loop.
+            // Without this pause, a permanent error would cause a busy loop.
             std::thread::park_timeout(Duration::from_millis(1));
         }
         let mut rings = [0; 64];

@@ -1,4 +1,4 @@
-//! Session client: finds the session of a device, and uses the connection of the session.
+//! Session client: finds the session of a device, and uses the connection that the session owns.
 
 use std::collections::VecDeque;
 use std::io;
@@ -15,10 +15,10 @@ use super::wire::{
     Change, Control, Frame, Hello, Images, Peer, Purpose, Reader, Status, VERSION, Welcome, WireError, shorten,
 };
 
-/// Reason for the end of a session without a message: the process of the session was killed or crashed.
+/// Reason that is reported if a session ended without a message. Its process was killed or has crashed.
 const HOST_ENDED: &str = "the process of the session has ended";
 
-/// Time limit for answers that the host gives without a request to the device.
+/// Time limit for answers that the host can give without a request to the device.
 const ANSWERS_WITHIN: Duration = Duration::from_secs(3);
 
 /// Reason why an existing session cannot be used.
@@ -55,9 +55,9 @@ impl From<WireError> for AttachError {
 pub enum AttachResult {
     /// There is no session.
     Nothing,
-    /// There is a socket, but its session has ended.
+    /// There is a socket, but no session listens on it any more.
     Dead,
-    /// There is a session, and this client is now attached to it.
+    /// There is a session. This client is now attached to it.
     Session(Box<Attached>),
 }
 
@@ -73,13 +73,13 @@ pub enum SessionBusy {
     /// Another client moves the robot.
     #[error("another client moves the robot; nothing was sent")]
     Moved(Peer),
-    /// The robot is read-only. The session passes on only reads and stops.
+    /// The robot is read-only. The session passes on only reads and stop commands.
     #[error("the robot is read-only, so its session sent nothing")]
     ReadOnly,
 }
 
 impl SessionBusy {
-    /// Error kind that marks a refusal by the host. No socket or port uses it.
+    /// Error kind with which the client marks a refusal by the host. Sockets and ports do not use this kind.
     pub(super) const DENIED: io::ErrorKind = io::ErrorKind::ReadOnlyFilesystem;
 
     /// Converts an I/O error of a session link. `None` if the error is not a refusal by the host.
@@ -115,8 +115,8 @@ pub async fn attach_at(
         }
         Control::Refused(why) => Err(AttachError::Refused(why)),
         Control::Ended(_) => {
-            // The session closes this socket only after it has closed the link. After this wait, the link is free for
-            // another session.
+            // The session closes this socket only after it has closed the link. So after this wait, the link is free
+            // for another session.
             let closed = async { while let Ok(Some(_)) = connection.reader.next().await {} };
             timeout_at(Instant::now() + ANSWERS_WITHIN, closed).await.map_err(|_| AttachError::Silent)?;
             Ok(AttachResult::Nothing)
@@ -131,7 +131,7 @@ pub async fn status(location: &SessionPath) -> Result<Option<Status>, AttachErro
     connection.send_control(Control::Ask);
     match connection.answer().await? {
         Control::Status(status) => Ok(Some(*status)),
-        // The session is closing.
+        // The session is just closing, so it has no status any more.
         Control::Ended(_) => Ok(None),
         _ => Err(AttachError::WrongVersion),
     }
@@ -140,7 +140,7 @@ pub async fn status(location: &SessionPath) -> Result<Option<Status>, AttachErro
 /// Closes the session at a location, and waits until it has ended. Returns `false` if there is no session.
 ///
 /// # Errors
-/// [`AttachError::Refused`] during a motion, unless `force`.
+/// [`AttachError::Refused`] if a motion is in progress and `force` is `false`.
 pub async fn close(location: &SessionPath, force: bool) -> Result<bool, AttachError> {
     let Some(mut connection) = Connection::connect(location).await? else { return Ok(false) };
     connection.send_control(Control::Close { force });
@@ -149,12 +149,12 @@ pub async fn close(location: &SessionPath, force: bool) -> Result<bool, AttachEr
         Control::Refused(why) => return Err(AttachError::Refused(why)),
         _ => return Err(AttachError::WrongVersion),
     }
-    // The host closes the connection when the session has ended. Frames before that are ignored.
+    // The host closes the connection when the session has ended. Frames that arrive before are ignored.
     while let Ok(Some(_)) = connection.reader.next().await {}
     Ok(true)
 }
 
-/// A connection to a host.
+/// Socket connection to a host.
 #[derive(Debug)]
 struct Connection {
     reader: Reader,
@@ -202,13 +202,13 @@ impl Connection {
         Ok(())
     }
 
-    /// Waits for the next frame. Returns `None` after the host has closed the connection. Cancel safe.
+    /// Waits for the next frame. Returns `None` after the host has closed the connection. The future is cancel safe.
     async fn next(&mut self) -> Result<Option<Frame>, WireError> {
         self.flush().await?;
         self.reader.next().await
     }
 
-    /// Waits for the answer of the host. The host answers at once.
+    /// Waits for the answer of the host. The time limit is short, because the host answers at once.
     async fn answer(&mut self) -> Result<Control, AttachError> {
         match timeout_at(Instant::now() + ANSWERS_WITHIN, self.next()).await {
             Err(_) => Err(AttachError::Silent),
@@ -233,9 +233,9 @@ fn is_gone(error: &WireError) -> bool {
 #[derive(Debug)]
 pub struct Attached {
     connection: Connection,
-    /// Frames that arrived while the client waited for another frame.
+    /// Frames that arrived while the client waited for a certain other frame.
     early_frames: VecDeque<Frame>,
-    /// Bytes of a frame that the caller has not received yet.
+    /// Bytes of the last frame that did not fit into the buffer of the caller.
     rest: Vec<u8>,
     line: LineState,
     requests: u32,
@@ -243,15 +243,16 @@ pub struct Attached {
     ended: Option<String>,
     /// Whether [`Event::Lost`] has reported the end of the session.
     is_loss_reported: bool,
-    /// State of the session when this client attached to it. Its image to the device is kept up to date.
+    /// State of the session at the time when this client attached to it. Only its image to the device is kept up to
+    /// date.
     pub welcome: Welcome,
 }
 
-/// State of the line for this client. Only the owner of the line can transact with the device.
+/// State of the line for this client. Only the owner of the line can exchange data with the device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum LineState {
     Free,
-    /// The client has requested the line.
+    /// The client has requested the line, and waits for it.
     Requested,
     Owned,
 }
@@ -284,7 +285,7 @@ impl Attached {
         self.line == LineState::Owned
     }
 
-    /// Waits until `until` for the line. Cancel safe.
+    /// Waits until `until` for the line. The future is cancel safe.
     pub async fn acquire(&mut self, until: Instant) -> Result<(), SessionBusy> {
         self.acquire_channel(0, until).await
     }
@@ -312,7 +313,7 @@ impl Attached {
             }
         }
         if self.images().is_none() {
-            // Frames that arrived before belong to earlier exchanges.
+            // Frames that arrived before the client got the line belong to earlier exchanges.
             self.early_frames.clear();
             self.rest.clear();
         }
@@ -327,7 +328,7 @@ impl Attached {
         }
     }
 
-    /// Claims motion for this client: no other client of the session may then move the robot.
+    /// Claims motion for this client, so that no other client of the session may move the robot.
     pub async fn claim_motion(&mut self) -> Result<(), SessionBusy> {
         if self.may_move {
             return Ok(());
@@ -348,7 +349,7 @@ impl Attached {
 
     /// Detaches from the session.
     pub async fn leave(mut self) {
-        // An error is ignored: if the host is gone, no message is needed.
+        // An error is ignored: a host that no longer exists needs no message.
         let _ = timeout_at(Instant::now() + ANSWERS_WITHIN, self.connection.flush()).await;
     }
 
@@ -446,8 +447,8 @@ impl Attached {
         let next = if Instant::now() < until {
             timeout_at(until, self.connection.next()).await.ok()
         } else {
-            // A timer that has expired still needs a millisecond to fire. Frames that have already arrived are read
-            // without a timer.
+            // An expired timer needs a millisecond to fire. Without a timer, frames that have already arrived are read
+            // at once.
             yield_now().await;
             self.connection.next().now_or_never()
         };
@@ -465,7 +466,7 @@ impl Attached {
     }
 }
 
-/// Sends Bye when the client ends normally. A process that is killed sends no Bye.
+/// Sends Bye if the client ends normally. A killed process sends no Bye, and the host detects this.
 impl Drop for Attached {
     fn drop(&mut self) {
         if self.ended.is_none() {
@@ -489,12 +490,12 @@ pub enum Event {
     Image(Vec<u8>),
     /// Another client has changed the image to the device.
     OutputChanged(Change),
-    /// The host refused the last image, because the robot is read-only. [`Attached::output`] is the current image to
-    /// the device.
+    /// The host refused the last image, because the robot is read-only. [`Attached::output`] is the image that the
+    /// device really gets.
     Denied,
     /// The link was lost for this reason.
     Lost(String),
-    /// The link is open again. [`Attached::output`] is the current image to the device.
+    /// The link is open again. [`Attached::output`] is the image that the device now gets.
     Reopened,
     /// There was no event before the deadline.
     Timeout,
@@ -512,7 +513,7 @@ impl Attached {
     }
 
     /// Sends the bits of this image that differ from the current image. If the client does not own the line, the
-    /// exclusive part of the image is not changed.
+    /// exclusive part of the image stays unchanged.
     pub fn set_output(&mut self, image: &[u8]) {
         let has_line = self.has_line();
         let Some(images) = &mut self.welcome.images else { return };
@@ -527,7 +528,7 @@ impl Attached {
     }
 
     /// Sets the last will: bits (mask and value) that the host sends if this process is killed. `None` removes the last
-    /// will. The host handles it before the next image of this client.
+    /// will. The host stores the last will before it handles the next image of this client.
     pub fn set_last_will(&mut self, bits: Option<(&[u8], &[u8])>) {
         let Some(images) = &self.welcome.images else { return };
         let generation = images.generation;
@@ -535,7 +536,7 @@ impl Attached {
         self.connection.send_control(Control::Will(will));
     }
 
-    /// Waits until `until` for the next event. Cancel safe.
+    /// Waits until `until` for the next event. The future is cancel safe.
     pub async fn event(&mut self, until: Instant) -> Event {
         loop {
             match self.next(until).await {
@@ -564,7 +565,7 @@ impl Attached {
                 None => {
                     match self.ended.clone() {
                         Some(why) if !std::mem::replace(&mut self.is_loss_reported, true) => return Event::Lost(why),
-                        // The session has ended, so there are no more events.
+                        // The session has ended, so no more events follow.
                         Some(_) => sleep_until(until).await,
                         None => {}
                     }

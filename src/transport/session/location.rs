@@ -26,7 +26,7 @@ pub enum LocationError {
         /// Reason.
         why: &'static str,
     },
-    /// Another error.
+    /// Any other error.
     #[error("{path}: {error}")]
     Io {
         /// Path of the folder or socket.
@@ -40,7 +40,7 @@ fn io_error(path: &Path) -> impl FnOnce(io::Error) -> LocationError {
     move |error| LocationError::Io { path: path.to_owned(), error }
 }
 
-/// Returns the key of a session. All names of a device have the same key.
+/// Returns the key of a session. If a device has several names, all of them have the same key.
 pub fn key(family: &str, target: &str) -> String {
     let digest = Sha256::digest(format!("{family} {target}"));
     digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect()
@@ -127,8 +127,8 @@ impl SessionPath {
         self.stem.with_extension("lock")
     }
 
-    /// Locks the location for this process. `None` if another running process has locked it. If the last owner ended
-    /// without cleanup, its socket is removed.
+    /// Locks the location for this process. Returns `None` if another running process has locked it. If the last owner
+    /// ended without cleanup, its socket is removed.
     pub fn claim(&self, info: &Info) -> Result<Option<Claim>, LocationError> {
         let text = serde_json::to_vec(info).unwrap_or_default();
         let Some(lock) = Lock::take(&self.lock(), &text).map_err(io_error(&self.lock()))? else { return Ok(None) };
@@ -136,14 +136,14 @@ impl SessionPath {
         Ok(Some(Claim { location: self.clone(), _lock: lock }))
     }
 
-    /// Locks the location. If another process has locked it, waits a short time for the release.
+    /// Locks the location. If another process has locked it, waits a short time until that process releases it.
     pub async fn lock_soon(&self, info: &Info) -> Result<LockResult, LocationError> {
         let until = Instant::now() + LOCK_WITHIN;
         loop {
             if let Some(claim) = self.claim(info)? {
                 return Ok(LockResult::Locked(claim));
             }
-            // The owner may be a short command, or a session that is just opening.
+            // If no session listens, the owner may be a short command, or a session that is just opening.
             if self.is_open() {
                 return Ok(LockResult::Session);
             }
@@ -154,12 +154,12 @@ impl SessionPath {
         }
     }
 
-    /// Current owner of the location, or the last owner.
+    /// Process that has locked the location, or that locked it last.
     pub fn owner(&self) -> Option<Info> {
         serde_json::from_slice(&files::read(&self.lock(), MAX_LOCK_BYTES).ok()?).ok()
     }
 
-    /// Removes the socket of a session that ended without cleanup. No effect while a running process has locked the
+    /// Removes the socket of a session that ended without cleanup. Has no effect while a running process has locked the
     /// location.
     pub fn clear(&self) -> Result<(), LocationError> {
         match self.owner() {
@@ -187,7 +187,7 @@ impl SessionPath {
     }
 }
 
-/// Time limit for locking a location, and the interval of the attempts.
+/// Time limit for locking a location. The constant below is the interval of the attempts.
 const LOCK_WITHIN: Duration = Duration::from_secs(3);
 const LOCK_EVERY: Duration = Duration::from_millis(10);
 
@@ -202,7 +202,7 @@ pub enum LockResult {
     Busy,
 }
 
-/// A locked location. The lock is released when the claim is dropped.
+/// A locked location. Dropping the claim releases the lock.
 #[derive(Debug)]
 pub struct Claim {
     location: SessionPath,
@@ -222,7 +222,7 @@ impl Claim {
 
     /// Removes the socket, so that no new client connects.
     pub(super) fn hide(&self) {
-        // An error is ignored: later clients detect that no session listens on the socket.
+        // An error is ignored: a client that finds the socket detects that no session listens on it.
         let _ = self.location.remove_socket();
     }
 }

@@ -17,7 +17,8 @@ pub type ReadHalf = unix::OwnedReadHalf;
 /// Write half of a socket.
 pub type WriteHalf = unix::OwnedWriteHalf;
 
-/// Returns the folder of the sockets: in the user's runtime folder, or a private folder in the temporary folder.
+/// Returns the folder of the sockets. It is in the runtime folder of the user, or a private folder in the temporary
+/// folder.
 pub fn folder() -> PathBuf {
     let runtime = std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from);
     match runtime.filter(|folder| folder.is_absolute() && folder.is_dir()) {
@@ -26,7 +27,7 @@ pub fn folder() -> PathBuf {
     }
 }
 
-/// Creates a private folder, unless the folder exists.
+/// Creates a private folder. Has no effect if the folder exists.
 pub fn make_private(folder: &Path) -> io::Result<()> {
     match DirBuilder::new().mode(0o700).create(folder) {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
@@ -52,14 +53,14 @@ pub fn check_private(path: &Path, is_folder: bool) -> io::Result<Result<(), &'st
     })
 }
 
-/// A lock file. One process at a time can lock it. The lock ends with the process.
+/// A lock file. Only one process at a time can lock it. The lock ends when the process ends.
 #[derive(Debug)]
 pub struct Lock {
     _file: File,
 }
 
 impl Lock {
-    /// Locks the file, and writes this text into it. `None` if another process has locked it.
+    /// Locks the file, and writes `text` into it. Returns `None` if another process has locked it.
     pub fn take(path: &Path, text: &[u8]) -> io::Result<Option<Self>> {
         use io::{Seek as _, Write as _};
 
@@ -93,12 +94,12 @@ impl Listener {
         Ok(Self(listener))
     }
 
-    /// Waits for the next client of the same user. Returns the socket with the process id of the client, if the system
-    /// reports it. Cancel safe.
+    /// Waits for the next client of the same user. Returns the socket, and the process id of the client if the system
+    /// reports it. The future is cancel safe.
     pub async fn accept(&mut self) -> io::Result<(ReadHalf, WriteHalf, Option<u32>)> {
         loop {
             let (stream, _) = self.0.accept().await?;
-            // The client is already gone.
+            // An error means that the client has already disconnected.
             let Ok(peer) = stream.peer_cred() else { continue };
             if peer.uid() == geteuid().as_raw() {
                 let (read, write) = stream.into_split();
@@ -169,7 +170,7 @@ pub fn terminate(pid: u32) -> bool {
     pid.is_some_and(|pid| kill_process(pid, Signal::TERM).is_ok())
 }
 
-/// Starts a new session of the operating system: detaches this process from its terminal and process group.
+/// Starts a new session of the operating system. This detaches the process from its terminal and its process group.
 pub fn leave_terminal() -> io::Result<()> {
     setsid().map(|_| ()).map_err(io::Error::from)
 }

@@ -1,7 +1,7 @@
 //! Frames between a session host and its clients.
 //!
-//! A frame has a length of 4 bytes (little-endian, the number of bytes after it), a type byte, and the content. Control
-//! frames are JSON; frequent frames are binary.
+//! A frame has a length of 4 bytes (little-endian), a type byte, and the content. The length is the number of bytes
+//! after it. Control frames are JSON. Frequent frames are binary.
 
 use std::io;
 
@@ -41,12 +41,12 @@ pub enum Frame {
 /// Change of an image: the bits in `mask` get the values in `value`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Change {
-    /// Generation of the link. The host drops a change for an older generation, so that no change from before a loss is
+    /// Generation of the link. The host drops a change of an older generation. So a change from before a loss is not
     /// applied after the loss.
     pub generation: u32,
     /// Bits to change.
     pub mask: Vec<u8>,
-    /// New values of the bits. The length is the length of the mask.
+    /// New values of the bits. It has the same length as the mask.
     pub value: Vec<u8>,
 }
 
@@ -74,12 +74,12 @@ pub enum Control {
     },
     /// Client: request for the line.
     Take {
-        /// Number of the request. The host returns the number with the line.
+        /// Number of the request. If the client gets the line, the answer contains this number.
         number: u32,
         /// Channel of the device.
         channel: u8,
     },
-    /// Client: releases the line, or its place in the queue for the line.
+    /// Client: releases the line, or leaves the queue for the line.
     Over,
     /// Client: request to move the robot.
     Motion,
@@ -98,13 +98,13 @@ pub enum Control {
     Refused(String),
     /// Host: the session ends.
     Closing,
-    /// Host: the client owns the line. The value is the number of the request.
+    /// Host: the client owns the line. Contains the number of the request.
     Taken(u32),
-    /// Host: another client owns the line, and this client is in the queue.
+    /// Host: the client is in the queue, because another client owns the line. Contains that client.
     Queued(Peer),
     /// Host: the client may move the robot.
     Granted,
-    /// Host: another client moves the robot.
+    /// Host: the client may not move the robot, because another client moves it. Contains that client.
     Held(Peer),
     /// Host: the last image of the client was sent.
     Sent,
@@ -117,11 +117,11 @@ pub enum Control {
         /// Current image to the device.
         shown: Vec<u8>,
     },
-    /// Host: sending to the device or receiving from it failed.
+    /// Host: an exchange with the device failed while sending or receiving.
     Broken(Broken),
     /// Host: a frame was refused, because the robot is read-only.
     Denied {
-        /// Current image to the device, on an image link.
+        /// Image that the device really gets; `None` if the link has no images.
         shown: Option<Vec<u8>>,
     },
     /// Host: the session has ended for this reason.
@@ -143,26 +143,27 @@ pub struct Hello {
     pub purpose: Purpose,
 }
 
-/// Purpose of a connection. The host uses it for priority and for the end of a client.
+/// Purpose of a connection. It decides which client gets the line first, and what the host does if the client is
+/// killed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Purpose {
-    /// Any command. If the client is killed, the host stops its motion.
+    /// Any command. If the client is killed, the host stops the motion of the client.
     #[default]
     Any,
     /// A command whose motion continues if the client is killed.
     LeavesMotion,
-    /// Stop of the robot. This client gets the line before all other clients.
+    /// A stop of the robot. This client gets the line before all other clients.
     Stop,
 }
 
-/// Description of a client, for the other clients.
+/// Description of a client, which other clients receive.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Peer {
     /// Process id.
     pub pid: u32,
     /// Command line.
     pub command: String,
-    /// Time in ms since the client got the line or started to move the robot.
+    /// Time in ms after the client got the line or started to move the robot.
     pub for_ms: u64,
 }
 
@@ -177,7 +178,7 @@ pub struct Welcome {
     pub for_ms: u64,
     /// Reason why the link is down; `None` while it is up.
     pub down: Option<String>,
-    /// Active command of an earlier client that did not wait for its end.
+    /// Active command of an earlier client that did not wait for the end of the command.
     pub leftover: Option<Leftover>,
     /// State of the images, if the link has images.
     pub images: Option<Images>,
@@ -188,8 +189,8 @@ pub struct Welcome {
 pub struct Images {
     /// Generation of the link.
     pub generation: u32,
-    /// Size of the exclusive part: the number of bytes, from the start of the image, that only the owner of the line
-    /// can change.
+    /// Size of the exclusive part in bytes. This part is at the start of the image, and only the owner of the line can
+    /// change it.
     pub exclusive: usize,
     /// Image to the device.
     pub shown: Vec<u8>,
@@ -197,10 +198,10 @@ pub struct Images {
     pub seen: Option<Vec<u8>>,
 }
 
-/// Active command in the exclusive part of the image. Its client has ended or crashed.
+/// Command that is still active in the exclusive part of the image. Its client has ended or crashed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Leftover {
-    /// The former client.
+    /// The client that sent the command.
     pub by: Peer,
     /// Whether the client ended without detaching, because it was killed or crashed.
     pub died: bool,
@@ -209,7 +210,7 @@ pub struct Leftover {
 /// Status of a session.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Status {
-    /// Protocol version; see [`VERSION`]. It is 0 if an old host does not send this field.
+    /// Protocol version; see [`VERSION`]. It is 0 if the host is so old that it does not send this field.
     #[serde(default)]
     pub version: u32,
     /// Device and host process.
@@ -224,13 +225,13 @@ pub struct Status {
     pub clients: Vec<Peer>,
     /// Client that moves the robot; `None` if no client does.
     pub motion: Option<Peer>,
-    /// Active command of an earlier client that did not wait for its end.
+    /// Active command of an earlier client that did not wait for the end of the command.
     pub leftover: Option<Leftover>,
     /// Whether the robot is moving.
     pub under_way: bool,
 }
 
-/// Device and process of a session, or of a command with its own link. The lock file contains this information.
+/// Device and process of a session, or of a command that has its own link. The lock file contains this information.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Info {
     /// Process id.
@@ -241,7 +242,7 @@ pub struct Info {
     pub family: String,
     /// Target URL.
     pub target: String,
-    /// Command line of the process. It is empty if an old version did not write this field.
+    /// Command line of the process. It is empty if an old version wrote the information without this field.
     #[serde(default)]
     pub command: String,
 }
@@ -254,7 +255,7 @@ impl Info {
     }
 }
 
-/// A failed operation of the host.
+/// Error of an operation of the host on the link.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Broken {
     /// Kind of the error.
@@ -263,7 +264,7 @@ pub struct Broken {
     pub text: String,
 }
 
-/// Error kinds that clients distinguish.
+/// Error kinds that clients must be able to distinguish.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BrokenKind {
@@ -277,7 +278,7 @@ pub enum BrokenKind {
     NetworkUnreachable,
     /// A send did not complete in time.
     TimedOut,
-    /// Another error.
+    /// Any other error.
     Other,
 }
 
@@ -323,8 +324,8 @@ const SHOW: u8 = b's';
 const DATA: u8 = b'd';
 
 impl Frame {
-    /// Appends the encoded frame to `out`. The frame is never too long: images and datagrams have at most 65535 bytes,
-    /// and texts are shortened.
+    /// Appends the encoded frame to `out`. The frame always fits: images and datagrams have at most 65535 bytes, and
+    /// texts are shortened.
     pub fn emit(&self, out: &mut Vec<u8>) {
         let start = out.len();
         out.extend([0; HEAD]);
@@ -352,7 +353,8 @@ impl Frame {
         out[start..start + HEAD].copy_from_slice(&length.to_le_bytes());
     }
 
-    /// Decodes the first frame of a buffer. Returns the frame and its length; `None` if the frame is incomplete.
+    /// Decodes the first frame of a buffer. Returns the frame and its length. Returns `None` if the frame is not
+    /// complete yet.
     fn parse(bytes: &[u8]) -> Result<Option<(Self, usize)>, WireError> {
         let Some((head, rest)) = bytes.split_first_chunk::<HEAD>() else { return Ok(None) };
         let length = usize::try_from(u32::from_le_bytes(*head)).unwrap_or(usize::MAX);
@@ -392,7 +394,8 @@ impl Reader {
         Self { socket, buffer: Vec::new() }
     }
 
-    /// Waits for the next frame. Returns `None` after the other side has closed the connection. Cancel safe.
+    /// Waits for the next frame. Returns `None` after the other side has closed the connection. The future is cancel
+    /// safe.
     pub async fn next(&mut self) -> Result<Option<Frame>, WireError> {
         loop {
             if let Some((frame, length)) = Frame::parse(&self.buffer)? {

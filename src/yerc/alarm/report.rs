@@ -33,13 +33,14 @@ pub struct Own {
 pub(super) struct SubCode {
     /// Sub-code as a raw number; 0 if there is no sub-code.
     raw: u32,
-    /// Sub-code as the pendant shows it. If `trust` is `raw`, hexadecimal bytes. Empty if there is no sub-code.
+    /// Sub-code as the pendant shows it. If `trust` is `raw`, these are hexadecimal bytes. The text is empty if there
+    /// is no sub-code.
     rendered: String,
     /// How reliable `rendered` is: `printed` in the manuals, `inferred`, or `raw`.
     trust: &'static str,
     /// Text that the pendant shows, as the controller reports it; null without texts.
     text: Option<String>,
-    /// A 1 for each character that the pendant displays reversed; null without texts.
+    /// A 1 for each character that the pendant shows in reverse video; null without texts.
     reversed: Option<String>,
     /// Text of `rendered`, with the raw value if the text is uncertain.
     #[serde(skip)]

@@ -13,7 +13,7 @@ use armctl_frame::decode::capture::{CaptureDecoder, DecodedCapture, DecodedMessa
 use armctl_transport::capture::{Carrier, Message};
 use armctl_transport::tap::Direction;
 
-/// Maximum number of pending requests. There are fewer peers in any plant.
+/// Maximum number of pending requests. No plant has so many requests at the same time.
 const MAX_REQUESTS: usize = 1 << 16;
 
 /// Decodes datagrams that start like a frame.

@@ -1,9 +1,9 @@
 //! `yerc file cmos` (FS and DX 3.4.5): the batch backup.
 //!
 //! The same request creates the backup and downloads it, and the manuals do not say how a controller distinguishes the
-//! two. For this reason, the first answer decides. If it has no data, the backup has been created, and the request is
-//! sent once more. If it has data, this is already the file. The request is never repeated automatically, because that
-//! could create a second backup.
+//! two requests. For this reason, the first answer decides. If it has no data, the backup has been created, and the
+//! request is sent once more. If it has data, this is already the file. The request is never repeated automatically,
+//! because that could create a second backup.
 
 use std::path::PathBuf;
 use std::time::Duration;

@@ -162,7 +162,7 @@ impl Fixer {
     }
 }
 
-/// Maximum number of bytes of a line that the scan keeps. The longest relevant line has a name.
+/// Maximum number of bytes of a line that the scan keeps. The longest relevant line contains a job name.
 const HEAD: usize = 48;
 
 /// Scan for the requirements of a job file (JBI): `/JOB` in the first line, lines `NOP` and `END`, CR LF line endings.

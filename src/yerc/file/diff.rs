@@ -23,7 +23,7 @@ pub struct Diff {
     /// Name on the controller
     #[arg(add = complete::FILE)]
     name: String,
-    /// Local file; default: the file with the same name in this folder
+    /// Local file [default: the file with the same name in the current folder]
     #[arg(value_name = "FILE")]
     local: Option<PathBuf>,
     /// Also compare the line ///DATE of a job, which controllers rewrite

@@ -17,10 +17,10 @@ use armctl_frame::robot::file::{FileItem, Files};
 /// Downloads files from the controller.
 #[derive(Debug, Args)]
 pub struct Get {
-    /// Names, such as TESTJOB.JBI, or patterns, such as '*.JBI'; '*' for all
+    /// Names, such as TESTJOB.JBI, or patterns, such as '*.JBI'. '*' means all files
     #[arg(required = true, value_name = "NAME", add = complete::FILE)]
     names: Vec<String>,
-    /// Target folder; - writes one file to stdout
+    /// Target folder, or - to write one file to stdout
     #[arg(long, value_name = "DIR", default_value = ".")]
     dir: PathBuf,
     /// Replace local files that exist

@@ -1,5 +1,5 @@
-//! Existence of files on the controller, according to its lists. With it, the confirmation can name the files that will
-//! be overwritten or deleted.
+//! Existence of files on the controller, according to its lists. With this information, the confirmation can name the
+//! files that will be overwritten or deleted.
 
 use super::transfer;
 use crate::link::Link;
@@ -23,7 +23,7 @@ pub enum Existence {
 pub struct Lists(Vec<(FileType, Option<Vec<Vec<u8>>>)>);
 
 impl Lists {
-    /// Reads the lists for these files. Returns `None` in a dry run, which records the requests.
+    /// Reads the lists for these files. In a dry run, records the requests and returns `None`.
     pub async fn ask<'a>(
         link: &mut Link,
         is_asked: impl IntoIterator<Item = &'a FileName>,

@@ -30,7 +30,7 @@ fn types(pattern: &str) -> Vec<FileType> {
 }
 
 /// Finds the files for arguments, without duplicates. Names are used unchanged, and patterns are replaced by the names
-/// that match. Returns `None` in a dry run, which records the requests.
+/// that match. In a dry run, records the requests and returns `None`.
 pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<FilePattern>>, Failure> {
     let (patterns, names): (Vec<&String>, Vec<&String>) = asked.iter().partition(|text| is_pattern(text));
     let names: Vec<String> = names.into_iter().cloned().collect();

@@ -27,7 +27,7 @@ pub struct Put {
     /// Read each file back and compare it
     #[arg(long)]
     verify: bool,
-    /// Ignore the line ///DATE in this comparison, because controllers rewrite it
+    /// In the comparison of --verify, ignore the line ///DATE, because controllers rewrite this line
     #[arg(long, requires = "verify")]
     ignore_header: bool,
     /// If the controller does not overwrite a job, delete the old job first

@@ -17,8 +17,8 @@ pub enum FileReading {
     Failed(Failure),
 }
 
-/// Reads files of at most `most` bytes, in order. Each file has its own result. Returns `None` in a dry run, which
-/// records the requests.
+/// Reads files of at most `most` bytes, in order. Each file has its own result. In a dry run, records the requests and
+/// returns `None`.
 pub async fn read_files(
     link: &mut Link,
     screen: &Screen,

@@ -32,13 +32,14 @@ pub struct Restore {
     force: bool,
 }
 
-/// Jobs are replaced if the controller itself does not overwrite them.
+/// Options for each upload: a job is replaced if the controller itself does not overwrite it.
 const OPTIONS: UploadOptions = UploadOptions { verify: false, ignore_header: false, replace: true };
 
 /// Order in which types are sent. Jobs need their data and conditions first. After parameters, a controller may need a
 /// restart.
 const ORDER: [FileType; 6] = [FileType::Dat, FileType::Cnd, FileType::Jbi, FileType::Lst, FileType::Sys, FileType::Prm];
-/// Types that are sent by default. Parameters and system data are not, because they change the controller itself.
+/// Types that are sent by default. Parameters and system data are not sent by default, because they change the
+/// controller itself.
 const DEFAULT_TYPES: [FileType; 3] = [FileType::Dat, FileType::Cnd, FileType::Jbi];
 
 impl Restore {

@@ -215,7 +215,7 @@ async fn replace(link: &mut Link, screen: &Screen, delivery: &mut Delivery) -> R
     }
 }
 
-/// Local copy of a job that will be deleted. The copy is removed at the end, unless it is the only one.
+/// Local copy of a job that will be deleted. The copy is removed at the end, unless it is the only copy of the job.
 #[derive(Debug)]
 struct OldCopy {
     path: PathBuf,

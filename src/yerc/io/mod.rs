@@ -16,9 +16,9 @@ use armctl_frame::robot::io::{IoItem, IoKind};
 commands! {
     /// Commands for signals.
     pub enum Io {
-        /// Read signals: 20010, #20010..#20017, or --group 2001
+        /// Read signals, for example 20010, #20010..#20017, or --group 2001
         Get(get::Get),
-        /// Switch network inputs: 27010=on, or --group 2701=0xA5
+        /// Switch network inputs, for example 27010=on, or --group 2701=0xA5
         Set(set::Set),
         /// List the signals that are on or have a name
         List(list::List),

@@ -30,10 +30,11 @@ use armctl_frame::store::{ComparedRow, Row, write_rows};
                   read and the write, that change is lost. --group writes all eight signals without a read."
 )]
 pub struct Set {
-    /// 27010=on, #27011=off, or clamp=on for a name
+    /// Signals with their new states, for example 27010=on or #27011=off, or clamp=on for a name
     #[arg(required_unless_present = "groups", value_name = "NUMBER=on|off", add = complete::SIGNAL_STATE)]
     signals: Vec<Switch>,
-    /// Eight signals of a group, such as 2701=0xA5; the first signal is the lowest bit (repeatable)
+    /// Groups of eight signals with their new values, such as 2701=0xA5. The first signal is the lowest bit
+    /// (repeatable)
     #[arg(long = "group", value_name = "GROUP=VALUE")]
     groups: Vec<GroupValue>,
 }
@@ -220,7 +221,7 @@ impl Writable for Groups {
         self.read(link.for_purpose(OLD_VALUE), screen, &groups).await
     }
 
-    /// Consecutive groups are one request.
+    /// Consecutive groups are written with one request.
     fn blocks(&self, rows: &[Differing<'_, Self>]) -> Vec<Vec<usize>> {
         let index_of = |group: &u16| rows.iter().position(|(key, ..)| key == group);
         match self.steps(rows.iter().map(|(group, _, new)| (*group, **new))) {

@@ -29,7 +29,7 @@ use armctl_frame::wait_arguments::ProgramEnd;
                   lost answer, armctl does not start the job again."
 )]
 pub struct Start {
-    /// Job name, without .JBI; default: the selected job
+    /// Job name without .JBI [default: the selected job]
     #[arg(add = complete::JOB)]
     name: Option<String>,
     /// Start line
@@ -302,7 +302,7 @@ impl Watch {
 pub struct Started {
     /// Whether the controller accepted the start.
     accepted: bool,
-    /// The job. Its line is the line at the end. Line 0 is the first line; END leads to it.
+    /// The job. Its line is the line at the end of the run. Line 0 is the first line, and the job returns to it at END.
     #[serde(flatten)]
     program: Program,
 }

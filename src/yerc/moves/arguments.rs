@@ -19,7 +19,7 @@ use armctl_frame::wait_arguments::MotionEnd;
 /// Group that moves, and the options for the wait.
 #[derive(Debug, Args)]
 pub(super) struct Mover {
-    /// Robot or station to move: R1 …, S1 …
+    /// Robot (R1 …) or station (S1 …) that moves
     #[arg(long, default_value = "R1", value_parser = mover)]
     pub(super) group: Group,
     #[command(flatten)]
@@ -51,7 +51,7 @@ pub(super) struct To {
     #[arg(long, value_name = "X,Y,Z,RX,RY,RZ|REF", allow_hyphen_values = true, value_parser = parse_target, add = complete::VARIABLE,
         conflicts_with_all = ["x", "y", "z", "rx", "ry", "rz"])]
     to: Option<ParsedTarget>,
-    /// Target as axis angles in degrees, with pulses_per_degree of the robot in robots.toml
+    /// Target as axis angles in degrees. The robot must have the setting pulses_per_degree in robots.toml
     #[arg(long, value_name = "S,L,U,R,B,T[,E]", allow_hyphen_values = true, value_parser = axis_degrees,
         conflicts_with_all = ["to", "x", "y", "z", "rx", "ry", "rz"])]
     deg: Option<Destination>,
@@ -263,11 +263,12 @@ impl Frame {
 /// Arm configuration at the target.
 #[derive(Debug, Args)]
 pub(super) struct Forms {
-    /// Arm form: front|back, upper|lower, flip|noflip, r-lt180|r-ge180, t-lt180|t-ge180, s-lt180|s-ge180; the first
+    /// Arm form: front|back, upper|lower, flip|noflip, r-lt180|r-ge180, t-lt180|t-ge180, s-lt180|s-ge180. The first
     /// word of each pair is the default [default: front,upper,flip]
     #[arg(long, value_name = "WORD,…", value_parser = form)]
     pub(super) form: Option<Form>,
-    /// Extended form, in the same way: l-lt180|l-ge180, then u-, b-, e-, w- [default: l-lt180]
+    /// Extended form, in the same way: l-lt180|l-ge180, and the same two words with u-, b-, e- and w- [default:
+    /// l-lt180]
     #[arg(long, value_name = "WORD,…", value_parser = extended_form)]
     pub(super) extended_form: Option<ExtendedForm>,
 }
@@ -491,7 +492,7 @@ pub(super) fn split<'a, T>(
 /// Target of one group.
 #[derive(Debug)]
 pub(super) enum Part<'a, T> {
-    /// Target of a robot, and of its base if the user gave one.
+    /// Target of a robot, and of its base if the user gave values for the base.
     Robot(T, Option<&'a Values>),
     /// Target of a station.
     Station(&'a Values),

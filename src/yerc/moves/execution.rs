@@ -234,7 +234,8 @@ pub(super) async fn plan_looks(link: &mut Link, group: Group, coordinates: Coord
 /// Maximum number of reads until a robot is at rest. They take two seconds.
 const REST_POLLS: u32 = 40;
 
-/// Position of a robot after a stop, as text. If it cannot be read, the last known position.
+/// Position of a robot after a stop, as text. If the position cannot be read, the text contains the last known
+/// position.
 async fn resting_place(
     link: &mut Link,
     group: Group,

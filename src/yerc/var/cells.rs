@@ -60,14 +60,16 @@ pub fn plain(kind: VariableKind, cells: &Cells, encoding: Encoding) -> Result<Va
     let typed = |text: &[u8]| Value::from_text(kind, text).map_err(|error| error.to_string());
     let is_string = matches!(kind, VariableKind::S16 | VariableKind::S32);
     if let Some(column) = cells.keys().find(|column| ![NUMBER, TEXT, BYTES].contains(&column.as_str())) {
-        return Err(format!("column {column} belongs to positions, and {} is not a position", kind.letters()));
+        return Err(format!("column `{column}` belongs to positions, and {} is not a position", kind.letters()));
     }
     match (cells.get(NUMBER), cells.get(TEXT), cells.get(BYTES)) {
         (None, text, Some(digits)) => exact(kind, text.map(String::as_str), digits, encoding),
         (Some(number), None, None) if !is_string => typed(number.as_bytes()),
         (None, Some(text), None) if is_string && text == EMPTY => typed(b""),
         (None, Some(text), None) if is_string => typed(&encoding.encode(text).map_err(|error| error.to_string())?),
-        _ => Err(format!("write the value of {} in column {}", kind.letters(), if is_string { TEXT } else { NUMBER })),
+        _ => {
+            Err(format!("write the value of {} in column `{}`", kind.letters(), if is_string { TEXT } else { NUMBER }))
+        }
     }
 }
 
@@ -97,7 +99,7 @@ fn exact(kind: VariableKind, shown: Option<&str>, digits: &str, encoding: Encodi
 pub fn check_position(cells: &Cells) -> Result<(), String> {
     match cells.keys().find(|column| [NUMBER, TEXT, BYTES].contains(&column.as_str())) {
         Some(column) => Err(format!(
-            "write the axes of a position in their own columns; column {column} is for numbers and strings"
+            "write the axes of a position in their own columns; column `{column}` is for numbers and strings"
         )),
         None => Ok(()),
     }
@@ -112,7 +114,7 @@ pub fn merge_over(cells: &Cells, kind: VariableKind, old: Option<&Value>) -> Res
     let is_other_type = cells.get(position::TYPE).is_some_and(|given| merged.get(position::TYPE) != Some(given));
     let is_alone = merged.is_empty() || is_other_type;
     if is_alone && !cells.contains_key(position::TYPE) {
-        return Err("the position is undefined on the controller; fill in type and all axes".to_owned());
+        return Err("the position is undefined on the controller; fill in `type` and all axes".to_owned());
     }
     if is_alone {
         merged.clear();

@@ -23,15 +23,15 @@ use armctl_frame::store::{Copy, Dump, Get, List, Restore};
 commands! {
     /// Commands for variables.
     pub enum Var {
-        /// Read variables: B0 I1..I20 D5 R3 S2 P10 BP1 EX1
+        /// Read variables, for example B0 I1..I20 D5 R3 S2 P10 BP1 EX1
         Get(Get<Variables>),
-        /// Write variables: B0=255 R3=1.5 S7=HELLO P1=base:x=…
+        /// Write variables, for example B0=255 R3=1.5 S7=HELLO P1=base:x=…
         Set(set::Set),
         /// List the variables that are not empty
         List(List<Variables>),
         /// Print each change of variables
         Watch(Watch<Get<Variables>>),
-        /// Copy a variable to others of the same kind: P5 P6..P8
+        /// Copy a variable to other variables of the same kind, for example `P5 P6..P8`
         Copy(Copy<Variables>),
         /// Save variables to a CSV file
         Dump(Dump<Variables>),

@@ -134,7 +134,7 @@ const UNITS: [Unit; 3] = [units::PULSE, units::MILLIMETRE, units::DEGREE];
 /// # Errors
 /// If a column is missing or wrong. The error names the column.
 pub fn from_fields(kind: VariableKind, fields: &BTreeMap<String, String>) -> Result<Value, String> {
-    let name = fields.get(TYPE).ok_or("type is missing; fill in type and all axes")?;
+    let name = fields.get(TYPE).ok_or("`type` is missing; fill in `type` and all axes")?;
     let (mut parts, mut given) = (Vec::new(), Vec::new());
     for (column, text) in fields.iter().filter(|(column, _)| *column != TYPE) {
         match column.as_str() {
@@ -143,7 +143,7 @@ pub fn from_fields(kind: VariableKind, fields: &BTreeMap<String, String>) -> Res
             "extended_form_code" if kind == VariableKind::P => parts.extend(flags("ext", column, text)?),
             _ => {
                 let axis =
-                    axis_of(column).ok_or_else(|| format!("{column} is not a column of a position of this kind"))?;
+                    axis_of(column).ok_or_else(|| format!("`{column}` is not a column of a position of this kind"))?;
                 parts.push(format!("{axis}={text}"));
                 given.push(column);
             }

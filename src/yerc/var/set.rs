@@ -24,12 +24,12 @@ use armctl_frame::teach::parse_printed_position;
                   base:x=…,y=…,z=…,rx=…,ry=…,rz=… in mm and degrees, with tool=, user=, form=back+lower+noflip. @FILE \
                   reads the output of `var get P1 --json` or `position --json` (the pulses, if the output has pulses \
                   and coordinates; @- is stdin). P1=here is the same as `teach P1`. BP accepts base: or pulse:, EX \
-                  accepts pulse:1=…. P1.tool=2, P1.user=1 and BP5.axis1=-1 change only that word: armctl reads the P, \
-                  changes the word and writes the whole P back. Axis words are in protocol steps (pulses, or 0.001 mm \
-                  and 0.0001 degree)."
+                  accepts pulse:1=…. P1.tool=2, P1.user=1 and BP5.axis1=-1 change only that part: armctl reads the \
+                  variable, changes the part and writes the whole variable back. Axis parts are in protocol steps \
+                  (pulses, or 0.001 mm and 0.0001 degree)."
 )]
 pub struct Set {
-    /// B0=255, I5=-2, R3=1.5, S7=HELLO, P1=base:x=…, P1=@FILE, or NAME=255
+    /// Variables with their new values, for example B0=255, I5=-2, R3=1.5, S7=HELLO, P1=base:x=…, P1=@FILE, or NAME=255
     #[arg(required = true, value_name = "REF=VALUE", add = complete::VARIABLE_VALUE)]
     assignments: Vec<Assignment>,
     #[command(flatten)]
@@ -86,7 +86,7 @@ impl FromStr for Assignment {
 /// Variable that takes the place of a name that is not resolved yet.
 const ANY: Reference = Reference::new(VariableKind::B, 0);
 
-/// Parses a variable or its name, and the part after it. A name gives no variable yet.
+/// Parses a variable or its name, and the part after it. For a name, the variable is not known yet.
 fn reference_of(text: &str) -> Result<(Option<Reference>, Option<&str>), String> {
     let parts = text.rsplit_once('.').map(|(name, field)| (name, Some(field)));
     let address = |name: &str| name.parse::<Reference>().map_err(message);

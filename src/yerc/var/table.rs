@@ -56,14 +56,15 @@ pub struct More {
 pub enum Draft {
     /// A complete value.
     Whole(Value),
-    /// Some fields of a position, by their column. Without any field: a value that is not known in a dry run.
+    /// Some fields of a position, by their column. If there is no field, the value is unknown, because this is a dry
+    /// run.
     Fields(Cells),
     /// Single words of a position.
     Words(Vec<Word>),
 }
 
-/// Maximum number of variables in a range. A larger range is probably a typing error, and if it is refused, the read in
-/// parts takes long.
+/// Maximum number of variables in a range. A larger range is probably a typing error. If it is refused, the read in
+/// parts takes a long time.
 const MOST: usize = 10_000;
 
 /// Added status codes for a variable without a value. The manuals give 0xB001 a second meaning, which cannot occur when
@@ -124,7 +125,7 @@ impl Variables {
         };
         let Some([one, other]) = both else {
             return Err(Failure::usage(format!("{key}: the values {about} do not belong to one type of position"))
-                .hint("fill in the column type and the columns of the axes"));
+                .hint("fill in column `type` and the columns of the axes"));
         };
         let about = match about.as_str() {
             "" => format!("writes {key}"),
@@ -148,12 +149,12 @@ impl Store for Variables {
     const WORDS: TableWords = TableWords {
         nouns: ["variable", "variables"],
         placeholder: "REF",
-        range: "B0, I1..I20, D5, R3, S2, P10, BP1, EX1, a kind such as P, or a name",
+        range: "Variables, such as B0, I1..I20, D5, R3, S2, P10, BP1 or EX1, a kind such as P, or a name",
         reading: Some(
             "In JSON, a position that was never taught is null. Each variable has its own result. The exit code is 9 \
-             if the controller refused some variables. The exit code is 3 if it refused all variables or none has a \
-             value. armctl reads many variables with few requests. The standard numbers are 0-99 (positions 0-127); \
-             the controller's parameters can define more.",
+             if the controller refused some variables. The exit code is 3 if the controller refused all variables, or \
+             if no variable has a value. armctl reads many variables with few requests. The standard numbers are 0-99 \
+             (positions 0-127); the controller's parameters can define more.",
         ),
         writing: None,
     };
@@ -336,8 +337,8 @@ impl Writable for Variables {
         self.read(link.for_purpose(OLD_VALUE), screen, &keys).await
     }
 
-    /// Consecutive variables of a kind are written with one request. A single changed axis of a BP or an EX also has
-    /// one request.
+    /// Consecutive variables of a kind are written with one request. A BP or an EX of which only one axis changes has
+    /// its own request.
     fn blocks(&self, rows: &[Differing<'_, Self>]) -> Vec<Vec<usize>> {
         let (alone, together): (Vec<usize>, Vec<usize>) =
             (0..rows.len()).partition(|index| single_word(&rows[*index]).is_some());

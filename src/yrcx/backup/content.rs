@@ -119,7 +119,7 @@ fn of_robot(command: Command, robot: u8) -> Draft {
 /// Notes a request in a dry run that is sent only if its robot exists.
 fn plan_if_there(link: &mut Link, order: &Order, about: &str) {
     let robot = order.values().int(Key::Robot).unwrap_or_default();
-    let depends_on = format!("the axes: read only if there is a robot {robot}");
+    let depends_on = format!("the axes: sent only if there is a robot {robot}");
     link.plan_depending(order, order, Reason::about(about).depending_on(&depends_on));
 }
 
@@ -206,7 +206,8 @@ async fn rows<S: Writable<Family = Yrcx>>(
     part_text(table, keys, certain_rows(link, screen, table, keys).await?)
 }
 
-/// Rows of a table, or that they are not defined. Another failure concerns all rows: the part is not complete.
+/// Returns the rows of a table, or the fact that they are not defined. Any other failure concerns all rows, so the part
+/// is not complete.
 async fn certain_rows<S: Writable<Family = Yrcx>>(
     link: &mut Link,
     screen: &Screen,
@@ -221,7 +222,8 @@ async fn certain_rows<S: Writable<Family = Yrcx>>(
     certain.collect()
 }
 
-/// Every robot has all settings and parameters: a refusal belongs in the report.
+/// Every robot has all settings and parameters. A refused row is therefore not undefined, and the report lists it as
+/// left out.
 fn all_left_out(text: store::Text) -> store::Text {
     let store::Text { text, mut left_out, undefined } = text;
     left_out.extend(undefined);
@@ -229,7 +231,7 @@ fn all_left_out(text: store::Text) -> store::Text {
 }
 
 /// Reads points with their comments. With `gap`, the number of undefined points before them, the search ends after
-/// [`GAP`] in a row; after that only the points in `always` are read.
+/// [`GAP`] undefined points in a row. After that, only the points in `always` are read.
 pub async fn read_points(
     link: &mut Link,
     screen: &Screen,

@@ -38,8 +38,8 @@ pub enum Part {
 pub const THOUSAND: u16 = 1000;
 
 impl Part {
-    /// Parts but the points of a controller with these robots, in the order of reading: pallets before the points that
-    /// they refer to.
+    /// Parts of a controller with these robots, without the points. They are in the order of reading: pallets before
+    /// the points that they refer to.
     pub fn without_points(robots: impl Iterator<Item = u8> + Clone) -> impl Iterator<Item = Self> {
         let of_robots = robots.clone().map(Self::Settings).chain(robots.map(Self::Parameters));
         let of_controller = [Self::Variables, Self::Pallets, Self::Shifts, Self::Hands];
@@ -95,7 +95,7 @@ impl Part {
         matches!(self, Self::Settings(_) | Self::Parameters(_))
     }
 
-    /// The table of the part with the rows of its file; none for the information, which is not written.
+    /// The table of the part with the rows of its file; `None` for the information, which is not written.
     pub fn table(self, bytes: &[u8]) -> Result<Option<Table<Yrcx>>, Vec<Finding>> {
         match self {
             Self::Info => Ok(None),

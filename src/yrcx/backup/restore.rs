@@ -38,7 +38,7 @@ pub async fn restore(context: Context<'_, Yrcx>, restoring: &RestoreSelection) -
     }
     if jobs.is_empty() {
         return Err(Failure::usage("there is nothing to write in these parts")
-            .hint("add --machine to write parameters and settings; info is never written"));
+            .hint("add --machine to write parameters and settings; `info` is never written"));
     }
     if link.is_dry() {
         plan_items(link, saved.iter().map(|(part, _)| *part), &jobs, *machine);

@@ -27,7 +27,7 @@ use armctl_frame::store::{self, Store as _};
 pub struct Backup {
     #[command(flatten)]
     options: BackupOptions,
-    /// Points to save, 0 to 29999: 0..999 or 0..99,500
+    /// Points to save (0 to 29999), for example 0..999 or 0..99,500
     #[arg(long, value_name = "POINT", value_delimiter = ',', value_parser = points)]
     points: Vec<String>,
 }
@@ -195,8 +195,8 @@ fn saved(part: Part, Text { table, points }: Text) -> save::SavedPart {
 /// Number of consecutive undefined points that ends the search, if the user gives no range.
 pub const GAP: usize = 100;
 
-/// Counts the consecutive undefined points at the end of a range. `gap` is their number directly before the range.
-/// Returns at least [`GAP`] if so many were found in a row inside the range.
+/// Counts the consecutive undefined points at the end of a range. `gap` is the number of undefined points directly
+/// before the range. Returns at least [`GAP`] if so many undefined points were found in a row inside the range.
 pub fn gap_after(gap: usize, within: Range<i32>, defined: &[i32]) -> usize {
     let mut next = within.start;
     let mut gap = gap;

@@ -18,7 +18,7 @@ impl Kind for Comments {
     const WORDS: TableWords = TableWords {
         nouns: ["comment of point", "comments"],
         placeholder: "POINT",
-        range: "Points, 0 to 29999: 100, 0..29 or 0..29,100",
+        range: "Points (0 to 29999), such as 100, 0..29 or 0..29,100",
         reading: None,
         writing: None,
     };

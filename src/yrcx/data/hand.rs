@@ -23,7 +23,7 @@ impl Kind for Hands {
     const WORDS: TableWords = TableWords {
         nouns: ["hand", "hands"],
         placeholder: "HAND",
-        range: "Hands, 0 to 31: 1, 0..31 or 1,5",
+        range: "Hands (0 to 31), such as 1, 0..31 or 1,5",
         reading: Some(DATA_1),
         writing: Some(DATA_1),
     };

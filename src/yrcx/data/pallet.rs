@@ -18,7 +18,7 @@ impl Kind for Pallets {
     const WORDS: TableWords = TableWords {
         nouns: ["pallet", "pallets"],
         placeholder: "PALLET",
-        range: "Pallets, 0 to 39: 10, 0..39 or 1,5",
+        range: "Pallets (0 to 39), such as 10, 0..39 or 1,5",
         reading: None,
         writing: Some(
             "The controller stores the corners of a pallet in five points, starting with the first point. Set these \

@@ -17,13 +17,13 @@ use armctl_frame::teach::parse_printed_position;
 commands! {
     /// Commands for points.
     pub enum Point {
-        /// Read points: 100, 0..29
+        /// Read points, for example 100 or 0..29
         Get(Get<Numbered<Points>>),
         /// List the defined points of a range
         List(List<Numbered<Points>>),
-        /// Define a point: 100 --mm 10,-20,5,-18
+        /// Define a point, for example `100 --mm 10,-20,5,-18`
         Set(Set),
-        /// Copy a point to other points: 5 6..8
+        /// Copy a point to other points, for example `5 6..8`
         Copy(Copy<Numbered<Points>>),
         /// Save points and their comments to a CSV file
         Dump(Dump<PointSheet>),
@@ -41,7 +41,7 @@ impl Kind for Points {
     const WORDS: TableWords = TableWords {
         nouns: ["point", "points"],
         placeholder: "POINT",
-        range: "Points, 0 to 29999: 100, 0..29 or 0..29,100",
+        range: "Points (0 to 29999), such as 100, 0..29 or 0..29,100",
         reading: Some(
             "The controller refuses a point that is not defined. The other points are still reported (exit code 9). \
              `-o csv` prints a table for a spreadsheet.",

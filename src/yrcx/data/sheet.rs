@@ -50,7 +50,7 @@ impl Content {
 }
 
 impl PointSheet {
-    /// Reads points, if they are wanted, and the comments of some of them, if they are defined.
+    /// Reads points, if they are requested, and the comments of some of them, if they are defined.
     async fn read_parts(
         &self,
         link: &mut Link,
@@ -163,7 +163,7 @@ impl Writable for PointSheet {
     fn draft(&self, number: i32, texts: &[Option<&str>]) -> Result<Draft, String> {
         let (point, comment) = texts.split_at(Points::FIELDS.len());
         if point[0].is_none() && point[1..5].iter().any(Option::is_some) {
-            return Err("column unit is missing: the axes are in mm or in pulses".to_owned());
+            return Err("column `unit` is missing: the axes are in mm or in pulses".to_owned());
         }
         let is_given = |texts: &[Option<&str>]| texts.iter().any(Option::is_some);
         let point = is_given(point).then(|| self.points.draft(number, point)).transpose()?;

@@ -18,7 +18,7 @@ impl Kind for Shifts {
     const WORDS: TableWords = TableWords {
         nouns: ["shift", "shifts"],
         placeholder: "SHIFT",
-        range: "Shifts, 0 to 39: 5, 0..39 or 1,5",
+        range: "Shifts (0 to 39), such as 5, 0..39 or 1,5",
         reading: None,
         writing: None,
     };

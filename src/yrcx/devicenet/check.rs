@@ -76,7 +76,8 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Opti
 
 const OWNED: &str = "stop the scan of that master to send commands; read-only commands work in parallel";
 
-/// Listens to the polls of the other master: while it owns the node, armctl cannot read the image with messages.
+/// Listens to the polls of the other master: while the other master owns the node, armctl cannot read the image with
+/// messages.
 async fn overheard(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
     let image = board.overheard().await.in_layer("inputs")?;
     match image {

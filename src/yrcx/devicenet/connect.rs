@@ -18,7 +18,7 @@ const LISTEN: Duration = Duration::from_secs(1);
 const PATIENCE: Duration = Duration::from_secs(2);
 /// Minimum interval of reads by explicit messages.
 const PAUSE: Duration = Duration::from_millis(100);
-/// Vendor id of armctl. ODVA has not assigned one to armctl.
+/// Vendor id of armctl. ODVA has not assigned a vendor id to armctl.
 const UNREGISTERED_VENDOR: u16 = 0xFFFF;
 
 /// Image sizes that can be set at the controller.

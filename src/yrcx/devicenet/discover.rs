@@ -20,7 +20,8 @@ use armctl_transport::image::tap::Tap;
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct Search {
-    /// Find DeviceNet nodes on this adapter: slcan:///dev/ttyACM0, slcan://HOST:PORT, can://can0 (repeatable)
+    /// Find DeviceNet nodes on this adapter, for example slcan:///dev/ttyACM0, slcan://HOST:PORT or can://can0
+    /// (repeatable)
     #[arg(long = "devicenet", value_name = "URL", value_parser = wired)]
     adapters: Vec<(String, Bus)>,
 }

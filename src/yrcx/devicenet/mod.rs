@@ -21,9 +21,9 @@ commands! {
     pub enum DeviceNet {
         /// List the nodes on the bus, without allocating a node
         Scan(ReadBoard<scan::Scanned>),
-        /// Identity of the controller's node
+        /// Show the identity of the controller's node
         Identity(ReadBoard<identity::Identified>),
-        /// Image sizes and owner of the node
+        /// Show the image sizes and the owner of the node
         Probe(ReadBoard<probe::Probed>),
     }
 }

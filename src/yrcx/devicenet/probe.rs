@@ -5,8 +5,8 @@ use super::check::profile;
 use crate::messages::BoardReport;
 use crate::prelude::*;
 
-/// Image sizes of the node; they show how the unit is set. Its connections are allocated for the request and released;
-/// no polls are sent.
+/// Image sizes of the node; they show which setting the fieldbus unit has. Its connections are allocated for the
+/// request and released; no polls are sent.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Probed {
     /// Identity of the node. Null if another master owns the connections, because other clients then cannot read it.

@@ -21,7 +21,7 @@ use armctl_transport::image::LinkError;
 
 /// Attribute 3 of an assembly, which has the data.
 const IMAGE: u32 = 3;
-/// Usual assemblies of a YRCX: for output and for input.
+/// Usual output assembly of a YRCX. `USUAL_INPUT` is the usual input assembly.
 const USUAL_OUTPUT: u32 = 150;
 const USUAL_INPUT: u32 = 100;
 
@@ -113,7 +113,7 @@ impl Board {
         })
     }
 
-    /// Reads assemblies to find the existing ones and their sizes. `identity` is the identity of the board.
+    /// Reads assemblies to find the existing assemblies and their sizes. `identity` is the identity of the board.
     pub async fn survey(&mut self, identity: Option<&Identity>) -> Result<Probed, Failure> {
         let thought = self.thought();
         let exchanged = Instances { output: thought.input, input: thought.output, ..thought };
@@ -363,7 +363,7 @@ pub struct Attempt {
     /// Assembly with the data to the controller.
     #[serde(rename = "out")]
     pub output: u32,
-    /// Configuration assembly; null for none.
+    /// Configuration assembly; null if there is none.
     pub config: Option<u32>,
     /// Requested number of bytes from the controller.
     pub in_size: u16,
@@ -386,7 +386,7 @@ pub struct Connectable {
     /// Assembly with the data to the controller.
     #[serde(rename = "out")]
     pub output: u32,
-    /// Configuration assembly; null for none.
+    /// Configuration assembly; null if there is none.
     pub config: Option<u32>,
     /// Number of bytes from the controller; null if the board does not report it.
     pub in_size: Option<u16>,

@@ -61,7 +61,7 @@ fn connection(settings: &Eip, found: [(u32, Presence); 2], layers: &mut Layers) 
     let layer = "connection";
     if let Some((instance, _)) = found.iter().find(|(_, presence)| *presence == Presence::Absent) {
         let what = format!("the board has no assembly {instance}");
-        return layers.fail_with(layer, what, "find in and out with `yrcx eip probe`");
+        return layers.fail_with(layer, what, "find `in=` and `out=` with `yrcx eip probe`");
     }
     let [(input, from), (output, to)] = found.map(|(instance, presence)| match presence {
         Presence::Readable(assembly) => (instance, assembly.size),

@@ -23,7 +23,7 @@ pub struct Search {
     /// Send the search only to these addresses
     #[arg(value_name = "ADDRESS[:PORT]", value_parser = address)]
     targets: Vec<SocketAddrV4>,
-    /// Broadcast address; 255.255.255.255 by default (repeatable)
+    /// Broadcast address (repeatable) [default: 255.255.255.255]
     #[arg(long, value_name = "ADDRESS[:PORT]", value_parser = address)]
     broadcast: Vec<SocketAddrV4>,
     /// Address of this computer from which armctl searches

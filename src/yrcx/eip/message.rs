@@ -23,7 +23,7 @@ pub struct Get {
     /// Number of the instance
     #[arg(value_parser = number)]
     instance: u32,
-    /// Number of the attribute; default: all attributes
+    /// Number of the attribute [default: all attributes]
     #[arg(value_parser = number)]
     attribute: Option<u32>,
 }

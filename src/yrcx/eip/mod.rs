@@ -20,7 +20,7 @@ use armctl_frame::commands;
 commands! {
     /// Commands for the network board.
     pub enum Eip {
-        /// Identity of the network board
+        /// Show the identity of the network board
         Identity(ReadBoard<identity::Identified>),
         /// Find the assemblies of the board, their sizes and connection parameters
         Probe(probe::Probe),

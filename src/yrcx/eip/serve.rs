@@ -18,7 +18,7 @@ pub struct ServeArgs {
     /// EtherNet/IP: address to listen on, with the TCP port of sessions; with port 0, the system chooses a port
     #[arg(long, alias = "listen", value_name = "ADDRESS[:PORT]", default_value = "127.0.0.1:44818", value_parser = listen)]
     bind: SocketAddrV4,
-    /// EtherNet/IP: UDP port of images; default: 2222, or a free port if the system chooses the session port
+    /// EtherNet/IP: UDP port of images [default: 2222, or a free port if the system chooses the session port]
     #[arg(long, value_name = "PORT")]
     io_port: Option<u16>,
 }

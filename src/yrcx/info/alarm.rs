@@ -41,7 +41,7 @@ pub fn entry(values: &Values, kind: Kind) -> Option<AlarmEntry<Part>> {
     let place = |kind, count| {
         let kind = shown(Command::LatestAlarm, values, kind)?;
         match values.int(count) {
-            // Without a number, the source is all of this kind, or a task without a number.
+            // Without a number, the source is all objects of this kind, or a task without a number.
             Some(0) | None => Some(kind),
             Some(number) => Some(format!("{kind} {number}")),
         }

@@ -25,7 +25,7 @@ pub struct Where {
     /// Print each new position until Ctrl-C, --count or --for
     #[arg(long)]
     continuous: bool,
-    /// How long to continue
+    /// Time after which the output ends
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse)]
     within: Option<Duration>,
     #[arg(from_global)]

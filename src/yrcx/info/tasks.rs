@@ -16,7 +16,7 @@ const HALF: [Key; 8] = [Key::Task1, Key::Task2, Key::Task3, Key::Task4, Key::Tas
 /// Argument that selects tasks.
 #[derive(Debug, Args)]
 struct Chosen {
-    /// Tasks, 1 to 16: 3, 1..8 or 1,9; default: all existing tasks
+    /// Tasks (1 to 16), for example 3, `1..8` or `1,9` [default: all existing tasks]
     #[arg(value_name = "TASK", value_delimiter = ',', value_parser = tasks, add = complete::TASK)]
     tasks: Vec<Span>,
 }

@@ -9,10 +9,10 @@ use armctl_controller::yrcx::table::Command;
 one_row! {
     /// Reads the torque of axes; the sign is the direction.
     Torque(self) "yrcx.info.torque" -> Torques {
-        /// Reference of the percentage
+        /// Torque that counts as 100 %
         #[arg(long, value_name = "TORQUE", default_value = "max")]
         of: Reference,
-        /// Axes, for example 1,3; default: all
+        /// Axes, for example 1,3 [default: all axes]
         #[arg(long, value_name = "AXES", value_delimiter = ',', value_parser = clap::value_parser!(u8).range(1..=4))]
         axes: Vec<u8>,
     }

@@ -12,9 +12,9 @@ use armctl_frame::robot::io::{IoRow, IoValue, Signals};
 #[derive(Debug, Args)]
 #[command(after_help = "While a remote command runs, the words contain the command and its answer.")]
 pub struct Get {
-    /// Names or numbers, for example servo-on, 20 or SO(157). SI20 is an input of the controller; SOW2, SOD4, SIW2,
-    /// SID4 are words; SO20..SO37 is a range. Names of robots.toml are allowed. Default: all dedicated outputs, and the
-    /// general-purpose outputs that are on
+    /// Names or numbers, for example servo-on, 20 or SO(157). SI20 is an input of the controller. SOW2, SOD4, SIW2 and
+    /// SID4 are words. SO20..SO37 is a range. Names from robots.toml are also valid [default: all dedicated outputs,
+    /// and the general-purpose outputs that are on]
     #[arg(value_name = "SIGNAL", value_delimiter = ',', value_parser = readables, add = complete::OUTPUT)]
     signals: Vec<Series<Readable>>,
 }

@@ -19,7 +19,7 @@ commands! {
     pub enum Io {
         /// Read signals
         Get(get::Get),
-        /// Switch inputs of the controller: servo-on=on, 20=off, SIW2=5
+        /// Switch inputs of the controller, for example servo-on=on, 20=off or SIW2=5
         Set(set::Set),
         /// List the signals that are on or have a name
         List(list::List),

@@ -15,9 +15,10 @@ use armctl_frame::robot::io::{IoValue, WrittenSignal, WrittenSignals};
 /// Switches inputs of the controller one after the other, and sets general-purpose words.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "When the connection ends, inputs return to their resting state and words to 0. `armctl session open` \
-                  keeps the connection open. Edges are at least 100 ms apart; consecutive words change together. A \
-                  remote command uses the words while it runs, then restores them."
+    after_help = "When the connection ends, inputs return to their resting state and words to 0. `armctl session \
+                  open` keeps the connection open. armctl waits at least 100 ms between two changes of a signal; \
+                  consecutive words change together. A remote command uses the words while it runs, then restores \
+                  them."
 )]
 pub struct Set {
     /// Signal and state, for example servo-on=on or 20=off; or word and value, for example SIW2=5 or SID4=0x1F

@@ -11,7 +11,7 @@ use armctl_frame::robot::io::{IoValue, Signals, WATCHED};
 /// Arguments: the outputs of the controller to watch.
 #[derive(Debug, Args)]
 pub struct Outputs {
-    /// Names or numbers of outputs of the controller, for example servo-on or 20; default: all
+    /// Names or numbers of outputs of the controller, for example servo-on or 20 [default: all outputs]
     #[arg(value_name = "SIGNAL", value_parser = output, add = complete::OUTPUT)]
     signals: Vec<Signal>,
 }

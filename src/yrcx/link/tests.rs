@@ -18,8 +18,8 @@ fn ends(scans: u32, head: &[u16]) -> Reply {
 
 const MOVE: &[&str] = &["move", "--point", "19", "--speed", "50"];
 const STOPPED: &[u16] = &[0x4000, 12, 400];
-/// Word of dedicated inputs in the resting image, with the emergency-stop and stop inputs on; then the same word with
-/// the stop input off.
+/// Word of the dedicated inputs in the resting image: the emergency-stop input and the stop input are on. In `HELD`,
+/// the stop input is off.
 const REST: u16 = 0x0041;
 const HELD: u16 = 0x0001;
 

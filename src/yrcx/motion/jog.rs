@@ -1,5 +1,4 @@
-//! Command `yrcx jog` (4.2.6): moves an axis until it is stopped. armctl stops the axis on every way out of the
-//! command.
+//! Command `yrcx jog` (4.2.6): moves an axis until it is stopped. armctl stops the axis at every end of the command.
 
 use std::time::Duration;
 
@@ -25,10 +24,10 @@ pub struct Jog {
     axis: String,
     /// Direction
     direction: Direction,
-    /// How long to jog; default: until Ctrl-C
+    /// Time after which the jog stops [default: until Ctrl-C]
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
     within: Option<Duration>,
-    /// Report the end position in this unit; default: the unit of the axes
+    /// Report the end position in this unit [default: the unit of the axes]
     #[arg(long, value_name = "UNIT")]
     report: Option<Unit>,
     #[command(flatten)]

@@ -73,7 +73,7 @@ pub trait Motion: Args {
         Vec::new()
     }
 
-    /// Returns the unit of the reported position, if the user does not select one.
+    /// Returns the unit of the reported position, if the user does not select a unit.
     fn usual_unit(&self) -> Option<Unit> {
         None
     }
@@ -146,8 +146,8 @@ impl<M: Motion> Command for Moving<M> {
     }
 }
 
-/// Adds the current position of `axes` to the command. Without it, a SCARA moves these axes to the target position
-/// although the user did not name them.
+/// Adds the current position of `axes` to the command. Without these positions, a SCARA moves these axes to the target
+/// position although the user did not name them.
 async fn staying(link: &mut Link, draft: Draft, axes: &[usize]) -> Result<Order, Failure> {
     let order = draft.clone().valid_order()?;
     if axes.is_empty() {

@@ -21,11 +21,12 @@ pub struct Move {
     /// Target point; with --circular, two points, for example 100,101
     #[arg(long, value_name = "POINT", group = "destination", value_delimiter = ',')]
     point: Vec<String>,
-    /// Coordinates of the axes in mm: all four, or in the order of --axes, or by axis: 1=300,3=10
+    /// Coordinates in mm: of all four axes, or of the axes in --axes in that order, or with the axis numbers, for
+    /// example 1=300,3=10
     #[arg(long, value_name = "[AXIS=]MM,…", group = "destination", value_delimiter = ',', allow_hyphen_values = true,
         conflicts_with_all = ["linear", "circular", "peak"])]
     to: Vec<String>,
-    /// Coordinates of the axes in pulses, in the same form
+    /// Coordinates in pulses, in the same form as --to
     #[arg(long, value_name = "[AXIS=]PULSES,…", group = "destination", value_delimiter = ',', allow_hyphen_values = true,
         conflicts_with_all = ["linear", "circular", "peak"])]
     to_pulse: Vec<String>,

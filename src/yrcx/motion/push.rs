@@ -21,7 +21,7 @@ pub struct Push {
     /// Force in percent of the rated torque, -1000 to 1000
     #[arg(long, value_name = "PERCENT", allow_hyphen_values = true)]
     force: Option<String>,
-    /// How long to push, 1ms to 32767ms
+    /// Duration of the push, 1ms to 32767ms
     #[arg(long, value_name = "TIME", value_parser = milliseconds)]
     time: Option<i32>,
     #[command(flatten)]

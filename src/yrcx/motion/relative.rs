@@ -16,7 +16,8 @@ pub struct Movei {
     /// Point that contains the distances
     #[arg(long, value_name = "POINT", group = "distance")]
     point: Option<String>,
-    /// Distances of the axes in mm: all four, or in the order of --axes, or by axis: 1=-5,3=10
+    /// Distances in mm: of all four axes, or of the axes in --axes in that order, or with the axis numbers, for example
+    /// 1=-5,3=10
     #[arg(
         long,
         value_name = "[AXIS=]MM,…",
@@ -26,7 +27,7 @@ pub struct Movei {
         conflicts_with = "linear"
     )]
     by: Vec<String>,
-    /// Distances of the axes in pulses, in the same form
+    /// Distances in pulses, in the same form as --by
     #[arg(
         long,
         value_name = "[AXIS=]PULSES,…",

@@ -132,8 +132,8 @@ fn words_of(head: &[u16]) -> Words {
     words
 }
 
-/// Word of dedicated inputs in the resting image, with the emergency-stop and stop inputs on; then the same word with
-/// the stop input off.
+/// Word of the dedicated inputs in the resting image: the emergency-stop input and the stop input are on. In `HELD`,
+/// the stop input is off.
 const REST: u16 = 0x0041;
 const HELD: u16 = 0x0001;
 

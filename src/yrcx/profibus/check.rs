@@ -16,7 +16,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Opti
     if !settings.is_owner {
         return overheard(board, layers).await;
     }
-    // The failure is that of the adapter, or another master on the line.
+    // A failure here comes from the adapter, or from another master on the line.
     let answered = board.station().await.in_layer("name")?;
     match latency_timer(&settings.port) {
         None => layers.ok("name", format!("{} opens, and no other master is active", settings.port)),
@@ -59,7 +59,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Opti
     }
     match (&station.configuration, settings.configuration.is_some() || settings.gsd.is_some()) {
         (Some(bytes), _) if station.fits() => layers.ok("configuration", format!("{bytes}, 48 bytes each way")),
-        (_, true) => layers.ok("configuration", "equal to the URL"),
+        (_, true) => layers.ok("configuration", "configuration as in the URL"),
         (Some(bytes), false) => {
             let sizes =
                 [station.in_size, station.out_size].map(|size| size.map_or("?".to_owned(), |size| size.to_string()));

@@ -86,7 +86,10 @@ fn file(path: &Path, module: Option<&str>) -> Result<(Gsd, Module), LinkError> {
     let Some(module) = found.cloned() else {
         let names: Vec<&str> = gsd.modules.iter().map(|module| module.name.as_str()).collect();
         let size = Image::BYTES;
-        let cause = wrong(format!("no module with this name, or no unique module with {size} bytes each way"));
+        let cause = wrong(format!(
+            "the file has no module with this name, or not exactly one module with {size} bytes \
+                                   each way"
+        ));
         let advice = format!("set `module=` in the URL to one of: {}", names.join(", "));
         return Err(LinkError::Settings(cause.advice(advice)));
     };

@@ -25,7 +25,7 @@ impl BoardReport for Stations {
 impl Report for Stations {
     fn view(&self) -> View {
         let columns = ["station", "kind", "ident", "master", "configuration", "diagnosis"];
-        let mut table = Table::new(&columns, "no station answered: check baud, wires A and B, and the terminators");
+        let mut table = Table::new(&columns, "no station answered: check `baud=`, wires A and B, and the terminators");
         for station in &self.stations {
             table.row([
                 station.station.into(),

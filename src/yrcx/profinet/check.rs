@@ -98,11 +98,11 @@ async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Checked<(
             }
             let layout = &settings.layout;
             match left_out(layout, &real) {
-                None => layers.ok("modules", format!("equal to the target: {layout}")),
+                None => layers.ok("modules", format!("modules as in the target: {layout}")),
                 Some(left_out) => layers.warn(
                     "modules",
                     format!(
-                        "equal to the target, except {left_out} of the access point, which only the device has: \
+                        "modules as in the target, except {left_out} of the access point, which only the device has: \
                          {layout}"
                     ),
                     "use `yrcx profinet probe` to list the submodules of the access point; a device can require all \

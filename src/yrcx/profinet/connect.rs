@@ -102,7 +102,7 @@ fn whole(time: Duration) -> Duration {
     Duration::from_millis(millis.next_power_of_two())
 }
 
-/// What is known about the modules of a device.
+/// Known properties of the modules of a device.
 struct Modules {
     layout: Layout,
     parameters: Vec<Parameter>,
@@ -148,7 +148,7 @@ fn file(path: &Path) -> Result<Modules, LinkError> {
         return Ok(only);
     }
     let size = Image::BYTES;
-    let cause = wrong(format!("there is no unique selection of modules with {size} bytes each way"));
+    let cause = wrong(format!("the file does not have exactly one selection of modules with {size} bytes each way"));
     let advice = "set `layout=` in the URL instead; use `yrcx profinet gsdml FILE` to list the modules";
     Err(LinkError::Settings(cause.advice(advice)))
 }

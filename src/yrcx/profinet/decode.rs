@@ -26,7 +26,8 @@ pub struct Decoder {
     calls: HashMap<(Uuid, u32), (u64, Vec<Request>)>,
     /// Cyclic data by MAC addresses and frame id.
     streams: HashMap<(Mac, Mac, u16), Stream>,
-    /// Number of cyclic frames that cannot be decoded because their Connect is not in the capture.
+    /// Number of cyclic frames that cannot be decoded because the Connect call of their connection is not in the
+    /// capture.
     unknown: u64,
     unreadable: u64,
 }

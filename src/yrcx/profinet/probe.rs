@@ -97,7 +97,7 @@ async fn attempts(board: &Board, mut left: VecDeque<Layout>) -> Result<Vec<Attem
         }
         let is_over = match &answer {
             Err(ProfinetError::Refused { status, .. }) => status.is_owned(),
-            // A further attempt makes no sense: success, no device, or a problem of this computer.
+            // Another attempt is of no use after a success, without a device, or with a problem of this computer.
             Ok(())
             | Err(ProfinetError::NotFound { .. } | ProfinetError::Privilege | ProfinetError::PortTaken { .. }) => true,
             Err(_) => false,

@@ -17,7 +17,7 @@ use armctl_transport::profinet::layout::Layout;
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct ServeArgs {
-    /// PROFINET: Ethernet interface of the device; the device uses its address
+    /// PROFINET: Ethernet interface of the device. The device uses the address of this interface
     #[arg(long, value_name = "IFACE")]
     interface: Option<String>,
     /// PROFINET: name of the station

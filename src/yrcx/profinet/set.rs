@@ -62,7 +62,7 @@ pub struct SetIp {
 pub struct Reset {}
 
 fn suite(text: &str) -> Result<IpSuite, String> {
-    let short = || format!("the mask length is missing; type {text}/24, for example");
+    let short = || format!("the mask length is missing; for example, type {text}/24");
     text.contains('/').then_some(()).ok_or_else(short)?;
     profinet::suite(text).map_err(|why| why.trim_start_matches("ip: ").to_owned())
 }

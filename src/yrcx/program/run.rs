@@ -121,7 +121,7 @@ fn not_seen(what: &str) -> Failure {
 /// Waits until no program runs. Returns whether a program was seen running.
 async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duration>) -> Result<bool, Failure> {
     let lost = |failure: Failure| {
-        let message = format!("{what} was started, but armctl could not read its end: {}", failure.message);
+        let message = format!("{what} was started, but armctl could not read the result: {}", failure.message);
         Failure { kind: Kind::OutcomeUnknown, message, ..failure }.hint(
             "do not send the command again; use `yrcx status` to see the result. A controller stops when the \
              connection ends",
@@ -146,8 +146,9 @@ async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duratio
     image.map_err(lost).map(|_| seen)
 }
 
-/// Fails if an emergency stop or an alarm ended the program. An error in a program stops it without SO(03). Then only
-/// the alarm history shows that the program did not reach its end; `before` is its latest entry before the start.
+/// Fails if an emergency stop or an alarm ended the program. An error in a program stops the program, but does not
+/// switch SO(03) on. Then only the alarm history shows that the program did not reach its end; `before` is its latest
+/// entry before the start.
 async fn alarmed(link: &mut Link, what: &str, before: Option<&AlarmEntry<Part>>) -> Result<(), Failure> {
     let image = link.look().await?;
     let latest = alarm::latest(link).await?;

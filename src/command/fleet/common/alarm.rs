@@ -20,7 +20,7 @@ use armctl_frame::{AnyCommand, SchemaEntry};
 pub enum Alarm {
     /// Show the active alarms of robots
     List(List),
-    /// Alarm history, newest first
+    /// Show the alarm history, newest first
     History,
     /// Print alarms as they appear and disappear
     Watch(Watch),
@@ -28,10 +28,11 @@ pub enum Alarm {
     Reset,
 }
 
-/// Prints the active alarms, and then each change, until Ctrl-C, --for, or --count reports.
+/// Prints the active alarms, and then each change, until Ctrl-C. With --for, it ends after this time. With --count, it
+/// ends after this number of reports.
 #[derive(Debug, Args)]
 pub struct Watch {
-    /// Stop after this time
+    /// Time after which the watch ends
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
     within: Option<Duration>,
 }
@@ -66,8 +67,8 @@ pub fn schemas() -> [SchemaEntry; 4] {
     ]
 }
 
-/// The active alarms. Reads that take control of a controller are not sent: without a session, a YRCX
-/// reports no alarm code.
+/// Shows the active alarms. armctl sends no read that takes control of a controller. Without a session, a YRCX
+/// therefore reports no alarm code.
 #[derive(Debug, Args)]
 #[command(
     after_help = "`armctl explain FAMILY CODE` explains a code. `armctl FAMILY alarm list` shows all details of the \

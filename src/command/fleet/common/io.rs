@@ -25,7 +25,7 @@ pub enum Io {
 /// Signals to read, by the names that each robot has for them.
 #[derive(Debug, Args)]
 pub struct Get {
-    /// Names of signals, or addresses as `armctl FAMILY io get` takes them
+    /// Names of signals, or addresses in the form that `armctl FAMILY io get` accepts
     #[arg(required = true, value_name = "SIGNAL", value_delimiter = ',')]
     signals: Vec<String>,
 }
@@ -37,13 +37,14 @@ pub struct List {
     filter: Filter,
 }
 
-/// Signals to watch, until Ctrl-C, --for, or --count reports.
+/// Prints the values of signals, and then each change, until Ctrl-C. With --for, it ends after this time. With --count,
+/// it ends after this number of reports.
 #[derive(Debug, Args)]
 pub struct Watch {
-    /// Names of signals, or addresses as `armctl FAMILY io watch` takes them
+    /// Names of signals, or addresses in the form that `armctl FAMILY io watch` accepts
     #[arg(required = true, value_name = "SIGNAL", value_delimiter = ',')]
     signals: Vec<String>,
-    /// Stop after this time
+    /// Time after which the watch ends
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
     within: Option<Duration>,
 }

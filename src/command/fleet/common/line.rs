@@ -26,7 +26,7 @@ use armctl_frame::{AnyCommand, AnyReport, Driver, Outcome};
 /// A parsed command, or the error.
 type Parsed = Result<Box<dyn AnyCommand>, Failure>;
 
-/// A read command that all families have. Of several commands, each family uses the first one that it has.
+/// A read command that all families have. Of several commands, each family uses the first command that it has.
 pub struct SharedLine {
     id: &'static str,
     lines: Vec<Vec<String>>,
@@ -137,11 +137,11 @@ struct ReadItem {
     label: Option<String>,
     /// Kind: `variable`, `input`, `counter`.
     kind: String,
-    /// Whether it was read.
+    /// Whether the value was read.
     ok: bool,
-    /// Value; null if it was not read.
+    /// Value; null if the value was not read.
     value: Value,
-    /// Reason why it was not read.
+    /// Reason why the value was not read.
     #[serde(skip_serializing_if = "Value::is_null")]
     #[schemars(with = "ItemError")]
     error: Value,

@@ -39,7 +39,7 @@ pub struct RobotMetrics {
     pub polls: u64,
     /// Failed polls by kind of failure.
     pub failures: BTreeMap<String, u64>,
-    /// Polls omitted because the previous one took too long.
+    /// Polls omitted because the previous poll took too long.
     pub missed_polls: u64,
     /// Number of times that the backoff became longer.
     pub backoffs: u64,

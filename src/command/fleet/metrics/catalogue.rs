@@ -1,5 +1,5 @@
 //! Catalogue of the metrics: name, type, unit, help text, source of the value. `docs/monitoring/README.md` explains
-//! each; a test compares both.
+//! each metric, and a test compares the page with this list.
 
 use super::board::{Board, RobotMetrics};
 use super::page::{Form, Kind, Page, Samples, labels};
@@ -62,15 +62,16 @@ pub const METRICS: &[Metric] = &[
     metric("armctl_axis_position_meters", Gauge, "meters", "Position of a linear axis or coordinate.",
         // Divide instead of multiplying by 0.001, so that 0.1025 is not rounded.
         |board, samples| axes(board, samples, MILLIMETRE.symbol, 1000.0)),
-    metric("armctl_axis_position_degrees", Gauge, "degrees", "Position of a rotation.",
+    metric("armctl_axis_position_degrees", Gauge, "degrees", "Position of a rotary axis or coordinate.",
         |board, samples| axes(board, samples, DEGREE.symbol, 1.0)),
     metric("armctl_axis_position_pulses", Gauge, "pulses", "Position of a joint in pulses of its encoder.",
         |board, samples| axes(board, samples, PULSE.symbol, 1.0)),
     metric("armctl_axis_torque_ratio", Gauge, "ratio", "Torque of an axis, as a ratio of its maximum.",
         |board, samples| torques(board, samples, "% of max", 100.0)),
-    metric("armctl_axis_torque_raw", Gauge, "raw", "Torque of an axis in the unit of the controller (not known).",
+    metric("armctl_axis_torque_raw", Gauge, "raw", "Torque of an axis in the unit of the controller, which is not \
+                                                    known.",
         |board, samples| torques(board, samples, "raw", 1.0)),
-    metric("armctl_session_open", Gauge, "", "Whether the polls go through a session.",
+    metric("armctl_session_open", Gauge, "", "Whether the polls use a session.",
         |board, samples| each(board, samples, |seen| flag(Some(seen.last_poll.as_ref()?.through_session)))),
     metric("armctl_robot_last_answer_timestamp_seconds", Gauge, "seconds", "Time of the last answer of the robot.",
         |board, samples| each(board, samples, |seen| seen.answered)),
@@ -79,7 +80,7 @@ pub const METRICS: &[Metric] = &[
         each(board, samples, |seen| Some(seen.polls));
     }),
     metric("armctl_poll_failures", Counter, "", "Failed polls, by error kind.", failures),
-    metric("armctl_polls_missed", Counter, "", "Polls that were skipped because the poll before took too long.",
+    metric("armctl_polls_missed", Counter, "", "Polls that were skipped because the previous poll took too long.",
         |board, samples| each(board, samples, |seen| Some(seen.missed_polls))),
     metric("armctl_poll_backoffs", Counter, "", "How often armctl increased the pause before the next try.",
         |board, samples| each(board, samples, |seen| Some(seen.backoffs))),

@@ -33,11 +33,11 @@ use armctl_transport::http::{Answer, Request, Server, Status};
 /// Serves metrics of all robots, or of the selected ones, until Ctrl-C or SIGTERM.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "GET /metrics answers with OpenMetrics, or with the older Prometheus text format if the client asks \
-                  for it. GET /healthz answers while armctl runs. --watch INTERVAL sets how often armctl polls the \
-                  robots (1s). Without -r, --tag, --sim or -t, armctl polls all robots in the inventory, and follows \
-                  its changes. The command cannot move a robot or change anything. There is no password: every client \
-                  that reaches the port can read."
+    after_help = "GET /metrics answers with OpenMetrics, or with the older Prometheus text format if the client \
+                  requests this format. GET /healthz answers while armctl runs. --watch INTERVAL sets how often \
+                  armctl polls the robots (1s). Without -r, --tag, --sim or -t, armctl polls all robots in the \
+                  inventory, and follows changes of the inventory. The command cannot move a robot or change \
+                  anything. There is no password: every client that reaches the port can read."
 )]
 pub struct Metrics {
     /// Address to listen on

@@ -74,7 +74,8 @@ impl Page {
         Self { form, text: String::new() }
     }
 
-    /// Writes a metric with its samples, or nothing if it has none. The unit is the only suffix of `name`.
+    /// Writes a metric with its samples, or nothing if the metric has no samples. The unit is the only suffix of
+    /// `name`.
     pub fn metric(&mut self, name: &str, kind: Kind, unit: &str, help: &str, samples: impl FnOnce(&mut Samples<'_>)) {
         let ending = match kind {
             Kind::Counter => "_total",

@@ -68,7 +68,7 @@ pub enum Event {
     Appeared(Arc<Robot>),
     /// A poll succeeded.
     Polled(Arc<PollResult>),
-    /// A poll failed: no answer, or an invalid one.
+    /// A poll failed: the answer was missing or not valid.
     Failed {
         /// The robot.
         robot: Arc<Robot>,
@@ -96,7 +96,7 @@ pub struct PollResult {
     pub sample: Sample,
     /// Duration from the first request to the last answer.
     pub took: Duration,
-    /// Polls omitted before this one, because the previous one took longer than the interval.
+    /// Polls omitted before this one, because the previous poll took longer than the interval.
     pub missed: u64,
     /// Whether the poll went through a session.
     pub through_session: bool,
@@ -232,13 +232,13 @@ struct EventSender(Rc<[mpsc::Sender<Event>]>);
 impl EventSender {
     async fn send(&self, event: Event) {
         for consumer in &*self.0 {
-            // A consumer can be gone. When all are gone, the poller stops.
+            // A consumer may have ended. When all consumers have ended, the poller stops.
             let _gone = consumer.send(event.clone()).await;
         }
     }
 }
 
-/// Waits for a changed request. Removes the requests of consumers that are gone.
+/// Waits for a changed request. Removes the requests of consumers that have ended.
 async fn changed(requests: &mut Vec<watch::Receiver<PollRequest>>) {
     if requests.is_empty() {
         return;

@@ -107,8 +107,8 @@ pub struct Login {
     /// File with the password (or ARMCTL_MQTT_PASSWORD)
     #[arg(long, value_name = "FILE", requires = "user", help_heading = "Broker")]
     password_file: Option<PathBuf>,
-    /// Certificate of the authority that signed the broker's certificate (PEM); default: the certificate authorities of
-    /// this computer
+    /// Certificate of the authority that signed the broker's certificate (PEM) [default: the certificate authorities of
+    /// this computer]
     #[arg(long, value_name = "FILE", help_heading = "Broker")]
     ca: Option<PathBuf>,
     /// Certificate of this client (PEM)
@@ -117,7 +117,7 @@ pub struct Login {
     /// Private key of this client (PEM)
     #[arg(long, value_name = "FILE", requires = "cert", help_heading = "Broker")]
     key: Option<PathBuf>,
-    /// Send the password without TLS, without a warning
+    /// Send the password without TLS, and print no warning
     #[arg(long = "insecure", requires = "user", help_heading = "Broker")]
     is_insecure: bool,
     /// Version of MQTT
@@ -213,7 +213,7 @@ impl Broker {
     }
 }
 
-/// Whether the group of a file or other users can read it.
+/// Whether the group of the file, or other users, can read the file.
 #[cfg(unix)]
 fn others_can_read(path: &Path) -> Result<bool, Failure> {
     use std::os::unix::fs::PermissionsExt as _;

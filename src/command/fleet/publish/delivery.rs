@@ -23,7 +23,8 @@ use armctl_frame::failure::{Failure, Kind, plain};
 use armctl_frame::output::log::Level;
 use armctl_frame::settings::duration;
 
-/// Limits of messages in transit: with and without acknowledgement.
+/// Limits of messages in transit: `WINDOW` of messages with acknowledgement, `UNCONFIRMED_WINDOW` of messages without
+/// acknowledgement.
 const WINDOW: usize = 64;
 const UNCONFIRMED_WINDOW: usize = 1000;
 /// Limit of unsent bytes on the connection.
@@ -36,8 +37,8 @@ const ACKNOWLEDGE_TIMEOUT: Duration = Duration::from_secs(30);
 const BACKOFF_RANGE: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(60)];
 /// Lifetime of a connection after which the backoff starts again.
 const STABLE_AFTER: Duration = Duration::from_secs(10);
-/// Time limits at the end: for queued records, and for the acknowledgement of the last message. DISCONNECT gets the
-/// rest.
+/// Time limits at the end: `DELIVERY_TIMEOUT` for queued records, `FINAL_TIMEOUT` until the last message is
+/// acknowledged. DISCONNECT gets the rest of [`END_TIMEOUT`].
 const DELIVERY_TIMEOUT: Duration = Duration::from_millis(500);
 const FINAL_TIMEOUT: Duration = Duration::from_millis(700);
 /// Interval after which an ongoing failure is reported again.
@@ -55,7 +56,7 @@ pub trait Broker {
 pub trait Uplink {
     /// Waits for the next event. Cancel safe.
     async fn next(&mut self) -> Event;
-    /// Sends a message. Returns the number of the acknowledgement, if the message gets one.
+    /// Sends a message. Returns the number of the acknowledgement, if the broker acknowledges this message.
     fn publish(&mut self, message: &Message) -> Result<Option<u64>, SendError>;
     /// Subscribes to topics.
     fn subscribe(&mut self, topics: &[String]) -> Result<(), SendError>;
@@ -82,7 +83,7 @@ impl Backoff {
         Self { next: BACKOFF_RANGE[0], random: fastrand::Rng::with_seed(seed) }
     }
 
-    /// Next pause: twice the last one, up to a minute, with a random factor. Clients that lost the broker at the same
+    /// Next pause: twice the last pause, up to a minute, with a random factor. Clients that lost the broker at the same
     /// time therefore do not all connect again at the same time.
     pub fn pause(&mut self) -> Duration {
         let pause = self.next.mul_f64(0.75 + self.random.f64() / 2.0);
@@ -99,7 +100,7 @@ impl Backoff {
 pub trait Listener {
     /// A message for the log.
     fn log(&self, level: Level, text: &str);
-    /// The broker accepted this client, or the connection was lost.
+    /// Records whether the broker has accepted this client. `false`: the connection is lost.
     fn set_connected(&self, is_there: bool);
 }
 
@@ -130,7 +131,7 @@ struct Open<U> {
     pending_ping: Option<(u64, Vec<Ticket>)>,
     since: Instant,
     last_ping: Instant,
-    /// Time of the last acknowledgement, or when nothing was in transit.
+    /// Time of the last acknowledgement, or the last time at which no message was in transit.
     progress: Instant,
 }
 
@@ -226,7 +227,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
     /// Runs until it is stopped, or until `found` has ended and everything has arrived. Call [`end`](Self::end) next.
     ///
     /// # Errors
-    /// If a bounded run finds no broker, or if the broker refuses this client.
+    /// If a run with a limit (`--count`) finds no broker, or if the broker refuses this client.
     pub async fn run(
         &mut self,
         mut found: impl AsyncFnMut() -> Option<Found>,
@@ -391,7 +392,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         }
     }
 
-    /// The connection has ended. Records that have not arrived stay in the queue.
+    /// Handles the end of the connection. Records that have not arrived stay in the queue.
     fn leave(&mut self) {
         self.listener.set_connected(false);
         self.outbox.requeue();
@@ -410,7 +411,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
     }
 
     /// Waits before the next attempt after any failure: even the cause of a refusal or of a certificate error can be
-    /// gone a minute later. Only a bounded run gives up.
+    /// gone a minute later. Only a run with a limit (`--count`) gives up.
     fn fail(&mut self, failure: Failure) -> Result<(), Failure> {
         if self.ends_without_broker {
             self.connection = ConnectionState::Waiting(Instant::now());
@@ -522,7 +523,8 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
     }
 
     /// Ends the run: sends queued records within a time limit, then a last message, and leaves the rest for the next
-    /// process. The end always takes less than [`END_TIMEOUT`]. After a failure it reports less.
+    /// process. The end always takes less than [`END_TIMEOUT`]. After a failure (`has_failed`), the messages about the
+    /// rest are details.
     pub async fn end(mut self, has_failed: bool) -> Counts {
         let now = Instant::now();
         let told = async {

@@ -16,7 +16,7 @@ pub struct ExtraTopic {
 }
 
 impl ExtraTopic {
-    /// Parses all lines. Each must only read, and have a unique level.
+    /// Parses all lines. Each command must only read, and its level must be unique.
     pub fn all(lines: &[String]) -> Result<Rc<[Self]>, Failure> {
         let mut all: Vec<Self> = Vec::with_capacity(lines.len());
         for line in lines {

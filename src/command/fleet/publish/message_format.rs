@@ -15,7 +15,7 @@ pub struct Reaction {
     pub messages: Vec<Message>,
     /// Text for the log.
     pub note: Option<(Level, String)>,
-    /// Whether to close the connection and open a new one.
+    /// Whether to close the connection and open a new connection.
     pub reconnects: bool,
 }
 
@@ -29,7 +29,7 @@ pub trait MessageFormat {
     fn topics(&self) -> Vec<String>;
     /// First messages of a new connection.
     fn first_messages(&mut self, now_ms: u64) -> Vec<Message>;
-    /// The connection is lost.
+    /// Handles the loss of the connection.
     fn connection_lost(&mut self);
     /// Handles a message of the broker.
     fn handle_message(&mut self, message: &Message, now_ms: u64) -> Reaction;
@@ -37,7 +37,7 @@ pub trait MessageFormat {
     fn convert_event(&mut self, event: &Event, now_ms: u64) -> Vec<Record>;
     /// Whether records can be sent now.
     fn is_ready(&self) -> bool;
-    /// Converts a record to messages; empty if it is out of date.
+    /// Converts a record to messages; empty if the record is out of date.
     fn convert_record(&mut self, record: Record, now_ms: u64) -> Vec<Message>;
     /// Last messages before a normal close.
     fn final_messages(&mut self, now_ms: u64) -> Vec<Message>;

@@ -62,7 +62,7 @@ use armctl_frame::output::log::Level;
 use armctl_frame::prelude::*;
 use armctl_frame::settings::duration;
 
-/// Publish changes of robots to an MQTT broker.
+/// Publish the data of robots to an MQTT broker when the data changes.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Without -r, --tag, --sim or -t, armctl publishes all robots in the inventory. --watch INTERVAL sets \
@@ -74,7 +74,7 @@ use armctl_frame::settings::duration;
                   docs/monitoring/mqtt.md."
 )]
 pub struct Publish {
-    // Not parsed by clap, whose message would show the password in a wrong URL.
+    // clap does not parse this value, because its error message would show the password of an invalid URL.
     #[arg(value_name = "URL", help = "mqtt://HOST[:1883], or mqtts://HOST[:8883] for TLS")]
     broker: String,
     #[command(flatten)]
@@ -86,7 +86,7 @@ pub struct Publish {
     /// (repeatable)
     #[arg(long, value_name = "LINE")]
     also: Vec<String>,
-    /// Longest time between messages of a topic, even without a change
+    /// Longest time between two messages of a topic. After it, armctl sends the data even without a change
     #[arg(long, value_name = "TIME", default_value = "1m", value_parser = duration::parse_some)]
     every: Duration,
     /// First levels of all topics
@@ -95,7 +95,7 @@ pub struct Publish {
     /// Topics of robots, with the place of a robot: '{site}/{area}/{line}/{robot}/{kind}'
     #[arg(long, value_name = "TEMPLATE", conflicts_with = "is_wanted")]
     topic: Option<Template>,
-    /// Name of this publisher at the broker; default: the name of this computer
+    /// Name of this publisher at the broker [default: the name of this computer]
     #[arg(long, value_name = "NAME")]
     node: Option<String>,
     #[command(flatten)]
@@ -124,13 +124,13 @@ struct SparkplugArguments {
 #[group(skip)]
 struct BufferArguments {
     /// Memory limit of the buffer
-    #[arg(long = "buffer-memory", value_name = "SIZE", default_value = "16M", value_parser = memory_size, help_heading = "While the broker is away")]
+    #[arg(long = "buffer-memory", value_name = "SIZE", default_value = "16M", value_parser = memory_size, help_heading = "While the broker is not available")]
     memory: u64,
-    /// Disk limit of the buffer, used when the memory of the buffer is full; 0 for no disk
-    #[arg(long = "buffer-disk", value_name = "SIZE", default_value = "256M", value_parser = disk_size, help_heading = "While the broker is away")]
+    /// Disk limit of the buffer. armctl uses the disk when the memory of the buffer is full. 0 means no disk
+    #[arg(long = "buffer-disk", value_name = "SIZE", default_value = "256M", value_parser = disk_size, help_heading = "While the broker is not available")]
     disk: u64,
-    /// Folder of the buffer on disk; default: the state folder
-    #[arg(long = "buffer-dir", value_name = "PATH", help_heading = "While the broker is away")]
+    /// Folder of the buffer on disk [default: the state folder]
+    #[arg(long = "buffer-dir", value_name = "PATH", help_heading = "While the broker is not available")]
     path: Option<PathBuf>,
 }
 
@@ -278,7 +278,7 @@ impl Publish {
         let mut pump =
             Delivery::new((&broker, &broker.url), speech, outbox, (&log, pauses), run.repeat.count.is_some());
         let mut looks = PollCounter::new(&robots, run.repeat.count);
-        // A broker that is temporarily away must not delay services that wait for this one.
+        // A broker that is temporarily away must not delay services that wait for this service.
         service.notify_ready(robots.len())?;
         let ended = {
             let found = async || {
@@ -359,7 +359,7 @@ impl Publish {
             .map_or_else(|| self.prefix.replace('/', "%2F"), |group| format!("spB-{group}"));
         let usual = || Some(service_state_folder()?.join("publish").join(format!("{way}-{node}")));
         let Some(folder) = path.clone().or_else(usual) else {
-            return Err(Failure::usage("armctl finds no folder for the buffer on disk")
+            return Err(Failure::usage("armctl found no folder for the buffer on disk")
                 .hint("set a folder with --buffer-dir, or use no disk: --buffer-disk 0"));
         };
         let spool = Spool::open(&folder, *disk).map_err(|error| {
@@ -391,7 +391,8 @@ impl Publish {
                 let bd_seq = text.and_then(|text| text.trim().parse().ok()).unwrap_or_default();
                 let remember = Box::new(move |next: u8| {
                     if let Some(file) = &file {
-                        // The new number must only differ from the last one. Without a file, the numbers start with 0.
+                        // The new number needs only to differ from the last number. Without a file, the numbers start
+                        // with 0.
                         let _kept = files::replace(file, next.to_string().as_bytes());
                     }
                 });

@@ -19,7 +19,7 @@ pub struct Record {
     pub key: String,
     /// Content.
     pub body: Vec<u8>,
-    /// Number of the birth message before the record; 0 if the record was read from disk.
+    /// Number of the Sparkplug birth message before the record; 0 if the record was read from disk.
     pub epoch: u64,
 }
 
@@ -161,7 +161,7 @@ impl Outbox {
         }
     }
 
-    /// The connection is lost. Unacknowledged records are sent again.
+    /// Handles the loss of the connection. Unacknowledged records will be sent again.
     pub fn requeue(&mut self) {
         for held in &mut self.memory {
             if held.state == State::Sent {

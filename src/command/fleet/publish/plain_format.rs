@@ -122,7 +122,8 @@ impl PlainFormat {
         self.changed(robot, envelopes, now_ms)
     }
 
-    /// The robot does not answer. Its status reports that with all known data. Its other data is unknown.
+    /// Records for a robot that does not answer. The status reports the missing answer, together with all known data.
+    /// The other data is unknown.
     fn failed(&mut self, robot: &Robot, failure: &Failure, now_ms: u64) -> Vec<Record> {
         let mut envelopes = Vec::new();
         for kind in &self.kinds {
@@ -137,7 +138,7 @@ impl PlainFormat {
         self.changed(robot, envelopes, now_ms)
     }
 
-    /// The robot was removed: clears its retained messages.
+    /// Records for a robot that was removed. They clear its retained messages.
     fn records_of_removed_robot(&mut self, robot: &Robot, now_ms: u64) -> Vec<Record> {
         let told = self.sent.remove(&RobotId::for_robot(robot)).unwrap_or_default();
         let empty = |key: String| Record { kind: 0, time_ms: now_ms, key, body: Vec::new(), epoch: 0 };

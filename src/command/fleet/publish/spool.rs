@@ -104,7 +104,7 @@ impl Spool {
         !self.read.is_empty() || self.segments.iter().any(|segment| !segment.is_read)
     }
 
-    /// Number of unreadable records since the last call. An unreadable segment counts as one.
+    /// Number of unreadable records since the last call. An unreadable segment counts as one record.
     pub fn take_damaged(&mut self) -> u64 {
         std::mem::take(&mut self.damaged)
     }
@@ -139,7 +139,7 @@ impl Spool {
                 Ok(())
             }
             Err(error) => {
-                // Removes an incomplete record, so that the next one is readable.
+                // Removes an incomplete record, so that the next record is readable.
                 if writer.set_len(segment.bytes).is_err() {
                     self.writer = None;
                 }
@@ -163,7 +163,7 @@ impl Spool {
             }
             let at = self.segments.iter().position(|segment| !segment.is_read)?;
             if at + 1 == self.segments.len() {
-                // New records go to the next segment, so that this one is read only once.
+                // New records go to the next segment, so that this segment is read only once.
                 self.writer = None;
             }
             let number = self.segments[at].number;
@@ -184,7 +184,7 @@ impl Spool {
         }
     }
 
-    /// A record of a segment has arrived or was dropped.
+    /// Records that a record of a segment has arrived or was dropped.
     pub fn release(&mut self, number: u64) {
         let Some(at) = self.segments.iter().position(|segment| segment.number == number) else { return };
         let segment = &mut self.segments[at];
@@ -218,7 +218,7 @@ impl Spool {
             }
         }
         let mut missing = u64::try_from(records.len()).unwrap_or(u64::MAX);
-        // Newest first: each chunk goes before the one written last.
+        // Writes the newest chunk first. Each chunk gets a lower file number than the chunk that was written before it.
         let mut number = self.segments.front().map_or(self.next, |first| first.number).saturating_sub(1);
         for (count, chunk) in chunks {
             let written = self.create(number).and_then(|mut file| {
@@ -275,7 +275,8 @@ fn checksum(bytes: &[u8]) -> [u8; 8] {
     sum
 }
 
-/// Format: length after the checksum, checksum; type, time, key length, key, body. Numbers are little-endian.
+/// Format: length of the data, checksum, and then the data: type, time, length of the key, key, body. Numbers are
+/// little-endian.
 fn encode(record: &Record) -> Vec<u8> {
     let Record { kind, time_ms, key, body, .. } = record;
     let mut fields = Vec::with_capacity(FIELDS + key.len() + body.len());
@@ -291,7 +292,7 @@ fn encode(record: &Record) -> Vec<u8> {
     bytes
 }
 
-/// Decodes all records up to the first damaged one. Also returns 1 if there is a damaged record.
+/// Decodes all records up to the first damaged record. Also returns 1 if there is a damaged record.
 fn decode_all(mut bytes: &[u8]) -> (VecDeque<Record>, u64) {
     let mut records = VecDeque::new();
     while !bytes.is_empty() {

@@ -17,7 +17,7 @@ pub struct Levels {
 }
 
 impl Levels {
-    /// Levels for these robots, and for later ones.
+    /// Levels for these robots, and for later robots.
     pub fn new(robots: &[Robot]) -> Self {
         let (mut seen, mut shared) = (BTreeSet::new(), BTreeSet::new());
         for robot in robots {
@@ -168,7 +168,7 @@ pub fn prefix(text: &str) -> Result<String, String> {
         return Err("topics that begin with $ are reserved for the broker".to_owned());
     }
     if text.split('/').any(str::is_empty) {
-        return Err("each level needs a name: armctl, plant/line1".to_owned());
+        return Err("each level of the prefix needs a name, for example armctl or plant/line1".to_owned());
     }
     if text.chars().any(|c| matches!(c, '+' | '#') || c.is_control() || is_empty_level(c)) {
         return Err("a prefix has no +, no # and no control characters".to_owned());

@@ -8,11 +8,11 @@ use armctl_frame::face::layers::Layer;
 use armctl_frame::prelude::*;
 use armctl_frame::settings::target;
 
-/// Checks each layer of the connection between this computer and the robot, and shows which settings to change. Changes
-/// nothing. Exit code 8 if a layer failed.
+/// Checks each layer of the connection between this computer and the robot, and shows which settings to change. It
+/// changes nothing. The exit code is 8 if a layer failed.
 #[derive(Debug, Args)]
 pub struct Check {
-    /// A robot in the inventory, or a target URL; default: the robots that -r, -t and other flags select
+    /// A robot in the inventory, or a target URL [default: the robots that -r, -t and other flags select]
     #[arg(value_name = "NAME|URL", add = ValueKind::RobotOrUrl)]
     pub name: Option<String>,
 }

@@ -11,7 +11,7 @@ use armctl_yrcx::buses::Searches;
 use armctl_yrcx::discover::{self, FoundDevice};
 use armctl_yrcx::fieldbus::Scope;
 
-/// Searches for controllers (ListIdentity), and lists serial ports without opening them.
+/// Searches for controllers with the EtherNet/IP request ListIdentity, and lists serial ports without opening them.
 #[derive(Debug, Args)]
 #[command(
     after_help = "A broadcast reaches only the network of its network card. Use --bind to select the card by its \

@@ -27,7 +27,7 @@ pub struct Add {
     /// Family of the robot, if armctl cannot infer it from the URL
     #[arg(long, add = ValueKind::Family)]
     family: Option<Family>,
-    /// Accept only reads and stops
+    /// Accept only reads and stop commands
     #[arg(long)]
     read_only: bool,
     /// Open a session with the first command that needs a connection (yrcx)
@@ -50,13 +50,13 @@ pub struct NewRobot {
     pub target: Target,
     /// Family.
     pub family: Family,
-    /// Whether it accepts only reads and stops.
+    /// Whether the robot accepts only reads and stop commands.
     pub read_only: bool,
     /// Automatic session; see [`Entry`].
     pub hold: bool,
     /// Tags.
     pub tags: Vec<String>,
-    /// Whether it becomes the default robot.
+    /// Whether the robot becomes the default robot.
     pub is_default: bool,
 }
 
@@ -146,8 +146,10 @@ const SETTINGS: [(&str, &str, Parse); 14] = [
     ("model", "auto, fs100, dx100, dx200 or yrc1000 (yerc)", |text, _| {
         Ok(parsed::<ModelSetting>(text)?.to_string().into())
     }),
-    ("read_only", "on or off: accept only reads and stops", |text, _| Ok(switch(text)?.into())),
-    ("hold", "on or off: open a session automatically (yrcx)", |text, _| Ok(switch(text)?.into())),
+    ("read_only", "on: accept only reads and stop commands; off: accept all commands", |text, _| {
+        Ok(switch(text)?.into())
+    }),
+    ("hold", "on: open a session automatically (yrcx); off: do not open a session", |text, _| Ok(switch(text)?.into())),
     ("encoding", "encoding of names and texts on the controller", |text, _| {
         Ok(parsed::<Encoding>(text)?.to_string().into())
     }),
@@ -294,9 +296,9 @@ pub struct WasSet {
 #[derive(Debug, Serialize, JsonSchema)]
 struct SettingChange {
     setting: String,
-    /// Old value; null if none.
+    /// Old value; null if there was none.
     old: Option<serde_json::Value>,
-    /// New value; null if none.
+    /// New value; null if the setting was removed.
     new: Option<serde_json::Value>,
 }
 
@@ -385,7 +387,7 @@ impl Default {
 /// The robot that is used if none is selected.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct WasChosen {
-    /// The earlier default; null if none.
+    /// The earlier default; null if there was none.
     old: Option<String>,
     new: String,
     target: String,

@@ -27,7 +27,7 @@ pub fn read(path: &Path) -> Result<String, Failure> {
     }
 }
 
-/// Changes the file. A new version is written next to it and renamed. Returns the path.
+/// Changes the file. A new version is written next to the file, and then renamed. Returns the path.
 pub fn change(run: &Run, change: impl FnOnce(&mut Document) -> Result<(), DocumentError>) -> Result<String, Failure> {
     let path = path(run)?;
     replace(path, |text| {

@@ -154,7 +154,7 @@ async fn work(mut orders: mpsc::UnboundedReceiver<ManagerRequest>, say: Say) {
             ManagerRequest::End(done) => {
                 end.send_replace(true);
                 while holdings.join_next().await.is_some() {}
-                // The caller can be gone already.
+                // The caller may have ended already.
                 let _ = done.send(());
                 return;
             }

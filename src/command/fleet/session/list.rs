@@ -79,7 +79,7 @@ struct Client {
 struct Left {
     #[serde(flatten)]
     client: Client,
-    /// Whether the process died. Otherwise it ended without a wait, as requested.
+    /// Whether the process died. If not, the process ended without a wait, because the user requested this.
     died: bool,
 }
 
@@ -132,7 +132,7 @@ impl Session {
             remarks.push("a motion runs".to_owned());
         }
         if let Some(Left { client, died }) = &self.leftover {
-            let how = if *died { "has died" } else { "did not wait for the end" };
+            let how = if *died { "has died" } else { "did not wait for the end of its command" };
             remarks.push(format!("process {} {how}: {}", client.pid, client.command));
         }
         remarks.join("; ")

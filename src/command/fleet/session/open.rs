@@ -36,13 +36,13 @@ pub struct Open {
     /// Family of the robot, if armctl cannot infer it from the target
     #[arg(long, add = ValueKind::Family)]
     family: Option<Family>,
-    /// This is the process that `--background` has started.
+    /// Whether this is the process that `--background` has started.
     #[arg(long, hide = true, conflicts_with = "background")]
     detached: bool,
 }
 
 impl Open {
-    /// Whether it runs in the foreground.
+    /// Whether the session runs in the foreground.
     pub fn stays(&self) -> bool {
         !self.background
     }
@@ -164,7 +164,7 @@ impl Drop for SessionLog {
     }
 }
 
-/// Size limit of the log file. Above it, a new file is started, and the old one is kept.
+/// Size limit of the log file. Above it, a new file is started, and the old file is kept.
 const LONGEST: u64 = 1 << 18;
 
 impl SessionLog {

@@ -21,7 +21,7 @@ impl WatchedEntry {
     /// Whether the robot is read-only now.
     ///
     /// # Errors
-    /// A text, if the file cannot be read; once per version of the file.
+    /// A text, if the file cannot be read. The error is returned once per version of the file.
     pub fn is_read_only(&mut self) -> Result<bool, String> {
         let Some(path) = self.robot.inventory.clone().filter(|_| !self.robot.read_only.value) else {
             return Ok(self.robot.read_only.value);

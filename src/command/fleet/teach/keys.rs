@@ -42,7 +42,8 @@ pub enum KeyAction {
     Refresh,
 }
 
-/// Action of a key; `None` if it has none. With `is_asked`, the key belongs to an answer, but a stop key always stops.
+/// Action of a key; `None` if the key has no action. With `is_asked`, the key belongs to an answer, but a stop key
+/// always stops.
 pub fn action(key: KeyEvent, is_asked: bool) -> Option<KeyAction> {
     if key.kind == KeyEventKind::Release {
         return None;
@@ -81,7 +82,7 @@ pub fn action(key: KeyEvent, is_asked: bool) -> Option<KeyAction> {
 
 /// All keys in the order of the help.
 pub const KEYS: [Explained; 12] = [
-    Explained { key: "← →", short: "step", full: "move the selected axis by one step, - or +" },
+    Explained { key: "← →", short: "step", full: "move the selected axis by one step in direction - or +" },
     Explained { key: "↑ ↓", short: "axis", full: "select the axis" },
     Explained { key: "Space", short: "STOP", full: "stop the robot, at any time" },
     Explained { key: "+ -", short: "size", full: "larger steps, smaller steps" },

@@ -31,7 +31,7 @@ pub struct Teach {
     /// Family of the robot, if armctl cannot infer it
     #[arg(value_name = "FAMILY")]
     pub family: Option<Family>,
-    /// Largest step of a key, in mm, degrees, or the unit of the axes
+    /// Largest step of one key press, in mm, degrees, or the unit of the axes
     #[arg(long, value_name = "MM", default_value = "10", value_parser = parse_positive)]
     pub max_step: f64,
     /// Highest speed, in mm/s or percent
@@ -51,8 +51,8 @@ impl Teach {
         Intent {
             risk: Risk::Motion,
             text: format!(
-                "move the robot as you press keys, one axis by at most {max_step} mm or degrees (joints: as shown) at a \
-                 time, at a speed of at most {max_speed} mm/s, deg/s or percent, and store points"
+                "move the robot as you press keys, one axis by at most {max_step} mm or degrees (for joints, the step \
+                 on the screen) at a time, at a speed of at most {max_speed} mm/s, deg/s or percent, and store points"
             ),
             confirmation: Confirmation::Question,
             is_stop: false,

@@ -31,7 +31,7 @@ enum LoopEvent {
     Found(u32, Result<Value, Failure>),
     /// Result of the command with this number; `true` if other commands wait for it.
     Line(u64, bool, Result<(), Failure>),
-    /// Result of a step, with its command line, if there was one.
+    /// Result of a step, with its command line, if a command line was run.
     Step(u64, Vec<String>, Result<(), Failure>),
 }
 

@@ -11,7 +11,7 @@ use crate::command::fleet::top;
 use armctl_frame::output::painter::{Painter, Palette, line_of, rest_after, to_ascii, wrap};
 use armctl_frame::output::view::Tone;
 
-/// Lines of the panel, and the limit of lines for past commands.
+/// Lines of the panel. `HISTORY_LINES` is the maximum number of lines for past commands.
 const PANEL: u16 = 3;
 const HISTORY_LINES: u16 = 6;
 

@@ -51,7 +51,7 @@ pub enum KeyAction {
 /// Lines of a page.
 const PAGE: usize = 10;
 
-/// Action of a key; `None` if it has none. With `is_typing`, the key belongs to the filter.
+/// Action of a key; `None` if the key has no action. With `is_typing`, the key belongs to the filter.
 pub fn action(key: KeyEvent, is_typing: bool) -> Option<KeyAction> {
     if key.kind == KeyEventKind::Release {
         return None;

@@ -1,4 +1,4 @@
-//! `armctl top`: full-screen live monitor of all robots, or of one.
+//! `armctl top`: full-screen live monitor of all robots, or of one robot.
 //!
 //! | file | contents |
 //! |---|---|
@@ -42,7 +42,8 @@ pub struct Top {}
 /// Default and minimum polling interval.
 const DEFAULT_INTERVAL: Duration = Duration::from_millis(500);
 const MIN_INTERVAL: Duration = Duration::from_millis(50);
-/// Minimum and maximum time between two screen updates. The maximum keeps displayed elapsed times current.
+/// Minimum time between two screen updates. `TICK` is the maximum time, so that the displayed elapsed times are
+/// current.
 const FRAME_INTERVAL: Duration = Duration::from_millis(100);
 const TICK: Duration = Duration::from_secs(1);
 /// Longest backoff of a robot that does not answer. It is short, because a user is waiting.

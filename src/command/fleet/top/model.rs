@@ -186,14 +186,14 @@ impl Model {
         at.is_some()
     }
 
-    /// A robot was added or changed.
+    /// Adds a robot that was added or changed, unless it is already present.
     pub fn add_robot(&mut self, robot: &Robot) {
         if !self.robots.iter().any(|seen| seen.id() == RobotId::for_robot(robot)) {
             self.robots.push(RobotRow::new(robot));
         }
     }
 
-    /// A robot was removed.
+    /// Removes the row of a robot that was removed.
     pub fn remove_robot(&mut self, robot: &RobotId) {
         let selected = self.selected_robot().map(RobotRow::id);
         self.robots.retain(|seen| seen.id() != *robot);

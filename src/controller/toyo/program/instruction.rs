@@ -17,13 +17,13 @@ pub(super) enum Target {
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct TagUse {
-    /// Index of the value.
+    /// Index of the tag among the values of the instruction.
     pub index: usize,
     pub target: Target,
     pub at: SourceLocation,
 }
 
-/// An instruction with unresolved tags.
+/// An instruction whose labels are not yet replaced by tag numbers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Draft {
     pub instruction: &'static Instruction,
@@ -65,7 +65,7 @@ pub(super) fn is_label(word: &str) -> bool {
         && word.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-')
 }
 
-/// Parses one instruction up to the end of the code. Returns `None` after an error, which is added to the findings.
+/// Parses one instruction up to the end of the code. After an error, adds the error to the findings and returns `None`.
 pub(super) fn read(cursor: &mut Cursor<'_>, known: &Names, findings: &mut Findings) -> Option<Draft> {
     let errors_before = findings.errors();
     let at = cursor.place();
@@ -148,8 +148,8 @@ fn target(field: &Field, text: &str) -> Result<Target, String> {
     }
 }
 
-/// Parses a point instruction with only a name, `MOVP pick`. Defaults: absolute, no counter, the axis speed of the
-/// last SPD, stop at the point.
+/// Parses a point instruction that has only a name, for example `MOVP pick`. Defaults: absolute, no counter, the axis
+/// speed of the last SPD, stop at the point.
 fn read_short(
     row: &'static Instruction,
     cursor: &mut Cursor<'_>,
@@ -171,7 +171,7 @@ fn read_short(
     Some(Draft { instruction: row, values, tags: Vec::new(), at })
 }
 
-/// Message and hint for `MOVP pikc`, a short form with an unknown name.
+/// Message and hint for a short form with an unknown name, for example `MOVP pikc`.
 fn unknown_short(row: &Instruction, text: &str, known: &Names) -> Option<(String, String)> {
     let point = row.layout.fields.iter().find(|field| field.name == "point")?;
     let is_first = row.layout.fields.first()?.read(text).is_ok();
@@ -191,7 +191,7 @@ fn by_name(field: &Field, text: &str, known: &Names) -> Result<Option<i32>, Stri
     }
 }
 
-/// Parses a field value or a name. An error has a message and perhaps a hint.
+/// Parses a field value or a name. An error has a message, and a hint if one is known.
 fn named_value(field: &Field, text: &str, known: &Names) -> Result<Value, (String, Option<String>)> {
     if let Some(number) = by_name(field, text, known).map_err(|message| (message, None))? {
         return Ok(Value::Number(number));
@@ -290,7 +290,7 @@ impl<'t> Cursor<'t> {
         self.at += rest.len() - rest.trim_start_matches(BLANKS).len();
     }
 
-    /// Skips the words before a field. A name needs no key before it: `JMPC TAG=next parts>=5`.
+    /// Skips the words before a field. A name needs no key before it, as in `JMPC TAG=next parts>=5`.
     fn pass_to(&mut self, words: &str, field: Option<&Field>, known: &Names) -> Result<(), String> {
         if let Some(field) = field
             && let Some((_, prefix)) = names::of_field(field.name)
@@ -320,7 +320,7 @@ impl<'t> Cursor<'t> {
         Ok(())
     }
 
-    /// Moves back to the position of the missing words.
+    /// Moves the cursor back to `start`, and returns the message that `words` are missing there.
     fn missing(&mut self, start: usize, words: &str) -> String {
         self.at = start;
         let words = words.trim();

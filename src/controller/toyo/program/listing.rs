@@ -26,7 +26,7 @@ pub struct Listing {
 pub struct Style {
     /// Number of the first step.
     pub first: usize,
-    /// Whether NOPs at the end are omitted, because no step follows.
+    /// Whether the listing contains the whole program. NOPs at its end are then omitted, because no step follows them.
     pub is_whole: bool,
     /// Whether lines begin with step numbers.
     pub is_numbered: bool,
@@ -39,7 +39,7 @@ pub const NOT_IN_MANUAL: &str = "not in the manual";
 const TABLES: [(&str, &str); 5] =
     [("point", "T1"), ("speed", "T2"), ("ramp", "T3"), ("group", "T4.S1"), ("table", "T5")];
 
-/// The table rows that steps refer to, for [`listing`].
+/// The table rows to which steps refer. [`listing`] shows them in comments.
 pub fn uses(steps: &[Record]) -> BTreeSet<(&'static str, i32)> {
     steps.iter().flat_map(rows_of).map(|(_, key)| key).collect()
 }
@@ -124,7 +124,7 @@ fn comments(record: &Record, tags: &BTreeMap<i32, usize>, rows: &Rows, known: &N
     steps.chain(labels(record, known)).chain(rows).collect()
 }
 
-/// Names of the points, counters and timers of an instruction: `point 1 is pick`.
+/// Names of the points, counters and timers of an instruction, for example `point 1 is pick`.
 fn labels(record: &Record, known: &Names) -> impl Iterator<Item = String> {
     record.pairs().filter_map(|(field, _)| {
         let (kind, _) = names::of_field(field.name)?;
@@ -134,7 +134,7 @@ fn labels(record: &Record, known: &Names) -> impl Iterator<Item = String> {
     })
 }
 
-/// The table rows of an instruction. Row 0 means none.
+/// The table rows that an instruction uses. Row 0 is not a row of a table.
 fn rows_of(record: &Record) -> impl Iterator<Item = (&'static str, (&'static str, i32))> {
     TABLES.iter().filter_map(|(name, id)| {
         let row = record.number(name).filter(|row| *row > 0)?;

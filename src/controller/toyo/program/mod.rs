@@ -9,10 +9,10 @@
 //!       END
 //! ```
 //!
-//! A file is the program of one task; its first instruction is step 1. A label creates a TAG step, and can replace
-//! any tag number. Numbers can be short, words and keys in any case. An instruction may begin with its step number,
-//! as in listings. Names of points, counters and timers can replace their numbers: `PT=pick`, `JMPC TAG=next
-//! parts>=5`. `MOVP pick` moves to a point with default values.
+//! A file is the program of one task; its first instruction is step 1. A label creates a TAG step, and can replace any
+//! tag number. Numbers can have fewer digits than in the protocol, and words and keys can be in upper or lower case. An
+//! instruction may begin with its step number, as in listings. Names of points, counters and timers can replace their
+//! numbers, for example `PT=pick` or `JMPC TAG=next parts>=5`. `MOVP pick` moves to a point with default values.
 
 mod flow;
 mod instruction;
@@ -83,7 +83,8 @@ pub struct Checked {
 }
 
 impl Step {
-    /// Text in the protocol after WSTX and step number: `MOVP a PT=001 CN=00 S V=00 POST`.
+    /// Text of the step as the protocol has it after WSTX and the step number, for example `MOVP a PT=001 CN=00 S V=00
+    /// POST`.
     pub fn text(&self) -> String {
         self.record.written()
     }
@@ -99,7 +100,7 @@ impl Checked {
 /// A part of the program of a task.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Part {
-    /// First step, from 1.
+    /// Number of the first step, from 1.
     pub first: usize,
     /// Tags in the program outside of the part; `None` if they are unknown.
     pub tags: Option<BTreeSet<i32>>,
@@ -114,7 +115,7 @@ fn foreign(text: &[u8]) -> Option<(&'static str, &'static str)> {
     if is_table && cells > 1 {
         return Some((
             "this is a CSV table, not a program",
-            "`toyo point restore FILE` or `toyo param restore FILE` writes it",
+            "use `toyo point restore FILE` or `toyo param restore FILE` to write the table",
         ));
     }
     None

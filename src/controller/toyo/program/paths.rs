@@ -24,7 +24,7 @@ const DEPTH: usize = 16;
 /// The last internal port that can be read (TO 2-8, MNIN; ambiguity R18).
 const INTERNAL_PORTS: i32 = 4;
 
-/// Reports problems on any path. If the text is a part of a program, the steps outside are unknown.
+/// Reports problems on any path. If the text is a part of a program, the steps outside the part are unknown.
 pub(super) fn check(resolved: &Resolved, is_part: bool, known: &Known, findings: &mut Findings) {
     let steps = &resolved.program.steps;
     let mut finder = Finder { steps, places: &resolved.places, findings };
@@ -43,7 +43,7 @@ struct Finder<'a> {
     findings: &'a mut Findings,
 }
 
-/// Successors of a step: the indexes of the next step, of a jump target, and of a subroutine.
+/// Indexes of the steps that can follow a step: the next step, a jump target, and the first step of a subroutine.
 #[derive(Default)]
 struct Successors {
     next: bool,
@@ -62,7 +62,7 @@ impl Finder<'_> {
         self.steps.get(step).map(|step| step.instruction.op)
     }
 
-    /// Reports missing points, and row 0 without a counter.
+    /// Reports points that do not exist, and row 0 without a counter.
     fn points(&mut self, known: &Known) {
         for (index, record) in self.steps.iter().map(|step| &step.record).enumerate() {
             let (Some(point), Some(counter)) = (record.number("point"), record.number("counter")) else { continue };
@@ -71,7 +71,7 @@ impl Finder<'_> {
             } else if counter == 0 && known.points.as_ref().is_some_and(|points| !points.contains(&point)) {
                 self.warn(
                     index,
-                    format!("point {point} is not in the given points"),
+                    format!("point {point} is not in the points file"),
                     "teach the point, or write it with `toyo point set`",
                 );
             }
@@ -157,7 +157,7 @@ impl Finder<'_> {
             match depth(entry, &bodies, &mut depths, &mut Vec::new()) {
                 Depth::Calls(depth) if depth > DEPTH => {
                     let message = format!("{depth} nested subroutine calls start here");
-                    self.warn(call, message, "a controller stops with error A3 where its stack is full");
+                    self.warn(call, message, "a controller stops with error A3 when its stack is full");
                 }
                 Depth::Calls(_) => {}
                 Depth::Endless(step) => {
@@ -224,7 +224,7 @@ enum Depth {
     Endless(usize),
 }
 
-/// Depth of nested calls from a subroutine on.
+/// Returns the depth of nested calls, starting at a subroutine.
 fn depth(
     entry: usize,
     bodies: &BTreeMap<usize, Reach>,

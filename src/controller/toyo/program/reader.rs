@@ -19,7 +19,7 @@ pub(super) struct ParsedLines {
 #[derive(Debug)]
 pub(super) struct LabelDefinition {
     pub name: String,
-    /// Tag number that the text gives the label.
+    /// Tag number that the text assigns to the label, as in `done=20:`.
     pub tag: Option<i32>,
     /// Index of the TAG step of the label, from 0.
     pub step: usize,
@@ -55,7 +55,7 @@ pub(super) fn read(
                 Some("the machine parameter E22 (task-steps) sets this number".to_owned()),
             );
         }
-        // No task can have more steps.
+        // The parser stops here, because not even a task with all steps has this step.
         if after > MOST_STEPS {
             break;
         }
@@ -126,7 +126,7 @@ impl Reader<'_> {
         false
     }
 
-    /// Step numbers must be consecutive, from any start.
+    /// Reads a step number. Step numbers must be consecutive, but can start at any number.
     fn step_number(&mut self, cursor: &mut Cursor<'_>) {
         let at = cursor.place();
         let text = cursor.word();
@@ -141,7 +141,7 @@ impl Reader<'_> {
         if number != expected {
             let message = format!("step number {number} must be {expected:04}: step numbers increase by one");
             self.findings.error(at, message, Some("instructions need no step numbers".to_owned()));
-            // The next step numbers are compared with this step number.
+            // The following step numbers are compared with this step number.
             self.first = Some(number.saturating_sub(steps));
         } else if is_first && first != self.start {
             let start = self.start;
@@ -152,7 +152,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Parses a label before a colon: `name` or `name = 010`.
+    /// Parses a label before a colon, for example `name` or `name = 010`.
     fn label(&mut self, text: &str, at: SourceLocation) {
         let (name, tag) = match text.split_once('=') {
             Some((name, tag)) => (name.trim(), Some(tag.trim())),
@@ -175,12 +175,12 @@ impl Reader<'_> {
     }
 }
 
-/// Control characters, invalid UTF-8, and full-width forms of ASCII.
+/// Whether a character is a control character, invalid UTF-8, or the full-width form of an ASCII character.
 fn is_wrong(c: char) -> bool {
     (c.is_control() && c != '\t') || c == char::REPLACEMENT_CHARACTER || narrow(c).is_some()
 }
 
-/// The ASCII form of a full-width character, as Japanese keyboards produce it.
+/// Returns the ASCII form of a full-width character. Japanese keyboards produce full-width characters.
 fn narrow(c: char) -> Option<char> {
     match c {
         '\u{3000}' => Some(' '),

@@ -86,7 +86,8 @@ impl Tags<'_> {
         }
     }
 
-    /// Assigns tag numbers to labels without one. Numbers begin at 1; numbers that occur in the file are not used.
+    /// Assigns a tag number to each label that has no number. The assigned numbers begin at 1, without the numbers that
+    /// occur in the file.
     fn assign_tags(&mut self, read: &ParsedLines, findings: &mut Findings) {
         let mut taken = vec![false; MOST + 1];
         let uses = read.steps.iter().flat_map(|draft| &draft.tags);
@@ -157,7 +158,7 @@ impl Tags<'_> {
         Some(Step { instruction, record: instruction.layout.record(values).ok()?, line: at.line })
     }
 
-    /// Marks the label of a jump as used, or checks that the tag number exists.
+    /// Marks the label of a jump as used. For a jump to a number, checks that the tag exists.
     fn check_jump(&mut self, tag: i32, target: &Target, at: SourceLocation, findings: &mut Findings) {
         match target {
             Target::Label(name) => {
@@ -177,7 +178,7 @@ impl Tags<'_> {
         }
     }
 
-    /// The tags outside a part, if known.
+    /// The tags outside the part, if they are known.
     fn outside_tags(&self) -> Option<&BTreeSet<i32>> {
         self.part.and_then(|part| part.tags.as_ref())
     }
@@ -198,7 +199,11 @@ impl Tags<'_> {
     /// number.
     fn report_unused(&self, findings: &mut Findings) {
         for label in self.list.iter().filter(|label| !label.used && !label.has_explicit_tag) {
-            let hint = format!("if another program uses the tag of this label, write the tag: {}=10:", label.name);
+            let hint = format!(
+                "if another program uses the tag of this label, write the tag after the label, such as \
+                                {}=10:",
+                label.name
+            );
             findings.warning(label.at, format!("no step jumps to label {}", label.name), Some(hint));
         }
     }

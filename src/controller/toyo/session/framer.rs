@@ -2,7 +2,7 @@
 
 use crate::toyo::request::MOST;
 
-/// Finds blocks in a stream of characters.
+/// Framer: finds the blocks in a stream of characters.
 #[derive(Debug, Default)]
 pub struct Framer {
     text: String,

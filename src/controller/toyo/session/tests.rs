@@ -130,7 +130,7 @@ fn an_order_is_open_until_a_read_is_answered() {
             let now = ms(20) + QUIET_TIME;
             assert_eq!(line.poll(now), answered(first), "{order}");
             assert!(line.is_open());
-            // The order stays open however long the session is not polled.
+            // The order stays open even if the session is not polled for a long time.
             let now = now + SECOND;
             line.begin(&request("@STAS SNO=0"), true);
             assert!(matches!(line.poll(now), Step::Send(_)));

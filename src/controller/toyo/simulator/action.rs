@@ -17,7 +17,7 @@ pub(super) enum Action {
     Stop,
     Return,
     Home,
-    /// PSEL.
+    /// PSEL: jumps to the tag whose number is at the selection inputs.
     Select,
     Jump {
         tag: usize,
@@ -87,7 +87,7 @@ pub(super) enum Action {
         done: usize,
     },
     Offset(Target),
-    /// All axes of the task, or one.
+    /// Switches servo power of one axis, or of all axes of the task.
     Servo {
         axis: Option<usize>,
         on: bool,

@@ -6,9 +6,9 @@
 use super::motion::{AXES, Coordinates, Drive, Path, Segment, minus, plus};
 use crate::Now;
 
-/// Owner of moves without a task: JOG and return to origin by the host.
+/// Owner of the moves that belong to no task: JOG, and return to origin by the host.
 pub(super) const HOST: usize = 4;
-/// Number of parts into which the search for a crossing divides each phase of constant acceleration.
+/// Number of parts into which each phase of constant acceleration is divided for the search of [`Arm::crossing`].
 const PIECES: u32 = 16;
 /// Number of bisection steps, for a resolution of about 1 ns.
 const HALVINGS: u32 = 40;
@@ -18,9 +18,9 @@ const SAME: f64 = 1e-6;
 /// An axis that pushes against an obstacle.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Press {
-    /// Time of the judgement.
+    /// Time at which the simulator decides whether the axis is locked.
     pub(super) due: Option<Now>,
-    /// Whether the axis was judged as locked.
+    /// Whether the simulator decided that the axis is locked.
     pub(super) locked: bool,
 }
 
@@ -45,7 +45,7 @@ pub(super) struct Arm {
 pub(super) struct Homing {
     pub(super) owner: usize,
     pub(super) axes: [bool; AXES],
-    /// Whether the homing is the origin search of synchronized axes.
+    /// Whether synchronized axes search their origin together.
     pub(super) together: bool,
 }
 
@@ -53,7 +53,7 @@ pub(super) struct Homing {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Wall {
     at: f64,
-    /// Whether the axis is below the obstacle.
+    /// Whether the axis is on the lower side of the obstacle.
     below: bool,
 }
 
@@ -62,7 +62,7 @@ struct Wall {
 struct InterruptedMoves {
     owner: usize,
     remaining: Vec<RemainingMove>,
-    /// Target of the moves.
+    /// Target at which the interrupted moves would have ended.
     target: Coordinates,
 }
 
@@ -117,22 +117,23 @@ impl Arm {
         self.walls[axis] = at.map(|at| Wall { at, below: position <= at });
     }
 
-    /// Coordinate of the obstacle of an axis, and whether the axis is below it.
+    /// Coordinate of the obstacle of an axis, and whether the axis is on the lower side of the obstacle.
     pub(super) fn wall(&self, axis: usize) -> Option<(f64, bool)> {
         self.walls[axis].map(|wall| (wall.at, wall.below))
     }
 
-    /// Number of changes of the moves.
+    /// Number of changes to the moves so far. A different number means that the next position event must be computed
+    /// again.
     pub(super) const fn changes(&self) -> u64 {
         self.changes
     }
 
-    /// Counts a change of the moves, so that the crossings are computed again.
+    /// Counts a change to the moves, so that the simulator computes the next position event again.
     pub(super) const fn touch(&mut self) {
         self.changes += 1;
     }
 
-    /// Distance in mm that an axis is commanded beyond its obstacle; 0 without contact.
+    /// Distance in mm between an obstacle and a commanded position behind it; 0 without contact.
     pub(super) fn push(&self, axis: usize, now: Now) -> f64 {
         self.walls[axis].map_or(0.0, |wall| wall.depth(self.commanded(now)[axis]).max(0.0))
     }
@@ -165,7 +166,7 @@ impl Arm {
         }
     }
 
-    /// Decelerates all moves. An axis at an obstacle stops at once. [`Arm::resume`] continues the rest.
+    /// Decelerates all moves. An axis at an obstacle stops at once. [`Arm::resume`] continues the rest of each move.
     pub(super) fn brake(&mut self, now: Now) {
         (0..=HOST).for_each(|owner| self.brake_owner(owner, now));
     }
@@ -176,7 +177,7 @@ impl Arm {
         self.halt(owner, now, !pushes);
     }
 
-    /// Stops all moves at once. [`Arm::resume`] continues the rest.
+    /// Stops all moves at once. [`Arm::resume`] continues the rest of each move.
     pub(super) fn freeze(&mut self, now: Now) {
         (0..=HOST).for_each(|owner| self.freeze_owner(owner, now));
     }
@@ -196,8 +197,8 @@ impl Arm {
         self.interrupted.retain(|interrupted| interrupted.owner != owner);
     }
 
-    /// Continues the interrupted moves of an owner. If the axes were moved in the meantime, they move straight to the
-    /// target.
+    /// Continues the interrupted moves of an owner. If the axes were moved after the interruption, they move straight
+    /// to the target.
     pub(super) fn resume(&mut self, owner: usize, now: Now) {
         let Some(index) = self.interrupted.iter().position(|interrupted| interrupted.owner == owner) else { return };
         let interrupted = self.interrupted.remove(index);
@@ -226,7 +227,7 @@ impl Arm {
         self.begin(&Segment::new(owner, Path::line(self.goal, to, length), 0.0, last.drive, now));
     }
 
-    /// The next time at which the result of `test` for an axis changes.
+    /// The next time at which the result of `test` for the coordinate of an axis changes.
     pub(super) fn crossing(&self, axis: usize, test: impl Fn(f64) -> bool, now: Now) -> Option<Now> {
         let is = |at: Now| test(self.commanded(at)[axis]);
         let result_now = is(now);

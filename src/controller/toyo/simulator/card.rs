@@ -15,7 +15,7 @@ pub(super) struct Card {
     inserted: bool,
     content: Option<Box<Content>>,
     transfer: Option<(Transfer, Now)>,
-    /// Duration of a transfer.
+    /// Duration of one transfer.
     time: Duration,
 }
 
@@ -91,7 +91,7 @@ impl World {
         self.card.inserted = inserted;
     }
 
-    /// Ends a transfer whose time is over.
+    /// Completes the transfer when its time has passed.
     pub(super) fn card_done(&mut self) {
         let Some((transfer, _)) = self.card.transfer.take_if(|(_, at)| *at <= self.now) else { return };
         match transfer {

@@ -117,7 +117,7 @@ fn execute(world: &mut World, request: &Request) -> Result<Reply, String> {
     }
 }
 
-/// Sets the robot type if it is a known type. The answer contains the type that is set now.
+/// Sets the robot type if the new type is known. The answer contains the type that is set afterwards.
 fn robot_type(world: &mut World, axis: usize, robot_type: i32) -> Reply {
     if world.robot_types.contains(&robot_type) {
         world.memory.set_robot_type(axis, robot_type);
@@ -128,9 +128,13 @@ fn robot_type(world: &mut World, axis: usize, robot_type: i32) -> Reply {
     Reply::Data(0, vec![Value::Number(number), Value::Number(world.memory.content.robot_types[axis])])
 }
 
-/// Sets the bits of a port, or the bit that M12 assigns.
+/// Sets the bits of a port, or the bit that parameter M12 assigns.
 fn direct(world: &mut World, request: &Request) -> Result<(), Refusal> {
-    refuse_if(world.switches.machine_changed, "parameter 2 was changed: power must be cycled first")?;
+    refuse_if(
+        world.switches.machine_changed,
+        "a machine parameter (parameter 2) was changed: switch the power off \
+                                               and on first",
+    )?;
     let fields = Fields(request.record());
     let (port, mask) = if let Some(mask) = request.record().mask("data") {
         (fields.port(), mask)

@@ -37,7 +37,7 @@ pub(super) enum ConsoleLine {
     /// Shows the last refusal.
     Why,
     Input(Port, Mask),
-    /// Sets bits of SY01.
+    /// Sets bits of the system port SY01.
     System(u8, bool),
     Press(Button),
     StartAt(usize),
@@ -62,7 +62,7 @@ pub(super) enum Button {
     Reset,
 }
 
-/// Buttons that the rising edges of the bits of SY01 press.
+/// Bits of SY01 and their buttons. A rising edge of a bit presses its button.
 const BUTTONS: [(u8, Button); 4] =
     [(0b0001, Button::Home), (0b0010, Button::Start), (0b0100, Button::Stop), (0b1000, Button::Reset)];
 
@@ -135,7 +135,7 @@ pub(super) fn execute(world: &mut World, line: &str) -> Result<String, String> {
     ConsoleLine::parse(line)?.execute(world)
 }
 
-/// Parses `0/01/3 on`, `0/01 00000100`; `0/SY/2 on` is a bit of the system port.
+/// Parses an input line, for example `0/01/3 on` or `0/01 00000100`. `0/SY/2 on` is a bit of the system port.
 fn input(place: &str, value: &str) -> Result<ConsoleLine, String> {
     let parts: Vec<&str> = place.split('/').collect();
     let existing = |station: &str, port: &str| {
@@ -186,7 +186,7 @@ fn press(world: &mut World, button: Button) -> Result<(), String> {
     Ok(())
 }
 
-/// Refuses while the host is ON: then only the host can start programs (TO 2-2, HSON).
+/// Refuses while the host is ON, because only the host can then start programs (TO 2-2, HSON).
 fn host_off(world: &World) -> Result<(), String> {
     if world.switches.host { Err("the host is ON: only the host starts programs".into()) } else { Ok(()) }
 }
@@ -199,7 +199,8 @@ fn set_input(world: &mut World, port: Port, mask: Mask) -> Result<(), String> {
     if servo == previous_inputs { Ok(()) } else { world.servo(servo).map_err(str::to_owned) }
 }
 
-/// Sets bits of SY01. A button is ignored if it is not allowed in the current state; `why` shows the reason.
+/// Sets bits of the system port SY01. A button is ignored if it is not allowed in the current state. The `why` command
+/// shows the reason.
 fn set_system(world: &mut World, mask: u8, on: bool) {
     let previous_inputs = world.ports.system;
     world.ports.system = if on { previous_inputs | mask } else { previous_inputs & !mask };
@@ -268,7 +269,7 @@ fn state(world: &World) -> Vec<(String, String)> {
     rows
 }
 
-/// Mask of a bit number, from 1.
+/// Mask for a bit number. Bit numbers start at 1.
 fn mask(bit: &str) -> Result<u8, String> {
     let bit = u8::try_from(number(bit, 1..=8)?).unwrap_or(1);
     Ok(PortBit { port: Port { station: 0, port: 1 }, bit }.mask())

@@ -82,12 +82,12 @@ const VALUES: [(&str, &str); 76] = [
     ("U03", "005"),
     ("U21", "000.0"),
     ("U22", "000.00"),
-    // Tables whose rows are all equal.
+    // From here on: tables with equal rows.
     ("T5", "3.00"),
     ("T4.S1", "001 000 000 000"),
 ];
 
-/// Speeds of the first rows in 0.1 mm/s. Each further row has the last of these values.
+/// Speeds of the first rows in 0.1 mm/s. All later rows have the last of these speeds.
 const SPEEDS: [i32; 10] = [100, 200, 500, 1000, 2000, 3000, 4000, 5000, 8000, 10_000];
 
 /// Values of a parameter, or of a row of a table.
@@ -101,7 +101,7 @@ pub(super) fn values(parameter: &Parameter, row: i32) -> Vec<Value> {
             let speed = SPEEDS.get(super::memory::index(row) - 1).or(SPEEDS.last());
             return speed.map(|speed| Value::Number(*speed)).into_iter().collect();
         }
-        // 0.1 s per row.
+        // Row 1 is 0.1 s, and each further row adds 0.1 s.
         "T3" => return vec![Value::Number(10 * row)],
         _ => {}
     }

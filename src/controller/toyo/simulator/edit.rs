@@ -62,7 +62,7 @@ fn write_parameter(world: &mut World, request: &Request) -> Result<(), String> {
     }
     let record = content(request)?;
     let written = world.memory.set_parameter(parameter, record, world.current);
-    written.map_err(|NoRoom| "all tasks together have 5000 steps".to_owned())?;
+    written.map_err(|NoRoom| "all tasks together can have at most 5000 steps".to_owned())?;
     world.switches.machine_changed |= parameter.group() == Group::Machine;
     Ok(())
 }
@@ -77,7 +77,7 @@ pub(super) fn write_step(world: &mut World, step: usize, record: Record) -> Resu
     world.memory.set_step(task, step, record).map_err(|NoRoom| format!("task {} has {size} steps (E22)", task + 1))
 }
 
-/// Executes MINT. It clears only data of the current task, except with `everything`.
+/// Executes MINT (memory clear). Only data of the current task is cleared, unless `what` selects everything.
 fn clear(world: &mut World, what: &str) -> Result<(), NoRoom> {
     let task = world.current;
     let memory = &mut world.memory;

@@ -35,12 +35,12 @@ pub(super) mod code {
     pub(in super::super) const CARD: u8 = 0xE0;
 
     /// Whether an error switches servo power off and stops everything at once. Errors of the machine and of the axes do
-    /// so, except soft limit errors.
+    /// this, except soft limit errors.
     pub(in super::super) const fn takes_power(code: u8) -> bool {
         code < 0x20 || (code < 0x60 && !matches!(code & 0xF, 0x8 | 0x9))
     }
 
-    /// Code of an axis error, by its second digit.
+    /// Code of the error of an axis. `digit` is the second digit of the code; the axis gives the first.
     fn of_axis(axis: usize, digit: u8) -> u8 {
         0x20 + 0x10 * u8::try_from(axis.min(AXES)).unwrap_or_default() + digit
     }
@@ -67,7 +67,7 @@ pub(super) mod code {
         0xC0 + 2 * u8::try_from(axis.min(AXES)).unwrap_or_default() + u8::from(!upwards)
     }
 
-    /// The axis that loses its origin because of an encoder error. `None` for other errors.
+    /// The axis whose origin is lost because of an encoder error. `None` for other errors.
     pub(in super::super) fn loses_origin(code: u8) -> Option<usize> {
         let axis = usize::from(code >> 4).checked_sub(2).filter(|axis| *axis < AXES)?;
         matches!(code & 0xF, 0x6 | 0xC | 0xD).then_some(axis)
@@ -78,14 +78,14 @@ pub(super) mod code {
 pub(super) enum Entry {
     /// An error and the power-on time of its occurrence.
     Error { code: u8, at: Duration },
-    /// Power off.
+    /// An entry for the time when power was switched off.
     PowerCut,
 }
 
 #[derive(Debug, Clone, Default)]
 pub(super) struct Errors {
     current: Option<u8>,
-    /// Newest first.
+    /// History entries, newest first.
     history: VecDeque<Entry>,
 }
 
@@ -94,7 +94,7 @@ impl Errors {
         self.current
     }
 
-    /// Raises an error. The first error stays the current one until it is cancelled; the history contains all errors.
+    /// Raises an error. The first error stays the current error until it is cancelled. The history contains all errors.
     pub(super) fn raise(&mut self, code: u8, at: Duration) {
         self.current = self.current.or(Some(code));
         self.record(Entry::Error { code, at });

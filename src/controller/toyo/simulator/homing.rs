@@ -9,7 +9,7 @@ use super::watch::NEAR;
 use super::world::{Jog, World};
 use crate::Now;
 
-/// Distance in mm from the origin sensor at which the slow approach begins.
+/// Distance in mm from the origin sensor, at which the slow approach begins.
 const BACK_OFF: f64 = 1.0;
 /// Mechanical end of an axis in mm.
 const END: f64 = 8000.0;
@@ -89,7 +89,7 @@ impl World {
         }
     }
 
-    /// Begins a JOG of one axis: `+C`, `-L` and so on.
+    /// Begins a JOG of one axis. The word is, for example, `+C` or `-L`.
     pub(super) fn begin_jog(&mut self, axis: usize, word: &'static str) -> Result<(), u8> {
         let upwards = word.starts_with('+');
         let sign = if upwards { 1.0 } else { -1.0 };

@@ -8,23 +8,23 @@ use crate::toyo::layout::Record;
 pub(super) const STATIONS: usize = 5;
 /// Number of input ports and of output ports of the controller itself (TO 2-8).
 const OWN: (usize, usize) = (23, 18);
-/// Number of input ports and of output ports of another station.
+/// Number of input ports and of output ports of each other station.
 const OTHER: (usize, usize) = (3, 2);
-/// Number of internal ports: one digit in an instruction. MNIN reports only the first four.
+/// Number of internal ports. An instruction has one digit for the port. MNIN reports only the first four ports.
 const INTERNAL: usize = 9;
 
 /// Address of a port. The port may not exist.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Port {
     pub(super) station: usize,
-    /// From 1.
+    /// Port number, from 1.
     pub(super) port: usize,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct PortBit {
     pub(super) port: Port,
-    /// From 1.
+    /// Bit number, from 1.
     pub(super) bit: u8,
 }
 
@@ -44,7 +44,7 @@ pub(super) struct Ports {
     inputs: [Vec<u8>; STATIONS],
     outputs: [Vec<u8>; STATIONS],
     pub(super) internal: [u8; INTERNAL],
-    /// SY01 of the inputs.
+    /// System port SY01 of the inputs.
     pub(super) system: u8,
 }
 
@@ -93,7 +93,7 @@ impl Ports {
         bit.is_some_and(|bit| self.input(bit.port).is_some_and(|port| port & bit.mask() != 0))
     }
 
-    /// The number that the bits of a port form, from this bit up.
+    /// The number that the bits of a port represent. `bit` is the least significant bit.
     pub(super) fn number(&self, bit: PortBit) -> u8 {
         self.input(bit.port).unwrap_or_default() >> (bit.bit - 1)
     }

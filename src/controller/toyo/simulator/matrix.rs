@@ -11,7 +11,7 @@ use crate::toyo::field::Value;
 const SPACE: usize = 3;
 const TURN: usize = 3;
 
-/// A corner, the corners in three directions, and the number of positions in each.
+/// A corner, the corners in the three directions, and the number of positions in each direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Matrix {
     pub(super) origin: Coordinates,
@@ -20,7 +20,8 @@ pub(super) struct Matrix {
 }
 
 impl Matrix {
-    /// Position of a piece, counted from 1. A direction with at most one position has no effect.
+    /// Coordinates of a piece. Pieces are counted from 1 in each direction. A direction with at most one position has
+    /// no effect.
     pub(super) fn place(&self, piece: [u16; SPACE]) -> Result<Coordinates, u8> {
         let mut place = self.origin;
         for direction in 0..SPACE {
@@ -50,7 +51,7 @@ impl Matrix {
 }
 
 impl World {
-    /// Position of an MVM group at its counters.
+    /// Position of an MVM group, selected by the counters of the group.
     pub(super) fn place_of_group(&self, task: usize, group: i32, approach: bool) -> Result<Coordinates, u8> {
         let counters = self.counters_of(group);
         let mut place = self.group(task, group)?.place(counters.map(|counter| self.counters[counter]))?;

@@ -16,7 +16,7 @@ pub(super) const TASKS: usize = 4;
 pub(super) const POINTS: usize = 999;
 /// Maximum total of steps of all tasks (TO 2-4, E22).
 pub(super) const MOST_STEPS: usize = 5000;
-/// Easy programs have no room if the total of steps is above this number (TO 2-4, E22).
+/// Highest total of steps that leaves room for easy programs (TO 2-4, E22).
 pub(super) const STEPS_WITH_EASY: usize = 2000;
 const PALLETS: usize = 16;
 pub(super) const EASY: usize = 8;
@@ -33,23 +33,23 @@ pub enum Cell {
     Row(&'static str, i32),
     /// A row of the coordinate table of a task.
     Point {
-        /// 1 to 4.
+        /// Task, 1 to 4.
         task: usize,
-        /// 1 to 999.
+        /// Row, 1 to 999.
         row: usize,
     },
     /// A step of the program of a task.
     Step {
-        /// 1 to 4.
+        /// Task, 1 to 4.
         task: usize,
-        /// From 1.
+        /// Step, from 1.
         step: usize,
     },
     /// A record of a palletizing program.
     Pallet {
-        /// 1 to 16.
+        /// Palletizing program, 1 to 16.
         program: usize,
-        /// 1 to 16.
+        /// Record of the program, 1 to 16.
         record: u8,
     },
     /// An easy program, 1 to 8.
@@ -96,7 +96,7 @@ impl Wear {
     }
 }
 
-/// The content does not fit.
+/// Error: the content does not fit in the memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct NoRoom;
 
@@ -132,7 +132,7 @@ pub(super) struct Content {
 pub(super) struct Memory {
     pub(super) content: Content,
     pub(super) wear: Wear,
-    /// Step of each tag by task, as of the last program start.
+    /// Step of each tag, by task. The last start of a program set these steps.
     tags: Vec<Vec<u16>>,
 }
 
@@ -256,7 +256,7 @@ impl Memory {
         Self { content, wear: Wear::default(), tags: vec![Vec::new(); TASKS] }
     }
 
-    /// Number of steps of a task.
+    /// Number of steps that belong to a task, including NOPs.
     pub(super) fn size(&self, task: usize) -> usize {
         self.content.steps[task].len()
     }
@@ -284,7 +284,7 @@ impl Memory {
         }
     }
 
-    /// Step of a tag, as of the last [`Memory::index_tags`].
+    /// Step of a tag. Only [`Memory::index_tags`] updates the steps of the tags.
     pub(super) fn tag(&self, task: usize, tag: usize) -> TagLookup {
         match self.tags[task].get(tag) {
             None | Some(0) => TagLookup::Nowhere,
@@ -364,7 +364,7 @@ impl Memory {
         Ok(())
     }
 
-    /// Inserts a step. The last step must be empty, because the steps move down.
+    /// Inserts a step. The following steps move down, so the last step must be empty.
     pub(super) fn insert_step(&mut self, task: usize, step: usize) -> Result<(), NoRoom> {
         let size = self.size(task);
         let last = self.content.steps[task].last().ok_or(NoRoom)?;
@@ -374,7 +374,7 @@ impl Memory {
         self.replace(task, step, rest)
     }
 
-    /// Deletes steps. The steps after them move up.
+    /// Deletes steps. The steps after the deleted steps move up.
     pub(super) fn delete_steps(&mut self, task: usize, first: usize, last: usize) -> Result<(), NoRoom> {
         let size = self.size(task);
         refuse_if(first > last || last > size, NoRoom)?;
@@ -392,7 +392,7 @@ impl Memory {
         self.replace(task, top, steps)
     }
 
-    /// Replaces steps, but writes only the steps that differ.
+    /// Replaces steps. Writes only the steps that differ, to save EEPROM writes.
     fn replace(&mut self, task: usize, top: usize, steps: Vec<Step>) -> Result<(), NoRoom> {
         for (number, step) in (top..).zip(steps) {
             if self.step(task, number) != Some(&step.record) {
@@ -495,7 +495,7 @@ impl Memory {
     }
 }
 
-/// Values of E19 for one task with all axes, by their number.
+/// Values of E19 that assign all axes to one task, by the number of axes.
 const ALL_IN_ONE: [&str; AXES] = ["1000", "2000", "4000", "5000"];
 
 fn combination() -> &'static Parameter {

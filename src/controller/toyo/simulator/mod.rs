@@ -22,40 +22,42 @@
 //! assumptions:
 //!
 //! - Coordinates X, Y, Z, R are axes 1 to 4, regardless of their letters (E01) and tasks.
-//! - A move reaches the speed of T2, lowered by override and E06, in the ramp times of T3. A short move has the same
-//!   accelerations and does not reach this speed. With S, the speed is the speed of the axis with the longest distance.
-//!   With T, it is the path speed in the plane or space of the task. All axes start and stop together. A move is in
-//!   position when it ends, without lag.
-//! - At a pass point, the next move begins during the deceleration of the last move. PASS is the share of this
-//!   deceleration. P05 is not used.
+//! - The speed of a move is the speed in T2, reduced by the override and limited by the maximum axis speed (E06). The
+//!   ramp times are in T3. A short move has the same accelerations and does not reach this speed. With course S, the
+//!   speed is the speed of the axis with the longest distance. With course T, it is the path speed in the plane or
+//!   space of the task. All axes start and stop together. A move is in position when it ends, without lag.
+//! - At a pass point, the next move begins during the deceleration of the last move. The value of the PASS instruction
+//!   is the share of this deceleration. The pass area (P05) is not used.
 //! - SPST starts task 1. TSTR starts the other tasks at their first step. A task ends at its END. Programs are in
 //!   execution while any task runs. Each task has its own tags. Calls nest up to 16 levels. Every instruction takes
 //!   `instruction_us`.
-//! - STOP, the pause input and STOP instructions decelerate moves along their path; SPST 0000 continues the programs.
-//!   An error ends all tasks except task 1. SPST 0000 then continues task 1, and completes its interrupted move first.
-//!   PPST and SESY continue a stopped program.
+//! - The STOP command, the pause input and STOP instructions decelerate moves along their path. SPST 0000 then
+//!   continues the programs. An error ends all tasks except task 1. SPST 0000 then continues task 1, and completes its
+//!   interrupted move first. PPST and SESY also continue a stopped program.
 //! - The simulator accepts a start without a known origin or without servo power. The first move then raises error 61
 //!   (origin) or 62 (servo power). A target beyond a soft limit raises error C0 to C7 before any motion. If only the
-//!   offset or a JOG leads beyond the limit, the error is 28, 29 for axis 1, 38, 39 for axis 2, and so on.
-//! - MRSS supplies one move (RSMV) of a task, before the step or while the step waits. V=00 means the row of the step.
+//!   offset or a JOG leads beyond the limit, the error is 28 or 29 for axis 1, 38 or 39 for axis 2, and so on.
+//! - MRSS sends the coordinates for one RSMV step of a task, before the step or while the step waits. V=00 means the
+//!   speed row of the step.
 //! - TLMV limits the torque of the next move of its axis. At an obstacle the torque is at its limit, and after the
-//!   judgement time the axis is locked. With TE or LE, the move ends then. The move ends on arrival if AE is on, or if
-//!   neither TE nor LE is on.
+//!   judgement time the axis is locked. If TE (end at the torque limit) or LE (end when locked) is on, the move ends
+//!   when the axis is locked. The move ends on arrival if AE (end on arrival) is on, or if neither TE nor LE is on.
 //! - An axis that pushes farther than E03 has an overflow. An axis that pushes for a second without torque limit has an
 //!   overload.
 //! - MVB returns to the start of the last move. An arc has two steps, and lies in the first two or three axes of the
 //!   task.
 //! - OUTP inverts its bits again after its time. Timers count up from the value of TIMP. A counter below 0 or above
-//!   9999 raises error A7. PSEL reads the tag number from the bits of the port of M05, starting at the bit of M05.
-//! - MVM counters count from 1. LOOP jumps to THEN while positions are left.
+//!   9999 raises error A7. PSEL reads the tag number from the bits of the port in M05, starting at the bit in M05.
+//! - MVM counters count from 1. LOOP jumps to its THEN tag while positions are left.
 //! - Palletizing moves above the position, moves down, runs the hand program, and moves up: first at the source, then
 //!   at the destination. An easy program calls its START tag LOOP times, at least once, and then its END tag.
-//! - After a return to origin, the coordinate is P06. HOME resets programs.
+//! - After a return to origin, the coordinate of each axis is its origin offset (P06). HOME resets programs.
 //! - JOG uses the first row of T3, without override.
 //! - These parameters are stored without effect: M20, M22, M23, P03 to P05, P17, P18, E02, E04, and the parameters of
 //!   cables and fieldbuses.
-//! - Any write of parameter 2 counts as a change. E22 changes the memory at once.
-//! - SY01 of the inputs has origin, start, stop and reset. SY01 of the outputs has error, positioned, origin and ready.
+//! - Any write of parameter 2 counts as a change. A write of E22 (steps of each task) changes the memory at once.
+//! - The bits of the input SY01 are origin, start, stop and reset. The bits of the output SY01 are error, positioned,
+//!   origin and ready.
 //! - Power off clears outputs, counters and timers. With incremental encoders, it also clears the origin.
 
 mod action;
@@ -99,7 +101,7 @@ use super::request::MOST;
 use crate::Now;
 use crate::simulator::answers::{Answers, Busy};
 
-/// Maximum number of pending answers.
+/// Maximum number of answers that wait to be sent.
 const MAX_WAITING: usize = 64;
 
 /// A simulated controller.
@@ -114,7 +116,7 @@ pub struct Simulator {
 /// A partly received block.
 #[derive(Debug, Clone, Default)]
 struct IncomingBlock {
-    /// Bytes from the `@` on; empty before the `@`.
+    /// Bytes of the block, from its `@` on. Empty before the `@` arrives.
     bytes: Vec<u8>,
     /// Whether a part of the block was damaged.
     damaged: bool,
@@ -134,9 +136,9 @@ pub struct State {
     pub origin: bool,
     /// Current error (TO 4-1).
     pub error: Option<u8>,
-    /// Host ON.
+    /// Whether the host is ON.
     pub host: bool,
-    /// Servo power ON.
+    /// Whether servo power is on.
     pub servo: bool,
     /// State of each task: whether the task runs, and its step.
     pub tasks: [(bool, usize); 4],
@@ -153,7 +155,7 @@ impl Simulator {
         }
     }
 
-    /// Processes bytes from the host, in pieces of any size. CR ends a block; a following LF is ignored.
+    /// Processes bytes from the host, in pieces of any size. CR ends a block; an LF after the CR is ignored.
     pub fn receive(&mut self, now: Now, bytes: &[u8]) {
         self.advance(now);
         for &byte in bytes {
@@ -161,13 +163,13 @@ impl Simulator {
                 b'@' => self.incoming = IncomingBlock { bytes: vec![byte], damaged: false },
                 b'\r' => self.take_block(),
                 b'\n' if self.incoming.bytes.is_empty() => {}
-                // Characters before a block are noise. A block that is too long is kept only up to the length at which
-                // it is refused.
+                // Characters before a block are noise. Of a block that is too long, only the first characters are kept:
+                // enough for a refusal.
                 _ if self.incoming.bytes.is_empty() || self.incoming.bytes.len() > MOST => {}
                 _ => self.incoming.bytes.push(byte),
             }
         }
-        // The blocks may have started actions that are due at once.
+        // The received blocks may have started actions that are due at once.
         self.advance(now);
     }
 
@@ -193,7 +195,7 @@ impl Simulator {
         self.busy.set_share(share);
     }
 
-    /// Executes a console line: `input 0/01/3 on`, `start`, `state`. Returns its output, or an error.
+    /// Executes a console line, for example `input 0/01/3 on`, `start` or `state`. Returns its output, or an error.
     pub fn console(&mut self, now: Now, line: &str) -> Result<String, String> {
         self.advance(now);
         let line = ConsoleLine::parse(line)?;
@@ -217,8 +219,8 @@ impl Simulator {
         self.world.trace.watch(on);
     }
 
-    /// Takes the events since the last call. Call this function at every [`Simulator::wake`]: only the last 65,536
-    /// events are kept.
+    /// Takes the events since the last call. The trace keeps only the last 65,536 events, so call this function at
+    /// every [`Simulator::wake`].
     pub fn take_trace(&mut self) -> Vec<Event> {
         self.world.trace.take()
     }
@@ -253,7 +255,7 @@ impl Simulator {
         self.world.timer(number)
     }
 
-    /// A step of a task program; tasks are 1 to 4, steps count from 1.
+    /// A step of the program of a task. Tasks are numbered 1 to 4, and steps count from 1.
     pub fn step(&self, task: usize, step: usize) -> Option<&Record> {
         let task = task.checked_sub(1).filter(|task| *task < memory::TASKS)?;
         self.world.memory.step(task, step)

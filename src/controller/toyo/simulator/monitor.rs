@@ -11,11 +11,11 @@ use crate::toyo::layout::Record;
 use crate::toyo::request::Request;
 use crate::toyo::table::{Command, Pallet};
 
-/// Answer to MERP without a point (ambiguity C5).
+/// Answer to MERP (the point where the error occurred): no point (ambiguity C5).
 const NO_POINT: &str = "         ";
-/// Number of ports per screen.
+/// Number of ports that one screen shows.
 const SCREEN: i32 = 4;
-/// The last screen with ports of the controller's own inputs (ambiguity C8).
+/// The last screen that shows input ports of the controller itself (ambiguity C8).
 const LAST_INPUT_SCREEN: i32 = 6;
 
 pub(super) fn answer(world: &World, request: &Request) -> Result<Reply, String> {
@@ -90,7 +90,7 @@ fn system(world: &World) -> Vec<Value> {
     let language = Value::Word(if world.settings.japanese { "J" } else { "E" });
     let mut values = vec![Value::Number(world.memory.content.robot_types[0]), Value::Number(world.version), language];
     values.extend_from_slice(letters);
-    // The manual does not explain this value (ambiguity C11).
+    // The manual does not explain this last value (ambiguity C11).
     values.push(Value::Text("N".to_owned()));
     values
 }
@@ -104,7 +104,7 @@ fn parameter(world: &World, request: &Request) -> Result<Record, String> {
     world.memory.parameter(parameter, &key, world.current).ok_or_else(|| "no such row".to_owned())
 }
 
-/// A step of the current task; 0 is the current step.
+/// Values of a step of the current task. Step 0 is the current step.
 fn step(world: &World, step: usize) -> Result<Vec<Value>, String> {
     let step = if step == 0 { world.tasks[world.current].step } else { step };
     let record = world.memory.step(world.current, step);
@@ -211,7 +211,7 @@ fn history(world: &World, entry: i32) -> Vec<Value> {
     values
 }
 
-/// A coordinate in the protocol: 0.01 mm.
+/// Converts a coordinate in mm to the protocol value in 0.01 mm.
 fn hundredths(coordinate: f64) -> Value {
     #[expect(clippy::cast_possible_truncation, reason = "coordinates must be within 8000 mm")]
     let hundredths = (coordinate * 100.0).round() as i32;

@@ -9,7 +9,7 @@ use crate::Now;
 pub(super) const AXES: usize = 4;
 /// Number of axes in which a circle can lie.
 const SPACE: usize = 3;
-/// Minimum area in mm² of the parallelogram of three points. Below it, the points lie on a line.
+/// Minimum area in mm² of the parallelogram that three points form. Points with a smaller area lie on a line.
 const FLAT: f64 = 1e-6;
 
 /// Coordinates of all axes in mm.
@@ -18,7 +18,7 @@ pub(super) type Coordinates = [f64; AXES];
 /// Path speed and ramps of a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Drive {
-    /// mm/s.
+    /// Path speed in mm/s.
     pub(super) speed: f64,
     /// Acceleration time in seconds.
     pub(super) up: f64,
@@ -42,9 +42,9 @@ struct Phase {
 /// A path in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Path {
-    /// A line. All axes move in proportion.
+    /// A line. The distances of all axes grow in proportion.
     Line { from: Coordinates, to: Coordinates, length: f64 },
-    /// An arc. Axes outside of its plane move in proportion.
+    /// An arc. Axes outside of the plane of the arc move in proportion to the path length.
     Arc(Arc),
 }
 
@@ -64,12 +64,12 @@ pub(super) struct Arc {
 pub(super) struct Segment {
     pub(super) owner: usize,
     pub(super) path: Path,
-    /// Length of the path that lies before the start.
+    /// Length of the skipped part of the path. The move starts after this part.
     skip: f64,
     pub(super) drive: Drive,
     profile: Profile,
     began: Now,
-    /// End position. After a deceleration, it lies before the end of the path.
+    /// End position. If the move was decelerated early, this position lies before the end of the path.
     end: Coordinates,
 }
 
@@ -128,7 +128,7 @@ impl Profile {
         (distance, 0.0)
     }
 
-    /// Seconds from the start to the deceleration.
+    /// Seconds from the start of the profile to the start of the deceleration.
     fn steady(&self) -> f64 {
         self.phases[0].seconds + self.phases[1].seconds
     }
@@ -154,7 +154,7 @@ impl Path {
         }
     }
 
-    /// Position after this length of the path.
+    /// Position after the given length of the path.
     pub(super) fn at(&self, distance: f64) -> Coordinates {
         let share = if self.length() > 0.0 { (distance / self.length()).clamp(0.0, 1.0) } else { 1.0 };
         match self {
@@ -255,7 +255,7 @@ impl Arc {
 }
 
 impl Segment {
-    /// A move that begins at a given time, which may be in the future.
+    /// A move that begins at time `began`, which may be in the future.
     pub(super) fn new(owner: usize, path: Path, skip: f64, drive: Drive, began: Now) -> Self {
         let profile = Profile::trapezoid((path.length() - skip).max(0.0), drive);
         Self { owner, path, skip, drive, profile, began, end: path.end() }
@@ -293,7 +293,7 @@ impl Segment {
         self.skip + self.distance(now)
     }
 
-    /// The same move, but with a deceleration from now on, unless it already decelerates.
+    /// Returns the move with a deceleration that starts now. A move that already decelerates stays unchanged.
     pub(super) fn braked(self, now: Now) -> Self {
         let (distance, speed) = self.profile.at(self.elapsed(now));
         if self.elapsed(now) >= self.profile.steady() {
@@ -360,7 +360,7 @@ mod tests {
 
     #[test]
     fn a_long_move_has_a_trapezoid_profile() {
-        // 10 mm up, 170 mm steady, 20 mm down.
+        // The ramp up takes 10 mm, the constant speed 170 mm, and the ramp down 20 mm.
         let profile = Profile::trapezoid(200.0, DRIVE);
         assert!(near(profile.seconds(), 0.2 + 1.7 + 0.4));
         assert!(near(profile.length(), 200.0));
@@ -372,7 +372,7 @@ mod tests {
 
     #[test]
     fn a_short_move_has_a_triangle_profile() {
-        // 7.5 mm are a quarter of the 30 mm that the ramps need: half the speed, half the times.
+        // The ramps would need 30 mm. The 7.5 mm are a quarter of this, so the speed and the times are half.
         let profile = Profile::trapezoid(7.5, DRIVE);
         assert!(near(profile.seconds(), 0.3));
         assert!(near(profile.at(0.1).1, 50.0));
@@ -414,7 +414,7 @@ mod tests {
     fn a_braked_move_stops_before_its_end() {
         let path = Path::line([0.0; 4], [200.0, 0.0, 0.0, 0.0], 200.0);
         let segment = Segment::new(0, path, 0.0, DRIVE, Duration::from_secs(1));
-        // After 0.7 s: 10 mm of ramp and 50 mm; the stop takes 20 mm and 0.4 s.
+        // After 0.7 s, the move has passed 10 mm of ramp and 50 mm at constant speed. The stop takes 20 mm and 0.4 s.
         let now = Duration::from_millis(1700);
         let braked = segment.braked(now);
         assert!(near(braked.end()[0], 80.0));

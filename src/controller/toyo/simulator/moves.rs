@@ -62,7 +62,7 @@ impl World {
         Ok(self.begin_path(index, path, &Move { pass: second.pass, ..first }, step + 2))
     }
 
-    /// Whether axes can move in a program.
+    /// Checks that a program may move these axes.
     pub(super) fn check_motion_allowed(&self, axes: &[usize]) -> Result<(), u8> {
         refuse_if(axes.is_empty(), code::COMMAND)?;
         refuse_if(!axes.iter().all(|&axis| self.switches.servo[axis]), code::UNEXECUTABLE)
@@ -86,7 +86,7 @@ impl World {
         Ok(())
     }
 
-    /// Targets of a move: without the offset, and with the offset. The axes of other tasks stay in place.
+    /// Targets of a move, without and with the offset. The axes of other tasks keep their positions.
     fn resolve_target(&self, index: usize, order: &Move, from: &Coordinates) -> Result<(Coordinates, Coordinates), u8> {
         let axes = &self.machine.tasks[index].axes;
         refuse_if(!axes.iter().all(|&axis| self.arm.known[axis]), code::ORIGIN_INCOMPLETE)?;
@@ -111,7 +111,8 @@ impl World {
         Ok((own(base), own(to)))
     }
 
-    /// A line. Its length is the distance in space, or the distance of the axis that moves farthest.
+    /// A line. Its length is the distance in space, or the distance of the axis that moves farthest. The move reaches
+    /// its speed along this length.
     fn line(&self, index: usize, from: Coordinates, to: Coordinates, in_space: bool) -> Path {
         let way = minus(&to, &from);
         let axes = &self.machine.tasks[index];
@@ -138,7 +139,7 @@ impl World {
         Flow::Wait(wait, next)
     }
 
-    /// Speed and ramps for a path. Row 0 means the row of the last SPD.
+    /// Speed and ramps for a path. Row 0 of the speed table means the row of the last SPD.
     fn drive(&self, index: usize, row: i32, path: &Path) -> Drive {
         let task = &self.tasks[index];
         let [speed] = self.memory.content.numbers("T2", if row == 0 { task.speed } else { row });
@@ -153,7 +154,7 @@ impl World {
         Drive { speed, up, down }
     }
 
-    /// Seconds in a row of the acceleration table.
+    /// Ramp time in seconds, from a row of the acceleration table.
     pub(super) fn ramp(&self, row: i32) -> f64 {
         let [hundredths] = self.memory.content.numbers("T3", row);
         f64::from(hundredths.max(1)) / 100.0

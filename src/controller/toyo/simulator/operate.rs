@@ -1,6 +1,6 @@
 //! Operations of host and operator: starts, stops, power, errors.
 //!
-//! A refusal has a reason here; the protocol sends it only as `@NG`.
+//! Here a refusal has a reason. The protocol sends only `@NG`, without the reason.
 
 use super::arm::HOST;
 use super::errors::code;
@@ -14,7 +14,7 @@ use crate::simulator::refuse_if;
 pub(super) type Refusal = &'static str;
 
 impl World {
-    /// Refuses while anything runs.
+    /// Refuses while a program, a motion or a card transfer runs.
     pub(super) fn idle(&self) -> Result<(), Refusal> {
         refuse_if(self.is_executing(), "a program, motion or jog runs")?;
         if self.card.is_busy() { Err("the memory card is in use") } else { Ok(()) }
@@ -26,9 +26,14 @@ impl World {
         if self.errors.current().is_some() { Err("an error is active: cancel it first") } else { Ok(()) }
     }
 
-    /// Refuses execution if parameter 2 was changed.
+    /// Refuses execution if parameter 2 was changed: the controller then needs a power cycle.
     fn unchanged(&self) -> Result<(), Refusal> {
-        if self.switches.machine_changed { Err("parameter 2 was changed: power must be cycled first") } else { Ok(()) }
+        if self.switches.machine_changed {
+            Err("a machine parameter (parameter 2) was changed: switch the power off \
+                                                and on first")
+        } else {
+            Ok(())
+        }
     }
 
     fn powered_axes(&self) -> Result<(), Refusal> {
@@ -41,7 +46,8 @@ impl World {
         if self.kind() == kind { Ok(()) } else { Err(what) }
     }
 
-    /// Starts the sequential program of task 1 at a step. 0 continues, or begins at the first step.
+    /// Starts the sequential program of task 1 at this step. With step 0, continues a stopped program, or begins at the
+    /// first step.
     pub(super) fn start_sequential(&mut self, step: usize) -> Result<(), Refusal> {
         self.of_kind(Kind::Sequential, "the controller is not in sequential mode")?;
         refuse_if(step > self.memory.size(0) || self.memory.size(0) == 0, "no such step")?;
@@ -156,13 +162,13 @@ impl World {
             return Ok(());
         }
         let [(axis, word)] = moving[..] else { return Err("only one axis at a time can jog") };
-        refuse_if(words.contains(&"RS"), "all other axes must be stopped (SP)")?;
-        // A repetition of the same JOG changes nothing.
+        refuse_if(words.contains(&"RS"), "all other axes must be stopped: send SP for them")?;
+        // A second JOG with the same word changes nothing.
         if self.jog.is_some_and(|jog| jog.axis == axis && jog.word == *word && !word.ends_with('C')) {
             return Ok(());
         }
         self.check_startable()?;
-        refuse_if(!self.jog_ready, "JOG was not reset (RS)")?;
+        refuse_if(!self.jog_ready, "the JOG action of this axis was not reset: send RS first")?;
         refuse_if(axis >= self.axes, "this axis is not fitted")?;
         refuse_if(!self.switches.servo[axis], "servo power is off")?;
         if let Err(code) = self.begin_jog(axis, word) {
@@ -211,7 +217,7 @@ impl World {
         Ok(())
     }
 
-    /// Switches the teach pendant. When it is ON, it takes control from the host.
+    /// Switches the teach pendant ON or OFF. When the pendant is ON, it takes control from the host.
     pub(super) fn pendant(&mut self, on: bool) {
         self.switches.pendant = on;
         if on {
@@ -228,7 +234,7 @@ impl World {
         }
     }
 
-    /// Selects sequential or palletizing mode, unless M10 selects a different mode.
+    /// Selects sequential or palletizing mode, unless parameter M10 selects another mode.
     pub(super) fn select_program_kind(&mut self, palletizing: bool) -> Result<(), Refusal> {
         self.idle()?;
         refuse_if(self.settings.special != Special::None, "M10 selects easy or external point mode")?;
@@ -245,7 +251,7 @@ impl World {
         Ok(())
     }
 
-    /// Stores coordinates for a move of a task. Only one set of coordinates can wait.
+    /// Stores coordinates from the host for a move of a task. A task can store only one set of coordinates.
     pub(super) fn store_coordinates(&mut self, task: usize, place: [f64; 4], speed: i32) -> Result<(), Refusal> {
         let slot = &mut self.tasks[task].supplied;
         refuse_if(slot.is_some(), "earlier coordinates are still waiting")?;

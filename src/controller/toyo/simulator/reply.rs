@@ -7,9 +7,9 @@ use crate::toyo::layout::Record;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Reply {
-    /// `@OK`.
+    /// The answer is `@OK`.
     Done,
-    /// Values of one of the answer forms.
+    /// Values of the answer, and the index of their answer form.
     Data(usize, Vec<Value>),
 }
 

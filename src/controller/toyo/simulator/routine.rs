@@ -13,7 +13,7 @@ use super::world::World;
 use crate::toyo::layout::Record;
 use crate::toyo::table::Pallet;
 
-/// Routine of a task.
+/// Routine that runs in a task.
 #[derive(Debug, Clone)]
 pub(super) enum Routine {
     /// A move to a row of the coordinate table.
@@ -42,7 +42,8 @@ pub(super) enum EasyPart {
 pub(super) struct Palletizing {
     pub(super) program: usize,
     pub(super) mode: &'static str,
-    /// Current phase: 0 is the start program, then come source, destination and end program.
+    /// Current phase: 0 is the start program. The phases of the source, the phases of the destination and the end
+    /// program follow.
     phase: usize,
     begun: bool,
     start: i32,
@@ -52,21 +53,22 @@ pub(super) struct Palletizing {
     pub(super) hand: i32,
 }
 
-/// Source or destination of pieces.
+/// Source or destination of the pieces that a palletizing program moves.
 #[derive(Debug, Clone)]
 pub(super) struct Side {
     is_matrix: bool,
     matrix: Matrix,
-    /// From 1.
+    /// Number of the piece in each direction, from 1.
     pub(super) piece: [u16; 3],
     approach: Move,
-    /// Approach point: Z and R, and whether these values are relative.
+    /// Z and R of the approach point. The field `approach` says whether these values are relative to the position.
     height: [f64; 2],
     turn: f64,
     tag: i32,
 }
 
-/// Phases of a side: move above the position, move down, run the hand program, move up.
+/// Phases of a side: move above the position, move down, run the hand program, move up. The constants name the phases
+/// that the code needs.
 const DOWN: usize = 1;
 const HAND: usize = 2;
 const LAST_OF_SOURCE: usize = 4;
@@ -127,7 +129,7 @@ impl World {
         }
     }
 
-    /// Number of the selected palletizing program. If the number at the inputs of M06 is not 0, it has priority.
+    /// Number of the selected palletizing program. A number other than 0 at the inputs of M06 has priority.
     pub(super) fn chosen_pallet(&self) -> Result<usize, u8> {
         let number = |bit: PortBit| usize::from(self.ports.number(bit));
         match self.settings.palletizing.map_or(0, number) {
@@ -181,12 +183,12 @@ impl World {
 }
 
 impl Palletizing {
-    /// The current side, or the last side.
+    /// The side of the current phase. For the end program, the destination.
     pub(super) fn side(&self) -> &Side {
         &self.sides[usize::from(self.phase > LAST_OF_SOURCE)]
     }
 
-    /// Name of the current phase.
+    /// Name of the current phase in the protocol.
     pub(super) fn state(&self) -> &'static str {
         match self.phase {
             0 => "START",
@@ -240,12 +242,12 @@ impl Palletizing {
 }
 
 impl Side {
-    /// Pieces in each direction.
+    /// Numbers of pieces in the three directions.
     pub(super) fn pieces(&self) -> [u16; 3] {
         self.matrix.pieces
     }
 
-    /// A move to the position, or to its approach point.
+    /// A move to the position of the piece, or to the approach point above it.
     fn order(&self, down: bool) -> Result<Move, u8> {
         let piece = if self.is_matrix { self.piece } else { [1; 3] };
         let mut place = self.matrix.place(piece)?;
@@ -269,7 +271,7 @@ fn point(row: i32, begun: &mut bool) -> RoutineStep {
     RoutineStep::Move(Move { to, incremental: false, line: false, speed: 0, pass: false, escape: false })
 }
 
-/// Repeats the start program, at least once. Then runs the end program.
+/// Runs the start program as often as the easy program requires, at least once. Then runs the end program.
 fn easy(easy: Easy, round: &mut i32, part: &mut EasyPart) -> RoutineStep {
     if *part == EasyPart::Start {
         if easy.start != 0 && *round < easy.times.max(1) {

@@ -10,7 +10,7 @@ use super::world::World;
 use crate::simulator::refuse_if;
 use crate::toyo::field::Mask;
 
-/// Maximum nesting of subroutines. The manual has no limit.
+/// Maximum nesting of subroutines. The manual gives no limit.
 pub(super) const DEPTH: usize = 16;
 /// Maximum value of a counter.
 const MOST_COUNT: i32 = 9999;
@@ -32,7 +32,7 @@ impl World {
         }
     }
 
-    /// Continues tasks whose wait has ended.
+    /// Continues the tasks whose wait has ended.
     pub(super) fn end_waits(&mut self) {
         if self.is_held() {
             return;
@@ -68,7 +68,7 @@ impl World {
         let task = &mut self.tasks[index];
         let moved = matches!(task.wait, Wait::Motion | Wait::Pass(_));
         if single && matches!(task.wait, Wait::Pass(_)) {
-            // In single operation, every move ends at rest, also at a pass point.
+            // In single operation, every move ends at rest, even a move to a pass point.
             task.wait = Wait::Motion;
             return;
         }
@@ -227,7 +227,7 @@ impl World {
     /// Evaluates a condition. Returns an error if the port of the condition does not exist.
     pub(super) fn is_met(&self, test: Test) -> Result<bool, u8> {
         let matches = |bits: u8, mask: Mask, any: bool| {
-            // A condition without relevant bits is true.
+            // With `any`, one matching bit is enough. A condition that uses no bits is true.
             if any && mask.care != 0 { !(bits ^ mask.bits) & mask.care != 0 } else { mask.matches(bits) }
         };
         match test {
@@ -359,11 +359,11 @@ impl World {
                 self.tasks[other].reset();
             }
         }
-        // A task that cancels itself has been reset to its first step.
+        // A task that cancels itself has ended, so no step follows.
         Ok(if other == index && order == TaskOrder::Cancel { Flow::End } else { Flow::Next })
     }
 
-    /// Coordinates of an offset or a target.
+    /// Coordinates of a target. An offset is also given as a target.
     pub(super) fn target(&self, index: usize, target: Target) -> Result<super::motion::Coordinates, u8> {
         match target {
             Target::Coordinates(place) => Ok(place),

@@ -18,11 +18,11 @@ pub(super) enum Signal {
     Load(usize),
     Limit(usize),
     Locked(usize),
-    /// On while the position of an axis is in its area.
+    /// On while the axis is inside its area.
     Area(usize),
 }
 
-/// Selection of M10.
+/// Program type that parameter M10 selects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Special {
     None,
@@ -30,7 +30,7 @@ pub(super) enum Special {
     Point,
 }
 
-/// Parameters that take effect at once: M and P.
+/// Settings from the parameters that take effect at once (groups M and P).
 #[derive(Debug, Clone)]
 pub(super) struct Settings {
     pub(super) single: Option<PortBit>,
@@ -49,30 +49,30 @@ pub(super) struct Settings {
     pub(super) minus: Coordinates,
     pub(super) origin: Coordinates,
     pub(super) sequence: [i32; AXES],
-    /// mm/s, low and high.
+    /// Low and high JOG speed of each axis, in mm/s.
     pub(super) jog: [[f64; 2]; AXES],
     pub(super) inch: Coordinates,
-    /// Whether each area is above its position, and this position.
+    /// Area of each axis: whether the area lies above its limit, and the position of the limit.
     pub(super) areas: [(bool, f64); AXES],
 }
 
-/// Parameters that take effect after power on: E.
+/// Settings from the parameters that take effect after power on (group E).
 #[derive(Debug, Clone)]
 pub(super) struct Machine {
     pub(super) tasks: [Axes; TASKS],
     pub(super) top: Coordinates,
-    /// mm/s: low, middle, high.
+    /// Low, middle and high origin speed of each axis, in mm/s.
     pub(super) origin: [[f64; 3]; AXES],
-    /// First target of a return to origin at high speed.
+    /// Position to which an axis moves at high speed, before it searches its origin (E13).
     pub(super) fast: Coordinates,
-    /// Whether the origin is in plus direction.
+    /// Whether the origin lies in the plus direction of each axis.
     pub(super) upwards: [bool; AXES],
     /// Position error in mm that counts as overflow.
     pub(super) overflow: Coordinates,
     pub(super) absolute: bool,
-    /// Order in which tasks with simultaneous actions are executed (E20).
+    /// Execution order of tasks that act at the same time (E20).
     pub(super) order: [usize; TASKS],
-    /// Drive axis of each driven axis.
+    /// For each driven axis: its drive axis. `None` for all other axes.
     pub(super) driver: [Option<usize>; AXES],
     /// Whether the roles of synchronized axes are invalid.
     pub(super) bad_roles: bool,
@@ -81,7 +81,7 @@ pub(super) struct Machine {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Axes {
     pub(super) axes: Vec<usize>,
-    /// Number of leading axes that form a plane or a space.
+    /// Number of axes, counted from the first, that form a plane or a space.
     pub(super) space: usize,
 }
 
@@ -241,7 +241,7 @@ mod tests {
         assert!(settings.signals.is_empty());
         let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
         assert!(near(settings.plus[3], 1000.0) && near(settings.jog[2][1], 50.0));
-        // E03: 20,000 pulses of 20 mm / 8,000.
+        // E03 is 20,000 pulses. 8,000 pulses are 20 mm, so the overflow is at 50 mm.
         assert!(near(machine.overflow[0], 50.0) && near(machine.origin[0][1], 20.0));
     }
 }

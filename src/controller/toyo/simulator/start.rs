@@ -97,7 +97,7 @@ impl Start {
         Self { seed, ..self }
     }
 
-    /// Refuses a random share of the commands with `@NG`, 0.0 to 1.0.
+    /// Sets the share of commands, from 0.0 to 1.0, that the simulator refuses with `@NG` at random.
     #[must_use]
     pub fn with_busy(self, busy: f64) -> Self {
         Self { busy: busy.clamp(0.0, 1.0), ..self }
@@ -109,13 +109,14 @@ impl Start {
         Ok(self.stored())
     }
 
-    /// Adds content by a host write command: `WPAR T2 V05=0200.0`, `WPLT …`, `WESY …`, `WSTX …`.
+    /// Adds content with a host write command, for example `WPAR T2 V05=0200.0`, `WPLT …`, `WESY …` or `WSTX …`.
     pub fn with_written(mut self, command: &str) -> Result<Self, String> {
         write(&mut self.world, command)?;
         Ok(self.stored())
     }
 
-    /// Treats the content as written before the last power on.
+    /// Treats the content as written before the last power on: the EEPROM has no wear, and all parameters are in
+    /// effect.
     fn stored(mut self) -> Self {
         self.world.memory.wear.reset();
         self.world.load();
@@ -224,7 +225,7 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
     programs(&mut world, entries, source)?;
     tables(&mut world, entries, source)?;
     source.each(&entries.write, |line| write(&mut world, line))?;
-    // The content was written before the start. For this reason it has not worn the EEPROM, and parameters 2 are in
+    // The content counts as written before the start. Therefore it has not worn the EEPROM, and parameters 2 are in
     // effect.
     world.memory.wear = Wear::new(Some(entries.eeprom_limit).filter(|limit| *limit > 0));
     world.power_up();
@@ -403,7 +404,7 @@ fn tables(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<()
         .each_of(&entries.ramps, |number, ramp| write(world, &format!("WPAR T3 A{:02}={ramp:04.2}", row(number, 20)?)))
 }
 
-/// Parses a numeric key, from 1.
+/// Parses a key that is a number from 1 to `most`.
 fn row(key: &str, most: usize) -> Result<usize, String> {
     console::number(key, 1..=most)
 }
@@ -437,7 +438,7 @@ fn errors(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<()
     })
 }
 
-/// Parses `0/01` and eight bits.
+/// Parses a port such as `0/01`, and its eight bits.
 fn port(name: &str, bits: &str) -> Result<(Port, Mask), String> {
     let parts = name.split_once('/').and_then(|(station, port)| Some((station.parse().ok()?, port.parse().ok()?)));
     let (station, port) = parts.ok_or_else(|| format!("'{name}' is not a valid port, such as 0/01"))?;
@@ -445,7 +446,7 @@ fn port(name: &str, bits: &str) -> Result<(Port, Mask), String> {
     Ok((Port { station, port }, Mask::all(eight.ok_or("a port must have eight digits, each 0 or 1")?)))
 }
 
-/// Parses a version such as `4.00` to hundredths.
+/// Parses a version and returns it in hundredths, for example 400 for `4.00`.
 fn hundredths(version: &str) -> Option<i32> {
     let field = Command::Cver.row().answers.first()?.fields.last()?;
     match field.read(version).ok()? {

@@ -8,31 +8,31 @@ use crate::Now;
 /// Wait condition of a running task.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Wait {
-    /// Executes its step at this time.
+    /// The task executes its step at this time.
     Ready(Now),
-    /// Waits until this time.
+    /// The task waits until this time.
     Until(Now),
-    /// Moves to a pass point. The next step begins at this time during the deceleration.
+    /// The task moves to a pass point. The next step begins at this time, during the deceleration of the move.
     Pass(Now),
-    /// Waits for the end of its move.
+    /// The task waits for the end of its move.
     Motion,
-    /// Waits for the end of its move, then ends the program.
+    /// The task waits for the end of its move. Then the program ends.
     End,
     Test(Test),
-    /// Waits for coordinates from the host.
+    /// The task waits for coordinates from the host.
     Host(Move),
 }
 
 /// How a task continues after a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Flow {
-    /// The next step.
+    /// Continues with the next step.
     Next,
-    /// A certain step.
+    /// Continues with this step.
     To(usize),
-    /// A certain step, after a wait.
+    /// Waits. Continues with this step after the wait.
     Wait(Wait, usize),
-    /// Stops. After a restart, the next step follows.
+    /// Stops. After a restart, the task continues with the next step.
     Stop,
     End,
 }
@@ -40,25 +40,25 @@ pub(super) enum Flow {
 #[derive(Debug, Clone)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent state")]
 pub(super) struct Task {
-    /// Started and not ended.
+    /// Whether the program of the task was started and has not ended.
     pub(super) running: bool,
-    /// Stopped by TSTO.
+    /// Whether TSTO stopped the task.
     pub(super) stopped: bool,
-    /// From 1.
+    /// Current step, from 1.
     pub(super) step: usize,
-    /// Step that follows the wait.
+    /// Step with which the task continues after the wait.
     pub(super) next: usize,
     pub(super) wait: Wait,
-    /// Steps to which the subroutines return.
+    /// Steps with which the task continues after each called subroutine.
     pub(super) stack: Vec<usize>,
-    /// Row of the speed table.
+    /// Row of the speed table for the next moves.
     pub(super) speed: i32,
-    /// Rows of the acceleration table.
+    /// Rows of the acceleration table for the two ramps of the next moves.
     pub(super) ramps: [i32; 2],
-    /// Share of the deceleration at pass points.
+    /// Share of the deceleration during which the next move already runs, at pass points.
     pub(super) pass: f64,
     pub(super) offset: Coordinates,
-    /// Start of the last move.
+    /// Position at the start of the last move.
     pub(super) from: Option<Coordinates>,
     /// Torque limit of the next move.
     pub(super) torque: Option<Torque>,
@@ -66,10 +66,10 @@ pub(super) struct Task {
     pub(super) limited: Option<Torque>,
     /// Whether the escape input ends the current move.
     pub(super) escape: bool,
-    /// Coordinates from the host that no move has used yet, and a row of the speed table.
+    /// Coordinates from the host that no move has used yet, with their row of the speed table.
     pub(super) supplied: Option<(Coordinates, i32)>,
     pub(super) routine: Option<Routine>,
-    /// Whether the routine has called a part of the program.
+    /// Whether the routine runs a part of the program at present.
     pub(super) called: bool,
 }
 
@@ -98,7 +98,7 @@ impl Default for Task {
 }
 
 impl Task {
-    /// Resets the task to its state before the first start.
+    /// Resets the task to the state before its first start.
     pub(super) fn reset(&mut self) {
         let mut stack = std::mem::take(&mut self.stack);
         stack.clear();
@@ -111,7 +111,7 @@ impl Task {
         self.wait = Wait::Ready(now);
     }
 
-    /// Time of the next action.
+    /// Time of the next action of the task.
     pub(super) fn due(&self) -> Option<Now> {
         match self.wait {
             Wait::Ready(at) | Wait::Until(at) | Wait::Pass(at) if self.running && !self.stopped => Some(at),

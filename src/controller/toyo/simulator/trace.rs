@@ -16,7 +16,7 @@ pub struct Event {
     pub at: Now,
     /// Axis coordinates at this time, in mm.
     pub position: [f64; 4],
-    /// The event.
+    /// Description of the event.
     pub what: What,
 }
 
@@ -25,21 +25,21 @@ pub struct Event {
 pub enum What {
     /// A task begins a step.
     Step {
-        /// 1 to 4.
+        /// Task, 1 to 4.
         task: usize,
-        /// From 1.
+        /// Step, from 1.
         step: usize,
     },
     /// An output port has changed.
     Output {
-        /// 0 to 4.
+        /// Station, 0 to 4.
         station: usize,
-        /// From 1.
+        /// Port, from 1.
         port: usize,
-        /// Bit 1 of the manual is the least significant.
+        /// State of the port. Bit 1 of the manual is the least significant bit.
         bits: u8,
     },
-    /// An error occurred; codes as in TO 4-1.
+    /// An error with this code occurred (TO 4-1).
     Error(u8),
     /// Programs have stopped and can continue.
     Stopped,
@@ -47,7 +47,7 @@ pub enum What {
     Ended(usize),
     /// The return to origin is complete.
     Origin,
-    /// A scheduled console line could not be executed.
+    /// A console line of the start state could not be executed at its time. Contains the message.
     Console(String),
 }
 
@@ -75,7 +75,7 @@ impl Trace {
         events.push_back(Event { at, position, what });
     }
 
-    /// Records output ports that have changed since the last call. Initially, all outputs are off.
+    /// Records the output ports that have changed since the last call. All outputs count as off before the first call.
     pub(super) fn outputs(&mut self, at: Now, position: Coordinates, outputs: impl Iterator<Item = (Port, u8)>) {
         for (port, bits) in outputs {
             if self.shown.insert(port, bits).unwrap_or_default() != bits {

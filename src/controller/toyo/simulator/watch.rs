@@ -14,7 +14,7 @@ use crate::Now;
 
 /// Tolerance in mm for equal positions.
 pub(super) const NEAR: f64 = 1e-6;
-/// Time for which a motor can push with full force.
+/// Time after which a motor that pushes against an obstacle has an overload.
 const OVERLOAD_AFTER: Duration = Duration::from_secs(1);
 
 impl World {
@@ -25,11 +25,10 @@ impl World {
         }
     }
 
-    /// Sets outputs when an axis passes a position. If the axis has already passed the position, sets the outputs at
-    /// once.
+    /// Sets outputs as soon as an axis passes a position. If the axis has already passed it, sets the outputs at once.
     pub(super) fn output_at(&mut self, output: OutputAt) -> Result<(), u8> {
         self.ports.output(output.port).ok_or(code::PORT)?;
-        // A request that a loop repeats counts only once.
+        // In a loop, the same request arrives again and again. It counts only once.
         self.outputs_at.retain(|other| *other != output);
         self.outputs_at.push(output);
         self.follow_outputs();
@@ -153,11 +152,11 @@ impl World {
         if self.machine.tasks[index].axes.iter().any(|&axis| self.arm.push(axis, self.now) > 0.0) {
             return false;
         }
-        // A move that ends by torque or lock does not end on arrival, unless AE allows this.
+        // A move with torque end or lock end does not end on arrival, unless AE is on.
         self.tasks[index].limited.is_none_or(|torque| torque.arrival_end || !(torque.torque_end || torque.lock_end))
     }
 
-    /// Updates the status outputs.
+    /// Updates the outputs that show the status of the controller.
     pub(super) fn refresh(&mut self) {
         for place in 0..self.settings.signals.len() {
             let (bit, signal) = self.settings.signals[place];
@@ -204,7 +203,7 @@ impl World {
         self.watched = self.arm.changes();
         self.crossing = None;
         if !self.arm.is_moving(self.now) {
-            // When the axes are at rest, an axis that is not commanded beyond its obstacle does not push.
+            // With the axes at rest, an axis pushes only if its commanded position is beyond its obstacle.
             (0..AXES).filter(|&axis| self.arm.push(axis, self.now) <= 0.0).for_each(|axis| self.presses[axis] = None);
             return;
         }
@@ -234,7 +233,7 @@ impl World {
     }
 }
 
-/// Whether a coordinate is at a position, or on the given side of it.
+/// Whether a coordinate has reached a position. `at_least` selects the direction.
 fn is_beyond(coordinate: f64, at_least: bool, place: f64) -> bool {
     if at_least { coordinate >= place - NEAR } else { coordinate <= place + NEAR }
 }

@@ -17,12 +17,12 @@ use crate::simulator::timeline::Timeline;
 use crate::toyo::field::Mask;
 use crate::toyo::table::{FROM_3_36, Models};
 
-/// Number of counters and timers, with index 0 unused.
+/// Array size for the counters, and below for the timers. Their numbers start at 1, so index 0 is unused.
 pub(super) const COUNTERS: usize = 100;
 pub(super) const TIMERS: usize = 10;
-/// Maximum of a timer in 0.1 s.
+/// Maximum value of a timer, in 0.1 s.
 const MOST_TENTHS: u32 = 9999;
-/// In hundredths.
+/// Version 3.36, in hundredths.
 const VERSION_3_36: i32 = 336;
 
 /// States that the operator or the host can switch.
@@ -35,7 +35,7 @@ pub(super) struct Switches {
     pub(super) servo: [bool; AXES],
     pub(super) mode: Mode,
     pub(super) palletizing: bool,
-    /// Whether parameter 2 was written since power on.
+    /// Whether parameter 2 was written after power on.
     pub(super) machine_changed: bool,
     pub(super) slaves_ready: bool,
     pub(super) battery_low: bool,
@@ -62,7 +62,7 @@ pub(super) enum Kind {
 pub(super) struct Jog {
     pub(super) axis: usize,
     pub(super) word: &'static str,
-    /// Coordinate of the soft limit, and whether it is the upper limit.
+    /// Coordinate of the soft limit in the JOG direction, and whether this is the upper limit.
     pub(super) limit: Option<(f64, bool)>,
 }
 
@@ -71,13 +71,13 @@ pub(super) struct Jog {
 pub(super) struct World {
     pub(super) now: Now,
     pub(super) model: String,
-    /// Version in hundredths.
+    /// Software version in hundredths.
     pub(super) version: i32,
     pub(super) axes: usize,
     pub(super) robot_types: Vec<i32>,
-    /// Power-on time before the start.
+    /// Total power-on time of the controller before the simulation started.
     pub(super) meter: Duration,
-    /// Duration of an instruction.
+    /// Time that one instruction takes.
     pub(super) tick: Duration,
     pub(super) memory: Memory,
     pub(super) settings: Settings,
@@ -90,34 +90,35 @@ pub(super) struct World {
     pub(super) tasks: [Task; TASKS],
     /// Whether programs are stopped and can continue.
     pub(super) stopped: bool,
-    /// Whether the pause input holds programs.
+    /// Whether the pause input is holding programs.
     pub(super) pausing: bool,
-    /// Number of steps that task 1 may still execute in step mode.
+    /// Number of steps that task 1 may still execute in step mode. `None` in the other modes.
     pub(super) allowance: Option<u32>,
     pub(super) jog: Option<Jog>,
-    /// Whether JOG was reset. JOG is refused before a reset.
+    /// Whether the host has reset JOG. JOG is refused before this.
     pub(super) jog_ready: bool,
-    /// The current task of host commands.
+    /// The task to which host commands apply (current task).
     pub(super) current: usize,
-    /// Selected palletizing program and easy program.
+    /// Selected palletizing program. The field below is the selected easy program.
     pub(super) pallet: usize,
     pub(super) easy: usize,
     pub(super) counters: [u16; COUNTERS],
-    /// Start time and start value of each timer.
+    /// Start time and start value of each timer; `None` if the timer was not started.
     pub(super) timers: [Option<(Now, u32)>; TIMERS],
     pub(super) errors: Errors,
     pub(super) card: Card,
-    /// Running output pulses: the time at which each pulse ends, and the bits that are then set.
+    /// Running output pulses: end time, port, and the bits that the controller sets at this time.
     pub(super) pulses: Vec<(Now, Port, Mask)>,
     pub(super) outputs_at: Vec<OutputAt>,
     /// Axes that push against an obstacle.
     pub(super) presses: [Option<Press>; AXES],
-    /// Time of the next position event, and the number of changes of the arm for which it was computed.
+    /// Time of the next position event. The field below is the number of changes of the arm for which this time was
+    /// computed.
     pub(super) crossing: Option<Now>,
     pub(super) watched: u64,
     pub(super) events: Timeline,
     pub(super) trace: Trace,
-    /// The last refused block, with the reason.
+    /// The last refused block, and the reason for the refusal.
     pub(super) refusal: Option<(String, String)>,
 }
 
@@ -145,7 +146,7 @@ impl World {
     /// Handles the events that are due.
     fn handle_due_events(&mut self) {
         while let Some(line) = self.events.take(self.now) {
-            // A line that is not possible in the current state is ignored; `why` and the trace report it.
+            // A line that is not possible in the current state is ignored. The `why` command and the trace report it.
             if let Err(why) = console::execute(self, &line) {
                 self.record_event(What::Console(format!("{line}: {why}")));
                 self.refusal = Some((line, why));
@@ -159,7 +160,8 @@ impl World {
         self.settle();
     }
 
-    /// Handles consequences of a change: waits that have ended, outputs, position events.
+    /// Handles the consequences of a change: tasks whose wait has ended, outputs, and the time of the next position
+    /// event.
     pub(super) fn settle(&mut self) {
         self.follow_pause();
         self.arrivals();
@@ -174,7 +176,7 @@ impl World {
         self.errors.power_cut();
         self.card.abort();
         if !self.machine.absolute {
-            // Incremental encoders count from the position at power on.
+            // Incremental encoders count from the position at which power is switched on.
             let place = self.arm.position(self.now);
             self.arm.known = [false; AXES];
             for (axis, counted) in place.into_iter().enumerate() {
@@ -255,7 +257,7 @@ impl World {
         self.outputs_at.clear();
     }
 
-    /// Stops programs in such a way that they can continue.
+    /// Stops programs so that they can continue later.
     pub(super) fn stop(&mut self) {
         self.arm.brake(self.now);
         self.end_host_motion();
@@ -331,14 +333,14 @@ impl World {
         }
     }
 
-    /// Whether this controller supports a feature that only some models have.
+    /// Whether this controller has a feature that only some models or versions have.
     pub(super) fn supports(&self, only_on: Models) -> bool {
         only_on.is_empty()
             || only_on.contains(&self.model.as_str())
             || (only_on == FROM_3_36 && self.version >= VERSION_3_36)
     }
 
-    /// SY01 of the outputs: error, positioning complete, origin, READY.
+    /// System outputs SY01: error, positioning complete, origin, READY.
     pub(super) fn system_outputs(&self) -> u8 {
         let bits =
             [self.errors.current().is_some(), !self.arm.is_moving(self.now), self.knows_origin(), self.is_ready()];

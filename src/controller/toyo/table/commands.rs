@@ -17,11 +17,11 @@ pub struct Row {
     pub command: Command,
     /// Four-letter word.
     pub word: &'static str,
-    /// Effect.
+    /// What the command does.
     pub about: &'static str,
     /// Risk of the command. A JOG that moves no axis has a lower risk.
     pub risk: Risk,
-    /// Whether the command requires host ON (TO 2-1, note 1; ambiguities C13 and C14).
+    /// Whether the command requires that the host is ON (TO 2-1, note 1; ambiguities C13 and C14).
     pub needs_host: bool,
     /// Whether the command writes the EEPROM. Such a command is refused while a program runs, and it wears the EEPROM
     /// (TO 2-1, note 2).
@@ -86,7 +86,7 @@ impl Row {
 
 macro_rules! commands {
     ($($command:ident $word:literal $risk:ident $section:literal $about:literal $(.$method:ident($($argument:tt)*))*;)*) => {
-        /// Command identifier.
+        /// Identifier of a command.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         #[expect(missing_docs, reason = "each is explained in its row")]
         pub enum Command {
@@ -123,7 +123,7 @@ const AXIS_NUMBER: Field = digits("axis", 1, 1, 4, "axis");
 const BODY: Field = Field::new("body", Form::Text, "the parameter, row or data, with its values");
 const INSTRUCTION: Field = Field::new("text", Form::Text, "instruction");
 /// Step 0 is the step in execution (ambiguity C4).
-const STEP_OR_CURRENT: Field = digits("step", 4, 0, 5000, "step, 0 for the current step");
+const STEP_OR_CURRENT: Field = digits("step", 4, 0, 5000, "step; 0 means the current step");
 const PALLET: Field = digits("program", 2, 1, 16, "palletizing program");
 const RECORD: Field = digits("record", 2, 1, 16, "record");
 const EASY: Field = digits("program", 2, 1, 8, "easy program");
@@ -143,7 +143,7 @@ pub const CLEARS: &[Word] = &[
     word("6", "coordinate table of the current task"),
 ];
 
-/// JGST words for an axis.
+/// Words of JGST for one axis.
 pub const JOGS: &[Word] = &[
     word("RS", "reset"),
     word("SP", "stop"),
@@ -188,7 +188,7 @@ const fn starred(name: &'static str, width: u8, most: i32, about: &'static str) 
     digits(name, width, 0, most, about).starred()
 }
 
-/// The answer has numbered ports, so the field names have the same numbers.
+/// In the answer, the ports have numbers, so the field names have the same numbers.
 const P1: (Field, Field) = (port("port1"), bits("bits1", "bits 8 to 1"));
 const P2: (Field, Field) = (port("port2"), bits("bits2", "bits 8 to 1"));
 const P3: (Field, Field) = (port("port3"), bits("bits3", "bits 8 to 1"));

@@ -13,11 +13,11 @@ use crate::toyo::layout::Layout;
 pub struct Instruction {
     /// Identifier.
     pub op: Op,
-    /// First word.
+    /// First word of the instruction.
     pub word: &'static str,
-    /// Word and operands.
+    /// Layout of the word and its operands.
     pub layout: Layout,
-    /// Effect.
+    /// What the instruction does.
     pub about: &'static str,
     /// Example in user notation.
     pub example: &'static str,
@@ -31,7 +31,7 @@ impl Instruction {
         INSTRUCTIONS.iter().find(|row| row.word == word)
     }
 
-    /// Syntax: `JMPC TAG=<tag> CN<counter><compare><count>`.
+    /// Syntax for the user, for example `JMPC TAG=<tag> CN<counter><compare><count>`.
     pub fn form(&self) -> String {
         let mut fields = self.layout.fields.iter();
         let mut form = String::new();
@@ -92,10 +92,10 @@ macro_rules! instructions {
 const AXES_OR_ALL: Field =
     words("axes", &[word("ALL", "all axes"), plain("X"), plain("Y"), plain("Z"), plain("R")], "which axes");
 const LOGIC: Field = words("logic", &[plain("AND"), plain("OR")], "how bits and lines combine");
-/// One digit (ambiguity R18).
+/// Internal port. The field has one digit (ambiguity R18).
 const INTERNAL: Field = digits("port", 1, 1, 9, "internal port");
 const OTHER_TASK: Field = digits("task", 2, 2, 4, "task");
-/// One digit, including 0: the key of the field is TA (ambiguity R3).
+/// Task number, which may be 0. The field has one digit, and its key is TA (ambiguity R3).
 const ANY_TASK: Field = digits("task", 1, 0, 4, "task");
 const RAMP: Field = digits("ramp", 2, 1, 20, "row of the acceleration table");
 const AXIS_OF: Field = words("axis", AXIS, "axis");

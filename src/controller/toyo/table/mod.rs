@@ -13,16 +13,16 @@ pub use instructions::{Instruction, Op};
 pub use palletizing::Pallet;
 pub use parameters::{Group, Parameter};
 
-/// Names of the controllers that have a row, as in the manual.
+/// Names of the controllers that have a row of a table, as in the manual.
 pub type Models = &'static [&'static str];
 
-/// All controllers.
+/// All controllers support the row.
 pub const EVERY: Models = &[];
 /// The newer two-axis synchronous series.
 pub const KCA20: Models = &["KCA-20-M00", "KCA-20-M01"];
 /// The series with torque limits.
 pub const KCA25: Models = &["KCA-25-M10", "KCA-25-M40", "KCA-25-M80"];
-/// Both series. Their EEPROM does not wear out (TO 2-1, note 2).
+/// Both series. The EEPROM of these controllers does not wear out (TO 2-1, note 2).
 pub const KCA: Models = &["KCA-20-M00", "KCA-20-M01", "KCA-25-M10", "KCA-25-M40", "KCA-25-M80"];
-/// A minimum version instead of a model (ambiguity R24).
+/// A row that needs a minimum version, not a model (ambiguity R24).
 pub const FROM_3_36: Models = &["version 3.36 or later"];

@@ -9,7 +9,7 @@ use crate::toyo::layout::Layout;
 pub struct Pallet {
     /// Number, 1 to 16.
     pub number: u8,
-    /// Name for user input: `source-p0`.
+    /// Name for user input, for example `source-p0`.
     pub name: &'static str,
     /// Content.
     pub about: &'static str,
@@ -30,7 +30,7 @@ impl Pallet {
     }
 }
 
-/// Which side has a matrix of positions. The manual uses the words source and destination ambiguously.
+/// Selects the side that has a matrix of positions. The manual uses the words source and destination ambiguously.
 pub const MODE: Field = words(
     "mode",
     &[

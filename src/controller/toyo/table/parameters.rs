@@ -42,9 +42,9 @@ impl Group {
 /// A parameter, or a table with numbered rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Parameter {
-    /// Id of the manual: `P01`, `T1`; a sheet of the MVM table is `T4.S1`.
+    /// Id of the manual, for example `P01` or `T1`. A sheet of the MVM table has an id such as `T4.S1`.
     pub id: &'static str,
-    /// Name for user input, such as `soft-limit-plus`.
+    /// Name for user input, for example `soft-limit-plus`.
     pub name: &'static str,
     /// Description of the content.
     pub about: &'static str,
@@ -63,12 +63,12 @@ impl Parameter {
         PARAMETERS.iter().find(|row| is(row.id) || is(row.name))
     }
 
-    /// The parameter in a text after `RPAR` or `WPAR`.
+    /// Returns the parameter whose id is in a text after `RPAR` or `WPAR`.
     pub fn from_text(text: &str) -> Option<&'static Self> {
         PARAMETERS.iter().find(|row| {
             let id = row.key.text.split(" {}").next().and_then(|text| text.split("{}").next()).unwrap_or_default();
             let mut words = text.split(' ').filter(|word| !word.is_empty());
-            // Ids such as `T2 V` end in letters that a number or a key follows directly.
+            // An id such as `T2 V` ends in letters. A number or a key follows directly after these letters.
             id.split(' ').all(|word| words.next().is_some_and(|words| words == word || is_key(word, words)))
         })
     }
@@ -94,7 +94,7 @@ impl Parameter {
         &self.layout.fields[self.key.fields.len()..]
     }
 
-    /// Layout of the values without the id, for dumps and messages: `AX1=… AX2=…`.
+    /// Layout of the values without the id, for dumps and messages, for example `AX1=… AX2=…`.
     pub fn body(&self) -> Layout {
         let text = self.layout.text.strip_prefix(self.key.text).unwrap_or(self.layout.text);
         Layout { text: text.trim_start_matches([' ', '=']), fields: self.fields() }
@@ -125,11 +125,11 @@ impl Parameter {
     }
 }
 
-/// A bit of a port: `0/01/0`.
+/// A bit of a port, for example `0/01/0`.
 const PORT_BIT: &[Field] = &[STATION, PORT, BIT];
-/// Only ports of the controller itself (ambiguity R12).
+/// A bit of a port. Only ports of the controller itself are valid (ambiguity R12).
 const OWN_PORT_BIT: &[Field] = &[digits("station", 1, 0, 0, "I/O station"), PORT, BIT];
-/// Only ports up to 13 (ambiguity R12).
+/// A port number. Only ports up to 13 are valid (ambiguity R12).
 const DIRECT: Field = digits("port", 2, 1, 13, "port");
 const DIRECT_BITS: &[Field] = &[
     STATION.named("station1"),
@@ -160,7 +160,7 @@ const TASK_BITS: &[Field] = &[
     BIT.named("bit4"),
 ];
 const CC_LINK_RATES: &[Word] = &[plain("156K"), plain("625K"), plain("2.5M"), plain("5M"), plain("10M")];
-/// 156K in the sample of the manual belongs to CC-Link (ambiguity R10).
+/// The sample of the manual also has 156K, but this rate belongs to CC-Link (ambiguity R10).
 const DEVICENET_RATES: &[Word] = &[plain("125K"), plain("250K"), plain("500K")];
 const OPTIONS: Field = digits("options", 4, 0, 9999, "option flags");
 
@@ -176,7 +176,7 @@ const ORIGIN_SPEEDS: &[Field] =
     &[speed("low", "low speed"), speed("middle", "middle speed"), speed("high", "high speed")];
 const INCHES: &[Field] = &axes(Form::Number(Number::fixed(2, 2, 0, 6500)), "mm", "distance");
 const AREA: &[Field] = &[SIDE, place("place", "coordinate"), STATION, PORT, BIT];
-/// The template has two decimals, but the range has three (ambiguity R8).
+/// The template of the manual has two decimals, but the range has three (ambiguity R8).
 const SYNC_OFFSETS: &[Field] = &axes(Form::Number(Number::signed(3, 2, -99_990, 99_990).with_spare(1)), "mm", "offset");
 const SYNC_ERRORS: &[Field] = &axes(Form::Number(Number::fixed(2, 2, 100, 9999)), "mm", "allowed error");
 const LETTERS: &[Field] = &axes(Form::Word(AXIS), "", "letter of the axis");
@@ -209,8 +209,8 @@ const TASK_STEPS: &[Field] = &[
     digits("task3", 4, 0, 5000, "steps"),
     digits("task4", 4, 0, 5000, "steps"),
 ];
-/// Axes per task, one digit for each task: 0 is none, 1 and 2 are this number of axes, 3 is three axes in a plane, 4 is
-/// three in space, 5 is four.
+/// Number of axes per task, as one digit for each task: 0 to 2 is the number of axes, 3 is three axes in a plane, 4 is
+/// three axes in space, 5 is four axes.
 const COMBINATIONS: &[Word] = &[
     plain("1000"),
     plain("1100"),

@@ -35,7 +35,7 @@ impl Notes<'_> {
         self.frame.get(super::ACK_AT) == Some(&0)
     }
 
-    /// Adds one element. An element may end early between fields, because controllers omit missing axes.
+    /// Adds one element. The element may end early after a complete field, because controllers omit missing axes.
     fn element(&mut self, fields: &[Field], prefix: &str) {
         let mut known = Meaning::default();
         for field in fields {
@@ -64,8 +64,8 @@ fn words(kind: Kind, bytes: &[u8], known: &mut Meaning) -> String {
         Kind::F32 => f32::from_bits(word).to_string(),
         Kind::Bits(bits) => flags(bits, word),
         Kind::Choice(choices) => {
-            // Two fields set the unit of the fields after them: the data type of a position, and the speed class of a
-            // move.
+            // Two fields set the unit of the fields after them. These are the data type of a position and the speed
+            // class of a move.
             known.kind = Some(PositionKind::from_word(word));
             known.speed_class = Some(word);
             let meaning = choices.iter().find(|choice| choice.0 == word).map_or("not defined", |choice| choice.1);

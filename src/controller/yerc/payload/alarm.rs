@@ -5,46 +5,47 @@ use super::text::Text;
 use crate::yerc::Model;
 use crate::yerc::subcode::{self, AlarmKind, SubCode};
 
-/// The three additional texts of 0x30A and 0x30B.
+/// The three additional texts in answers to 0x30A (alarm) and 0x30B (alarm history).
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct AlarmTexts {
-    /// Source, e.g. `[SV#1]`.
+    /// Source of the alarm, for example `[SV#1]`.
     pub source: Text<16>,
     /// Sub-code as displayed on the pendant.
     pub sub_code: Text<96>,
-    /// One `0` or `1` for each character of the text. The pendant displays a character with 1 reversed.
+    /// One `0` or `1` for each character of the sub-code text. The pendant displays a character with a 1 in reverse
+    /// video.
     pub reversed: Text<96>,
 }
 
 /// An alarm. In an empty slot, all values are zero.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct Alarm {
-    /// 1 to 9999; 0 for no alarm.
+    /// Alarm code, 1 to 9999; 0 for no alarm.
     pub code: u32,
     /// Sub-code. Its format depends on `kind`.
     pub data: u32,
     /// Format of `data`.
     pub kind: AlarmKind,
-    /// `YYYY/MM/DD HH:MM`.
+    /// Time of the alarm, as `YYYY/MM/DD HH:MM`.
     pub time: Text<16>,
-    /// Name in the pendant language.
+    /// Alarm name in the language of the pendant.
     pub name: Text<32>,
     /// Additional texts. Only answers to 0x30A and 0x30B have them.
     pub texts: Option<AlarmTexts>,
 }
 
 impl Alarm {
-    /// Size in bytes in answers to 0x70 and 0x71.
+    /// Size in bytes of an alarm in answers to 0x70 (alarm) and 0x71 (alarm history).
     pub const SIZE: usize = 60;
-    /// Size in bytes in answers to 0x30A and 0x30B.
+    /// Size in bytes of an alarm with texts, in answers to 0x30A and 0x30B.
     pub const SIZE_WITH_TEXTS: usize = 268;
 
-    /// Parses the 60-byte form.
+    /// Parses an alarm of 60 bytes, without texts.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         Self::read(&mut Reader::new("alarm", data))
     }
 
-    /// Parses the 268-byte form.
+    /// Parses an alarm of 268 bytes, with texts.
     pub fn parse_with_texts(data: &[u8]) -> Result<Self, PayloadError> {
         let mut reader = Reader::new("alarm with sub-code strings", data);
         let alarm = Self::read(&mut reader)?;
@@ -63,7 +64,7 @@ impl Alarm {
         })
     }
 
-    /// Encodes 60 bytes, or 268 with texts.
+    /// Encodes the alarm: 60 bytes, or 268 bytes with the additional texts.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(Self::SIZE_WITH_TEXTS);
         push_u32s(&mut out, [self.code, self.data, self.kind.0]);
@@ -77,12 +78,12 @@ impl Alarm {
         out
     }
 
-    /// Whether the slot is empty.
+    /// Whether the slot is empty, so that there is no alarm.
     pub fn is_none(&self) -> bool {
         self.code == 0
     }
 
-    /// Readable sub-code. If the controller has the texts of 0x30A, these are better.
+    /// Readable sub-code, rendered by armctl. The texts of 0x30A and 0x30B are better if the controller has them.
     pub fn sub_code(&self, model: Model) -> SubCode {
         subcode::render(self.kind, self.data, model)
     }

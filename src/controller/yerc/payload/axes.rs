@@ -36,7 +36,7 @@ impl Axes {
         Ok(Self::take(data))
     }
 
-    /// Takes all complete words of `data`. There may be none.
+    /// Takes all complete words of `data`. An answer without words is allowed.
     pub(super) fn take(data: &[u8]) -> Self {
         let mut axes = Self::default();
         let mut reader = Reader::new("axis values", data);
@@ -55,7 +55,7 @@ impl Axes {
         out
     }
 
-    /// Values that exist.
+    /// Values that the answer contains.
     pub fn as_slice(&self) -> &[i32] {
         &self.values[..self.count]
     }
@@ -75,7 +75,7 @@ impl fmt::Debug for Axes {
 /// Axis names. Names of unused axes are empty (FS and DX 3.3.5).
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct AxisNames {
-    /// Up to four bytes each.
+    /// Names of the axes, up to four bytes each.
     pub names: [Text<4>; MAX_AXES],
 }
 
@@ -92,7 +92,7 @@ impl AxisNames {
         Ok(names)
     }
 
-    /// Encodes 32 bytes.
+    /// Encodes the 32 bytes of the eight names.
     pub fn emit(&self) -> Vec<u8> {
         self.names.iter().flat_map(Text::emit).collect()
     }

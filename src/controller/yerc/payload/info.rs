@@ -8,11 +8,11 @@ use super::text::Text;
 pub struct JobInfo {
     /// Job name without `.JBI`.
     pub name: Text<32>,
-    /// 0 to 9999.
+    /// Line number, 0 to 9999.
     pub line: u32,
     /// Step number, 1 to 9998; 0 if no job is executed.
     pub step: u32,
-    /// Unit 0.01 %.
+    /// Speed override, in units of 0.01 %.
     pub speed_override: u32,
 }
 
@@ -20,13 +20,13 @@ impl JobInfo {
     /// Size of an answer in bytes.
     pub const SIZE: usize = 44;
 
-    /// Parses at least 44 bytes.
+    /// Parses the data, which must have at least 44 bytes.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         let mut reader = Reader::new("job information", data);
         Ok(Self { name: reader.text()?, line: reader.u32()?, step: reader.u32()?, speed_override: reader.u32()? })
     }
 
-    /// Encodes 44 bytes.
+    /// Encodes the data in 44 bytes.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = self.name.emit().to_vec();
         push_u32s(&mut out, [self.line, self.step, self.speed_override]);
@@ -39,7 +39,7 @@ impl JobInfo {
 pub struct ManagementTime {
     /// Start of counting, `YYYY/MM/DD HH:MM`.
     pub start: Text<16>,
-    /// `000123:45'06`, or unpadded as `18:19'02`.
+    /// Elapsed time, for example `000123:45'06`, or without padding `18:19'02`.
     pub elapsed: Text<12>,
 }
 
@@ -47,13 +47,13 @@ impl ManagementTime {
     /// Size of an answer in bytes.
     pub const SIZE: usize = 28;
 
-    /// Parses at least 28 bytes.
+    /// Parses the data, which must have at least 28 bytes.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         let mut reader = Reader::new("management time", data);
         Ok(Self { start: reader.text()?, elapsed: reader.text()? })
     }
 
-    /// Encodes 28 bytes.
+    /// Encodes the data in 28 bytes.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = self.start.emit().to_vec();
         out.extend_from_slice(&self.elapsed.emit());
@@ -66,8 +66,8 @@ impl ManagementTime {
     }
 }
 
-/// Parses `H:MM'SS` with any number of hour digits and surrounding blanks. The seconds may be missing, or follow a
-/// colon instead of the `'`.
+/// Parses `H:MM'SS` with any number of hour digits and with surrounding blanks. The seconds may be missing, or a colon
+/// may stand before them instead of the `'`.
 pub fn elapsed_seconds(text: &[u8]) -> Option<u64> {
     let text = std::str::from_utf8(text).ok()?.trim();
     let mut parts = text.split([':', '\'']).map(|part| {
@@ -86,7 +86,7 @@ pub fn elapsed_seconds(text: &[u8]) -> Option<u64> {
     hours.checked_mul(3600)?.checked_add(minutes * 60 + seconds)
 }
 
-/// Versions and names.
+/// Software and parameter versions, and the name of a robot or application.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct SystemInfo {
     /// System software version. It is the same for every instance.
@@ -101,13 +101,13 @@ impl SystemInfo {
     /// Size of an answer in bytes.
     pub const SIZE: usize = 48;
 
-    /// Parses at least 48 bytes.
+    /// Parses the data, which must have at least 48 bytes.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         let mut reader = Reader::new("system information", data);
         Ok(Self { version: reader.text()?, name: reader.text()?, parameters: reader.text()? })
     }
 
-    /// Encodes 48 bytes.
+    /// Encodes the data in 48 bytes.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = self.version.emit().to_vec();
         out.extend_from_slice(&self.name.emit());

@@ -6,18 +6,18 @@ use super::reader::{PayloadError, Reader, push_u32s, push_words};
 /// Unit of the speed word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SpeedClass {
-    /// 0.01 % of the maximum speed; link moves.
+    /// 0.01 % of the maximum speed, for link moves.
     Percent,
-    /// 0.1 mm/s; straight moves.
+    /// 0.1 mm/s, for straight moves.
     Linear,
-    /// 0.1 degree/s; straight moves with a rotation speed.
+    /// 0.1 degree/s, for straight moves whose speed is a rotation.
     Angular,
     /// A number that is not in the manuals.
     Other(u32),
 }
 
 impl SpeedClass {
-    /// The class of a word.
+    /// The speed class for a protocol word.
     pub const fn from_word(word: u32) -> Self {
         match word {
             0 => Self::Percent,
@@ -27,7 +27,7 @@ impl SpeedClass {
         }
     }
 
-    /// Protocol word.
+    /// Protocol word of the class.
     pub const fn word(self) -> u32 {
         match self {
             Self::Percent => 0,
@@ -41,10 +41,10 @@ impl SpeedClass {
 /// Layout of a cartesian move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum MoveLayout {
-    /// 26 words, two of them reserved: as in the DX200 manual. An FS100 is known to use it too.
+    /// 26 words, two of them reserved, as in the DX200 manual. FS100 controllers are known to use this layout too.
     #[default]
     Words26,
-    /// 25 words, one of them reserved: as in the FS100 manual.
+    /// 25 words, one of them reserved, as in the FS100 manual.
     Words25,
 }
 
@@ -61,7 +61,7 @@ impl MoveLayout {
 /// A move to cartesian coordinates, in protocol units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct CartesianMove {
-    /// 25 or 26 words.
+    /// Layout: 25 or 26 words.
     pub layout: MoveLayout,
     /// Robot number from 1; 0 if a station moves.
     pub robot: u32,
@@ -69,21 +69,21 @@ pub struct CartesianMove {
     pub station: u32,
     /// Unit of `speed`.
     pub class: SpeedClass,
-    /// 0.01 %, 0.1 mm/s or 0.1 degree/s, depending on the class.
+    /// Speed in 0.01 %, 0.1 mm/s or 0.1 degree/s, depending on `class`.
     pub speed: u32,
-    /// Base, robot, user or tool.
+    /// Coordinate system: base, robot, user or tool.
     pub coordinate: PositionKind,
-    /// X, Y, Z in 0.001 mm, then Tx, Ty, Tz in 0.0001 degree.
+    /// Target: X, Y, Z in 0.001 mm, then Tx, Ty, Tz in 0.0001 degree.
     pub target: [i32; 6],
-    /// Reserved words, 0. The 25-word layout has only the first word.
+    /// Reserved words, which are 0. The 25-word layout has only the first of them.
     pub reserved: [i32; 2],
     /// Form of the arm.
     pub form: Form,
     /// Extended form.
     pub extended: ExtendedForm,
-    /// 0 to 63.
+    /// Tool number, 0 to 63.
     pub tool: u32,
-    /// 1 to 63 with user coordinates, 0 otherwise.
+    /// User coordinate number: 1 to 63 with user coordinates, 0 otherwise.
     pub user: u32,
     /// Base axes in 0.001 mm.
     pub base: [i32; 3],
@@ -117,7 +117,7 @@ impl CartesianMove {
         })
     }
 
-    /// Encodes 100 or 104 bytes.
+    /// Encodes the data in 100 or 104 bytes, depending on the layout.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(self.layout.size());
         push_u32s(&mut out, [self.robot, self.station, self.class.word(), self.speed, self.coordinate.word()]);
@@ -143,15 +143,15 @@ pub struct PulseMove {
     pub station: u32,
     /// Unit of `speed`.
     pub class: SpeedClass,
-    /// 0.01 %, 0.1 mm/s or 0.1 degree/s, depending on the class.
+    /// Speed in 0.01 %, 0.1 mm/s or 0.1 degree/s, depending on `class`.
     pub speed: u32,
-    /// Robot axes.
+    /// Robot axes in pulses.
     pub axes: [i32; 8],
-    /// 0 to 63.
+    /// Tool number, 0 to 63.
     pub tool: u32,
-    /// Base axes.
+    /// Base axes in pulses.
     pub base: [i32; 3],
-    /// Station axes.
+    /// Station axes in pulses.
     pub station_axes: [i32; 6],
 }
 
@@ -159,7 +159,7 @@ impl PulseMove {
     /// Size in bytes: 22 words.
     pub const SIZE: usize = 88;
 
-    /// Parses at least 88 bytes.
+    /// Parses the data, which must have at least 88 bytes.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         let mut reader = Reader::new("pulse move", data);
         Ok(Self {
@@ -174,7 +174,7 @@ impl PulseMove {
         })
     }
 
-    /// Encodes 88 bytes.
+    /// Encodes the data in 88 bytes.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(Self::SIZE);
         push_u32s(&mut out, [self.robot, self.station, self.class.word(), self.speed]);

@@ -32,12 +32,12 @@ impl PositionKind {
         (Self::Tool, 19, "tool"),
     ];
 
-    /// The kind of a word.
+    /// The kind for a protocol word.
     pub fn from_word(word: u32) -> Self {
         Self::ALL.iter().find(|row| row.1 == word).map_or(Self::Other(word), |row| row.0)
     }
 
-    /// Protocol word.
+    /// Protocol word of the kind.
     pub fn word(self) -> u32 {
         match self {
             Self::Pulse => 0,
@@ -49,12 +49,12 @@ impl PositionKind {
         }
     }
 
-    /// Whether the axes are X Y Z Rx Ry Rz.
+    /// Whether the axes are the cartesian coordinates X, Y, Z, Rx, Ry and Rz.
     pub fn is_cartesian(self) -> bool {
         matches!(self, Self::Base | Self::Robot | Self::User | Self::Tool)
     }
 
-    /// Unit of an axis of a robot position, counted from 0; raw numbers if the kind is undefined.
+    /// Unit of an axis of a robot position, counted from 0. If the kind is undefined, the unit is a raw number.
     pub fn unit(self, axis: usize) -> Unit {
         match axis {
             0..=2 if self.is_cartesian() => units::MILLIMETRE,
@@ -71,7 +71,7 @@ macro_rules! flag_word {
         pub struct $name(pub u32);
 
         impl $name {
-            /// Names for the current states of all defined bits.
+            /// Names of the current states of all defined bits.
             pub fn words(self) -> impl Iterator<Item = &'static str> {
                 $bits.iter().map(move |bit| bit.word(self.0))
             }
@@ -89,7 +89,7 @@ flag_word! {
     Form, FORM_BITS
 }
 flag_word! {
-    /// Extended form, for axes L U B E W.
+    /// Extended form, for the axes L, U, B, E and W.
     ExtendedForm, EXTENDED_FORM_BITS
 }
 
@@ -102,11 +102,11 @@ pub struct Position {
     pub form: Form,
     /// Tool number, 0 to 63.
     pub tool: u32,
-    /// User coordinate number, for [`PositionKind::User`].
+    /// User coordinate number. Used only with [`PositionKind::User`].
     pub user: u32,
     /// Extended form.
     pub extended: ExtendedForm,
-    /// Pulses; or 0.001 mm for the first three axes and 0.0001 degree for the next four.
+    /// Values of the axes: pulses, or 0.001 mm for the first three axes and 0.0001 degree for the next four.
     pub axes: Axes,
 }
 
@@ -127,13 +127,13 @@ impl Position {
         })
     }
 
-    /// Encodes all 13 words, as variables have them.
+    /// Encodes all 13 words, because a variable always has all words.
     pub fn emit(&self) -> Vec<u8> {
         let full = Self { axes: Axes::full(self.axes.padded()), ..*self };
         full.emit_fitted()
     }
 
-    /// Encodes five words and the words of the existing axes, as a controller answers.
+    /// Encodes five words and the words of the existing axes. A controller answers in this form.
     pub fn emit_fitted(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(Self::SIZE);
         push_u32s(&mut out, [self.kind.word(), self.form.0, self.tool, self.user, self.extended.0]);
@@ -145,18 +145,18 @@ impl Position {
 /// A base position: type and eight axes (FS and DX 3.3.17).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct BasePosition {
-    /// Pulse or base.
+    /// Coordinate system of `axes`: pulse or base.
     pub kind: PositionKind,
-    /// Pulses, or 0.001 mm.
+    /// Values of the axes: pulses, or 0.001 mm.
     pub axes: Axes,
 }
 
 /// An external axis position: type and eight axes (FS and DX 3.3.18).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ExternalPosition {
-    /// Pulse.
+    /// Coordinate system of `axes`, which is always pulse.
     pub kind: PositionKind,
-    /// Pulses.
+    /// Values of the axes in pulses.
     pub axes: Axes,
 }
 

@@ -1,4 +1,4 @@
-//! Text format of positions:
+//! Text format of positions, for example
 //! `base:x=100.000,y=0.000,z=0.000,rx=180.0000,ry=0.0000,rz=0.0000,tool=1,user=0,form=back+upper+flip` and
 //! `pulse:s=0,l=0,u=0,r=0,b=0,t=0`. The text needs no quotes in a shell.
 
@@ -16,13 +16,13 @@ use crate::yerc::table::{Bit, EXTENDED_FORM_BITS, FORM_BITS};
 const PULSE_AXES: [&str; MAX_AXES] = ["s", "l", "u", "r", "b", "t", "e", "8"];
 const CARTESIAN_AXES: [&str; MAX_AXES] = ["x", "y", "z", "rx", "ry", "rz", "re", "8"];
 const NUMBERED_AXES: [&str; MAX_AXES] = ["1", "2", "3", "4", "5", "6", "7", "8"];
-/// Number of axes that a robot position must have, so that a forgotten axis does not become 0.
+/// Number of axes that the text of a robot position must have. Otherwise, a forgotten axis would become 0.
 const REQUIRED_AXES: usize = 6;
 
 /// An axis in the text format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NamedAxis {
-    /// `x`, `s`, or a number for an axis without a letter.
+    /// Name of the axis, for example `x` or `s`. A number for an axis without a letter.
     pub key: &'static str,
     /// Unit of `value`.
     pub unit: Unit,
@@ -33,18 +33,18 @@ pub struct NamedAxis {
 /// Why a position text is invalid.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum PositionTextError {
-    /// The text has no kind with a colon.
+    /// The text does not begin with a kind and a colon.
     #[error("a position must begin with its type and a colon, for example 'base:x=...' or 'pulse:s=...'")]
     NoKind,
     /// The variable does not have this kind.
     #[error("'{found}' is not a valid position type here; use {allowed}")]
     Kind {
-        /// The invalid text.
+        /// The kind in the text.
         found: String,
         /// Valid kinds.
         allowed: String,
     },
-    /// A part that is not `key=value`.
+    /// A part of the text is not `key=value`.
     #[error("'{found}' must be key=value")]
     Pair {
         /// The invalid text.
@@ -53,7 +53,7 @@ pub enum PositionTextError {
     /// The kind does not have this key.
     #[error("'{found}' is not a part of this position; use {allowed}")]
     Key {
-        /// The invalid text.
+        /// The key in the text.
         found: String,
         /// Valid keys.
         allowed: String,
@@ -64,7 +64,7 @@ pub enum PositionTextError {
         /// The key.
         key: String,
     },
-    /// An axis is missing.
+    /// The text has no value for this axis.
     #[error("axis '{axis}' is missing")]
     Missing {
         /// Key of the axis.
@@ -132,7 +132,7 @@ impl Position {
         named(axis_names(self.kind), self.axes, |axis| self.kind.unit(axis))
     }
 
-    /// Number of axes in the text format: up to the last axis that is not 0, and at least six.
+    /// Number of axes that the text shows: up to the last axis that is not 0, but at least six.
     pub fn shown_axes(&self) -> usize {
         shown_axes(&self.axes.padded(), REQUIRED_AXES)
     }
@@ -146,8 +146,8 @@ macro_rules! nine_word_text {
                 named(group_axis_names(self.kind), self.axes, |_| $units(self.kind))
             }
 
-            /// Number of axes in the text format: up to the last axis that is not 0. In base coordinates, at least x, y
-            /// and z.
+            /// Number of axes that the text shows: up to the last axis that is not 0. In base coordinates, at least x,
+            /// y and z.
             pub fn shown_axes(&self) -> usize {
                 shown_axes(&self.axes.padded(), if self.kind == PositionKind::Base { 3 } else { 1 })
             }
@@ -202,7 +202,7 @@ fn group_axis_names(kind: PositionKind) -> [&'static str; MAX_AXES] {
     }
 }
 
-/// A kind that has no name is written as `type7:`.
+/// Splits the kind from the rest of the text. A kind without a name is written with its number, for example `type7:`.
 fn split_kind<'a>(
     text: &'a str,
     kinds: &[(PositionKind, u32, &str)],
@@ -222,7 +222,7 @@ fn split_kind<'a>(
     }
 }
 
-/// Parts parsed so far.
+/// The `key=value` parts that were parsed so far.
 struct Parts<'a> {
     names: [&'static str; MAX_AXES],
     axes: [Option<i32>; MAX_AXES],
@@ -261,7 +261,7 @@ impl<'a> Parts<'a> {
         Ok(())
     }
 
-    /// All eight axes. The text must contain the first `required` axes; the first six axes must have no gap.
+    /// Values of all eight axes. The text must contain the first `required` axes, and no gap among the first six axes.
     fn axes(&self, required: usize) -> Result<Axes, PositionTextError> {
         let named = self.axes.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
         let mut values = [0; MAX_AXES];
@@ -326,7 +326,7 @@ fn named(keys: [&'static str; MAX_AXES], axes: Axes, unit: impl Fn(usize) -> Uni
     std::array::from_fn(|axis| NamedAxis { key: keys[axis], unit: unit(axis), value: values[axis] })
 }
 
-/// Number of axes up to the last axis that is not 0, and at least `least`.
+/// Number of axes to show: up to the last axis that is not 0, but at least `least`.
 fn shown_axes(axes: &[i32; MAX_AXES], least: usize) -> usize {
     axes.iter().rposition(|&value| value != 0).map_or(0, |last| last + 1).max(least)
 }
@@ -351,7 +351,7 @@ fn write_axes(
     Ok(())
 }
 
-/// Formats the first `always` bits in both states, and the other bits only if they are set.
+/// Formats a word of flags. The first `always` bits appear in both states, and the other bits only if they are set.
 fn write_flags(f: &mut fmt::Formatter<'_>, key: &str, value: u32, bits: &[Bit], always: usize) -> fmt::Result {
     let known = bits.iter().fold(0, |mask, bit| mask | 1 << bit.bit);
     let mut words: Vec<String> = bits

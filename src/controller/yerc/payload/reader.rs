@@ -7,7 +7,7 @@ use super::text::Text;
 /// Why the data of an answer is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum PayloadError {
-    /// Too few bytes.
+    /// The data has too few bytes.
     #[error("{what}: {found} data bytes, at least {needed} expected")]
     Short {
         /// Name of the payload.
@@ -17,7 +17,7 @@ pub enum PayloadError {
         /// Received bytes.
         found: usize,
     },
-    /// Wrong number of elements.
+    /// The number of elements in the answer is not the requested number.
     #[error("{what}: received {answered} elements, requested {asked}")]
     Count {
         /// Name of the payload.
@@ -77,7 +77,7 @@ impl<'a> Reader<'a> {
         self.bytes(N).map(Text::cut)
     }
 
-    /// Remaining bytes.
+    /// Remaining bytes of the payload.
     pub(in crate::yerc) fn rest(self) -> &'a [u8] {
         self.rest
     }

@@ -22,11 +22,11 @@ pub enum StatusBit {
     Play,
     /// Command remote.
     CommandRemote,
-    /// Held from the programming pendant.
+    /// The programming pendant applied HOLD.
     HoldPendant,
-    /// Held by an external signal.
+    /// An external signal applied HOLD.
     HoldExternal,
-    /// Held by command.
+    /// A command applied HOLD.
     HoldCommand,
     /// An alarm is present.
     Alarm,
@@ -62,12 +62,12 @@ impl StatusBit {
         ALL.into_iter()
     }
 
-    /// Name, e.g. `servo on`.
+    /// Name, for example `servo on`.
     pub fn name(self) -> &'static str {
         self.row().1.set
     }
 
-    /// Status word and table row.
+    /// The index of the status word of a condition, and the table row of its bit.
     fn row(self) -> (usize, &'static Bit) {
         let index = self as usize;
         match index.checked_sub(DATA_1_BITS.len()) {
@@ -77,7 +77,7 @@ impl StatusBit {
     }
 }
 
-/// Cycle mode, as set by 0x84 (FS and DX 3.3.21).
+/// Cycle mode, which command 0x84 sets (FS and DX 3.3.21).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum CycleMode {
     /// One step at a time.
@@ -89,7 +89,7 @@ pub enum CycleMode {
 }
 
 impl CycleMode {
-    /// Data word of 0x84.
+    /// Data word of command 0x84 for this mode.
     pub const fn word(self) -> u32 {
         match self {
             Self::Step => 1,
@@ -102,18 +102,18 @@ impl CycleMode {
 /// Both status words. Bits without a meaning are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct ControllerStatus {
-    /// Data 1 and data 2.
+    /// The words that the manuals call data 1 and data 2.
     pub words: [u32; 2],
 }
 
 impl ControllerStatus {
-    /// Parses at least 8 bytes.
+    /// Parses the data, which must have at least 8 bytes.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         let mut reader = Reader::new("controller status", data);
         Ok(Self { words: [reader.u32()?, reader.u32()?] })
     }
 
-    /// Encodes 8 bytes.
+    /// Encodes the words in 8 bytes.
     pub fn emit(self) -> Vec<u8> {
         let mut out = Vec::with_capacity(8);
         push_u32s(&mut out, self.words);
@@ -159,7 +159,7 @@ impl ControllerStatus {
         self.alarm() || self.error()
     }
 
-    /// Whether any HOLD is active.
+    /// Whether HOLD is active from any source.
     pub fn held(self) -> bool {
         [S::HoldPendant, S::HoldExternal, S::HoldCommand].into_iter().any(|bit| self.has(bit))
     }

@@ -24,7 +24,7 @@ macro_rules! order {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         pub struct $name $((
-            /// State or mode.
+            /// The requested state or mode.
             pub $field,
         ))?;
 
@@ -37,7 +37,7 @@ macro_rules! order {
     };
 }
 
-/// Switches an instance: 1 is on, 2 is off.
+/// Builds a request of command 0x83. The data word is 1 for on and 2 for off.
 fn switch(instance: u16, on: bool) -> Request {
     let word: u32 = if on { 1 } else { 2 };
     write_one(0x83, instance, word.to_le_bytes())
@@ -101,12 +101,12 @@ impl WriteQuery for Say {
 pub enum Selection {
     /// The job is executed from a line on.
     Execute {
-        /// 0 to 9999.
+        /// Line number, 0 to 9999.
         line: u32,
     },
     /// The job becomes the master job of a task, 0 to 5 on FS100, 0 to 15 on DX200.
     Master {
-        /// The task.
+        /// Task number.
         task: u8,
     },
 }
@@ -149,7 +149,7 @@ pub enum MoveKind {
     Link,
     /// Straight line to a position.
     Straight,
-    /// Straight line by a distance, only in cartesian coordinates.
+    /// Straight line by a distance. Only possible in cartesian coordinates.
     Incremental,
 }
 
@@ -192,7 +192,7 @@ impl WriteQuery for MoveCartesian {
     }
 }
 
-/// Moves to pulses (0x8B).
+/// Moves to a position in pulses (0x8B).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct MovePulse {
     kind: MoveKind,
@@ -219,7 +219,7 @@ fn moving(command: u16, kind: MoveKind, data: Vec<u8>) -> Request {
     Request { command, instance: kind.instance(), attribute: 1, service: service::SET_ALL, data }
 }
 
-/// Requires either a robot or a station. Controllers refuse a move with both (B008).
+/// Requires either a robot or a station. Controllers refuse a move with both (added status B008).
 fn check_group(model: Model, robot: u32, station: u32) -> Result<(), QueryError> {
     let (robots, _, stations) = Group::counts(model);
     match (robot, station) {

@@ -55,7 +55,7 @@ pub struct ReadAlarm {
 }
 
 impl ReadAlarm {
-    /// Slot 1 is the latest alarm, 4 the fourth latest. Texts need a DX200 or FS1.14.
+    /// Accepts alarm slots 1 to 4. Slot 1 is the latest alarm, slot 4 the fourth latest. Texts need a DX200 or FS1.14.
     pub fn new(slot: u8, texts: bool) -> Result<Self, QueryError> {
         in_range("alarm slot", slot.into(), 1, 4)?;
         Ok(Self { slot, texts })
@@ -81,9 +81,9 @@ pub enum AlarmClass {
     Major,
     /// Monitor alarms.
     Monitor,
-    /// User alarms of the system.
+    /// User alarms that the system defines.
     UserSystem,
-    /// User alarms of the user.
+    /// User alarms that the user defines.
     User,
     /// Off-line alarms.
     OffLine,
@@ -119,7 +119,7 @@ pub struct ReadAlarmHistory {
 }
 
 impl ReadAlarmHistory {
-    /// Entry `number` of the history, 1 to 100. Texts need a DX200 or FS1.14.
+    /// Accepts entries 1 to 100 of the history. Texts need a DX200 or FS1.14.
     pub fn new(class: AlarmClass, number: u8, texts: bool) -> Result<Self, QueryError> {
         in_range("alarm number", number.into(), 1, 100)?;
         Ok(Self { class, number, texts })
@@ -144,7 +144,7 @@ read_all! {
 }
 
 impl ReadJob {
-    /// Task 0 is the master task. Sub tasks are 1 to 5 on FS100, 1 to 15 on DX200.
+    /// Accepts a task of the model. Task 0 is the master task. Sub tasks are 1 to 5 on FS100, 1 to 15 on DX200.
     pub fn new(model: Model, task: u8) -> Result<Self, QueryError> {
         Ok(Self { instance: u16::from(known_task(model, task)?) + 1 })
     }
@@ -153,9 +153,9 @@ impl ReadJob {
 /// Coordinates of a position: pulses or cartesian.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Coordinates {
-    /// By axis.
+    /// Pulses of each axis.
     Pulse,
-    /// X Y Z Rx Ry Rz in base coordinates.
+    /// X, Y, Z, Rx, Ry and Rz in base coordinates.
     Base,
 }
 
@@ -176,7 +176,7 @@ read_all! {
 }
 
 impl ReadAxes {
-    /// Accepts a robot or base in either coordinates, and a station in pulses.
+    /// Accepts a robot or base in pulses or base coordinates, and a station in pulses.
     pub fn new(model: Model, group: Group, coordinates: Coordinates) -> Result<Self, QueryError> {
         Ok(Self { instance: instance(model, group, coordinates)? })
     }
@@ -227,13 +227,13 @@ impl ReadTorque {
 /// Subject of an operating-time counter (3.3.25).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum TimeCounter {
-    /// Control power on.
+    /// Time with control power on.
     ControlPower,
-    /// Time with servo power on, of a robot or station, or in total.
+    /// Time with servo power on: of a robot or station, or in total.
     Servo(Option<Group>),
-    /// Time of playback, of a robot or station, or in total.
+    /// Time of playback: of a robot or station, or in total.
     Playback(Option<Group>),
-    /// Time of motion, of a robot or station, or in total.
+    /// Time of motion: of a robot or station, or in total.
     Motion(Option<Group>),
     /// Operating time of an application, 1 to 8.
     Application(u8),
@@ -245,7 +245,7 @@ read_all! {
 }
 
 impl ReadManagementTime {
-    /// Refuses bases, which have no counters.
+    /// Accepts any counter except those of bases, because bases have no counters.
     pub fn new(model: Model, counter: TimeCounter) -> Result<Self, QueryError> {
         let of = |base: u16, group: Option<Group>| match group {
             None => Ok(base + 10),
@@ -273,7 +273,7 @@ impl ReadManagementTime {
 pub enum SystemPart {
     /// A robot or station.
     Group(Group),
-    /// An application from 1: one on FS100, eight on DX200.
+    /// An application, from 1. An FS100 has one application, a DX200 has eight.
     Application(u8),
 }
 
@@ -283,7 +283,7 @@ read_all! {
 }
 
 impl ReadSystemInfo {
-    /// Refuses bases, which have no entry.
+    /// Accepts any part except bases, because bases have no system information.
     pub fn new(model: Model, part: SystemPart) -> Result<Self, QueryError> {
         let instance = match part {
             SystemPart::Group(group @ Group::Base(_)) => {
@@ -296,7 +296,7 @@ impl ReadSystemInfo {
     }
 }
 
-/// Offset of a group: counters and versions number robots from 11 and stations from 21.
+/// Number of a group in counters and system information: robots count from 11, stations from 21.
 const fn counter_offset(group: Group) -> u16 {
     match group {
         Group::Robot(number) => 10 + number as u16,
@@ -314,7 +314,7 @@ pub struct ReadField {
 }
 
 impl ReadField {
-    /// Attribute numbers count from 1, as in the table.
+    /// Accepts an attribute number from 1. The number selects a field of the table row.
     pub fn new(model: Model, command: u16, instance: u16, attribute: u8) -> Result<Self, QueryError> {
         let request = reading(command, instance, attribute, service::GET_SINGLE);
         request.check(model)?;

@@ -16,7 +16,7 @@ macro_rules! signals {
         }
 
         impl $read {
-            /// A number that exists on the model.
+            /// Accepts a number that exists on the model.
             pub fn new(model: Model, number: u16) -> Result<Self, QueryError> {
                 checked(model, Self { number })
             }
@@ -42,7 +42,7 @@ macro_rules! signals {
         }
 
         impl $read_many {
-            /// Reads a range that exists on the model and fits a frame.
+            /// Accepts a range that exists on the model and whose answer fits a frame.
             pub fn new(model: Model, first: u16, count: u16) -> Result<Self, QueryError> {
                 checked(model, Self { first, count })
             }
@@ -70,7 +70,7 @@ macro_rules! signals {
         }
 
         impl $write {
-            /// Writes a number that is writable on the model.
+            /// Accepts a number that is writable on the model.
             pub fn new(model: Model, number: u16, value: $value) -> Result<Self, QueryError> {
                 checked(model, Self { number, value })
             }
@@ -90,7 +90,7 @@ macro_rules! signals {
         }
 
         impl $write_many {
-            /// Writes a range that is writable on the model and fits a frame.
+            /// Accepts a range that is writable on the model and that fits a frame.
             pub fn new(model: Model, first: u16, values: Vec<$value>) -> Result<Self, QueryError> {
                 checked(model, Self { first, values })
             }

@@ -50,8 +50,8 @@ pub struct ReadVariables {
 }
 
 impl ReadVariables {
-    /// The count must fit a frame; for B variables, it must also be even. Standard and extended numbers may be
-    /// combined. [`VariableKind::string_form`] selects the string form for the model.
+    /// Accepts a count that fits a frame; for B variables, the count must also be even. Standard and extended numbers
+    /// may be combined. [`VariableKind::string_form`] selects the string form for the model.
     pub fn new(kind: VariableKind, first: u16, count: u16) -> Result<Self, QueryError> {
         checked(Model::Dx200, Self { kind, first, count })
     }
@@ -77,7 +77,7 @@ pub struct WriteVariable {
 }
 
 impl WriteVariable {
-    /// The kind of the value determines the kind of the variable.
+    /// Accepts any number. The kind of the value determines the kind of the variable.
     pub fn new(number: u16, value: Value) -> Result<Self, QueryError> {
         checked(Model::Dx200, Self { number, value })
     }
@@ -103,7 +103,7 @@ pub struct WriteVariables {
 }
 
 impl WriteVariables {
-    /// The count must fit a frame; for B variables, it must also be even.
+    /// Accepts a count that fits a frame; for B variables, the count must also be even.
     pub fn new(first: u16, values: Vec<Value>) -> Result<Self, QueryError> {
         let kind = values.first().map(Value::kind).ok_or(QueryError::MixedKinds)?;
         if values.iter().any(|value| value.kind() != kind) {
@@ -130,7 +130,7 @@ pub struct WriteField {
 }
 
 impl WriteField {
-    /// Attribute numbers count from 1, as in the table: 1 is the data type.
+    /// Accepts an attribute number from 1, as in the table. Attribute 1 is the data type.
     pub fn new(kind: VariableKind, number: u16, attribute: u8, word: [u8; 4]) -> Result<Self, QueryError> {
         checked(Model::Dx200, Self { kind, number, attribute, word })
     }

@@ -1,10 +1,10 @@
 //! Abort of a transfer.
 //!
-//! The manuals have no request that aborts a transfer. A controller keeps a transfer open until its timer expires (DX
-//! 5, E28B), and refuses other transfers as busy until then. But a controller also refuses a block or an ACK with a
-//! wrong number (E4A1, E4A2), and a refusal ends the transfer. For this reason, the session sends a wrong number on
-//! purpose, without data and without the last-block bit. The controller cannot mistake such a frame for content or for
-//! the end of the file.
+//! The manuals have no request that aborts a transfer. A controller keeps a transfer open until its timer expires
+//! (added status E28B, DX 5), and refuses other transfers as busy until then. But a controller also refuses a block or
+//! an ACK with a wrong number (added status E4A1, E4A2), and a refusal ends the transfer. For this reason, the session
+//! sends a wrong number on purpose, without data and without the last-block bit. The controller cannot mistake such a
+//! frame for content or for the end of the file.
 
 use std::time::Duration;
 
@@ -15,12 +15,12 @@ use crate::{Now, Session, Step};
 
 /// A block number that no transfer reaches.
 const NO_BLOCK: u32 = LAST_BLOCK - 1;
-/// Repeat interval.
+/// Interval between two attempts to abort.
 const EVERY: Duration = Duration::from_millis(200);
-/// Number of attempts.
+/// Number of attempts to abort.
 const TRIES: u32 = 3;
 
-/// Aborts a transfer at the controller. The outcome is whether the controller confirmed the abort.
+/// Session that aborts a transfer at the controller. Its outcome is `true` if the controller confirmed the abort.
 #[derive(Debug, Clone)]
 pub struct Abandon {
     frame: Vec<u8>,
@@ -39,7 +39,7 @@ impl Abandon {
         let is_end = last.ack && last.block & LAST_BLOCK != 0;
         (is_transfer && !is_end).then(|| Self {
             frame: RequestFrame { ack: true, block: NO_BLOCK, data: &[], ..last }.emit(),
-            // The client sends a block or an ACK only after an answer of the controller.
+            // The client sends a block or an ACK only after an answer of the controller, so the transfer is open there.
             is_open: last.ack,
             tries: 0,
             next: Now::ZERO,

@@ -8,7 +8,7 @@ use super::super::wire::{AnswerFrame, LAST_BLOCK, RequestFrame, Status};
 use super::{Counters, Due, Ids, Inbox, Pace, Policy, count, is_busy};
 use crate::{Now, Session, Step};
 
-/// Maximum number of times that the final ACK is repeated after it was lost.
+/// Maximum number of times that the session repeats the final ACK.
 const MOST_LINGERS: u32 = 8;
 
 /// A protocol violation in a transfer. The session ends, because it would have to guess the content to continue.
@@ -33,16 +33,18 @@ pub enum Violation {
 /// Outcome of a download. `bytes` counts the data that was returned as [`Step::Data`] before.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum DownloadEnd {
-    /// All blocks up to the last one.
+    /// All blocks arrived, including the last one.
     Complete {
         /// Total size.
         bytes: u64,
         /// Number of blocks.
         blocks: u32,
     },
-    /// Success without a block: the end of the batch backup (DX 3.4.6), or an empty list.
+    /// The controller reported success without a block. This is the end of the batch backup (DX 3.4.6), or an empty
+    /// list.
     Finished,
-    /// Success with an added status and without data: the file is missing or empty (E29C), or the list is empty (E2A7).
+    /// The controller reported success with an added status and without data. The file is missing or empty (E29C), or
+    /// the list is empty (E2A7).
     Nothing(Status),
     /// The controller refused the transfer, at the start or later.
     Refused {
@@ -65,9 +67,9 @@ pub enum DownloadEnd {
         /// Bytes received before this block.
         bytes: u64,
     },
-    /// No answer.
+    /// The controller did not answer within the time limit.
     NoAnswer {
-        /// Bytes received before. If 0, the request itself may be lost.
+        /// Bytes received before. If no byte was received, the request itself may be lost.
         bytes: u64,
         /// What was received instead.
         counters: Counters,
@@ -94,7 +96,7 @@ pub struct Download {
     /// Block number of the last ACK, with the last-block bit.
     acknowledged: u32,
     bytes: u64,
-    /// The latest answer, if it is a busy refusal.
+    /// The latest answer if it is a busy refusal; `None` after any other answer.
     busy: Option<Status>,
     /// Whether the controller refused the last frame as busy, so that the frame must be repeated later.
     pausing: bool,
@@ -238,7 +240,7 @@ impl Download {
         let last = answer.block & LAST_BLOCK != 0;
         let number = answer.block & !LAST_BLOCK;
         let (expected, bytes) = (self.expected, self.bytes);
-        // Some controllers give the only block of a file the number 0 instead of 1.
+        // Some controllers give the number 0 instead of 1 to the only block of a file.
         let lone = last && number == 0 && !self.transferring();
         if number < expected && self.transferring() {
             return count(&mut self.inbox.counters.duplicated);
@@ -310,7 +312,7 @@ impl Session for Download {
         if !self.started {
             return count(&mut self.inbox.counters.foreign);
         }
-        // A frame that arrives before the last frame was sent cannot be its answer.
+        // A frame that arrives before the last frame was sent cannot be the answer to that frame.
         if self.ended.is_some() || self.unsent || self.held.is_some() {
             return count(&mut self.inbox.counters.duplicated);
         }

@@ -22,11 +22,11 @@ pub struct Reply {
 /// Outcome of an exchange.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Ended {
-    /// The controller answered; see the status.
+    /// The controller answered. The status of the reply shows whether the controller accepted the request.
     Answered(Reply),
     /// No answer to a request that can be repeated without harm.
     NoAnswer(Counters),
-    /// No answer to a request that changes something. The controller may or may not have carried it out.
+    /// No answer to a request that changes something. The controller may or may not have carried out the request.
     OutcomeUnknown(Counters),
 }
 
@@ -38,9 +38,9 @@ pub struct Exchange {
     repeatable: bool,
     started: Option<Now>,
     attempts: u32,
-    /// The last refusal that is a reason to repeat the request.
+    /// The last refusal after which the request is repeated: the controller was busy, or the request arrived damaged.
     busy: Option<Reply>,
-    /// Whether the last attempt was refused for such a reason, so that the next attempt is due later.
+    /// Whether the last attempt was refused in this way. The session then waits before the next attempt.
     pausing: bool,
     ended: Option<Ended>,
 }
@@ -138,8 +138,8 @@ impl Session for Exchange {
         }
         let damaged = self.repeatable && is_damaged(answer.status);
         if !damaged && !is_busy(answer.status) {
-            // An answer to an earlier id also counts. In this case the network duplicated the request, and the
-            // controller carried out the other copy.
+            // An answer to an earlier id also counts. If the network duplicated the request, the controller refused one
+            // copy and carried out the other copy.
             self.ended = Some(Ended::Answered(self.reply(now, &answer)));
         } else if answer.id != self.inbox.id {
             count(&mut self.inbox.counters.late);
@@ -307,8 +307,8 @@ mod tests {
                     other => panic!("{other:?}"),
                 }
             };
-            // Pauses of 100, 200, 400 and 800 ms and three pauses of 1 s. Another pause of 1 s would leave no time for
-            // an answer.
+            // Pauses of 100, 200, 400 and 800 ms, and three pauses of 1 s. One more pause of 1 s would leave no time
+            // for an answer.
             assert_eq!((sends, now), (8, ms(4500)));
             let Ended::Answered(reply) = outcome else { panic!("not answered") };
             assert_eq!((reply.status, reply.attempts), (Status::refused(0xE444), 8));

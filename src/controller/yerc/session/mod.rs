@@ -37,7 +37,7 @@ pub use download::{Download, DownloadEnd, Violation};
 pub use exchange::{Ended, Exchange, Reply};
 pub use upload::{Upload, UploadEnd};
 
-/// Pause after the first busy refusal. It doubles with each further refusal, up to [`LONGEST_PAUSE`].
+/// Pause after the first busy refusal. The pause doubles with each further refusal, up to [`LONGEST_PAUSE`].
 const FIRST_PAUSE: Duration = Duration::from_millis(100);
 const LONGEST_PAUSE: Duration = Duration::from_secs(1);
 
@@ -69,7 +69,7 @@ pub struct Policy {
 }
 
 impl Default for Policy {
-    /// A controller answers within 20 ms. With these values a frame is sent after 0, 0.3, 0.9 and 2.1 s, and the
+    /// A controller answers within 20 ms. With these values, a frame is sent after 0, 0.3, 0.9 and 2.1 s, and the
     /// session ends after 5.1 s.
     fn default() -> Self {
         Self { timeout: Duration::from_secs(3), attempt: Duration::from_millis(300), doubles: true, retries: 3 }
@@ -85,14 +85,14 @@ impl Policy {
 
     /// Total time for a repeatable frame. It is at most `timeout` times (`retries` + 1).
     pub fn patience(&self) -> Duration {
-        // After 32 doublings the time no longer grows.
+        // After 32 doublings, the time no longer grows.
         let growing = self.retries.min(u32::BITS);
         let grown = (0..growing).map(|tries| self.silence(tries)).fold(Duration::ZERO, Duration::saturating_add);
         let longest = self.silence(growing).saturating_mul(self.retries - growing);
         grown.saturating_add(longest).saturating_add(self.timeout)
     }
 
-    /// Time until the next repeat.
+    /// Time until the next repeat, after `tries` repeats.
     fn silence(&self, tries: u32) -> Duration {
         let doubled = if self.doubles { 1_u32.checked_shl(tries).unwrap_or(u32::MAX) } else { 1 };
         self.attempt.saturating_mul(doubled).min(self.timeout)
@@ -111,7 +111,7 @@ impl Ids {
 
     /// Id of the next command.
     pub fn next_id(&self) -> u8 {
-        // An atomic addition wraps around, just as the ids do.
+        // An atomic addition wraps around at 255, like the ids.
         self.0.fetch_add(1, Ordering::Relaxed)
     }
 }
@@ -121,7 +121,7 @@ impl Ids {
 pub struct Counters {
     /// Frames that answer an earlier request of this client.
     pub late: u32,
-    /// Frames that answer no request of this client: another id, service or server, or not an answer at all.
+    /// Frames that answer no request of this client. They have another id, service or server, or are not answers.
     pub foreign: u32,
     /// Duplicates of accepted frames.
     pub duplicated: u32,
@@ -159,7 +159,7 @@ impl Counters {
         self.named().iter().map(|&(count, _)| u64::from(count)).sum()
     }
 
-    /// Whether any datagrams arrived. They were no answers, but they show that a peer exists.
+    /// Whether any datagrams arrived. They contained no valid answer, but they show that a peer exists.
     pub fn heard_something(&self) -> bool {
         self.named().iter().any(|&(count, name)| count > 0 && name != "repeated")
     }
@@ -171,7 +171,8 @@ impl Counters {
 }
 
 impl fmt::Display for Counters {
-    /// The counters that are not zero, as in "2 foreign, 1 truncated"; "nothing" if all are 0.
+    /// Formats the counters that are not zero, for example "2 foreign, 1 truncated". If all are 0, the text is
+    /// "nothing".
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut separator = "";
         for (count, name) in self.named().into_iter().filter(|&(count, _)| count > 0) {
@@ -193,13 +194,13 @@ fn count(counter: &mut u32) {
     *counter = counter.saturating_add(1);
 }
 
-/// Filter that finds the answers to a request.
+/// Filter that selects the answers to a request from all received datagrams.
 #[derive(Debug, Clone)]
 struct Inbox {
     request: Vec<u8>,
     ids: Ids,
     id: u8,
-    /// Earlier ids of this session, newest id last.
+    /// Earlier ids of this session, in the order of use.
     former: Vec<u8>,
     counters: Counters,
 }
@@ -219,7 +220,7 @@ impl Inbox {
         RequestFrame::parse(&self.request).expect("the inbox built this frame with emit")
     }
 
-    /// Assigns a new id. From now on, answers to the old id are late.
+    /// Assigns a new id. After this call, an answer to the old id is late.
     fn renew(&mut self) {
         if self.former.len() == FORMER_IDS {
             self.former.remove(0);
@@ -256,7 +257,7 @@ impl Inbox {
         None
     }
 
-    /// Like [`Inbox::answer`], but only for the current id.
+    /// Parses an answer like [`Inbox::answer`], but accepts only the current id.
     fn current<'a>(&mut self, bytes: &'a [u8]) -> Option<AnswerFrame<'a>> {
         let answer = self.answer(bytes)?;
         if answer.id == self.id {
@@ -294,7 +295,7 @@ impl Pace {
         Self { policy, patience: Now::ZERO, deadline: Now::ZERO, repeat_at: None, repeats: 0, pause: FIRST_PAUSE }
     }
 
-    /// Restarts the total time limit.
+    /// Restarts the total time limit, for a new frame.
     fn restart(&mut self, now: Now) {
         self.patience = now.saturating_add(self.policy.patience());
         self.repeat_at = None;

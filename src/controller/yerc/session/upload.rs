@@ -23,8 +23,8 @@ pub enum UploadEnd {
         blocks: u32,
     },
     /// The file is empty, and nothing was sent. A transfer ends with a data block that has the last-block bit, and the
-    /// manuals have no such block without data. An upload could leave an open transfer or a partial file on the
-    /// controller.
+    /// manuals have no such block without data. An upload of an empty file could leave an open transfer or a partial
+    /// file on the controller.
     Empty,
     /// The file needs more blocks than there are block numbers.
     TooLong {
@@ -35,20 +35,20 @@ pub enum UploadEnd {
     Refused {
         /// The status of the refusal. It is a busy code if the controller was busy until the time limit.
         status: Status,
-        /// Bytes sent.
+        /// Bytes in the sent blocks.
         sent: u64,
-        /// Bytes acknowledged.
+        /// Bytes in the acknowledged blocks.
         taken: u64,
         /// Whether an earlier attempt of the refused frame had no answer. The controller may have accepted that
         /// attempt. If the frame was the last block, the file may exist despite the refusal.
         repeated: bool,
     },
-    /// No answer. The controller may have nothing, a part of the file, or, after the last block, the whole file. After
-    /// the request (`sent` is 0), the controller may be waiting for data.
+    /// The controller did not answer. It may have nothing, a part of the file, or, after the last block, the whole
+    /// file. After the request (`sent` is 0), the controller may be waiting for data.
     OutcomeUnknown {
-        /// Bytes sent.
+        /// Bytes in the sent blocks.
         sent: u64,
-        /// Bytes acknowledged.
+        /// Bytes in the acknowledged blocks.
         taken: u64,
         /// What was received instead of an acknowledgement.
         counters: Counters,
@@ -62,12 +62,12 @@ enum Stage {
     Gather,
     /// The request.
     Request,
-    /// The last block sent.
+    /// A block. `last` marks the last block of the file.
     Block { last: bool },
 }
 
-/// A transfer to the controller. It requests content with [`Step::Feed`] before it sends anything, so that an empty or
-/// unreadable file has no effect.
+/// A transfer to the controller. The session requests content with [`Step::Feed`] before it sends anything. Therefore
+/// an empty or unreadable file has no effect on the controller.
 #[derive(Debug, Clone)]
 pub struct Upload {
     inbox: Inbox,
@@ -80,7 +80,7 @@ pub struct Upload {
     /// Block number in the answer that accepted the request.
     accepted: Option<u32>,
     last_sent: Vec<u8>,
-    /// Number of the last block sent; 0 before the first.
+    /// Number of the last sent block; 0 before the first block.
     block: u32,
     sent: u64,
     taken: u64,
@@ -127,7 +127,7 @@ impl Upload {
     }
 
     /// Answers [`Step::Feed`] with the next piece of the file, of any size. `last` marks the last piece of the file,
-    /// which may be empty. Data after it is ignored.
+    /// which may be empty. Data after the last piece is ignored.
     pub fn feed(&mut self, data: &[u8], last: bool) {
         if self.source_ended {
             return;
@@ -141,19 +141,19 @@ impl Upload {
         self.inbox.counters
     }
 
-    /// Bytes sent so far.
+    /// Bytes in the blocks sent so far.
     pub fn sent(&self) -> u64 {
         self.sent
     }
 
-    /// Bytes acknowledged so far.
+    /// Bytes in the blocks acknowledged so far.
     pub fn taken(&self) -> u64 {
         self.taken
     }
 
     /// The next frame, or a request for more content.
     fn next_frame(&mut self, now: Now) -> Step<UploadEnd> {
-        // Only one more byte shows that a full block is not the last block.
+        // A full block may be the last block. Only another byte after it shows that it is not.
         if !self.source_ended && self.buffer.len() <= self.block_size {
             return Step::Feed;
         }
@@ -233,7 +233,7 @@ impl Upload {
     }
 
     fn take_ack(&mut self, block: u32) {
-        // An acknowledgement of the last block also counts without the last-block bit.
+        // An acknowledgement of the last block also counts if its number has no last-block bit.
         let number = block & !LAST_BLOCK;
         // If the controller accepted the request with the same number, this ACK may be a late copy of that answer.
         let is_unnumbered = block == LAST_BLOCK && self.accepted != Some(LAST_BLOCK);
@@ -289,8 +289,8 @@ impl Session for Upload {
         if is_busy(status) {
             self.take_busy(now, status);
         } else if !status.is_ok() || status.added != 0 {
-            // After a read, success with an added status means that data is missing. After a block, it is not an
-            // acknowledgement.
+            // For a read, success with an added status means that data is missing. For a block, it means that the block
+            // was not acknowledged.
             self.ended = Some(self.refused(status));
         } else {
             self.take_ack(answer.block);
@@ -344,7 +344,8 @@ mod tests {
         assert_eq!(session.counters(), Counters::default());
     }
 
-    /// Blocks of an upload without faults. The file is fed in pieces; its end comes with the last piece, or separately.
+    /// Blocks of an upload without faults. The file is fed in pieces. The end of the file comes with the last piece, or
+    /// separately (`end_apart`).
     fn blocks(length: usize, piece: usize, block_size: usize, end_apart: bool) -> Vec<(u32, usize)> {
         let content = vec![9; length];
         let mut session = Upload::new(&LOAD, Policy::default(), &Ids::starting_at(5)).with_block_size(block_size);

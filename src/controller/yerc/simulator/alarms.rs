@@ -26,7 +26,8 @@ pub(super) enum Class {
 }
 
 impl Class {
-    /// Class of an alarm number. Alarms 0001-3999 stop the controller; jobs and the ladder raise alarms from 8000 on.
+    /// Class of an alarm number. Alarms 0001 to 3999 stop the controller. Alarms from 8000 on come from jobs and from
+    /// the ladder.
     pub(super) fn from_code(code: u32) -> Self {
         match code {
             0..=3999 => Self::Major,
@@ -82,7 +83,7 @@ impl AlarmLog {
         !self.active.is_empty()
     }
 
-    /// Whether an alarm is active that is cleared only by a restart.
+    /// Whether an alarm is active that only a restart clears.
     pub(super) fn major_is_active(&self) -> bool {
         self.active.iter().any(|alarm| Class::from_code(alarm.code) == Class::Major)
     }
@@ -95,13 +96,14 @@ impl AlarmLog {
         self.active.iter()
     }
 
-    /// Instances 1 to 4, newest alarm first. Other instances do not exist. An empty slot is all zeros.
+    /// Data of an active alarm. Instance 1 is the newest alarm, and instance 4 the oldest; other instances do not
+    /// exist. For an empty slot, all bytes are zero.
     pub(super) fn current(&self, instance: u16) -> Option<Vec<u8>> {
         let place = usize::from(instance).checked_sub(1).filter(|&place| place < ACTIVE)?;
         Some(bytes_or_zeros(self.active.get(place)))
     }
 
-    /// Instances 1-100, 1001-1100, … 4001-4100.
+    /// Data of a past alarm, for the instances 1-100, 1001-1100, and so on up to 4001-4100.
     pub(super) fn past(&self, instance: u16) -> Option<Vec<u8>> {
         let class = self.history.get(usize::from(instance / CLASS_STEP))?;
         let place = usize::from(instance % CLASS_STEP).checked_sub(1).filter(|&place| place < HISTORY)?;
@@ -171,7 +173,7 @@ pub(super) fn limit_data(robot: u16, axis: usize, upper: bool) -> u32 {
     u32::from(robot) << 16 | if upper { bit << 8 } else { bit }
 }
 
-/// Names in brackets. The pendant displays names whose bit is set in reverse video.
+/// Formats names in brackets. The pendant displays a name in reverse video if its bit is set.
 fn axes(names: &[&str], bits: u32) -> (String, String) {
     let (mut text, mut reverse) = (String::from("["), String::from("0"));
     for (bit, name) in names.iter().enumerate() {

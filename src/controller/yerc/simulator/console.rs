@@ -141,7 +141,7 @@ fn register(world: &mut World, register: &str, value: &str) -> Result<String, St
     }
 }
 
-/// One line with all states on which refusals depend.
+/// Formats one line with all states that can cause a refusal.
 fn summary(world: &World) -> String {
     let switches = &world.switches;
     let always = [

@@ -40,8 +40,8 @@ JUMP *AGAIN IF B000<3",
 /// Taught positions of all jobs above.
 const POSITIONS: &str = "C00000=0,0,0,0,0,0\nC00001=0,0,-300000,0,0,0\nC00002=68000,100000,0,0,-30000,0";
 
-/// Data, parameter, system and list files. `VAR.DAT` and the lists of names are not here: they are generated when they
-/// are read.
+/// Data, parameter, system and list files. `VAR.DAT` and the lists of names are missing here, because they are
+/// generated when a client reads them.
 const FILES: [(&str, &str); 12] = [
     ("VAR.DAT", "//VAR"),
     ("POSITION.DAT", "//POSITION\n///ABSO"),
@@ -107,7 +107,7 @@ pub(super) fn name_files() -> Vec<(&'static str, Vec<u8>)> {
     .into()
 }
 
-/// A section whose lines are empty, except for the named lines.
+/// Lines of a section. All lines are empty except the lines with names.
 fn section(lines: usize, nothing: &str, named: &[(usize, &str)]) -> Vec<String> {
     let line = |at| named.iter().find(|(line, _)| *line == at).map_or(nothing, |(_, text)| text).to_owned();
     (0..lines).map(line).collect()

@@ -71,7 +71,7 @@ fn lines(text: &[u8]) -> Result<Vec<&[u8]>, u16> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Target {
     Pulses(Pulses),
-    /// X, Y, Z in mm, then degrees, in base coordinates.
+    /// X, Y, Z in mm, then the angles in degrees, in base coordinates.
     Base([f64; 7]),
 }
 
@@ -107,7 +107,7 @@ pub(super) enum Operand {
     Output(u32),
 }
 
-/// A condition such as `B000=5`, `IN#(1)=ON`.
+/// A condition, for example `B000=5` or `IN#(1)=ON`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Condition {
     pub(super) left: Operand,
@@ -126,7 +126,7 @@ pub(super) enum Comparison {
 }
 
 impl Comparison {
-    /// Comparison operators. Longer operators come first, so that a prefix search finds them.
+    /// Comparison operators with their texts. Longer texts come first, so that a prefix search finds `<=` before `<`.
     const SIGNS: [(&str, Self); 6] = [
         ("<>", Self::NotEqual),
         ("<=", Self::LessOrEqual),
@@ -189,7 +189,7 @@ pub(super) enum Instruction {
     Jump(Vec<u8>, Option<Condition>),
     Call(Vec<u8>, Option<Condition>),
     Label(Vec<u8>),
-    /// Comments, NOP, and instructions that have no effect in this simulator.
+    /// A comment, a NOP, or an instruction that has no effect in this simulator.
     Pass,
 }
 
@@ -257,7 +257,7 @@ impl Instruction {
     }
 }
 
-/// Parses `P003 VJ=10.00`, `C00001 V=100.0 PL=1`.
+/// Parses the operands of a motion, for example `P003 VJ=10.00` or `C00001 V=100.0 PL=1`.
 fn motion(rest: &str, straight: bool, speed_tag: &str) -> Option<Instruction> {
     let mut words = rest.split_whitespace();
     let place = words.next()?;
@@ -274,7 +274,8 @@ fn duration(text: &str) -> Option<Duration> {
     (0.0..=655.35).contains(&seconds).then(|| Duration::from_secs_f64(seconds))
 }
 
-/// Parses `*LABEL IF B000=1` and `JOB:NAME IF …`. Names may contain any bytes except blanks.
+/// Parses a jump target with an optional condition, for example `*LABEL IF B000=1` or `JOB:NAME IF …`. A name may
+/// contain any bytes except blanks.
 fn jump(rest: &[u8], mark: &[u8]) -> Option<(Vec<u8>, Option<Condition>)> {
     let rest = rest.strip_prefix(mark)?;
     let end = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());

@@ -13,9 +13,9 @@ use crate::yerc::names;
 /// List files, the files with names from which they are generated, and their first lines.
 const LISTS: [(&[u8], &str, &str); 2] =
     [(b"IONAME.LST", "IONAME.DAT", "//IONAME"), (b"VARNAME.LST", "VARNAME.DAT", "//VARNAME")];
-/// Signals: first signal number in the protocol, and notation in jobs.
+/// Notation of signals in jobs, by the first signal number in the protocol.
 const SIGNALS: [(u32, &str); 2] = [(10, "IN"), (10_010, "OT")];
-/// Size of the range of signal numbers that follows each first number.
+/// Size of the range of signal numbers that begins at each first number.
 const EACH: u32 = 10_000;
 
 /// Generates a list from its file. Returns `None` for other files, and if the file with names is missing or invalid.
@@ -30,7 +30,7 @@ pub(super) fn written(files: &Storage, list: &[u8]) -> Option<Vec<u8>> {
     Some(lines.iter().flat_map(|line| [sjis(line), b"\r\n".to_vec()].concat()).collect())
 }
 
-/// Converts an address to the notation of jobs: `OT#(1)` for #10010, `B050` for B50.
+/// Converts an address to the notation of jobs, for example #10010 to `OT#(1)`, and B50 to `B050`.
 fn of_jobs(address: &str) -> Option<String> {
     if let Some(number) = address.strip_prefix('#') {
         let number: u32 = number.parse().ok()?;

@@ -70,7 +70,7 @@ impl Kind {
         if self.starts_undefined() { POSITIONS } else { SCALARS }
     }
 
-    /// Parses `B12`, `BP3` and so on.
+    /// Parses a variable, for example `B12` or `BP3`.
     pub(super) fn parse(text: &str) -> Option<(Self, usize)> {
         let (kind, digits) =
             Self::BY_NAME.into_iter().find_map(|(name, kind)| Some((kind, text.strip_prefix(name)?)))?;
@@ -128,7 +128,8 @@ impl Memory {
         bank.defined[index].then(|| &bank.bytes[index * bank.size..][..bank.size])
     }
 
-    /// Writes an element. Bytes after `value` are cleared (a 16-byte text in a 32-byte variable).
+    /// Writes an element. If `value` is shorter than the element, the other bytes become 0 (a 16-byte text in a 32-byte
+    /// variable).
     ///
     /// # Panics
     /// If `index` or the length is out of range. The callers check them first.
@@ -140,7 +141,7 @@ impl Memory {
         bank.defined[index] = true;
     }
 
-    /// Makes a position variable undefined.
+    /// Makes a position variable undefined, as before its first write.
     ///
     /// # Panics
     /// If `index` is out of range. The callers check the range first.
@@ -161,7 +162,7 @@ impl Memory {
         }
     }
 
-    /// Writes a numeric variable. Returns `false` if the value does not fit.
+    /// Writes a number to a numeric variable. Returns `false` if the number does not fit the kind of the variable.
     #[expect(clippy::cast_possible_truncation, reason = "the ranges are checked first; R holds single precision")]
     pub(super) fn store_number(&mut self, kind: Kind, index: usize, value: f64) -> bool {
         let whole = value.trunc() as i64;
@@ -186,7 +187,7 @@ impl Memory {
         }
     }
 
-    /// Whether a signal is on. The last digit of a number cannot be 8 or 9.
+    /// Whether a signal is on. The last digit of a signal number cannot be 8 or 9.
     pub(super) fn signal(&self, number: u32) -> bool {
         signal_place(number).is_some_and(|(instance, bit)| self.io(instance) & bit != 0)
     }
@@ -207,7 +208,8 @@ impl Memory {
         self.registers.get(usize::from(number)).copied()
     }
 
-    /// Writes a register for a client. In registers of the ladder, the value of the ladder has priority.
+    /// Writes a register for a client. Has no effect on a register of the ladder, because the ladder writes it again in
+    /// each cycle.
     pub(super) fn write_register(&mut self, number: u16, value: u16) {
         if !self.ladder.contains(&number) {
             self.force_register(number, value);

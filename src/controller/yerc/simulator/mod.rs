@@ -47,14 +47,15 @@ use crate::simulator::answers::{Answers, Busy};
 
 /// Maximum number of pending answers.
 const MAX_WAITING: usize = 4096;
-/// Offsets in a malformed request. The answer to it needs these bytes.
+/// Offset of the request id in a malformed request. The offset of the service follows. The answer to a malformed
+/// request repeats both bytes.
 const ID_AT: usize = 11;
 const SERVICE_AT: usize = 29;
 
 /// A datagram of the controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Outgoing {
-    /// Port from which the datagram is sent.
+    /// Server whose port sends the datagram.
     pub division: Division,
     /// Receiver: the token of the client that sent the request.
     pub peer: u64,
@@ -122,12 +123,12 @@ impl Simulator {
         [self.answers.due(), self.world.wake(), self.files.wake()].into_iter().flatten().min()
     }
 
-    /// Sets the share of requests that the simulator refuses as busy (D8FA), 0.0 to 1.0.
+    /// Sets the share of requests that the simulator refuses as busy (added status D8FA), 0.0 to 1.0.
     pub fn set_busy(&mut self, share: f64) {
         self.busy.set_share(share);
     }
 
-    /// Executes a console line: `alarm 4315 3 1`, `remote off`, `state`. Returns its output, or an error.
+    /// Executes a console line, for example `alarm 4315 3 1`, `remote off` or `state`. Returns its output, or an error.
     pub fn console(&mut self, now: Now, line: &str) -> Result<String, String> {
         self.advance(now);
         let answer = console::execute(&mut self.world, line);

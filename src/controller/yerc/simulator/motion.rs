@@ -19,7 +19,7 @@ pub(super) const MAX_LINEAR_MM_S: f64 = 1500.0;
 /// Maximum rotation speed of the tool.
 pub(super) const MAX_ANGULAR_DEG_S: f64 = 180.0;
 
-/// Pulses of all axes of a group.
+/// Positions of all axes of a group, in pulses.
 pub(super) type Pulses = [f64; AXES];
 /// X, Y, Z in mm, Rx, Ry, Rz, Re in degrees.
 pub(super) type Pose = [f64; 7];
@@ -78,7 +78,7 @@ const STATION: [Axis; 2] = [axis(-1_000_000.0, 1_000_000.0, 180_000.0); 2];
 #[derive(Debug, Clone)]
 pub(super) struct Group {
     pub(super) family: Family,
-    /// Group number: 1 for R1.
+    /// Number of the group among the groups of its family, for example 1 for R1.
     pub(super) number: u16,
     pub(super) axes: usize,
     pub(super) pulses: Pulses,
@@ -88,7 +88,7 @@ pub(super) struct Group {
 }
 
 impl Group {
-    /// Parses `R1`, `B2`, `S3`. A robot has 6 or 7 axes, depending on `robot_axes`.
+    /// Parses a group name, for example `R1`, `B2` or `S3`. A robot has 6 or 7 axes, depending on `robot_axes`.
     pub(super) fn parse(name: &str, robot_axes: usize) -> Option<Self> {
         let (letter, number) = (name.chars().next()?, name.get(1..)?.parse().ok().filter(|&number| number > 0)?);
         let (family, axes) =
@@ -110,7 +110,7 @@ impl Group {
         }
     }
 
-    /// Index of the first axis outside its range.
+    /// Index of the first axis that would be outside its range.
     fn beyond_limit(&self, pulses: &Pulses) -> Option<usize> {
         // Tolerance for rounding errors.
         let outside = |(axis, &pulse): (&Axis, &f64)| pulse < axis.min - 1e-6 || pulse > axis.max + 1e-6;
@@ -144,7 +144,7 @@ pub(super) fn forward(pulses: &Pulses) -> Pose {
     ]
 }
 
-/// Pulses for a pose. Of the possible turns of each wrist axis, the turn nearest to `near` is used.
+/// Pulses for a pose. A wrist axis can have several equivalent angles; the angle nearest to `near` is used.
 pub(super) fn inverse(pose: &Pose, near: &Pulses) -> Pulses {
     let reach = pose[0].hypot(pose[1]);
     let turn = if reach < 1e-6 { near[0] / S_PULSES_PER_DEG } else { pose[1].atan2(pose[0]).to_degrees() };
@@ -215,7 +215,7 @@ pub(super) struct Motion {
     legs: Vec<Leg>,
     begun: Now,
     length: Duration,
-    /// Fraction at which an axis reaches its soft limit, with the group and the axis.
+    /// Completed fraction at which an axis reaches its soft limit, with the indexes of the group and the axis.
     limit: Option<(f64, usize, usize)>,
     /// Start time of the deceleration, and the completed fraction at this time.
     braking: Option<(Now, f64)>,
@@ -227,7 +227,7 @@ pub(super) enum End {
     Arrived,
     /// A hold stopped the motion.
     Stopped,
-    /// An axis of a group reached its soft limit.
+    /// An axis reached its soft limit. Contains the indexes of the group and the axis.
     Limit(usize, usize),
 }
 
@@ -251,7 +251,7 @@ impl Motion {
         self.begun.saturating_add(self.length.mul_f64(fraction))
     }
 
-    /// End time.
+    /// Time at which the motion ends.
     pub(super) fn end(&self) -> Now {
         let planned = self.moment_of(self.limit.map_or(1.0, |(fraction, ..)| fraction));
         match self.braking {
@@ -298,14 +298,14 @@ impl Arm {
         pose
     }
 
-    /// Starts a joint motion at a share of the maximum speed (1.0 is 100 %).
+    /// Starts a joint motion. `share` is the share of the maximum speed (1.0 is 100 %).
     pub(super) fn joint(&mut self, now: Now, targets: &[(usize, Pulses)], share: f64) {
         let seconds = targets.iter().map(|&(group, to)| self.groups[group].joint_seconds(&to)).fold(0.0, f64::max);
         let legs = targets.iter().map(|&(group, to)| self.leg(group, to, false)).collect();
         self.begin(now, legs, Duration::from_secs_f64(seconds / share.max(1e-4)));
     }
 
-    /// Starts a straight motion. The first target is the robot that carries the tool.
+    /// Starts a straight motion. The first target belongs to the robot that carries the tool.
     pub(super) fn straight(&mut self, now: Now, targets: &[(usize, Pulses)], speed: Speed) {
         let legs: Vec<_> = targets.iter().map(|&(group, to)| self.leg(group, to, true)).collect();
         let line = legs.iter().find_map(|leg| leg.line);
@@ -339,7 +339,7 @@ impl Arm {
         self.motion = Some(Motion { legs, begun: now, length, limit, braking: None });
     }
 
-    /// Searches the first limit on the path, in small steps and then by bisection.
+    /// Searches for the first soft limit on the path, in small steps and then by bisection.
     fn first_limit(&self, legs: &[Leg]) -> Option<(f64, usize, usize)> {
         const STEPS: u32 = 128;
         let violation = |fraction: f64| {
@@ -408,14 +408,14 @@ impl Arm {
 /// Speed of a straight motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Speed {
-    /// mm/s of the tool tip.
+    /// Speed of the tool tip in mm/s.
     Linear(f64),
-    /// Degrees per second of the tool rotation.
+    /// Rotation speed of the tool in degrees per second.
     Angular(f64),
 }
 
 impl Speed {
-    /// Duration of the motion. The slower of the linear part and the rotation decides.
+    /// Duration of the motion. The linear part or the rotation decides, whichever is slower.
     fn seconds(self, from: &Pose, to: &Pose) -> f64 {
         let way = |range: std::ops::Range<usize>| range.map(|i| (to[i] - from[i]).powi(2)).sum::<f64>().sqrt();
         let (distance, turn) = (way(0..3), way(3..7));

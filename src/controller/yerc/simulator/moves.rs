@@ -9,7 +9,7 @@ use crate::simulator::refuse_if;
 use crate::yerc::Model;
 use crate::yerc::payload::{CartesianMove, MoveLayout, PositionKind, PulseMove, SpeedClass};
 
-/// Instances of the move commands.
+/// Instances of the move commands. 1 is a link move; 3 is a straight move by an increment.
 const LINK: u16 = 1;
 const INCREMENT: u16 = 3;
 /// Maximum tool and user frame number.
@@ -21,9 +21,9 @@ const EXTENDED_FORM_BITS: u32 = 0x1F;
 const GUARDED_MM_S: f64 = 250.0;
 
 impl World {
-    /// Executes command 0x8A.
+    /// Executes a move to cartesian coordinates (command 0x8A).
     pub(super) fn move_cartesian(&mut self, instance: u16, data: &[u8]) -> Result<(), Refusal> {
-        // Only the FS100 manual has 25 words, but FS100s are known to accept 26 words too.
+        // The FS100 manual has only 25 words, but FS100 controllers are known to accept 26 words too.
         let layouts = match self.model {
             Model::Fs100 => &[MoveLayout::Words25, MoveLayout::Words26][..],
             Model::Dx100 | Model::Dx200 | Model::Yrc1000 => &[MoveLayout::Words26],
@@ -65,7 +65,7 @@ impl World {
         Ok(())
     }
 
-    /// Executes command 0x8B.
+    /// Executes a move to a position in pulses (command 0x8B).
     pub(super) fn move_pulse(&mut self, instance: u16, data: &[u8]) -> Result<(), Refusal> {
         refuse_if(data.len() != PulseMove::SIZE, Refusal::Added(code::REQUEST_SIZE))?;
         let order = PulseMove::parse(data).map_err(|_| Refusal::Added(code::REQUEST_SIZE))?;
@@ -134,7 +134,7 @@ impl World {
         Ok((group, to))
     }
 
-    /// Target of the robot base in pulses (one pulse is 0.001 mm); `None` for a robot without a base.
+    /// Target of the base of a robot in pulses (one pulse is 0.001 mm). `None` for a robot without a base.
     fn base_target(&self, robot: u16, words: &[f64; 3], increment: bool) -> Result<Option<(usize, Pulses)>, Refusal> {
         let base = self.arm.find(Family::Base, robot);
         let axes = base.map_or(0, |base| self.arm.groups[base].axes);
@@ -148,7 +148,7 @@ impl World {
         }))
     }
 
-    /// Origin and rotation of the user frame, if the coordinate system needs one.
+    /// Origin and rotation of the user frame. All values are 0 for coordinate systems without a user frame.
     fn user_frame(&self, coordinate: PositionKind, number: u32) -> Result<[f64; 4], Refusal> {
         if number > LAST_NUMBER || coordinate == PositionKind::User && number == 0 {
             return Err(Refusal::Added(code::USER_FRAME));
@@ -169,7 +169,7 @@ enum Ordered {
     Speed(Speed),
 }
 
-/// Validates the speed: its class must fit the instance, and its value must be within the limits of the robot.
+/// Checks the speed: its class must fit the instance, and its value must be within the limits of the robot.
 fn speed_of(instance: u16, class: SpeedClass, speed: u32) -> Result<Ordered, Refusal> {
     let (scale, most) = match class {
         SpeedClass::Percent if instance == LINK => (0.01, 100.0),
@@ -195,7 +195,7 @@ fn check_tool(tool: u32) -> Result<(), Refusal> {
     if tool > LAST_NUMBER { Err(Refusal::Added(code::TOOL)) } else { Ok(()) }
 }
 
-/// Target in robot coordinates.
+/// Target of a move, in robot coordinates.
 fn target_pose(order: &CartesianMove, increment: bool, from: &Pose, base_mm: f64, frame: [f64; 4]) -> Pose {
     let words = order.target.map(f64::from);
     let (mut place, mut turn) = (

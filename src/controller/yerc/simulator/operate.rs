@@ -9,10 +9,10 @@ use crate::yerc::table::Row;
 /// Usable length of a message in bytes. The field has two more bytes.
 const MESSAGE_LEN: usize = 30;
 const MESSAGE_FIELD: usize = 32;
-/// Size of a selection: name and line.
+/// Size in bytes of a selection, which consists of a job name and a line.
 const SELECTION: usize = 36;
 const NAME_FIELD: usize = 32;
-/// Instance that selects the job to execute. Other instances select master jobs.
+/// Instance that selects the job to execute. All other instances select master jobs.
 const EXECUTE: u16 = 1;
 const FIRST_MASTER: u16 = 10;
 
@@ -118,7 +118,7 @@ impl World {
     }
 }
 
-/// The only word of a request.
+/// Returns the data word of a request, which must have only one word.
 pub(super) fn word(data: &[u8]) -> Result<u32, Refusal> {
     data.try_into().map(u32::from_le_bytes).map_err(|_| Refusal::Added(code::REQUEST_SIZE))
 }

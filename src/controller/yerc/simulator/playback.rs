@@ -19,7 +19,7 @@ const MAX_CALLS: usize = 12;
 const FIRST_OUTPUT: u32 = 10010;
 /// Signal number of general-purpose input 1.
 const FIRST_INPUT: u32 = 10;
-/// An override of 100 % in the unit of 0x73.
+/// A speed override of 100 %, in the unit of command 0x73 (read job).
 const FULL_OVERRIDE: u32 = 10_000;
 
 /// A job and its next line.
@@ -30,16 +30,16 @@ struct Cursor {
     line: usize,
 }
 
-/// State of the player.
+/// What the execution of the current job waits for.
 #[derive(Debug, Clone, Default)]
 enum State {
     #[default]
     Stopped,
     /// The next line runs at this time.
     Due(Now),
-    /// The line ends with the motion.
+    /// A motion runs. The line ends with the motion.
     Moving,
-    /// The line ends when the condition is true, or at this time if there is one.
+    /// The line ends when the condition is true. If there is a time, the line ends at this time at the latest.
     Waiting(Condition, Option<Now>),
 }
 
@@ -48,7 +48,7 @@ pub(super) struct Player {
     cursor: Option<Cursor>,
     callers: Vec<Cursor>,
     state: State,
-    /// Master jobs by task, selected with instances 10 and above of 0x87.
+    /// Master jobs by task. Instances 10 and above of command 0x87 select them.
     pub(super) masters: BTreeMap<u16, Vec<u8>>,
 }
 
@@ -69,7 +69,7 @@ impl Player {
         }
     }
 
-    /// Stops at the current line. A later start continues at this line.
+    /// Stops the job at its current line. A later start continues at this line.
     pub(super) fn stop(&mut self) {
         self.state = State::Stopped;
     }
@@ -84,7 +84,7 @@ impl Player {
         true
     }
 
-    /// Removes a job whose file was deleted.
+    /// Removes a job from all selections, because its file was deleted.
     pub(super) fn forget(&mut self, name: &[u8]) {
         self.masters.retain(|_, master| master != name);
         if self.cursor.iter().chain(&self.callers).any(|cursor| cursor.name == name) {
@@ -96,7 +96,7 @@ impl Player {
         self.state = State::Due(now + LINE_TIME);
     }
 
-    /// Answer to 0x73 for the master task.
+    /// Answer to command 0x73 (read job) for the master task.
     pub(super) fn info(&self) -> JobInfo {
         let Some(cursor) = &self.cursor else {
             return JobInfo { speed_override: FULL_OVERRIDE, ..JobInfo::default() };
@@ -110,7 +110,7 @@ impl Player {
         }
     }
 
-    /// Schedules the next line at this time.
+    /// Continues with the next line at this time.
     fn next_line(&mut self, at: Now) {
         if let Some(cursor) = &mut self.cursor {
             cursor.line += 1;
@@ -278,7 +278,7 @@ impl World {
         Ok(())
     }
 
-    /// A P variable as a target. Jobs in this simulator do not support user frames and tool frames.
+    /// Converts a P variable to a target. Jobs in this simulator do not support user frames and tool frames.
     fn position_variable(&self, index: usize) -> Option<Target> {
         let words: Vec<i32> = self
             .memory
@@ -296,7 +296,7 @@ impl World {
                 let mut pose: Pose =
                     std::array::from_fn(|i| f64::from(axes[i]) / if i < 3 { 1000.0 } else { 10_000.0 });
                 if kind == 17 {
-                    // Robot coordinates move together with the base.
+                    // The target is in robot coordinates, which move together with the base.
                     pose[0] += self.arm.base_offset(1);
                 }
                 Some(Target::Base(pose))

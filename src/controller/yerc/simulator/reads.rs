@@ -9,17 +9,17 @@ use crate::yerc::payload::{
 };
 use crate::yerc::table::Row;
 
-/// First instances of groups: robots from 1, bases from 11, stations from 21. Cartesian robots and bases begin at 101.
+/// Instances of groups: robots begin at 1, bases at 11, stations at 21. For cartesian coordinates, 100 is added.
 const FIRST_BASE: u16 = 11;
 const FIRST_STATION: u16 = 21;
 const CARTESIAN: u16 = 100;
-/// Number of axes of the usual robot.
+/// Number of axes of a robot with the usual number of axes.
 const SIX: usize = 6;
 /// Instance of the only task that can run.
 const MASTER_TASK: u16 = 1;
 /// Servo lag: pulses of lag at a speed of one pulse per second.
 const SERVO_LAG_S: f64 = 0.02;
-/// Axis names (DX 3.3.5). The manual misprints the seventh cartesian name.
+/// Axis names (DX 3.3.5). In the manual, the name of the seventh cartesian axis is a misprint.
 const ROBOT_AXES: [&str; 7] = ["S", "L", "U", "R", "B", "T", "E"];
 const CARTESIAN_AXES: [&str; 7] = ["X", "Y", "Z", "Rx", "Ry", "Rz", "Re"];
 const OTHER_AXES: [&str; 7] = ["1", "2", "3", "4", "5", "6", "7"];
@@ -44,8 +44,8 @@ impl World {
             command::TORQUE => Ok(self.torque(instance)?.emit()),
             command::TIMES => Ok(self.management_time(instance)?.emit()),
             command::SYSTEM => Ok(self.system(instance).emit()),
-            // A controller answers like this for tasks that are not set up. Here, instances that cannot be read have
-            // the same answer.
+            // A controller gives this answer for tasks that are not set up. The simulator gives it for all other
+            // instances that cannot be read.
             _ => Err(Refusal::Added(code::INSTANCE)),
         }
     }
@@ -99,8 +99,8 @@ impl World {
         })
     }
 
-    /// Axis words of a group. Some controllers answer only the words of existing axes; others answer a word for each
-    /// possible axis.
+    /// Axis words of a group in an answer. Some controllers send only the words of existing axes. Others send a word
+    /// for each possible axis.
     fn answered(&self, group: &Group, values: &[i32; AXES]) -> Axes {
         let is_trimmed = self.trim_axes.unwrap_or(group.family != Family::Robot || group.axes != SIX);
         if is_trimmed {
@@ -116,8 +116,8 @@ impl World {
         Ok(self.answered(&self.arm.groups[index], &lag))
     }
 
-    /// Holding torque, plus a part that depends on the speed. It is 0 without servo power, because the brakes hold the
-    /// axes.
+    /// Torque of each axis: a holding torque, plus a part that depends on the speed. The torque is 0 without servo
+    /// power, because the brakes then hold the axes.
     fn torque(&self, instance: u16) -> Result<Axes, Refusal> {
         const HOLDING: [f64; AXES] = [0.0, 14.0, 9.0, 1.0, 2.0, 0.0, 0.0, 0.0];
         const FULL_SPEED: f64 = MAX_LINEAR_MM_S * 1000.0;
@@ -134,13 +134,14 @@ impl World {
     }
 
     fn management_time(&self, instance: u16) -> Result<ManagementTime, Refusal> {
-        /// The hundreds of the instance select the counter; the rest selects the group. 10 is the total.
+        /// Place of the total. The hundreds of the instance select the counter, and the other digits select the group
+        /// or the total.
         const TOTAL: u16 = 10;
         let (kind, place) = (instance / 100, instance % 100);
         let counted = if instance == 1 || kind == 3 || place == TOTAL {
             true
         } else {
-            // Here robots are counted from 11. In position instances, 11 is the first base.
+            // In counter instances, robots count from 11. In position instances, 11 is the first base.
             let (family, number) = match place {
                 FIRST_STATION.. => (Family::Station, place - FIRST_STATION + 1),
                 _ => (Family::Robot, place.saturating_sub(TOTAL)),
@@ -180,14 +181,14 @@ impl World {
     }
 }
 
-/// An alarm without the sub-code texts.
+/// The data of an alarm without the sub-code texts.
 fn short(alarm: Option<Vec<u8>>) -> Answer {
     let mut bytes = alarm.ok_or(Refusal::Instance)?;
     bytes.truncate(Alarm::SIZE);
     Ok(bytes)
 }
 
-/// Format `HHHHHH:MM'SS`.
+/// Formats a time as `HHHHHH:MM'SS`.
 fn elapsed_text(elapsed: Now) -> String {
     let seconds = elapsed.as_secs();
     format!("{:06}:{:02}'{:02}", seconds / 3600 % 1_000_000, seconds / 60 % 60, seconds % 60)

@@ -1,6 +1,6 @@
-//! Robot server: decodes requests by the table, and reads or writes.
+//! Robot server: decodes requests with the command table, and reads or writes.
 //!
-//! Order of checks: command, service, instance, attribute, fitted, size, state, value.
+//! Checks run in this order: command, service, instance, attribute, fitted axes and groups, size, state, value.
 
 use super::memory::Kind;
 use super::world::{Refusal, World, code};
@@ -12,7 +12,7 @@ use crate::yerc::wire::RequestFrame;
 /// Answer data, or a refusal.
 pub(super) type Answer = Result<Vec<u8>, Refusal>;
 
-/// First FS100 software version with the newer commands.
+/// Software version (major, minor) from which on an FS100 has the newer commands.
 const FS_FULL_SOFTWARE: (u32, u32) = (1, 14);
 
 pub(super) fn answer(world: &mut World, frame: &RequestFrame<'_>) -> Answer {
@@ -44,7 +44,7 @@ pub(super) fn has(world: &World, availability: Availability) -> bool {
     }
 }
 
-/// Major and minor version of `FS1.14.00A(JP/US)-00`.
+/// Returns the major and minor version of a software version, for example 1 and 14 for `FS1.14.00A(JP/US)-00`.
 fn software(version: &str) -> (u32, u32) {
     let mut numbers =
         version.trim_start_matches(|c: char| !c.is_ascii_digit()).split('.').map(|part| part.parse().ok());
@@ -53,27 +53,29 @@ fn software(version: &str) -> (u32, u32) {
 }
 
 fn check_attribute(row: &Row, service: &Service, attribute: u8) -> Result<(), Refusal> {
-    // The manuals require attribute 1 for a variable. Real clients send 0, with either pair of services.
+    // The manuals require attribute 1 for a variable. Real clients send 0, with the single services and with the
+    // services for all fields.
     let lenient = row.services.iter().any(|service| service.attribute == Attribute::OneOrZero);
     let known = match service.attribute {
         Attribute::Zero => attribute == 0,
         Attribute::One if !lenient => attribute == 1,
         Attribute::One | Attribute::OneOrZero => attribute <= 1,
-        // With attribute 0, the single services also read and write whole position variables. One client is known to
-        // use this.
+        // With attribute 0, the single services read and write a whole position variable. One client is known to use
+        // this.
         Attribute::Field => {
             usize::from(attribute) <= row.fields.len() && (attribute != 0 || row.service(service::SET_ALL).is_some())
         }
     };
     match known {
         true => Ok(()),
-        // A controller was observed to answer A002 to a job selection with an attribute.
+        // A controller was observed to refuse a job selection with an attribute with the added status A002.
         false if row.number == command::SELECT => Err(Refusal::Added(code::ATTRIBUTE)),
         false => Err(Refusal::Attribute),
     }
 }
 
-/// The requested part of a payload. Missing axes have no field, so they are refused.
+/// The part of a payload that the request selects. A missing axis has no bytes in the payload, so a request for its
+/// field is refused.
 fn field<'a>(row: &Row, service: &Service, attribute: u8, payload: &'a [u8]) -> Result<&'a [u8], Refusal> {
     let Some(index) = field_index(service, attribute) else { return Ok(payload) };
     let from = total(row.fields.get(..index).unwrap_or_default());
@@ -138,7 +140,7 @@ impl Store {
 }
 
 impl World {
-    /// The bytes of an element, as many as the command has: all bytes, or the first 16 bytes of a long string.
+    /// The bytes of an element in the size of the command: all bytes, or the first 16 bytes of a long string.
     pub(super) fn read_element(&self, store: Store, instance: u16, size: usize) -> Answer {
         let bytes = match store {
             Store::Io => vec![self.io(instance)],
@@ -202,7 +204,7 @@ fn write_several(world: &mut World, row: &Row, plural: Plural, first: u16, last:
     Ok(Vec::new())
 }
 
-/// Instances of a plural request. All must be in the range of the first instance.
+/// Instances of a plural request. All of them must be in the range of the first instance.
 fn plural_range(
     plural: Plural,
     count: u32,
@@ -224,7 +226,7 @@ fn write_one(world: &mut World, row: &Row, service: &Service, frame: &RequestFra
     let (instance, data) = (frame.instance, frame.data);
     let element = match field_index(service, frame.attribute) {
         None => whole_element(row, data)?,
-        // This request writes one word of a position. The other words exist only if the position is defined.
+        // The request writes one word of a position. The other words exist only if the position is defined.
         Some(index) => {
             let Ok(value) = <[u8; 4]>::try_from(data) else { return Err(Refusal::Added(code::REQUEST_SIZE)) };
             let mut element = world.read_element(store, instance, row.size())?;

@@ -131,7 +131,7 @@ impl Start {
         Self { seed, ..self }
     }
 
-    /// Refuses a random share of robot requests as busy (D8FA), 0.0 to 1.0.
+    /// Sets the share of robot requests, from 0.0 to 1.0, that the simulator refuses as busy (D8FA) at random.
     #[must_use]
     pub fn with_busy(self, busy: f64) -> Self {
         Self { busy: busy.clamp(0.0, 1.0), ..self }
@@ -159,7 +159,7 @@ struct Entries {
     robot_model: Option<String>,
     application: Option<String>,
     parameter_version: Option<String>,
-    /// Control groups, `R1` first.
+    /// Control groups. `R1` must be the first.
     groups: Vec<Spanned<String>>,
     /// Number of axes of a robot: 6 or 7.
     robot_axes: Spanned<usize>,
@@ -173,15 +173,15 @@ struct Entries {
     capacity: u64,
     replace_jobs: bool,
     plain_last_ack: bool,
-    /// The job to execute.
+    /// Name of the job to execute.
     job: Option<Spanned<String>>,
     ladder_registers: Vec<Spanned<u16>>,
     variables: Table<Value>,
     registers: Table<u16>,
     io: Table<bool>,
-    /// Pulses by group.
+    /// Positions in pulses, by group.
     positions: Table<Vec<i32>>,
-    /// X, Y, Z in mm and a rotation about Z in degrees, by number.
+    /// User frames by number: X, Y, Z in mm, and a rotation about Z in degrees.
     user_frames: Table<[f64; 4]>,
     #[serde(rename = "alarm")]
     alarms: Vec<AlarmEntry>,
@@ -266,7 +266,7 @@ enum Value {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PositionEntry {
-    /// `pulse`, `base`, `robot`, `user` or `tool`.
+    /// Kind of position: `pulse`, `base`, `robot`, `user` or `tool`.
     #[serde(rename = "type")]
     kind: String,
     axes: Vec<i32>,
@@ -335,7 +335,7 @@ fn build(
         world.player.select(&name, program, 0);
         Ok(())
     })?;
-    // This is a copy, so that the world keeps its start state.
+    // The check uses a copy, so that the world keeps its start state.
     let mut copy = world.clone();
     world.events = source.timeline(&entries.events, |line| console::execute(&mut copy, line))?;
     Ok(Start {

@@ -16,7 +16,7 @@ const EXTENSIONS: [&[u8]; 6] = [JOB, b".DAT", b".CND", b".PRM", b".SYS", b".LST"
 const JOB: &[u8] = b".JBI";
 /// Extensions of files that only the controller writes.
 const OWN: [&[u8]; 2] = [b".SYS", b".LST"];
-/// Maximum length of a job name, and of a path.
+/// Maximum length of a job name in bytes. The constant below is the maximum length of a path.
 const NAME_LEN: usize = 32;
 const PATH_LEN: usize = 64;
 
@@ -60,7 +60,7 @@ impl From<Vec<u8>> for Content {
     }
 }
 
-/// Eight bytes for a position (SplitMix64). All byte values occur, including NUL and line ends.
+/// Returns eight bytes for an offset (SplitMix64). All byte values occur, including NUL and line ends.
 fn scrambled(seed: u64, word: u64) -> [u8; 8] {
     let mut x = seed.wrapping_add(word.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
     x = (x ^ x >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -79,11 +79,11 @@ struct File {
 #[derive(Debug, Clone)]
 pub(super) struct Storage {
     files: BTreeMap<Vec<u8>, File>,
-    /// Batch backup on the RAM disk.
+    /// Batch backup on the RAM disk; `None` before the first backup.
     pub(super) backup: Option<Content>,
     /// Total size limit in bytes.
     pub(super) capacity: u64,
-    /// Whether a loaded job replaces a job with the same name. Otherwise, the load is refused with 4030.
+    /// Whether a loaded job replaces a job with the same name. If not, the load is refused with code 4030.
     pub(super) replace_jobs: bool,
     /// Whether the ACK of the last block of a load has no block number.
     pub(super) plain_last_ack: bool,
@@ -130,14 +130,14 @@ impl Storage {
 /// Result of a request for a list or a file.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum FileContent {
-    /// These bytes.
+    /// The answer contains these bytes.
     Content(Content),
-    /// No content. The answer has a good status, and this added status.
+    /// The answer contains no bytes. Its status is good, with this added status.
     Nothing(u16),
 }
 
 impl World {
-    /// Executes service 0x32.
+    /// Lists the names of files (service 0x32).
     pub(super) fn list_files(&self, filter: &[u8]) -> Result<FileContent, Refusal> {
         let names = self.files.list(filter).ok_or(Refusal::Added(code::PATH))?;
         match (names.is_empty(), self.model) {
@@ -147,7 +147,7 @@ impl World {
         }
     }
 
-    /// Executes service 0x16, except for the batch backup.
+    /// Reads a file (service 0x16), except the batch backup.
     pub(super) fn read_file(&self, name: &[u8]) -> Result<FileContent, Refusal> {
         check_stored_name(name)?;
         if name == variables::NAME && self.files.get(name).is_some() {
@@ -166,7 +166,7 @@ impl World {
         }
     }
 
-    /// Executes service 0x09.
+    /// Deletes a file (service 0x09).
     pub(super) fn delete_file(&mut self, name: &[u8]) -> Result<(), Refusal> {
         self.may_change_files()?;
         if name == BATCH_BACKUP_PATH {
@@ -237,8 +237,7 @@ impl World {
     }
 }
 
-/// Checks a name. It must have a known extension, no folder, and no NUL; a controller treats a name with a NUL as
-/// empty.
+/// Checks a name. It must have a known extension, and no folder or NUL. A controller treats a name with a NUL as empty.
 pub(super) fn check_name(name: &[u8]) -> Result<(), Refusal> {
     let refuse = |code| Err(Refusal::Added(code));
     if name.is_empty() || name.contains(&0) {
@@ -262,7 +261,8 @@ pub(super) fn check_name(name: &[u8]) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Checks the name of a stored file. It may have any extension, because there are files that cannot be loaded.
+/// Checks the name of a stored file. Any extension is allowed, because a controller also has files that cannot be
+/// loaded.
 pub(super) fn check_stored_name(name: &[u8]) -> Result<(), Refusal> {
     let other = name.iter().rposition(|&byte| byte == b'.').filter(|&point| point > 0 && point + 1 < name.len());
     match check_name(name) {

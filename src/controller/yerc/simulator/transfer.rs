@@ -1,14 +1,15 @@
 //! File server: block transfers (DX 3.2.3 to 3.2.6, 3.4).
 //!
 //! The manual does not cover lost frames. The simulator answers a repeated frame again. The answer to a repeated ACK or
-//! request is the block that waits for its ACK; the answer to a repeated data block is its ACK. A repeat shortly after
-//! the last frame counts as a network echo and gets no answer, so that copies do not multiply. Only one transfer is
-//! open at a time. It is dropped after a timeout (E28B) and after a change of mode (FFFE).
+//! request is the block that waits for its ACK; the answer to a repeated data block is the ACK of this block. A repeat
+//! shortly after the last frame counts as a network echo and gets no answer, so that copies do not multiply. Only one
+//! transfer is open at a time. The simulator drops the transfer after a timeout (E28B) and after a change of mode
+//! (FFFE).
 //!
 //! The same request (service and path) creates the batch backup and fetches the backup file. The manuals do not specify
-//! how a controller distinguishes the two. In this simulator, the first request creates a backup, and is answered
+//! how a controller distinguishes the two cases. In this simulator, the first request creates a backup, and is answered
 //! without data when the backup is complete. The next request fetches the file. After the file was fetched completely,
-//! another request creates a new backup.
+//! one more request creates a new backup.
 
 use std::time::Duration;
 
@@ -29,15 +30,15 @@ const COPY: Duration = Duration::from_millis(500);
 /// State of a transfer.
 #[derive(Debug, Clone)]
 enum Stage {
-    /// Sends blocks. `block` waits for its ACK.
+    /// The controller sends blocks. `block` is the number of the block that waits for its ACK.
     Sending { content: Content, block: u32, is_backup: bool },
-    /// Receives blocks. `received` is the number of blocks so far.
+    /// The controller receives blocks. `received` is the number of blocks so far.
     Receiving { name: Vec<u8>, bytes: Vec<u8>, received: u32 },
-    /// Writes the backup until this time.
+    /// The controller writes the backup until this time.
     BackingUp { done: Now },
     /// The transfer is complete. The last frame can still be repeated.
     Finished { block: u32 },
-    /// The transfer was dropped. The next frame is refused with this code.
+    /// The transfer was dropped. The next frame of the transfer is refused with this code.
     Dropped(u16),
 }
 
@@ -48,9 +49,9 @@ struct Transfer {
     service: u8,
     /// Id and data of the first request.
     request: (u8, Vec<u8>),
-    /// Id of the transfer before this one. A first frame with that id is a late copy.
+    /// Id of the previous transfer. A first frame with this id is a late copy.
     previous: Option<u8>,
-    /// Id of the latest frame. The answers use it.
+    /// Id of the latest frame from the peer. The answers use this id.
     id: u8,
     stage: Stage,
     last_frame: Vec<u8>,
@@ -65,8 +66,8 @@ impl Transfer {
         matches!(self.stage, Stage::Sending { .. } | Stage::Receiving { .. } | Stage::BackingUp { .. })
     }
 
-    /// Whether a request is a late copy of the request that has just loaded a file. If such a copy started a new
-    /// transfer, a client that missed the ACK of the last block could not repeat this block.
+    /// Whether a request is a late copy of the request that has just loaded a file. Such a copy must not start a new
+    /// transfer: a client that did not receive the ACK of the last block could then not repeat this block.
     fn loaded_by(&self, peer: u64, request: &RequestFrame<'_>, now: Now) -> bool {
         matches!(self.stage, Stage::Finished { .. })
             && (self.peer, self.service, service::LOAD) == (peer, request.service, request.service)
@@ -84,8 +85,8 @@ impl Transfer {
         }
     }
 
-    /// Whether other transfers are refused. They are not refused after the last block, because then only its ACK is
-    /// missing, and the ACK may be lost.
+    /// Whether requests for other transfers are refused. After the last block they are accepted, because only the ACK
+    /// of this block is missing, and the ACK may be lost.
     fn is_busy(&self) -> bool {
         match &self.stage {
             Stage::Sending { content, block, .. } => !is_last(content, *block),
@@ -103,7 +104,7 @@ pub(super) struct FileServer {
     backups: u64,
 }
 
-/// A frame for a peer.
+/// The peer, and the frame for this peer.
 pub(super) type Reply = Option<(u64, Vec<u8>)>;
 
 impl FileServer {
@@ -248,7 +249,7 @@ impl FileServer {
     fn continues(&mut self, world: &mut World, now: Now, peer: u64, request: &RequestFrame<'_>) -> Option<Vec<u8>> {
         let known = |transfer: &&mut Transfer| transfer.peer == peer && transfer.service == request.service;
         let Some(transfer) = self.transfer.as_mut().filter(known) else {
-            // An unexpected ACK is a late copy. An unexpected data block is an error.
+            // An unexpected ACK is a late copy. An unexpected data block is an error of the client.
             let stray = request.service == service::LOAD;
             return stray.then(|| refusal(world, request, Refusal::Added(code::ACK)));
         };
@@ -270,7 +271,7 @@ impl FileServer {
             }
             Stage::Sending { content, block, is_backup } => {
                 let current = if is_last(content, *block) { *block | LAST_BLOCK } else { *block };
-                // One known client omits the top bit in its last ACK.
+                // One known client omits the last-block bit in its last ACK.
                 if request.block == current || request.block == *block {
                     if current & LAST_BLOCK != 0 {
                         if *is_backup {
@@ -311,7 +312,7 @@ fn take_block(
     let Stage::Receiving { name, bytes, received } = &mut transfer.stage else { return (None, true) };
     let last = request.block & LAST_BLOCK != 0;
     let number = request.block & !LAST_BLOCK;
-    // Some clients send 0x80000000 instead of 0x80000001 for a single block.
+    // Some clients number a single block 0x80000000 instead of 0x80000001.
     let next = number == *received + 1 || last && number == 0 && *received == 0;
     if !next && number == *received {
         return (repeat(transfer, now, request.id), true);

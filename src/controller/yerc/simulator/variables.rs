@@ -5,9 +5,9 @@
 
 use super::memory::{AXIS_WORDS, Kind, Memory, POSITION_WORDS};
 
-/// File name.
+/// Name of the file.
 pub(super) const NAME: &[u8] = b"VAR.DAT";
-/// First lines.
+/// First lines of the file.
 const HEAD: [&[u8]; 2] = [b"//VAR", b"///SHARE"];
 /// Sections in the order of the file.
 const SECTIONS: [(&str, Kind); 8] = [
@@ -20,10 +20,10 @@ const SECTIONS: [(&str, Kind); 8] = [
     ("////BP", Kind::Bp),
     ("////EX", Kind::Ex),
 ];
-/// Number of values per row.
+/// Number of values per row of the file.
 const ROW: usize = 10;
 
-/// A value in a loaded file.
+/// A value in a loaded file: kind, number, and bytes of the variable.
 type Setting = (Kind, usize, Vec<u8>);
 
 /// Generates the current file.
@@ -47,7 +47,7 @@ pub(super) fn written(memory: &Memory) -> Vec<u8> {
     lines.into_iter().flat_map(|line| [line, b"\r\n".to_vec()].concat()).collect()
 }
 
-/// Applies the variables of a file. Returns `false` if the file is invalid; then nothing changes. Positions that are
+/// Applies the variables of a file. Returns `false` and changes nothing if the file is invalid. Positions that are
 /// missing in their section become undefined.
 pub(super) fn load(memory: &mut Memory, file: &[u8]) -> bool {
     let Some((sections, settings)) = read(file) else { return false };
@@ -75,7 +75,7 @@ fn read(file: &[u8]) -> Option<(Vec<Kind>, Vec<Setting>)> {
         }
         let Some(kind) = sections.last().copied() else { continue };
         if kind == Kind::S {
-            // The last line end of the file does not begin another text.
+            // The text after the last line end of the file is empty, and is not a variable.
             if next < kind.count() {
                 settings.push((kind, next, line.get(..line.len().min(32))?.to_vec()));
             }

@@ -90,7 +90,8 @@ pub(super) enum Refusal {
 }
 
 impl Refusal {
-    /// Status that a model answers. The FS100 manual has only status 0x1F, so an FS100 answers with A000 to A002.
+    /// Status that a model answers. The FS100 manual has only status 0x1F, so an FS100 answers with the added status
+    /// A000 to A002.
     pub(super) fn status(self, model: Model) -> Status {
         let plain = |code| Status { code, ..Status::OK };
         match (self, model) {
@@ -112,7 +113,7 @@ pub(super) enum Mode {
     Play,
 }
 
-/// Sources of HOLD.
+/// Which sources have applied HOLD.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Holds {
     pub(super) pendant: bool,
@@ -134,7 +135,7 @@ impl Holds {
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent switch")]
 pub(super) struct Switches {
     pub(super) mode: Mode,
-    /// Command remote (#82015).
+    /// Whether command remote is on (#82015).
     pub(super) remote: bool,
     pub(super) servo: bool,
     pub(super) cycle: CycleMode,
@@ -144,13 +145,13 @@ pub(super) struct Switches {
     pub(super) estop: bool,
     /// Whether a job is being edited on the pendant.
     pub(super) editing: bool,
-    /// Whether a screen is open during which axis names cannot be read (DX 3.3.5).
+    /// Whether the pendant shows a screen that prevents the reading of axis names (DX 3.3.5).
     pub(super) converting: bool,
     /// Parameter S2C541: whether variables and I/O are locked against writing in play mode.
     pub(super) play_lock: bool,
     /// Whether the pendant displays an error (not an alarm).
     pub(super) error: bool,
-    /// Message that command 0x85 displays.
+    /// Message on the pendant. Command 0x85 sets it.
     pub(super) message: Vec<u8>,
 }
 
@@ -166,12 +167,12 @@ pub(super) struct Meters {
 #[derive(Debug, Clone)]
 pub(super) struct World {
     pub(super) model: Model,
-    /// System software version, e.g. `FS1.14.00A(JP/US)-00`.
+    /// System software version, for example `FS1.14.00A(JP/US)-00`.
     pub(super) software: String,
     pub(super) robot_model: String,
     pub(super) application: String,
     pub(super) parameter_version: String,
-    /// Date and time when `Now` is zero.
+    /// Date and time at which `Now` is zero.
     pub(super) clock: DateTime,
     /// Start of the operating-time counters.
     pub(super) installed: DateTime,
@@ -182,18 +183,19 @@ pub(super) struct World {
     pub(super) arm: Arm,
     pub(super) player: Player,
     pub(super) files: Storage,
-    /// Whether answers omit missing axes. With `None`, answers omit them for all groups except robots with six axes.
+    /// Whether answers omit missing axes. If this is `None`, answers for all groups except robots with six axes omit
+    /// them.
     pub(super) trim_axes: Option<bool>,
     /// Operating-time counters, including the time before the start.
     pub(super) meters: Meters,
     /// Taught user frames: number, origin, and rotation about Z.
     pub(super) user_frames: Vec<(u32, [f64; 4])>,
     pub(super) events: Timeline,
-    /// Number of changes of mode and of remote. Each change drops file transfers.
+    /// Number of changes of the mode and of command remote. After each change, the file server drops its transfer.
     pub(super) mode_changes: u64,
 }
 
-/// Maximum number of steps in a call of [`World::advance`]. After them, the remaining time is one step.
+/// Maximum number of steps in a call of [`World::advance`]. After these steps, the rest of the time is one step.
 const MAX_STEPS: u32 = 1_000_000;
 
 impl World {
@@ -213,7 +215,7 @@ impl World {
         [self.arm.motion_end(), self.player.due(), self.events.due()].into_iter().flatten().min()
     }
 
-    /// Advances the time from `now` to `to`, and counts the operating times. No switch changes in this time.
+    /// Advances the time from `now` to `to`, and counts the operating times. No switch changes during this time.
     fn pass(&mut self, to: Now) {
         let span = to.saturating_sub(self.now);
         self.meters.control += span;
@@ -246,8 +248,8 @@ impl World {
         }
         self.play();
         while let Some(line) = self.events.take(self.now) {
-            // The lines were checked when the start state was parsed. A line that is not possible in the current state
-            // has no effect, as on a pendant.
+            // The lines were checked when the start state was parsed. If a line is not possible in the current state,
+            // it has no effect, as on a pendant.
             let _refused = console::execute(self, &line);
         }
     }
@@ -286,7 +288,7 @@ impl World {
         self.player.is_running() || self.arm.is_moving()
     }
 
-    /// Both words of 0x72.
+    /// Both status words of command 0x72.
     pub(super) fn status(&self) -> ControllerStatus {
         let Switches { mode, remote, servo, cycle, hold, guard, error, .. } = self.switches;
         [
@@ -309,8 +311,8 @@ impl World {
         .fold(ControllerStatus::default(), |status, (bit, on)| status.with(bit, on))
     }
 
-    /// A byte of I/O. The system outputs follow the state. Their positions are specific to this simulator, and are
-    /// based on the usual ladder.
+    /// A byte of I/O. The system outputs show the state of the controller. Their positions are specific to this
+    /// simulator, and are based on the usual ladder.
     pub(super) fn io(&self, instance: u16) -> u8 {
         let Switches { mode, remote, servo, hold, error, .. } = &self.switches;
         let signals: &[(u8, bool)] = match instance {
@@ -327,12 +329,12 @@ impl World {
         signals.iter().fold(self.memory.io(instance), |byte, &(bit, on)| byte & !(1 << bit) | u8::from(on) << bit)
     }
 
-    /// Whether the controller accepts changes at all.
+    /// Checks that the controller accepts changes at all.
     pub(super) fn may_command(&self) -> Result<(), Refusal> {
         if self.switches.remote { Ok(()) } else { Err(Refusal::Added(code::NOT_REMOTE)) }
     }
 
-    /// Whether variables, I/O and registers can be written.
+    /// Checks that variables, I/O and registers can be written.
     pub(super) fn may_write(&self) -> Result<(), Refusal> {
         self.may_command()?;
         let Switches { mode, editing, play_lock, .. } = self.switches;
@@ -340,7 +342,7 @@ impl World {
         refuse_if(play_lock && mode == Mode::Play, Refusal::Added(code::NO_ACCESS))
     }
 
-    /// Whether a motion or a job can start.
+    /// Checks that a motion or a job can start.
     pub(super) fn may_move(&self) -> Result<(), Refusal> {
         let Switches { mode, servo, hold, editing, .. } = self.switches;
         refuse_if(mode == Mode::Teach, Refusal::Added(code::MODE))?;
@@ -357,7 +359,7 @@ impl World {
         obstacle.map_or(Ok(()), |code| Err(Refusal::Added(code)))
     }
 
-    /// Whether servo power can be switched on.
+    /// Checks that servo power can be switched on.
     pub(super) fn may_power(&self) -> Result<(), Refusal> {
         refuse_if(self.alarms.is_active(), Refusal::Added(code::ALARM))?;
         refuse_if(self.switches.estop, Refusal::Added(code::SERVO_REFUSED))
@@ -377,7 +379,7 @@ impl World {
     }
 }
 
-/// Format `YYYY/MM/DD HH:MM`.
+/// Formats a time as `YYYY/MM/DD HH:MM`.
 pub(super) fn format_time(time: DateTime) -> String {
     time.strftime("%Y/%m/%d %H:%M").to_string()
 }

@@ -4,14 +4,14 @@ use super::super::Model;
 use super::super::wire::Status;
 use super::{link, robot};
 
-/// Subject of an added status.
+/// Subject of an added status: what it is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Class {
-    /// The command or its values.
+    /// The command, or the values in the command.
     Operand,
-    /// Activity and mode of the controller.
+    /// Activity or mode of the controller.
     State,
-    /// Servo power, positions, panel locks, coordinates.
+    /// Servo power, positions, panel locks or coordinates.
     Servo,
     /// Jobs and positions stored in the controller.
     Job,

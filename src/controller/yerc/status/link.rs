@@ -9,10 +9,10 @@ const LINK_INTERNAL: &str = "An internal error of the controller, in its group o
 const BUSY_CAUSE: &str = "The controller still processes another command, from this host or another host.";
 const BUSY_REMEDY: &str = "Repeat after a moment. If the error stays, find the other host that sends commands to this \
                            controller.";
-const FRAME_REMEDY: &str = "armctl never sends such a frame: record the exchange with --trace and report it. If other \
-                            software sent the frame, correct that software.";
+const FRAME_REMEDY: &str = "armctl never sends such a frame: record the exchange with --trace and report the problem. \
+                            If other software sent the frame, correct that software.";
 
-/// In ascending order. Columns: code, class, models, name, cause, remedy.
+/// Rows in ascending order of the code. Columns: code, class, models, name, cause, remedy.
 #[rustfmt::skip] // Eight lines per row would hide the table.
 pub(super) static ROWS: &[AddedRow] = &[
     row(0x6010, Class::Backup, BOTH, "robot or station is operating",
@@ -20,7 +20,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Stop the job, then repeat."),
     row(0x6020, Class::Backup, BOTH, "not enough memory on the device",
         "The memory card, USB stick or RAM disk is full.",
-        "Free space on the device, or use a larger one."),
+        "Free space on the device, or use a larger device."),
     row(0x6030, Class::Backup, BOTH, "device cannot be accessed",
         "The device is missing, not formatted, write-protected or broken. For the batch backup the RAM disk may be \
          missing.",
@@ -107,8 +107,8 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The requested type does not exist on this controller.",
         "Check the type number; `armctl yerc info` and `armctl yerc axes` show what is fitted."),
     row(0xB008, Class::Data, BOTH, "control group setting error",
-        "The control group of a move or position is wrong, or robot and station are both named.",
-        "Name exactly one: a robot or a station. `armctl yerc axes` lists the groups that are fitted."),
+        "The control group of a move or position is wrong, or the request names both a robot and a station.",
+        "Name only a robot, or only a station. `armctl yerc axes` lists the groups that are fitted."),
     row(0xB009, Class::Data, BOTH, "speed setting error",
         "The speed is out of range, or its unit does not match the move. Joint moves need percent, linear moves mm/s \
          or deg/s.",
@@ -130,8 +130,8 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The user coordinate number is out of range or the system is not taught.",
         "Use the number (1 to 63) of a taught user coordinate system (pendant: ROBOT > USER COORDINATE)."),
     row(0xC001, Class::System, BOTH, "address error",
-        "The controller had an internal error in the address of the data (not certain: Yaskawa's packet dissector calls it \
-         a data area setting error).",
+        "The controller had an internal error in the address of the data (not certain: Yaskawa's packet dissector \
+         calls this code a data area setting error).",
         "Check the requested number and count. If they are correct, clear the alarm and try again. If the error \
          stays, make a CMOS.BIN backup and call the service with this code."),
     row(0xC002, Class::System, BOTH, "system error",
@@ -160,7 +160,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The parameters of the batch backup are not set (an FS100 reports only that a parameter is wrong).",
         "Set S2C680 = 1, restart the controller, and check the AUTO BACKUP SET screen."),
     row(0xE250, Class::File, DX200, "backup file could not be created",
-        "The controller could not write the backup file, often because it is not in remote mode.",
+        "The controller could not write the backup file, often because the controller is not in remote mode.",
         "Turn the mode key to REMOTE, check the RAM disk (S2C680 = 1), and repeat."),
     row(0xE289, Class::File, DX200, "system error",
         FILE_INTERNAL,

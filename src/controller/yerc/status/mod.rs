@@ -32,7 +32,7 @@ pub struct StatusRow {
     pub remedy: &'static str,
 }
 
-/// In ascending order.
+/// Rows in ascending order of the code.
 static STATUSES: [StatusRow; 5] = [
     StatusRow {
         code: 0x00,
@@ -87,8 +87,8 @@ pub fn all_statuses() -> impl Iterator<Item = &'static StatusRow> {
 /// Description of a code.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Explanation {
-    /// The more specific code, in hexadecimal: `0x2060` for an added status, `0x28` for a status without an added
-    /// status.
+    /// Text of the more specific code, in hexadecimal. For example, `0x2060` is an added status, and `0x28` is a status
+    /// without an added status.
     pub code_text: String,
     /// Class of the code; `None` for status codes and for unknown codes.
     pub class: Option<Class>,
@@ -130,8 +130,8 @@ pub struct NoCode {
     pub text: String,
 }
 
-/// Looks up a code in user notation: `2060`, `0x2060`, `e29c`, `1F`, `0x1f`. Codes are hexadecimal, with or without
-/// prefix. The result is never empty. It has two entries only if a short code is in both tables.
+/// Looks up a code in user notation, for example `2060`, `0x2060`, `e29c`, `1F` or `0x1f`. Codes are hexadecimal, with
+/// or without prefix. The result is never empty. It has two entries only if a short code is in both tables.
 pub fn lookup(text: &str) -> Result<Vec<Explanation>, NoCode> {
     let trimmed = text.trim();
     let code: u32 = typed::code(trimmed).ok_or_else(|| NoCode { text: text.to_owned() })?;
@@ -209,7 +209,7 @@ fn status_text(code: u8) -> String {
     format!("0x{code:02X}")
 }
 
-/// Added status as text: `0xB005`.
+/// Added status as text, for example `0xB005`.
 pub fn added_text(code: u32) -> String {
     format!("0x{code:04X}")
 }

@@ -2,7 +2,7 @@
 
 use super::added::{AddedRow, BOTH, Class, row};
 
-/// In ascending order. Columns: code, class, models, name, cause, remedy.
+/// Rows in ascending order of the code. Columns: code, class, models, name, cause, remedy.
 #[rustfmt::skip] // Eight lines per row would hide the table.
 pub(super) static ROWS: &[AddedRow] = &[
     row(0x1010, Class::Operand, BOTH, "command error",
@@ -39,7 +39,7 @@ pub(super) static ROWS: &[AddedRow] = &[
     row(0x2040, Class::State, BOTH, "hold by external signal",
         "An external hold input is active: a PLC, a door or another station holds the robot.",
         "Find the source of the external hold (PLC, safety or interlock signals in IN/OUT on the pendant) and clear \
-         it there."),
+         the hold there."),
     row(0x2050, Class::State, BOTH, "hold by command",
         "HOLD was switched on by a command over the network, by this program or by another host.",
         "Make sure that no person or program needs the hold, then send `armctl yerc hold off`."),
@@ -83,8 +83,8 @@ pub(super) static ROWS: &[AddedRow] = &[
         "The request needs servo power, and it is off.",
         "Check that the cell is clear, then run `armctl yerc servo on` (remote mode) or use the key of the pendant."),
     row(0x3040, Class::Servo, BOTH, "home positioning is needed",
-        "The robot was not at its home position since the data were lost or changed. No program can move it before \
-         that.",
+        "The robot has not been at its home position since the data were lost or changed. No program can move it \
+         before that.",
         "Do the home positioning from the pendant in teach mode, as described in the maintenance handbook of the \
          robot."),
     row(0x3050, Class::Servo, BOTH, "position confirmation is needed",
@@ -131,8 +131,8 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Robots that work together were not calibrated to each other, so the request cannot be computed.",
         "Do the robot calibration on the pendant, or load the calibration file from a backup."),
     row(0x3450, Class::Servo, BOTH, "servo power cannot be turned on",
-        "A part of the safety circuit keeps servo power off: emergency stop, door, enable switch, an alarm, or \
-         external servo-on not released.",
+        "A part of the safety circuit keeps servo power off: an emergency stop, a door, an enable switch, an alarm, \
+         or a missing external servo-on signal.",
         "Check every emergency stop, door and enable signal, and `armctl yerc alarm list`. Clear the cause, then run \
          `armctl yerc servo on` again."),
     row(0x3460, Class::Servo, BOTH, "coordinate system cannot be set",
@@ -149,7 +149,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "On the pendant, open JOB > DETAIL of the job and remove the edit lock, or load the job under another name."),
     row(0x4030, Class::Job, BOTH, "a job of this name exists",
         "A job with this name is already on the controller and is not overwritten.",
-        "Load it under another name, or save the old job with `armctl yerc file get` and delete it first."),
+        "Load the job under another name, or save the old job with `armctl yerc file get` and delete it first."),
     row(0x4040, Class::Job, BOTH, "no such job",
         "The controller has no job with this name. Names are case-sensitive. A job name has no .JBI, but a file name \
          has it.",
@@ -191,9 +191,10 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Nothing to do. For another conversion, start again from the original job."),
     row(0x4480, Class::Job, BOTH, "user coordinate must be taught",
         "The job refers to a user coordinate system that is not taught on this controller.",
-        "Teach it under ROBOT > USER COORDINATE, or load UFRAME.CND, before loading or running the job."),
+        "Teach the user coordinate system under ROBOT > USER COORDINATE, or load UFRAME.CND, before loading or \
+         running the job."),
     row(0x4490, Class::Job, BOTH, "relative job / independent control not permitted",
-        "The controller has no relative jobs or no independent control, or they are switched off.",
+        "The controller has no relative jobs or no independent control, or these functions are switched off.",
         "Load the job as a standard job, or ask the integrator to enable the function."),
     row(0x5110, Class::Syntax, BOTH, "instruction syntax error",
         "A line of the job file is not a valid instruction on this controller.",

@@ -3,7 +3,7 @@
 /// A named bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bit {
-    /// Position from the least significant bit.
+    /// Position of the bit, counted from the least significant bit.
     pub bit: u8,
     /// Name of state 0; empty if the state has no name.
     pub clear: &'static str,
@@ -22,7 +22,7 @@ const fn bit(bit: u8, clear: &'static str, set: &'static str) -> Bit {
     Bit { bit, clear, set }
 }
 
-/// Form word, with the names of the text format.
+/// Bits of the form word, with their names in the text format of positions.
 pub const FORM_BITS: [Bit; 8] = [
     bit(0, "front", "back"),
     bit(1, "upper", "lower"),
@@ -34,7 +34,7 @@ pub const FORM_BITS: [Bit; 8] = [
     bit(7, "previous-step", "regard-form"),
 ];
 
-/// Extended form word, with the names of the text format.
+/// Bits of the extended form word, with their names in the text format of positions.
 pub const EXTENDED_FORM_BITS: [Bit; 5] = [
     bit(0, "l-lt180", "l-ge180"),
     bit(1, "u-lt180", "u-ge180"),
@@ -43,7 +43,7 @@ pub const EXTENDED_FORM_BITS: [Bit; 5] = [
     bit(4, "w-lt180", "w-ge180"),
 ];
 
-/// First status word.
+/// Bits of the first status word.
 pub const DATA_1_BITS: [Bit; 8] = [
     bit(0, "", "step mode"),
     bit(1, "", "one-cycle mode"),
@@ -55,7 +55,7 @@ pub const DATA_1_BITS: [Bit; 8] = [
     bit(7, "", "command remote"),
 ];
 
-/// Second status word.
+/// Bits of the second status word.
 pub const DATA_2_BITS: [Bit; 6] = [
     bit(1, "", "hold by pendant"),
     bit(2, "", "hold by external signal"),

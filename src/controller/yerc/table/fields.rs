@@ -22,19 +22,19 @@ pub enum Kind {
     F32,
     /// Text of this size in the encoding of the pendant, padded with NUL.
     Text(usize),
-    /// 32 bits, some of which have names.
+    /// 32 bits, of which some have names.
     Bits(&'static [Bit]),
-    /// 32 bits with one of these values.
+    /// 32 bits that must have one of these values. Each value has a name.
     Choice(&'static [(u32, &'static str)]),
-    /// 32 bits in a unit.
+    /// A 32-bit number in this unit.
     Scaled(Unit),
-    /// An axis of a robot position, counted from 0. The data type of the position determines its unit.
+    /// An axis of a robot position, counted from 0. The data type of the position determines the unit.
     Axis(usize),
-    /// An axis of a base position. The data type of the position determines its unit.
+    /// An axis of a base position. The data type of the position determines the unit.
     BaseAxis,
-    /// 32 bits in the unit of the speed class.
+    /// A 32-bit speed, in the unit of the speed class.
     Speed,
-    /// 32 bits, always 0.
+    /// 32 reserved bits, always 0.
     Reserved,
     /// The name of a file, 1 to 479 bytes.
     FileName,
@@ -228,9 +228,9 @@ const BASE_PULSES: [Field; 3] = numbered!("base axis", _ => Kind::Scaled(units::
 const STATION: [Field; 6] = numbered!("station axis", _ => Kind::Scaled(units::PULSE); 1 2 3 4 5 6);
 const RESERVED: Field = f("reserved", Kind::Reserved);
 
-/// DX 3.3.39: two reserved words.
+/// Layout with 26 words: two words are reserved (DX 3.3.39).
 pub(super) const MOVE_26: &[Field] = &join::<26>(&[&SPEED, &TARGET, &[RESERVED, RESERVED], &FORM, &BASE_MM, &STATION]);
-/// FS 3.3.39: one reserved word.
+/// Layout with 25 words: one word is reserved (FS 3.3.39).
 pub(super) const MOVE_25: &[Field] = &join::<25>(&[&SPEED, &TARGET, &[RESERVED], &FORM, &BASE_MM, &STATION]);
 pub(super) const PULSE_MOVE: &[Field] = &join::<22>(&[
     &SPEED,

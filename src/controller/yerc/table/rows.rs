@@ -40,8 +40,8 @@ const fn file(number: u8, meaning: &'static str, action: Action, risk: RiskRule)
 
 const READ_FIELDS: &[Service] = &[get_single(Attribute::Field), get_all(Attribute::Zero)];
 const IO: &[Service] = &[get_single(Attribute::One), set_single(Attribute::One, WRITE)];
-/// Service 0x02 with attribute 0 is the form of section 3.2.2. The table of the command has service 0x10 with attribute
-/// 1.
+/// Service 0x02 with attribute 0 is the form in section 3.2.2. The table of the command itself has service 0x10 with
+/// attribute 1.
 const REGISTER: &[Service] =
     &[get_single(Attribute::One), set_single(Attribute::One, WRITE), set_all(Attribute::Zero, WRITE)];
 const VARIABLE: &[Service] = &[
@@ -110,7 +110,7 @@ const fn plural(
     Row { plural: Some(Plural { max, even: false }), ..row(number, section, name, PLURAL, instances, fields) }
 }
 
-/// Makes the write services of a row destructive, because they overwrite taught data.
+/// Gives the write services of a row the risk "destroy", because they overwrite taught data.
 const fn taught(row: Row) -> Row {
     Row { services: POSITIONS, ..row }
 }

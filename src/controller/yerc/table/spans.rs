@@ -11,7 +11,7 @@ pub struct Span {
     pub last: u16,
     /// Description of the instances.
     pub meaning: &'static str,
-    /// Prefix of the instance names, and the number of the first instance, such as `R` and 1.
+    /// Prefix of the instance names, and the number of the first instance, for example `R` and 1.
     pub numbered: Option<(&'static str, u16)>,
     /// Whether write services are valid.
     pub writable: bool,
@@ -25,7 +25,7 @@ impl Span {
         self.first <= instance && instance <= self.last
     }
 
-    /// Name of an instance, e.g. `R1, robot (pulse)`.
+    /// Name of an instance, for example `R1, robot (pulse)`.
     pub fn label(&self, instance: u16) -> String {
         match self.numbered {
             Some((prefix, from)) => {
@@ -67,7 +67,7 @@ impl Instances {
         self.for_model(model).iter().find(|span| span.contains(instance))
     }
 
-    /// Last number of the contiguous ranges that contain an instance.
+    /// Last instance that can be reached from `instance` through contiguous ranges.
     pub fn reach(&self, model: Model, instance: u16, only_writable: bool) -> Option<u16> {
         let mut spans = self.for_model(model).iter().filter(|span| span.writable || !only_writable);
         let mut last = spans.find(|span| span.contains(instance))?.last;
@@ -80,7 +80,7 @@ impl Instances {
         Some(last)
     }
 
-    /// Readable list of ranges, e.g. `1-2, 11-12`.
+    /// Readable list of ranges, for example `1-2, 11-12`.
     pub fn ranges(&self, model: Model, only_writable: bool) -> String {
         let mut ranges: Vec<(u16, u16)> = Vec::new();
         for span in self.for_model(model).iter().filter(|span| span.writable || !only_writable) {
@@ -101,7 +101,7 @@ const fn ro(first: u16, last: u16, meaning: &'static str) -> Span {
     Span { first, last, meaning, numbered: None, writable: false, extended: false }
 }
 
-/// A writable range.
+/// A range that can also be written.
 const fn rw(first: u16, last: u16, meaning: &'static str) -> Span {
     Span { writable: true, ..ro(first, last, meaning) }
 }
@@ -168,8 +168,8 @@ pub(super) const GROUPS: Instances = each(
     &[no(1, 2, "robot", "R", 1), no(11, 12, "base", "B", 1), no(21, 23, "station", "S", 1)],
     &[no(1, 8, "robot", "R", 1), no(11, 18, "base", "B", 1), no(21, 44, "station", "S", 1)],
 );
-/// For each class in which models differ, the last signal group, counted from the first. For network signals also the
-/// first group.
+/// Number of signal groups in each class in which models differ. For network signals, also the number of the first
+/// group.
 struct Signals {
     user: u16,
     external: u16,
@@ -204,9 +204,10 @@ const DX100_SIGNALS: Signals =
     Signals { user: 512, external: 500, system_output: 300, control_status: 128, ..FS100_SIGNALS };
 const DX200_SIGNALS: Signals = Signals { external: 512, network_from: 2701, network: 256, ..DX100_SIGNALS };
 
-/// Each FS100 class has 128 groups, and its numbers follow from that; the manual has different numbers for two classes.
-/// A DX100 has its network signals at the same numbers as an FS100 (`WriteSingleIO.srv` of `motoman_msgs`: inputs from
-/// 25010 on). Its writable range is the range of an FS100. Its readable range is the largest possible range.
+/// On an FS100, each class has 128 groups, and the last number of a class follows from this; the manual has different
+/// numbers for two classes. A DX100 has its network signals at the same numbers as an FS100 (`WriteSingleIO.srv` of
+/// `motoman_msgs`: inputs from 25010 on). Its writable range is the range of an FS100. Its readable range is the
+/// largest possible range.
 pub(super) const IO: Instances =
     Instances { fs100: &signals(&FS100_SIGNALS), dx100: &signals(&DX100_SIGNALS), dx200: &signals(&DX200_SIGNALS) };
 pub(super) const REGISTERS: Instances = both(&[rw(0, 559, "register"), ro(560, 999, "register (read only)")]);

@@ -1,8 +1,8 @@
 //! Plans the smallest number of requests for many variables, registers or I/O groups.
 //!
-//! A read may include elements in a gap that nobody requested: additional bytes of a datagram cost less than another
-//! round trip. Reads of positions have no such gaps, because the controller refuses the whole answer if one position is
-//! undefined. A write never includes elements that were not requested.
+//! A read may include elements that were not requested but lie between requested elements: additional bytes of a
+//! datagram cost less than another round trip. Reads of positions contain no such elements, because the controller
+//! refuses the whole answer if one position is undefined. A write never includes elements that were not requested.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::hash::Hash;
@@ -18,7 +18,7 @@ use crate::yerc::query::{
 use crate::yerc::request::Request;
 use crate::yerc::table::{Plural, Row};
 
-/// A range that begins at `first`.
+/// A range of consecutive numbers that begins at `first`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Block {
     first: u16,
@@ -33,7 +33,7 @@ enum Either<S, P> {
 }
 
 impl<S: Query<Answer = A>, P: Query<Answer = Vec<A>>, A> Either<S, P> {
-    /// The elements of the answer.
+    /// Decodes the elements of the answer.
     fn decode_all(&self, data: &[u8]) -> Result<Vec<A>, PayloadError> {
         match self {
             Self::Single(query) => query.decode(data).map(|element| vec![element]),
@@ -175,7 +175,7 @@ pub fn plan_reads(references: &[Reference]) -> Vec<ReadStep> {
 
 /// Plans the reads of these registers.
 pub fn plan_register_reads(model: Model, numbers: &[u16]) -> Result<Vec<RegisterStep>, QueryError> {
-    // The constructor of a query refuses numbers that do not exist.
+    // Numbers that do not exist are not sorted out here: the constructor of the query refuses them.
     let numbers: BTreeSet<u16> = numbers.iter().copied().collect();
     read_blocks(&numbers, limits(0x301), true, |number| run_of(0x301, model, number))
         .into_iter()
@@ -255,8 +255,8 @@ pub fn plan_io_writes(model: Model, values: &[(u16, u8)]) -> Result<Vec<WriteIoS
         .collect()
 }
 
-/// Forms blocks over sorted numbers, each with its requested numbers. `range` returns the first and last existing
-/// element around a number. It limits the blocks, and shows whether a neighbor exists that makes a count even.
+/// Forms blocks over sorted numbers. Each block has its requested numbers. `range` returns the first and last existing
+/// element around a number: a block must not go beyond them, and a neighbor within them can make a count even.
 fn read_blocks(
     numbers: &BTreeSet<u16>,
     Plural { max, even }: Plural,
@@ -281,7 +281,8 @@ fn read_blocks(
             count if !even || count == 1 || count % 2 == 0 => Block { first, count },
             count if last < highest => Block { first, count: count + 1 },
             count if first > lowest => Block { first: first - 1, count: count + 1 },
-            // No neighbor can make the count even. The last number gets a single read, and the block ends before it.
+            // No neighbor can make the count even. The last number gets a single read, and the block ends before this
+            // number.
             _ => {
                 let alone = wanted.pop().into_iter().collect();
                 blocks.push((Block { first: last, count: 1 }, alone));
@@ -296,7 +297,7 @@ fn read_blocks(
     blocks
 }
 
-/// Forms contiguous blocks. If counts must be even, the last element of an odd block gets a single write.
+/// Forms blocks of consecutive numbers. If counts must be even, the last element of an odd block gets a single write.
 fn write_blocks(numbers: &BTreeSet<u16>, Plural { max, even }: Plural) -> Vec<Block> {
     let mut blocks: Vec<Block> = Vec::new();
     for &number in numbers {
@@ -334,7 +335,8 @@ fn limits(command: u16) -> Plural {
     Row::from_number(command).and_then(|row| row.plural).expect("registers and I/O groups have a plural command")
 }
 
-/// The contiguous instances around `number`; only `number` itself if it does not exist.
+/// First and last of the contiguous instances around `number`. Both are `number` itself if this instance does not
+/// exist.
 fn run_of(command: u16, model: Model, number: u16) -> (u16, u16) {
     let spans = Row::from_number(command).map_or(&[][..], |row| row.instances.for_model(model));
     let Some(at) = spans.iter().position(|span| span.contains(number)) else { return (number, number) };

@@ -51,7 +51,7 @@ impl VariableKind {
         KINDS.iter().map(|row| row.0)
     }
 
-    /// Letters, e.g. `BP`; both string forms have `S`.
+    /// Letters of the kind, for example `BP`. Both string forms have the letter `S`.
     pub fn letters(self) -> &'static str {
         KINDS[self as usize].1
     }
@@ -104,7 +104,7 @@ impl VariableKind {
     }
 }
 
-/// A variable by kind and number. Parsed and displayed as `B0`, `P12`, `EX3`.
+/// A variable, identified by kind and number. The text form is, for example, `B0`, `P12` or `EX3`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Reference {
     /// Kind of variable.
@@ -155,7 +155,7 @@ impl fmt::Display for Reference {
 impl FromStr for Reference {
     type Err = ReferenceError;
 
-    /// `S` means the 32-byte form; see [`VariableKind::string_form`].
+    /// The letter `S` means the 32-byte form; see [`VariableKind::string_form`].
     fn from_str(text: &str) -> Result<Self, ReferenceError> {
         let digits = text.find(|c: char| c.is_ascii_digit()).unwrap_or(text.len());
         let (letters, number) = text.split_at(digits);
@@ -180,7 +180,7 @@ pub fn parse_references(text: &str) -> Result<Vec<Reference>, ReferenceError> {
     Ok(numbers.map(|number| Reference::new(first.kind, number)).collect())
 }
 
-/// Parses `5` or `5..20` for registers and I/O groups. A range includes both ends.
+/// Parses `5` or `5..20`, for registers and I/O groups. A range includes both ends.
 pub fn parse_numbers(text: &str) -> Result<Vec<u16>, ReferenceError> {
     typed::range(text, |end| parse_number(end, text)).map(Iterator::collect)
 }

@@ -34,7 +34,7 @@ pub enum Value {
 /// Why a value is invalid.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ValueError {
-    /// A number out of range.
+    /// The number is out of range for the kind of variable.
     #[error("'{found}' is not {expected}")]
     Number {
         /// The invalid text.
@@ -42,10 +42,10 @@ pub enum ValueError {
         /// Valid values.
         expected: &'static str,
     },
-    /// A string that does not fit.
+    /// The string does not fit the variable.
     #[error(transparent)]
     Text(#[from] TextError),
-    /// An invalid position.
+    /// The position is invalid.
     #[error(transparent)]
     Position(#[from] PositionTextError),
 }
@@ -67,7 +67,7 @@ impl Value {
         })
     }
 
-    /// Encodes the element in full size.
+    /// Encodes the value in the full size of the variable.
     pub fn emit(&self) -> Vec<u8> {
         match self {
             Self::Byte(value) => vec![*value],
@@ -108,7 +108,8 @@ impl Value {
                 Self::Double(whole(&shown).ok_or_else(|| number("a number from -2147483648 to 2147483647"))?)
             }
             VariableKind::R => {
-                // Hexadecimal input is parsed as an integer that a real can represent exactly.
+                // Hexadecimal input is parsed as a 16-bit integer, because a real can represent every such integer
+                // exactly.
                 let value = shown.parse().ok().or_else(|| whole::<i16>(&shown).map(f32::from));
                 let value = value.filter(|value: &f32| value.is_finite());
                 Self::Real(value.ok_or_else(|| number("a number that fits 32-bit floating point"))?)

@@ -23,7 +23,7 @@ pub struct Outcome {
     pub words: Option<Words>,
     /// Time from the first sending of the command to the end status.
     pub elapsed: Duration,
-    /// Status before the command, which another master or an earlier command left.
+    /// Status that the controller had before the command, if another master or an earlier command left it.
     pub leftover: Option<Status>,
     /// Whether the running status was received. A short command may skip it.
     pub ran: bool,
@@ -40,12 +40,12 @@ pub enum Ended {
     Answered(Answer),
     /// The command was not sent, so the controller did nothing.
     NotSent(NotSentReason),
-    /// The user ended continuous output.
+    /// The user stopped continuous output.
     Stopped,
     /// No answer to a command that can be repeated without harm.
     NoAnswer(Silence),
-    /// No answer to a command that changes something. The controller may or may not have carried it out, or may still
-    /// execute it.
+    /// No answer to a command that changes something. The controller may or may not have carried out the command, or
+    /// may still execute it.
     OutcomeUnknown(Silence),
 }
 
@@ -56,7 +56,8 @@ pub enum NotSentReason {
     NoImage,
     /// The link was lost, or the driver does not send images.
     LinkLost,
-    /// The controller was not ready: it executes another command, or it keeps another status despite the status reset.
+    /// The controller was not ready. It executes another command, or it keeps this status although the master sends the
+    /// status reset.
     NotReady(Status),
     /// The user interrupted the exchange.
     Interrupted,
@@ -71,7 +72,7 @@ pub enum Silence {
     NotTaken,
     /// The command was still running at the deadline.
     TooLong,
-    /// The running status ended without an end status.
+    /// The running status ended, but no end status followed.
     Vanished,
     /// The controller has a status that is not in the manual.
     Undocumented(u16),
@@ -98,18 +99,21 @@ impl fmt::Display for Silence {
             Self::TooLong => f.write_str("the command still ran at the end of the wait"),
             Self::Vanished => f.write_str("the controller ended the run status without a result"),
             Self::Undocumented(word) => write!(f, "the controller reports the undocumented status {word:#06x}"),
-            Self::Interrupted => f.write_str("the end of the command was not confirmed in the time for a stop"),
+            Self::Interrupted => f.write_str(
+                "the controller did not confirm the end of the command within the time \
+                                              for a stop",
+            ),
         }
     }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
-    /// Sends the data words without a command word, until the controller is ready.
+    /// The session sends the data words without a command word, until the controller is ready.
     Prepare,
-    /// Sends the command word.
+    /// The session sends the command word.
     Command,
-    /// Sends the status reset, since this time.
+    /// The session has sent the status reset since this time.
     Release(Now),
     Over,
 }
@@ -186,7 +190,7 @@ impl Exchange {
         self.phase == Phase::Command && self.sent.is_some() && self.status() == Some(Status::Running)
     }
 
-    /// New values of continuous output since the last call (4.7.4).
+    /// New values of continuous output after the last call of this function (4.7.4).
     pub fn running(&mut self) -> Option<Answer> {
         self.running.take()
     }
@@ -196,7 +200,7 @@ impl Exchange {
         self.sent.map_or(Duration::ZERO, |sent| now.saturating_sub(sent))
     }
 
-    /// Interrupts the exchange. A command that was not sent is dropped. A motion is stopped with SI(06), and the
+    /// Interrupts the exchange. If the command was not sent, it is dropped. A motion is stopped with SI(06), and the
     /// session waits for its end. Continuous output is ended. Any other command ends soon by itself.
     pub fn interrupt(&mut self, now: Now) {
         self.interrupted.get_or_insert(now);
@@ -242,7 +246,7 @@ impl Exchange {
         }
     }
 
-    /// Keeps the command word until the end status.
+    /// Sends the command word until the end status arrives.
     fn command(&mut self, now: Now, output: &mut Output) {
         let shown = output.last_sent().is_some_and(|sent| sent.command() == *self.order.words());
         if self.sent.is_none() && shown {
@@ -256,8 +260,8 @@ impl Exchange {
         let status = self.status().unwrap_or(Status::Ready);
         if self.sent.is_none() {
             if status != Status::Ready || self.interrupted.is_some() {
-                // The status belongs to another command, because the command of this session was not sent. Its command
-                // word is removed.
+                // The status belongs to a command of another master, because the command of this session was not sent.
+                // This session removes its own command word.
                 self.phase = Phase::Prepare;
                 self.prepare(now, output);
             } else if now >= self.deadline() {
@@ -303,7 +307,7 @@ impl Exchange {
         }
     }
 
-    /// Ends the exchange. From now on, only the status reset is sent.
+    /// Ends the exchange. After this, the session sends only the status reset.
     fn finish(&mut self, now: Now, output: &mut Output, ended: Ended) {
         let is_jog_at_large = self.order.row().pace == Pace::Jog && matches!(ended, Ended::OutcomeUnknown(_));
         if (self.stopping && !matches!(ended, Ended::Answered(_))) || is_jog_at_large {
@@ -319,7 +323,7 @@ impl Exchange {
         self.release(now, output);
     }
 
-    /// Waits for the ready status, and then switches the stop input on again.
+    /// Waits for the ready status. Then switches the stop input on again.
     fn release(&mut self, now: Now, output: &mut Output) {
         let Phase::Release(since) = self.phase else { return };
         let never_sent = matches!(self.outcome.ended, Ended::NotSent(_));
@@ -367,8 +371,8 @@ impl Exchange {
         self.started.unwrap_or(now)
     }
 
-    /// Deadline for the ready status. After a stop it is the deadline of the stop, but there must be time for the edge
-    /// of the stop input.
+    /// Deadline for the ready status. After a stop, it is the deadline of the stop. It is extended if the edge of the
+    /// stop input needs more time.
     fn release_until(&self, since: Now) -> Now {
         let over = since.saturating_add(self.policy.release);
         let edge = since.saturating_add(EDGE_INTERVAL * 2);
@@ -387,7 +391,7 @@ impl Exchange {
         }
     }
 
-    /// Next deadline if no image arrives.
+    /// Time of the next action if no image arrives before it.
     fn due(&self, now: Now, output: &Output) -> Now {
         match self.phase {
             Phase::Prepare => self.started_or(now).saturating_add(self.policy.ready),
@@ -428,7 +432,7 @@ impl ImageSession for Exchange {
         if !self.linked || self.phase == Phase::Over {
             return;
         }
-        // The signals in an image also change without a command, so only the command words are compared.
+        // The signals in an image also change without a command. Therefore only the command words are compared.
         let changed = || self.input.map(|known| known.command()) != Some(input.command());
         if self.phase == Phase::Command && self.order.is_continuous() && changed() {
             let running = Answer::parse(&self.order, &input.command());

@@ -10,7 +10,7 @@ use crate::yrcx::alarm::Alarm;
 
 pub(super) use crate::yrcx::alarm::{INPUT_FORMAT, STOP_INPUT};
 
-/// Numbers from the manual, or known from these controllers.
+/// Alarm numbers from the manual, or known from these controllers.
 pub(super) const SOFT_LIMIT: Alarm = Alarm::new(2, 334);
 pub(super) const UNKNOWN_COMMAND: Alarm = Alarm::new(12, 75);
 pub(super) const NOT_ENABLED: Alarm = Alarm::new(12, 76);
@@ -18,7 +18,7 @@ pub(super) const NOT_ENABLED: Alarm = Alarm::new(12, 76);
 pub(super) const LINK: Alarm = Alarm::new(12, 551);
 pub(super) const EMERGENCY_STOP: Alarm = Alarm::new(12, 600);
 
-/// Numbers that are specific to this simulator.
+/// Alarm numbers that are specific to this simulator.
 pub(super) const NO_POWER: Alarm = Alarm::new(2, 901);
 pub(super) const NO_ORIGIN: Alarm = Alarm::new(2, 902);
 pub(super) const MOVING: Alarm = Alarm::new(2, 903);
@@ -59,7 +59,7 @@ pub(super) enum AlarmSource {
 }
 
 impl AlarmSource {
-    /// The additional information about the source, in two words.
+    /// The two words with additional information about the source.
     pub(super) fn words(self) -> [u16; 2] {
         let small = |number: usize| u16::try_from(number).unwrap_or_default() & 0xFF;
         match self {
@@ -122,7 +122,7 @@ pub(super) type Entry = (Alarm, AlarmSource);
 /// Active alarms and history.
 #[derive(Debug, Clone, Default)]
 pub(super) struct AlarmLog {
-    /// Active alarms. `true` marks the alarms that are cleared only by a power cycle.
+    /// Active alarms. `true` means that only a power cycle clears the alarm.
     active: Vec<(Alarm, bool)>,
     history: VecDeque<Entry>,
     /// Latest alarm that a remote command caused (4.7.17).
@@ -154,7 +154,7 @@ impl AlarmLog {
         }
     }
 
-    /// Resets all alarms, except the alarms whose cause still exists.
+    /// Resets all alarms except those whose cause still exists.
     pub(super) fn reset(&mut self, still: impl Fn(Alarm) -> bool) {
         self.active.retain(|(alarm, fatal)| *fatal || still(*alarm));
     }
@@ -172,12 +172,12 @@ impl AlarmLog {
         self.active.iter().map(|(alarm, _)| *alarm)
     }
 
-    /// Whether an alarm requires a power cycle.
+    /// Whether an active alarm requires a power cycle.
     pub(super) fn is_fatal(&self) -> bool {
         self.active.iter().any(|(_, fatal)| *fatal)
     }
 
-    /// Entry of the history; 1 is the newest.
+    /// Entry of the history by its number; 1 is the newest entry.
     pub(super) fn entry(&self, number: usize) -> Option<Entry> {
         self.history.get(number.checked_sub(1)?).copied()
     }

@@ -11,17 +11,17 @@ use crate::yrcx::value::{Key, Values};
 /// Progress of a command.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Work {
-    /// The command has ended, with this answer.
+    /// The command has ended, with these values in its answer.
     Done(Values),
     /// The command waits until the motion of these robots ends.
     Motion(Vec<usize>),
-    /// The command waits for a switch of power at this time.
+    /// The command waits until this time. Then this action switches the power.
     Power(Now, Action),
     /// The command runs until the master removes it.
     Continuous,
 }
 
-/// Commands that are accepted while the programming box has control (chapter 2, 3).
+/// Commands that the controller accepts while the programming box has control (chapter 2, 3).
 const UNDER_THE_BOX: [u16; 27] = [
     0x101, 0x105, 0x109, 0x10D, 0x111, 0x214, 0x224, 0x304, 0x501, 0x502, 0x503, 0x505, 0x506, 0x507, 0x508, 0x509,
     0x50A, 0x50B, 0x50C, 0x50F, 0x510, 0x511, 0x512, 0x513, 0x514, 0x515, 0x516,
@@ -44,7 +44,7 @@ pub(super) fn begin(world: &mut World, request: &Request) -> Result<Work, Fault>
     }
 }
 
-/// Fault for a command in the wrong module of the simulator.
+/// Fault for a command that has a table row, but no implementation in the simulator.
 pub(super) fn not_here(request: &Request) -> Fault {
     Fault::new(UNKNOWN_COMMAND, AlarmSource::Slot, format!("the simulator does not support {}", request.row.id))
 }
@@ -53,7 +53,7 @@ fn done((): ()) -> Work {
     Work::Done(Values::default())
 }
 
-/// Whether commands are accepted at all (chapter 2, 3).
+/// Checks that the controller accepts commands at all (chapter 2, 3).
 fn enabled(world: &World, request: &Request) -> Result<(), Fault> {
     if !world.switches.inputs {
         let why = "a safety setting disables the dedicated inputs";

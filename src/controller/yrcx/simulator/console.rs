@@ -17,7 +17,7 @@ const HELP: &[(&str, &str)] = &[
     ("inputs on|off", "enable or disable the dedicated inputs"),
     ("warning on|off", "show a warning, or clear it"),
     ("alarm GROUP.CATEGORY [fatal]", "raise an alarm: alarm 12.600"),
-    ("DI(20)=1, DO2()=255", "set a port or a bit of it"),
+    ("DI(20)=1, DO2()=255", "set a port, or a bit of a port"),
     ("obstacle R1A3 PULSES|off", "block an axis of a robot at a position, or free it"),
     ("load R1A3 PERCENT", "set the load of an axis"),
     ("power", "switch the controller off and on"),
@@ -85,7 +85,7 @@ fn set_port(world: &mut World, text: &str) -> Result<String, String> {
     Ok(format!("{}{}() is {byte}", PORT_NAMES[port.kind], port.port))
 }
 
-/// Parses `R1A3`.
+/// Finds an axis by its name, for example `R1A3`.
 fn find_axis<'a>(world: &'a mut World, text: &str) -> Result<&'a mut Axis, String> {
     let numbers = text.strip_prefix('R').and_then(|rest| rest.split_once('A'));
     let index = |digits: &str| digits.parse::<usize>().ok()?.checked_sub(1);

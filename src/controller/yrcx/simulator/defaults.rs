@@ -85,9 +85,9 @@ program = 2
 pub(super) struct AxisDefault {
     /// Pulses per mm or degree.
     pub(super) per_unit: f64,
-    /// Soft limits in pulses, symmetric about 0.
+    /// Soft limit in pulses. The range of the axis is symmetric about 0.
     pub(super) limit: i32,
-    /// mm or degrees per second.
+    /// Full speed in mm or degrees per second.
     pub(super) speed: f64,
 }
 
@@ -108,7 +108,7 @@ pub(super) const SCARA: [AxisDefault; 4] =
 /// Arm lengths of a SCARA in mm.
 pub(super) const ARMS: [f64; 2] = [225.0, 175.0];
 
-/// Axis parameters (4.4.2).
+/// Default values of the axis parameters (4.4.2).
 pub(super) const PARAMETERS: [(u16, i32); 12] = [
     (257, 100),
     (258, 100),

@@ -1,7 +1,7 @@
 //! Forward and inverse kinematics. Both are exact, so that the controller reports a target in mm exactly as it was
 //! commanded.
 
-/// Four values: pulses, axis positions, or X, Y, Z in mm with R in degrees.
+/// Values of four axes or coordinates: pulses, axis positions, or X, Y, Z in mm with R in degrees.
 pub(super) type Four = [f64; 4];
 
 /// Protocol steps per mm or degree.
@@ -57,9 +57,9 @@ impl Arm {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Geometry {
     pub(super) kind: Kind,
-    /// Pulses per mm or degree, by axis.
+    /// Pulses per mm or degree, for each axis.
     pub(super) per_unit: Four,
-    /// Hand data (4.3.5).
+    /// Data of the selected hand (4.3.5); `None` without a hand.
     pub(super) hand: Option<[i32; 4]>,
 }
 
@@ -120,8 +120,8 @@ impl Geometry {
         }
     }
 
-    /// Angle and length of the second arm. A hand that is not on the R axis changes them: data 1 is an offset in
-    /// pulses, data 2 is added to the length.
+    /// Angle and length of the second arm. A hand that is not on the R axis changes both: data 1 is an offset in
+    /// pulses, and data 2 is added to the length.
     fn second_arm(&self, angle: f64) -> (f64, f64) {
         match (self.kind, self.hand) {
             (Kind::Scara { second, .. }, Some([offset, longer, _, 0])) => {
@@ -132,7 +132,8 @@ impl Geometry {
         }
     }
 
-    /// Offset of the tool from its mount, with the R axis at `r`. Data 4 is whether the tool rotates with the R axis.
+    /// Offset of the tool from its mount, with the R axis at `r`. Data 4 of the hand says whether the tool rotates with
+    /// the R axis.
     fn tool(&self, r: f64) -> [f64; 3] {
         let Some([one, two, three, on_r]) = self.hand else { return [0.0; 3] };
         let height = f64::from(three) / STEPS;
@@ -162,7 +163,8 @@ fn rotated(x: f64, y: f64, degrees: f64) -> (f64, f64) {
     (x * cos - y * sin, x * sin + y * cos)
 }
 
-/// Converts coordinates in a shift to coordinates of the robot.
+/// Converts coordinates in a shift to coordinates of the robot. A shift is a coordinate system that is moved and
+/// rotated by R.
 pub(super) fn from_shift(shift: &[i32; 4], pose: &Four) -> Four {
     let [x, y, z, r] = shift.map(|step| f64::from(step) / STEPS);
     let (turned_x, turned_y) = rotated(pose[0], pose[1], r);
@@ -176,13 +178,13 @@ pub(super) fn to_shift(shift: &[i32; 4], pose: &Four) -> Four {
     [turned_x, turned_y, pose[2] - z, pose[3] - r]
 }
 
-/// Moves a pose by `by` in tool coordinates, which rotate with R.
+/// Moves a pose by `by` in tool coordinates. Tool coordinates rotate with R.
 pub(super) fn along_tool(pose: &Four, by: &Four) -> Four {
     let (x, y) = rotated(by[0], by[1], pose[3]);
     [pose[0] + x, pose[1] + y, pose[2] + by[2], pose[3] + by[3]]
 }
 
-/// Rounds to the nearest integer in range.
+/// Rounds to the nearest integer that fits the result type.
 #[expect(clippy::cast_possible_truncation, reason = "a number out of range becomes the nearest limit")]
 pub(super) fn whole(number: f64) -> i32 {
     number.round() as i32

@@ -5,7 +5,7 @@ use crate::yrcx::image::{COMMAND_WORDS, Image};
 /// Maximum number of entries.
 const MOST: usize = 10_000;
 
-/// Entries since the journal was last read.
+/// Entries that were recorded after the journal was last read.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Journal {
     entries: Vec<String>,
@@ -28,7 +28,7 @@ impl Journal {
         ));
     }
 
-    /// Removes and returns all entries. The first line is their number; each other line is an entry.
+    /// Removes and returns all entries. The first line is the number of entries. Each other line is an entry.
     pub(super) fn take(&mut self) -> String {
         let Self { entries, omitted } = std::mem::take(self);
         let more = if omitted == 0 { String::new() } else { format!(", {omitted} more omitted") };

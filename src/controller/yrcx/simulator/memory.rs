@@ -8,17 +8,17 @@ use super::robot::AXES;
 use crate::simulator::refuse_if;
 
 pub(super) const POINTS: u16 = 30_000;
-/// Number of pallets and of shifts.
+/// Number of pallets, and of shifts.
 pub(super) const SHIFTS: usize = 40;
 pub(super) const HANDS: usize = 32;
 /// Number of variables of each kind.
 const VARIABLES: usize = 32;
-/// Number of SGR0 (4.4.1).
+/// Variable number of SGR0 (4.4.1).
 const FIRST_REAL: usize = 256;
-/// Maximum number of ports per type, and number of types (4.5.1).
+/// Maximum number of ports per type. The constant below is the number of types (4.5.1).
 const PORTS: usize = 24;
 const PORT_TYPES: usize = 7;
-/// Port types that are in the image.
+/// Index of port type SI. SI and SO are the port types that are in the image.
 pub(super) const SI: usize = 5;
 pub(super) const SO: usize = 6;
 pub(super) const PORT_NAMES: [&str; PORT_TYPES] = ["DI", "DO", "MO", "LO", "TO", "SI", "SO"];
@@ -43,14 +43,14 @@ impl PointUnit {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Point {
     pub(super) unit: PointUnit,
-    /// Hand system: 0 none, 1 right, 2 left.
+    /// Hand system: 0 is none, 1 is right, 2 is left.
     pub(super) hand_system: i32,
-    /// Pulses, or steps of 0.001 mm or degrees.
+    /// Values in pulses, or in steps of 0.001 mm or 0.001 degrees.
     pub(super) values: [i32; AXES],
 }
 
 impl Point {
-    /// Converts to pulses, or to mm and degrees.
+    /// Converts the values to pulses, or to mm and degrees.
     pub(super) fn numbers(&self) -> Four {
         match self.unit {
             PointUnit::Pulse => self.values.map(f64::from),
@@ -59,14 +59,14 @@ impl Point {
     }
 }
 
-/// A pallet. Its five points begin with point `first`.
+/// A pallet. `first` is the number of the first of its five points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Pallet {
     pub(super) counts: [i32; 3],
     pub(super) first: u16,
 }
 
-/// A hand, and the robot that has it, counted from 0.
+/// A hand, and the index of the robot that has it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Hand {
     pub(super) owner: usize,
@@ -135,7 +135,7 @@ impl Default for Memory {
 }
 
 impl Memory {
-    /// Returns a point, which must be defined.
+    /// Returns a point. Fails if the point is not defined.
     pub(super) fn point(&self, number: usize) -> Result<Point, Fault> {
         let key = u16::try_from(number).ok();
         key.and_then(|key| self.points.get(&key)).copied().ok_or_else(|| no_point(number))
@@ -147,7 +147,7 @@ impl Memory {
         }
     }
 
-    /// Adds another point to a point, or subtracts it (4.4.3).
+    /// Adds one point to another point, or subtracts it (4.4.3).
     pub(super) fn combine_points(&mut self, number: usize, other: usize, sign: i64) -> Result<(), Fault> {
         let (mut point, other) = (self.point(number)?, self.point(other)?);
         refuse_if(point.unit != other.unit, unit_differs("the two points"))?;
@@ -168,13 +168,13 @@ impl Memory {
         Ok(())
     }
 
-    /// Returns a pallet, which must be defined.
+    /// Returns a pallet. Fails if the pallet is not defined.
     pub(super) fn pallet(&self, number: usize) -> Result<Pallet, Fault> {
         let pallet = self.pallets.get(number).copied().flatten();
         pallet.ok_or_else(|| Fault::new(NO_PALLET, AlarmSource::Controller, format!("pallet {number} is not defined")))
     }
 
-    /// A position on a pallet, counted from 1. X changes fastest, then Y, then Z.
+    /// Coordinates of a position on a pallet. Positions count from 1. X changes fastest, then Y, then Z.
     pub(super) fn pallet_point(&self, number: usize, place: i32) -> Result<Point, Fault> {
         let pallet = self.pallet(number)?;
         let [nx, ny, nz] = pallet.counts;
@@ -228,7 +228,7 @@ impl Memory {
         Ok(())
     }
 
-    /// Eight bits of a port. The port has an octal number.
+    /// Eight bits of a port. Port numbers are octal.
     pub(super) fn port(&self, kind: usize, number: usize) -> u8 {
         self.ports.get(kind).and_then(|ports| ports.get(index(number))).copied().unwrap_or_default()
     }
@@ -266,7 +266,7 @@ pub(super) fn calculate(operation: Operation, first: Number, second: Number) -> 
     }
 }
 
-/// Index of a port. Port 10 follows port 7.
+/// Index of a port. Port numbers are octal, so port 10 follows port 7.
 fn index(number: usize) -> usize {
     number / 10 * 8 + number % 10
 }
@@ -275,7 +275,7 @@ pub(super) fn port_kind(name: &str) -> Option<usize> {
     PORT_NAMES.iter().position(|known| *known == name)
 }
 
-/// Whether the port exists (4.5.1).
+/// Whether this port number exists for the type (4.5.1).
 pub(super) fn is_port(kind: usize, number: usize) -> bool {
     match kind {
         3 => number <= 1,

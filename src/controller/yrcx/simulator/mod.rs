@@ -19,36 +19,37 @@
 //!
 //! The manual specifies the protocol, but less of the behavior of a controller. The simulator makes these assumptions:
 //!
-//! - Words that the manual does not allow cause alarm 4.202, whatever the error is. If no source has the number of an
-//!   alarm, the group is right and the category is 900 or above.
+//! - Words that the manual does not allow cause alarm 4.202 (input format error), whatever the error is. If no source
+//!   has the number of an alarm, the group is right and the category is 900 or above.
 //! - A quick command sends its end status in the scan that accepts it. With `run_scans`, it first sends the running
 //!   status for some scans. If the master removes a command, the controller carries it out to its end with the running
 //!   status, and is ready when WI0 is 0. A command that follows another command without a status reset is ignored.
 //! - While the link is lost, all inputs are off, the alarm is the alarm of the fieldbus (12.551 on EtherNet/IP), and
 //!   everything has stopped without power. A running command ends abnormally, and the next master receives this status.
 //!   Before the first image, the inputs have their resting state.
-//! - An edge of a dedicated input is ignored if it comes less than 100 ms after another edge. SI(00) and SI(06) going
-//!   off are never ignored.
-//! - SI(06) off decelerates commands and programs and ends them with 12.400. It also prevents new motion.
-//! - An emergency stop and serious alarms switch power off at once. SI(01) and motor power work again after the alarm
-//!   reset.
-//! - Under the programming box, the controller accepts only references. If dedicated inputs are disabled (a safety
-//!   setting), it accepts no command at all. SI(00) and SI(06) still work.
+//! - An edge of a dedicated input is ignored if it comes less than 100 ms after another edge. The falling edges of
+//!   SI(00) (emergency stop) and SI(06) (stop) are never ignored.
+//! - If SI(06) goes off, the controller decelerates commands and programs and ends them with alarm 12.400. While SI(06)
+//!   is off, no motion can start.
+//! - An emergency stop and serious alarms switch power off at once. SI(01) (servo on) and motor power work again after
+//!   the alarm reset.
+//! - While the programming box has control, the controller accepts only commands that read data. If dedicated inputs
+//!   are disabled (a safety setting), it accepts no command at all. SI(00) and SI(06) still work.
 //! - A speed in percent is multiplied by the automatic speed. Speeds in 0.01 % and mm/s are not multiplied. Jogs have
 //!   the manual speed. In manual mode, the manual speed also replaces the automatic speed. The maximum tool speed is
 //!   1000 mm/s.
 //! - An arch moves up, across and down in sequence; its start and end positions do not round the path. A path that
-//!   leaves the soft limits is refused before it begins. A jog ends at the soft limits with 2.334. Only pushes meet
-//!   obstacles.
+//!   leaves the soft limits is refused before it begins. A jog ends at the soft limits with alarm 2.334. Only push
+//!   commands can meet an obstacle.
 //! - A push without force or time uses the parameters PSHFRC and PSHTIME. PSHSPD reduces its speed. The other
 //!   parameters are only stored.
 //! - After a stop, MOVEI and DRIVEI continue to their target if the same words follow (`movei_start`).
-//! - A Cartesian robot has no hand system. A shift rotates by its R. A hand is as in 4.3.5. Initially, no hand is
-//!   selected.
+//! - A Cartesian robot has no hand system. The R value of a shift rotates the coordinates. Hand data has the format of
+//!   section 4.3.5. Initially, no hand is selected.
 //! - A program is registered in one task. It runs one line per scan. SI(06) stops it at its line, and a start continues
 //!   it there. An error stops all programs. A program that has ended is at its first line.
-//! - An undefined point causes an alarm. A missing comment or alarm is answered as empty, and a missing robot as a
-//!   robot without axes. A variable that would overflow keeps its value.
+//! - An undefined point causes an alarm. The answer for a missing comment or alarm is empty, and the answer for a
+//!   missing robot has no axes. A variable that would overflow keeps its value.
 
 mod alarms;
 mod commands;
@@ -85,10 +86,10 @@ use super::alarm::Alarm;
 use super::image::Image;
 use crate::Now;
 
-/// Maximum number of scans per call. After them, the remaining time is one scan.
+/// Maximum number of scans per call. After these scans, the rest of the time is one scan.
 const MAX_SCANS: u32 = 1_000_000;
 
-/// Event of the master.
+/// What the master did: it sent an image, or the link was lost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Master {
     Shows(Image),
@@ -102,7 +103,7 @@ pub struct Simulator {
     remote: Remote,
     dedicated: Dedicated,
     journal: Journal,
-    /// Output image.
+    /// Output image of the last scan.
     shown: Image,
     /// Master event for the next scan.
     incoming: Option<Master>,
@@ -113,7 +114,7 @@ pub struct Simulator {
 }
 
 impl Simulator {
-    /// A controller in its start state, before any master.
+    /// A controller in its start state, to which no master has connected yet.
     pub fn new(start: Start) -> Self {
         let mut simulator = Self {
             world: start.world,
@@ -129,7 +130,7 @@ impl Simulator {
         simulator
     }
 
-    /// Sets the alarm for a lost link of another fieldbus. The default is the alarm of EtherNet/IP.
+    /// Sets the alarm for a lost link, for another fieldbus than EtherNet/IP. The default is the alarm of EtherNet/IP.
     #[must_use]
     pub fn with_link_alarm(mut self, alarm: Alarm) -> Self {
         self.world.link_alarm = alarm;
@@ -174,14 +175,14 @@ impl Simulator {
         self.scan(now.max(self.world.now));
     }
 
-    /// Executes a console line: `estop on`, `box on`, `state`. Returns its output, or an error.
+    /// Executes a console line, for example `estop on`, `box on` or `state`. Returns its output, or an error.
     pub fn console(&mut self, now: Now, line: &str) -> Result<String, String> {
         self.advance(now);
         if line.trim() == "journal" {
             return Ok(self.journal.take());
         }
         self.touched.get_or_insert(now);
-        // The robot positions are exact also between scans.
+        // Between scans, only the robot positions are updated, so that they are exact at any time.
         self.world.move_on(now.max(self.world.now));
         console::execute(&mut self.world, line)
     }
@@ -204,7 +205,7 @@ impl Simulator {
     }
 }
 
-/// Time of the first scan at or after a time.
+/// Time of the first scan at or after `at`.
 fn next_scan(at: Now) -> Now {
     let (at, scan) = (at.as_nanos(), SCAN.as_nanos());
     let nanos = at.div_ceil(scan).saturating_mul(scan);

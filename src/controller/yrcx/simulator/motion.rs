@@ -12,22 +12,23 @@ const ACCELERATION_TIME: f64 = 0.2;
 /// Seconds from full speed to rest after a stop.
 const STOP_TIME: f64 = 0.1;
 
-/// Speed over time. A distance is the number of seconds it takes at full speed; a speed is a share of full speed.
+/// Speed over time. A distance is given as the time in seconds that it takes at full speed. A speed is a share of full
+/// speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Profile {
-    /// Acceleration, constant speed, deceleration.
+    /// Acceleration, constant speed and deceleration.
     Ramp { way: f64, speed: f64, up: f64, down: f64 },
-    /// Deceleration to rest from a position and a speed.
+    /// Deceleration to rest. It begins at a position and with a speed.
     Brake { from: f64, speed: f64 },
     /// A pause.
     Rest { seconds: f64 },
 }
 
 impl Profile {
-    /// A ramp to `share` of full speed. The accelerations are shares of the maximum.
+    /// A ramp to `share` of full speed. `accel` and `decel` are shares of the maximum acceleration and deceleration.
     fn ramp(way: f64, share: f64, accel: f64, decel: f64) -> Self {
         let (up, down) = (accel / ACCELERATION_TIME, decel / ACCELERATION_TIME);
-        // A short path does not reach this speed.
+        // On a short path, the motion must decelerate before it reaches `share`.
         let speed = share.min((2.0 * way * up * down / (up + down)).sqrt());
         if way > 0.0 && speed > 0.0 { Self::Ramp { way, speed, up, down } } else { Self::Rest { seconds: 0.0 } }
     }
@@ -73,7 +74,7 @@ pub(super) enum Path {
 }
 
 impl Path {
-    /// Pulses at a share of the path; `None` if the robot cannot reach the position.
+    /// Pulses after a share of the path; `None` if the robot cannot reach the position.
     pub(super) fn at(&self, share: f64, geometry: &Geometry) -> Option<Four> {
         let between = |from: &Four, to: &Four| std::array::from_fn(|at| from[at] + (to[at] - from[at]) * share);
         match self {
@@ -117,7 +118,7 @@ impl Path {
     }
 }
 
-/// Originator of a motion.
+/// What started a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Owner {
     /// The remote command.
@@ -132,7 +133,7 @@ pub(super) enum Owner {
 pub(super) enum End {
     /// The target was reached.
     Arrived,
-    /// The axis pushed for the requested time.
+    /// The axis has pushed for the requested time.
     Pushed,
     /// The motion ended early, or at a limit.
     Stopped(Fault),
@@ -146,7 +147,7 @@ pub(super) struct Leg {
 }
 
 impl Leg {
-    /// A path that takes `way` seconds at full speed, at a share of full speed.
+    /// A path that takes `way` seconds at full speed. The motion uses `share` of full speed.
     pub(super) fn new(path: Path, way: f64, share: f64, accel: f64, decel: f64) -> Self {
         Self { path, profile: Profile::ramp(way, share, accel, decel) }
     }
@@ -160,7 +161,7 @@ impl Leg {
         Duration::try_from_secs_f64(self.profile.seconds()).unwrap_or(Duration::MAX)
     }
 
-    /// Completed share of the path, for a completed distance.
+    /// Completed share of the path, for a completed distance `way`.
     fn share(&self, way: f64) -> f64 {
         match self.profile {
             Profile::Ramp { way: all, .. } => (way / all).clamp(0.0, 1.0),
@@ -197,7 +198,7 @@ impl Motion {
         self.began.saturating_add(time)
     }
 
-    /// Starts to decelerate. If it is called more than once, the first reason counts.
+    /// Starts to decelerate. If this function is called again, the first reason counts.
     pub(super) fn stop(&mut self, now: Now, fault: Fault) {
         let Some(leg) = self.legs.front() else { return };
         if self.stop.is_none() {
@@ -233,7 +234,7 @@ impl Motion {
         }
     }
 
-    /// Distance of each axis in the current segment. Its sign is the sign of the torque.
+    /// Direction of each axis in the current segment. The sign is also the sign of the torque.
     pub(super) fn direction(&self) -> Four {
         let ends = self
             .legs
@@ -257,7 +258,7 @@ mod tests {
 
     #[test]
     fn ramps_take_their_time() {
-        // One second at full speed, plus half of each of the two ramps of 0.2 s.
+        // The distance takes one second at full speed. Each of the two ramps of 0.2 s adds half of its time.
         let mut motion = to(1000.0, 1.0, 1.0);
         assert_eq!(motion.due(), Duration::from_millis(1200));
         let mut last = -1.0;
@@ -268,7 +269,7 @@ mod tests {
             last = x;
         }
         assert_eq!(motion.advance(Duration::from_millis(1200)), (Some([1000.0, 0.0, 0.0, 0.0]), Some(End::Arrived)));
-        // At a tenth of the speed, the distance takes ten times as long.
+        // At a tenth of full speed, the distance takes ten times as long.
         assert_eq!(to(1.0, 1.0, 0.1).due(), Duration::from_millis(10_020));
         // The distance is too short for full speed.
         assert!(to(1.0, 0.05, 1.0).due() < Duration::from_millis(250));

@@ -13,7 +13,7 @@ use crate::simulator::refuse_if;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Values};
 
-/// Parameters for a push (4.4.2).
+/// Numbers of the parameters for a push (4.4.2).
 const PUSH_FORCE: u16 = 266;
 const PUSH_TIME: u16 = 267;
 const PUSH_SPEED: u16 = 270;
@@ -55,7 +55,7 @@ pub(super) fn positions(world: &World, request: &Request) -> Result<Values, Faul
     Ok(Key::AXES.into_iter().zip(places.map(super::geometry::whole)).collect())
 }
 
-/// Whether the robot can start this motion.
+/// Checks that the robot can start this motion.
 fn ready(world: &World, request: &Request) -> Result<(), Fault> {
     let robot = request.robot();
     let axes = match request.row.command {
@@ -71,7 +71,8 @@ fn ready(world: &World, request: &Request) -> Result<(), Fault> {
         | Command::PushPoint
         | Command::PushMm
         | Command::PushPulse => mask(request),
-        // The other axes must hold their position, and a jog along a coordinate may move all axes.
+        // For other motions, all axes must be ready: axes without motion must hold their position, and a jog along a
+        // coordinate may move all axes.
         _ => {
             let named = request.maybe(Key::Axes).and_then(|axes| u8::try_from(axes).ok()).unwrap_or_default();
             world.has_axes(robot, named)?;
@@ -214,7 +215,7 @@ fn push(world: &mut World, request: &Request) -> Result<(), Fault> {
     Ok(())
 }
 
-/// A share of full speed, reduced by a percentage.
+/// Speed of a push: a share of full speed, reduced by a percentage.
 fn slower(share: f64, percent: i32) -> Rate {
     Rate::OfMax(super::geometry::whole(share * f64::from(percent) * 100.0).max(1))
 }
@@ -225,7 +226,7 @@ fn to_reset_position(world: &World, request: &Request) -> Result<Leg, Fault> {
     refuse_if(robot.axes[at].method != Method::Mark, super::operate::no_mark(number, at))?;
     let from = robot.pulses();
     let mut to = from;
-    // The next reset position in this direction, also if the axis is exactly at a reset position.
+    // The next reset position in this direction. An axis that is exactly at a reset position moves to the next one.
     let turns = from[at] / RESET_PITCH;
     to[at] = RESET_PITCH * if sign(request) < 0.0 { (turns - 1e-9).floor() } else { (turns + 1e-9).ceil() };
     world.joint_leg(number, &from, &to, Speed { rate: Rate::Manual, ..Speed::default() })
@@ -256,7 +257,7 @@ fn origin(world: &mut World, request: &Request) -> Result<Work, Fault> {
             Ok(true) => moving.push(robot),
             Ok(false) => {}
             Err(fault) => {
-                // Either all robots start or none. Nothing has moved yet.
+                // This loop checks all robots before any robot moves, so that either all robots start or none.
                 for robot in moving {
                     let robot = world.robot_mut(robot)?;
                     robot.motion = None;

@@ -8,22 +8,22 @@ use super::robot::{Axis, Method, Motor, Robot, over_limit};
 use super::world::{Mode, World};
 use crate::simulator::refuse_if;
 
-/// Full tool speed in mm/s and degrees/s.
+/// Full tool speed in mm/s. The constant below is the full rotation speed in degrees/s.
 const LINEAR_SPEED: f64 = 1000.0;
 const ROTATION_SPEED: f64 = 360.0;
-/// Share of full speed in the search for the origin.
+/// Share of full speed during the search for the origin.
 const ORIGIN_SHARE: f64 = 0.2;
-/// Number of points at which a path is checked.
+/// Number of points at which a path is checked before it starts.
 const SAMPLES: u32 = 64;
-/// Parameters (4.4.2).
+/// Numbers of the parameters for acceleration and deceleration (4.4.2).
 const ACCEL: u16 = 257;
 const DECEL: u16 = 258;
 
-/// Speed of a motion.
+/// Speed, acceleration and deceleration of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Speed {
     pub(super) rate: Rate,
-    /// Percent of the maximum. Without a value, the parameters decide.
+    /// Acceleration in percent of the maximum. Without a value, the parameters of the axes decide.
     pub(super) accel: Option<i32>,
     pub(super) decel: Option<i32>,
 }
@@ -34,11 +34,11 @@ pub(super) enum Rate {
     /// Program speed, multiplied by the automatic speed.
     #[default]
     Program,
-    /// 0.01 % of the maximum.
+    /// Speed in units of 0.01 % of the maximum speed.
     OfMax(i32),
-    /// Percent, multiplied by the automatic speed.
+    /// Speed in percent. It is multiplied by the automatic speed.
     Percent(i32),
-    /// mm/s.
+    /// Speed in mm/s.
     MmS(i32),
     /// Manual speed.
     Manual,
@@ -83,7 +83,7 @@ impl World {
         Ok(robot.geometry(hand.map(|hand| hand.data)))
     }
 
-    /// Tool position of a robot in the coordinates of its shift.
+    /// Tool position of a robot, in the coordinates of the selected shift.
     pub(super) fn pose(&self, number: usize) -> Result<Four, Fault> {
         let robot = self.robot(number)?;
         Ok(to_shift(&self.shift(robot), &self.geometry(number)?.pose(&robot.pulses())))
@@ -93,7 +93,7 @@ impl World {
         self.memory.shifts.get(robot.shift).copied().unwrap_or_default()
     }
 
-    /// Target of a point in pulses for these axes. The other axes stay in place.
+    /// Target in pulses of a move of these axes to a point. The other axes stay in place.
     pub(super) fn point_target(&self, number: usize, axes: u8, point: &Point) -> Result<Four, Fault> {
         match point.unit {
             PointUnit::Pulse => self.pulse_target(number, axes, &point.numbers()),
@@ -101,19 +101,19 @@ impl World {
         }
     }
 
-    /// Target in pulses for these axes.
+    /// Target in pulses of a move of these axes to positions in pulses.
     pub(super) fn pulse_target(&self, number: usize, axes: u8, pulses: &Four) -> Result<Four, Fault> {
         Ok(chosen(self.robot(number)?, axes, pulses))
     }
 
-    /// Target of shift coordinates in pulses. The other coordinates stay the same.
+    /// Target in pulses of a move of these coordinates to positions in the shift. The other coordinates stay the same.
     pub(super) fn pose_target(&self, number: usize, axes: u8, pose: &Four, arm: Option<Arm>) -> Result<Four, Fault> {
         let now = self.pose(number)?;
         let wanted = std::array::from_fn(|axis| if axes >> axis & 1 == 1 { pose[axis] } else { now[axis] });
         self.reach(number, &wanted, arm.unwrap_or(self.robot(number)?.arm))
     }
 
-    /// Target of a relative point in pulses for these axes.
+    /// Target in pulses of a move of these axes by the distances in a point.
     pub(super) fn relative_target(&self, number: usize, axes: u8, point: &Point) -> Result<Four, Fault> {
         match point.unit {
             PointUnit::Pulse => self.relative_pulses(number, axes, &point.numbers()),
@@ -121,32 +121,32 @@ impl World {
         }
     }
 
-    /// Target of a relative motion in pulses.
+    /// Target of a move by distances in pulses.
     pub(super) fn relative_pulses(&self, number: usize, axes: u8, way: &Four) -> Result<Four, Fault> {
         let now = self.robot(number)?.pulses();
         self.pulse_target(number, axes, &sum(&now, way))
     }
 
-    /// Target of a relative motion in mm.
+    /// Target of a move by distances in mm.
     pub(super) fn relative_pose(&self, number: usize, axes: u8, way: &Four) -> Result<Four, Fault> {
         let arm = self.current_arm(number)?;
         self.pose_target(number, axes, &sum(&self.pose(number)?, way), Some(arm))
     }
 
-    /// Target of a motion in tool coordinates.
+    /// Target of a move by distances in tool coordinates.
     pub(super) fn tool_target(&self, number: usize, axes: u8, way: &Four) -> Result<Four, Fault> {
         let way = std::array::from_fn(|axis| if axes >> axis & 1 == 1 { way[axis] } else { 0.0 });
         self.reach(number, &along_tool(&self.pose(number)?, &way), self.current_arm(number)?)
     }
 
-    /// Target of one axis in mm or degrees.
+    /// Target of a move of one axis to a position in mm or degrees.
     pub(super) fn axis_target(&self, number: usize, axis: usize, units: f64) -> Result<Four, Fault> {
         self.has_axes(number, 1 << axis)?;
         let per_unit = self.geometry(number)?.per_unit[axis];
         self.pulse_target(number, 1 << axis, &[units * per_unit; 4])
     }
 
-    /// Distances of a point in tool coordinates. Only a point in mm is valid.
+    /// Distances of a point for a move in tool coordinates. Only a point in mm is valid.
     pub(super) fn tool_way(point: &Point) -> Result<Four, Fault> {
         match point.unit {
             PointUnit::Mm => Ok(point.numbers()),
@@ -188,7 +188,7 @@ impl World {
         self.begin(number, owner, vec![leg], End::Arrived)
     }
 
-    /// Joint-interpolated segment.
+    /// Path segment with joint interpolation.
     pub(super) fn joint_leg(&self, number: usize, from: &Four, to: &Four, speed: Speed) -> Result<Leg, Fault> {
         let robot = self.robot(number)?;
         if robot.is_at_home() {
@@ -196,11 +196,11 @@ impl World {
         }
         let path = Path::Joint { from: *from, to: *to };
         let (accel, decel) = ramps(robot, from, to, speed);
-        // A speed in mm/s is a share of the maximum tool speed in joint motions too.
+        // Also in joint motions, a speed in mm/s is a share of the maximum tool speed.
         Ok(Leg::new(path, robot.seconds(from, to), self.share(robot, speed.rate), accel, decel))
     }
 
-    /// Straight segment of the tool.
+    /// Path segment along a straight line of the tool.
     pub(super) fn line_leg(&self, number: usize, to: &Four, speed: Speed) -> Result<Leg, Fault> {
         let (robot, geometry) = (self.robot(number)?, self.geometry(number)?);
         let from = robot.pulses();
@@ -219,7 +219,7 @@ impl World {
         self.tool_leg(number, path, way, end[3] - start[3], speed)
     }
 
-    /// Arc segment of the tool through one position to another position.
+    /// Path segment along an arc of the tool, through one position to another position.
     pub(super) fn arc_leg(&self, number: usize, via: &Point, to: &Point, speed: Speed) -> Result<Leg, Fault> {
         let (robot, geometry) = (self.robot(number)?, self.geometry(number)?);
         let all = robot.mask();
@@ -269,7 +269,7 @@ impl World {
             .collect()
     }
 
-    /// Segment along an axis to its limit. The motion ends there with the alarm of this axis.
+    /// Path segment along an axis to its soft limit. At the limit, the motion ends with the alarm of this axis.
     pub(super) fn jog(&self, number: usize, frame: Frame, axis: usize, sign: f64) -> Result<(Leg, End), Fault> {
         let speed = Speed { rate: Rate::Manual, ..Speed::default() };
         let robot = self.robot(number)?;
@@ -279,7 +279,7 @@ impl World {
             let limits = robot.axes[axis].limits;
             let mut to = from;
             to[axis] = match (robot.is_at_home(), sign < 0.0) {
-                // Without a known origin, the limits are not valid.
+                // Without a known origin, the limits are not valid, so the axis can move by its whole range.
                 (false, _) => from[axis] + sign * (limits.1 - limits.0),
                 (true, true) => limits.0,
                 (true, false) => limits.1,
@@ -318,7 +318,7 @@ impl World {
         Ok((target(near)?, End::Stopped(fault)))
     }
 
-    /// Segment along an axis, in pulses or steps of 0.001 mm.
+    /// Path segment along an axis by a distance in pulses or in steps of 0.001 mm.
     pub(super) fn inch(&self, number: usize, frame: Frame, axis: usize, amount: f64) -> Result<Leg, Fault> {
         let speed = Speed { rate: Rate::Manual, ..Speed::default() };
         let mask = 1 << axis;
@@ -348,7 +348,7 @@ impl World {
         for pass in passes {
             let mut to = from;
             for (at, axis) in robot.axes.iter().enumerate().filter(|(at, axis)| pass.includes(*at, axis)) {
-                // The signal does not move axes of the mark type (chapter 1, SI(17)).
+                // The signal SI(17) does not move axes of the mark type (chapter 1).
                 if owner == Owner::Input && axis.method == Method::Mark && axis.origin {
                     continue;
                 }
@@ -394,7 +394,7 @@ impl World {
     }
 }
 
-/// Acceleration and deceleration as shares of the maximum. Each is the minimum of the moving axes.
+/// Acceleration and deceleration as shares of the maximum. Each of them is the minimum over the moving axes.
 fn ramps(robot: &Robot, from: &Four, to: &Four, speed: Speed) -> (f64, f64) {
     let least = |parameter| {
         let moving = robot.axes.iter().enumerate().filter(|(at, _)| (from[*at] - to[*at]).abs() > 0.0);
@@ -405,7 +405,8 @@ fn ramps(robot: &Robot, from: &Four, to: &Four, speed: Speed) -> (f64, f64) {
     (share(speed.accel, ACCEL), share(speed.decel, DECEL))
 }
 
-/// Replaces the values of these axes. Values of missing axes are 0.
+/// Returns the current position with the values of these axes replaced by `numbers`. The value is 0 for an axis that
+/// the robot does not have.
 fn chosen(robot: &Robot, axes: u8, numbers: &Four) -> Four {
     let now = robot.pulses();
     std::array::from_fn(|axis| {

@@ -17,13 +17,13 @@ use crate::simulator::refuse_if;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Values};
 
-/// Switching time of servos and of motor power.
+/// Switching time of the servos. The constant below is the switching time of motor power.
 const SERVO_TIME: Duration = Duration::from_millis(50);
 pub(super) const MOTOR_TIME: Duration = Duration::from_millis(200);
-/// Century of two-digit years.
+/// Century that is added to two-digit years.
 const CENTURY: i16 = 2000;
 
-/// Starts a switch of power (4.2.13, 4.2.20).
+/// Starts to switch motor power or servos (4.2.13, 4.2.20).
 pub(super) fn power(world: &mut World, request: &Request) -> Result<Work, Fault> {
     let robot = request.robot();
     let axes = u8::try_from(request.int(Key::Axes)).unwrap_or_default();
@@ -45,7 +45,7 @@ pub(super) fn power(world: &mut World, request: &Request) -> Result<Work, Fault>
     Ok(Work::Power(world.now.saturating_add(time), action))
 }
 
-/// Selects or stores (4.2.8 to 4.2.22).
+/// Executes a command that selects or stores something (4.2.8 to 4.2.22).
 pub(super) fn change(world: &mut World, request: &Request) -> Result<(), Fault> {
     let number = request.robot();
     let percent = request.int(Key::SpeedPercent);
@@ -110,7 +110,7 @@ fn absolute_reset(world: &mut World, request: &Request) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Fault for an axis that is not of the mark type.
+/// Fault for an axis that is not of the mark type and so cannot be reset absolutely.
 pub(super) fn no_mark(number: usize, at: usize) -> Fault {
     let why = format!("axis {} is not of the mark type", at + 1);
     Fault::new(NO_ABSOLUTE_RESET, AlarmSource::Axis(number, at), why)
@@ -138,7 +138,7 @@ pub(super) fn program(world: &mut World, request: &Request) -> Result<Values, Fa
     Ok(Values::default())
 }
 
-/// Object that a command of category 5 selects.
+/// What a command of category 5 (programs) applies to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Chosen {
     All,
@@ -147,7 +147,7 @@ enum Chosen {
 }
 
 impl Chosen {
-    /// Index of the registered task.
+    /// Index of the task in which the program is registered.
     fn task(self, world: &World) -> Result<usize, Fault> {
         let at = world.tasks.iter().position(|task| match self {
             Self::All => false,
@@ -164,15 +164,15 @@ fn chosen(world: &World, request: &Request) -> Result<Chosen, Fault> {
         0 => return Ok(Chosen::All),
         2 => return Ok(Chosen::Task(u8::try_from(request.int(Key::Task)).unwrap_or_default())),
         1 => u8::try_from(request.int(Key::Program)).ok().filter(|number| world.programs.contains_key(number)),
-        // The name is the whole name. If all 16 characters are given, the program with the lowest number whose name
-        // begins with them is selected.
+        // A command contains only the first 16 characters of a name. If several programs begin with these 16
+        // characters, the program with the lowest number is selected.
         _ => world.programs.iter().find(|(_, program)| program.short_name() == name).map(|(number, _)| *number),
     };
     let none = || Fault::new(NO_PROGRAM, AlarmSource::Controller, "no such program");
     found.map(Chosen::Program).ok_or_else(none)
 }
 
-/// Registers a program in a task. Task 0 means the lowest vacant task (4.6.1).
+/// Registers a program in a task. Task 0 means the vacant task with the lowest number (4.6.1).
 fn register(world: &mut World, request: &Request, program: u8) -> Result<(), Fault> {
     let priority = u8::try_from(request.int(Key::Priority)).unwrap_or_default();
     let taken = |number: u8| world.tasks.iter().find(|task| task.number == number);
@@ -186,7 +186,8 @@ fn register(world: &mut World, request: &Request, program: u8) -> Result<(), Fau
     {
         return Err(Fault::new(super::alarms::RUNNING, AlarmSource::Task(number), "the task or the program runs"));
     }
-    // A program can be registered in only one task, so that its number identifies the task.
+    // A program can be registered in only one task, so its number identifies the task. Earlier registrations are
+    // removed.
     world.tasks.retain(|task| task.number != number && task.program != program);
     world.tasks.push(Task::new(number, program, priority));
     Ok(())

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::memory::{Number, Operation, POINTS, PortRef, is_port, port_kind};
 use super::request::ROBOTS;
 
-/// Maximum number of lines. The lines of COMMON are reported as numbers from 10000 on (4.6.4).
+/// Maximum number of lines of a program. In answers, 10000 is added to the line numbers of the program COMMON (4.6.4).
 const MAX_LINES: usize = 9999;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,7 +72,7 @@ impl Program {
         Ok(program)
     }
 
-    /// The first 16 characters of the name. Commands have only these.
+    /// The first 16 characters of the name. Commands contain only these characters.
     pub(super) fn short_name(&self) -> &str {
         self.name.get(..16).unwrap_or(&self.name)
     }
@@ -97,7 +97,7 @@ fn statement(line: &str) -> Option<Statement> {
     }
 }
 
-/// Parses `MOVE P,P19`, `MOVE[2] L,P20`, `MOVEI P,P3`.
+/// Parses a move, for example `MOVE P,P19`, `MOVE[2] L,P20` or `MOVEI P,P3`.
 fn motion(word: &str, rest: &str) -> Option<Statement> {
     let (word, robot) = match word.split_once('[') {
         Some((word, robot)) => (word, robot.strip_suffix(']')?.parse::<usize>().ok()?),
@@ -119,7 +119,7 @@ fn motion(word: &str, rest: &str) -> Option<Statement> {
     Some(Statement::Move { robot, linear, relative, point: point.into() })
 }
 
-/// Parses `DO(20)=1` (a bit) or `DO2()=255` (a port).
+/// Parses an output assignment, for example `DO(20)=1` (a bit) or `DO2()=255` (a port).
 pub(super) fn assigned(text: &str) -> Option<(PortRef, u8)> {
     let (port, value) = text.split_once('=')?;
     let value = value.trim().parse::<u8>().ok()?;
@@ -137,7 +137,7 @@ pub(super) fn assigned(text: &str) -> Option<(PortRef, u8)> {
     fits.then_some((found, value))
 }
 
-/// Parses `SGI1=5`, `SGI1=SGI1+1`, `SGR0=SGI2/2.5`.
+/// Parses an assignment to a variable, for example `SGI1=5`, `SGI1=SGI1+1` or `SGR0=SGI2/2.5`.
 fn assignment(line: &str) -> Option<Statement> {
     let (variable, value) = line.split_once('=')?;
     let Operand::Variable(variable) = operand(variable.trim())? else { return None };

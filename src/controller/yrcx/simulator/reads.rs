@@ -11,9 +11,9 @@ use super::world::World;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Values};
 
-/// Value that stands for a missing axis or task.
+/// Value that an answer contains for a missing axis or task.
 const NONE: i32 = 9;
-/// Keys of axis states, including reserved axes.
+/// Keys of the axis states: four axes and two reserved axes.
 const SIX: [Key; 6] = [Key::Axis1, Key::Axis2, Key::Axis3, Key::Axis4, Key::Axis5, Key::Axis6];
 const EIGHT: [Key; 8] =
     [Key::Task1, Key::Task2, Key::Task3, Key::Task4, Key::Task5, Key::Task6, Key::Task7, Key::Task8];
@@ -96,13 +96,13 @@ pub(super) fn answer(world: &World, request: &Request) -> Result<Values, Fault> 
     })
 }
 
-/// Current arm side; `None` for a Cartesian robot, for which the answer is right (4.7.10).
+/// Current arm side. `None` for a Cartesian robot; the answer then is right (4.7.10).
 fn current_arm(world: &World, number: usize) -> Option<Arm> {
     let robot = world.robots.get(number)?;
     world.geometry(number).ok()?.arm(&robot.pulses())
 }
 
-/// State of each axis. The two reserved axes have the value `none`.
+/// State of each axis. For the two reserved axes, the state is `none`.
 fn per_axis(robot: Option<&Robot>, none: i32, state: impl Fn(usize, &Axis) -> i32) -> Values {
     let axis = |at: usize| robot.and_then(|robot| robot.axes.get(at)).map_or(none, |axis| state(at, axis));
     SIX.into_iter().enumerate().map(|(at, key)| (key, axis(at))).collect()

@@ -9,7 +9,7 @@ use super::world::World;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Value, Values};
 
-/// Robot parameters, and the payload of an axis (4.4.2).
+/// Numbers of the robot parameters, and of the payload of an axis (4.4.2).
 const WEIGHT: i32 = 1;
 const WEIGHT_G: i32 = 2;
 const AXIS_WEIGHT: i32 = 262;
@@ -188,7 +188,7 @@ fn port(world: &mut World, request: &Request) -> Values {
         }
         _ => return [(Key::Value, i32::from(world.memory.port(kind, port)))].into_iter().collect(),
     }
-    // A program may wait for this port, so another scan is needed.
+    // A program may wait for this port, so one more scan is needed.
     world.restless = true;
     Values::default()
 }

@@ -25,17 +25,17 @@ const RUN_STATUS: Words = {
 struct Running {
     request: Request,
     work: Work,
-    /// Time at which the running status ends at the earliest.
+    /// Earliest time at which the running status ends.
     not_before: Now,
     /// Whether the master still sends the command. If not, the end of the command is not reported.
     held: bool,
-    /// Ends of the motions of this command so far.
+    /// How the motions of this command have ended so far.
     ends: Vec<End>,
 }
 
 #[derive(Debug, Clone)]
 enum State {
-    /// Ready for a command.
+    /// The controller is ready for a command.
     Ready,
     Running(Box<Running>),
     /// The command has ended. The controller waits for the status reset.
@@ -67,17 +67,17 @@ impl Remote {
         match &running.work {
             Work::Power(at, _) => Some(*at),
             Work::Done(_) => Some(running.not_before),
-            // Without motion, the values do not change.
+            // The values change only during a motion.
             Work::Continuous => {
                 let robot = world.robots.get(running.request.robot())?;
                 robot.motion.is_some().then(|| world.now.saturating_add(SCAN))
             }
-            // The end of a motion causes a scan by itself.
+            // The end of a motion causes a scan anyway, so no time is needed here.
             Work::Motion(_) => None,
         }
     }
 
-    /// Runs a scan. It must come after the scans of all other parts.
+    /// Handles one scan of the handshake. Call this function after all other parts have handled the scan.
     pub(super) fn scan(&mut self, world: &mut World) {
         let words = (world.link != Link::Down).then(|| world.inputs.command());
         match (&mut self.state, words) {
@@ -129,8 +129,8 @@ impl Remote {
                 self.state = State::Ready;
                 self.shown = NO_WORDS;
             }
-            // Another command replaced this command. The end of this command is not reported, and the other command is
-            // ignored.
+            // The master replaced this command by another command. The end of this command is not reported, and the
+            // other command is ignored.
             (false, false) => self.end(RUN_STATUS),
         }
     }
@@ -174,7 +174,7 @@ fn progress(world: &mut World, running: &mut Running) -> Option<Result<Values, F
     }
 }
 
-/// Running status with the data of continuous output.
+/// Words of the running status. For continuous output, they contain the data.
 fn output(world: &World, request: &Request) -> Words {
     match reads::answer(world, request) {
         Ok(values) => request.reply(Status::Running, &values),
@@ -196,7 +196,7 @@ fn abnormal_end(world: &mut World, request: &Request, fault: Fault) -> Words {
     }
 }
 
-/// Words of a refusal. Also records the alarm.
+/// Words of the answer to a refused command. The function also records the alarm.
 fn refusal(world: &mut World, fault: Fault) -> Words {
     let mut words = NO_WORDS;
     words[0] = Status::AbnormalEnd.word();

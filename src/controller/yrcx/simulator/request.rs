@@ -49,7 +49,7 @@ impl Request {
         self.values.int(key).unwrap_or_default()
     }
 
-    /// Integer that is a valid index, because the layout limits it.
+    /// Integer of a field that is used as an index. The layout limits the integer to valid indexes.
     pub(super) fn index(&self, key: Key) -> usize {
         usize::try_from(self.int(key)).unwrap_or_default()
     }
@@ -72,7 +72,7 @@ impl Request {
         Key::AXES.map(|key| self.int(key))
     }
 
-    /// Robot index from 0. A command without a robot means the first robot.
+    /// Index of the robot, from 0. A command without a robot applies to the first robot.
     pub(super) fn robot(&self) -> usize {
         self.index(Key::Robot).saturating_sub(1)
     }
@@ -119,7 +119,7 @@ impl Request {
     }
 }
 
-/// Value of another field of the command. Conditions of fields depend on it.
+/// Value of another field of the command. The condition of a field depends on this value.
 fn raw(row: &Row, key: Key, words: &Words) -> i32 {
     let field = row.request().find(|field| field.key == key);
     match field.map(|field| field.read(words)) {
@@ -160,14 +160,14 @@ fn number_is_allowed(field: &Field, number: i32) -> Result<(), String> {
         Show::Choice(choices) => choices.iter().any(|&(code, _)| i32::from(code) == number),
         Show::Set { least, most } => (least..=most).contains(&number.count_ones()),
         Show::Fixed(fixed) => i32::from(fixed) == number,
-        // Invalid decimal digits decode as a number above 99.
+        // Digits that are not decimal decode as a number above 99.
         Show::Digits => number < 100,
         Show::Number(_) | Show::Version | Show::Revision | Show::FpgaVersion | Show::Variable | Show::Line => true,
     };
     if fine { Ok(()) } else { Err(format!("{number} is not defined here")) }
 }
 
-/// Decodes a text. Only padding may follow the text.
+/// Decodes a text. After the text, only padding is allowed.
 fn text(charset: Charset, words: &[u16]) -> Result<String, String> {
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());

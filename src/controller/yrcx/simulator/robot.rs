@@ -10,15 +10,15 @@ use crate::yrcx::image::Words;
 
 /// Maximum number of axes.
 pub(super) const AXES: usize = 4;
-/// All axes, one bit per axis.
+/// Mask for all axes, one bit per axis.
 pub(super) const ALL: u8 = 0b1111;
 /// Distance in pulses between two absolute reset positions: a quarter turn of a motor with 16384 pulses (4.2.10).
 pub(super) const RESET_PITCH: f64 = 4096.0;
-/// Maximum torque as a multiple of the rated torque.
+/// Ratio of the maximum torque to the rated torque.
 pub(super) const MAX_OF_RATED: i32 = 5;
-/// Torque limit if none is set, in percent of the maximum torque.
+/// Default torque limit, in percent of the maximum torque.
 pub(super) const FULL_TORQUE: i32 = 100;
-/// Additional torque of a moving axis, in percent of the maximum. It is added to the load.
+/// Torque of a moving axis in addition to its load, in percent of the maximum.
 const MOVING_TORQUE: i32 = 10;
 
 /// Position detector of an axis.
@@ -59,7 +59,7 @@ impl Servo {
 
 #[derive(Debug, Clone)]
 pub(super) struct Axis {
-    /// Model number in 4.7.2.
+    /// Model number of the axis in the answer of 4.7.2.
     pub(super) model: u16,
     pub(super) motor: Motor,
     pub(super) method: Method,
@@ -72,7 +72,7 @@ pub(super) struct Axis {
     pub(super) pulses: f64,
     pub(super) servo: Servo,
     pub(super) origin: bool,
-    /// Torque limit in percent of the maximum torque. It is reset at power off.
+    /// Torque limit in percent of the maximum torque. Power off resets the limit.
     pub(super) torque_limit: i32,
     /// Holding torque in percent of the maximum.
     pub(super) load: i32,
@@ -92,7 +92,7 @@ impl Axis {
     }
 }
 
-/// An interrupted motion that continues if the same command follows (4.2.2, 4.2.4).
+/// An interrupted relative motion. It continues if the same command follows (4.2.2, 4.2.4).
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ResumableMotion {
     pub(super) words: Words,
@@ -102,7 +102,7 @@ pub(super) struct ResumableMotion {
 #[derive(Debug, Clone)]
 pub(super) struct Robot {
     pub(super) kind: Kind,
-    /// Model number in 4.7.2.
+    /// Model number of the robot in the answer of 4.7.2.
     pub(super) model: u16,
     pub(super) axes: Vec<Axis>,
     pub(super) max_payload_g: i32,
@@ -115,9 +115,9 @@ pub(super) struct Robot {
     pub(super) hand: Option<usize>,
     pub(super) arm: Arm,
     pub(super) motion: Option<Motion>,
-    /// Motions that have ended, until their owners take the ends.
+    /// Motions that have ended. An entry stays until the owner of the motion removes it.
     pub(super) ended: Vec<(Owner, End)>,
-    /// Axis and torque of the last push, in percent of the rated torque.
+    /// Axis of the last push, and its torque in percent of the rated torque.
     pub(super) pushing: Option<(usize, i32)>,
     /// Axes whose origin becomes known when the motion ends, one bit per axis.
     pub(super) homing: u8,

@@ -15,9 +15,9 @@ use crate::yrcx::signal::{Signal, input, output, resting};
 
 /// Minimum interval between edges. An edge that comes earlier is ignored (chapter 1, section 3).
 const EDGE_INTERVAL: Duration = Duration::from_millis(100);
-/// Delay from a change of an input to the change of its output.
+/// Delay from the change of an input to the change of the related output.
 const REACTION: Duration = Duration::from_millis(20);
-/// Ports of eight signals in the image: SI(00) to SI(157).
+/// Number of ports (eight signals each) in the image: SI(00) to SI(157).
 const IMAGE_PORTS: usize = 14;
 
 /// Dedicated inputs at the previous scan.
@@ -52,7 +52,7 @@ impl Dedicated {
         }
         let too_soon = self.edge.is_some_and(|edge| world.now.saturating_sub(edge) < EDGE_INTERVAL);
         self.edge = Some(world.now);
-        // A stop is accepted without a minimum interval.
+        // A stop is always accepted, even less than 100 ms after another edge.
         if has(fell, input::EMERGENCY_STOP) || (back && world.emergency()) {
             world.check_emergency();
         }
@@ -61,8 +61,8 @@ impl Dedicated {
         }
         let pulses = PULSES.iter().filter(|(signal, _)| has(rose, *signal));
         for (signal, react) in pulses {
-            // Simultaneous edges have no interval between them, so they are ignored. The first image of a master has no
-            // edges.
+            // Two edges in the same scan have no interval between them, so both are ignored. The first image of a
+            // master has no edges.
             let alone = (rose | fell).is_power_of_two();
             let result = match (world.switches.inputs && !world.switches.boxed, too_soon || !alone || back) {
                 (false, _) => Err(ignored(*signal, "dedicated inputs have no effect now")),
@@ -78,7 +78,7 @@ impl Dedicated {
     }
 }
 
-/// Effect when an input switches on.
+/// What the controller does when an input switches on.
 type Reaction = fn(&mut World) -> Result<(), Fault>;
 
 const PULSES: [(Signal, Reaction); 6] = [
@@ -109,7 +109,7 @@ const PULSES: [(Signal, Reaction); 6] = [
     }),
 ];
 
-/// Starts the origin return of all robots, for the axes whose origin return a signal can start.
+/// Starts the origin return of all robots. It moves only the axes whose origin return a signal can start.
 fn origin(world: &mut World, passes: &[Homing]) -> Result<(), Fault> {
     for robot in 0..world.robots.len() {
         world.may_move(robot, 0)?;
@@ -120,7 +120,7 @@ fn origin(world: &mut World, passes: &[Homing]) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Sets SO(00) to SO(157).
+/// Sets the outputs SO(00) to SO(157) in the image.
 pub(super) fn show(world: &mut World, image: &mut Image) {
     let alarm = world.alarms.active().is_some();
     let sequence = world.switches.sequence && input::SEQUENCE_CONTROL.is_on(&world.inputs);
@@ -160,7 +160,7 @@ fn ignored(signal: Signal, why: &str) -> Fault {
     Fault::new(NOT_ENABLED, AlarmSource::Slot, format!("{signal} was ignored: {why}"))
 }
 
-/// Number of a port. Port numbers are octal.
+/// Octal number of the port with this index.
 fn port_number(index: usize) -> usize {
     index / 8 * 10 + index % 8
 }

@@ -409,7 +409,7 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
     }
     fill::memory(&mut world, entries, source)?;
     fill::check(&world, entries, source)?;
-    // This is a copy, so that the world keeps its start state.
+    // The check uses a copy, so that the world keeps its start state.
     let mut copy = world.clone();
     world.events = source.timeline(&entries.events, |line| console::execute(&mut copy, line))?;
     Ok(Start { world, run_scans: entries.run_scans, seed: entries.seed })

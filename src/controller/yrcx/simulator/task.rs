@@ -22,13 +22,14 @@ pub(super) enum State {
     Suspended,
 }
 
-/// Where the execution of a task ends.
+/// Where a task stops.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Until {
     End,
-    /// After one line.
+    /// The task stops after one line.
     Line,
-    /// After one line, including a subroutine that it calls. The value is the call depth at the start of the line.
+    /// The task stops after one line, including a subroutine that the line calls. The value is the call depth at the
+    /// start of the line.
     Call(usize),
 }
 
@@ -41,7 +42,7 @@ enum Doing {
     Waiting,
 }
 
-/// A program line, counted from 0.
+/// A program line: number of the program, and index of the line from 0.
 type Spot = (u8, usize);
 
 #[derive(Debug, Clone)]
@@ -55,7 +56,7 @@ pub(super) struct Task {
     calls: Vec<Spot>,
     doing: Doing,
     until: Until,
-    /// Target of an interrupted relative motion, with the line of the motion.
+    /// Line and target of an interrupted relative motion.
     kept: Option<(Spot, Four)>,
 }
 
@@ -85,12 +86,12 @@ impl Task {
         match (self.state, self.doing) {
             (State::Running, Doing::Nothing) => Some(now),
             (State::Running, Doing::Delay(until)) => Some(until),
-            // The end of a motion or a change of a signal causes a scan by itself.
+            // The end of a motion or the change of a signal causes a scan anyway.
             _ => None,
         }
     }
 
-    /// Status code: 0 stop, 1 execution, 2 suspend, 3 standby (4.7.5).
+    /// Status code: 0 is stop, 1 is execution, 2 is suspend, 3 is standby (4.7.5).
     pub(super) fn status(&self) -> i32 {
         match (self.state, self.doing) {
             (State::Stopped, _) => 0,
@@ -112,7 +113,7 @@ impl Task {
     }
 }
 
-/// How a task continues after a line.
+/// How a task continues after it has executed a line.
 enum Flow {
     Next,
     Stay,
@@ -126,7 +127,7 @@ impl World {
         self.tasks.iter().any(|task| task.state == State::Running)
     }
 
-    /// Current line of a task, from 1. Lines of COMMON are above 10000 (4.6.4).
+    /// Current line of a task, from 1. For lines of the program COMMON, 10000 is added (4.6.4).
     pub(super) fn line_of(&self, task: &Task) -> i32 {
         let (program, line) = task.at;
         let common = self.programs.get(&program).is_some_and(|program| program.name == COMMON);
@@ -174,7 +175,7 @@ impl World {
         Ok(())
     }
 
-    /// Runs one line of a task. With `over`, a subroutine that the line calls also runs.
+    /// Runs one line of a task. If `over` is true, a subroutine that the line calls runs to its end.
     pub(super) fn step_task(&mut self, at: usize, over: bool) -> Result<(), Fault> {
         self.may_run()?;
         self.none_runs()?;
@@ -196,7 +197,7 @@ impl World {
         Ok(())
     }
 
-    /// Refuses while a program runs.
+    /// Checks that no program runs.
     pub(super) fn none_runs(&self) -> Result<(), Fault> {
         if self.is_running() { Err(running()) } else { Ok(()) }
     }
@@ -270,10 +271,10 @@ impl World {
                     task.state = State::Stopped;
                 }
             }
-            // After its last line, a program is at its first line again.
+            // A program that has executed its last line is at its first line again.
             None => task.reset(),
         }
-        // Other tasks may wait for this task.
+        // Other tasks may wait for the end of this task, so one more scan is needed.
         self.restless = true;
     }
 
@@ -337,7 +338,8 @@ impl World {
         point: usize,
     ) -> Result<Flow, Fault> {
         if self.robot(robot)?.motion.is_some() {
-            // The robot still decelerates after a stop, or another owner moves it.
+            // The line is tried again in the next scan: the robot still decelerates after a stop, or another owner
+            // moves it.
             self.restless = true;
             return Ok(Flow::Stay);
         }

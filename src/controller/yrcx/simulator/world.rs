@@ -40,7 +40,8 @@ pub(super) struct Switches {
     pub(super) mode: Mode,
     /// Whether the programming box has control.
     pub(super) boxed: bool,
-    /// Whether dedicated inputs stay enabled in a safety setting. Remote commands need the dedicated inputs.
+    /// Whether the dedicated inputs are enabled. A safety setting can disable them, and then the controller accepts no
+    /// remote commands.
     pub(super) inputs: bool,
     /// Whether the wired emergency stop is pressed.
     pub(super) estop: bool,
@@ -48,14 +49,15 @@ pub(super) struct Switches {
     pub(super) sequence: bool,
     /// Whether SI(17) also starts the origin return of incremental axes ("ABS/ORG").
     pub(super) origin_both: bool,
-    /// Whether an interrupted relative motion keeps its target, so that a repetition continues to it (4.2.2).
+    /// Whether an interrupted relative motion keeps its target. A repetition of the command then continues to this
+    /// target (4.2.2).
     pub(super) keep: bool,
 }
 
 /// State of the fieldbus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Link {
-    /// There was no master yet. The inputs have their resting state.
+    /// No master has connected yet. The inputs have their resting state.
     Waiting,
     Up,
     /// The link is lost. All inputs are off.
@@ -82,9 +84,9 @@ pub(super) struct World {
     pub(super) now: Now,
     pub(super) switches: Switches,
     pub(super) link: Link,
-    /// Alarm for a lost link. It depends on the fieldbus.
+    /// Alarm for a lost link. Each fieldbus has its own alarm.
     pub(super) link_alarm: Alarm,
-    /// Time after which the link counts as lost if there was no master yet.
+    /// Time after which the link counts as lost if no master connects.
     pub(super) link_within: Option<Duration>,
     pub(super) inputs: Image,
     pub(super) motor: bool,
@@ -96,15 +98,15 @@ pub(super) struct World {
     pub(super) reset_done: bool,
     /// Date and time, and the time of the simulator at which they were set.
     pub(super) clock: (DateTime, Now),
-    /// Words of the answer in 4.7.1.
+    /// Software versions, as words of the answer in 4.7.1.
     pub(super) versions: [u16; 7],
     /// Modules by controller and slot (4.7.15).
     pub(super) slots: BTreeMap<u8, [u16; 4]>,
     pub(super) delayed: Vec<(Now, Action)>,
     pub(super) events: Timeline,
-    /// Last refusal or abort, with its reason.
+    /// Last refusal or abort, for the `why` command.
     pub(super) why: Option<Fault>,
-    /// Whether something changed for which programs may wait. It requests another scan.
+    /// Whether something has changed for which a program may wait. Then one more scan is needed.
     pub(super) restless: bool,
 }
 
@@ -146,8 +148,8 @@ impl World {
             );
         }
         while let Some(line) = self.events.take(now) {
-            // The lines were checked when the start state was parsed. A line that is not possible in the current state
-            // has no effect.
+            // The lines were checked when the start state was parsed. If a line is not possible in the current state,
+            // it has no effect.
             let _refused = console::execute(self, &line);
         }
         for at in (0..self.delayed.len()).rev() {
@@ -195,7 +197,7 @@ impl World {
         self.switches.estop || (self.link == Link::Up && !input::EMERGENCY_STOP.is_on(&self.inputs))
     }
 
-    /// Whether the stop input prevents motion.
+    /// Checks that the stop input does not prevent motion.
     pub(super) fn held(&self) -> bool {
         !input::STOP.is_on(&self.inputs)
     }
@@ -249,12 +251,12 @@ impl World {
         }
     }
 
-    /// Fault of the link loss, for running commands.
+    /// Fault with which running commands end after the loss of the link.
     pub(super) fn link_fault(&self) -> Fault {
         Fault::new(self.link_alarm, AlarmSource::Slot, "the master has disconnected")
     }
 
-    /// Whether motor power can be switched on.
+    /// Checks that motor power can be switched on.
     pub(super) fn may_power(&self) -> Result<(), Fault> {
         if self.emergency() {
             return Err(Fault::emergency());
@@ -262,7 +264,7 @@ impl World {
         self.no_alarm()
     }
 
-    /// Refuses while an alarm is active.
+    /// Checks that no alarm is active.
     pub(super) fn no_alarm(&self) -> Result<(), Fault> {
         match self.alarms.active() {
             Some(alarm) => Err(active(alarm)),
@@ -270,7 +272,7 @@ impl World {
         }
     }
 
-    /// Whether programs can run.
+    /// Checks that programs can run.
     pub(super) fn may_run(&self) -> Result<(), Fault> {
         self.may_power()?;
         if self.held() {
@@ -286,7 +288,7 @@ impl World {
         Ok(())
     }
 
-    /// Whether these axes can move.
+    /// Checks that these axes can move.
     pub(super) fn may_move(&self, number: usize, axes: u8) -> Result<(), Fault> {
         self.may_power()?;
         if self.held() {
@@ -308,7 +310,7 @@ impl World {
         Ok(())
     }
 
-    /// Whether the origin of all axes of a robot is known.
+    /// Checks that the origin of all axes of a robot is known.
     pub(super) fn at_home(&self, number: usize) -> Result<(), Fault> {
         let unknown = self.robot(number)?.axes.iter().position(|axis| !axis.origin);
         match unknown {
@@ -320,17 +322,17 @@ impl World {
         }
     }
 
-    /// The robot with this index.
+    /// Returns the robot with this index.
     pub(super) fn robot(&self, number: usize) -> Result<&Robot, Fault> {
         self.robots.get(number).ok_or_else(|| no_robot(number))
     }
 
-    /// The robot with this index.
+    /// Returns the robot with this index, to change it.
     pub(super) fn robot_mut(&mut self, number: usize) -> Result<&mut Robot, Fault> {
         self.robots.get_mut(number).ok_or_else(|| no_robot(number))
     }
 
-    /// Whether the robot has these axes.
+    /// Checks that the robot has these axes.
     pub(super) fn has_axes(&self, number: usize, axes: u8) -> Result<(), Fault> {
         let missing = axes & ALL & !self.robot(number)?.mask();
         if missing == 0 {

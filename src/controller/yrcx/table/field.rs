@@ -11,13 +11,13 @@ pub struct Field {
     pub key: Key,
     /// Readable name.
     pub name: &'static str,
-    /// First word, 0 to 15.
+    /// Number of the first word, 0 to 15.
     pub word: usize,
     /// Format.
     pub form: Form,
     /// Allowed raw values, as ranges; empty if all values are allowed.
     pub spans: &'static [(i32, i32)],
-    /// Condition on another field. The field is in use only if the condition is met; otherwise its words are 0.
+    /// Condition on another field. If the condition is not met, this field is not in use and its words are 0.
     pub when: Option<When>,
     /// Whether the field is optional. A missing field is sent as 0.
     pub need: Presence,
@@ -26,11 +26,11 @@ pub struct Field {
 /// Whether a field is optional.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Presence {
-    /// Mandatory.
+    /// The field must have a value.
     Required,
-    /// Missing values are sent as 0.
+    /// The field may be missing. It is then sent as 0.
     Optional,
-    /// Required if the command names this axis, because a missing target would be a move to 0.
+    /// The field must have a value if the command names this axis. A missing target would be a move to 0.
     OfAxis(u8),
 }
 
@@ -59,11 +59,11 @@ pub enum Form {
 /// Meaning of bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Show {
-    /// A number.
+    /// A number in this unit.
     Number(Unit),
     /// A constant number.
     Fixed(u16),
-    /// A choice: one of these numbers, each with its name.
+    /// A choice. Each of the valid numbers has a name.
     Choice(&'static [(u16, &'static str)]),
     /// A set of axes or elements. Bit 0 is the first one.
     Set {
@@ -74,13 +74,13 @@ pub enum Show {
     },
     /// Two decimal digits of four bits each.
     Digits,
-    /// Version: high byte and low byte.
+    /// A version: the high byte is the number before the point, the low byte the number after it.
     Version,
     /// A revision.
     Revision,
-    /// Version with one digit before and three digits after the point.
+    /// A version with one digit before the point and three digits after it.
     FpgaVersion,
-    /// A static variable: SGI0 to SGI31 are 0 to 31, SGR0 to SGR31 are 256 to 287 (4.4.1).
+    /// A static variable. The numbers 0 to 31 are SGI0 to SGI31, and 256 to 287 are SGR0 to SGR31 (4.4.1).
     Variable,
     /// A program line. The lines of the COMMON program begin at 10000 (4.6.4).
     Line,
@@ -89,20 +89,20 @@ pub enum Show {
 /// Character set and padding of a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Charset {
-    /// 0x20 to 0x7E, padded with NUL as in the examples of the manual (4.3.2).
+    /// Characters 0x20 to 0x7E, padded with NUL as in the examples of the manual (4.3.2).
     Comment,
-    /// A to Z, 0 to 9 and underscore, padded with spaces as in the text of 4.6.1.
+    /// A to Z, 0 to 9 and underscore, padded with spaces as in the text of section 4.6.1.
     Program,
 }
 
-/// Condition on another field. The field is in the same words, or in the command that the words answer.
+/// Condition on another field, which is in the same words. For an answer, it may also be in the words of the command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct When {
     /// Key of the other field.
     pub key: Key,
-    /// Minimum value.
+    /// Minimum value of the other field.
     pub least: i32,
-    /// Maximum value.
+    /// Maximum value of the other field.
     pub most: i32,
     /// Whether a value for this field also sets the other field.
     pub sets: bool,
@@ -126,7 +126,7 @@ pub const MS: Unit = Unit { symbol: "ms", decimals: 0 };
 /// Length of a text in characters.
 const TEXT_CHARS: usize = 16;
 
-/// Prefixes of static variables, with the first number of each kind.
+/// Prefixes of static variables, with the number of the first variable of each kind.
 const VARIABLES: [(&str, i32); 2] = [("SGI", 0), ("SGR", 0x100)];
 
 impl Field {
@@ -134,37 +134,37 @@ impl Field {
         Self { key, name, word, form, spans: &[], when: None, need: Presence::Required }
     }
 
-    /// Bits of a word.
+    /// A field of some bits of one word.
     pub const fn bits(key: Key, name: &'static str, word: usize, low: u8, width: u8, show: Show) -> Self {
         Self::new(key, name, word, Form::Bits { low, width, show })
     }
 
-    /// A whole word.
+    /// A field of one whole word.
     pub const fn word(key: Key, name: &'static str, word: usize, show: Show) -> Self {
         Self::bits(key, name, word, 0, 16, show)
     }
 
-    /// A whole word with an unsigned number.
+    /// A field of one whole word that contains an unsigned number.
     pub const fn number(key: Key, name: &'static str, word: usize) -> Self {
         Self::word(key, name, word, Show::Number(PLAIN))
     }
 
-    /// Signed 16 bits.
+    /// A field of signed 16 bits.
     pub const fn short(key: Key, name: &'static str, word: usize, unit: Unit) -> Self {
         Self::new(key, name, word, Form::Short(unit))
     }
 
-    /// Signed 32 bits.
+    /// A field of signed 32 bits.
     pub const fn long(key: Key, name: &'static str, word: usize, unit: Unit) -> Self {
         Self::new(key, name, word, Form::Long(unit))
     }
 
-    /// A single-precision number.
+    /// A field with a single-precision number.
     pub const fn real(key: Key, name: &'static str, word: usize) -> Self {
         Self::new(key, name, word, Form::Real)
     }
 
-    /// A text.
+    /// A field with a text.
     pub const fn text(key: Key, name: &'static str, word: usize, charset: Charset) -> Self {
         Self::new(key, name, word, Form::Text(charset))
     }
@@ -176,15 +176,15 @@ impl Field {
         self
     }
 
-    /// Makes the field depend on `key`: it is in use only if `key` has this value. A value for the field also sets
-    /// `key`.
+    /// Makes the field depend on `key`: the field is in use only if `key` has this value. If this field gets a value,
+    /// `key` is set too.
     #[must_use]
     pub const fn sets(mut self, key: Key, value: i32) -> Self {
         self.when = Some(When { key, least: value, most: value, sets: true });
         self
     }
 
-    /// Makes the field depend on `key`: it is in use only if `key` is in this range.
+    /// Makes the field depend on `key`: the field is in use only if `key` is in this range.
     #[must_use]
     pub const fn when(mut self, key: Key, least: i32, most: i32) -> Self {
         self.when = Some(When { key, least, most, sets: false });
@@ -240,7 +240,7 @@ impl Field {
                 Value::Int(match (raw >> 4, raw & 0xF) {
                     _ if show != Show::Digits => raw,
                     (tens @ 0..=9, units @ 0..=9) => tens * 10 + units,
-                    // These are not decimal digits. The result is a number that is never valid.
+                    // Digits that are not decimal give a number above 99, which is never valid.
                     _ => 100 + raw,
                 })
             }
@@ -258,7 +258,8 @@ impl Field {
         }
     }
 
-    /// Writes a value. The error is the reason why the value does not fit. [`Self::accept`] checks everything else.
+    /// Writes a value. An error contains the reason why the value does not fit. Only [`Self::accept`] checks the range
+    /// and the other conditions.
     pub fn write(&self, words: &mut [u16; 16], value: &Value) -> Result<(), String> {
         let mut put = |at: usize, bits: u16| {
             if let Some(word) = words.get_mut(self.word + at) {
@@ -306,7 +307,7 @@ impl Field {
         Ok(())
     }
 
-    /// Checks whether a value can be sent.
+    /// Checks that a value can be sent.
     pub fn accept(&self, value: &Value) -> Result<(), String> {
         match (value, self.form) {
             (Value::Int(number), form) => {
@@ -344,9 +345,9 @@ impl Field {
                 return format!("use {}", names.collect::<Vec<_>>().join(", "));
             }
             Form::Bits { show: Show::Set { least, most }, .. } if least == most => {
-                return format!("name exactly {least}");
+                return format!("select exactly {least}");
             }
-            Form::Bits { show: Show::Set { least, most }, .. } => return format!("name {least} to {most}"),
+            Form::Bits { show: Show::Set { least, most }, .. } => return format!("select {least} to {most}"),
             Form::Bits { show: Show::Fixed(fixed), .. } => return format!("it must be {fixed}"),
             Form::Text(charset) => return charset.allowed().to_owned(),
             Form::Real => return "allowed: a single-precision number".to_owned(),
@@ -378,9 +379,9 @@ impl Field {
     }
 
     /// Parses user input: a number in the unit of the field, the name of a choice, or a list of axes such as `1,3`. A
-    /// variable is typed as SGI5, a point as P19. The complete command is validated later.
+    /// variable is typed as in `SGI5`, a point as in `P19`. The complete command is validated later.
     pub fn parse(&self, text: &str) -> Result<Value, String> {
-        // Robot programs write P19 for point 19.
+        // In robot programs, point 19 is written P19. The same form is accepted here.
         let is_point = matches!(self.key, Key::Point | Key::Point2 | Key::FirstPoint);
         let number = text.strip_prefix(['P', 'p']).filter(|number| number.bytes().all(|byte| byte.is_ascii_digit()));
         let text = number.filter(|_| is_point).unwrap_or(text);
@@ -436,7 +437,7 @@ impl Show {
                 bits => bits.collect::<Vec<_>>().join(","),
             },
             // The example in 4.7.1 does not show whether the digits are binary or decimal. Hexadecimal output is right
-            // for decimal digits, and for binary digits below 10.
+            // for decimal digits. It is also right for binary digits below 10.
             Self::Version => format!("V{:x}.{:02x}", number >> 8, number & 0xFF),
             Self::Revision => format!("R{number:04}"),
             Self::FpgaVersion => format!("V{:x}.{:03x}", number >> 12, number & 0xFFF),
@@ -454,7 +455,7 @@ impl Show {
     }
 }
 
-/// Text of an empty set.
+/// Text of an empty set of axes or elements.
 const NOTHING: &str = "none";
 
 /// Number that is added to the lines of the COMMON program (4.6.4).
@@ -502,7 +503,7 @@ fn plain(error: &UnitError) -> String {
     }
 }
 
-/// Parses a version such as `V1.08`.
+/// Parses a version, for example `V1.08`.
 fn version(text: &str) -> Result<Value, String> {
     let digits = text.strip_prefix('V').unwrap_or(text).replacen('.', "", 1);
     let number =
@@ -510,7 +511,7 @@ fn version(text: &str) -> Result<Value, String> {
     Ok(Value::from(number))
 }
 
-/// Parses a set such as `1,3` or `1-3`.
+/// Parses a set, for example `1,3` or `1-3`.
 fn set_of(text: &str) -> Result<Value, String> {
     let mut set = 0;
     if text == NOTHING {

@@ -61,28 +61,28 @@ const VARIABLES: &[(i32, i32)] = &[(0, 31), (256, 287)];
 
 // The robot.
 
-/// 0 means robot 1 (4.2.1).
+/// Robot number; 0 means robot 1 (4.2.1).
 pub const ROBOT: Layout = &[Field::bits(Key::Robot, "robot", 0, 12, 4, ROBOTS).optional()];
-/// 0 means all robots (4.2.12, 4.7.11).
+/// Robot number; 0 means all robots (4.2.12, 4.7.11).
 pub const ROBOT_OR_ALL: Layout = &[Field::bits(Key::Robot, "robot", 0, 12, 4, ROBOTS_OR_ALL).optional()];
 
 // Motion (4.2).
 
-/// All axes, or some axes.
+/// Axes of a motion: all axes, or some axes.
 pub const AXES: Layout = &[
     Field::bits(Key::AxisFlag, "axes flag", 1, 0, 1, ALL_OR_SOME).optional(),
     Field::bits(Key::Axes, "axes", 2, 0, 4, Show::Set { least: 1, most: 4 }).sets(Key::AxisFlag, 1),
 ];
-/// Exactly one axis, with the flag fixed to 1 (DRIVE, DRIVEI, PUSH).
+/// Exactly one axis. The axis flag is fixed to 1 (DRIVE, DRIVEI, PUSH).
 pub const ONE_AXIS: Layout = &[
     Field::bits(Key::AxisFlag, "axes flag", 1, 0, 1, Show::Fixed(1)).optional(),
     Field::bits(Key::Axes, "axis", 2, 0, 4, ONE),
 ];
 /// Exactly one axis.
 pub const AXIS: Layout = &[Field::bits(Key::Axes, "axis", 2, 0, 4, ONE)];
-/// One axis; an empty set means all axes.
+/// One axis. An empty set means all axes.
 pub const AXIS_OR_ALL: Layout = &[Field::bits(Key::Axes, "axis", 2, 0, 4, Show::Set { least: 0, most: 1 }).optional()];
-/// Plus or minus.
+/// Direction of a jog or an inching motion: plus or minus.
 pub const DIRECTION: Layout = &[Field::bits(Key::Direction, "direction", 2, 7, 1, DIRECTIONS)];
 
 const SPEED_OF_MAX: Field = Field::word(Key::SpeedOfMax, "speed, of the maximum", 3, Show::Number(FINE_PERCENT))
@@ -95,7 +95,7 @@ const SPEED_MM_S: Field =
 /// Speed of a point-to-point motion.
 pub const SPEED: Layout =
     &[Field::bits(Key::SpeedMode, "speed flag", 1, 1, 2, SPEED_MODES).optional(), SPEED_OF_MAX, SPEED_PERCENT];
-/// Speed of an interpolated motion, also in mm/s.
+/// Speed of an interpolated motion. It can also be given in mm/s.
 pub const LINEAR_SPEED: Layout = &[
     Field::bits(Key::SpeedMode, "speed flag", 1, 1, 2, LINEAR_SPEED_MODES).optional(),
     SPEED_OF_MAX,
@@ -109,7 +109,7 @@ pub const ACCEL: Layout = &[
     Field::word(Key::Accel, "acceleration", 10, PERCENTS).within(TO_100).sets(Key::AccelFlag, 1),
     Field::word(Key::Decel, "deceleration", 11, PERCENTS).within(TO_100).sets(Key::DecelFlag, 1),
 ];
-/// Unit of the positions in the answer: bit 14 is pulse, bit 15 is mm. Both must not be set.
+/// Unit of the positions in the answer. Bit 14 means pulses, bit 15 means mm; only one of them may be set.
 pub const REPORT: Layout = &[Field::bits(Key::Report, "position output", 1, 14, 2, REPORTS).optional()];
 /// Target point, or a point that contains distances.
 pub const TO_POINT: Layout = &[Field::number(Key::Point, "point", 4).within(POINTS)];
@@ -148,21 +148,21 @@ const fn when(fields: &[Field; 4], key: Key, value: i32) -> [Field; 4] {
     ]
 }
 
-/// Targets or distances of the moving axes.
+/// Targets or distances of the moving axes, in mm.
 pub const TARGETS_MM: Layout = &of_axes(&per_axis(4, MM));
-/// Targets or distances of the moving axes.
+/// Targets or distances of the moving axes, in pulses.
 pub const TARGETS_PULSE: Layout = &of_axes(&per_axis(4, PULSE));
 /// Hand system for coordinates in mm. Its codes differ from the codes of [`ARM`].
 pub const HAND_SYSTEM: Layout = &[Field::bits(Key::HandSystem, "hand system", 1, 3, 2, HAND_SYSTEMS).optional()];
-/// Target of one axis.
+/// Target of one axis, in mm.
 pub const TARGET_MM: Layout = &[Field::long(Key::Target, "target position", 4, MM)];
-/// Target of one axis.
+/// Target of one axis, in pulses.
 pub const TARGET_PULSE: Layout = &[Field::long(Key::Target, "target position", 4, PULSE)];
-/// Distance of one axis.
+/// Distance of one axis, in mm.
 pub const DISTANCE_MM: Layout = &[Field::long(Key::Distance, "distance", 4, MM)];
-/// Distance of one axis.
+/// Distance of one axis, in pulses.
 pub const DISTANCE_PULSE: Layout = &[Field::long(Key::Distance, "distance", 4, PULSE)];
-/// Arch: axis, height, start and end.
+/// Arch: its axis, height, start position and end position.
 pub const ARCH: Layout = &[
     Field::bits(Key::ArchUnit, "arch unit", 1, 4, 1, UNITS),
     Field::bits(Key::ArchAxis, "arch axis", 2, 8, 4, ONE),
@@ -184,12 +184,12 @@ pub const PUSH: Layout = &[
 ];
 /// Inching distance in pulses or 0.001 mm, depending on the command.
 pub const INCHING_AMOUNT: Layout = &[Field::number(Key::InchingAmount, "inching amount", 2).within(&[(1, 10_000)])];
-/// Point and unit for storing the position.
+/// Point in which the current position is stored, and the unit.
 pub const TEACH: Layout =
     &[Field::number(Key::Point, "point", 2).within(POINTS), Field::word(Key::Unit, "unit", 3, UNITS)];
-/// Axes of the origin return. At most one of the three bits may be set.
+/// Axes of the origin return. At most one of its three bits may be set.
 pub const ORIGIN_AXES: Layout = &[Field::bits(Key::OriginAxes, "axes", 1, 1, 3, ORIGIN_CHOICES).optional()];
-/// A speed setting.
+/// Speed to set, in percent.
 pub const SPEED_SETTING: Layout = &[Field::word(Key::SpeedPercent, "speed", 2, PERCENTS).within(TO_100)];
 /// A shift to select.
 pub const SHIFT: Layout = &[Field::number(Key::Shift, "shift", 2).within(PALLETS)];
@@ -201,7 +201,7 @@ pub const ARM: Layout = &[Field::word(Key::Arm, "arm", 2, ARMS)];
 pub const TORQUE_LIMIT: Layout =
     &[Field::bits(Key::Axes, "axis", 2, 0, 4, ONE), Field::word(Key::Torque, "torque", 3, PERCENTS).within(TO_100)];
 
-/// Final position, in the unit of the command.
+/// Final positions of the axes, in the unit of the command.
 pub const POSITIONS: Layout =
     &joined(&when(&per_axis(4, PULSE), Key::Report, 1), &when(&per_axis(4, MM), Key::Report, 2));
 /// Result of a push.
@@ -234,7 +234,7 @@ pub const POINT_DATA: Layout = &[
     Field::bits(Key::Unit, "unit", 1, 0, 1, UNITS),
     Field::bits(Key::HandSystem, "hand system", 1, 1, 2, HAND_SYSTEMS).when(Key::Unit, 1, 1).optional(),
 ];
-/// Point in an answer.
+/// Data of a point in an answer.
 pub const POINT_DATA_ANSWER: Layout = &[
     Field::bits(Key::Unit, "unit", 3, 0, 1, UNITS),
     Field::bits(Key::HandSystem, "hand system", 3, 1, 2, HAND_SYSTEMS).when(Key::Unit, 1, 1).optional(),
@@ -246,8 +246,8 @@ pub const COORDINATES: Layout =
 pub const COMMENT: Layout = &[Field::text(Key::Comment, "comment", 4, Charset::Comment)];
 /// Pallet number.
 pub const PALLET: Layout = &[Field::number(Key::Pallet, "pallet", 2).within(PALLETS)];
-/// Rows, columns, layers, and the number of the first of the five points. In the manual, the ranges begin at 0, but the
-/// product begins at 1.
+/// Numbers of rows, columns and layers, and the number of the first of the five points. In the manual, the ranges begin
+/// at 0, but the product of the three numbers must be at least 1.
 pub const PALLET_DATA: Layout = &[
     Field::number(Key::CountX, "places in X", 3).within(&[(0, 32_767)]),
     Field::number(Key::CountY, "places in Y", 4).within(&[(0, 32_767)]),
@@ -258,8 +258,8 @@ pub const PALLET_DATA: Layout = &[
 pub const SHIFT_DATA: Layout = &per_axis(4, MM);
 /// Robot of a hand.
 pub const HAND_OWNER: Layout = &[Field::number(Key::Owner, "robot", 3)];
-/// Data of a hand. The manual has two scales for data 1: no scale in the text, and 1000 in the examples (4.3.5). The
-/// raw value is used.
+/// Data of a hand. The manual has two scales for data 1: no scale in the text, and 1000 in the examples (4.3.5). armctl
+/// uses the raw value.
 pub const HAND_DATA: Layout = &[
     Field::long(Key::Data1, "data 1", 4, PLAIN),
     Field::long(Key::Data2, "data 2", 6, MM),
@@ -271,31 +271,31 @@ pub const HAND_DATA: Layout = &[
 
 /// A static variable.
 pub const VARIABLE: Layout = &[Field::word(Key::Variable, "variable", 2, Show::Variable).within(VARIABLES)];
-/// Variable on the right side.
+/// Static variable on the right side of the operation.
 pub const VARIABLE_2: Layout = &[Field::word(Key::Variable2, "variable 2", 4, Show::Variable).within(VARIABLES)];
 /// Value of a variable. Its format depends on the kind of the variable.
 pub const VARIABLE_VALUE: Layout = &[
     Field::long(Key::Value, "value", 4, PLAIN).when(Key::Variable, 0, 31),
     Field::real(Key::Value, "value", 4).when(Key::Variable, 256, 287),
 ];
-/// Parameter of an axis or of the robot.
+/// A parameter of an axis, or of the robot.
 pub const PARAMETER: Layout = &[
     Field::word(Key::Parameter, "parameter", 2, Show::Choice(&parameter::NAMES)),
     Field::bits(Key::Axes, "axis", 3, 0, 4, Show::Set { least: 0, most: 1 }).optional(),
 ];
 /// Value of a parameter.
 pub const PARAMETER_VALUE: Layout = &[Field::long(Key::Value, "value", 4, PLAIN)];
-/// Two points.
+/// Numbers of two points.
 pub const TWO_POINTS: Layout =
     &[Field::number(Key::Point, "point 1", 2).within(POINTS), Field::number(Key::Point2, "point 2", 3).within(POINTS)];
-/// Source position on a pallet.
+/// Position on a pallet, as the source of a copy.
 pub const PALLET_PLACE: Layout = &[
     Field::number(Key::Pallet, "pallet", 3).within(PALLETS),
     Field::number(Key::WorkPosition, "work position", 4).within(COUNTS),
 ];
-/// One of six elements.
+/// One of the six elements of a point.
 pub const POINT_ELEMENT: Layout = &[Field::bits(Key::Element, "element", 3, 0, 6, ONE)];
-/// One of four elements.
+/// One of the four elements of a shift.
 pub const SHIFT_ELEMENT: Layout = &[Field::bits(Key::Element, "element", 3, 0, 4, ONE)];
 /// A number in pulses.
 pub const VALUE_PULSE: Layout = &[Field::long(Key::Value, "value", 4, PULSE)];
@@ -329,9 +329,9 @@ pub const PORT: Layout = &[
 ];
 /// A bit of a port.
 pub const PORT_BIT: Layout = &[Field::bits(Key::PortBit, "bit", 2, 0, 4, NUMBER).within(&[(0, 7)])];
-/// Eight signals, bit 0 the lowest.
+/// Eight signals of a port. Bit 0 is the signal with the lowest number.
 pub const PORT_VALUE: Layout = &[Field::bits(Key::Value, "value", 3, 0, 8, NUMBER)];
-/// One signal.
+/// State of one signal.
 pub const BIT_VALUE: Layout = &[Field::bits(Key::Value, "value", 3, 0, 8, NUMBER).within(&[(0, 1)])];
 
 // Programs (4.6).
@@ -347,7 +347,7 @@ const BY_PROGRAM: Field = Field::number(Key::Program, "program", 2).within(PROGR
 const BY_TASK: Field = Field::number(Key::Task, "task", 3).within(TASKS).sets(Key::Selection, 2);
 const BY_NAME: Field = Field::text(Key::ProgramName, "program name", 6, Charset::Program).sets(Key::Selection, 4);
 
-/// Program to register in a task. Task 0 means the lowest vacant task.
+/// Program to register in a task. Task 0 means the vacant task with the lowest number.
 pub const DESIGNATION: Layout = &[
     selection(&[SELECT[1], SELECT[3]]),
     BY_PROGRAM,
@@ -357,7 +357,7 @@ pub const DESIGNATION: Layout = &[
 ];
 /// A program, or all programs.
 pub const PROGRAM_OR_ALL: Layout = &[selection(&SELECT), BY_PROGRAM, BY_TASK, BY_NAME];
-/// A program.
+/// A program, which is selected by its number, its task or its name.
 pub const PROGRAM: Layout = &[selection(&[SELECT[1], SELECT[2], SELECT[3]]), BY_PROGRAM, BY_TASK, BY_NAME];
 /// State of a program.
 pub const PROGRAM_STATE: Layout = &[
@@ -396,7 +396,7 @@ pub const ROBOT_TYPE: Layout = &[Field::number(Key::RobotType, "robot type", 2)]
 pub const AXIS_TYPES: Layout = &word_per_axis(4, NUMBER);
 /// Servo state of each axis.
 pub const SERVO_STATUS: Layout = &word_per_axis(2, SERVO_STATES);
-/// Servo state of the reserved axes. It is always 9.
+/// Servo state of the two reserved axes. Its value is always 9.
 pub const RESERVED_SERVO_STATUS: Layout = &[
     Field::word(Key::Axis5, "axis 5 (reserved)", 6, SERVO_STATES).optional(),
     Field::word(Key::Axis6, "axis 6 (reserved)", 7, SERVO_STATES).optional(),
@@ -404,11 +404,11 @@ pub const RESERVED_SERVO_STATUS: Layout = &[
 /// Whether the controller sends the answer continuously until the status reset.
 pub const CONTINUOUS: Layout =
     &[Field::bits(Key::Continuous, "continuous output", 1, 0, 1, Show::Choice(&[(0, "off"), (1, "on")])).optional()];
-/// Current position.
+/// Current position of each axis, in pulses.
 pub const POSITION_PULSE: Layout = &per_axis(4, PULSE);
-/// Current position.
+/// Current position of each axis, in mm.
 pub const POSITION_MM: Layout = &per_axis(4, MM);
-/// Hand system of the position. Bit 0 is not used, although the example of the manual has 1 there.
+/// Hand system of the position. Bit 0 is not used, although the example in the manual has 1 in this bit.
 pub const POSITION_HAND_SYSTEM: Layout =
     &[Field::bits(Key::HandSystem, "hand system", 3, 1, 2, HAND_SYSTEMS).optional()];
 /// Half of the tasks: the first eight or the last eight.
@@ -431,7 +431,7 @@ const fn per_task(show: Show) -> [Field; 8] {
 pub const TASK_STATUS: Layout = &per_task(TASK_STATES);
 /// Current lines of eight tasks; 0 means no task.
 pub const TASK_LINES: Layout = &per_task(Show::Line);
-/// Number in the alarm history.
+/// Number of an entry in the alarm history.
 pub const HISTORY: Layout = &[Field::number(Key::History, "history number", 2).within(&[(1, 500)])];
 /// An alarm and its source.
 pub const ALARM: Layout = &[
@@ -442,13 +442,13 @@ pub const ALARM: Layout = &[
     Field::bits(Key::Place2, "place 2", 4, 8, 8, PLACES_2),
     Field::bits(Key::Place2Number, "place 2 number", 4, 0, 8, NUMBER),
 ];
-/// The three speed settings.
+/// The three speed settings of a robot.
 pub const SPEED_STATUS: Layout = &[
     Field::word(Key::AutoSpeed, "automatic speed", 2, PERCENTS),
     Field::word(Key::ManualSpeed, "manual speed", 3, PERCENTS),
     Field::word(Key::ProgramSpeed, "program speed", 4, PERCENTS),
 ];
-/// Motor type whose origin is meant. It is valid only with a robot.
+/// Type of the motors whose origin status is requested. It is valid only with a robot.
 pub const MOTOR_TYPE: Layout = &[Field::bits(
     Key::MotorType,
     "motor type",
@@ -464,7 +464,7 @@ const fn origin(key: Key, name: &'static str, word: usize) -> Field {
     Field::word(key, name, word, ORIGIN_STATES).when(Key::Robot, 1, 4)
 }
 
-/// Origin status. For robot 0 it is the status of the whole system; otherwise it is the status of each axis.
+/// Origin status. For robot 0, it is the status of the whole system. For other robots, it is the status of each axis.
 pub const ORIGIN_STATUS: Layout = &[
     Field::word(Key::System, "whole system", 2, ORIGIN_STATES).when(Key::Robot, 0, 0),
     origin(Key::Axis1, "axis 1", 2),
@@ -474,10 +474,10 @@ pub const ORIGIN_STATUS: Layout = &[
     origin(Key::Axis5, "axis 5 (reserved)", 6).optional(),
     origin(Key::Axis6, "axis 6 (reserved)", 7).optional(),
 ];
-/// Selected axes; an empty set means all axes.
+/// Selected axes. An empty set means all axes.
 pub const SOME_AXES: Layout = &[Field::bits(Key::Axes, "axes", 2, 0, 4, Show::Set { least: 0, most: 4 }).optional()];
-/// Torque of each axis. The sign is the direction. Two's complement is an assumption, because the manual does not
-/// specify the format.
+/// Torque of each axis. The sign is the direction of the torque. The manual does not specify the format, so two's
+/// complement is an assumption.
 pub const TORQUES: Layout = &[
     Field::short(Key::Axis1, "axis 1", 2, PERCENT),
     Field::short(Key::Axis2, "axis 2", 3, PERCENT),
@@ -496,7 +496,7 @@ pub const TIME: Layout = &[
     Field::number(Key::Minute, "minute", 3).within(&[(0, 59)]),
     Field::number(Key::Second, "second", 4).within(&[(0, 59)]),
 ];
-/// A controller.
+/// Number of a controller.
 pub const CONTROLLER: Layout = &[Field::number(Key::Controller, "controller", 2).within(&[(1, 4)])];
 /// Modules in the option slots. The manual has no code for PROFINET.
 pub const SLOTS: Layout = &[

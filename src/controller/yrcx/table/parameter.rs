@@ -1,4 +1,5 @@
-//! Parameters that remote commands can read and write (4.4.2). The manual lists neither 261 nor 263.
+//! Parameters that remote commands can read and write (4.4.2). The numbers 261 and 263 are not in the list of the
+//! manual.
 
 /// One parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -11,9 +12,9 @@ pub struct Parameter {
     pub meaning: &'static str,
     /// Unit; empty if the manual has none.
     pub unit: &'static str,
-    /// Whether the parameter belongs to an axis. Otherwise it belongs to the robot.
+    /// Whether the parameter belongs to an axis. If not, it belongs to the robot.
     pub per_axis: bool,
-    /// Range. The maximum payload depends on the robot, and only the controller has it.
+    /// Valid range. For the payload, the real maximum depends on the robot, and only the controller checks it.
     pub span: (i32, i32),
 }
 
@@ -33,7 +34,7 @@ pub const PARAMETERS: [Parameter; 14] = [
     robot(1, "WEIGHT", "payload of the robot", "kg"),
     robot(2, "WEIGHTG", "payload of the robot", "g"),
     axis(257, "ACCEL", "acceleration coefficient", "", RATIO),
-    // The manual uses this spelling.
+    // The manual spells this name with two C.
     axis(258, "DECCEL", "deceleration ratio", "", RATIO),
     axis(259, "TOLE", "tolerance", "pulses", (1, 16_384)),
     axis(260, "OUTPOS", "OUT effective position", "pulses", DISTANCE),

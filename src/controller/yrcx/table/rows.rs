@@ -31,13 +31,13 @@ macro_rules! commands {
 
 const READ: (Risk, Pace) = (Risk::Read, Pace::Quick);
 const WRITE: (Risk, Pace) = (Risk::Write, Pace::Quick);
-/// Overwrites data that a person made.
+/// Risk and pace of a command that overwrites data made by a person.
 const DESTROY: (Risk, Pace) = (Risk::Destroy, Pace::Quick);
-/// Power on, power off, or brake release: an axis may drop.
+/// Risk and pace of power on, power off and brake release: an axis may drop.
 const POWER: (Risk, Pace) = (Risk::Motion, Pace::Power);
 const MOTION: (Risk, Pace) = (Risk::Motion, Pace::Motion);
 const JOG: (Risk, Pace) = (Risk::Motion, Pace::Jog);
-/// Starts a program. The command ends when the controller accepts the start.
+/// Risk and pace of a program start. The command ends when the controller accepts the start.
 const START: (Risk, Pace) = (Risk::Motion, Pace::Quick);
 
 commands! {
@@ -202,7 +202,7 @@ commands! {
 impl Command {
     /// Row of the table.
     pub const fn row(self) -> &'static Row {
-        // The macro puts rows and variants into the same order.
+        // The macro creates rows and variants in the same order.
         &ROWS[self as usize]
     }
 }

@@ -247,7 +247,7 @@ pub fn print<D: CaptureDecoder>(
     // CSV rows are written immediately, except for the fields of one packet.
     let is_whole = run.screen.format != Format::Csv || selection.frame.is_some();
     let Some(capture) = capture.filter(|_| is_whole) else { return stream::print(run, id, &source, decoder) };
-    // The report is never an intermediate JSON value, because that needs many times the memory.
+    // The report is never an intermediate JSON value, because a JSON value needs many times the memory.
     if is_streamed && !run.is_for_people() {
         let failure = capture.failure();
         let whole = ReportEnvelope::new(run, id, &capture, failure.as_ref());

@@ -73,13 +73,13 @@ fn slcan(place: &str, query: &mut Query) -> Result<network::Place, String> {
     }
     let (host, own_port) = host_and_port(rest)?;
     let own_port =
-        own_port.ok_or("the port is missing, as in slcan://HOST:PORT?mac=5; a serial port has three slashes")?;
+        own_port.ok_or("the port is missing, for example slcan://HOST:PORT?mac=5; a serial port has three slashes")?;
     Ok(network::Place::Tcp { host, port: port("port", own_port)? })
 }
 
 /// Parses the options that both schemes have.
 fn node(place: network::Place, query: &mut Query) -> Result<Place, String> {
-    let mac = query.take("mac").ok_or("mac is missing: the controller's MAC ID, as in mac=5")?;
+    let mac = query.take("mac").ok_or("mac is missing: add the controller's MAC ID, for example mac=5")?;
     let mac: Mac = mac.parse().map_err(|error| format!("mac: {error}"))?;
     let master = query.take("master").map_or(Ok(Mac::default()), |text| text.parse());
     let master = master.map_err(|error| format!("master: {error}"))?;

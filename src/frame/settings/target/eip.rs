@@ -106,7 +106,7 @@ fn parse(place: &str, query: &mut Query) -> Result<Eip, String> {
         configuration: match query.take("config").as_deref() {
             None => Some(1),
             Some("none") => None,
-            Some(text) => Some(number("config", text, "a number from 1 to 65535, or none")?),
+            Some(text) => Some(number("config", text, "a number from 1 to 65535, or `none`")?),
         },
         input_size: size(query, "in_size")?,
         output_size: size(query, "out_size")?,
@@ -153,7 +153,7 @@ fn rpi(query: &mut Query) -> Result<Duration, String> {
 
 /// Parses `VENDOR:TYPE:PRODUCT[:MAJOR.MINOR]`.
 fn key(text: &str) -> Result<EipKey, String> {
-    let wrong = || format!("key must be VENDOR:TYPE:PRODUCT[:MAJOR.MINOR] as in 636:43:5:1.1, not '{text}'");
+    let wrong = || format!("key must be VENDOR:TYPE:PRODUCT[:MAJOR.MINOR], for example 636:43:5:1.1, not '{text}'");
     let (key, revision) = match text.split(':').collect::<Vec<_>>()[..] {
         [vendor, device_type, product] => ([vendor, device_type, product], None),
         [vendor, device_type, product, revision] => ([vendor, device_type, product], Some(revision)),

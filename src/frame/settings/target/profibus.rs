@@ -88,10 +88,10 @@ pub struct Profibus {
 fn parse(place: &str, query: &mut Query) -> Result<Profibus, String> {
     let port = place.strip_prefix("//").ok_or("two slashes are missing after profibus:")?;
     if port.is_empty() || port == "/" {
-        return Err("the adapter is missing, as in profibus:///dev/ttyUSB0?station=5".to_owned());
+        return Err("the adapter is missing, for example profibus:///dev/ttyUSB0?station=5".to_owned());
     }
     let station =
-        query.take("station").ok_or("station is missing: the address of the controller on the bus, 0 to 125")?;
+        query.take("station").ok_or("station is missing: add the address of the controller on the bus (0 to 125)")?;
     let gsd = query.take("gsd").map(PathBuf::from);
     let module = query.take("module");
     if module.is_some() && gsd.is_none() {
@@ -147,12 +147,12 @@ fn time(query: &mut Query, name: &str) -> Result<Option<Duration>, String> {
 fn ident(text: &str) -> Result<u16, String> {
     let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
     let ident = (digits.len() <= 4).then(|| u16::from_str_radix(digits, 16).ok()).flatten();
-    ident.ok_or_else(|| format!("ident must have up to four hexadecimal digits as in 0x1234, not '{text}'"))
+    ident.ok_or_else(|| format!("ident must have up to four hexadecimal digits such as 0x1234, not '{text}'"))
 }
 
 /// Parses `C0D7D7`, optionally with dots or colons.
 fn bytes(name: &str, text: &str) -> Result<Vec<u8>, String> {
-    let wrong = || format!("{name} must be bytes in hexadecimal as in C0D7D7, not '{text}'");
+    let wrong = || format!("{name} must be bytes in hexadecimal such as C0D7D7, not '{text}'");
     let digits: Vec<char> = text.chars().filter(|character| !matches!(character, '.' | ':' | ' ')).collect();
     if digits.len() % 2 == 1 || digits.len() > 2 * 244 {
         return Err(wrong());

@@ -83,7 +83,7 @@ fn parse(place: &str, query: &mut Query) -> Result<Profinet, String> {
     let place = authority("profinet", place)?;
     let (station, interface) = place
         .rsplit_once('@')
-        .ok_or("the interface is missing, as in profinet://STATION@eth0; `ip link` lists them")?;
+        .ok_or("the interface is missing, for example profinet://STATION@eth0; `ip link` lists the interfaces")?;
     let is_name = !interface.is_empty() && !interface.contains(|c: char| c.is_whitespace() || c == '/');
     if !is_name {
         return Err(format!("'{interface}' is not the name of an interface such as eth0"));
@@ -113,7 +113,7 @@ fn parse(place: &str, query: &mut Query) -> Result<Profinet, String> {
 /// Parses a station name or MAC address.
 fn station(text: &str) -> Result<Station, String> {
     if text.is_empty() {
-        return Err("the station is missing, as in profinet://STATION@eth0".to_owned());
+        return Err("the station is missing, for example profinet://STATION@eth0".to_owned());
     }
     if text.contains(':') {
         let mac: Mac = text.parse()?;
@@ -167,7 +167,7 @@ fn watchdog(text: &str, cycle: Duration) -> Result<Duration, String> {
 
 /// Parses `192.168.0.5`, optionally with a prefix length.
 pub fn suite(text: &str) -> Result<IpSuite, String> {
-    let wrong = || format!("ip must be an address as in 192.168.0.5 or 192.168.0.5/24, not '{text}'");
+    let wrong = || format!("ip must be an address such as 192.168.0.5 or 192.168.0.5/24, not '{text}'");
     let (address, bits) = match text.split_once('/') {
         None => (text, PREFIX),
         Some((address, bits)) => (address, bits.parse().map_err(|_| wrong())?),

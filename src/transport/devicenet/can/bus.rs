@@ -12,7 +12,7 @@ pub struct Bus {
     queues: Vec<VecDeque<(Duration, Frame)>>,
     /// Time when the last frame ended.
     free: Duration,
-    /// Frame on the bus: time of its end, its sender, the frame.
+    /// Frame that is being sent: time of its end, its sender, the frame.
     current: Option<(Duration, usize, Frame)>,
     /// Total transmission time of all frames.
     busy: Duration,
@@ -21,7 +21,7 @@ pub struct Bus {
 /// A transmitted frame. All nodes except the sender receive it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Passed {
-    /// Time of the last bit of the frame.
+    /// Time at which the last bit of the frame ends.
     pub at: Duration,
     /// Node that sent the frame.
     pub from: usize,
@@ -63,7 +63,8 @@ impl Bus {
         self.busy
     }
 
-    /// Arbitrates: the waiting frame with the lowest identifier is sent first.
+    /// Starts the next frame if the bus is free. The waiting frame with the lowest identifier is sent first
+    /// (arbitration).
     fn arbitrate(&mut self, now: Duration) {
         if self.current.is_some() {
             return;
@@ -96,7 +97,7 @@ mod tests {
         let all = Duration::from_secs(1);
         let passed: Vec<Passed> = std::iter::from_fn(|| bus.pass(all)).collect();
         let ids: Vec<u16> = passed.iter().map(|passed| passed.frame.id()).collect();
-        // Frame 001 was queued after the transmission of 3C5 had started.
+        // Frame 001 was queued after the transmission of frame 3C5 had started, so it is sent second.
         assert_eq!(ids, [0x3C5, 0x001, 0x42D]);
         assert_eq!(passed[0].at, frame(0x3C5).time(Bitrate::K500));
         assert_eq!(passed[2].at, bus.busy());

@@ -51,10 +51,11 @@ impl Frame {
 
     /// Length in bits, with stuff bits and the interframe space (ISO 11898-1).
     pub fn bits(&self) -> u32 {
-        // CRC delimiter, acknowledge slot and its delimiter, end of frame, interframe space.
+        // Number of bits without stuffing: CRC delimiter, acknowledge slot and its delimiter, end of frame, interframe
+        // space.
         const UNSTUFFED: u32 = 1 + 2 + 7 + 3;
         let mut stream = Stuffed::default();
-        // Start of frame, identifier, RTR, IDE, reserved bit, length.
+        // Bits with stuffing: start of frame, identifier, RTR, IDE, reserved bit, length.
         stream.push(u32::from(self.id), 12);
         stream.push(u32::from(self.len), 3 + 4);
         for byte in self.data() {
@@ -85,8 +86,8 @@ impl Frame {
         Self::new(u16::try_from(id).ok()?, data.get(..usize::from(head[4]))?)
     }
 
-    /// Parses a line of a `candump -l` log, `(1700000000.123456) can0 42D#0102`, or of `candump`, `can0 42D [2] 01 02`.
-    /// Returns the frame, and the time if the line has one.
+    /// Parses a line of a `candump -l` log, for example `(1700000000.123456) can0 42D#0102`, or of `candump`, for
+    /// example `can0 42D [2] 01 02`. Returns the frame, and the time if the line has one.
     pub fn from_candump(line: &str) -> Option<(Option<Duration>, Self)> {
         let mut words = line.split_whitespace().peekable();
         let time = words.next_if(|word| word.starts_with('(')).and_then(|word| {
@@ -111,7 +112,7 @@ impl Frame {
     }
 }
 
-/// Format of candump: `42D#0102`.
+/// Formats a frame as candump does, for example `42D#0102`.
 impl fmt::Display for Frame {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:03X}#", self.id)?;
@@ -125,18 +126,18 @@ impl fmt::Debug for Frame {
     }
 }
 
-/// Bit counter with stuffing: after five equal bits, one opposite bit is inserted.
+/// Bit counter with stuffing. After five equal bits, a node inserts one opposite bit.
 #[derive(Debug, Default)]
 struct Stuffed {
     bits: u32,
-    /// Last bit, and the number of equal bits in a row.
+    /// Value of the last bit, and the number of equal bits in a row.
     run: (bool, u8),
     checksum: u16,
 }
 
 impl Stuffed {
     fn push(&mut self, value: u32, count: u32) {
-        /// Polynomial of the 15-bit CRC.
+        /// Polynomial of the 15-bit CRC of a frame.
         const POLYNOMIAL: u16 = 0x4599;
         for at in (0..count).rev() {
             let bit = value >> at & 1 == 1;
@@ -179,7 +180,7 @@ impl Bitrate {
         }
     }
 
-    /// Label on the rotary switches of devices, for example `125k`.
+    /// Name of the bit rate as on the rotary switches of devices, for example `125k`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::K125 => "125k",
@@ -201,9 +202,9 @@ pub enum BusState {
     /// Error active: no problem.
     #[default]
     Active,
-    /// Error warning: some errors occurred.
+    /// Error warning: the adapter has counted some errors.
     Warning,
-    /// Error passive: many errors occurred. Often no other node is present to acknowledge frames.
+    /// Error passive: the adapter has counted many errors. Often no other node is present to acknowledge frames.
     Passive,
     /// Bus-off: the adapter has disconnected from the bus.
     Off,
@@ -250,7 +251,7 @@ pub enum PortError {
         /// Reason, as text.
         why: String,
     },
-    /// The adapter sends nothing.
+    /// The adapter sends no answer.
     #[error("{path}: no answer from the adapter")]
     Mute {
         /// Path of the adapter.
@@ -289,7 +290,7 @@ pub trait CanPort: fmt::Debug + Send {
     /// The adapter is disconnected, or accepts no more frames.
     fn send(&mut self, frame: &Frame) -> Result<(), PortError>;
 
-    /// Waits for the next event. Cancel safe.
+    /// Waits for the next event. The future is cancel safe.
     fn next(&mut self) -> Waiting<'_, Result<Heard, PortError>>;
 
     /// Last known health.
@@ -311,7 +312,8 @@ mod tests {
         assert_eq!(frame(0x42F, &[0, 0x7C, 2, 0xEE, 0xFF, 0xC0, 0]).to_string(), "42F#007C02EEFFC000");
     }
 
-    /// A frame has 47 + 8n bits for n data bytes, and at most (34 + 8n - 1) / 4 stuff bits.
+    /// A frame has 47 + 8n bits without stuffing, where n is the number of data bytes. It has at most (34 + 8n - 1) / 4
+    /// stuff bits.
     #[test]
     fn bits_lie_between_none_and_all_stuffed() {
         for len in 0..=8usize {
@@ -324,7 +326,7 @@ mod tests {
                 }
             }
         }
-        // All 34 bits up to the end of the CRC are zeros, so a stuff bit follows after every five bits.
+        // All 34 bits up to the end of the CRC are zeros. So one stuff bit follows after every five bits.
         assert_eq!(frame(0, &[]).bits(), 47 + 34 / 5);
     }
 

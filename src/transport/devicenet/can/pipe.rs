@@ -1,5 +1,5 @@
-//! Byte stream with a queue in each direction, so that a write never waits for a read. The stream is a serial port with
-//! two threads, or a TCP connection with two tasks.
+//! Byte stream with a queue in each direction, so that a write never waits for a read. The stream is either a serial
+//! port with two threads, or a TCP connection with two tasks.
 
 use std::io;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use tokio::sync::mpsc::{Receiver, Sender, UnboundedReceiver, UnboundedSender, ch
 
 use crate::vanished;
 
-/// Limits: number of bytes per read, and number of pieces that wait for the reader.
+/// Maximum number of bytes per read. The constant below is the maximum number of pieces that wait for the reader.
 const PIECE: usize = 4096;
 const PIECES: usize = 64;
 /// Timeout of a read. After each timeout, the thread checks whether the pipe still exists.
@@ -36,7 +36,7 @@ pub struct Writer {
     waiting: Arc<AtomicUsize>,
 }
 
-/// The other ends of the queues, which the port uses.
+/// The ends of the queues that the port or connection uses.
 struct End {
     leaving: UnboundedReceiver<Vec<u8>>,
     waiting: Arc<AtomicUsize>,
@@ -81,7 +81,7 @@ impl Pipe {
         });
         tokio::spawn(async move {
             while let Some(bytes) = end.leaving.recv().await {
-                // After an error the task ends; the reader reports that the connection is closed.
+                // After an error, this task ends. The reader reports that the connection is closed.
                 if writer.write_all(&bytes).await.is_err() {
                     return;
                 }
@@ -121,7 +121,7 @@ impl Pipe {
         thread::Builder::new().name("slcan-write".to_owned()).spawn(move || {
             while let Some(bytes) = end.leaving.blocking_recv() {
                 if let Err(error) = writer.write_all(&bytes) {
-                    // The receiver may already be gone.
+                    // An error means that the receiver was dropped.
                     let _ = end.arrived.blocking_send(Err(vanished(error)));
                     return;
                 }
@@ -136,7 +136,7 @@ impl Pipe {
         &self.writer
     }
 
-    /// Waits for bytes. Cancel safe.
+    /// Waits for bytes. The future is cancel safe.
     ///
     /// # Errors
     /// The other end has closed the stream.
@@ -146,7 +146,7 @@ impl Pipe {
 }
 
 impl Writer {
-    /// Creates a writer with a queue that the caller must empty. The caller reports progress with
+    /// Creates a writer with a queue. The caller must empty the queue and report its progress with
     /// [`written`](Self::written).
     pub fn queue() -> (Self, UnboundedReceiver<Vec<u8>>) {
         let (out, leaving) = unbounded_channel();

@@ -2,11 +2,12 @@
 
 use super::{Bitrate, Frame, MOST_DATA};
 
-/// End of a line. A CR alone is a positive answer.
+/// End of a line. A line that consists only of a CR is a positive answer.
 pub const CR: u8 = 0x0D;
-/// End of a line that is a negative answer.
+/// BELL character. It ends a line that is a negative answer.
 pub const BELL: u8 = 0x07;
-/// Maximum length of a line. The longest valid line, an extended frame with a timestamp, is shorter.
+/// Maximum length of a line in characters. The longest valid line is an extended frame with a timestamp, and is
+/// shorter.
 const MOST_LINE: usize = 32;
 
 /// Status flags of an adapter (answer to `F`).
@@ -15,13 +16,13 @@ pub mod flag {
     pub const RECEIVE_FULL: u8 = 0x01;
     /// The queue of frames to send is full.
     pub const SEND_FULL: u8 = 0x02;
-    /// Error warning level reached.
+    /// The error warning level is reached.
     pub const WARNING: u8 = 0x04;
     /// Overrun: received frames were lost.
     pub const OVERRUN: u8 = 0x08;
-    /// Error passive.
+    /// The adapter is in the state error passive.
     pub const PASSIVE: u8 = 0x20;
-    /// Bus error.
+    /// An error occurred on the bus.
     pub const BUS_ERROR: u8 = 0x80;
 }
 
@@ -49,7 +50,7 @@ pub fn emit(frame: &Frame) -> Vec<u8> {
 pub enum Said {
     /// A frame from the bus.
     Frame(Frame),
-    /// A frame type that DeviceNet does not use: extended or remote.
+    /// A frame of a type that DeviceNet does not use (extended or remote).
     Other,
     /// Status flags.
     Flags(u8),
@@ -76,7 +77,7 @@ pub enum Command {
     Send(Frame),
     /// Send a frame of a type that DeviceNet does not use.
     SendOther {
-        /// Whether the frame is extended. The answer is then `Z`.
+        /// Whether the frame is extended. The answer to an extended frame is `Z`.
         is_extended: bool,
     },
     /// Ask for the version.
@@ -87,7 +88,7 @@ pub enum Command {
     Flags,
     /// Switch timestamps of received frames on or off.
     Timestamps(bool),
-    /// Filters and other settings. They are accepted and ignored.
+    /// Set filters or other settings. The simulated adapter accepts and ignores them.
     Setting,
     /// An empty line.
     Empty,
@@ -145,7 +146,7 @@ impl Line {
             Some(b'F') if text.len() == 3 => u8::from_str_radix(text.get(1..)?, 16).ok().map(Said::Flags),
             Some(b'V' | b'N') => Some(Said::About(text.to_owned())),
             Some(b'T' | b'r' | b'R') => Some(Said::Other),
-            // Text before a frame is the rest of a damaged line, and is skipped.
+            // If there is text before a frame, it is the rest of a damaged line. It is skipped.
             _ => text.match_indices('t').find_map(|(at, _)| frame(text.get(at..)?, true)).map(Said::Frame),
         }
     }
@@ -176,7 +177,8 @@ impl Line {
     }
 }
 
-/// Parses `tIIILDD..`. With `with_time`, four digits of a timestamp may follow, as in lines from an adapter.
+/// Parses a frame of the form `tIIILDD..`. With `with_time`, the frame may end with the four digits of a timestamp, as
+/// in lines from an adapter.
 fn frame(text: &str, with_time: bool) -> Option<Frame> {
     let id = u16::from_str_radix(text.get(1..4)?, 16).ok()?;
     let len: usize = text.get(4..5)?.parse().ok()?;

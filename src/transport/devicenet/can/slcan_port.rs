@@ -12,9 +12,10 @@ use super::{Bitrate, BusState, CanPort, Frame, Health, Heard, PortError, Waiting
 use crate::image::tap::{Passage, Tap};
 use crate::tap::Direction;
 
-/// Silence after which all bytes of an earlier use have been read.
+/// If nothing arrives for this time, all bytes of an earlier use have been read.
 const QUIET: Duration = Duration::from_millis(50);
-/// Time limit for reading the bytes of an earlier use. An adapter with a closed channel sends no further bytes.
+/// Time limit for reading the bytes of an earlier use. The channel is closed at this time, so the adapter adds no new
+/// bytes.
 const LEFTOVERS: Duration = Duration::from_millis(400);
 /// Maximum number of bytes per [`WINDOW`]. A full bus of 500 kbit/s produces 250 kB of text per second. After this
 /// computer was suspended, the text of some seconds can arrive at once.
@@ -26,7 +27,7 @@ const MOST_SAID: usize = 4096;
 const ANSWER: Duration = Duration::from_millis(300);
 /// Interval of the requests for status flags.
 const FLAGS: Duration = Duration::from_secs(1);
-/// Maximum number of unwritten bytes. Above it, the adapter counts as blocked.
+/// Maximum number of unwritten bytes. With more bytes, the adapter counts as blocked.
 const MOST_WAITING: usize = 16 * 1024;
 
 /// An SLCAN adapter.
@@ -62,7 +63,7 @@ impl SlcanPort {
             hears: false,
             tap,
         };
-        // These CRs end a line that an earlier use left incomplete.
+        // The CRs end a line that an earlier use left incomplete.
         port.write(b"\r\r\r")?;
         port.write(b"C\r")?;
         let begun = Instant::now();
@@ -136,7 +137,7 @@ impl SlcanPort {
 
     /// Reads available bytes. Returns whether bytes arrived in time.
     async fn read(&mut self, until: Instant) -> Result<bool, PortError> {
-        // An adapter that sends without end always has bytes ready, so the deadline is checked first.
+        // The deadline is checked first. An adapter that never stops sending always has bytes ready.
         if Instant::now() >= until {
             return Ok(false);
         }
@@ -161,7 +162,7 @@ impl SlcanPort {
     }
 
     fn flagged(&mut self, flags: u8) {
-        // SLCAN has no flag for bus-off. An adapter in the state bus-off sets all three of these flags.
+        // SLCAN has no flag for bus-off. An adapter in this state sets all three of these flags.
         const OFF: u8 = flag::BUS_ERROR | flag::PASSIVE | flag::WARNING;
         self.health.state = match flags {
             _ if flags & OFF == OFF => BusState::Off,
@@ -214,7 +215,7 @@ impl CanPort for SlcanPort {
 }
 
 impl Drop for SlcanPort {
-    /// Closes the channel. With an open channel, the adapter would continue to acknowledge frames.
+    /// Closes the channel. Otherwise the adapter would continue to acknowledge frames.
     fn drop(&mut self) {
         self.pipe.writer().write(b"C\r");
     }

@@ -11,7 +11,7 @@ use socketcan::{CanError, CanFrame, EmbeddedFrame as _, Id, SocketOptions as _, 
 
 use super::{BusState, CanPort, Frame, Health, Heard, PortError, Waiting};
 
-/// Maximum number of frames that wait to be sent. Above it, the interface counts as blocked.
+/// Maximum number of frames that wait to be sent. With more frames, the interface counts as blocked.
 const MOST_WAITING: usize = 256;
 fn advice(interface: &str) -> Cow<'static, str> {
     format!(
@@ -78,8 +78,7 @@ impl SocketCan {
                     }
                 } => {
                     match written {
-                        // The queue of the interface is full. The frame counts as rejected, as it does with other
-                        // adapters.
+                        // The queue of the interface is full. The frame counts as rejected, as with other adapters.
                         Err(error) if error.raw_os_error() == Some(NO_BUFFER) => self.health.rejected += 1,
                         written => written.map_err(|error| self.gone(&error))?,
                     }

@@ -16,7 +16,7 @@ pub(super) struct Allocation {
     explicit_until: Now,
 }
 
-/// Refusal of an allocation or release: general code and additional code.
+/// Refusal of an allocation or release, as general error code and additional error code.
 pub(super) type Refusal = (u8, u8);
 
 const KNOWN: u8 = connection::EXPLICIT | connection::POLL;

@@ -22,7 +22,7 @@ device_faults! {
 pub(super) fn spoil(fault: Option<DeviceFault>, mut frames: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
     match fault {
         Some(DeviceFault::LostFragment) if frames.len() > 2 => drop(frames.remove(2)),
-        // A single frame has no fragments. A missing byte has the same effect.
+        // A single frame has no fragments. Instead, one byte is removed, which also makes the image incomplete.
         Some(DeviceFault::LostFragment) => {
             for frame in &mut frames {
                 frame.truncate(frame.len().saturating_sub(1));

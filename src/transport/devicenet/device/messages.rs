@@ -71,7 +71,7 @@ impl Messages {
             }
             return None;
         }
-        // Only the last fragment can have fewer than six bytes.
+        // A fragment has six bytes of data. Only the last fragment can have fewer.
         if part.is_empty() || kind != Kind::Last && part.len() != 6 {
             self.arriving = None;
             return None;

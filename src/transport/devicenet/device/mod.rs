@@ -48,7 +48,8 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// Returns the configuration of a slave with the identity of an older YAMAHA controller, from its EDS file.
+    /// Returns the configuration of a slave with the identity of an older YAMAHA controller. The identity is from the
+    /// EDS file of that controller.
     pub fn stand_in(mac: Mac, bitrate: Bitrate, size: u16) -> Self {
         Self {
             mac,
@@ -70,16 +71,16 @@ pub trait Application: Send {
     fn image_out(&mut self, now: Now, image: &[u8]);
     /// Updates the image to the master. The buffer contains the previous image.
     fn image_in(&mut self, now: Now, image: &mut [u8]);
-    /// Handles the end of the poll connection: the master released it, or it timed out.
+    /// Handles the end of the poll connection. Either the master released the connection, or it timed out.
     fn master_gone(&mut self, now: Now);
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
-    /// Number of duplicate MAC checks sent, and the time of the next step.
+    /// The slave checks its MAC. Contains the number of checks that were sent, and the time of the next step.
     Checking(u8, Now),
     OnLine,
-    /// Another node has this MAC.
+    /// Another node has the MAC of this slave, so the slave stays off line.
     Faulted,
 }
 
@@ -233,7 +234,8 @@ impl<A: Application> Device<A> {
         }
     }
 
-    /// Deadline of the explicit connection. There is none while the poll connection is established.
+    /// Deadline of the explicit connection. While the poll connection is established, the explicit connection has no
+    /// deadline.
     fn explicit_until(&self) -> Option<Now> {
         let is_polled = self.polled.as_ref().is_some_and(Polled::is_established);
         self.allocation.explicit_until().filter(|_| !is_polled)

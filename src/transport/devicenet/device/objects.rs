@@ -10,7 +10,7 @@ use super::polled::Polled;
 use super::{Application, Device};
 use crate::refuse_if;
 
-/// Instance of the produced assembly.
+/// Instance of the assembly that the slave produces.
 const ASSEMBLY: u16 = 100;
 /// Packet rate of the explicit connection, in milliseconds.
 const EXPLICIT_RATE: u16 = 2500;
@@ -22,8 +22,8 @@ impl<A: Application> Device<A> {
     pub(super) fn request(&mut self, now: Now, bytes: &[u8], is_connected: bool) {
         let Some(first) = bytes.first() else { return };
         let from = Header::parse(*first).mac;
-        // If no master owns the connections, a request on the explicit connection is accepted, because it may be an
-        // allocation. If a master owns the connections, only this master may use the explicit connection.
+        // If no master owns the connections, the slave accepts any request on the explicit connection, because it may
+        // be an allocation. Otherwise only the owning master may use the explicit connection.
         if is_connected && self.allocation.master().is_some() && !self.allocation.is_explicit_of(from) {
             return;
         }
@@ -43,7 +43,7 @@ impl<A: Application> Device<A> {
     }
 
     fn answer(&mut self, now: Now, whole: &Whole, is_explicit: bool) -> Option<Answer> {
-        // This is an answer and not a request.
+        // This message is an answer and not a request, so the slave ignores it.
         if whole.body.first().is_none_or(|service| service & service::ANSWER != 0) {
             return None;
         }

@@ -8,7 +8,7 @@ use super::super::wire::{Id, split};
 use super::fault::spoil;
 use super::{Application, Device};
 
-/// Minimum watchdog time before the first poll.
+/// Minimum time of the watchdog until the first poll.
 const FIRST: Duration = Duration::from_secs(10);
 /// Packet rates are rounded up to a multiple of this number of milliseconds.
 const TICK: u16 = 10;
@@ -16,16 +16,16 @@ const TICK: u16 = 10;
 /// Connection state (attribute 1 of the connection object).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum State {
-    /// Allocated, but not established. Polls are ignored.
+    /// The connection is allocated, but not established. The slave ignores polls.
     Configuring = 1,
     Established = 3,
-    /// The watchdog expired.
+    /// The watchdog of the connection expired.
     TimedOut = 4,
 }
 
 /// A complete poll.
 enum Poll {
-    /// The master is in idle mode.
+    /// The poll has no data, because the master is in idle mode.
     Idle,
     Image(Vec<u8>),
 }
@@ -37,7 +37,7 @@ pub(super) struct Polled {
     pub(super) rate: u16,
     until: Option<Now>,
     parts: Vec<u8>,
-    /// Number of fragments of the current image that were received.
+    /// Number of received fragments of the current image.
     count: u8,
 }
 

@@ -1,8 +1,8 @@
 //! Master side of a connection: allocation, image sizes, polling, loss detection, reopening.
 //!
 //! Each opening of the connection starts a new generation. The caller must name the generation with every image. After
-//! a loss, the master sends the resting image until a caller that has seen the loss sets another image. Therefore the
-//! master never sends an image from before the loss again.
+//! a loss, the master sends the resting image. It sends another image only when a caller that has seen the loss sets
+//! one. Therefore an image from before the loss is never sent again.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -33,26 +33,26 @@ const RATE: &str = "the setting of the packet rate";
 enum Phase {
     /// The master is not on line yet.
     New,
-    /// Allocating the connections. `again` is `true` for the second attempt, after the owner was read.
+    /// The master allocates the connections. `again` is `true` for the second attempt, after the owner was read.
     Allocating {
         again: bool,
     },
-    /// Reading which connections this MAC owns.
+    /// The master reads which connections its own MAC owns.
     AskingOwner,
-    /// Releasing connections that this MAC still owns from an earlier use.
+    /// The master releases connections that an earlier use of this MAC has left allocated.
     Freeing,
-    /// Reading the size of the image from the slave.
+    /// The master reads the size of the image from the slave.
     AskingProduced,
-    /// Reading the size of the image to the slave. The value is the size of the image from the slave.
+    /// The master reads the size of the image to the slave. The value is the size of the image from the slave.
     AskingConsumed(u16),
-    /// Setting the packet rate. This establishes the connection.
+    /// The master sets the packet rate, which establishes the connection.
     SettingRate,
     Open,
-    /// Releasing the connections. After that, the connection ends, or opens again if `again`.
+    /// The master releases the connections. Then the connection ends. If `again` is `true`, it opens again.
     Releasing {
         again: bool,
     },
-    /// Waiting until the next attempt.
+    /// The master waits until the next attempt to open the connection.
     Waiting(Now),
     Ended,
 }
@@ -157,7 +157,7 @@ impl Connection {
                 self.requester.cancel();
                 self.release(now, false);
             }
-            // Wait for the pending answer before the release.
+            // The release follows after the pending answer.
             _ => self.show(State::Closing),
         }
     }
@@ -231,8 +231,8 @@ impl Connection {
             if now >= polling.until() {
                 let (mac, after) = (self.settings.slave, polling.patience());
                 let is_bus_alive = bus.is_alive_without(mac, now.saturating_sub(after));
-                // Only frames in the second half of the timeout count: frames in the first half may belong to the last
-                // complete image.
+                // Frames in the first half of the timeout may belong to the last complete image. Therefore only frames
+                // in the second half count.
                 let is_heard = bus.is_heard(mac, now.saturating_sub(after / 2));
                 let state = bus.health.state;
                 return self.retreat(now, Error::Lost { mac, after, is_heard, is_bus_alive, state });
@@ -308,8 +308,8 @@ impl Connection {
             }
             Phase::Releasing { again: true } => self.pause(now),
             Phase::Releasing { again: false } => {
-                // If the slave is silent, it releases the connections after its own timeout. The error is then shown as
-                // a warning, not as an error of the link.
+                // A silent slave releases the connections after its own timeout. In this case, the error is shown as a
+                // warning, and not as an error of the link.
                 let error = answer(RELEASE).err().filter(|error| !matches!(error, Error::Refused { .. }));
                 self.finish(error);
             }
@@ -338,8 +338,8 @@ impl Connection {
             Err(Error::Refused { additional: owner::ANOTHER_MASTER, mac, .. }) => {
                 self.give_up(now, Error::Owned { mac }, false);
             }
-            // Either an earlier process with this MAC ended without a release, or the answer to the first attempt was
-            // lost.
+            // The connections are already allocated. Either an earlier process with this MAC ended without a release,
+            // or the answer to the first attempt was lost.
             Err(Error::Refused { general: general::ALREADY, .. }) if !again => {
                 let request = Request::get(class::DEVICENET, 1, ALLOCATION_ATTRIBUTE);
                 self.request(now, Phase::AskingOwner, &request);
@@ -348,7 +348,7 @@ impl Connection {
         }
     }
 
-    /// Handles the allocation attribute of the slave: {choice, master}.
+    /// Handles the allocation attribute of the slave, which contains the allocation choice and the MAC of the master.
     fn owned(&mut self, now: Now, answer: &Result<Vec<u8>, Error>) {
         let mac = self.settings.slave;
         match answer.as_deref() {
@@ -358,7 +358,7 @@ impl Connection {
             Ok([_, master, ..]) if Mac::new(*master).is_some() => self.give_up(now, Error::Owned { mac }, false),
             Ok([_, _, ..]) => self.allocate(now, true),
             Ok(_) => self.give_up(now, Error::Senseless { mac, what: OWNER, why: "it is too short" }, false),
-            // The explicit connection has timed out, but the poll connection still exists.
+            // There is no answer, so the explicit connection has timed out, but the poll connection still exists.
             Err(Error::Silent { .. }) => {
                 self.phase = Phase::Freeing;
                 self.requester.ask(now, &Request::release(connection::POLL), false);
@@ -397,7 +397,7 @@ impl Connection {
             let rate = Duration::from_millis(rate.into());
             self.view.details.rate = Some(rate);
             self.polling = Some(Polling::new(now, self.settings.slave, size, images.cycle, rate));
-            // The resting image is the first change of this generation.
+            // The resting image counts as the first change of this generation.
             self.revision += 1;
         }
         self.show(State::Open);
@@ -416,7 +416,7 @@ impl Connection {
         }
     }
 
-    /// Handles a lost connection. Releases the connection if possible, and opens it again.
+    /// Handles a lost connection. Releases the connection if possible, and tries to open it again.
     fn retreat(&mut self, now: Now, error: Error) {
         self.polling = None;
         self.requester.cancel();
@@ -488,14 +488,14 @@ impl Connection {
     }
 }
 
-/// Attribute 5 of the DeviceNet object: {choice, master}.
+/// Attribute 5 of the DeviceNet object: allocation choice and MAC of the master.
 const ALLOCATION_ATTRIBUTE: u8 = 5;
-/// Attributes of the connection object.
+/// Attribute numbers of the connection object.
 const PRODUCED_SIZE: u8 = 7;
 const CONSUMED_SIZE: u8 = 8;
 const PACKET_RATE: u8 = 9;
 
-/// Decodes an answer of two bytes.
+/// Decodes an answer that is a number of two bytes.
 fn word(data: &[u8], mac: Mac, what: &'static str) -> Result<u16, Error> {
     let bytes = data.try_into().map_err(|_| Error::Senseless { mac, what, why: "it does not have two bytes" })?;
     Ok(u16::from_le_bytes(bytes))

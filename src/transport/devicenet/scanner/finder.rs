@@ -1,8 +1,8 @@
-//! Node discovery without connections: every node on line answers a duplicate MAC check of its MAC.
+//! Node discovery without connections: every node that is on line answers a duplicate MAC check of its MAC.
 //!
-//! A node that is about to go on line would interpret such a check as a conflict and stay off line. The finder
-//! therefore listens first, for longer than the interval between the checks of a starting node. It does not check the
-//! MACs of starting nodes.
+//! A node that is about to go on line would interpret such a check as a conflict, and stay off line. Therefore the
+//! finder first listens for longer than the interval between the checks of a starting node. It then sends no check for
+//! the MACs of the starting nodes that it has found.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -12,13 +12,13 @@ use crate::devicenet::Now;
 use crate::devicenet::can::Frame;
 use crate::devicenet::wire::{DuplicateCheck, Id, Mac};
 
-/// Time to listen before the first check. A starting node sends two checks, one second apart, and goes on line one
-/// second later.
+/// Time for which the finder listens before its first check. The constant below is the time after which a starting node
+/// is on line: it sends two checks, one second apart, and goes on line one second later.
 const LISTEN: Duration = Duration::from_millis(1200);
 const GOING_ON_LINE: Duration = Duration::from_millis(2200);
 /// Pause between checks, so that a slow adapter can keep up.
 const PAUSE: Duration = Duration::from_millis(10);
-/// Time limit for the last answer.
+/// Time limit for the answer to the last check.
 const LINGER: Duration = Duration::from_millis(300);
 /// Number of checks per MAC.
 const ROUNDS: u8 = 2;
@@ -32,7 +32,7 @@ pub struct Found {
     pub vendor: u16,
     /// Serial number of the node.
     pub serial: u32,
-    /// Whether the node answered a check. Otherwise only its own checks were received.
+    /// Whether the node answered a check. If not, only the checks that the node sent itself were received.
     pub is_on_line: bool,
 }
 
@@ -42,9 +42,9 @@ pub(super) struct Finder {
     due: Now,
     /// Time of the last check.
     asked: Now,
-    /// MACs still to check, in reverse order.
+    /// MACs that are still to be checked, in reverse order.
     left: Vec<Mac>,
-    /// Starting nodes, each with the time when it is on line.
+    /// Starting nodes, each with the time at which the node is on line.
     booting: BTreeMap<Mac, Now>,
     found: BTreeMap<Mac, Found>,
 }
@@ -128,7 +128,8 @@ mod tests {
             assert!(now < MS * 5000);
         }
         let times = |number| asked.iter().filter(|id| **id == Id::Duplicate(mac(number)).emit()).count();
-        // MAC 7 has answered already, MAC 5 was starting, and MAC 0 is our own.
+        // The finder does not check MAC 7, which has already answered, MAC 5, which was starting, and MAC 0, which is
+        // its own MAC.
         assert_eq!((times(0), times(5), times(7), times(8)), (0, 0, 1, 2));
         let found: Vec<(u8, bool)> =
             finder.found().iter().map(|found| (found.mac.number(), found.is_on_line)).collect();

@@ -21,12 +21,12 @@ use self::finder::Finder;
 pub use self::finder::Found;
 pub use self::view::{Details, Input, State, Statistics, View, Views};
 
-/// Interval of the duplicate MAC checks, and the waiting time after the last check.
+/// Interval of the duplicate MAC checks. After the last check, the master waits for the same time.
 const CHECK: Duration = Duration::from_secs(1);
 /// Number of duplicate MAC checks.
 const CHECKS: u8 = 2;
 
-/// Identifies a request of a caller.
+/// Number that identifies a request of a caller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Token(
     /// Any number that the caller selects.
@@ -38,7 +38,7 @@ pub struct Token(
 pub struct Reply {
     /// Number of the connection.
     pub connection: u64,
-    /// The request.
+    /// Token of the request.
     pub token: Token,
     /// The answer or error.
     pub result: Result<Answer, Error>,
@@ -59,17 +59,17 @@ pub struct Identity {
 #[derive(Debug)]
 pub(crate) struct Bus {
     pub(crate) health: Health,
-    /// Time of the last frame from each MAC.
+    /// Time of the last frame from each MAC; the index is the MAC.
     heard: [Option<Now>; 64],
 }
 
 impl Bus {
-    /// Whether this node has sent a frame since `since`.
+    /// Whether the node `mac` has sent a frame after `since`.
     pub(crate) fn is_heard(&self, mac: Mac, since: Now) -> bool {
         self.heard[usize::from(mac.number())].is_some_and(|heard| heard >= since)
     }
 
-    /// Whether another node than `mac` has sent a frame since `since`.
+    /// Whether a node other than `mac` has sent a frame after `since`.
     pub(crate) fn is_alive_without(&self, mac: Mac, since: Now) -> bool {
         let others = self.heard.iter().enumerate().filter(|(number, _)| *number != usize::from(mac.number()));
         others.filter_map(|(_, heard)| *heard).any(|heard| heard >= since)
@@ -78,9 +78,9 @@ impl Bus {
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Phase {
-    /// Before the first poll, or after the adapter was reopened.
+    /// The master has not been polled yet, or the adapter was opened again.
     New,
-    /// Number of duplicate MAC checks sent, and the time of the next step.
+    /// The master checks its MAC. Contains the number of checks that were sent, and the time of the next step.
     Checking(u8, Now),
     OnLine,
     /// The master is off the bus for this reason.
@@ -151,7 +151,7 @@ impl Scanner {
         self.connections.get(&number).map(Connection::view)
     }
 
-    /// Returns the connections whose view changed since the last call.
+    /// Returns the connections whose view has changed after the last call.
     pub fn changed(&mut self) -> Vec<u64> {
         self.connections
             .iter_mut()
@@ -159,8 +159,8 @@ impl Scanner {
             .collect()
     }
 
-    /// Sends this image, starting with the next poll. Returns the number of the change. The slave has accepted the
-    /// image when `sent` of the view has reached this number.
+    /// Sends this image, starting with the next poll. Returns the number of the change. When `sent` of the view has
+    /// reached this number, the slave has accepted the image.
     ///
     /// # Errors
     /// The connection is not open in this generation, or the image has another size.
@@ -195,7 +195,7 @@ impl Scanner {
         self.give_up_search();
     }
 
-    /// Ends the discovery if the adapter is in the state bus-off, because no checks can be sent then.
+    /// Ends the discovery if the adapter is in the state bus-off, because it can then send no checks.
     fn give_up_search(&mut self) {
         if self.bus.health.state == BusState::Off
             && let Some(finder) = self.finder.take()
@@ -217,7 +217,7 @@ impl Scanner {
         }
     }
 
-    /// Handles the opening of the adapter. The master checks its MAC before anything else.
+    /// Handles the opening of the adapter. The master checks its MAC again before it sends anything else.
     pub fn restart(&mut self) {
         self.phase = Phase::New;
         self.bus.health = Health::default();
@@ -285,7 +285,7 @@ impl Scanner {
         match self.phase {
             Phase::New => Some(Now::ZERO),
             Phase::Checking(_, due) => Some(due),
-            // Nothing can be sent until the adapter has left the state bus-off.
+            // The adapter can send nothing until it has left the state bus-off.
             Phase::OnLine if self.bus.health.state == BusState::Off => None,
             Phase::OnLine => {
                 let connections = self.connections.values().filter_map(Connection::wake);

@@ -8,8 +8,8 @@ use crate::devicenet::wire::{Assembler, Id, Mac, Piece, split};
 
 use super::view::Statistics;
 
-/// Multiple of the packet rate after which a slave without answers counts as lost. After the same time without polls,
-/// the slave closes the connection.
+/// After this multiple of the packet rate without an answer, the slave counts as lost. After the same time without a
+/// poll, the slave closes the connection.
 pub(super) const WATCHDOG: u32 = 4;
 /// Maximum number of abandoned polls whose answers may still arrive.
 const MOST_OWED: u8 = 2;
@@ -21,11 +21,12 @@ pub(super) struct Polling {
     cycle: Duration,
     rate: Duration,
     due: Now,
-    /// Time of the poll that has no answer yet.
+    /// Time at which the last poll was sent, if it has no answer yet.
     asked: Option<Now>,
     /// Duration of the last exchange, from the poll to the last frame of the answer.
     round_trip: Duration,
-    /// Number of abandoned polls whose answers may still arrive. Such an answer does not confirm a later poll.
+    /// Number of abandoned polls whose answers may still arrive. The answer to an abandoned poll does not confirm a
+    /// later poll.
     owed: u8,
     /// Number of the change that the last poll contained.
     carried: u64,
@@ -36,10 +37,10 @@ pub(super) struct Polling {
 /// Effect of a frame of the slave.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Heard {
-    /// No complete image.
+    /// The frame completes no image.
     Nothing,
-    /// A complete image, and the number of the change that the slave has accepted. The number is present only if this
-    /// image certainly answers the last poll.
+    /// The frame completes an image. The number is that of the change that the slave has accepted. It is present only
+    /// if the image certainly answers the last poll.
     Image(Vec<u8>, Option<u64>),
 }
 
@@ -71,7 +72,8 @@ impl Polling {
 
     /// Time of the next poll.
     pub(super) fn next(&self) -> Now {
-        // A slow adapter must not get polls faster than it can send them.
+        // If a poll was not answered, the next poll waits for two round trips, but not longer than the packet rate.
+        // Otherwise a slow adapter would get polls faster than it can send them.
         let given_up = self.asked.map(|asked| asked + self.cycle.max(self.round_trip * 2).min(self.rate));
         given_up.map_or(self.due, |given_up| self.due.max(given_up))
     }
@@ -85,7 +87,8 @@ impl Polling {
             counted.missed += 1;
             self.owed = (self.owed + 1).min(MOST_OWED);
         }
-        // Fragments of an older answer must not be combined with fragments of the next answer.
+        // A new assembler starts here, so that fragments of an older answer are not combined with fragments of the next
+        // answer.
         self.assembler = Assembler::new(image.len());
         self.asked = Some(now);
         self.carried = change;
@@ -108,7 +111,8 @@ impl Polling {
                 Heard::Nothing
             }
             Piece::Whole(image) => {
-                // This image is a duplicate, or the answer to an abandoned poll. It may be older than the last image.
+                // No poll is waiting for an answer. So the image is a duplicate, or the answer to an abandoned poll,
+                // and may be older than the last image.
                 let Some(asked) = self.asked.take() else {
                     counted.late += 1;
                     return Heard::Nothing;
@@ -144,7 +148,7 @@ mod tests {
             assert!(matches!(polling.hear(now + MS, &[0; 4], &mut counted), Heard::Image(..)));
         }
         assert_eq!((counted.sent, counted.received, counted.skipped), (6, 6, 0));
-        // After a pause, polls continue at their old times. Missed polls are not sent later.
+        // After a pause, the polls continue in their old schedule. Polls that were missed are not sent later.
         assert_eq!(polling.poll(MS * 190, &[0; 4], 1, &mut counted).len(), 1);
         assert_eq!((polling.due, counted.skipped), (MS * 200, 3));
     }
@@ -158,7 +162,7 @@ mod tests {
         assert!(again >= MS * 20);
         polling.poll(again, &[1; 4], 2, &mut counted);
         assert_eq!(polling.hear(again + MS, &[7; 4], &mut counted), Heard::Image(vec![7; 4], None));
-        // The answer to the newest poll looks like a duplicate of the late answer.
+        // The answer to the newest poll looks like a duplicate of the late answer, so it is ignored.
         assert_eq!(polling.hear(again + MS, &[8; 4], &mut counted), Heard::Nothing);
         let next = polling.next();
         polling.poll(next, &[1; 4], 2, &mut counted);

@@ -7,11 +7,11 @@ use crate::devicenet::Now;
 use crate::devicenet::can::{Frame, MOST_DATA};
 use crate::devicenet::wire::{Answer, Format, Fragment, Header, Id, Kind, Mac, Request};
 
-/// Bytes of a message per fragment, after the header and the fragment byte.
+/// Number of message bytes per fragment, after the header and the fragment byte.
 const PART: usize = MOST_DATA - 2;
 /// Maximum length of a reassembled answer in bytes.
 const MOST_ANSWER: usize = 512;
-/// Status in an acknowledgement: fragment accepted.
+/// Status in an acknowledgement that accepts the fragment.
 const TAKEN: u8 = 0;
 /// Number of attempts per request or fragment.
 const TRIES: u8 = 2;
@@ -33,8 +33,8 @@ pub(super) struct Requester {
     patience: Duration,
     xid: bool,
     current: Option<Transaction>,
-    /// Count of the last fragment of the last answer. If its acknowledgement was lost, the slave sends this fragment
-    /// again.
+    /// Count of the last fragment of the previous answer. If the acknowledgement of this fragment was lost, the slave
+    /// sends it again.
     taken: Option<u8>,
     outbox: VecDeque<Frame>,
 }
@@ -49,7 +49,7 @@ struct Transaction {
     sending: Option<usize>,
     tries: u8,
     deadline: Now,
-    /// Received part of the answer, and the count of the last fragment of this part.
+    /// Received part of the answer, and the count of its last fragment.
     answer: Option<(Vec<u8>, u8)>,
 }
 
@@ -110,7 +110,7 @@ impl Requester {
     pub(super) fn take(&mut self, now: Now, bytes: &[u8]) -> Option<Outcome> {
         let (first, body) = bytes.split_first()?;
         let header = Header::parse(*first);
-        // A late or duplicate answer to the previous request has another transaction id.
+        // An answer with another transaction id is a late or duplicate answer to the previous request.
         if header.mac != self.own || header.xid != self.xid {
             return None;
         }
@@ -131,14 +131,14 @@ impl Requester {
         };
         current.deadline = now + self.patience;
         match &mut current.answer {
-            // This fragment is a duplicate, because its acknowledgement was lost.
+            // This fragment arrived again, because its acknowledgement was lost.
             Some((_, last)) if *last == count => {}
             Some((answer, last)) if kind != Kind::First && count == (*last + 1) % 64 => {
                 answer.extend(part);
                 *last = count;
             }
             None if kind == Kind::First && count == 0 => current.answer = Some((part.to_vec(), 0)),
-            // A fragment is missing. The slave will repeat the missing fragment or the whole answer.
+            // A fragment before this one is missing. The slave will repeat the missing fragment or the whole answer.
             _ => return None,
         }
         self.acknowledge(count);
@@ -247,7 +247,7 @@ mod tests {
         let answer = Outcome::Answer(Answer::Done { service: service::GET, data });
         assert_eq!(requester.take(NOW, &last), Some(answer));
         assert_eq!(sent(&mut requester), ["42C#81C100"]);
-        // The acknowledgement was lost, so the slave sends the fragment again. It is acknowledged again.
+        // The acknowledgement was lost, so the slave sends the fragment again. The master acknowledges it again.
         assert_eq!(requester.take(NOW, &last), None);
         assert_eq!(sent(&mut requester), ["42C#81C100"]);
     }
@@ -261,7 +261,7 @@ mod tests {
         assert_eq!(requester.take(NOW, &first), None);
         assert_eq!(requester.take(NOW, &first), None);
         assert_eq!(sent(&mut requester).len(), 2);
-        // A fragment that arrives out of order is not accepted.
+        // The master does not accept a fragment that arrives out of order.
         assert_eq!(requester.take(NOW, &[0x81, 0x82, 9]), None);
         assert!(sent(&mut requester).is_empty());
         let Some(Outcome::Answer(Answer::Done { data, .. })) = requester.take(NOW, &[0x81, 0x81, 5, 6, 7]) else {

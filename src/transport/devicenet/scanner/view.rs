@@ -6,7 +6,7 @@ use crate::devicenet::error::Error;
 use crate::image::view;
 pub use crate::image::view::{Input, State};
 
-/// State of a connection. A change counts as sent after the slave has answered a poll that contained it.
+/// State of a connection. A change counts as sent when the slave has answered a poll that contained the change.
 pub type View = view::View<Error, Statistics, Details>;
 /// Receiver of state changes.
 pub type Views = view::Views<Error, Statistics, Details>;
@@ -16,15 +16,15 @@ pub type Views = view::Views<Error, Statistics, Details>;
 pub struct Statistics {
     /// Polls sent.
     pub sent: u64,
-    /// Polls that the slave answered with a whole image.
+    /// Polls to which the slave answered with a whole image.
     pub received: u64,
-    /// Polls without an answer in time.
+    /// Polls to which no answer arrived in time.
     pub missed: u64,
     /// Frames dropped because of a wrong count or size.
     pub wrong: u64,
     /// Complete answers that came too late and were dropped.
     pub late: u64,
-    /// Polls that were not sent, because a whole cycle was missed.
+    /// Polls that were not sent, because the whole cycle before them was missed.
     pub skipped: u64,
 }
 

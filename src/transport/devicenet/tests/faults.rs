@@ -44,7 +44,8 @@ fn numbered(line: Line, seed: u64, size: u16, context: &str) -> World {
     world
 }
 
-/// On any bus, the slave receives the images in order. It receives no image again after a later one.
+/// On every bus, the slave receives the images in order. After it has received a later image, it does not receive an
+/// earlier image again.
 #[test]
 fn no_image_comes_twice_or_is_told_wrongly() {
     for (kind, line) in KINDS.iter().enumerate() {
@@ -67,12 +68,12 @@ fn no_image_comes_twice_or_is_told_wrongly() {
 }
 
 /// Frames with the same identifier overtake each other. Within a fragmented image, the fragment counts reveal this, so
-/// no command is mixed or repeated. Two cases cannot be detected, because nothing distinguishes the frames. The last
-/// fragment of one image can replace the last fragment of the next image (six bytes of general-purpose signals). An
-/// image in a single frame (4 bytes, without commands) can return for one cycle.
+/// no command is mixed or repeated. Two cases cannot be detected, because the frames look the same. First, the last
+/// fragment of one image can replace the last fragment of the next image (six bytes of general-purpose signals).
+/// Second, an image in a single frame (4 bytes, without commands) can return for one cycle.
 #[test]
 fn frames_of_one_identifier_out_of_order_make_no_command() {
-    /// Offset of the last fragment.
+    /// Offset of the last fragment in an image.
     const LAST: usize = 42;
 
     for seed in 0..32 {
@@ -95,7 +96,7 @@ fn frames_of_one_identifier_out_of_order_make_no_command() {
     }
 }
 
-/// Half an hour of polls with 1 % lost frames; a shorter time for the small images.
+/// Half an hour of polls with 1 % lost frames. The small images run for a shorter time.
 #[test]
 fn half_an_hour_at_one_percent_loses_no_image_and_does_not_drift() {
     polls_at_one_percent(4, SECOND * 180);
@@ -119,7 +120,7 @@ fn polls_at_one_percent(size: u16, time: Duration) {
     let view = world.view();
     assert_eq!((view.state, view.generation), (State::Open, 1), "{:?}", view.trouble);
     assert_eq!(shown, taken);
-    // There is one poll every 20 ms, except for polls that were delayed because an answer was missing.
+    // There is one poll every 20 ms. Only a poll after a missing answer is later.
     let all = world.now.saturating_sub(start).as_millis() / 20;
     assert!(
         u128::from(view.statistics.sent + view.statistics.skipped).abs_diff(all) < 10,
@@ -139,7 +140,7 @@ fn an_exchange_takes_hardly_more_than_its_bits() {
     assert_eq!(polls, 50);
     let each = world.bus.busy().saturating_sub(busy) / 50;
     assert!((MS * 3..MS * 4).contains(&each), "{each:?}");
-    // From the first bit of a poll to the last bit of its answer.
+    // The time is measured from the first bit of a poll to the last bit of its answer.
     let first = world.trace.iter().position(|(_, frame)| frame.id() == 0x42D && frame.data()[0] == 0).unwrap();
     let (begin, end) = (world.trace[first].0, world.trace[first + 13].0);
     assert_eq!(world.trace[first + 13].1.id(), 0x3C5);

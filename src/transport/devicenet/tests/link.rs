@@ -120,7 +120,7 @@ fn what_hinders_a_connection_is_told() {
         state: BusState::Active,
     };
     assert_eq!(refused(with(DeviceFault::Mute)), silent);
-    // Another node is present, but not this slave.
+    // Another node is present, but the slave is not.
     let other = refused(Device::on_line(setup(6, 48), Mirror::default()));
     assert!(matches!(other, Error::Silent { .. }), "{other}");
 }
@@ -129,7 +129,7 @@ fn what_hinders_a_connection_is_told() {
 fn another_masters_slave_is_not_taken() {
     let mut world = World::linked(48, 1);
     let device = world.devices.remove(0);
-    // The same slave and a master with another MAC.
+    // The slave is still allocated to the first master, and this master has another MAC.
     let mut other = World::new(vec![device], 2);
     other.now = world.now;
     other.scanner = crate::devicenet::scanner::Scanner::new(crate::devicenet::scanner::Identity {
@@ -143,7 +143,7 @@ fn another_masters_slave_is_not_taken() {
     assert_eq!(other.view().trouble, Some(Error::Owned { mac: mac(5) }));
 }
 
-/// A process with the same MAC was killed. The master releases the connections of that process and allocates them
+/// A process with the same MAC was killed. The master releases the connections of that process, and then allocates them
 /// again.
 #[test]
 fn what_the_own_mac_left_behind_is_taken_over() {
@@ -191,7 +191,7 @@ fn a_slave_that_was_switched_off_is_found_again() {
     world.until(SECOND, |world| world.view().state == State::Lost);
     world.run(SECOND * 20);
     let now = world.now;
-    // The slave restarts, and checks its MAC first.
+    // The slave restarts. It first checks its MAC.
     let mut fresh = Device::new(setup(5, 4), Mirror::default());
     while fresh.wake().is_some_and(|wake| wake < now) && !fresh.is_on_line() {
         let _ = fresh.poll(now);

@@ -31,7 +31,7 @@ fn listen() -> Vec<Listen> {
     listen
 }
 
-/// Returns the index of each endpoint, combined with each image size.
+/// Returns the indexes of all endpoints, each combined with every image size.
 fn channels() -> impl Iterator<Item = (usize, u16)> {
     (0..listen().len()).flat_map(|place| [48, 4].map(|size| (place, size)))
 }

@@ -67,7 +67,8 @@ async fn images_travel_over_tcp_and_over_a_pseudo_terminal() {
 async fn several_adapters_share_a_hub_and_one_of_them_listens() {
     let hub = hub(4, &[anywhere()]);
     let master = Network::open(&adapter(place(&hub), 1), Tap::default()).await.unwrap();
-    // Another process would have its own adapter. A second name for the same endpoint has the same effect.
+    // Another process would have its own adapter. The test uses a second name for the same endpoint, which has the same
+    // effect.
     let Place::Tcp { port, .. } = place(&hub) else { panic!() };
     let elsewhere = Place::Tcp { host: "localhost".to_owned(), port };
     let listener = Network::open(&Adapter { identity: None, ..adapter(elsewhere, 0) }, Tap::default()).await.unwrap();
@@ -103,7 +104,7 @@ async fn an_adapter_that_goes_is_a_loss_and_one_that_comes_back_is_used() {
     assert!(matches!(view.trouble, Some(Error::Port(PortError::Gone { .. }))), "{:?}", view.trouble);
     let device = Device::on_line(setup(5, 48), Mirror::default());
     let second = loop {
-        // The system may keep the port in use for a short time.
+        // The system may still use the port for a short time.
         match Hub::start(Bitrate::K500, Some(device_like(&device)), &[Listen::Tcp(address)], None) {
             Ok(hub) => break hub,
             Err(_) => tokio::task::yield_now().await,
@@ -121,7 +122,7 @@ fn device_like(device: &Device<Mirror>) -> Device<Mirror> {
 
 #[tokio::test]
 async fn what_is_no_adapter_is_told() {
-    // No listener on this port.
+    // No program listens on this port.
     let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
     drop(listener);
@@ -131,7 +132,7 @@ async fn what_is_no_adapter_is_told() {
     let absent = Place::Serial { path: "/dev/there-is-none".to_owned(), baud: 115_200 };
     let error = open(absent).await;
     assert!(matches!(&error, Error::Port(PortError::Open { advice, .. }) if advice.contains("plug")), "{error:?}");
-    // A listener that never answers.
+    // This listener accepts connections but never answers.
     let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
     let port = listener.local_addr().unwrap().port();
     let silent = async {
@@ -145,7 +146,7 @@ async fn what_is_no_adapter_is_told() {
     }
 }
 
-/// The peer answers no command, but sends a byte from time to time, at different speeds.
+/// The peer answers no command. It sends a single byte from time to time, at different speeds.
 #[tokio::test]
 async fn what_sends_something_else_is_no_adapter() {
     for text in ["t4058AABBCCDDEEFF0011\r", "x", "z\r\x07"] {
@@ -184,14 +185,14 @@ async fn a_wrong_bit_rate_and_bus_off_are_told() {
     assert!(matches!(view.trouble, Some(Error::BusOff | Error::Lost { .. })), "{:?}", view.trouble);
 }
 
-/// Lines that python-can sends to open an adapter: C on a closed channel, an empty line, O twice.
+/// Lines that python-can sends to open an adapter: `C` on a closed channel, an empty line, and `O` twice.
 #[tokio::test]
 async fn the_lines_of_python_can_are_borne() {
     let hub = hub(48, &[anywhere()]);
     let mut stream = TcpStream::connect(hub.places()[0].as_str()).await.unwrap();
     stream.write_all(b"C\rS6\r\rO\rO\rt42FZ\rt42F700FFFF07000000\r").await.unwrap();
     let mut got = Vec::new();
-    // Read until the slave has answered the check of MAC 5.
+    // The test reads until the slave has answered the check of MAC 5.
     while !got.ends_with(b"t42F7807C02EEFFC000\r") {
         assert!(stream.read_buf(&mut got).await.unwrap() > 0);
     }
@@ -206,6 +207,6 @@ async fn a_forgotten_connection_is_released() {
     let connection = network.connect(settings).await.unwrap();
     assert_eq!(hub.with(|device, _| device.master()), Some(Some(mac(1))));
     drop((connection, network));
-    // The drop has waited until the adapter was closed.
+    // The drop waited until the adapter was closed.
     assert_eq!(hub.with(|device, _| device.master()), Some(None));
 }

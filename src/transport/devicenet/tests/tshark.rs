@@ -41,7 +41,7 @@ fn fields(frames: &[Frame], names: &[&str]) -> Option<Vec<Vec<String>>> {
     Some(text.lines().map(|line| line.split('\t').map(str::to_owned).collect()).collect())
 }
 
-/// Name that tshark shows for a message.
+/// Name that tshark shows for a message; `None` if it shows no such name.
 fn name(id: Id) -> Option<&'static str> {
     Some(match id {
         Id::Group1(..) => "Other Group 1 Message",
@@ -85,7 +85,7 @@ fn every_identifier_has_the_name_that_tshark_gives_it() {
             None => assert_eq!(message3.parse::<u16>().unwrap(), (frame.id() - 0x600) >> 6, "{frame}"),
         }
         if let Some(mac) = id.sender() {
-            // The MAC of a multicast poll is the MAC of a group. The other MACs are nodes.
+            // In a multicast poll, the MAC is the MAC of a group, and not of the source.
             assert_eq!(source.parse::<u8>().unwrap(), mac.number(), "{frame}");
         }
     }

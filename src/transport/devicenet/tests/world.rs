@@ -28,7 +28,7 @@ pub fn mac(number: u8) -> Mac {
 #[derive(Debug, Default)]
 pub struct Mirror {
     pub image: Vec<u8>,
-    /// Every new image with the time of its arrival, in order.
+    /// Every new image with the time of its arrival, in the order of arrival.
     pub history: Vec<(Now, Vec<u8>)>,
     pub images: u64,
     pub gone: Vec<Now>,
@@ -71,16 +71,16 @@ pub fn images(number: u8) -> Settings {
     Settings { slave: mac(number), purpose: Purpose::Images(Images::usual(profiles.to_vec(), None)), timeout: SECOND }
 }
 
-/// Fault rates per receiver, in 1/10,000 of the frames.
+/// Rates of faults for each receiver, in 1/10,000 of the frames.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Line {
     pub drop: u16,
     pub double: u16,
     pub late: u16,
-    /// Rate of short delays. Delayed frames are overtaken by frames with other identifiers.
+    /// Rate of short delays. A frame with another identifier can overtake a delayed frame.
     pub swap: u16,
-    /// Rate of long delays. Delayed frames are overtaken by later frames with the same identifier. No bus does this,
-    /// but a faulty adapter can do it.
+    /// Rate of long delays. A later frame with the same identifier can overtake a delayed frame. No bus does this, but
+    /// a faulty adapter can do it.
     pub reorder: u16,
 }
 
@@ -98,7 +98,7 @@ pub struct World {
     rng: Rng,
     /// Delayed frames: time, receiver, frame.
     arriving: Vec<(Now, usize, Frame)>,
-    /// Arrival of the last frame, by node and identifier.
+    /// Time at which the last frame arrived, by node and identifier.
     last: HashMap<(usize, u16), Now>,
 }
 
@@ -120,7 +120,7 @@ impl World {
         }
     }
 
-    /// Creates slave 5 on line with images of this size, and an open link.
+    /// Creates slave 5, which is on line with images of this size, and opens a link to it.
     pub fn linked(size: u16, seed: u64) -> Self {
         let mut world = Self::new(vec![Device::on_line(setup(5, size), Mirror::default())], seed);
         world.scanner.open(LINK, images(5)).unwrap();
@@ -191,8 +191,8 @@ impl World {
         let next = wakes.chain(self.arriving.iter().map(|(at, ..)| *at)).min();
         self.now = next.map_or(end, |next| next.clamp(now, end));
         if self.now == now && next.is_some_and(|next| next <= now) {
-            // Work that is due at once is done at the start of the next step. The time advances a little, so that
-            // endless immediate work is detected.
+            // Work that is due at once is done at the start of the next step. The time advances a little each time, so
+            // that the test detects endless work.
             self.now += Duration::from_nanos(100);
         }
     }

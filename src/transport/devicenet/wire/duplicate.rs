@@ -16,7 +16,7 @@ pub struct DuplicateCheck {
 const ANSWER: u8 = 0x80;
 
 impl DuplicateCheck {
-    /// Length in bytes.
+    /// Length of the message in bytes.
     pub const LEN: usize = 7;
 
     /// Decodes exactly [`LEN`](Self::LEN) bytes.

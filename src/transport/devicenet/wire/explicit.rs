@@ -10,7 +10,7 @@ pub mod service {
     pub const GET: u8 = 0x0E;
     /// Change an attribute.
     pub const SET: u8 = 0x10;
-    /// Error response.
+    /// Error response. It is not a service of a request.
     pub const ERROR: u8 = 0x14;
     /// Allocate connections of the predefined set.
     pub const ALLOCATE: u8 = 0x4B;
@@ -18,7 +18,7 @@ pub mod service {
     pub const RELEASE: u8 = 0x4C;
     /// Heartbeat of a node.
     pub const HEARTBEAT: u8 = 0x4D;
-    /// A node goes off line.
+    /// Report that a node goes off line.
     pub const SHUTDOWN: u8 = 0x4E;
     /// Bit that is set in the service code of an answer.
     pub const ANSWER: u8 = 0x80;
@@ -36,7 +36,7 @@ pub mod class {
     pub const CONNECTION: u8 = 5;
 }
 
-/// Allocation choice bits and instances of the predefined connections.
+/// Bits of the allocation choice, and instances of the predefined connections.
 pub mod connection {
     /// Explicit messages.
     pub const EXPLICIT: u8 = 0x01;
@@ -50,29 +50,29 @@ pub mod connection {
 
 /// General error codes.
 pub mod general {
-    /// No resource left.
+    /// The slave has no free resource.
     pub const NO_RESOURCE: u8 = 0x02;
-    /// No such object.
+    /// The object does not exist.
     pub const NO_PATH: u8 = 0x05;
-    /// No such service.
+    /// The object does not have this service.
     pub const NO_SERVICE: u8 = 0x08;
     /// Invalid attribute value.
     pub const INVALID_VALUE: u8 = 0x09;
-    /// Already in the requested state.
+    /// The object is already in the requested state.
     pub const ALREADY: u8 = 0x0B;
-    /// Not possible in the current state.
+    /// The request is not possible in the current state.
     pub const CONFLICT: u8 = 0x0C;
     /// The attribute is read-only.
     pub const NOT_SETTABLE: u8 = 0x0E;
-    /// Not enough data.
+    /// The request contains too little data.
     pub const TOO_SHORT: u8 = 0x13;
-    /// No such attribute.
+    /// The object does not have this attribute.
     pub const NO_ATTRIBUTE: u8 = 0x14;
-    /// Too much data.
+    /// The request contains too much data.
     pub const TOO_LONG: u8 = 0x15;
-    /// No such instance.
+    /// The instance does not exist.
     pub const NO_INSTANCE: u8 = 0x16;
-    /// Invalid parameter.
+    /// A parameter is invalid.
     pub const INVALID_PARAMETER: u8 = 0x20;
 
     /// Text of a general error code.
@@ -98,21 +98,21 @@ pub mod general {
     }
 }
 
-/// Additional error codes of allocate and release.
+/// Additional error codes in answers to allocate and release.
 pub mod owner {
     /// Another master owns the connections.
     pub const ANOTHER_MASTER: u8 = 0x01;
     /// The choice is not valid.
     pub const INVALID_CHOICE: u8 = 0x02;
-    /// A group 2 only server accepts no other unconnected service.
+    /// The slave is a group 2 only server. It accepts no other unconnected service than allocate and release.
     pub const UNCONNECTED: u8 = 0x03;
-    /// No resource left.
+    /// The slave has no free resource.
     pub const NO_RESOURCE: u8 = 0x04;
-    /// No additional code.
+    /// There is no additional code.
     pub const NONE: u8 = 0xFF;
 }
 
-/// Width of class and instance in requests.
+/// Widths of the class number and the instance number in requests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Format {
     /// 8-bit class, 8-bit instance.
@@ -126,7 +126,8 @@ pub enum Format {
 }
 
 impl Format {
-    /// Decodes the message body format in the answer to an allocation. Code 4 is a path; higher codes are not defined.
+    /// Decodes the message body format in the answer to an allocation. `None` for code 4, which means a path, and for
+    /// higher codes, which are not defined.
     pub const fn from_code(code: u8) -> Option<Self> {
         Some(match code {
             0 => Self::Byte8Byte8,
@@ -187,19 +188,19 @@ pub struct Request {
     pub service: u8,
     /// Class of the object.
     pub class: u16,
-    /// Instance; 0 is the class itself.
+    /// Instance number; 0 means the class itself.
     pub instance: u16,
     /// Service data.
     pub data: Vec<u8>,
 }
 
 impl Request {
-    /// Creates a request Get_Attribute_Single.
+    /// Creates a Get_Attribute_Single request.
     pub fn get(class: u8, instance: u16, attribute: u8) -> Self {
         Self { service: service::GET, class: class.into(), instance, data: vec![attribute] }
     }
 
-    /// Creates a request Set_Attribute_Single.
+    /// Creates a Set_Attribute_Single request.
     pub fn set(class: u8, instance: u16, attribute: u8, value: &[u8]) -> Self {
         let data = [&[attribute], value].concat();
         Self { service: service::SET, class: class.into(), instance, data }
@@ -216,7 +217,7 @@ impl Request {
         Self { service: service::RELEASE, class: class::DEVICENET.into(), instance: 1, data: vec![choice] }
     }
 
-    /// Encodes the request; `None` if class or instance do not fit the format.
+    /// Encodes the request. Returns `None` if the class or the instance does not fit the format.
     pub fn emit(&self, format: Format) -> Option<Vec<u8>> {
         let mut bytes = vec![self.service];
         let byte = |value: u16| u8::try_from(value).ok().map(|value| vec![value]);
@@ -272,9 +273,9 @@ pub enum Answer {
     },
     /// Error response.
     Refused {
-        /// The general code.
+        /// General error code.
         general: u8,
-        /// The additional code; `FF` means none.
+        /// Additional error code; `FF` means that there is none.
         additional: u8,
     },
 }

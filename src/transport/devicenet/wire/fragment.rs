@@ -23,7 +23,7 @@ pub struct Fragment {
 }
 
 impl Fragment {
-    /// Count of a cyclic fragment that is the first and the last fragment.
+    /// Count of the fragment if a cyclic image has only one fragment.
     pub const ONLY: u8 = 0x3F;
 
     /// Decodes the byte.
@@ -48,7 +48,7 @@ impl Fragment {
         kind << 6 | self.count & 0x3F
     }
 
-    /// Returns the fragment byte of the piece with this index, out of `pieces` pieces.
+    /// Returns the fragment byte of piece number `index` of `pieces` pieces.
     pub fn of(index: usize, pieces: usize) -> Self {
         let kind = match index {
             0 => Kind::First,

@@ -54,7 +54,7 @@ impl FromStr for Mac {
 /// Meaning of an 11-bit identifier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Id {
-    /// Other group 1 message, 0 to 11. The predefined master/slave connection set does not use it.
+    /// Another message of group 1, with its number 0 to 11. The predefined master/slave connection set does not use it.
     Group1(u8, Mac),
     /// Slave's multicast poll response.
     MulticastAnswer(Mac),
@@ -80,13 +80,13 @@ pub enum Id {
     Unconnected(Mac),
     /// Duplicate MAC check, with the MAC that is checked.
     Duplicate(Mac),
-    /// Group 3, messages 0 to 4: connected explicit messages.
+    /// Connected explicit message of group 3, with its number 0 to 4.
     Group3(u8, Mac),
     /// Unconnected explicit response (group 3).
     UnconnectedAnswer(Mac),
     /// Unconnected explicit request (group 3).
     UnconnectedRequest(Mac),
-    /// Group 4: 00 to 2F.
+    /// Message of group 4, with its number 00 to 2F.
     Group4(u8),
 }
 
@@ -119,7 +119,7 @@ impl Id {
         })
     }
 
-    /// Encodes the identifier. A message number that is too high for its group is limited.
+    /// Encodes the identifier. A message number that is too high for its group becomes the highest number of the group.
     pub fn emit(self) -> u16 {
         let group2 = |mac: Mac, message: u16| 0x400 | mac.bits() << 3 | message;
         match self {

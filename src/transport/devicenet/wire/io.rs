@@ -29,7 +29,7 @@ pub enum Piece {
     Part,
     /// An empty frame: the sender is in idle mode.
     Idle,
-    /// Wrong count or size. The partial image is dropped.
+    /// The frame has a wrong count or size. The partial image is dropped.
     Wrong,
 }
 
@@ -66,8 +66,8 @@ impl Assembler {
         let Fragment { kind, count } = Fragment::parse(*first);
         let expected = self.next.take();
         match kind {
-            // A first fragment starts a new image even if the last image is incomplete. After two first fragments in a
-            // row, however, the order is uncertain: the next fragments may belong to either image.
+            // A first fragment starts a new image, even if the last image is incomplete. But if two first fragments
+            // follow each other, the next fragments may belong to either image. In this case, both images are dropped.
             Kind::First if count == 0 && part.len() < self.size && expected != Some(1) => {
                 self.parts = part.to_vec();
                 self.next = Some(1);
@@ -148,7 +148,7 @@ mod tests {
                 let mut assembler = Assembler::new(48);
                 for frame in &frames_in {
                     match assembler.take(frame) {
-                        // Only a doubled first or last fragment leaves a complete image.
+                        // Only a doubled first or last fragment still gives a complete image.
                         Piece::Whole(got) => assert_eq!(got, image),
                         Piece::Part | Piece::Wrong => {}
                         Piece::Idle => panic!("no frame was empty"),

@@ -1,7 +1,7 @@
 //! DeviceNet codec: identifiers, explicit messages, fragments, duplicate MAC check.
 //!
-//! Numbers are little-endian. The layouts follow ODVA volume 3 ("DeviceNet Adaptation of CIP"). They come from
-//! Wireshark's dissector and two codecs of other authors.
+//! Numbers are little-endian. The layouts follow ODVA volume 3 ("DeviceNet Adaptation of CIP"). They were taken from
+//! Wireshark's dissector and from two codecs of other authors.
 
 mod duplicate;
 mod explicit;

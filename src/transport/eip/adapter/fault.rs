@@ -24,7 +24,7 @@ device_faults! {
     }
 }
 
-/// Socket address item 0.0.0.0:2222.
+/// Socket address item for 0.0.0.0:2222.
 pub(super) const TRAILING: [u8; 20] = [0x01, 0x80, 16, 0, 0, 2, 0x08, 0xAE, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
 
 /// Applies a fault to the image with this number. Returns the datagrams to send.

@@ -39,14 +39,14 @@ const NOT_ENOUGH_DATA: u8 = 0x13;
 /// Extended status of a refused close.
 const NOT_FOUND: u16 = 0x0107;
 
-/// Use of an assembly, from the view of the originator.
+/// Use of an assembly, as the originator sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Purpose {
     /// The adapter produces the data.
     Input,
     /// The adapter consumes the data.
     Output,
-    /// The adapter consumes the data when a connection opens.
+    /// The originator sends the data when it opens a connection.
     Configuration,
 }
 
@@ -64,7 +64,7 @@ pub struct Assembly {
 /// Configuration of an adapter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Setup {
-    /// Identity of the adapter. The address in it is replaced by the address on which the adapter listens.
+    /// Identity of the adapter. Its address is replaced by the address on which the adapter listens.
     pub identity: Identity,
     /// Assemblies.
     pub assemblies: Vec<Assembly>,
@@ -74,7 +74,7 @@ pub struct Setup {
     pub listen_only: u32,
     /// Supported intervals (RPI).
     pub rpi: RangeInclusive<Duration>,
-    /// Requested intervals are rounded up to a multiple of this time.
+    /// The adapter rounds requested intervals up to a multiple of this time.
     pub tick: Duration,
     /// Maximum number of connections.
     pub most_connections: usize,
@@ -101,8 +101,8 @@ pub trait Application: Send {
 pub enum Event {
     /// The connection was opened.
     Opened(Peer),
-    /// The originator closed the connection. A listen-only connection also closes with the connection that it depends
-    /// on.
+    /// The originator closed the connection. A listen-only connection also closes if the connection on which it depends
+    /// closes.
     Closed(Peer),
     /// The originator timed out.
     TimedOut(Peer),
@@ -151,7 +151,7 @@ struct Held {
     peer: Peer,
     triad: Triad,
     consumer: Consumer,
-    /// Sender of the images; `None` if another connection already sends to the same group.
+    /// Sender of the images. `None` if another connection already sends to the same group.
     producer: Option<Producer>,
     t_o_id: u32,
     destination: SocketAddrV4,
@@ -452,7 +452,7 @@ impl Setup {
                 assembly(output.0, Purpose::Output, output.1),
                 assembly(configuration, Purpose::Configuration, 0),
             ],
-            // The instance numbers that most data sheets give.
+            // Most data sheets give these instance numbers.
             input_only: 238,
             listen_only: 237,
             rpi: Duration::from_millis(2)..=Duration::from_millis(3200),

@@ -16,12 +16,12 @@ const NOT_SETTABLE: u8 = 0x0E;
 const TOO_LARGE: u8 = 0x11;
 const UNKNOWN_ATTRIBUTE: u8 = 0x14;
 const TOO_MUCH_DATA: u8 = 0x15;
-/// Class revisions.
+/// Revisions of the classes.
 const IDENTITY_REVISION: u16 = 1;
 const ASSEMBLY_REVISION: u16 = 2;
 
 impl<A: Application> Adapter<A> {
-    /// Executes a service. The error value is a general status.
+    /// Executes a service. The error is a general status.
     pub(super) fn object(
         &mut self,
         now: Now,

@@ -30,7 +30,7 @@ const SEGMENT: u16 = 0x0315;
 /// General status for an invalid timeout multiplier.
 const INVALID_PARAMETER: u8 = 0x20;
 
-/// Transport class 1, cyclic, originator as client. The adapter supports only this transport.
+/// Transport class 1, cyclic, with the originator as client. The adapter supports no other transport.
 const CYCLIC: u8 = 0x01;
 /// Valid heartbeat sizes: empty, a sequence count, or a sequence count with a run/idle header.
 const HEARTBEATS: [u16; 3] = [0, COUNT, COUNT + HEADER];
@@ -75,7 +75,7 @@ impl<A: Application> Adapter<A> {
 
     fn granted(&mut self, now: Now, from: Ipv4Addr, to: Option<SocketAddrV4>, open: &Open) -> Result<Granted, Status> {
         let points = points(open)?;
-        // Some boards check the owner before the sizes.
+        // Some boards check whether the outputs have an owner before they check the sizes.
         let is_owned = self.held.iter().any(|held| held.peer.output == Some(points.output));
         refuse_if(self.fault == Some(AdapterFault::Unowned) && is_owned, Status::connection(OWNED, &[]))?;
         let role = self.setup.allows(open, &points)?;
@@ -89,7 +89,7 @@ impl<A: Application> Adapter<A> {
         let o_t = self.setup.interval(&open.o_t);
         let mut t_o = self.setup.interval(&open.t_o);
         let is_multicast = open.t_o.net == Net::Multicast;
-        // A multicast group has one producer for all connections with the same interval. A listen-only connection
+        // In a multicast group, one producer sends for all connections with the same interval. A listen-only connection
         // accepts any interval.
         let shared = self.held.iter().find(|held| {
             let fits = held.peer.t_o == t_o || role == Role::ListenOnly;
@@ -106,7 +106,7 @@ impl<A: Application> Adapter<A> {
             (id, Some(Producer::new(id, t_o, now)))
         };
         let group = is_multicast.then(|| SocketAddrV4::new(self.setup.group, IO_PORT));
-        // The request contains the port of the originator. The address of the originator is the sender of the request.
+        // The request contains only the port of the originator. The address is that of the sender of the request.
         let port = to.map(|address| address.port()).filter(|port| *port != 0);
         let own = SocketAddrV4::new(from, port.unwrap_or(IO_PORT));
         let header = open.o_t.size >= COUNT + HEADER;

@@ -18,9 +18,9 @@ use crate::fault::Faults;
 
 /// Size of the receive buffer: the size of the largest datagram.
 const BUFFER: usize = 65_536;
-/// Maximum number of clients. Further TCP connections are closed at once.
+/// Maximum number of clients. If there are more, the server closes their TCP connections at once.
 const MOST_CLIENTS: usize = 64;
-/// Number of attempts to bind TCP and UDP to the same port, if the system selects the port.
+/// If the system selects the port: number of attempts to bind TCP and UDP to the same port.
 const TRIES: usize = 16;
 
 /// Pause after a failed accept.
@@ -31,10 +31,10 @@ const PAUSE: Duration = Duration::from_millis(50);
 pub struct Listen {
     /// IP address.
     pub address: Ipv4Addr,
-    /// TCP port of sessions and UDP port of ListIdentity. With 0, the system selects a port.
+    /// TCP port for sessions, and UDP port for ListIdentity. With 0, the system selects the port.
     pub port: u16,
-    /// UDP port of images. With 0, the system selects a port. Some originators ignore the port in the reply and need
-    /// 2222.
+    /// UDP port for images. With 0, the system selects the port. Some originators ignore the port in the reply and
+    /// always use 2222.
     pub io_port: u16,
 }
 
@@ -50,7 +50,7 @@ impl Listen {
     }
 }
 
-/// A running adapter. When it is dropped, it stops and does not close its connections.
+/// A running adapter. A drop stops it, but does not close its connections: the originators must detect the loss.
 #[derive(Debug)]
 pub struct Server<A: Application + 'static> {
     inner: Arc<Inner<A>>,
@@ -73,9 +73,9 @@ struct State<A> {
     adapter: Adapter<A>,
     lines: BTreeMap<u64, UnboundedSender<Vec<u8>>>,
     last: u64,
-    /// Fault injection for images to the adapter and from the adapter.
+    /// Faults to inject: first for images to the adapter, then for images from the adapter.
     faults: Option<(Faults, Faults)>,
-    /// Delayed images.
+    /// Images that fault injection delays.
     delayed: Vec<(Now, Delayed)>,
 }
 
@@ -146,7 +146,7 @@ impl<A: Application> Inner<A> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Calls `change` with the state, then executes the resulting actions.
+    /// Calls `change` with the state, then executes the actions that result.
     fn with(&self, change: impl FnOnce(&mut State<A>, Now)) {
         let mut state = self.state();
         let now = self.start.elapsed();
@@ -155,7 +155,7 @@ impl<A: Application> Inner<A> {
         self.alarm.set(wake);
     }
 
-    /// Executes the work that is due. Returns the time of the next call.
+    /// Executes the work that is due. Returns the time at which it must be called again.
     fn turn(&self) -> Option<Now> {
         let mut state = self.state();
         let now = self.start.elapsed();
@@ -177,7 +177,7 @@ impl<A: Application> Inner<A> {
             match output {
                 Output::Send(client, bytes) => {
                     if let Some(line) = state.lines.get(&client) {
-                        // An error means that the TCP connection is closed; the task of the connection reports that.
+                        // An error means that the TCP connection is closed. The task of the connection reports this.
                         let _ = line.send(bytes);
                     }
                 }
@@ -232,7 +232,8 @@ fn bind(listen: Listen) -> io::Result<(std::net::TcpListener, UdpSocket)> {
 
 async fn accept<A: Application + 'static>(inner: Arc<Inner<A>>, sessions: TcpListener, handle: Handle) {
     loop {
-        // Either the peer has already disconnected, or there are too many open files. Both are temporary.
+        // An error means that the peer has already disconnected, or that there are too many open files. Both states are
+        // temporary.
         let Ok((stream, SocketAddr::V4(from))) = sessions.accept().await else {
             tokio::time::sleep(PAUSE).await;
             continue;
@@ -259,7 +260,8 @@ async fn serve<A: Application>(
     mut stream: TcpStream,
     mut orders: UnboundedReceiver<Vec<u8>>,
 ) {
-    // An error is ignored. Without this option, an answer may wait for the acknowledgement of the previous answer.
+    // An error is ignored: the option only saves time. Without it, an answer may wait for the acknowledgement of the
+    // previous answer.
     let _ = stream.set_nodelay(true);
     let (mut from, mut to) = stream.split();
     let mut buffer = [0; 4096];
@@ -289,7 +291,7 @@ async fn receive<A: Application>(
 ) {
     let mut buffer = vec![0; BUFFER];
     loop {
-        // An error concerns one peer (Windows: port unreachable). The other peers are not affected.
+        // An error concerns only one peer (Windows: port unreachable). The other peers are not affected.
         if let Ok((len, SocketAddr::V4(from))) = socket.recv_from(&mut buffer).await {
             take(&inner, from, &buffer[..len]);
         }

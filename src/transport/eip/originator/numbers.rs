@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU16, AtomicU32, Ordering};
 use super::super::UNREGISTERED_VENDOR;
 use super::super::wire::Triad;
 
-/// Numbers that are unique in this process, and with high probability in the network.
+/// Allocates numbers that are unique in this process, and probably also unique in the network.
 #[derive(Debug)]
 pub struct Numbers {
     originator: u32,
@@ -14,8 +14,8 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// Creates numbers with random start values. They should differ from the numbers of connections that an earlier
-    /// process left open.
+    /// Creates numbers with random start values. So they are probably different from the numbers of connections that an
+    /// earlier process left open.
     pub fn random() -> Self {
         Self::new(fastrand::u32(..), fastrand::u16(..), fastrand::u32(..))
     }
@@ -32,7 +32,7 @@ impl Numbers {
     }
 
     pub(super) fn id(&self) -> u32 {
-        // 0 is not a valid id.
+        // 0 is not a valid id, so the next number is used.
         match self.id.fetch_add(1, Ordering::Relaxed) {
             0 => self.id.fetch_add(1, Ordering::Relaxed),
             id => id,

@@ -17,17 +17,17 @@ pub type Views = view::Views<EipError, Statistics, Details>;
 pub struct Statistics {
     /// Datagrams sent.
     pub sent: u64,
-    /// Send times that were omitted because a whole interval was missed, for example on a busy computer.
+    /// Datagrams that were omitted because a whole interval was missed, for example on a busy computer.
     pub skipped: u64,
     /// Valid datagrams received.
     pub received: u64,
-    /// Missing sequence numbers.
+    /// Sequence numbers that were never received.
     pub lost: u64,
     /// Datagrams that arrived more than half an interval late.
     pub late: u64,
-    /// Old and duplicate datagrams. They are dropped.
+    /// Old and duplicate datagrams, which are dropped.
     pub stale: u64,
-    /// Datagrams of a wrong size. They are dropped.
+    /// Datagrams of a wrong size, which are dropped.
     pub misfit: u64,
 }
 
@@ -46,8 +46,8 @@ impl Statistics {
 /// Details that only EtherNet/IP has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Details {
-    /// Run/idle bit that is sent to the device.
+    /// Run/idle bit that the originator sends to the device.
     pub run: bool,
-    /// Actual intervals: to the device, from the device.
+    /// Actual packet intervals: to the device, and from the device.
     pub intervals: Option<(Duration, Duration)>,
 }

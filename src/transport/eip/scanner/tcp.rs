@@ -14,10 +14,10 @@ use super::{EipError, Inner, Slot, Tap, mpsc};
 /// Bytes per read.
 const BUFFER: usize = 4096;
 
-/// Local end of the TCP connection. When it is dropped, the connection closes after all bytes were written.
+/// Handle of a TCP connection. When the handle is dropped, the connection closes after all bytes were written.
 #[derive(Debug)]
 pub(super) struct Line {
-    /// Number of the TCP connection. It identifies events of an older connection of the slot.
+    /// Number of the TCP connection. With it, events of an older connection of the slot are recognized.
     pub(super) number: u64,
     orders: mpsc::UnboundedSender<Vec<u8>>,
 }
@@ -30,7 +30,7 @@ impl Line {
     }
 
     pub(super) fn send(&self, bytes: Vec<u8>) {
-        // An error means that the connection is closed; the task of the connection reports that.
+        // An error means that the connection is closed. The task of the connection reports this.
         let _ = self.orders.send(bytes);
     }
 }
@@ -44,7 +44,7 @@ pub(super) async fn run(
     tap: Tap,
     mut orders: UnboundedReceiver<Vec<u8>>,
 ) {
-    // Events are ignored if the slot already has another connection.
+    // If the slot already has another TCP connection, the events of this connection are ignored.
     let tell = |event: &mut dyn FnMut(&mut Slot, super::Now)| {
         inner.with(id, |slot, now| {
             if slot.line.as_ref().is_some_and(|line| line.number == number) {
@@ -52,7 +52,8 @@ pub(super) async fn run(
             }
         });
     };
-    // No bytes are queued before the connection is open. If the queue ends first, the attempt is canceled.
+    // No bytes are queued before the connection is open. If the queue ends first, the slot has dropped its handle, and
+    // the attempt is canceled.
     let connected = tokio::select! {
         connected = connect(*inner.local.ip(), target) => connected,
         _ = orders.recv() => return,
@@ -61,7 +62,8 @@ pub(super) async fn run(
         Ok(stream) => stream,
         Err(error) => return tell(&mut |slot, _| slot.core.hung_up(&EipError::unreachable(&error))),
     };
-    // An error is ignored. Without this option, a request may wait for the acknowledgement of the previous request.
+    // An error is ignored: the option only saves time. Without it, a request may wait for the acknowledgement of the
+    // previous request.
     let _ = stream.set_nodelay(true);
     let Ok(SocketAddr::V4(here)) = stream.local_addr() else { return };
     tell(&mut |slot, now| {
@@ -90,13 +92,13 @@ pub(super) async fn run(
             },
         }
     }
-    // This error is for callers that wait for the session. After the registration, each pending request gets its own
-    // error.
+    // This error is for requests that wait until the session is registered. After the registration, each pending
+    // request gets its own error.
     tell(&mut |slot, _| slot.core.hung_up(&EipError::Hangup { what: "RegisterSession" }));
 }
 
-/// Connects from the local address of the image socket. The device sends its images to the address that sent the
-/// request.
+/// Connects from the local address of the image socket, because the device sends its images to the address that sent
+/// the request.
 async fn connect(here: Ipv4Addr, target: SocketAddrV4) -> io::Result<TcpStream> {
     let socket = TcpSocket::new_v4()?;
     if !here.is_unspecified() {

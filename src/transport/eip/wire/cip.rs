@@ -14,9 +14,9 @@ pub mod service {
     pub const SET_ATTRIBUTE_SINGLE: u8 = 0x10;
     /// ForwardClose.
     pub const FORWARD_CLOSE: u8 = 0x4E;
-    /// ForwardOpen, up to 511 bytes in each direction.
+    /// ForwardOpen, for connections of up to 511 bytes in each direction.
     pub const FORWARD_OPEN: u8 = 0x54;
-    /// LargeForwardOpen, up to 65,535 bytes in each direction.
+    /// LargeForwardOpen, for connections of up to 65,535 bytes in each direction.
     pub const LARGE_FORWARD_OPEN: u8 = 0x5B;
     /// Bit that is set in the service code of a reply.
     pub const REPLY: u8 = 0x80;
@@ -59,7 +59,7 @@ impl<'a> Request<'a> {
 pub struct Status {
     /// General status; 0 is success.
     pub general: u8,
-    /// Extended status words; usually empty.
+    /// Extended status words. In most cases there are none.
     pub extended: Vec<u16>,
 }
 
@@ -72,7 +72,8 @@ impl Status {
         Self { general, extended: Vec::new() }
     }
 
-    /// Creates an extended status of the connection manager (general status 1), followed by more words.
+    /// Creates an extended status of the connection manager (general status 1). `more` contains the words after the
+    /// extended status.
     pub fn connection(extended: u16, more: &[u16]) -> Self {
         Self { general: 1, extended: [&[extended], more].concat() }
     }
@@ -84,7 +85,8 @@ impl Status {
 }
 
 impl fmt::Display for Status {
-    /// Format: "0x01/0x0109 54". This is the general status, the extended status, and the further words in decimal.
+    /// Formats the status, for example "0x01/0x0109 54": the general status, the extended status, and the further words
+    /// in decimal.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:#04x}", self.general)?;
         if let Some((code, more)) = self.extended.split_first() {
@@ -102,7 +104,7 @@ pub struct Reply<'a> {
     pub service: u8,
     /// CIP status.
     pub status: Status,
-    /// Response data, or details of a refusal.
+    /// Response data. If the object refuses, details of the refusal.
     pub data: &'a [u8],
 }
 

@@ -4,7 +4,7 @@ use super::{Path, Reader, Request, WireError, service, words8};
 
 /// Class and instance of the connection manager.
 const MANAGER: (u32, u32) = (6, 1);
-/// Time limit for routers on the path: 249 ticks of 128 ms. This is the second largest possible value.
+/// Time limit for routers on the path: 249 ticks of 128 ms. This is the second largest value that the field can have.
 const PATIENCE: [u8; 2] = [7, 249];
 /// Maximum connection size in the short ForwardOpen.
 const MOST_SHORT: u16 = 511;
@@ -108,26 +108,26 @@ impl Flow {
 /// ForwardOpen request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Open {
-    /// O->T connection id. The target ignores it and selects its own id.
+    /// O->T connection id. The target ignores this id and selects its own.
     pub o_t_id: u32,
-    /// T->O connection id, selected by the originator. The target ignores it for multicast.
+    /// T->O connection id, selected by the originator. For multicast, the target ignores it.
     pub t_o_id: u32,
     /// Connection triad.
     pub triad: Triad,
-    /// Timeout multiplier code 0 to 7: 4, 8, … 512 intervals.
+    /// Code 0 to 7 of the timeout multiplier, for 4, 8, … 512 intervals.
     pub multiplier: u8,
     /// Parameters from originator to target.
     pub o_t: Flow,
     /// Parameters from target to originator.
     pub t_o: Flow,
-    /// Class in bits 3 to 0, trigger in bits 6 to 4; 1 means class 1, cyclic.
+    /// Transport: class in bits 3 to 0, trigger in bits 6 to 4. The value 1 means class 1, cyclic.
     pub transport: u8,
     /// Path: key, class, configuration, connection points, configuration data.
     pub path: Path,
 }
 
 impl Open {
-    /// Encodes the request. Uses the large form if a size requires it.
+    /// Encodes the request. Uses LargeForwardOpen if a size requires this.
     pub fn emit(&self) -> Vec<u8> {
         let large = self.is_large();
         let mut data = PATIENCE.to_vec();
@@ -143,7 +143,7 @@ impl Open {
         manager(if large { service::LARGE_FORWARD_OPEN } else { service::FORWARD_OPEN }, &data)
     }
 
-    /// Whether a size requires the large form.
+    /// Whether a size is too large for the short ForwardOpen.
     pub fn is_large(&self) -> bool {
         self.o_t.size.max(self.t_o.size) > MOST_SHORT
     }
@@ -220,7 +220,7 @@ impl Opened {
 pub struct Refused {
     /// Connection triad.
     pub triad: Triad,
-    /// Remaining path size in words. Some devices omit it.
+    /// Number of path words that the target has not processed. Some devices omit it.
     pub remaining: Option<u8>,
 }
 
@@ -246,7 +246,7 @@ impl Refused {
 pub struct Close {
     /// Connection triad.
     pub triad: Triad,
-    /// Path of the ForwardOpen.
+    /// Path of the ForwardOpen that opened the connection.
     pub path: Path,
 }
 
@@ -324,8 +324,9 @@ mod tests {
         }
     }
 
-    /// The expected bytes come field by field from volume 1, table 3-5.17. Parameters 4836 and 4832 mean point to
-    /// point, scheduled, fixed, 54 and 50 bytes. tshark decodes these bytes to the same values (tests/eip).
+    /// The expected bytes were built field by field from volume 1, table 3-5.17. The parameters 4836 and 4832 mean
+    /// point to point, scheduled, fixed size, and 54 and 50 bytes. tshark decodes these bytes to the same values
+    /// (tests/eip).
     #[test]
     fn an_open_has_the_printed_layout() {
         let bytes = hex(
@@ -347,7 +348,8 @@ mod tests {
         assert!(!open(511, 511).is_large());
     }
 
-    /// Class 1 request of a servo drive tool: key, configuration data, 10 bytes out, 6 bytes in, multiplier 12, 10 ms.
+    /// A class 1 request of a servo drive tool. It has a key and configuration data, 10 bytes out, 6 bytes in,
+    /// multiplier 12 and an interval of 10 ms.
     #[test]
     fn an_open_with_a_key_and_configuration_data() {
         let bytes = hex("05 9B 00000000 08401100 0100 0100 9964D200 02 000000 10270000 0A48 10270000 0648 01 0E \
@@ -396,7 +398,8 @@ mod tests {
         assert_eq!(opened.emit(), reply.data);
     }
 
-    /// The bytes are from the same tests (`fwd_f01_reply`, and without the remaining path `fwd_f01_reply_no_remain`).
+    /// The bytes are from the same tests of cpppo (`fwd_f01_reply`, and without the remaining path
+    /// `fwd_f01_reply_no_remain`).
     #[test]
     fn recorded_refusals() {
         let triad = Triad { serial: 0, vendor: 0xFFFF, originator: 0x1234_5678 };
@@ -410,7 +413,7 @@ mod tests {
         }
     }
 
-    /// The bytes are from the same tests (`fwd_c01_request`).
+    /// The bytes are from the same tests of cpppo (`fwd_c01_request`).
     #[test]
     fn a_recorded_close() {
         let bytes = hex("4E 02 20 06 24 01 07 F9 0100 4D00 0F7F3D1E 03 00 0100 2002 2401");

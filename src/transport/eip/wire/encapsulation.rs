@@ -8,7 +8,7 @@ pub const HEADER_LEN: usize = 24;
 /// Encapsulation command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Command(
-    /// The code.
+    /// Code of the command.
     pub u16,
 );
 
@@ -40,14 +40,14 @@ pub struct Frame<'a> {
     pub session: u32,
     /// Status; 0 in requests and successful replies.
     pub status: u32,
-    /// Sender context. The reply contains the sender context of the request.
+    /// Sender context: any bytes that the sender of the request selects. The reply contains the same bytes.
     pub context: [u8; 8],
     /// Command data, at most 65,535 bytes.
     pub data: &'a [u8],
 }
 
 impl<'a> Frame<'a> {
-    /// Creates a request without data and session.
+    /// Creates a request without data, outside of a session.
     pub const fn new(command: Command) -> Self {
         Self { command, session: 0, status: 0, context: [0; 8], data: &[] }
     }
@@ -90,18 +90,18 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// Splits a TCP stream into messages. The length field of 16 bits limits the memory that a message needs.
+/// Splitter of a TCP stream into messages. The length field of 16 bits limits the memory that a message needs.
 #[derive(Debug, Clone, Default)]
 pub struct Frames {
     bytes: Vec<u8>,
-    /// Number of bytes already returned.
+    /// Number of bytes that were already returned.
     done: usize,
 }
 
 impl Frames {
     /// Adds received bytes.
     pub fn push(&mut self, bytes: &[u8]) {
-        // Returned bytes are removed here and not in `pop`, so that each byte is moved only once.
+        // The bytes that `pop` has returned are removed here and not in `pop`, so that each byte is moved only once.
         self.bytes.drain(..self.done);
         self.done = 0;
         self.bytes.extend_from_slice(bytes);
@@ -117,7 +117,7 @@ impl Frames {
         Some(message)
     }
 
-    /// Drops all bytes. The driver calls this function for a new TCP connection.
+    /// Drops all bytes. The driver calls this function when a new TCP connection opens.
     pub fn clear(&mut self) {
         self.bytes.clear();
         self.done = 0;
@@ -130,7 +130,7 @@ mod tests {
     use super::*;
     use crate::testing::hex;
 
-    /// The expected bytes are from volume 2, 2-4.4. The captures of cpppo contain the same bytes.
+    /// The expected bytes are printed in volume 2, 2-4.4. The captures of cpppo contain the same bytes.
     #[test]
     fn a_session_begins_as_printed() {
         let bytes = hex("6500 0400 00000000 00000000 0000000000000000 00000000 01000000");

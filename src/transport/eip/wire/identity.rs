@@ -33,7 +33,7 @@ impl fmt::Display for Revision {
 /// Identity of a device.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Identity {
-    /// Socket address that the device reports. It can differ from the real address.
+    /// Socket address that the device reports about itself. It can differ from the real address.
     pub address: SocketAddrV4,
     /// Vendor id.
     pub vendor: u16,
@@ -43,13 +43,15 @@ pub struct Identity {
     pub product: u16,
     /// Revision of the product.
     pub revision: Revision,
-    /// Status bits: owned (0), configured (2), extended status (7 to 4), faults (11 to 8).
+    /// Status bits: owned (bit 0), configured (bit 2), extended status (bits 7 to 4), faults (bits 11 to 8).
     pub status: u16,
     /// Serial number, unique for the vendor.
     pub serial: u32,
-    /// Product name without trailing blanks and zeros. Bytes that are not ASCII are replaced. Untrusted data.
+    /// Product name without trailing blanks and zeros. Bytes that are not ASCII are replaced. The name is untrusted
+    /// data.
     pub name: String,
-    /// State: 0 nonexistent, 1 self test, 2 standby, 3 operational, 4 and 5 faults, 255 unknown; `None` if omitted.
+    /// State: 0 nonexistent, 1 self test, 2 standby, 3 operational, 4 and 5 faults, 255 unknown. `None` if the device
+    /// omits it.
     pub state: Option<u8>,
 }
 
@@ -70,8 +72,8 @@ impl Identity {
         Ok(identity)
     }
 
-    /// Decodes all attributes of the identity object. The attributes contain no address and no state: `address` is
-    /// used, and the state is `None`.
+    /// Decodes all attributes of the identity object. They contain no address and no state, so the result has the given
+    /// `address`, and `None` as state.
     pub fn parse_attributes(bytes: &[u8], address: SocketAddrV4) -> Result<Self, WireError> {
         Ok(Self { address, ..Self::read(&mut Reader::little(bytes))? })
     }
@@ -111,7 +113,7 @@ impl Identity {
         out
     }
 
-    /// Encodes the product name attribute: length byte and characters.
+    /// Encodes the product name attribute: a length byte, then the characters.
     pub fn name_attribute(&self) -> Vec<u8> {
         let name: Vec<u8> = self.name.bytes().take(LONGEST_NAME).collect();
         [vec![u8::try_from(name.len()).unwrap_or_default()], name].concat()
@@ -121,9 +123,9 @@ impl Identity {
 /// Communication services of a device.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Services {
-    /// Bit 5: CIP over TCP; bit 8: cyclic data over UDP.
+    /// Flags of the service. Bit 5: CIP over TCP; bit 8: cyclic data over UDP.
     pub flags: u16,
-    /// Name of the service: "Communications". Untrusted data.
+    /// Name of the service, normally "Communications". The name is untrusted data.
     pub name: String,
 }
 
@@ -181,12 +183,12 @@ mod tests {
         assert_eq!(identity.revision.to_string(), "11.001");
         assert_eq!((identity.status, identity.serial), (0x0561, 0x8049_1D15));
         assert_eq!((identity.name.as_str(), identity.state), ("PowerFlex 753", Some(255)));
-        // Only the blanks after the name are lost.
+        // In the name, only the blanks at the end are lost.
         let padded = Identity { name: format!("{:32}", identity.name), ..identity };
         assert_eq!(padded.emit(), frame.data);
     }
 
-    /// A PowerFlex 525 (EIPScanner, TestDiscoveryManager.cpp). The original has a second, equal item.
+    /// The answer of a PowerFlex 525 (EIPScanner, TestDiscoveryManager.cpp). The original has a second, equal item.
     #[test]
     fn another_recorded_identity() {
         let bytes =

@@ -10,11 +10,12 @@ pub const RUN: u32 = 1;
 pub struct Cyclic<'a> {
     /// Connection id.
     pub id: u32,
-    /// Sequence number; increases with every datagram.
+    /// Sequence number. It increases with every datagram.
     pub sequence: u32,
-    /// Sequence count. According to the standard, it increases with new data; here it increases with every datagram.
+    /// Sequence count. According to the standard, it increases when the data is new. Here it increases with every
+    /// datagram.
     pub count: u16,
-    /// Run/idle header, if the connection has one, and data.
+    /// Data. If the connection has a run/idle header, the header comes before the data.
     pub body: &'a [u8],
 }
 
@@ -64,7 +65,7 @@ mod tests {
     use super::*;
     use crate::testing::hex;
 
-    /// With a 48-byte image, a datagram has 72 bytes to the target and 68 bytes to the originator.
+    /// With a 48-byte image, the datagram to the target has 72 bytes, and the datagram to the originator has 68 bytes.
     #[test]
     fn a_datagram_each_way() {
         let image = [0xA5; 48];

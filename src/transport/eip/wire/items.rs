@@ -6,7 +6,7 @@ use super::{Reader, WireError, len16};
 
 /// Item types.
 pub mod kind {
-    /// Null address, for unconnected messages.
+    /// Null address of an unconnected message.
     pub const NULL: u16 = 0x0000;
     /// Connection id.
     pub const CONNECTED_ADDRESS: u16 = 0x00A1;
@@ -42,7 +42,7 @@ impl<'a> Item<'a> {
         Self { kind, data }
     }
 
-    /// Decodes the count and the items. Fails if bytes follow the items.
+    /// Decodes the item count and the items. Fails if bytes follow after the items.
     pub fn parse_all(bytes: &'a [u8]) -> Result<Vec<Self>, WireError> {
         Self::read_all(&mut Reader::little(bytes))
     }
@@ -53,7 +53,7 @@ impl<'a> Item<'a> {
         Ok(items)
     }
 
-    /// Decodes the count and the items. More bytes may follow the items.
+    /// Decodes the item count and the items. More bytes may follow after the items.
     fn read_counted(reader: &mut Reader<'a>) -> Result<Vec<Self>, WireError> {
         let count = reader.u16("item count")?;
         if count > MOST_ITEMS {
@@ -72,7 +72,7 @@ impl<'a> Item<'a> {
         Ok(Self { kind, data: reader.take(usize::from(len), "item")? })
     }
 
-    /// Encodes the count and the items.
+    /// Encodes the item count and the items.
     pub fn emit_all(items: &[Self]) -> Vec<u8> {
         let mut out = Vec::with_capacity(2 + items.iter().map(|item| 4 + item.data.len()).sum::<usize>());
         out.extend(len16(items.len()));
@@ -104,7 +104,7 @@ impl<'a> RrData<'a> {
         Self { timeout: 0, message, o_t: None, t_o: None }
     }
 
-    /// Decodes the data of a frame. Fails if bytes follow the counted items.
+    /// Decodes the data of a frame. Fails if bytes follow after the counted items.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, WireError> {
         let mut reader = Reader::little(bytes);
         let timeout = Self::head(&mut reader)?;
@@ -190,7 +190,8 @@ mod tests {
         assert_eq!(RrData::parse(&bytes), Ok(data));
     }
 
-    /// A refusal with two counted items and a socket address after them; then a refusal with bytes that are no item.
+    /// First a refusal with two counted items and a socket address after them, then a refusal with bytes after the
+    /// items that are not an item.
     #[test]
     fn what_stands_behind_an_answer_is_no_fault() {
         let counted = "00000000 0000 0200 0000 0000 B200 0600 D400 0101 0601";

@@ -31,7 +31,10 @@ fn len16(len: usize) -> [u8; 2] {
     u16::try_from(len).expect("lengths of messages are bounded where they are built").to_le_bytes()
 }
 
-/// Encodes an 8-bit length field that counts 16-bit words. Panics if the length is above 255 words.
+/// Encodes an 8-bit length field that counts 16-bit words.
+///
+/// # Panics
+/// If the length is above 255 words.
 fn words8(len: usize) -> u8 {
     u8::try_from(len.div_ceil(2)).expect("lengths of messages are bounded where they are built")
 }

@@ -7,17 +7,17 @@ use super::{Reader, WireError, words8};
 pub enum Segment {
     /// Class.
     Class(u32),
-    /// Instance. In a connection path with the assembly class, this is the configuration.
+    /// Instance. In a connection path with the assembly class, this is the configuration instance.
     Instance(u32),
     /// Attribute.
     Attribute(u32),
-    /// Connection point: an assembly.
+    /// Connection point: an assembly that the connection uses.
     Point(u32),
     /// Electronic key.
     Key(Key),
     /// Configuration data.
     Data(Vec<u8>),
-    /// Port segment: a route to the next network.
+    /// Port segment: a port and a link address that lead to the next network.
     Port {
         /// Port number; 1 is the backplane.
         port: u16,
@@ -26,7 +26,7 @@ pub enum Segment {
     },
 }
 
-/// Electronic key: the identity of the device that a connection expects. A value of 0 matches any device.
+/// Electronic key: the identity that the device of a connection must have. A value of 0 matches any device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Key {
     /// Vendor id.
@@ -39,24 +39,24 @@ pub struct Key {
     pub major: u8,
     /// Minor revision.
     pub minor: u8,
-    /// Whether a device with a compatible later revision is accepted.
+    /// Whether the key also accepts a later revision that is compatible.
     pub compatible: bool,
 }
 
 const KEY_FORMAT: u8 = 4;
 const COMPATIBLE: u8 = 0x80;
 
-/// First bytes of segments with an 8-bit value. For a 16-bit value, add 1. For a 32-bit value, add 2. In both cases, a
-/// padding byte follows.
+/// First bytes of the segment types with an 8-bit value. For a 16-bit value, the first byte is 1 higher; for a 32-bit
+/// value, it is 2 higher. In both cases, a padding byte follows.
 const CLASS: u8 = 0x20;
 const INSTANCE: u8 = 0x24;
 const POINT: u8 = 0x2C;
 const ATTRIBUTE: u8 = 0x30;
 const KEY: u8 = 0x34;
 const DATA: u8 = 0x80;
-/// Flag of a port segment: a length byte for the link address follows.
+/// Flag in a port segment. If it is set, the length of the link address follows in one byte.
 const LONG_LINK: u8 = 0x10;
-/// Value of a port segment: a 16-bit port number follows.
+/// Value in a port segment that means: a 16-bit port number follows.
 const LONG_PORT: u8 = 0x0F;
 
 /// A sequence of segments.
@@ -72,7 +72,7 @@ impl Path {
         Self(vec![Segment::Class(class), Segment::Instance(instance)])
     }
 
-    /// Path of an attribute.
+    /// Returns the path of an attribute.
     pub fn attribute(class: u32, instance: u32, attribute: u32) -> Self {
         Self(vec![Segment::Class(class), Segment::Instance(instance), Segment::Attribute(attribute)])
     }
@@ -100,7 +100,7 @@ impl Path {
         Ok(Self(segments))
     }
 
-    /// Encodes the path. The length in bytes is even.
+    /// Encodes the path. The number of bytes is always even.
     pub fn emit(&self) -> Vec<u8> {
         let mut out = Vec::new();
         for segment in &self.0 {
@@ -202,7 +202,7 @@ fn emit(segment: &Segment, out: &mut Vec<u8>) {
     }
 }
 
-/// Encodes a logical segment in the shortest form.
+/// Encodes a logical segment in the shortest form that fits the value.
 fn logical(first: u8, value: u32, out: &mut Vec<u8>) {
     if let Ok(value) = u8::try_from(value) {
         out.extend([first, value]);
@@ -215,7 +215,8 @@ fn logical(first: u8, value: u32, out: &mut Vec<u8>) {
     }
 }
 
-/// Pads the path to an even length. All earlier segments have an even length, so the total length is checked.
+/// Pads the path to an even length. All earlier segments have an even length, so the test of the total length is
+/// sufficient.
 fn pad(out: &mut Vec<u8>) {
     if out.len() % 2 == 1 {
         out.push(0);

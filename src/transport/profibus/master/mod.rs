@@ -1,8 +1,8 @@
-//! DP master of one slave. An opening has these steps: diagnosis, parameters, configuration, diagnosis, data exchange.
-//! The master has no port and no clock.
+//! DP master of one slave. The steps of an opening are diagnosis, parameters, configuration, diagnosis and data
+//! exchange. The master has no port and no clock.
 //!
-//! The master never sends Clear, which would be an emergency stop for a robot. The first image after every opening is
-//! the resting image.
+//! The master never sends Clear, because Clear would be an emergency stop for a robot. The first image after every
+//! opening is the resting image.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -29,30 +29,30 @@ const READY: Duration = Duration::from_secs(5);
 const PATIENCE: Duration = Duration::from_millis(10);
 /// Pause before a link is reopened.
 const AGAIN: Duration = Duration::from_secs(1);
-/// Default user parameters, in the order in which they are tried: none, then the three bytes of slaves with acyclic
-/// services (DP-V1).
+/// Default user parameters, in the order in which they are tried. First none, then the three bytes of slaves with
+/// acyclic services (DP-V1).
 const USUAL_PARAMETERS: [&[u8]; 2] = [&[], &[0, 0, 0]];
 
 /// State of the master.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Step {
-    /// Listening for other traffic.
+    /// The master listens for other traffic.
     Listen,
-    /// Checking whether the station exists (FDL status).
+    /// The master checks whether the station exists (FDL status).
     Find,
-    /// Reading the diagnosis, which contains the state and the owner of the slave.
+    /// The master reads the diagnosis, which contains the state and the owner of the slave.
     Diagnose,
-    /// Reading the configuration (Get_Cfg).
+    /// The master reads the configuration (Get_Cfg).
     Ask,
-    /// Sending the parameters (Set_Prm).
+    /// The master sends the parameters (Set_Prm).
     Parameters,
-    /// Sending the configuration (Chk_Cfg).
+    /// The master sends the configuration (Chk_Cfg).
     Check,
-    /// Reading the diagnosis until the slave is ready.
+    /// The master reads the diagnosis until the slave is ready.
     Confirm,
-    /// Data exchange.
+    /// The master exchanges data with the slave.
     Data,
-    /// Releasing the slave (Set_Prm with unlock).
+    /// The master releases the slave (Set_Prm with unlock).
     Release,
     /// The link is closed.
     Over,
@@ -77,7 +77,7 @@ pub struct Master {
     step: Step,
     /// Earliest time of the next request.
     not_before: Now,
-    /// Time of the first check whether the slave is ready.
+    /// Time at which the master first checked whether the slave is ready.
     asked_since: Option<Now>,
     ident: u16,
     /// Configuration that the slave reports.
@@ -89,11 +89,11 @@ pub struct Master {
     jobs: VecDeque<Job>,
     is_diagnosing: bool,
     next_cycle: Now,
-    /// Time of the last Operate telegram. It is sent to all slaves.
+    /// Time at which the last Operate telegram was sent. This telegram is for all slaves.
     told: Now,
     image: Vec<u8>,
     changes: u64,
-    /// Number of the change that was not sent yet.
+    /// Number of a change that was not sent yet; `None` if all changes were sent.
     pending: Option<u64>,
     view: View,
     has_changed: bool,
@@ -144,13 +144,13 @@ impl Master {
         view
     }
 
-    /// Whether the view, except its counters, has changed since the last call.
+    /// Whether the view has changed after the last call. Counters in the view do not count.
     pub fn take_changed(&mut self) -> bool {
         std::mem::take(&mut self.has_changed)
     }
 
-    /// Sends this image in this generation, starting with the next cycle. Returns the number of the change. The image
-    /// was sent when [`View::sent`] has reached this number.
+    /// Sends this image in this generation, starting with the next cycle. Returns the number of the change. When
+    /// [`View::sent`] has reached this number, the image was sent.
     ///
     /// # Errors
     /// [`ProfibusError::Outdated`] if the link was lost in the meantime, [`ProfibusError::Settings`] for a wrong size.
@@ -204,7 +204,7 @@ impl Master {
         }
     }
 
-    /// Time of the next [`Master::poll`]; `None` if the link is closed or has no port.
+    /// Time at which [`Master::poll`] must be called again. `None` if the link is closed or has no port.
     pub fn due(&self) -> Option<Now> {
         match self.step {
             Step::Over => None,
@@ -276,7 +276,7 @@ impl Master {
     fn work(&mut self, now: Now) -> Option<Vec<u8>> {
         if self.jobs.is_empty() {
             self.jobs.push_back(Job::Exchange);
-            // Missed cycles are not sent later, so there are no bursts.
+            // Missed cycles are not sent later, so there is no burst.
             let late = now.saturating_sub(self.next_cycle);
             self.next_cycle += self.timing.cycle;
             if late > self.timing.cycle {
@@ -315,7 +315,7 @@ impl Master {
                 let frame = self.requester.request(Service::SendHigh, broadcast, Some(sap::GLOBAL_CONTROL), data);
                 Some(self.requester.tell(now, &Telegram::Frame(frame)))
             }
-            // This master passes the token to itself, because it is the only master of the ring.
+            // This master is the only master of the ring, so it passes the token to itself.
             Job::Token => {
                 let here = self.settings.master;
                 Some(self.requester.tell(now, &Telegram::Token { to: here, from: here }))
@@ -391,7 +391,8 @@ impl Master {
                 self.go(now, Step::Check);
             }
             Step::Check => {
-                // A slave that rejects the parameters may refuse the configuration. The diagnosis contains the reason.
+                // A slave that has rejected the parameters may refuse the configuration. In this case the master
+                // continues, because the diagnosis contains the reason.
                 if !matches!(&answer, Answer::Frame(Frame { control: Control::Answer(_, Status::NoService), .. })) {
                     acknowledged(station, asked, &answer)?;
                 }
@@ -426,7 +427,7 @@ impl Master {
         Ok(diagnosis)
     }
 
-    /// Checks that the diagnosis is from the expected slave, and that no other master has locked the slave.
+    /// Checks that the slave has the expected ident number, and that no other master has locked the slave.
     fn compare(&mut self, diagnosis: &Diagnosis) -> Result<(), ProfibusError> {
         let station = self.settings.station;
         if let Some(expected) = self.settings.ident.filter(|expected| *expected != diagnosis.ident) {
@@ -440,7 +441,7 @@ impl Master {
         Ok(())
     }
 
-    /// Selects the configuration: from the settings if they contain one, otherwise the configuration that the slave
+    /// Selects the configuration. If the settings contain none, the master uses the configuration that the slave
     /// reports.
     fn configure(&mut self, now: Now, answer: Answer) -> Result<(), ProfibusError> {
         let station = self.settings.station;
@@ -448,7 +449,8 @@ impl Master {
         let wanted = data(station, asked, answer);
         self.wanted = wanted.as_ref().ok().map(|wanted| wanted.1.clone());
         self.view.details.configuration = match (&self.settings.configuration, wanted) {
-            // The settings have priority, because a slave may report a default configuration before its first real one.
+            // The configuration in the settings has priority, because a slave may report a default configuration until
+            // it has received its real one.
             (Some(set), _) => Some(set.clone()),
             (None, wanted) => {
                 let bytes = wanted?.1;
@@ -542,7 +544,8 @@ impl Master {
         Ok(())
     }
 
-    /// Handles an error. The error ends an opening, or means that an open link is lost.
+    /// Handles an error. During an opening, the error ends the opening. On an open link, it means that the link is
+    /// lost.
     fn failed(&mut self, now: Now, error: ProfibusError) {
         self.requester.forget(self.settings.station);
         self.requester.wait(now + self.settings.rate.bits(super::rates::SYNC));
@@ -551,7 +554,8 @@ impl Master {
         self.asked_since = None;
         let was_closing = self.view.state == State::Closing;
         let must_be_quiet = matches!(error, ProfibusError::OtherMaster { .. } | ProfibusError::Unreadable { .. });
-        // If the slave leaves an open link, the master retries at once. After a repeated loss, it waits first.
+        // Whether the slave has left data exchange while the link was open. The master then retries at once. If this
+        // happens again before the link is open, the master waits first.
         let has_left = self.view.state == State::Open
             && matches!(error, ProfibusError::Left { .. } | ProfibusError::Length { .. });
         // The first cause of a loss is more useful than the error of a retry, so it is kept.
@@ -561,7 +565,7 @@ impl Master {
         }
         if self.view.state == State::Opening || was_closing {
             // If this master may have locked the slave, it releases the slave. It does not do this if the release
-            // itself failed, or if other masters are on the bus.
+            // itself failed, or if there is other traffic on the bus.
             if self.locked && !was_closing && !must_be_quiet {
                 self.set_state(State::Closing);
                 return self.go(now, Step::Release);

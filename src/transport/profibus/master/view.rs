@@ -15,17 +15,17 @@ pub type Views = view::Views<ProfibusError, Statistics, Details>;
 /// Counters of the data exchanges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Statistics {
-    /// Requests for a data exchange, without repetitions.
+    /// Number of requests for a data exchange, without repetitions.
     pub sent: u64,
-    /// Data exchanges that the slave answered.
+    /// Number of data exchanges to which the slave answered.
     pub received: u64,
-    /// Repeated requests.
+    /// Number of repeated requests.
     pub repeated: u64,
     /// Number of bytes that are not part of a telegram.
     pub noise: u64,
-    /// Answers without a pending request.
+    /// Number of answers without a pending request.
     pub unexpected: u64,
-    /// Cycles that were missed, for example because the computer was busy.
+    /// Number of cycles that were missed, for example because the computer was busy.
     pub skipped: u64,
 }
 

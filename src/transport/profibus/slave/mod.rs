@@ -17,7 +17,7 @@ mod fault;
 
 pub use fault::SlaveFault;
 
-/// Pause after which a telegram has certainly ended.
+/// Pause without a character after which a telegram has certainly ended.
 const PAUSE: Duration = Duration::from_millis(100);
 /// Shortest delay of an answer, in bits.
 const MIN_TSDR: u32 = 11;
@@ -27,7 +27,7 @@ const OTHER_MASTER: u8 = 9;
 /// Configuration of a slave.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Setup {
-    /// Address.
+    /// Address of the slave.
     pub station: u8,
     /// Ident number.
     pub ident: u16,
@@ -37,9 +37,9 @@ pub struct Setup {
     pub input: usize,
     /// Size of the image to the slave in bytes.
     pub output: usize,
-    /// Accepted user parameters.
+    /// User parameters that the slave accepts.
     pub parameters: Vec<Vec<u8>>,
-    /// Bit rate. The delay of answers depends on it.
+    /// Bit rate. The delay of the answers depends on it.
     pub rate: Rate,
 }
 
@@ -75,12 +75,12 @@ pub struct Slave<P> {
     owner: Option<u8>,
     /// Watchdog time.
     patience: Option<Duration>,
-    /// Time when the watchdog expires.
+    /// Time at which the watchdog expires; `None` while it is off.
     expiry: Option<Now>,
     faults: Vec<Flag>,
     outputs: Vec<u8>,
     is_clear: bool,
-    /// Whether the slave must report the diagnosis as new.
+    /// Whether the slave has a new diagnosis that the master has not read yet.
     has_news: bool,
     /// Frame count bit of the last request of each master, and the answer to this request.
     last: BTreeMap<u8, (bool, Option<Telegram>)>,
@@ -382,7 +382,7 @@ impl<P: ImagePeer> Peer for Slave<P> {
             self.stream.clear();
         }
         self.heard = now;
-        // Other traffic cancels a pending answer.
+        // New traffic cancels a pending answer.
         self.answers.retain(|answer| answer.0 <= now);
         self.stream.push(bytes);
         while let Some(piece) = self.stream.next_piece() {
@@ -393,7 +393,7 @@ impl<P: ImagePeer> Peer for Slave<P> {
     }
 
     fn damaged(&mut self, now: Now, channel: usize) {
-        // A character with a parity error reads as NUL, like from the driver of a serial port.
+        // A character with a parity error reads as NUL, as with the driver of a serial port.
         self.receive(now, channel, &[0]);
     }
 

@@ -26,7 +26,7 @@ const MS: Duration = Duration::from_millis(1);
 const SEC: Duration = Duration::from_secs(1);
 const SIZE: usize = 48;
 
-/// Resting image: SI(00) and SI(06) are on.
+/// Resting image: only SI(00) and SI(06) are on.
 fn resting() -> Vec<u8> {
     let mut image = vec![0; SIZE];
     image[32] = 0x41;
@@ -136,8 +136,8 @@ fn a_start_is_the_one_that_others_have_seen_working() {
     let mut world = World::new("500k", "");
     world.slave.set_fault(None);
     world.open();
-    // armctl sends Get_Cfg, the other implementations do not. After Get_Cfg, the frame count bit of armctl is therefore
-    // the inverse of theirs.
+    // armctl sends Get_Cfg, but the other implementations do not. So after Get_Cfg, the frame count bit of armctl is
+    // the inverse of their bit.
     let expected = [
         "10 05 02 49 50 16",
         "68 05 05 68 85 82 6D 3C 3E EE 16",
@@ -199,7 +199,7 @@ fn every_fault_of_a_slave_has_a_message_of_its_own() {
         let error = world.fails();
         assert!(error.contains(message), "{fault:?}: {error}");
         assert_eq!(world.slave.peer().history.iter().flatten().find(|shown| **shown != resting()), None, "{fault:?}");
-        // A failed opening must not leave the slave locked.
+        // The slave must not stay locked after a failed opening.
         if !matches!(fault, SlaveFault::Token | SlaveFault::Mute) {
             assert_eq!(world.slave.owner(), None, "{fault:?}");
         }
@@ -218,7 +218,7 @@ fn faults_that_repetitions_heal_do_no_harm() {
         let view = world.run(SEC, |now| now.statistics.sent >= view.statistics.sent + 20);
         assert_eq!(view.state, State::Open, "{fault:?}: {:?}", view.trouble);
         assert_eq!(view.statistics.repeated > 0, fault != SlaveFault::Diagnosis, "{fault:?}");
-        // The slave answers a repeated request without executing it again.
+        // If a request is repeated, the slave repeats its answer without executing the request again.
         assert!(world.slave.exchanges().abs_diff(view.statistics.sent) <= 1, "{fault:?}");
         assert_eq!(world.slave.peer().history, [Some(resting()), Some(image(1))], "{fault:?}");
     }
@@ -246,7 +246,7 @@ fn a_slave_lets_go_when_its_master_dies() {
     let mut world = World::new("500k", "");
     world.open();
     let died = world.now;
-    // The master does not run: time passes only for the line and the slave.
+    // The master does not run here. Time passes only for the line and the slave.
     world.wire.run(died + 490 * MS, &mut world.slave);
     assert_eq!(world.slave.owner(), Some(2));
     world.wire.run(died + 520 * MS, &mut world.slave);
@@ -310,7 +310,7 @@ fn adapters_that_hand_back_what_is_sent_do_no_harm() {
     assert!(view.details.echoes);
     let view = world.run(SEC, |view| view.statistics.sent >= 20);
     assert_eq!((view.statistics.repeated, view.statistics.noise, view.statistics.unexpected), (0, 0, 0));
-    // With crossed wires or a dead slave, the master must not interpret the echo as an answer.
+    // With crossed wires or a dead slave, only an echo arrives. The master must not interpret the echo as an answer.
     let mut world = World::new("500k", "echo");
     world.slave.set_fault(Some(SlaveFault::Mute));
     assert!(world.fails().contains("only the echo of the adapter received"));
@@ -342,15 +342,16 @@ fn a_full_line_is_within_a_tenth_of_its_bits() {
         let view = world.run(30 * SEC, |view| view.statistics.received >= before + 100);
         assert_eq!(view.statistics.received, before + 100, "{:?}", view.trouble);
         let cycle = world.now.saturating_sub(start) / 100;
-        // An exchange has two telegrams of 57 characters, the pause before a request, and the delay of the answer.
+        // An exchange consists of two telegrams of 57 characters, the pause before the request, and the delay of the
+        // answer.
         let bits = rate.pace().time(2 * 57) + rate.bits(33 + 11);
         assert!(cycle <= bits * 11 / 10, "{name}: {cycle:?} for {bits:?}");
         assert!(cycle >= bits, "{name}: {cycle:?} is faster than the line");
     }
 }
 
-/// Sends commands as a controller of images expects them: a number, then 0 before the next number. Returns the
-/// confirmed commands and the commands that the slave received.
+/// Sends commands in the way that a controller with an image needs: a number, then 0 before the next number. Returns
+/// the confirmed commands and the commands that the slave received.
 fn commands(seed: u64, faults: &str) -> (Vec<u8>, Vec<u8>, View) {
     let settings = Settings { retries: 6, slot: Some(10 * MS), ..Settings::new(5, RATES[5], resting()) };
     let mut world = World::with(settings, &format!("{faults},seed={seed}"));
@@ -369,7 +370,7 @@ fn commands(seed: u64, faults: &str) -> (Vec<u8>, Vec<u8>, View) {
                 is_done = false;
                 break;
             };
-            // The input must be from the slave, and from this generation.
+            // The input must be from the slave, and must belong to this generation.
             let view = world.run(5 * SEC, |view| {
                 let is_shown =
                     |input: &super::master::Input| input.generation == generation && input.image[0] == number;
@@ -411,7 +412,7 @@ fn ten_thousand_faulted_cycles_do_no_command_twice_and_none_wrongly() {
 
 #[test]
 fn a_held_back_line_does_not_answer_the_next_request_with_the_last_answer() {
-    // The delay can be longer than the slot time, so that answers arrive after their request was repeated.
+    // The delay can be longer than the slot time. An answer can then arrive after its request was repeated.
     let (done, executed, view) = commands(3, "delay=0..14ms");
     assert!(executed.windows(2).all(|pair| pair[0] < pair[1]), "{executed:?}");
     assert!(done.iter().all(|number| executed.contains(number)), "{done:?} of {executed:?}");

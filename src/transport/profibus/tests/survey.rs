@@ -39,7 +39,7 @@ fn a_slave_is_found_and_nothing_about_it_changes() {
     assert_eq!(slave.configuration.as_deref().unwrap(), [0xC0, 0xD7, 0xD7]);
     assert_eq!(slave.inputs, Err(Unknown::Refused(Status::NoService)));
     assert_eq!((world.slave.owner(), world.slave.peer().history.len()), (None, 0));
-    // Two attempts per free address, and no further attempts.
+    // The survey makes two attempts for each free address, and no more.
     assert_eq!(world.sent.len(), 125 * 2 + 5);
 }
 

@@ -18,7 +18,7 @@ use super::super::slave::{Setup, Slave};
 use super::{Echo, MS, image, resting};
 use crate::sim::Peer as _;
 
-/// A slave behind a pseudo-terminal, running on a thread, and the path of the other end.
+/// A slave that runs on a thread behind a pseudo-terminal, and the path of the other end.
 struct Served {
     slave: Arc<Mutex<Slave<Echo>>>,
     is_over: Arc<AtomicBool>,
@@ -30,7 +30,7 @@ impl Served {
     fn new(rate: Rate) -> Self {
         let (mut near, far) = TTYPort::pair().unwrap();
         let path = far.name().unwrap();
-        // An open port is locked.
+        // An open port is locked, so the other end must be closed here.
         drop(far);
         near.set_timeout(MS).unwrap();
         let slave = Arc::new(Mutex::new(Slave::new(Setup::stand_in(rate), Echo::default())));
@@ -49,7 +49,7 @@ impl Served {
                 if len > 0 {
                     slave.receive(start.elapsed(), 0, &buffer[..len]);
                 }
-                // The time is 1 ms ahead, so that the delay of the answer is over.
+                // The time is 1 ms ahead, so that the delay of the answer has already passed.
                 while let Some((_, bytes)) = slave.transmit(start.elapsed() + MS) {
                     let _ = near.write_all(&bytes);
                 }
@@ -115,7 +115,7 @@ async fn a_connection_that_is_dropped_sets_the_slave_free() {
 async fn an_adapter_that_is_pulled_out_is_a_loss_and_is_opened_again() {
     let first = Served::new(settings().rate);
     let second = Served::new(settings().rate);
-    // When the adapter is connected again, the same name leads to another terminal.
+    // After a reconnect of an adapter, the same name leads to another terminal.
     let (there, back) = (first.path.clone(), second.path.clone());
     let mut count = 0;
     let rate = settings().rate;

@@ -1,4 +1,5 @@
-//! Codec for the identifier bytes of a configuration (part 8, section 8.3.5.2): modules, and bytes in each direction.
+//! Codec for the identifier bytes of a configuration (part 8, section 8.3.5.2). They describe the modules, and their
+//! numbers of bytes in each direction.
 
 use super::{MAX_DATA, WireError};
 
@@ -44,7 +45,7 @@ impl Configuration {
         &self.bytes
     }
 
-    /// Modules in their order. An empty slot is a module without bytes.
+    /// Modules in their order. An empty slot is a module with 0 bytes.
     pub fn modules(&self) -> &[Module] {
         &self.modules
     }
@@ -60,7 +61,7 @@ impl Configuration {
     }
 }
 
-/// Returns the size in bytes that a length byte describes. The units of a length byte have one or two bytes.
+/// Returns the size in bytes that a length byte describes. The length counts units of one or two bytes.
 const fn units(byte: u8, mask: u8) -> usize {
     let count = (byte & mask) as usize + 1;
     if byte & 0x40 != 0 { count * 2 } else { count }
@@ -72,7 +73,7 @@ fn general(identifier: u8) -> Module {
     Module { input: if ways & 0x10 == 0 { 0 } else { bytes }, output: if ways & 0x20 == 0 { 0 } else { bytes } }
 }
 
-/// Decodes the special format: a length byte for each direction, output first, then manufacturer bytes.
+/// Decodes the special format: a length byte for each direction, output first, and then the bytes of the manufacturer.
 fn special(bytes: &[u8], at: usize) -> Result<(Module, usize), WireError> {
     let identifier = bytes[at];
     let mut len = 1;
@@ -86,7 +87,7 @@ fn special(bytes: &[u8], at: usize) -> Result<(Module, usize), WireError> {
     };
     let output = way(identifier & 0x80 != 0)?;
     let input = way(identifier & 0x40 != 0)?;
-    // 15 means that there are no manufacturer bytes.
+    // The value 15 means that there are no manufacturer bytes.
     let makers = match identifier & 0x0F {
         15 => 0,
         count => usize::from(count),

@@ -57,7 +57,7 @@ impl Service {
         !matches!(self, Self::SendLow | Self::SendHigh)
     }
 
-    /// Whether the service uses the frame count bit. This bit distinguishes a repeated request from a new one.
+    /// Whether the service uses the frame count bit, which distinguishes a repeated request from a new one.
     pub const fn is_counted(self) -> bool {
         matches!(
             self,
@@ -69,11 +69,11 @@ impl Service {
 /// Frame count bits (FCB and FCV). They distinguish a repeated request from a new one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum FrameCount {
-    /// Not used.
+    /// The frame count is not used.
     None,
-    /// First request after a reset.
+    /// First request to a station after a reset of the frame count.
     First,
-    /// Later request. The bit changes with every new request.
+    /// Later request to a station. The bit changes with every new request.
     Counted(bool),
 }
 
@@ -115,23 +115,23 @@ const STATIONS: [Station; 4] = [Station::Slave, Station::MasterNotReady, Station
 /// Status of an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Status {
-    /// Success.
+    /// The request was successful.
     Ok,
-    /// Application error.
+    /// The application of the station reports an error.
     UserError,
-    /// No resource.
+    /// The station has no free resource for the request.
     NoResource,
     /// The service access point is not active.
     NoService,
-    /// Data, low priority.
+    /// The answer contains data of low priority.
     Data,
-    /// No data available.
+    /// The station has no data for the answer.
     NoData,
-    /// Data, and the diagnosis is new.
+    /// The answer contains data, and the diagnosis is new.
     DataHigh,
-    /// Data. The data of the request was not accepted.
+    /// The answer contains data, but the station did not accept the data of the request.
     DataNoResource,
-    /// Data, and the diagnosis is new. The data of the request was not accepted.
+    /// The answer contains data, and the diagnosis is new, but the station did not accept the data of the request.
     DataHighNoResource,
 }
 

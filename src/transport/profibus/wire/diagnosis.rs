@@ -6,7 +6,7 @@ use super::WireError;
 
 /// Number of bytes before the blocks.
 const FIXED: usize = 6;
-/// Master address of a slave without a master.
+/// Value of the master address in a slave that no master has locked.
 const NOBODY: u8 = 255;
 
 /// Diagnosis of a slave, the answer to Slave_Diag.
@@ -14,7 +14,7 @@ const NOBODY: u8 = 255;
 pub struct Diagnosis {
     /// The three status bytes.
     pub flags: [u8; 3],
-    /// Address of the master that has locked the slave.
+    /// Address of the master that has locked the slave; `None` if no master has locked it.
     pub master: Option<u8>,
     /// Ident number.
     pub ident: u16,
@@ -29,7 +29,7 @@ pub enum Flag {
     NotExistent,
     /// The slave is not ready for data.
     NotReady,
-    /// Configuration fault.
+    /// The configuration is wrong.
     ConfigurationFault,
     /// An extended diagnosis follows.
     Extended,
@@ -37,7 +37,7 @@ pub enum Flag {
     NotSupported,
     /// An answer was invalid. A master sets this flag.
     InvalidAnswer,
-    /// Parameter fault.
+    /// The parameters are wrong.
     ParameterFault,
     /// Another master has locked the slave.
     Locked,
@@ -101,7 +101,7 @@ pub enum Block {
         channel: u8,
         /// Direction: 1 input, 2 output, 3 both.
         way: u8,
-        /// Channel type (bit, byte, word), with the numbers of the standard.
+        /// Channel type (bit, byte, word), as a number of the standard.
         size: u8,
         /// Error code.
         error: u8,
@@ -166,13 +166,13 @@ impl Diagnosis {
         FLAGS.iter().any(|row| row.0 == flag && self.flags[row.1] & row.2 != 0)
     }
 
-    /// Texts of the flags that are set, without the flag for extended diagnosis.
+    /// Texts of the flags that are set, except the flag for extended diagnosis.
     pub fn words(&self) -> impl Iterator<Item = &'static str> {
         let told = FLAGS.iter().filter(|row| row.0 != Flag::Extended && self.has(row.0));
         told.map(|row| row.3)
     }
 
-    /// Returns the status bytes with these flags and with the bit that is always set.
+    /// Returns the status bytes with these flags set, and with the bit that is always set.
     pub fn flags(flags: &[Flag]) -> [u8; 3] {
         let mut bytes = [0, ALWAYS, 0];
         for row in FLAGS.iter().filter(|row| flags.contains(&row.0)) {
@@ -183,7 +183,7 @@ impl Diagnosis {
 }
 
 impl fmt::Display for Diagnosis {
-    /// Format, for example: `not ready for data, needs parameters, no master, ident 0x1234`.
+    /// Formats the diagnosis, for example `not ready for data, needs parameters, no master, ident 0x1234`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for text in self.words() {
             write!(f, "{text}, ")?;

@@ -1,7 +1,7 @@
 //! PROFIBUS DP codec: telegrams with function codes, and the data of the services of a slave.
 //!
-//! There are two forms of a telegram with eight data bytes. The decoder accepts both; the encoder always writes the
-//! same form. Section numbers refer to EN 50170, volume 2.
+//! A telegram with eight data bytes has two possible forms. The decoder accepts both. The encoder always writes the
+//! variable-length form. Section numbers refer to EN 50170, volume 2.
 
 pub use crate::bytes::{Problem, WireError};
 
@@ -40,7 +40,7 @@ pub mod sap {
     /// Check the configuration.
     pub const CHK_CFG: u8 = 62;
 
-    /// Name of the service that belongs to a SAP. Data exchange has no SAP.
+    /// Name of the service that belongs to a SAP. Without a SAP, the service is data exchange.
     pub const fn name(sap: Option<u8>) -> &'static str {
         match sap {
             None => "Data_Exchange",

@@ -7,13 +7,13 @@ use super::{MAX_DATA, WireError};
 
 /// Number of bytes before the user parameters.
 const FIXED: usize = 7;
-/// Time base of the watchdog.
+/// Time base of the watchdog times.
 const STEP: Duration = Duration::from_millis(10);
 
 /// Request to lock or unlock a slave.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Lock {
-    /// No change of the lock; only the shortest delay of an answer is set.
+    /// Do not change the lock. Only the shortest delay of an answer is set.
     Unchanged,
     /// Lock the slave for this master.
     Lock,
@@ -31,13 +31,13 @@ impl Watchdog {
     /// Returns the shortest watchdog time that is at least `time`; `None` if `time` is above 650 s.
     pub fn at_least(time: Duration) -> Option<Self> {
         let steps = time.as_nanos().div_ceil(STEP.as_nanos()).max(1);
-        // The smallest second factor gives the finest steps.
+        // A small second factor gives small steps, so the smallest possible second factor is used.
         let second = u8::try_from(steps.div_ceil(255)).ok()?;
         let first = u8::try_from(steps.div_ceil(u128::from(second))).ok()?;
         Some(Self { factors: [first, second] })
     }
 
-    /// Creates a watchdog time from the two factors. A factor of 0 means no watchdog: `None`.
+    /// Creates a watchdog time from the two factors. Returns `None` if a factor is 0, which means no watchdog.
     pub const fn from_factors(factors: [u8; 2]) -> Option<Self> {
         if factors[0] == 0 || factors[1] == 0 { None } else { Some(Self { factors }) }
     }

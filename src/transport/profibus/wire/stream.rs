@@ -10,18 +10,19 @@ const MOST_KEPT: usize = 512;
 pub enum Piece {
     /// A telegram, with its bytes.
     Telegram(Telegram, Vec<u8>),
-    /// A byte that begins no telegram, and the reason.
+    /// A byte with which no telegram begins, and the reason.
     Noise(u8, WireError),
 }
 
-/// Splitter of a character stream. After noise, it continues at the next byte with which a telegram can begin.
+/// Splitter of a character stream. After noise, the splitter continues at the next byte with which a telegram can
+/// begin.
 #[derive(Debug, Clone, Default)]
 pub struct Stream {
     bytes: Vec<u8>,
 }
 
 impl Stream {
-    /// Adds received bytes. The caller must take out all pieces before the next call.
+    /// Adds received bytes. Before the next call, the caller must take out all pieces.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.extend(bytes);
     }
@@ -58,7 +59,7 @@ impl Stream {
         self.bytes.is_empty()
     }
 
-    /// Drops a partial telegram, for example after a pause. There are no pauses within a telegram.
+    /// Drops a partial telegram, for example after a pause. A telegram contains no pauses, so it cannot continue.
     pub fn clear(&mut self) {
         self.bytes.clear();
     }

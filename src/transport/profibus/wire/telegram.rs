@@ -8,17 +8,17 @@ const SD3: u8 = 0xA2;
 const SD4: u8 = 0xDC;
 const SC: u8 = 0xE5;
 const ED: u8 = 0x16;
-/// Bit of an address byte: a service access point follows.
+/// Bit in an address byte. If it is set, a service access point follows.
 const EXTENDED: u8 = 0x80;
-/// Length of destination, source and function code.
+/// Number of header bytes: destination, source and function code.
 const HEADER: usize = 3;
 /// Number of data bytes of a fixed-length telegram.
 const FIXED: usize = 8;
 /// Valid values of the length field of a variable-length telegram.
 const LENGTHS: std::ops::RangeInclusive<u8> = 4..=249;
-/// Field name in an error: no telegram begins with the first byte.
+/// Field name in the error that the first byte begins no telegram.
 pub const START: &str = "start delimiter";
-/// Field name in an error: the checksum is wrong.
+/// Field name in the error that the checksum is wrong.
 pub const CHECKSUM: &str = "frame check sequence";
 /// Maximum number of data bytes of a telegram with service access points.
 pub const MAX_DATA: usize = 244;
@@ -26,7 +26,7 @@ pub const MAX_DATA: usize = 244;
 /// A telegram.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Telegram {
-    /// A token. Its owner may send requests.
+    /// A token. The station that receives it may send requests.
     Token {
         /// New owner of the token.
         to: u8,
@@ -66,7 +66,7 @@ pub enum Parsed {
 }
 
 impl Frame {
-    /// Encodes the frame. A frame with eight data bytes also gets the variable-length form.
+    /// Encodes the frame. The encoder uses the variable-length form also for a frame with eight data bytes.
     ///
     /// # Panics
     /// If the data is longer than [`MAX_DATA`]. Callers limit the length of the data.
@@ -134,7 +134,7 @@ impl Telegram {
     }
 }
 
-/// Decodes a frame with a body of `len` bytes at `at`.
+/// Decodes a frame whose body has `len` bytes and starts at `at`.
 fn frame(bytes: &[u8], at: usize, len: usize) -> Result<Parsed, WireError> {
     let whole = at + len + 2;
     let Some(&[fcs, end]) = bytes.get(at + len..whole) else { return Ok(Parsed::Part(whole)) };

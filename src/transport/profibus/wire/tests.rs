@@ -8,8 +8,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::testing::hex;
 
-/// Telegrams of master 2 that opens slave 5: sender, bytes, service access point, data. The ident number is invented.
-/// Two independent codecs decoded each line.
+/// Telegrams with which master 2 opens slave 5: sender, bytes, service access point, data. The ident number is
+/// invented. Two independent codecs decoded each line.
 const START: [(u8, &str, Option<u8>, &str); 21] = [
     (2, "10 05 02 49 50 16", None, ""),
     (5, "10 02 05 00 07 16", None, ""),
@@ -70,7 +70,7 @@ fn control_codes_are_those_of_the_standard() {
     assert_eq!(Control::Answer(Station::MasterInRing, Status::Ok).byte(), 0x30);
     for byte in 0..=255 {
         if let Ok(control) = Control::parse(byte, 0) {
-            // A control with FCB but without FCV also keeps its value.
+            // A function code with FCB but without FCV must also keep its value.
             assert_eq!(control.byte(), byte);
         }
     }
@@ -121,8 +121,8 @@ fn a_diagnosis_reads_in_words() {
 
 #[test]
 fn identifiers_add_up_to_the_image_in_every_form() {
-    // The examples: two modules per direction, one module with both directions, a special identifier in words, and a
-    // special identifier in bytes.
+    // Examples: two modules per direction, one module with both directions, a special identifier in words, a special
+    // identifier in bytes.
     for (text, modules) in [
         ("5F 57 6F 67", 4),
         ("DF D7 EF E7", 4),
@@ -158,7 +158,7 @@ fn watchdogs_are_products() {
 #[test]
 fn noise_does_not_hide_a_telegram() {
     let telegram = hex("68 05 05 68 85 82 6D 3C 3E EE 16");
-    // A start byte without a telegram, then a telegram with a wrong checksum.
+    // A start byte to which no telegram belongs, then a telegram with a wrong checksum.
     let mut bytes = hex("68 68 10 05 02 49 51 16 00 DC FF");
     bytes.extend(&telegram);
     let mut stream = Stream::default();

@@ -1,5 +1,5 @@
-//! Alarm state machine of the controller. It reports each alarm once. It acknowledges the frame and then the alarm, and
-//! repeats its own frames.
+//! Alarm state machine of the controller. It reports each alarm once. It acknowledges first the frame and then the
+//! alarm, and repeats its own frames.
 
 use std::time::Duration;
 
@@ -8,20 +8,20 @@ use super::super::wire::alarm::{self, Notification, Pdu, Priority, Rta};
 
 /// Time limit for an acknowledgement.
 const PATIENCE: Duration = Duration::from_millis(100);
-/// Number of repetitions.
+/// Number of repetitions of a frame.
 const RETRIES: u32 = 3;
-/// Maximum number of queued acknowledgements. A device has one unacknowledged alarm per channel.
+/// Maximum number of queued acknowledgements. A device may have only one unacknowledged alarm per channel.
 const MOST: usize = 8;
 
 /// One alarm channel.
 #[derive(Debug)]
 struct Channel {
     priority: Priority,
-    /// Sequence number of our last frame; [`alarm::NONE`] before the first.
+    /// Sequence number of the last frame of the controller; [`alarm::NONE`] before the first frame.
     sent: u16,
-    /// Sequence number of our last frame; [`alarm::NONE`] before the first frame.
-    received: u16,
     /// Sequence number of the last frame of the device; [`alarm::NONE`] before the first frame.
+    received: u16,
+    /// Frame of the controller that waits for its acknowledgement.
     pending: Option<Pending>,
     waiting: Vec<Vec<u8>>,
 }

@@ -1,4 +1,4 @@
-//! Answers of the device to the calls of the controller, and calls of the device.
+//! Handling of the answers to the calls of the controller, and of the calls of the device.
 
 use std::net::SocketAddrV4;
 
@@ -29,7 +29,7 @@ impl Controller {
         if let Phase::Releasing(trouble) = &self.phase {
             let trouble = trouble.clone();
             let failed = match outcome.blocks(RELEASE) {
-                // The device had already closed the connection, so the release is complete.
+                // The device has already closed the connection, so nothing is left to release.
                 Err(ProfinetError::Refused { status, .. }) if status.is_unknown_ar() => None,
                 other => other.err(),
             };
@@ -44,7 +44,7 @@ impl Controller {
         };
         match done {
             Ok(()) => {}
-            // Connect failed, so the device has no connection that must be released.
+            // If Connect fails, the device has no connection that must be released.
             Err(trouble @ (ProfinetError::Refused { .. } | ProfinetError::Rejected { .. }))
                 if step == Step::Connect =>
             {
@@ -100,7 +100,7 @@ impl Controller {
             consumer: Consumer::new(&self.settings),
             alarms: Alarms::new(ar.reference, alarm),
         });
-        // The first cyclic frame is sent before the parameters, because some devices have short time limits.
+        // The first cyclic frame is sent before the parameters, because some devices wait only a short time for it.
         self.produce(now);
         self.write_parameters(now);
         Ok(())
@@ -130,7 +130,7 @@ impl Controller {
         Ok(())
     }
 
-    /// Handles a call of the device: ApplicationReady.
+    /// Handles a call of the device. The only valid call is ApplicationReady.
     pub(super) fn called(&mut self, now: Now, from: SocketAddrV4, datagram: &Datagram<'_>) {
         let header = &datagram.header;
         if header.interface != rpc::CONTROLLER || header.operation != operation::CONTROL {
@@ -140,7 +140,7 @@ impl Controller {
         let Ok(blocks) = block::walk(call.blocks) else { return };
         let Some(Ok(control)) = blocks.first().map(Control::parse) else { return };
         let Some(ar) = &mut self.ar else { return };
-        // The call is valid only after Connect.
+        // ApplicationReady is valid only after Connect.
         let is_ready = matches!(control.kind, BlockType::APPLICATION_READY | BlockType::PLUG_APPLICATION_READY);
         let fits = control.ar == ar.uuid && control.session_key == ar.session_key;
         if !is_ready || !fits || ar.io.is_none() {
@@ -162,7 +162,7 @@ impl Controller {
         if !mismatches.is_empty() {
             return self.release(now, Some(ProfinetError::Modules(mismatches)));
         }
-        // If ApplicationReady arrives before the answer to PrmEnd, the controller first waits for this answer.
+        // If ApplicationReady arrives before the answer to PrmEnd, the controller waits for this answer first.
         if self.ar.as_ref().is_some_and(|ar| ar.step == Step::Ready) {
             self.await_data(now);
         }

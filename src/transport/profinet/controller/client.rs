@@ -1,4 +1,5 @@
-//! RPC client of a device. It makes one call at a time, repeats calls where this is harmless, and reassembles answers.
+//! RPC client for one device. It makes one call at a time, repeats calls where a repetition is harmless, and
+//! reassembles answers.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -11,7 +12,7 @@ use super::super::wire::{ByteOrder, Uuid, WireError};
 
 /// Time limit for an answer.
 pub const PATIENCE: Duration = Duration::from_secs(2);
-/// Maximum number of "working" messages of a device during a call.
+/// Maximum number of "working" messages that a device may send during a call.
 const MOST_WORKING: u32 = 5;
 
 /// Outcome of a call.
@@ -73,7 +74,7 @@ struct Pending {
 }
 
 impl Client {
-    /// Creates a client for the device with this object UUID. `activity` is the UUID of the client.
+    /// Creates a client for the device with the object UUID `object`. `activity` is the activity UUID of the client.
     pub fn new(object: Uuid, activity: Uuid) -> Self {
         Self { object, activity, sequence: 0, pending: None }
     }
@@ -130,7 +131,7 @@ impl Client {
         Some(Step::Send(pending.bytes.clone()))
     }
 
-    /// Handles a datagram of the device that is not a call. Only the pending answer is accepted.
+    /// Handles a datagram of the device that is not a call. The client accepts only the answer to the pending call.
     pub fn handle(&mut self, now: Now, datagram: &Datagram<'_>) -> Option<Step> {
         let header = &datagram.header;
         let is_awaited = header.activity == self.activity && header.sequence == self.sequence.wrapping_sub(1);
@@ -179,14 +180,14 @@ impl Client {
 }
 
 impl Pending {
-    /// Stores a fragment, and acknowledges it if the device requires that.
+    /// Stores a fragment. Acknowledges it if the device requires an acknowledgement.
     fn collect(&mut self, now: Now, datagram: &Datagram<'_>) -> Option<Step> {
         let header = &datagram.header;
         let there: usize = self.fragments.values().map(Vec::len).sum();
         if there + datagram.body.len() > rpc::MOST {
             return None;
         }
-        // The first byte is the byte order, which is the same in all fragments of an answer.
+        // The first byte of the stored fragment is the byte order. It is the same in all fragments of an answer.
         let mut bytes = vec![u8::from(header.order == ByteOrder::Little)];
         bytes.extend_from_slice(datagram.body);
         self.fragments.insert(header.fragment, bytes);

@@ -43,7 +43,8 @@ impl Producer {
         self.due
     }
 
-    /// Returns the payload of a frame if one is due. Missed frames are omitted and counted, so there is no burst.
+    /// Returns the payload of a frame if one is due. Missed frames are omitted and counted, so there is no burst
+    /// afterwards.
     pub fn poll(&mut self, now: Now, image: &[u8]) -> Option<Vec<u8>> {
         if now < self.due {
             return None;
@@ -52,7 +53,7 @@ impl Producer {
         let periods = u32::try_from(periods).unwrap_or(u32::MAX - 1);
         self.skipped += u64::from(periods);
         self.due += self.period.saturating_mul(periods + 1);
-        // The cycle counter has 16 bits.
+        // Only the lower 16 bits are used, because the cycle counter has 16 bits.
         let [.., high, low] = periods.to_be_bytes();
         let steps = u16::from_be_bytes([high, low]).wrapping_add(1);
         self.counter = self.counter.wrapping_add(self.step.wrapping_mul(steps));
@@ -95,7 +96,8 @@ pub enum Verdict {
 #[derive(Debug, Clone)]
 pub struct Consumer {
     frame: FrameLayout,
-    /// For each submodule: whether its consumer status must be good. This is so if the submodule has output data.
+    /// For each submodule, whether its consumer status must be good. Only the status of a submodule with output data
+    /// must be good.
     fed: Vec<bool>,
     last: Option<u16>,
     swapped: usize,
@@ -138,7 +140,7 @@ impl Consumer {
         for (place, length) in &self.frame.objects {
             let (at, length) = (usize::from(place.offset), usize::from(*length));
             if !is_good(at + length) {
-                // The status of a submodule without data is ignored.
+                // If the submodule has no data, its status is ignored.
                 if length == 0 {
                     continue;
                 }
@@ -171,7 +173,7 @@ mod tests {
         Settings::new(Station::Name("a".to_owned()), Layout::two_modules(0x101, 0x102))
     }
 
-    /// Expected frame to the device, from the worked example in the notes.
+    /// The expected frame to the device is from the worked example in the notes.
     #[test]
     fn output_frames_are_those_of_the_example() {
         let mut producer = Producer::new(&settings(), Now::ZERO);

@@ -2,8 +2,8 @@
 //! again. The controller has no sockets and no clock.
 //!
 //! Each time that the data becomes usable, a new generation starts. The caller must name the generation with every
-//! image. After a loss, the controller sends the resting image until a caller that has seen the loss sets another
-//! image. Therefore it never sends an image from before the loss again.
+//! image. After a loss, the controller sends the resting image. It sends another image only when a caller that has seen
+//! the loss sets one. Therefore an image from before the loss is never sent again.
 
 use std::collections::VecDeque;
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -37,11 +37,11 @@ pub mod view;
 /// Pauses before attempts to reconnect. The last pause repeats.
 const BACKOFF: [Duration; 4] =
     [Duration::from_secs(1), Duration::from_secs(2), Duration::from_secs(4), Duration::from_secs(8)];
-/// Time after which a device closes the connection of a process that was killed.
+/// Time after which a device has closed the connection of a controller process that was killed.
 const OLD_CONNECTION: Duration = Duration::from_secs(2);
-/// Maximum number of waits for the end of such a connection.
+/// Maximum number of times that the controller waits for the end of such an old connection.
 const OLD_TRIES: usize = 3;
-/// Time limit for the device to become ready, and for its first usable data.
+/// Time limit for the device to become ready. The same limit applies to its first usable data.
 const START: Duration = Duration::from_secs(20);
 /// Reason codes of abort messages.
 const WATCHDOG: u8 = 0x05;
@@ -72,18 +72,19 @@ pub struct Here {
 
 #[derive(Debug)]
 enum Phase {
-    /// Before the first poll.
+    /// The controller has not been polled yet.
     New,
     Resolve(resolve::Search),
     Address(resolve::Address),
     /// A call of the opening is in progress, or the controller waits for a call of the device.
     Opening,
-    /// Waiting for usable data until this time.
+    /// The controller waits until this time for usable data.
     WaitingForData(Now),
     Data,
-    /// Release was called. After that, the connection ends. If there was an error, the connection may open again.
+    /// Release was called. After its answer, the connection ends. If an error was the reason for the release, the
+    /// connection may open again.
     Releasing(Option<ProfinetError>),
-    /// Waiting until the next attempt.
+    /// The controller waits until the next attempt to connect.
     Waiting(Now),
     Ended,
 }
@@ -125,7 +126,7 @@ pub struct Controller {
     revision: u64,
     /// Whether the caller has closed the connection.
     is_over: bool,
-    /// Number of attempts since the data was last usable.
+    /// Number of failed attempts after the data was last usable.
     tries: usize,
     before: Statistics,
     view: View,
@@ -182,12 +183,12 @@ impl Controller {
         &self.settings
     }
 
-    /// Whether the view changed since the last call.
+    /// Whether the view has changed after the last call.
     pub const fn take_changed(&mut self) -> bool {
         std::mem::replace(&mut self.has_changed, false)
     }
 
-    /// Returns the next alarm. If the queue is full, the oldest alarm is dropped.
+    /// Returns the next alarm in the queue. If too many alarms wait, the queue drops the oldest.
     pub fn take_alarm(&mut self) -> Option<Notification> {
         self.alarms.pop_front()
     }
@@ -197,8 +198,8 @@ impl Controller {
         matches!(self.phase, Phase::Ended) && self.actions.is_empty()
     }
 
-    /// Sends this image, starting with the next cycle. Returns the number of the change. The image was sent when `sent`
-    /// of the view has reached this number.
+    /// Sends this image, starting with the next cycle. Returns the number of the change. When `sent` of the view has
+    /// reached this number, the image was sent.
     ///
     /// # Errors
     /// The connection is not open in this generation, or the image has another size.
@@ -227,7 +228,7 @@ impl Controller {
         }
     }
 
-    /// Handles a failed action on a local socket. The connection continues until it times out.
+    /// Handles an action that failed on a local socket. The connection continues until it times out.
     pub fn failed(&mut self, trouble: ProfinetError) {
         self.view.trouble = Some(trouble);
         self.has_changed = true;
@@ -259,7 +260,8 @@ impl Controller {
         [ready, io, ar.client.wake()].into_iter().flatten().min()
     }
 
-    /// Time when the watchdog expires; `None` while it is off. A device need not send frames before it is ready.
+    /// Time at which the watchdog expires; `None` while the watchdog is off. It is off at first, because a device need
+    /// not send frames before it is ready.
     fn watchdog(&self, io: &Io) -> Option<Now> {
         let is_on = matches!(self.phase, Phase::Data | Phase::WaitingForData(_));
         io.consumer.heard.filter(|_| is_on).map(|heard| heard + self.settings.watchdog_time())
@@ -389,7 +391,8 @@ impl Controller {
                 self.alarms.push_back(alarm);
                 self.before.alarms += 1;
                 self.has_changed = true;
-                // The device needs its parameters again. The controller opens a new connection, which sends them.
+                // After a module was plugged, the device needs its parameters again. The controller opens a new
+                // connection, which sends them.
                 if is_plug && !matches!(self.phase, Phase::Releasing(_)) {
                     self.release(now, Some(ProfinetError::Plugged { slot }));
                 }
@@ -401,7 +404,7 @@ impl Controller {
     fn aborted(&mut self, now: Now, status: Status) {
         let is_answer = status == Status::abort(RELEASED);
         if let Phase::Releasing(trouble) = &self.phase {
-            // Some devices send the abort before they answer the release.
+            // Some devices send the abort before they answer the release. The release is then complete.
             let trouble = trouble.clone();
             let trouble = if is_answer { trouble } else { trouble.or(Some(ProfinetError::Aborted(status))) };
             self.released(now, trouble);
@@ -433,8 +436,8 @@ impl Controller {
                 self.view.input = Some(Input { image, at: now, generation: self.view.generation });
             }
             (Phase::Data, Verdict::Unusable(why)) => {
-                // When the data becomes usable again, an image from before the fault must not become active
-                // automatically.
+                // The resting image is used from now on. When the data becomes usable again, an image from before the
+                // fault must not become active automatically.
                 self.rest();
                 self.before.losses += 1;
                 self.phase = Phase::WaitingForData(now + START);
@@ -454,7 +457,7 @@ impl Controller {
         self.view.input = None;
     }
 
-    /// Handles a datagram for UDP port 34964. Only datagrams of the device are accepted.
+    /// Handles a datagram for UDP port 34964. Only datagrams from the device are accepted.
     pub fn datagram(&mut self, now: Now, from: SocketAddrV4, bytes: &[u8]) {
         let is_device = self.device.as_ref().is_some_and(|device| device.address == *from.ip());
         let Some(datagram) = Datagram::parse(bytes).ok().filter(|_| is_device) else { return };
@@ -470,7 +473,7 @@ impl Controller {
         }
     }
 
-    /// Closes the connection with an abort message. The device does not answer it.
+    /// Closes the connection with an abort message. The device does not answer an abort message.
     fn abort(&mut self, now: Now, reason: u8, trouble: ProfinetError) {
         if let Some(io) = self.ar.as_ref().and_then(|ar| ar.io.as_ref()) {
             let error = io.alarms.error(Status::abort(reason).0);
@@ -479,13 +482,14 @@ impl Controller {
         self.lost(now, trouble);
     }
 
-    /// Handles the end of the connection. The connection opens again, except after a close or a failed first opening.
+    /// Handles the end of the connection. The controller connects again, except after a close or after a failed first
+    /// opening.
     fn lost(&mut self, now: Now, trouble: ProfinetError) {
         self.drop_ar();
         let is_old = matches!(&trouble, ProfinetError::Refused { status, .. } if status.is_owned());
         let wait = match self.view.generation {
             _ if self.is_over => return self.finish(Some(trouble)),
-            // The device still has the connection of an earlier process that was killed. This connection ends after its
+            // The device still has the connection of an earlier process that was killed. That connection ends after its
             // own timeout.
             0 if is_old && self.tries < OLD_TRIES => OLD_CONNECTION,
             0 => return self.finish(Some(trouble)),
@@ -498,7 +502,7 @@ impl Controller {
         self.show(if self.view.generation == 0 { State::Opening } else { State::Lost });
     }
 
-    /// Drops the AR and keeps its counters.
+    /// Drops the application relation (AR), but keeps its counters.
     fn drop_ar(&mut self) {
         if self.view.state == State::Open {
             self.before.losses += 1;

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU16, AtomicU32, Ordering};
 use super::super::wire::Uuid;
 use super::super::wire::frame::id;
 
-/// Allocator for numbers that are unique in this process.
+/// Allocator for numbers. No two connections of this process get the same number.
 #[derive(Debug)]
 pub struct Numbers {
     frame_id: AtomicU16,
@@ -15,7 +15,7 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// Creates an allocator with random start values, so that connections of an earlier process are not confused with
+    /// Creates an allocator with random start values. So the connections of an earlier process are not confused with
     /// new connections.
     pub fn random() -> Self {
         Self {
@@ -43,7 +43,7 @@ impl Numbers {
         self.session_key.fetch_add(1, Ordering::Relaxed)
     }
 
-    /// Returns an Xid for a DCP request. It is never 0, because some devices use 0 in answers.
+    /// Returns an Xid (transaction id) for a DCP request. It is never 0, because some devices use 0 in answers.
     pub fn xid(&self) -> u32 {
         self.xid.fetch_add(1, Ordering::Relaxed).max(1)
     }

@@ -1,4 +1,5 @@
-//! Opening of a connection: Connect, parameters, PrmEnd, ApplicationReady. This module also releases a connection.
+//! Opening of a connection: Connect, parameters, PrmEnd, ApplicationReady. This module also contains the release of a
+//! connection.
 
 use super::super::Now;
 use super::super::error::ProfinetError;
@@ -15,13 +16,13 @@ use super::client::Client;
 use super::view::{State, Step};
 use super::{Ar, Controller, Phase, START};
 
-/// Time limit, in the device, for the next step of the controller, in units of 100 ms.
+/// Time for which the device waits for the next step of the controller, in units of 100 ms.
 const ACTIVITY_TIMEOUT: u16 = 200;
-/// Number of attempts of calls other than Connect.
+/// Number of attempts of every call except Connect.
 pub(super) const TRIES: u32 = 3;
 
 impl Controller {
-    /// Calls Connect. The call is sent only once, because some devices start again after a second copy.
+    /// Calls Connect. The call is sent only once, because some devices start again if they receive a second copy.
     pub(super) fn connect(&mut self, now: Now, instance: u16) {
         let Some(device) = &self.device else { return };
         let (vendor, kind) = device.id;
@@ -142,13 +143,14 @@ impl Controller {
     pub(super) fn await_data(&mut self, now: Now) {
         self.set_step(Step::Data);
         self.phase = Phase::WaitingForData(now + START);
-        // Frames from before ApplicationReady do not count for the watchdog.
+        // Frames that arrived before ApplicationReady do not count for the watchdog.
         if let Some(io) = self.ar.as_mut().and_then(|ar| ar.io.as_mut()) {
             io.consumer.heard = io.consumer.heard.map(|_| now);
         }
     }
 
-    /// Releases the connection, either after an error (`trouble`) or because it is closed.
+    /// Releases the connection. `trouble` is the error that caused the release; `None` if the caller closes the
+    /// connection.
     pub(super) fn release(&mut self, now: Now, trouble: Option<ProfinetError>) {
         self.rest();
         let tries = match trouble {

@@ -12,12 +12,12 @@ use super::super::wire::frame::{Frame, id};
 use super::view::{Device, State, Step};
 use super::{Action, Controller, Phase};
 
-/// Time limit per attempt, and the number of attempts.
+/// Time limit per attempt. The constant below is the number of attempts.
 const PATIENCE: Duration = Duration::from_secs(1);
 const TRIES: u32 = 3;
-/// Waiting time after the first answer. A second device with the same name can answer within this time.
+/// Waiting time after the first answer, in which a second device with the same name can answer.
 const TWIN: Duration = Duration::from_millis(250);
-/// Interval and time limit of the checks that an address is active.
+/// Interval of the checks whether an address is active. The constant below is the time limit of these checks.
 const LOOK: Duration = Duration::from_millis(100);
 const SETTLE: Duration = Duration::from_secs(5);
 
@@ -86,7 +86,7 @@ impl Controller {
         self.actions.push_back(Action::Frame(frame.emit()));
     }
 
-    /// Continues after a timeout of the search: uses the device that was found, or repeats the request.
+    /// Continues after the time limit of the search: uses the device that was found, or repeats the request.
     pub(super) fn search_on(&mut self, now: Now) {
         let Phase::Resolve(search) = &mut self.phase else { return };
         if let Some(found) = search.found.take() {
@@ -130,7 +130,7 @@ impl Controller {
         self.send_dcp(mac, id::DCP_GET_SET, &dcp);
     }
 
-    /// Repeats a Set without an answer, or checks whether the address is active.
+    /// Continues after a time limit: repeats a Set that was not answered, or checks whether the address is active.
     pub(super) fn address_on(&mut self, now: Now) {
         const WHAT: &str = "DCP Set IP";
         let Phase::Address(address) = &mut self.phase else { return };
@@ -187,7 +187,7 @@ impl Controller {
         }
         match &mut self.phase {
             Phase::Resolve(search) if dcp.xid == search.xid => match &search.found {
-                // A MAC address is unique, so no second device is searched.
+                // A MAC address is unique, so the search for a second device is not needed.
                 None if matches!(self.settings.station, Station::Mac(_)) => self.found(now, Found { mac, station }),
                 None => {
                     search.found = Some(Found { mac, station });
@@ -214,7 +214,7 @@ impl Controller {
     }
 
     fn was_set(&mut self, now: Now, mac: Mac, dcp: &Dcp) {
-        // The Xid is not checked, because some devices do not copy it into this answer.
+        // The Xid (transaction id) is not checked, because some devices do not copy it into this answer.
         let Phase::Address(address) = &mut self.phase else { return };
         if mac != address.found.mac || address.settle.is_some() {
             return;
@@ -231,7 +231,7 @@ impl Controller {
         }
     }
 
-    /// Continues with the opening: the device was found and has its address.
+    /// Continues with the opening, because the device was found and has its address.
     fn located(&mut self, now: Now, found: &Found, address: Ipv4Addr) {
         let station = self.station();
         if found.station.ip.is_some_and(|(_, origin)| origin.is_in_conflict()) {

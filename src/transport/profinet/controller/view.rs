@@ -15,19 +15,19 @@ pub type Views = view::Views<ProfinetError, Statistics, Details>;
 /// Step of the opening.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Step {
-    /// Searching for the station.
+    /// The controller searches for the station.
     Resolve,
-    /// Setting the IP address of the station.
+    /// The controller sets the IP address of the station.
     Address,
-    /// Waiting for the answer to Connect.
+    /// The controller waits for the answer to Connect.
     Connect,
-    /// Writing parameters.
+    /// The controller writes parameters.
     Parameters,
-    /// Waiting for the answer to PrmEnd.
+    /// The controller waits for the answer to PrmEnd.
     PrmEnd,
-    /// Waiting for ApplicationReady.
+    /// The controller waits for ApplicationReady.
     Ready,
-    /// Waiting for usable data.
+    /// The controller waits for usable data.
     Data,
 }
 
@@ -47,15 +47,15 @@ pub struct Device {
 /// Counters of the frames and alarms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Statistics {
-    /// Frames sent.
+    /// Number of frames sent.
     pub sent: u64,
-    /// Frames that were omitted, because their time was missed.
+    /// Number of frames that were omitted, because their time was missed.
     pub skipped: u64,
-    /// Frames received.
+    /// Number of frames received.
     pub received: u64,
-    /// Frames that were duplicate, late, or out of order.
+    /// Number of frames that were duplicate, late, or out of order.
     pub stale: u64,
-    /// Alarms received.
+    /// Number of alarms received.
     pub alarms: u64,
     /// Number of times that the connection was lost.
     pub losses: u64,

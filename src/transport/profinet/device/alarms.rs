@@ -1,5 +1,5 @@
-//! Alarm state machine of the simulated device: sends alarms and repeats them. Without an acknowledgement, it aborts
-//! the connection. Both channels work in the same way.
+//! Alarm state machine of the simulated device. It sends alarms and repeats them. If an alarm is not acknowledged, it
+//! aborts the connection. Both channels work in the same way.
 
 use std::time::Duration;
 
@@ -8,11 +8,11 @@ use super::super::wire::alarm::{Acknowledgement, FIRST, NONE, Notification, Pdu,
 
 #[derive(Debug, Default)]
 struct Channel {
-    /// Number of DATA frames that were sent, and number of DATA frames that were accepted.
+    /// Number of DATA frames that were sent. The field below is the number of DATA frames that were accepted.
     sent: u16,
     taken: u16,
     on_its_way: Option<(Notification, Now, u16)>,
-    /// Whether the frame was acknowledged, but the alarm in it was not acknowledged yet.
+    /// Whether the frame was acknowledged, but not yet the alarm in the frame.
     is_framed: bool,
     waiting: Vec<Notification>,
 }
@@ -31,16 +31,16 @@ pub(super) struct Alarms {
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Heard {
     Nothing,
-    /// An alarm was acknowledged. The values are the frames to send and this alarm.
+    /// An alarm was acknowledged. Contains the frames to send, and the alarm.
     Noted(Vec<Vec<u8>>, Notification),
-    /// The frame is a repetition. The value is its acknowledgement.
+    /// The frame is a repetition. Contains the acknowledgement to send.
     Again(Vec<u8>),
     Ended(u32),
     /// The frame violates the protocol.
     Wrong,
 }
 
-/// Returns the sequence number of the frame with this count.
+/// Returns the sequence number of frame number `count`. Count 0 stands for no frame.
 const fn number(count: u16) -> u16 {
     match count {
         0 => NONE,
@@ -49,7 +49,7 @@ const fn number(count: u16) -> u16 {
     }
 }
 
-/// Returns the next count. The count wraps at the end of the sequence numbers.
+/// Returns the next count. After the last sequence number, the count continues with the count of sequence number 0.
 const fn next(count: u16) -> u16 {
     if number(count) == 0x7FFF { 2 } else { count + 1 }
 }

@@ -16,24 +16,24 @@ use super::super::wire::{ByteOrder, Mac, Uuid, block};
 use super::alarms::{Alarms, Heard};
 use super::{Action, Application, Device, Event, Fault};
 
-/// Number of attempts of ApplicationReady, and the time limit of each attempt.
+/// Number of attempts of ApplicationReady. The constant below is the time limit of each attempt.
 const READY_TRIES: u32 = 3;
 const READY_PATIENCE: Duration = Duration::from_secs(2);
-/// Unit of the cycle counter.
+/// Unit of the cycle counter: 31.25 us.
 const UNIT: Duration = Duration::from_nanos(31_250);
-/// Reason codes of aborts.
+/// Reason codes of aborts by the device.
 const WATCHDOG: u8 = 5;
 const ACTIVITY: u8 = 6;
 const ALARM_LOST: u8 = 8;
 const WRONG_FRAME: u8 = 0x0C;
 const READY_UNANSWERED: u8 = 0x18;
 const ABORTED: u8 = 0x0D;
-/// Time from the start of a connection to a fault that happens once.
+/// Time from the start of a connection until a fault happens that occurs once per connection.
 const TROUBLE: Duration = Duration::from_secs(1);
-/// Structure identifier of a channel diagnosis. The diagnosis is a line break, for the whole submodule.
+/// Structure identifier of a channel diagnosis. The constant below is a diagnosis "line break" for the whole submodule.
 const CHANNEL: u16 = 0x8000;
 const LINE_BREAK: [u8; 6] = [0x80, 0, 0x28, 0, 0, 6];
-/// Alarm specifier: first alarm, with a diagnosis of the submodule.
+/// Alarm specifier: sequence number 0, with a diagnosis of the submodule.
 const APPEARS: u16 = 0xA800;
 
 /// Stage of the connection.
@@ -41,8 +41,8 @@ const APPEARS: u16 = 0xA800;
 pub(super) enum Stage {
     /// The device waits for the next call of the controller until this time.
     Parameters(Now),
-    /// ApplicationReady was called. The values are the time of the next attempt, the number of attempts left, and the
-    /// sequence number.
+    /// ApplicationReady was called. `due` is the time of the next attempt, `tries` the number of attempts left, and
+    /// `sequence` the sequence number of the call.
     Ready { due: Now, tries: u32, sequence: u32 },
     /// Data is exchanged in both directions.
     Running,
@@ -63,9 +63,10 @@ pub(super) struct Ar {
     pub(super) activity_timeout: Duration,
     pub(super) due: Now,
     pub(super) counter: u16,
-    /// Time of a fault that happens once per connection; `None` if no such fault is active.
+    /// Time of a fault that happens once per connection. `None` if there is no such fault, or if it has already
+    /// happened.
     pub(super) trouble: Option<Now>,
-    /// Cycle counter and time of the last frame from the controller.
+    /// Cycle counter of the last frame from the controller, and its time.
     pub(super) heard: Option<(u16, Now)>,
 }
 
@@ -78,7 +79,8 @@ impl Ar {
         UNIT * u32::from(iocr.send_clock) * u32::from(iocr.ratio)
     }
 
-    /// Time when the watchdog expires. The watchdog starts with the first frame of the controller.
+    /// Time at which the watchdog expires; `None` while it is off. The first frame of the controller starts the
+    /// watchdog.
     fn watchdog(&self) -> Option<Now> {
         let time = Self::cycle(&self.output) * u32::from(self.output.watchdog);
         self.heard.map(|(_, at)| at + time)
@@ -152,7 +154,7 @@ impl<A: Application> Device<A> {
             }
         }
         let mut data = vec![0; usize::from(ar.input.length)];
-        // The provider status becomes good when the device is ready.
+        // The provider status is good from the time when the device is ready.
         let is_good = ar.is_running() || matches!(ar.stage, Stage::Ready { .. });
         let good = |is_good: bool| if is_good { GOOD } else { 0 };
         let mut rest = &self.image[..];
@@ -207,7 +209,8 @@ impl<A: Application> Device<A> {
             is_valid &= is_good(at + length);
             image.extend_from_slice(cyclic.data.get(at..at + length).unwrap_or_default());
         }
-        // Some devices reject the data of a controller if its consumer statuses are bad.
+        // The simulated device also checks the consumer statuses, because some devices reject the data of a controller
+        // if these are bad.
         is_valid &= ar.output.consumers.iter().all(|place| is_good(usize::from(place.offset)));
         self.application.image_out(now, is_valid.then_some(&image[..]));
     }
@@ -256,7 +259,7 @@ impl<A: Application> Device<A> {
     /// Becomes ready, and calls ApplicationReady.
     pub(super) fn get_ready(&mut self, now: Now) {
         if self.fault == Some(Fault::NeverReady) {
-            // The fault: the device never calls ApplicationReady, and its activity timeout is off.
+            // Because of the fault, the device never calls ApplicationReady, and its activity timeout is off.
             if let Some(ar) = &mut self.ar {
                 ar.stage = Stage::Parameters(Now::MAX);
             }

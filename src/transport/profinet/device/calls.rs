@@ -18,9 +18,9 @@ use crate::refuse_if;
 
 /// Alarm reference of the device.
 const ALARM_REFERENCE: u16 = 0;
-/// Module ident number of [`Fault::WrongModule`].
+/// Ident number of the module that the device has with [`Fault::WrongModule`].
 pub(super) const WRONG_MODULE: u32 = 0x40;
-/// Sender address of the answers with [`Fault::Foreign`].
+/// Address from which the device answers with [`Fault::Foreign`].
 const ELSEWHERE: Ipv4Addr = Ipv4Addr::new(192, 0, 2, 1);
 
 const CONNECT: u8 = 0xDB;
@@ -46,7 +46,7 @@ impl<A: Application> Device<A> {
         let is_same = |other: &Header| (other.activity, other.sequence) == (header.activity, header.sequence);
         if let Some((_, _, bytes)) = self.answers.iter().find(|(other, peer, _)| is_same(other) && *peer == from) {
             let bytes = bytes.clone();
-            // Some devices abort the connection after a duplicate Connect.
+            // Like some devices, the simulated device aborts the connection after a duplicate Connect.
             if header.operation == operation::CONNECT {
                 self.answers.clear();
                 return self.abort(now, 0x0E);
@@ -71,7 +71,7 @@ impl<A: Application> Device<A> {
             Ok(blocks) => (0, &blocks[..]),
             Err(status) => (status.0, &[][..]),
         };
-        // The device answers in its own byte order, whatever the byte order of the call.
+        // The device answers in its own byte order, which can differ from the byte order of the call.
         let mut body = Reply { status, room: call.room, blocks }.emit(ByteOrder::Big);
         if self.fault == Some(Fault::Garbage) {
             for byte in &mut body {
@@ -91,7 +91,7 @@ impl<A: Application> Device<A> {
         }
     }
 
-    /// Sender address of the answers; `None` if it is the address of the device.
+    /// Address from which the device answers; `None` if it is the address of the device.
     pub fn answers_from(&self) -> Option<Ipv4Addr> {
         (self.fault == Some(Fault::Foreign)).then_some(ELSEWHERE)
     }

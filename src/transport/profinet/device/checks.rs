@@ -23,7 +23,7 @@ const CMRPC: u8 = 0x40;
 const UNKNOWN_BLOCKS: u8 = 1;
 const IOCR_MISSING: u8 = 2;
 const ALARMS_MISSING: u8 = 3;
-/// Maximum watchdog time and data hold time, in units of 31.25 us.
+/// Maximum of the watchdog time and of the data hold time, in units of 31.25 us.
 const LONGEST_WATCHDOG: u64 = 61_440;
 
 fn no(block: u8, field: u8) -> Result<(), Status> {
@@ -42,7 +42,7 @@ pub(super) fn connect(requests: Vec<Request>, layout: &Layout, shortest: u16) ->
     for (at, request) in requests.into_iter().enumerate() {
         match request {
             Request::Ar(block) if at == 0 => ar = Some(block),
-            // The blocks must be in this order: AR, IOCRs, alarm CR, expected modules.
+            // The order of the blocks must be AR, IOCRs, alarm CR, expected modules.
             Request::Iocr(block) if modules.is_empty() && alarms.is_empty() && ar.is_some() => iocrs.push(block),
             Request::AlarmCr(block) if iocrs.len() == 2 => alarms.push(block),
             Request::Expected(block) if iocrs.len() == 2 => modules.extend(block),
@@ -69,7 +69,8 @@ fn connection(ar: &Ar) -> Result<(), Status> {
     check(ar.uuid != Uuid::NIL, AR, 5)?;
     check(!ar.mac.is_group() && ar.mac.0 != [0; 6], AR, 7)?;
     check(ar.object.0.starts_with(&[0xDE, 0xA0, 0, 0, 0x6C, 0x97, 0x11, 0xD1, 0x82, 0x71]), AR, 8)?;
-    // The properties must be: active state, and the controller is the parameter server. Only the startup mode may vary.
+    // The properties must say that the connection is active and that the controller is the parameter server. Only the
+    // startup mode may vary.
     check(ar.properties & 0x3FFF_FFFF == 0x11, AR, 9)?;
     check((1..=1000).contains(&ar.activity_timeout), AR, 0x0A)?;
     check(ar.port == ETHER_TYPE, AR, 0x0B)?;
@@ -80,7 +81,7 @@ fn connection(ar: &Ar) -> Result<(), Status> {
 fn data(iocr: &Iocr, kind: u16, is_legacy: bool, shortest: u16, layout: &Layout) -> Result<(), Status> {
     check(iocr.kind == kind, IOCR, 4)?;
     check(iocr.ether_type == ETHER_TYPE, IOCR, 6)?;
-    // The legacy RT class is valid only with legacy startup. With legacy startup, both classes are valid.
+    // The legacy RT class is valid only with legacy startup. The other RT class is valid with both startup modes.
     let range = match iocr.properties {
         1 if is_legacy => id::RT_CLASS_1_LEGACY,
         2 => id::RT_CLASS_1,

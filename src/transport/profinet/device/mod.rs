@@ -41,20 +41,21 @@ pub struct Setup {
     pub instance: u16,
     /// IP address; `None` if the device has no address yet.
     pub ip: Option<IpSuite>,
-    /// Whether DCP can set the IP address. On a real interface, the device uses the address of the interface.
+    /// Whether DCP can set the IP address. On a real interface this is `false`, because the device uses the address of
+    /// the interface.
     pub takes_ip: bool,
     /// Modules.
     pub layout: Layout,
     /// Shortest supported cycle, in units of 31.25 us.
     pub shortest: u16,
-    /// I&M0 record.
+    /// I&M0 record of the device.
     pub im0: Im0,
 }
 
 /// Application behind the device.
 pub trait Application {
-    /// Handles the output image. `None` means that there is no connection, the provider status is bad, or the
-    /// controller has stopped.
+    /// Handles the output image. The image is `None` if there is no connection, if the provider status is bad, or if
+    /// the controller has stopped.
     fn image_out(&mut self, now: Now, image: Option<&[u8]>);
     /// Updates the image to the controller. The buffer contains the previous image.
     fn image_in(&mut self, now: Now, image: &mut [u8]);
@@ -71,19 +72,19 @@ pub enum Event {
     Ready,
     /// A record was written.
     Written(Parameter),
-    /// The connection ended for this reason; `None` after a release.
+    /// The connection ended. Contains the reason; `None` after a release.
     Ended(Option<Status>),
     /// The device refused a controller.
     Refused(Status),
     /// The controller acknowledged an alarm.
     AlarmNoted(Notification),
-    /// The station name was set; `true` means permanently.
+    /// The station name was set. `true` means that the name is permanent.
     Named(String, bool),
-    /// The IP address was set; `true` means permanently.
+    /// The IP address was set. `true` means that the address is permanent.
     Addressed(IpSuite, bool),
-    /// The device must blink.
+    /// A client requested that the device blinks.
     Blink,
-    /// Name and IP address were reset.
+    /// The station name and the IP address were reset.
     Reset,
 }
 
@@ -94,7 +95,7 @@ pub struct Device<A> {
     application: A,
     ar: Option<Ar>,
     fault: Option<Fault>,
-    /// The last answers. A repeated call gets the same answer.
+    /// The last answers. The device answers a repeated call with the same bytes.
     answers: VecDeque<(Header, SocketAddrV4, Vec<u8>)>,
     /// Frames to send later, with their times.
     later: Vec<(Now, Vec<u8>)>,
@@ -106,7 +107,7 @@ pub struct Device<A> {
 const MOST_ANSWERS: usize = 8;
 /// Maximum number of delayed Identify answers.
 const MOST_LATER: usize = 32;
-/// Maximum delay of an Identify answer that a request can ask for, in steps of 10 ms.
+/// Maximum delay of an Identify answer that a request may contain, in steps of 10 ms.
 const MOST_SPREAD: u16 = 6400;
 const SPREAD: Duration = Duration::from_millis(10);
 
@@ -159,7 +160,7 @@ impl<A: Application> Device<A> {
         self.drop_ar(now, Some(Status::abort(0x1A)));
     }
 
-    /// Aborts the connection with this reason.
+    /// Aborts the connection for this reason.
     pub fn abort(&mut self, now: Now, reason: u8) {
         let Some(ar) = &self.ar else { return };
         let payload = ar.alarms.error(Status::abort(reason).0);
@@ -167,7 +168,7 @@ impl<A: Application> Device<A> {
         self.drop_ar(now, Some(Status::abort(reason)));
     }
 
-    /// Raises an alarm if a controller is connected. Earlier alarms that wait for an acknowledgement are sent first.
+    /// Raises an alarm if a controller is connected. Alarms that are still waiting are sent first.
     pub fn raise(&mut self, now: Now, alarm: &Notification) {
         let Some(ar) = &mut self.ar else { return };
         let payload = ar.alarms.raise(now, alarm);

@@ -36,7 +36,7 @@ impl<A> fmt::Debug for Server<A> {
 
 impl<A: Application + Send + 'static> Server<A> {
     /// Starts a device. The device has the MAC and IP address of the interface, and not the addresses in `setup`. DCP
-    /// cannot change the IP address, because the operator of this computer sets it.
+    /// cannot change the IP address, because it belongs to this computer.
     pub fn start(interface: &Interface, setup: Setup, application: A) -> Result<Self, ProfinetError> {
         let (sockets, ip) = Sockets::open(interface)?;
         let setup = Setup { mac: interface.mac, ip: Some(ip), takes_ip: false, ..setup };
@@ -54,7 +54,7 @@ impl<A: Application + Send + 'static> Server<A> {
         Ok(Self { inner, thread: Some(thread) })
     }
 
-    /// Calls `change` with the device, then executes the resulting actions.
+    /// Calls `change` with the device, then executes the actions that result.
     pub fn with<T>(&self, change: impl FnOnce(&mut Device<A>, Now) -> T) -> T {
         let result = change(&mut self.inner.device(), self.inner.start.elapsed());
         self.inner.sockets.ring();
@@ -67,7 +67,7 @@ impl<A> Drop for Server<A> {
         self.inner.is_over.store(true, Ordering::SeqCst);
         self.inner.sockets.ring();
         if let Some(thread) = self.thread.take() {
-            // If the thread panicked, the panic was already printed.
+            // An error means that the thread panicked. The panic was already printed.
             let _ = thread.join();
         }
     }
@@ -95,7 +95,7 @@ impl<A: Application> Inner<A> {
     fn turn(&self) -> Option<Now> {
         let mut device = self.device();
         while let Some(action) = device.poll(self.start.elapsed()) {
-            // A frame that cannot be sent is lost, as on a real cable.
+            // An error is ignored: a frame that cannot be sent is lost, as on a real cable.
             let _ = match action {
                 Action::Frame(bytes) => self.sockets.send_frame(&bytes),
                 Action::Datagram(to, bytes) => self.sockets.send_datagram(to, &bytes),

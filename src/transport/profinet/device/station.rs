@@ -36,7 +36,8 @@ impl<A: Application> Device<A> {
         }
     }
 
-    /// Whether a request is for this device: all its filters match. A request with a delay of 0 is not valid.
+    /// Whether a request is for this device. This is so if all filters of the request match. A request with a delay of
+    /// 0 is not valid.
     fn is_meant(&self, dcp: &Dcp) -> bool {
         let setup = &self.setup;
         let id = [setup.id.0.to_be_bytes(), setup.id.1.to_be_bytes()].concat();
@@ -93,7 +94,7 @@ impl<A: Application> Device<A> {
         self.actions.push_back(super::Action::Frame(answer));
     }
 
-    /// Sets a value. Returns 0 or the error code.
+    /// Sets a value. Returns 0 after success, or the DCP error code.
     fn set(&mut self, now: Now, block: &Block) -> u8 {
         let Some((qualifier, value)) = block.data.split_first_chunk::<2>() else { return NOT_TAKEN };
         let is_permanent = qualifier[1] & 1 == 1;

@@ -1,4 +1,4 @@
-//! Tests with files of another author, with our own files, and with broken files.
+//! Tests with files of another author, with files of this project, and with broken files.
 
 use pnio::config::{DeviceConfig, Slot};
 use pnio::data::FieldType;
@@ -21,7 +21,7 @@ fn file(inputs: usize, outputs: usize) -> String {
     render(&config, &meta)
 }
 
-/// The crate `pnio` writes a file for a layout. Parsing this file must result in the same layout.
+/// The crate `pnio` writes a file for a layout. If this file is parsed, the result must be the same layout.
 #[test]
 fn a_file_that_others_wrote_is_the_layout_it_was_written_for() {
     let gsdml = Gsdml::parse(file(24, 24).as_bytes()).unwrap();
@@ -80,7 +80,7 @@ fn fixed_modules_parameters_and_names_are_read() {
     assert_eq!(Gsdml::parse(&latin).unwrap(), gsdml);
 }
 
-/// A fixed module is never selected a second time.
+/// A module that the device always has must not be selected again.
 #[test]
 fn a_module_that_is_always_there_is_chosen_once() {
     let two = OWN.replace(

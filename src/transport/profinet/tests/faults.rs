@@ -149,7 +149,7 @@ fn a_cable_that_is_pulled_ends_it_at_both_ends() {
     world.run(400 * MS);
     assert_eq!(world.view().state, State::Lost);
     assert_eq!(world.device.application().events.last(), Some(&Event::Ended(Some(Status::abort(5)))));
-    // This time is longer than many attempts: the controller does not give up.
+    // This time is much longer than many attempts to connect. The controller must not give up.
     world.run(120_000 * MS);
     assert_eq!(world.view().state, State::Lost);
     world.cable = true;
@@ -167,8 +167,8 @@ fn tries_after_a_loss_come_ever_later_but_not_too_late() {
     assert!((15..40).contains(&tries), "{tries} in a minute after {from:?}");
 }
 
-/// Unreliable networks with many seeds. Either the connection opens, or there is a reason. Every input image is from
-/// the device and from this generation. The device receives only images that were sent.
+/// The network is unreliable, with many seeds. Either the connection opens, or there is a reason. Every input image is
+/// from the device and from this generation. The device receives only images that were sent.
 #[test]
 fn any_network_brings_images_or_a_reason() {
     let mut opened = 0;

@@ -41,7 +41,7 @@ fn what_is_shown_arrives_and_the_device_answers() {
     assert!(link.wake().is_some_and(|wake| wake > Duration::from_millis(40)));
     link.input(Duration::from_millis(50), None);
     assert_eq!(link.output(Duration::from_secs(9)), None);
-    // The connection was released, so another connection can open at once.
+    // The first connection was released, so a second connection can open at once.
     network.open(settings()).unwrap();
 }
 
@@ -63,8 +63,8 @@ fn an_image_arrives_whatever_gets_lost_late_or_doubled_on_the_way() {
     for seed in 0..20 {
         let mut link = match faulty(None, Some(&format!("{faults},seed={seed}"))).open(settings()) {
             Ok(link) => link,
-            // Connect is sent only once, because a device would interpret a second Connect as another controller.
-            // Without an answer, the opening therefore fails.
+            // Connect is sent only once, because a device would interpret a second Connect as another controller. So
+            // the opening fails if the answer is lost.
             Err(ProfinetError::NoAnswer { what: "Connect", .. }) => continue,
             Err(error) => panic!("seed {seed}: {error}"),
         };
@@ -73,7 +73,8 @@ fn an_image_arrives_whatever_gets_lost_late_or_doubled_on_the_way() {
         for round in 1..=20 {
             let mut image = resting();
             image[0] = round;
-            // A duplicate call can end a connection. The image is then sent again, as a client does after a loss.
+            // A duplicate call can end a connection. The test then sends the image again, as a client does after a
+            // loss.
             let arrives = (0..5000).any(|ms| {
                 if ms % 500 == 0 {
                     link.input(now, Some(&image));

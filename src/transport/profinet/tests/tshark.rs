@@ -15,7 +15,7 @@ use super::world::{MS, World, settings, setup, suite};
 fn capture(record: &[(std::time::Duration, Vec<u8>)]) -> Vec<u8> {
     let mut out = Vec::new();
     for number in [0xA1B2_C3D4_u32, 0x0002_0004, 0, 0, 65_535, 1] {
-        // The version consists of two 16-bit numbers.
+        // The number contains the version of the file format, which has two 16-bit numbers.
         out.extend(if number == 0x0002_0004 { vec![2, 0, 4, 0] } else { number.to_le_bytes().to_vec() });
     }
     for (at, bytes) in record {
@@ -63,7 +63,7 @@ fn life() -> Vec<(std::time::Duration, Vec<u8>)> {
     world.run_out();
     assert!(world.device.application().events.contains(&Event::Ended(None)));
     let mut record = world.record.take().unwrap();
-    // Another device follows. Its answer to Connect reports that its module is different.
+    // A second device follows. Its answer to Connect reports a different module.
     let mut world = World::new(setup(), super::world::settings(), "");
     world.now += std::time::Duration::from_secs(1000);
     world.record = Some(Vec::new());
@@ -85,7 +85,7 @@ fn tshark_reads_all_of_it_without_a_warning() {
     let path = folder.path().join("life.pcap");
     fs::write(&path, capture(&life())).unwrap();
     let Some(wrong) = tshark(&path, &["-Y", "_ws.malformed || _ws.expert.severity >= 0x600000"]) else {
-        // tshark is not installed; `.ci/run` reports that.
+        // tshark is not installed. `.ci/run` reports this.
         return;
     };
     assert_eq!(wrong, "");
@@ -127,7 +127,7 @@ fn tshark_splits_cyclic_data_as_the_layout_says() {
     fs::write(&path, capture(&world.record.take().unwrap())).unwrap();
     let arguments = ["-Y", "pn_rt && pn_io.ioxs", "-T", "fields", "-e", "pn_io.ioxs"];
     let Some(text) = tshark(&path, &arguments) else {
-        // tshark is not installed; `.ci/run` reports that.
+        // tshark is not installed. `.ci/run` reports this.
         return;
     };
     assert!(!text.is_empty());

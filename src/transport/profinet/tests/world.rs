@@ -35,7 +35,7 @@ pub const fn suite(address: [u8; 4]) -> IpSuite {
 #[derive(Debug, Default)]
 pub struct Mirror {
     pub image: Option<Vec<u8>>,
-    /// Every new image; `None` for an invalid image.
+    /// Every new image, in order; `None` for an invalid image.
     pub history: Vec<Option<Vec<u8>>>,
     pub events: Vec<Event>,
 }
@@ -103,7 +103,7 @@ pub struct World {
     pub now: Now,
     pub controller: Controller,
     pub device: Device<Mirror>,
-    /// A second device in the same network.
+    /// A second device in the same network, if the test needs one.
     pub twin: Option<Device<Mirror>>,
     /// Whether the cable is connected.
     pub cable: bool,
@@ -111,7 +111,7 @@ pub struct World {
     pub frames: Vec<(Now, Vec<u8>)>,
     /// Datagrams of the controller.
     pub calls: Vec<Vec<u8>>,
-    /// Input images in order.
+    /// Input images, in the order of arrival.
     pub shown: Vec<Arc<[u8]>>,
     /// All traffic as Ethernet frames, if recorded.
     pub record: Option<Vec<(Now, Vec<u8>)>>,
@@ -124,7 +124,7 @@ impl World {
     pub fn new(setup: Setup, settings: Settings, faults: &str) -> Self {
         let faults: FaultSpec = if faults.is_empty() { FaultSpec::default() } else { faults.parse().unwrap() };
         Self {
-            // The time does not start at 0, so that no code can depend on 0.
+            // The time does not start at 0, so that code that depends on 0 fails.
             now: Duration::from_secs(1000),
             controller: Controller::new(HERE, settings, Arc::new(Numbers::random())).unwrap(),
             device: Device::new(setup, Mirror::default()),
@@ -168,7 +168,7 @@ impl World {
         self.calls.iter().filter(is_one).cloned().collect()
     }
 
-    /// Runs until the condition is true, at most for `most`.
+    /// Runs until the condition is true, but at most for `most`.
     pub fn until(&mut self, most: Duration, condition: impl Fn(&Self) -> bool) {
         let end = self.now + most;
         while !condition(self) {
@@ -207,7 +207,7 @@ impl World {
         true
     }
 
-    /// Lets both sides do all work that is due now.
+    /// Lets both sides do all the work that is due now.
     pub fn settle(&mut self) {
         loop {
             let ours = self.controller.poll(self.now);
@@ -258,8 +258,8 @@ impl World {
         for (at, bytes) in faults.pass(self.now, bytes) {
             let packet = packet(bytes);
             let is_frame = matches!(packet, Packet::FrameOut(_) | Packet::FrameIn(_));
-            // The cycle counter detects frames as old if they are delayed up to 128 ms. No switch delays a frame
-            // longer.
+            // The cycle counter shows that a frame is old only if the frame is delayed by at most 128 ms. No switch
+            // delays a frame for a longer time, so such a frame is dropped here.
             if is_frame && at > self.now + LONGEST_HOLD {
                 continue;
             }

@@ -4,11 +4,11 @@ use super::block::{self, Block, BlockType};
 use super::frame::{TAG_HIGH, TAG_LOW, id};
 use super::{Reader, WireError, Writer, count16};
 
-/// Flag of a frame that requires an acknowledgement.
+/// Flag in a frame that requires an acknowledgement.
 const WANTS_ACK: u8 = 0x10;
-/// Window size: one unacknowledged frame.
+/// Window size: only one frame may be unacknowledged.
 const WINDOW: u8 = 1;
-/// Sequence number before the first frame.
+/// Sequence number of the first frame.
 pub const FIRST: u16 = 0xFFFF;
 /// Acknowledged sequence number before the first frame.
 pub const NONE: u16 = 0xFFFE;
@@ -23,10 +23,10 @@ pub enum Priority {
 }
 
 impl Priority {
-    /// Both channels.
+    /// Both alarm channels.
     pub const ALL: [Self; 2] = [Self::High, Self::Low];
 
-    /// Frame id.
+    /// Frame id of the channel.
     pub const fn frame_id(self) -> u16 {
         match self {
             Self::High => id::ALARM_HIGH,
@@ -34,7 +34,7 @@ impl Priority {
         }
     }
 
-    /// VLAN tag.
+    /// VLAN tag of the channel.
     pub const fn tag(self) -> u16 {
         match self {
             Self::High => TAG_HIGH,
@@ -74,7 +74,7 @@ pub struct Rta {
     pub source: u16,
     /// Sequence number of the frame.
     pub sequence: u16,
-    /// Last sequence number received.
+    /// Sequence number of the last frame that the sender has received.
     pub acknowledged: u16,
     /// Type and content.
     pub pdu: Pdu,
@@ -99,7 +99,7 @@ impl Rta {
             0x11 => Pdu::Data(data.rest().to_vec()),
             0x12 => Pdu::Nack,
             0x13 => Pdu::Ack,
-            // More bytes may follow: devices of Siemens append them.
+            // More bytes may follow after the status, because devices of Siemens append some.
             0x14 => Pdu::Error(data.u32("PNIOStatus")?),
             other => return Err(WireError { offset: 4, ..reader.wrong("PDUType", 1, other) }),
         };
@@ -126,7 +126,7 @@ impl Rta {
     }
 }
 
-/// Next sequence number: 0 follows both 0xFFFF and 0x7FFF.
+/// Returns the next sequence number. 0 follows after 0xFFFF and also after 0x7FFF.
 pub const fn next_sequence(sequence: u16) -> u16 {
     sequence.wrapping_add(1) & 0x7FFF
 }
@@ -134,11 +134,11 @@ pub const fn next_sequence(sequence: u16) -> u16 {
 /// An alarm notification.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Notification {
-    /// Channel.
+    /// Channel of the alarm.
     pub priority: Priority,
     /// Alarm type; see [`describe`].
     pub kind: u16,
-    /// API (profile); 0.
+    /// API (profile), always 0.
     pub api: u32,
     /// Slot.
     pub slot: u16,
@@ -225,7 +225,7 @@ pub struct Acknowledgement {
     pub subslot: u16,
     /// Specifier of the alarm.
     pub specifier: u16,
-    /// Status; 0.
+    /// Status, always 0.
     pub status: u32,
 }
 
@@ -299,7 +299,7 @@ pub fn describe(kind: u16) -> &'static str {
     }
 }
 
-/// Whether the device needs new parameters after this alarm.
+/// Whether the device needs its parameters again after this alarm.
 pub const fn wants_parameters(kind: u16) -> bool {
     matches!(kind, 0x04 | 0x0A | 0x0B)
 }
@@ -309,7 +309,7 @@ mod tests {
     use super::*;
     use crate::testing::hex;
 
-    /// Bytes of a diagnosis and its answer, from the notes on alarms.
+    /// The bytes of a diagnosis and its answer are from the notes on alarms.
     #[test]
     fn an_alarm_and_its_answers_are_as_seen() {
         let bytes = hex(concat!(

@@ -11,8 +11,8 @@ const KIND: [u8; 6] = [0, 1, 8, 0, 6, 4];
 /// Minimum frame length without the checksum.
 const SHORTEST: usize = 60;
 
-/// Returns an ARP probe. It asks which station uses an IP address, and contains no sender IP address. Therefore no host
-/// updates its ARP table with it.
+/// Returns an ARP probe. The probe asks which station uses an IP address. It contains no sender IP address, so no host
+/// updates its ARP table because of the probe.
 pub fn probe(source: Mac, address: Ipv4Addr) -> Vec<u8> {
     let mut out = Writer::default();
     out.put(&[0xFF; 6]);
@@ -27,8 +27,8 @@ pub fn probe(source: Mac, address: Ipv4Addr) -> Vec<u8> {
     out.bytes
 }
 
-/// Returns the MAC and IP address of the sender of an ARP frame. The frame is an answer, or a probe of a host that uses
-/// the address.
+/// Returns the MAC and IP address of the sender of an ARP frame. The frame can be an answer, or a probe of a host that
+/// uses the address.
 pub fn holder(frame: &[u8]) -> Option<(Mac, Ipv4Addr)> {
     let mut reader = Reader::big(frame);
     reader.take(12, "addresses of cards").ok()?;
@@ -49,7 +49,7 @@ mod tests {
     const HERE: Mac = Mac([2, 0, 0, 0, 0, 1]);
     const ADDRESS: Ipv4Addr = Ipv4Addr::new(192, 168, 78, 2);
 
-    /// RFC 5227, 2.1.1: the sender address is zero, so no host changes its ARP table.
+    /// RFC 5227, 2.1.1: the sender address is zero, so no host changes its ARP table because of the probe.
     #[test]
     fn a_probe_claims_nothing() {
         let mut bytes = hex("FFFFFFFFFFFF 020000000001 0806 0001 0800 06 04 0001 020000000001 00000000");

@@ -18,9 +18,9 @@ impl BlockType {
     pub const WRITE: Self = Self(0x0008);
     /// Read a record.
     pub const READ: Self = Self(0x0009);
-    /// Modules that are really plugged in.
+    /// Modules that are really plugged into the device.
     pub const REAL_IDENTIFICATION: Self = Self(0x0013);
-    /// I&M0.
+    /// I&M0: identification of the device.
     pub const IM0: Self = Self(0x0020);
     /// Connection (AR).
     pub const AR: Self = Self(0x0101);
@@ -69,7 +69,8 @@ pub fn walk(bytes: &[u8]) -> Result<Vec<Block<'_>>, WireError> {
     let mut blocks = Vec::new();
     while reader.left() > 0 {
         blocks.push(read(&mut reader)?);
-        // In answers, blocks may be padded to a multiple of four bytes. No block type starts with a zero byte there.
+        // In answers, blocks may be padded to a multiple of four bytes. Padding can be recognized, because no block
+        // type starts with a zero byte.
         let padding = reader.left().min(reader.at.next_multiple_of(4) - reader.at);
         if reader.bytes.iter().skip(reader.at).take(padding).all(|byte| *byte == 0) {
             reader.at += padding;
@@ -112,14 +113,14 @@ pub struct Control {
     pub ar: Uuid,
     /// Session key of the connection.
     pub session_key: u16,
-    /// Number of the command; 8 in an answer means done.
+    /// Number of the command. In an answer, 8 means done.
     pub command: u16,
     /// Properties of the command.
     pub properties: u16,
 }
 
 impl Control {
-    /// Command in answers: done.
+    /// Command number in a positive answer: done.
     pub const DONE: u16 = 8;
 
     /// Creates a call. Its command follows from the block type.
@@ -172,7 +173,7 @@ mod tests {
         Uuid(hex("11111111222233334444555555555555").try_into().unwrap())
     }
 
-    /// Bytes of PrmEnd, ApplicationReady and Release, from the worked example in the notes.
+    /// The bytes of PrmEnd, ApplicationReady and Release are from the worked example in the notes.
     #[test]
     fn controls_are_as_printed() {
         let ar = "11111111222233334444555555555555";

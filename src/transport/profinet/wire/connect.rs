@@ -9,11 +9,11 @@ mod modules;
 pub use self::modules::{DataDescription, ExpectedModule, ExpectedSubmodule, ModuleDiff, SubmoduleDiff};
 use self::modules::{read_diff, read_expected, write_diff, write_expected};
 
-/// ARProperties for advanced startup: active state, and the controller is the parameter server.
+/// ARProperties for advanced startup. The connection is active, and the controller is the parameter server.
 pub const ADVANCED: u32 = 0x4000_0011;
-/// ARProperties for legacy startup: active state, and the controller is the parameter server.
+/// ARProperties for legacy startup. The connection is active, and the controller is the parameter server.
 pub const LEGACY: u32 = 0x0000_0011;
-/// Frame id with which the device selects the frame id.
+/// Frame id in a request that means: the device selects the frame id.
 pub const ANY_FRAME_ID: u16 = 0xFFFF;
 
 /// ARBlockReq: the connection.
@@ -31,7 +31,7 @@ pub struct Ar {
     pub object: Uuid,
     /// ARProperties; see [`ADVANCED`].
     pub properties: u32,
-    /// Time limit, in the device, for the next step of the controller, in units of 100 ms.
+    /// Time for which the device waits for the next step of the controller, in units of 100 ms.
     pub activity_timeout: u16,
     /// EtherType of alarm frames.
     pub port: u16,
@@ -56,7 +56,7 @@ pub struct Iocr {
     pub frame_id: u16,
     /// Send clock in units of 31.25 us.
     pub send_clock: u16,
-    /// Reduction ratio: cycle time in send clocks.
+    /// Reduction ratio: number of send clocks in the cycle time.
     pub ratio: u16,
     /// Phase in the cycle.
     pub phase: u16,
@@ -92,11 +92,11 @@ pub struct Offset {
 /// AlarmCRBlockReq: the alarm channels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AlarmCr {
-    /// Alarm CR type; 1.
+    /// Alarm CR type, always 1.
     pub kind: u16,
     /// EtherType of alarm frames.
     pub ether_type: u16,
-    /// Properties; 0.
+    /// Properties, always 0.
     pub properties: u32,
     /// Time limit for an acknowledgement, in units of 100 ms.
     pub timeout: u16,
@@ -113,15 +113,15 @@ pub struct AlarmCr {
 /// A block of Connect.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Request {
-    /// The connection.
+    /// The connection (AR).
     Ar(Ar),
-    /// Cyclic data.
+    /// Cyclic data of one direction (IOCR).
     Iocr(Iocr),
-    /// Alarms.
+    /// The alarm channels (alarm CR).
     AlarmCr(AlarmCr),
     /// Expected modules.
     Expected(Vec<ExpectedModule>),
-    /// Another block.
+    /// A block of another type.
     Other(BlockType),
 }
 
@@ -279,7 +279,7 @@ fn read_offsets(reader: &mut Reader<'_>, field: &'static str) -> Result<Vec<Offs
 }
 
 impl AlarmCr {
-    /// Returns the usual values: 100 ms, three repetitions, 200 bytes.
+    /// Returns the block with the usual values: 100 ms, three repetitions, 200 bytes.
     pub const fn usual(reference: u16) -> Self {
         Self {
             kind: 1,
@@ -319,7 +319,7 @@ impl AlarmCr {
 /// A block of the answer to Connect. ApplicationReady can also contain a ModuleDiffBlock.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Response {
-    /// The connection.
+    /// The connection (AR).
     Ar {
         /// UUID of the connection.
         uuid: Uuid,
@@ -328,7 +328,7 @@ pub enum Response {
         /// MAC address of the device.
         mac: Mac,
     },
-    /// Cyclic data.
+    /// Cyclic data of one direction (IOCR).
     Iocr {
         /// IOCR type: 1 from the device, 2 to the device.
         kind: u16,
@@ -337,7 +337,7 @@ pub enum Response {
         /// Frame id.
         frame_id: u16,
     },
-    /// Alarms.
+    /// The alarm channels (alarm CR).
     AlarmCr {
         /// Alarm reference of the device.
         reference: u16,
@@ -348,7 +348,7 @@ pub enum Response {
     ModuleDiff(Vec<ModuleDiff>),
     /// Station name of the device.
     Name(String),
-    /// Another block.
+    /// A block of another type.
     Other(BlockType),
 }
 
@@ -418,7 +418,8 @@ impl Response {
             Self::Name(name) => {
                 out.u16(count16(name.len()));
                 out.put(name.as_bytes());
-                // Answers are padded to a multiple of four bytes. The header of six bytes counts.
+                // In an answer, a block is padded so that its length, with the header of six bytes, is a multiple of
+                // four bytes.
                 out.zeros((4 - (6 + out.bytes.len()) % 4) % 4);
                 BlockType::AR_SERVER
             }

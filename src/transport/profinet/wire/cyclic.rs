@@ -4,11 +4,13 @@ use super::{Reader, WireError, Writer};
 
 /// Data status of a running provider: primary, valid, run, no problem.
 pub const RUNNING: u8 = 0x35;
-/// Status bits for usable data. Primary, valid and run must be set; ignore must not be set.
+/// Status bits of usable data. The first mask (primary, valid, run) must be set, and the second mask (ignore) must not
+/// be set.
 const USABLE: (u8, u8) = (0x15, 0x80);
 /// Good provider or consumer status. Only the highest bit is checked.
 pub const GOOD: u8 = 0x80;
-/// Largest forward step of the cycle counter. A larger step means an old frame.
+/// Largest step of the cycle counter that counts as forward. The counter wraps around, so a larger step comes from an
+/// older frame.
 const FORWARD: u16 = 61_440;
 
 /// Payload of a cyclic frame.
@@ -20,7 +22,7 @@ pub struct Cyclic<'a> {
     pub counter: u16,
     /// Data status.
     pub status: u8,
-    /// Transfer status. It is not 0 if a switch detected damage.
+    /// Transfer status. It is not 0 if a switch detected damage to the frame.
     pub transfer: u8,
 }
 
@@ -46,7 +48,7 @@ impl<'a> Cyclic<'a> {
         out.bytes
     }
 
-    /// Whether the statuses of the frame allow the use of the data.
+    /// Whether the data status and the transfer status allow the use of the data.
     pub const fn is_usable(&self) -> bool {
         self.status & USABLE.0 == USABLE.0 && self.status & USABLE.1 == 0 && self.transfer == 0
     }

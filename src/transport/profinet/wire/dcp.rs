@@ -18,7 +18,7 @@ pub enum Service {
     Set,
     /// Finds stations.
     Identify,
-    /// A station announces itself.
+    /// A station announces that it has started.
     Hello,
 }
 
@@ -63,7 +63,7 @@ impl Setting {
     pub const INSTANCE: Self = Self(2, 7);
     /// Makes the station blink.
     pub const SIGNAL: Self = Self(5, 3);
-    /// Result of a Set.
+    /// Result of a Set request, in its answer.
     pub const RESPONSE: Self = Self(5, 4);
     /// Reset to factory settings.
     pub const RESET: Self = Self(5, 6);
@@ -71,7 +71,8 @@ impl Setting {
     pub const ALL: Self = Self(255, 255);
 }
 
-/// A block: a setting and its data. The first two bytes of the data are the qualifier or block info.
+/// A block: a setting and its data. The first two bytes of the data are the qualifier (in a request) or the block info
+/// (in an answer).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Block {
     /// The setting.
@@ -115,7 +116,7 @@ impl Block {
         Self::new(setting, &[&info.to_be_bytes(), value])
     }
 
-    /// Returns a block with the result of a Set.
+    /// Returns a block with the result of a Set; error 0 means success.
     pub fn response(setting: Setting, error: u8) -> Self {
         Self::new(Setting::RESPONSE, &[&[setting.0, setting.1, error]])
     }
@@ -130,7 +131,8 @@ pub struct Dcp {
     pub kind: Kind,
     /// Transaction id. The answer has the same transaction id as the request.
     pub xid: u32,
-    /// Time within which stations answer Identify, each after its own delay, in steps of 10 ms; 0 for other services.
+    /// Time within which stations answer an Identify request, in steps of 10 ms. Each station waits for its own delay.
+    /// 0 for other services.
     pub delay: u16,
     /// Blocks.
     pub blocks: Vec<Block>,
@@ -143,7 +145,8 @@ impl Dcp {
         Self { service: Service::Identify, kind: Kind::Request, xid, delay: 1, blocks }
     }
 
-    /// Creates a request that finds all stations. They answer within `delay` steps of 10 ms, each after its own delay.
+    /// Creates a request that finds all stations. They answer within `delay` steps of 10 ms, and each station waits for
+    /// its own delay.
     pub fn identify_all(xid: u32, delay: u16) -> Self {
         let blocks = vec![Block { setting: Setting::ALL, data: Vec::new() }];
         Self { service: Service::Identify, kind: Kind::Request, xid, delay, blocks }
@@ -253,7 +256,7 @@ impl Dcp {
         Ok(station)
     }
 
-    /// Decodes the results of a Set, or of settings that could not be read. Error 0 means success.
+    /// Decodes the results of a Set, and of settings that could not be read. Error 0 means success.
     pub fn outcomes(&self) -> Vec<(Setting, u8)> {
         let responses = self.blocks.iter().filter(|block| block.setting == Setting::RESPONSE);
         responses
@@ -273,7 +276,7 @@ fn read_blocks(reader: &mut Reader<'_>, is_list: bool) -> Result<Vec<Block>, Wir
         if !is_list {
             let length = usize::from(reader.u16("block length")?);
             data = reader.take(length, "block")?.to_vec();
-            // Some stations omit the padding of the last block.
+            // Some stations do not send the padding of the last block.
             if length % 2 == 1 && reader.left() > 0 {
                 reader.u8("padding")?;
             }
@@ -286,11 +289,11 @@ fn read_blocks(reader: &mut Reader<'_>, is_list: bool) -> Result<Vec<Block>, Wir
 /// IP address, mask and gateway.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct IpSuite {
-    /// IP address; 0.0.0.0 means none.
+    /// IP address; 0.0.0.0 means that the station has none.
     pub address: Ipv4Addr,
     /// Subnet mask.
     pub mask: Ipv4Addr,
-    /// Gateway; 0.0.0.0 or the own address of the station means none.
+    /// Gateway. 0.0.0.0, or the address of the station itself, means that there is none.
     pub gateway: Ipv4Addr,
 }
 
@@ -322,7 +325,7 @@ impl IpSuite {
     }
 }
 
-/// Origin of an IP address. It is coded in the block info.
+/// Origin of an IP address, as the block info codes it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct IpOrigin(
     /// Block info.
@@ -350,7 +353,7 @@ pub struct Station {
     pub kind: String,
     /// Vendor id and device id.
     pub id: Option<(u16, u16)>,
-    /// Role: bit 0 device, 1 controller, 2 multi-device, 3 supervisor.
+    /// Role bits: bit 0 device, bit 1 controller, bit 2 multi-device, bit 3 supervisor.
     pub role: u8,
     /// Alias: port name and name of the neighbor.
     pub alias: String,
@@ -383,7 +386,7 @@ pub fn describe_error(error: u8) -> &'static str {
     }
 }
 
-/// Checks a station name. The rules are the rules for host name labels in lower case.
+/// Checks a station name. The rules are those for host name labels in lower case.
 pub fn check_name(name: &str) -> Result<(), String> {
     if name.is_empty() || name.len() > 240 {
         return Err(format!("it has {} characters; 1 to 240 are allowed", name.len()));
@@ -435,7 +438,7 @@ mod tests {
         IpSuite { address, mask: Ipv4Addr::new(255, 255, 255, 0), gateway: address }
     }
 
-    /// First frame of a connection, from the worked example in the notes.
+    /// The first frame of a connection is from the worked example in the notes.
     #[test]
     fn a_station_is_looked_for_by_name() {
         let dcp = Dcp::identify(0x0100_0001, "yrcx-sim");
@@ -449,7 +452,7 @@ mod tests {
         assert_eq!(Dcp::parse(Frame::parse(&bytes).unwrap().payload), Ok(dcp));
     }
 
-    /// Answer of the station, from the worked example in the notes.
+    /// The answer of the station is from the worked example in the notes.
     #[test]
     fn a_station_says_who_it_is() {
         let bytes = hex(concat!(
@@ -468,7 +471,7 @@ mod tests {
         assert_eq!(Frame { payload: &dcp.emit(), ..frame }.emit(), bytes);
     }
 
-    /// Set and Get, from the worked example in the notes.
+    /// Set and Get are from the worked example in the notes.
     #[test]
     fn settings_are_set_and_read_as_in_the_example() {
         let cases = [

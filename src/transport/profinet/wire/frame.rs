@@ -17,9 +17,9 @@ const SHORTEST: usize = 60;
 pub mod id {
     use std::ops::RangeInclusive;
 
-    /// Unicast cyclic data, RT class 1 (class value 2).
+    /// Unicast cyclic data, RT class 1 (property value 2).
     pub const RT_CLASS_1: RangeInclusive<u16> = 0x8000..=0xBBFF;
-    /// Unicast cyclic data of older devices (class value 1).
+    /// Unicast cyclic data of older devices (property value 1).
     pub const RT_CLASS_1_LEGACY: RangeInclusive<u16> = 0xC000..=0xF7FF;
     /// High-priority alarm.
     pub const ALARM_HIGH: u16 = 0xFC01;
@@ -42,11 +42,11 @@ pub struct Frame<'a> {
     pub destination: Mac,
     /// Source.
     pub source: Mac,
-    /// VLAN tag, if present. A driver may have removed it.
+    /// VLAN tag; `None` if the frame has none. A network driver may also have removed the tag.
     pub tag: Option<u16>,
     /// Frame id.
     pub id: u16,
-    /// Payload, possibly with padding.
+    /// Payload, which may end with padding.
     pub payload: &'a [u8],
 }
 

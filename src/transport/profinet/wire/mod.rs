@@ -1,8 +1,8 @@
 //! PROFINET IO codec: Ethernet frames, DCP, RPC, blocks, records, cyclic data, alarms.
 //!
-//! Numbers are big-endian, except in the RPC header and its five NDR numbers: their byte order is a field of the
-//! datagram. The decoder accepts the messages of real devices and ignores reserved bytes. The encoder follows IEC
-//! 61158-6-10.
+//! Numbers are big-endian, except in the RPC header and its five NDR numbers. A field of the datagram gives the byte
+//! order of these numbers. The decoder accepts the messages of real devices and ignores reserved bytes. The encoder
+//! follows IEC 61158-6-10.
 
 use std::fmt;
 use std::str::FromStr;
@@ -168,7 +168,10 @@ fn count16(count: usize) -> u16 {
     u16::try_from(count).expect("lengths of messages are bounded where they are built")
 }
 
-/// Encodes a 32-bit length or count. Panics if the value does not fit.
+/// Encodes a 32-bit length or count.
+///
+/// # Panics
+/// If the value does not fit into 32 bits.
 fn count32(count: usize) -> u32 {
     u32::try_from(count).expect("lengths of messages are bounded where they are built")
 }

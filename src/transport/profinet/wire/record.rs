@@ -7,7 +7,7 @@ use super::{Reader, Uuid, WireError, Writer, count16, count32, text};
 pub mod index {
     /// I&M0: vendor, order number, serial number, versions.
     pub const IM0: u16 = 0xAFF0;
-    /// Modules that are really plugged in.
+    /// Modules that are really plugged into the device.
     pub const REAL_IDENTIFICATION: u16 = 0xF000;
     /// Log of ended connections.
     pub const LOGBOOK: u16 = 0xF830;
@@ -15,7 +15,7 @@ pub mod index {
     pub const MULTIPLE_WRITE: u16 = 0xE040;
 }
 
-/// Length of a record block before the data in bytes, without its header.
+/// Number of bytes in a record block between its header and the data.
 const FIXED: usize = 60;
 const BLOCK_HEADER: usize = 4;
 
@@ -24,9 +24,9 @@ const BLOCK_HEADER: usize = 4;
 pub struct Record {
     /// Sequence number in the connection.
     pub sequence: u16,
-    /// UUID of the connection; nil without a connection.
+    /// UUID of the connection. Nil if there is no connection.
     pub ar: Uuid,
-    /// API (profile); 0.
+    /// API (profile), always 0.
     pub api: u32,
     /// Slot.
     pub slot: u16,
@@ -68,7 +68,7 @@ impl Record {
         Ok((record, rest.get(..length).ok_or(short)?))
     }
 
-    /// Encodes the block and the data. `status` is the status of a Write answer, and 0 in all other blocks.
+    /// Encodes the block and the data. `status` is the status in a Write answer; it is 0 in all other blocks.
     pub fn emit(&self, kind: BlockType, status: u32, data: &[u8]) -> Vec<u8> {
         let mut out = Writer::default();
         out.u16(self.sequence);
@@ -79,7 +79,7 @@ impl Record {
         out.u16(0);
         out.u16(self.index);
         out.u32(self.length);
-        // Two additional values follow. In a Write answer, the second value is the status.
+        // Two more values follow. In a Write answer, the second value is the status.
         out.u32(0);
         out.u32(status);
         out.zeros(FIXED - 2 - out.bytes.len());
@@ -237,13 +237,13 @@ impl Im0 {
         let (prefix, major, minor, patch) = self.software;
         out.put(&[u8::try_from(prefix).unwrap_or(b'V'), major, minor, patch]);
         out.u16(self.revision);
-        // The last fields: no profile, I&M version 1.1, no I&M1 to I&M4.
+        // The last fields of the record: no profile, I&M version 1.1, no I&M1 to I&M4.
         out.put(&[0, 0, 0, 0, 1, 1, 0, 0]);
         block::emit(BlockType::IM0, &out.bytes)
     }
 }
 
-/// A module that is really plugged in.
+/// A module that is really plugged into the device.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RealModule {
     /// Slot.

@@ -1,4 +1,4 @@
-//! Codec for connectionless RPC (DCE 1.1, version 4) on UDP port 34964, with the NDR header of the blocks.
+//! Codec for connectionless RPC (DCE 1.1, version 4) on UDP port 34964. It includes the NDR header before the blocks.
 
 use super::{ByteOrder, Reader, Uuid, WireError, Writer, count16, count32};
 
@@ -6,7 +6,7 @@ use super::{ByteOrder, Reader, Uuid, WireError, Writer, count16, count32};
 pub const PORT: u16 = 34964;
 /// Length of the RPC header.
 pub const HEADER_LEN: usize = 80;
-/// Length of the five NDR numbers.
+/// Length of the five NDR numbers in bytes.
 const NDR_LEN: usize = 20;
 /// Buffer size for an answer. It is large enough for all calls.
 pub const ROOM: u32 = 4096;
@@ -16,7 +16,7 @@ pub const MOST: usize = 65_536;
 /// Packet type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Kind(
-    /// The code.
+    /// Code of the packet type.
     pub u8,
 );
 
@@ -43,13 +43,13 @@ impl Kind {
 
 /// Flags of the header.
 pub mod flag {
-    /// Last fragment.
+    /// The datagram is the last fragment.
     pub const LAST_FRAGMENT: u8 = 0x02;
-    /// Fragment.
+    /// The datagram is a fragment.
     pub const FRAGMENT: u8 = 0x04;
-    /// The fragment needs no acknowledgement.
+    /// The receiver must not acknowledge the fragment.
     pub const NO_ACK: u8 = 0x08;
-    /// The call can be repeated.
+    /// The call can be repeated without harm.
     pub const IDEMPOTENT: u8 = 0x20;
 }
 
@@ -216,7 +216,7 @@ impl<'a> Call<'a> {
 pub struct Reply<'a> {
     /// Status; 0 is success. See [`super::status`].
     pub status: u32,
-    /// Buffer size from the call.
+    /// Size of the buffer for the answer, copied from the call.
     pub room: u32,
     /// The blocks.
     pub blocks: &'a [u8],
@@ -228,7 +228,7 @@ impl<'a> Reply<'a> {
         let mut reader = Reader::big(body);
         reader.order = order;
         let status = reader.u32("PNIOStatus")?;
-        // A refusal may end after its status.
+        // In a refusal, the bytes after the status may be missing.
         if status != 0 && body.len() < NDR_LEN {
             return Ok(Self { status, room: 0, blocks: &[] });
         }
@@ -291,7 +291,7 @@ mod tests {
 
     const BLOCKS: [u8; 394] = [7; 394];
 
-    /// Header of Connect and its NDR numbers, from the worked example in the notes.
+    /// The header of Connect and its NDR numbers are from the worked example in the notes.
     #[test]
     fn headers_in_both_orders_are_as_printed() {
         let big = hex(concat!(
@@ -315,7 +315,7 @@ mod tests {
         }
     }
 
-    /// The answer, from the worked example in the notes.
+    /// The answer is from the worked example in the notes.
     #[test]
     fn answers_begin_with_their_status() {
         let body = Reply { status: 0, room: ROOM, blocks: &BLOCKS[..0x56] }.emit(ByteOrder::Big);

@@ -5,14 +5,14 @@ use std::fmt;
 /// Error code of a device (PNIOStatus).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Status(
-    /// The bytes, from the highest: error code, decode, code 1, code 2.
+    /// The four bytes of the status, from the highest byte: error code, decode, code 1, code 2.
     pub u32,
 );
 
 /// Names of the fields of a block, by code 2.
 type Fields = &'static [(u8, &'static str)];
 
-/// Names of the blocks by code 1, each with its fields by code 2.
+/// Names of the blocks, by code 1. Each block has its fields, by code 2.
 const BLOCKS: [(u8, &str, Fields); 8] = [
     (
         0x01,
@@ -205,17 +205,17 @@ impl Status {
         self.0.to_be_bytes()
     }
 
-    /// Whether the device has no free connection.
+    /// Whether the device refused because it has no free connection.
     pub const fn is_owned(self) -> bool {
         matches!(self.parts(), [_, 0x81, 0x40, 0x04])
     }
 
-    /// Whether the connection does not exist in the device any more.
+    /// Whether the device refused because it does not have this connection.
     pub const fn is_unknown_ar(self) -> bool {
         matches!(self.parts(), [_, 0x81, 0x40, 0x05])
     }
 
-    /// Name of the call or alarm that was refused.
+    /// Name of the refused call or alarm.
     pub const fn call(self) -> &'static str {
         match self.parts()[0] {
             0xDB => "Connect",
@@ -267,7 +267,7 @@ impl Status {
 }
 
 impl fmt::Display for Status {
-    /// Writes the text and the four codes. The codes are included, because some devices number the fields differently.
+    /// Writes the text and the four codes. The codes are included because some devices use other field numbers.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [code, decode, code1, code2] = self.parts();
         if let Some(meaning) = self.meaning() {

@@ -57,7 +57,7 @@ fn module(slot: u16, ident: u32, submodules: Vec<ExpectedSubmodule>) -> Request 
     Request::Expected(vec![ExpectedModule { api: 0, slot, ident, submodules }])
 }
 
-/// Blocks of Connect, from the worked example in the notes.
+/// The blocks of Connect are from the worked example in the notes.
 fn example() -> (Vec<Request>, Vec<u8>) {
     let requests = vec![
         Request::Ar(Ar {
@@ -127,7 +127,7 @@ fn the_answer_to_connect_is_as_in_the_example() {
     assert_eq!(responses.iter().flat_map(Response::emit).collect::<Vec<_>>(), bytes);
 }
 
-/// Frames from the worked example and from the section on cyclic frames in the notes.
+/// The frames are from the worked example, and from the section on cyclic frames in the notes.
 #[test]
 fn cyclic_frames_are_as_in_the_example() {
     let image = [7; 48];
@@ -302,7 +302,8 @@ fn recorded_calls_are_read_and_written_back() {
                 let (outer, parameters) = record::parse_write(call.blocks).unwrap();
                 assert_eq!((outer.index, parameters.len()), (index::MULTIPLE_WRITE, 4));
                 assert_eq!((parameters[1].slot, parameters[1].index, parameters[1].data.len()), (3, 0x7B, 4));
-                // The length in the outer block is correct, so the encoded call equals the recorded call.
+                // The length in the outer block is correct, so the call that is encoded again must equal the recorded
+                // call.
                 assert_eq!(record::write(outer.ar, outer.sequence, &parameters), call.blocks);
             }
             _ => {
@@ -326,7 +327,7 @@ fn recorded_alarms_are_read_and_written_back() {
         let bytes = recorded(name);
         let frame = Frame::parse(&bytes).unwrap();
         let rta = Rta::parse(frame.payload).unwrap();
-        // The recording contains the frames of a device before the network card pads them.
+        // The recording contains the frames of a device as they are before the network card pads them.
         assert_eq!(Frame { payload: &rta.emit(), ..frame }.emit()[..bytes.len()], bytes, "{name}");
         let Pdu::Data(data) = &rta.pdu else { panic!("{name}: {rta:?}") };
         if is_alarm {
@@ -414,7 +415,7 @@ proptest! {
         read_as_everything(&bytes);
     }
 
-    /// Real frames with one changed byte, or cut. The decoders process more of them than of random bytes.
+    /// Real frames, with one changed byte or cut. The decoders read more of such a frame than of random bytes.
     #[test]
     fn damaged_messages_are_read_without_a_panic(at in 0usize..700, value in any::<u8>(), cut in 0usize..700, which in 0usize..5) {
         let name = ["connect_req", "connect_res", "write_req", "alarm_diag_notif", "im0_read_res"][which];

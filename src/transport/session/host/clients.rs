@@ -11,12 +11,12 @@ use tokio::time::{Instant, timeout_at};
 use crate::session::socket::{ReadHalf, WriteHalf};
 use crate::session::wire::{Change, Control, Frame, Peer, Purpose, Reader};
 
-/// Number of a client and a frame of it; `None` when the client is gone.
+/// Number of a client, and a frame from this client. The frame is `None` when the client has disconnected.
 pub type ClientFrame = (u64, Option<Frame>);
 
-/// Maximum number of frames that wait for a client. Above it, the client is removed.
+/// Maximum number of frames that wait for a client. If more frames wait, the host removes the client.
 const MAX_QUEUE: usize = 1024;
-/// Time limit for the Hello of a client.
+/// Time limit for the Hello frame of a new client.
 const HELLO_WITHIN: Duration = Duration::from_secs(3);
 /// Time limit for the last frame to a client.
 const LAST_FRAME_WITHIN: Duration = Duration::from_millis(300);
@@ -36,11 +36,11 @@ pub struct Client {
     pub has_left: bool,
     /// Last will: the change to send if the client is killed.
     pub will: Option<Change>,
-    /// Time when the client connected.
+    /// Time at which the client connected.
     pub since: Instant,
-    /// Time when the client got the line.
+    /// Time at which the client got the line.
     pub line_since: Instant,
-    /// Time when the client was allowed to move the robot.
+    /// Time at which the client was allowed to move the robot.
     pub motion_since: Instant,
 }
 
@@ -96,7 +96,7 @@ impl Client {
     /// Sends a last frame. The connection stays open until the client is dropped.
     pub async fn dismiss(&self, control: Control) {
         self.send_control(control);
-        // A client that does not read must not delay the end of the session.
+        // The wait has a time limit, so that a client that does not read cannot delay the end of the session.
         let _ = timeout_at(Instant::now() + LAST_FRAME_WITHIN, self.outbox.wait_until_written()).await;
     }
 }
@@ -108,7 +108,7 @@ impl Drop for Client {
     }
 }
 
-/// Milliseconds since a time.
+/// Milliseconds that have passed after a time.
 pub fn milliseconds(since: Instant) -> u64 {
     u64::try_from(since.elapsed().as_millis()).unwrap_or(u64::MAX)
 }
@@ -116,8 +116,8 @@ pub fn milliseconds(since: Instant) -> u64 {
 async fn read_all(id: u64, mut reader: Reader, inbox_sender: mpsc::Sender<ClientFrame>) {
     let mut is_named = false;
     loop {
-        // After its Hello, a client may be silent. Before its Hello, a client has a time limit, because it occupies a
-        // place.
+        // A client has a time limit for its Hello, because it occupies one of the places for clients. After its Hello,
+        // it may be silent.
         let deadline = Instant::now() + HELLO_WITHIN;
         let frame =
             if is_named { reader.next().await } else { timeout_at(deadline, reader.next()).await.unwrap_or(Ok(None)) };
@@ -139,7 +139,7 @@ async fn write_all(socket: WriteHalf, outbox: Arc<Outbox>) {
             frame.emit(&mut bytes);
         }
         while !bytes.is_empty() {
-            // The client is gone; the reading task reports that.
+            // An error means that the client has disconnected. The reading task reports this.
             if socket.writable().await.is_err() {
                 return;
             }
@@ -158,12 +158,12 @@ async fn write_all(socket: WriteHalf, outbox: Arc<Outbox>) {
     }
 }
 
-/// Queue of frames to a client. If several images are queued in a row, only the newest is sent.
+/// Queue of frames to a client. Of several images in a row, only the newest is sent.
 #[derive(Debug, Default)]
 struct Outbox {
     queue: Mutex<Queue>,
     changed: Notify,
-    /// Signal that all frames are written.
+    /// Notified when all frames are written.
     empty: Notify,
 }
 
@@ -171,7 +171,7 @@ struct Outbox {
 struct Queue {
     frames: VecDeque<Frame>,
     is_closed: bool,
-    /// Whether frames taken from the queue are being written.
+    /// Whether frames that were taken from the queue are being written.
     is_writing: bool,
 }
 

@@ -19,9 +19,9 @@ use super::wire::{
     Broken, Change, Control, Frame, Hello, Info, Leftover, Peer, Purpose, Status, VERSION, Welcome, shorten,
 };
 
-/// Capacity of the queue of received frames.
+/// Maximum number of received frames in the queue.
 const INBOX_SIZE: usize = 64;
-/// Time during which the line is reserved for the client that stops the robot.
+/// Time during which the line is reserved for a client that stops the robot.
 const STOP_FIRST: Duration = Duration::from_secs(10);
 const MAX_CLIENTS: usize = 64;
 
@@ -36,31 +36,33 @@ pub struct Host {
     last: u64,
     inbox: mpsc::Receiver<ClientFrame>,
     inbox_sender: mpsc::Sender<ClientFrame>,
-    /// Client that owns the line, and the queue of the clients that wait for it.
+    /// Client that owns the line. The field below is the queue of the clients that wait for the line.
     line: Option<u64>,
     queue: VecDeque<(u64, u32)>,
     /// Client that moves the robot.
     motion: Option<u64>,
-    /// Clients whose images were not sent yet.
+    /// Clients that have sent images which the link has not sent yet.
     awaiting_sent: Vec<u64>,
     leftover: Option<(Leftover, Instant)>,
     started: Instant,
     reopenings: u32,
     /// Function that logs an event.
     log: Box<dyn FnMut(&str)>,
-    /// Filter for a read-only robot.
+    /// Filter that is used for a read-only robot.
     lock: Option<Lock>,
-    /// Function that stops the robot after the client that moved it was killed. Its argument is the reason.
+    /// Function that stops the robot after the client that moved it was killed. The argument of the function is the
+    /// reason.
     stop: Option<Stop>,
     /// Until this time, only a client that stops the robot gets the line.
     stop_first: Option<Instant>,
-    /// Function that is called when the need to guard a motion changes, and the last value passed to it.
+    /// Function that is called when the need to guard a motion changes. The field below is the value that was passed
+    /// last.
     guard: Option<GuardSwitch>,
     is_guarded: bool,
     /// Whether the link was lost while a client moved the robot.
     was_lost_in_motion: bool,
-    /// Time without clients after which the session ends (`None`: never), and the time since which there are no
-    /// clients.
+    /// Time without clients after which the session ends; `None` if it never ends. The field below is the time since
+    /// which there are no clients.
     idle: Option<Duration>,
     idle_since: Instant,
 }
@@ -77,23 +79,23 @@ pub enum EndReason {
 /// Filter for a read-only device.
 #[derive(Debug, Clone, Copy)]
 pub struct Guard {
-    /// Whether these bytes may be sent.
+    /// Whether these bytes may be sent while the robot is read-only.
     pub is_harmless_data: fn(&[u8]) -> bool,
-    /// Whether the second image may replace the first image.
+    /// Whether the second image may replace the first image while the robot is read-only.
     pub is_harmless_image: fn(&[u8], &[u8]) -> bool,
 }
 
-/// Function that stops the robot. Its argument is the reason.
+/// Function that stops the robot. The argument is the reason.
 type Stop = Box<dyn FnMut(&str)>;
-/// Function that is called with `true` while the motion of a client must be stopped when this process ends. Its error
-/// is a text.
+/// Function that is called with `true` while this process, when it ends, must stop the motion of a client. With
+/// `false`, this is no longer necessary. The error is a text.
 type GuardSwitch = Box<dyn FnMut(bool) -> Result<(), String>>;
 
 /// Read-only filter, and whether it is active.
 struct Lock {
     guard: Guard,
     is_locked: bool,
-    /// Function that checks whether the filter must become active now.
+    /// Function that checks whether the robot has become read-only.
     is_read_only: Box<dyn FnMut() -> Result<bool, String>>,
 }
 
@@ -136,8 +138,8 @@ impl Host {
         })
     }
 
-    /// Installs a read-only filter. `is_read_only` is called before every frame that changes something. After it has
-    /// returned `true` for the first time, the filter stays active for the rest of the session.
+    /// Installs a read-only filter. `is_read_only` is called before every frame that changes something. When it has
+    /// returned `true` once, the filter stays active until the session ends.
     #[must_use]
     pub fn with_read_only_check(
         self,
@@ -154,8 +156,8 @@ impl Host {
         Self { stop: Some(Box::new(stop)), ..self }
     }
 
-    /// Sets the guard function. It is called with `true` while this process must stop the motion of a client of another
-    /// process at its end.
+    /// Sets the guard function. It is called with `true` while this process, when it ends, must stop the motion of a
+    /// client of another process.
     #[must_use]
     pub fn with_guard(self, guard: impl FnMut(bool) -> Result<(), String> + 'static) -> Self {
         Self { guard: Some(Box::new(guard)), ..self }
@@ -167,8 +169,8 @@ impl Host {
         Self { idle, ..self }
     }
 
-    /// Serves clients until one of them closes the session, or until the idle time has passed. Cancel safe: the caller
-    /// can continue with [`Host::end`].
+    /// Serves clients until one of them closes the session, or until the idle time has passed. The future is cancel
+    /// safe: the caller can continue with [`Host::end`].
     pub async fn serve(&mut self) -> EndReason {
         loop {
             let idle = self.idle.filter(|_| self.clients.is_empty()).map(|idle| self.idle_since + idle);
@@ -204,8 +206,7 @@ impl Host {
         drop(self.listener);
         join_all(self.clients.values().map(|client| client.dismiss(Control::Ended(why.to_owned())))).await;
         let closed = self.link.close().await;
-        // The connections are closed last, because a client that closes the session waits for the end of its
-        // connection.
+        // The connections are closed last: a client that closes the session waits until its connection ends.
         drop(self.claim);
         drop(self.clients);
         closed
@@ -230,7 +231,7 @@ impl Host {
             Frame::Control(Control::Hello(hello)) => self.welcome(id, &hello),
             Frame::Control(Control::Ask) => self.send_status(id),
             Frame::Control(Control::Close { force }) => return self.answer_close(id, force),
-            // All other frames are valid only after a Hello.
+            // Before its Hello, a client may send no other frame.
             _ if !is_named => self.remove_client(id),
             Frame::Control(Control::Bye) => client.has_left = true,
             Frame::Control(Control::Will(will)) => client.will = will,
@@ -247,7 +248,8 @@ impl Host {
                     let change = images.change(change, has_line)?;
                     Some((images.shown != before, images.is_clear(), change))
                 });
-                // A change from before a loss is dropped. The client has already received a report of the loss.
+                // `None` means that the change is from before a loss and was dropped. In this case, the client has
+                // already received a report of the loss.
                 if let Some((is_new, is_clear, change)) = changed {
                     if is_clear {
                         self.leftover = None;
@@ -265,7 +267,8 @@ impl Host {
                     self.send_error(id, &error);
                 }
             }
-            // Data of a client that does not own the line is dropped, and so are frames that only a host may send.
+            // All other frames are dropped: data of a client that does not own the line, and frames that only a host
+            // may send.
             _ => {}
         }
         false
@@ -278,8 +281,8 @@ impl Host {
         self.is_allowed(|guard| (guard.is_harmless_image)(&before, &after))
     }
 
-    /// Whether a frame may be passed on. Reads and stops always pass; other frames pass only if the robot is not
-    /// read-only.
+    /// Whether a frame may be passed on. Reads and stop commands may always pass. All other frames may pass only if the
+    /// robot is not read-only.
     fn is_allowed(&mut self, is_harmless: impl Fn(&Guard) -> bool) -> bool {
         let Some(lock) = &mut self.lock else { return true };
         if is_harmless(&lock.guard) {
@@ -338,7 +341,7 @@ impl Host {
         };
         let Some(client) = self.clients.get_mut(&id) else { return };
         if let Some(why) = refused {
-            // The refusal is sent before the connection closes.
+            // The refusal is sent before the connection is closed.
             client.send_control(Control::Refused(why));
             self.remove_client(id);
             return;
@@ -370,7 +373,7 @@ impl Host {
 
     fn serve_queue(&mut self) {
         while self.line.is_none() {
-            // A client that stops the robot gets the line first, independent of its place in the queue.
+            // A client that stops the robot gets the line first, whatever its place in the queue is.
             let first = self.queue.front().map(|(id, _)| *id);
             if self.stop_first.is_some() && !first.is_some_and(|id| self.is_stop(id)) {
                 return;
@@ -391,7 +394,8 @@ impl Host {
         self.clients.get(&id).is_some_and(|client| client.purpose == Purpose::Stop)
     }
 
-    /// Starts a stop of the robot. The current owner loses the line, and only a stop gets the line next.
+    /// Starts a stop of the robot. The current owner loses the line. The next owner must be a client that stops the
+    /// robot.
     fn start_stop(&mut self, why: &str) {
         let Some(stop) = &mut self.stop else { return };
         stop(why);
@@ -404,7 +408,7 @@ impl Host {
         self.serve_queue();
     }
 
-    /// Removes the line from a client that releases or loses it, and removes the client from the queue.
+    /// Takes the line from a client that releases or loses it, and removes the client from the queue.
     fn release(&mut self, id: u64) {
         self.queue.retain(|(other, _)| *other != id);
         self.link.pause(id);
@@ -433,8 +437,8 @@ impl Host {
         }
     }
 
-    /// Updates the guardian of this process. An image link needs no guardian, because the device stops by itself after
-    /// a loss. A client in this process has its own guardian.
+    /// Updates the guardian, which stops the robot if this process ends. An image link needs no guardian, because the
+    /// device stops by itself after a loss. A client in this process has its own guardian.
     fn update_guard(&mut self) {
         let mover = self.motion.and_then(|id| self.clients.get(&id));
         let is_foreign = |mover: &Client| mover.peer(mover.since).pid != std::process::id();
@@ -451,8 +455,8 @@ impl Host {
         }
     }
 
-    /// Removes a client, and releases everything that it owned. Its changes of the image stay. If the client was
-    /// killed, its last will is sent.
+    /// Removes a client, and releases everything that the client owned. Its changes of the image stay. If the client
+    /// was killed, the host sends its last will.
     fn remove_client(&mut self, id: u64) {
         let Some(client) = self.clients.remove(&id) else { return };
         self.idle_since = Instant::now();
@@ -497,8 +501,8 @@ impl Host {
         self.serve_queue();
     }
 
-    /// Whether the robot may still move without the client. On an image link, this is so if the client left a command
-    /// active.
+    /// Whether the robot may still move after its client has ended. On an image link, it moves only if the client left
+    /// a command active.
     fn may_be_moving(&mut self, leaves_command: bool) -> bool {
         leaves_command || self.link.images().is_none()
     }
@@ -561,7 +565,7 @@ impl Host {
             }
             LinkEvent::Image(image) => self.broadcast(|| Frame::Image(image.to_vec())),
             LinkEvent::Data { to, channel, bytes } => {
-                // Data that no client expects is dropped.
+                // Data that no client is waiting for is dropped.
                 if let Some(client) = to.or(self.line).and_then(|id| self.clients.get(&id)) {
                     client.send(Frame::Data { channel, bytes });
                 }
@@ -571,7 +575,7 @@ impl Host {
                 (self.log)(&format!("the connection was lost: {why}; armctl opens it again"));
                 self.awaiting_sent.clear();
                 let mover = self.motion.and_then(|id| self.clients.get(&id));
-                // With an image link, the device stops by itself after a loss.
+                // On an image link, the device stops by itself after a loss.
                 self.was_lost_in_motion |=
                     mover.is_some_and(|mover| mover.purpose != Purpose::LeavesMotion) && self.link.images().is_none();
                 if self.leftover.take().is_some() {

@@ -29,7 +29,7 @@ pub enum SharedLink {
 /// Event of the link.
 #[derive(Debug)]
 pub enum LinkEvent {
-    /// All images of clients were sent.
+    /// All images that clients have sent to the host were sent to the device.
     Sent,
     /// A new image of the device.
     Image(Arc<[u8]>),
@@ -39,7 +39,7 @@ pub enum LinkEvent {
     Reopened,
     /// Received bytes for a client.
     Data {
-        /// The client; `None` means the owner of the line.
+        /// The client for which the bytes are; `None` means the owner of the line.
         to: Option<u64>,
         /// Channel of the device.
         channel: u8,
@@ -48,14 +48,14 @@ pub enum LinkEvent {
     },
     /// Receiving from the device failed.
     Broken {
-        /// The client that expects the answer.
+        /// The client that waits for the answer.
         to: u64,
         /// The error.
         error: io::Error,
     },
 }
 
-/// A time longer than any wait.
+/// A time that is longer than any wait.
 const NO_DEADLINE: Duration = Duration::from_secs(3600);
 /// Size of the receive buffer: larger than any frame of a controller, so that oversized datagrams are detected.
 const BUFFER: usize = 4096;
@@ -69,7 +69,7 @@ const BACKOFF: [Duration; 5] = [
 ];
 
 impl SharedLink {
-    /// Waits for the next event. Cancel safe.
+    /// Waits for the next event. The future is cancel safe.
     pub async fn next(&mut self) -> LinkEvent {
         match self {
             Self::Images(images) => images.next().await,
@@ -95,19 +95,20 @@ impl SharedLink {
         }
     }
 
-    /// Prepares the link for the next owner of the line. Bytes that arrived before are dropped.
+    /// Prepares the link for the next owner of the line. Bytes of a stream that have already arrived are dropped.
     pub fn begin(&mut self) {
         if let Self::Stream(Line { stream: Some(stream), .. }) = self {
             stream.discard();
         }
     }
 
-    /// Whether several clients can use this channel at the same time. A file transfer must not delay a stop.
+    /// Whether several clients can use this channel at the same time. This is possible for the file channel, so that a
+    /// file transfer does not delay a stop.
     pub fn is_parallel(&self, channel: u8) -> bool {
         matches!(self, Self::Datagrams(Datagrams { carrier: Carrier::Udp(_), .. })) && channel > 0
     }
 
-    /// Stops to receive for a client that expects no more answers.
+    /// Stops receiving for a client that waits for no more answers.
     pub fn pause(&mut self, client: u64) {
         if let Self::Datagrams(datagrams) = self {
             datagrams.expecting.remove(&client);
@@ -153,20 +154,19 @@ impl SharedLink {
     }
 }
 
-/// Rules for images. With these rules, the host need not interpret the images.
+/// Rules for images. Because of these rules, the host need not interpret the images.
 #[derive(Debug, Clone)]
 pub struct Rules {
     /// Whether the link can send images.
     pub is_owner: bool,
-    /// Size of the exclusive part: the number of bytes, from the start of the image, that only the owner of the line
-    /// can change.
+    /// Size of the exclusive part in bytes. This part is at the start of the image, and only the owner of the line can
+    /// change it.
     pub exclusive: usize,
-    /// Size of the command part: the number of bytes, from the start of the image, that are 0 while no command is
-    /// active.
+    /// Size of the command part in bytes. This part is at the start of the image, and is 0 while no command is active.
     pub command: usize,
-    /// First image.
+    /// Image that is sent first.
     pub resting: Vec<u8>,
-    /// Function that computes the image after a loss from the image before the loss.
+    /// Function that returns the image to send after a loss. Its argument is the image from before the loss.
     pub after_loss: fn(&[u8]) -> Vec<u8>,
     /// Function that returns whether the robot is moving. Its arguments are the output image and the input image.
     pub is_moving: fn(&[u8], &[u8]) -> bool,
@@ -233,8 +233,8 @@ impl Images {
         }
     }
 
-    /// Applies a change of a client. If the client does not own the line, the exclusive part is not changed. Returns
-    /// the change that was applied. `None` if the change cannot be applied, for example because it is from before a
+    /// Applies a change of a client. If the client does not own the line, the exclusive part stays unchanged. Returns
+    /// the change that was applied, or `None` if the change cannot be applied, for example because it is from before a
     /// loss.
     pub fn change(&mut self, mut change: Change, has_line: bool) -> Option<Change> {
         if change.generation != self.generation || self.down.is_some() || !self.rules.is_owner {
@@ -250,12 +250,12 @@ impl Images {
 
     fn set_output(&mut self) {
         if self.rules.is_owner {
-            // An error is ignored: the size was checked with the first image, and `next` reports a loss.
+            // An error is ignored. The size was checked with the first image, and `next` reports a loss.
             let _ = self.link.set_output(&self.shown);
         }
     }
 
-    /// Whether no command is active.
+    /// Whether the image contains no active command.
     pub fn is_clear(&self) -> bool {
         self.shown.iter().take(self.rules.command).all(|byte| *byte == 0)
     }
@@ -280,7 +280,7 @@ impl Images {
 pub struct Datagrams {
     carrier: Carrier,
     sockets: BTreeMap<u64, Udp>,
-    /// Clients that expect an answer, each with the channel of the answer.
+    /// Clients that wait for an answer, each with the channel of the answer.
     expecting: BTreeMap<u64, u8>,
 }
 
@@ -351,7 +351,7 @@ impl Datagrams {
         match received {
             Ok(bytes) => LinkEvent::Data { to: Some(to), channel, bytes },
             Err(error) => {
-                // After an error, nothing is received for this client until its next send.
+                // After an error, the host receives nothing for this client until the client sends again.
                 self.expecting.remove(&to);
                 LinkEvent::Broken { to, error }
             }
@@ -379,7 +379,7 @@ pub struct Line {
     stream: Option<Stream<Box<dyn Peer + Send>>>,
     open: Box<dyn Fn() -> Opening>,
     opening: Option<Opening>,
-    /// Time of the next attempt, and the number of failed attempts.
+    /// Time of the next attempt to open the stream. The field below is the number of failed attempts.
     due: Instant,
     tries: usize,
     down: Option<String>,
@@ -410,7 +410,8 @@ impl Line {
                         return LinkEvent::Data { to: None, channel: 0, bytes: buffer[..length].to_vec() };
                     }
                     Err(error) => {
-                        // A serial port of this computer can be opened again only after this handle is dropped.
+                        // The handle is dropped here, because a serial port of this computer cannot be opened a second
+                        // time while the handle exists.
                         self.stream = None;
                         self.down = Some(error.to_string());
                         (self.tries, self.due) = (0, Instant::now() + BACKOFF[0]);

@@ -17,7 +17,7 @@ use crate::sim;
 use crate::stream::Stream;
 use crate::tcp::Tcp;
 
-/// Echo peer for images.
+/// Echo peer that exchanges images.
 #[derive(Debug, Default)]
 struct Mirror(Vec<u8>);
 
@@ -35,7 +35,7 @@ impl ImagePeer for Mirror {
     }
 }
 
-/// Echo peer for datagrams.
+/// Echo peer that exchanges datagrams.
 #[derive(Debug, Default)]
 struct Echo(VecDeque<(usize, Vec<u8>)>);
 
@@ -120,7 +120,7 @@ async fn the_exclusive_part_is_one_clients_and_bits_are_everybodys() {
         assert_eq!(mover.output().unwrap(), [0, 0, 0x41]);
         mover.acquire(soon()).await.unwrap();
         shows(&mut mover, &[7, 8, 0x41]).await;
-        // The client does not own the line, so only shared bits are changed.
+        // The client does not own the line, so only the bits that all clients share are changed.
         shows(&mut other, &[9, 9, 0x01]).await;
         sees(&mut mover, &[7, 8, 0x01]).await;
         assert_eq!(mover.output().unwrap(), [7, 8, 0x01], "it knows of the bit that went off");
@@ -141,7 +141,7 @@ async fn the_line_and_motion_have_one_owner() {
         assert!(matches!(second.claim_motion().await, Err(SessionBusy::Moved(peer)) if peer.command == "first"));
         let busy = second.acquire(Instant::now() + Duration::from_millis(20)).await;
         assert!(matches!(busy, Err(SessionBusy::Busy(Some(peer))) if peer.command == "first"));
-        // A request that timed out is dropped; a new request gets the line.
+        // The request that timed out was dropped. A new request gets the line.
         first.release();
         first.acquire(soon()).await.unwrap();
         let waiting = status(&location).await.unwrap().unwrap();
@@ -255,8 +255,8 @@ async fn who_does_not_say_who_he_is_takes_up_no_place() {
     served(&mut host, async {
         let silent: Vec<_> = (0..MAX_CLIENTS).map(|_| told(&location, &[])).collect();
         let asking = told(&location, &[Control::Ask]);
-        // The first clients are accepted, and removed later because they send no Hello. After that, there is a free
-        // place.
+        // The host accepts the first clients, and later removes them because they send no Hello. After that, there is a
+        // free place.
         let (all, _) = tokio::join!(join_all(silent), async {
             tokio::time::sleep(Duration::from_secs(1)).await;
             asking.await
@@ -323,7 +323,8 @@ async fn after_a_loss_in_motion_the_stop_goes_before_all_else() {
         mover.acquire(soon()).await.unwrap();
         mover.send(0, b"go").await.unwrap();
         line.read_exact(&mut [0; 2]).await.unwrap();
-        // Another client waits for the line when the link is lost. The client that stops the robot arrives last.
+        // Another client waits for the line when the link is lost. The client that stops the robot comes to the queue
+        // last.
         let read = async {
             reader.acquire(soon()).await.unwrap();
             reader.send(0, b"read").await.unwrap();

@@ -86,7 +86,7 @@ pub fn metrics_of_poll(look: &PollResult, kinds: &[Kind], also: &[ExtraTopic]) -
     metrics
 }
 
-/// A metric, with a unit if its name has one.
+/// A metric, with a unit if its name shows a unit.
 fn metric(name: &str, kind: DataType, value: Option<Value>) -> Metric {
     let mut metric = Metric::new();
     metric.set_name(name.to_owned()).set_datatype(kind);

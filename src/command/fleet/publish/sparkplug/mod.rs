@@ -1,8 +1,9 @@
 //! Sparkplug B node (Sparkplug 3.0.0) whose devices are robots.
 //!
-//! The node is born when it is connected and its primary host, if one is set, is online. A robot is born when it
-//! answers, and dies when it does not. Data from times without a connection is sent later as history. The only accepted
-//! command is a rebirth request. Nothing from the broker reaches a robot.
+//! The node sends its birth message (the list of its values) when it is connected and its primary host, if one is set,
+//! is online. A robot gets a birth message when it answers, and a death message when it does not answer. Data from
+//! times without a connection is sent later as history. The only accepted command is a rebirth request. Nothing from
+//! the broker reaches a robot.
 
 mod metrics;
 #[cfg(test)]
@@ -27,7 +28,7 @@ use crate::command::fleet::poll::{Event, PollResult};
 use armctl_frame::output::log::Level;
 use armctl_frame::settings::Robot;
 
-/// Minimum time between two births at the request of a host.
+/// Minimum time between two births that a host requests.
 const BIRTHS_MS: u64 = 1000;
 
 mod kind {
@@ -46,7 +47,7 @@ struct Device {
     metrics: BTreeMap<String, (u64, Metric)>,
     /// Whether the robot answers.
     is_up: bool,
-    /// Whether hosts consider it online.
+    /// Whether hosts consider the device online.
     is_born: bool,
     /// Time of the last message with all values.
     data_sent_ms: u64,
@@ -74,12 +75,13 @@ pub struct Node {
     kinds: Vec<Kind>,
     also: Rc<[ExtraTopic]>,
     every_ms: u64,
-    /// bdSeq of this connection and of the next one.
+    /// `bdSeq` (the number that a birth message and its death message have in common) of this connection and of the
+    /// next connection.
     bd_seq: (u8, u8),
     remember: Remember,
     /// Sequence number of the next message.
     seq: u8,
-    /// Number of births.
+    /// Number of birth messages so far.
     epoch: u64,
     is_connected: bool,
     is_born: bool,
@@ -140,7 +142,7 @@ impl Node {
         self.with_sequence(topic, metrics, now_ms)
     }
 
-    /// NDEATH message; it has the bdSeq of its birth and no sequence number.
+    /// NDEATH message. It has the `bdSeq` of the birth message of its connection, and no sequence number.
     fn death(&self, now_ms: u64) -> Message {
         let metrics = vec![bd_seq(self.bd_seq.0, now_ms)];
         let payload = Payload { timestamp: Some(now_ms), metrics, seq: None, uuid: None, body: None };
@@ -198,7 +200,7 @@ impl Node {
             metric.timestamp = Some(now_ms);
             let Some(name) = metric.name.clone() else { continue };
             if let Some((_, last)) = device.metrics.get_mut(&name) {
-                // A metric keeps its first type, because hosts use the type from the birth.
+                // A metric keeps its first type, because hosts use the type from the birth message.
                 if metric.datatype != last.datatype {
                     continue;
                 }
@@ -225,7 +227,7 @@ impl Node {
         Some(self.record(kind, id, metrics, now_ms))
     }
 
-    /// The robot does not answer or was removed.
+    /// Record for a robot that does not answer or was removed.
     fn death_record(&mut self, robot: &Robot, now_ms: u64) -> Option<Record> {
         let id = self.names.levels.level_of(robot).ok()?;
         let device = self.devices.get_mut(&id)?;
@@ -255,7 +257,7 @@ impl Node {
                 continue;
             }
             // The datatype is optional (tck-id-payloads-metric-datatype-not-req), but a decoder that does not store
-            // births needs it.
+            // birth messages needs it.
             last_sent.push(Metric {
                 name: None,
                 alias: Some(*alias),
@@ -302,7 +304,7 @@ impl Node {
                 note: Some((Level::Notice, format!("the primary host {name} is online"))),
                 reconnects: false,
             },
-            // The node sends its death, and the next connection waits for the host (section 5.4).
+            // The node sends its death message, and the next connection waits for the host (section 5.4).
             (false, true) => {
                 self.is_born = false;
                 Reaction {
@@ -331,10 +333,10 @@ impl Node {
             metric.name.as_deref() == Some(NODE_CONTROL_REBIRTH) && metric.value == Some(Value::BooleanValue(true))
         };
         if !payload.metrics.iter().any(is_rebirth) {
-            return ignored("a command: armctl only publishes");
+            return ignored("a command, because armctl only publishes");
         }
         if !self.is_born || now_ms.saturating_sub(self.born_ms) < BIRTHS_MS {
-            return ignored("a rebirth command directly after a birth");
+            return ignored("a rebirth command directly after the birth messages");
         }
         let note = Some((Level::Detail, "a host requested a rebirth".to_owned()));
         Reaction { messages: self.births(now_ms), note, reconnects: false }

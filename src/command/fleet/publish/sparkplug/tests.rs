@@ -79,7 +79,7 @@ fn births_define_aliases_that_data_uses() {
     let births = node.first_messages(2);
     assert_eq!(headers(&births), ["NBIRTH - 0"]);
     assert!(births.iter().all(|message| !message.retain && !message.acknowledged));
-    // The death has the number of its birth.
+    // The death message has the number (`bdSeq`) of its birth message.
     assert_eq!((bd_seq_of(&will), bd_seq_of(&births[0])), (Some(Value::LongValue(254)), Some(Value::LongValue(254))));
     let press = robot("press");
     let messages = send_all(&mut node, &look(&press, 1.0, &[]), 10);
@@ -156,7 +156,7 @@ fn sends_records_of_an_outage_as_history() {
     waiting.extend(node.convert_event(&look(&press, 3.0, &[]), 4));
     waiting.extend(node.convert_event(&silence(&loader), 5));
     node.will(6);
-    // A birth has the current values.
+    // A birth message has the current values.
     let births = node.first_messages(7);
     assert_eq!(headers(&births), ["NBIRTH - 0", "DBIRTH press 1"]);
     let x = |message: &Message| {
@@ -203,7 +203,7 @@ fn accepts_only_rebirth_commands() {
     node.first_messages(1);
     send_all(&mut node, &look(&robot("press"), 1.0, &[]), 2);
     let yes = Value::BooleanValue(true);
-    // A second birth so soon would contain the same data.
+    // A second birth message so soon would contain the same data.
     assert_eq!(node.handle_message(&command("Node Control/Rebirth", yes.clone()), 500).messages, []);
     let reborn = node.handle_message(&command("Node Control/Rebirth", yes.clone()), 5000);
     assert_eq!(headers(&reborn.messages), ["NBIRTH - 0", "DBIRTH press 1"]);
@@ -235,7 +235,7 @@ fn waits_for_the_primary_host() {
     assert!(node.is_ready());
     let history: Vec<Message> = waiting.into_iter().flat_map(|record| node.convert_record(record, 5)).collect();
     assert!(payload(&history[0]).metrics.iter().all(|metric| metric.is_historical == Some(true)));
-    // A STATE message older than the last one is ignored, because the host has come back since then.
+    // A STATE message older than the last STATE message is ignored, because the host has come back since then.
     assert!(!node.handle_message(&state(false, 99), 6).reconnects && node.is_ready());
     let death = node.handle_message(&state(false, 101), 7);
     assert_eq!(

@@ -12,7 +12,7 @@ use armctl_frame::output::painter::{Painter, line_of, rest_after, width, wrap};
 use armctl_frame::output::view::Tone;
 use armctl_frame::robot::alarm::Alarm;
 
-/// Width of the axes next to a chart, and minimum width of a chart.
+/// Width of the axes next to a chart. `CHART` is the minimum width of a chart.
 const AXES: u16 = 46;
 const CHART: u16 = 24;
 /// Screen height from which the parts are separated by empty lines.
@@ -42,7 +42,11 @@ pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model, seen: &RobotRo
 pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &RobotRow, now: Moment) {
     let Some(sample) = seen.sample() else { return draw_fault(painter, area, seen) };
     let Some(whole) = &sample.full else {
-        let why = if model.is_paused() { "no details before the pause; press Space to continue" } else { "looking" };
+        let why = if model.is_paused() {
+            "no details were read before the pause; press Space to continue"
+        } else {
+            "looking"
+        };
         painter.draw_left(rest_after(line_of(area, 1), 2), why, painter.palette.quiet());
         return;
     };
@@ -138,7 +142,7 @@ fn alarms(painter: &mut Painter<'_>, area: Rect, sample: &Sample) -> u16 {
     taken
 }
 
-/// Draws the axes on the left, and charts of the selected one on the right.
+/// Draws the axes on the left, and charts of the selected axis on the right.
 fn axes(painter: &mut Painter<'_>, area: Rect, model: &Model, seen: &RobotRow, whole: &Whole, now: Moment) {
     if whole.axes.is_empty() {
         let why = whole.not_asked.unwrap_or("the controller does not report its position");
@@ -234,7 +238,7 @@ fn signal_lines(banks: &[Bank], columns: u16) -> u16 {
     if lines == 0 { 0 } else { lines + 1 }
 }
 
-/// Width of a bank name, and of eight signals with their label.
+/// Width of the name of a bank. `BANK_WIDTH` is the width of eight signals with their label.
 const BANK: u16 = 9;
 const BANK_WIDTH: u16 = 17;
 

@@ -25,7 +25,7 @@ enum Column {
     Trend,
 }
 
-/// Minimum and maximum width of names, and minimum width of alarms.
+/// Minimum and maximum width of names. `ALARM` is the minimum width of alarms.
 const NAME: (usize, usize) = (5, 20);
 const ALARM: u16 = 8;
 /// Number of answer times shown.
@@ -64,7 +64,7 @@ pub fn head(painter: &mut Painter<'_>, line: Rect, model: &Model) {
     format_interval(painter, line, model);
 }
 
-/// Draws headings and robots, and the full problem of the selected one.
+/// Draws headings and robots, and the full problem of the selected robot.
 pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, now: Moment) {
     let columns = columns(area.width, model.robots());
     let heading = line_of(area, 0);
@@ -99,7 +99,7 @@ pub fn body(painter: &mut Painter<'_>, area: Rect, model: &Model, now: Moment) {
     }
 }
 
-/// First visible robot. The selected one is in the middle if possible.
+/// First visible robot. The selected robot is in the middle if possible.
 fn first_line(cursor: usize, robots: usize, lines: usize) -> usize {
     cursor.saturating_sub(lines / 2).min(robots.saturating_sub(lines))
 }

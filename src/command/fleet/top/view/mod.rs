@@ -1,4 +1,4 @@
-//! Screen of a live view: the list of robots, the screen of one, the help.
+//! Screen of a live view: the list of robots, the screen of one robot, the help.
 
 mod chart;
 mod detail;

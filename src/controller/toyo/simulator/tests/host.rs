@@ -33,7 +33,7 @@ fn commands_that_need_the_host_are_refused_without_it() {
         bench.ng(&sample(row.word), "host is off");
         refused.push(row.word);
     }
-    // The marked commands of the list (TO 2-1).
+    // The commands that the list of the manual marks as refused without host control (TO 2-1).
     assert_eq!(
         refused,
         "MPRO MSTP MAUT MSEQ MPLE WPAR MINT CPSS ISTX DSTX SSTG DSTL CPPL WSTX WPLT HOME SPST SPLN PPST JGST DOUT WOVR EXTP \

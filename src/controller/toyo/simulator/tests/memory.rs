@@ -109,7 +109,7 @@ fn a_worn_cell_answers_ok_and_keeps_its_old_value() {
 const FULL: &str = "steps = { 1 = [\"END\"], 2 = [\"END\"] }\npoints = { 1 = { 1 = [1.0, 0.0, 0.0, 0.0] }, 2 = { 1 = [2.0, 0.0, 0.0, 0.0] } }\n\
     write = [\"WPLT 01 SNO=16 TAG=009\", \"WESY PNO=01 ST=000 START=001 LOOP=0002 END=003\", \"WPAR M09 J\", \"WPAR T2 V01=0123.0\"]";
 
-/// Which content is left: step and point of tasks 1 and 2, pallet, easy program, parameter, table.
+/// Which content is not cleared: step and point of tasks 1 and 2, pallet, easy program, parameter, table.
 fn left(bench: &mut Bench) -> [bool; 8] {
     let step = |bench: &Bench, task| bench.sim.step(task, 1).is_some_and(|step| step.written() == "END");
     let (one, two) = (step(bench, 1), step(bench, 2));

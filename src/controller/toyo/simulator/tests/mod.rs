@@ -42,7 +42,7 @@ impl Bench {
         Self::ready(&format!("steps.1 = [{}]\n{toml}", steps.join(", ")))
     }
 
-    /// The controller after a run of the program.
+    /// The controller after it has run the program.
     fn ran(steps: &[&str], toml: &str) -> Self {
         let mut bench = Self::with(steps, toml);
         bench.run();
@@ -69,7 +69,7 @@ impl Bench {
         assert_eq!(answer, "@OK", "{block}: {:?}", self.sim.console(self.now, "why"));
     }
 
-    /// Asserts that the block is refused for this reason.
+    /// Asserts that the controller refuses the block for this reason.
     #[track_caller]
     fn ng(&mut self, block: &str, why: &str) {
         assert_eq!(self.ask(block), "@NG", "{block}");

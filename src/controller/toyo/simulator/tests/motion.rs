@@ -12,7 +12,7 @@ fn mov(x: f64, y: f64, tail: &str) -> String {
     format!("MOV a X={x:+08.2} Y={y:+08.2} Z=+0000.00 R=+0000.00 {tail}")
 }
 
-/// Run time of the steps. Steps other than moves do not count.
+/// Run time of the steps. A step that is not a move takes no time.
 fn time_of(steps: &[&str], toml: &str) -> (Bench, Duration) {
     let bench = Bench::ran(steps, &format!("instruction_us = 1\n{toml}"));
     assert_eq!(bench.error(), None);
@@ -49,13 +49,13 @@ fn speed_and_ramps_come_from_tables_and_override() {
     about(time_of(&["ACC A=04", "DEC D=02", TO_100, "END"], "").1, 0.8);
     // Row 0 means the speed of the last SPD.
     about(time_of(&["SPD V=04", &mov(100.0, 0.0, "S V=00 POST"), "END"], "").1, 1.1);
-    // An axis never exceeds E06.
+    // An axis never moves faster than its maximum speed (E06).
     about(time_of(&[TO_100, "END"], "write = [\"WPAR E06 AX1=0100 AX2=1000 AX3=1000 AX4=1000\"]").1, 1.1);
 }
 
 #[test]
 fn path_speed_is_along_the_line_and_axis_speed_is_of_the_longest_axis() {
-    // 30 mm and 40 mm are 50 mm along the line. The ramps are 20 mm long.
+    // 30 mm and 40 mm make a line of 50 mm. The ramps are 20 mm long.
     about(time_of(&[&mov(30.0, 40.0, "T V=05 POST"), "END"], "").1, 0.2 + 30.0 / 200.0);
     about(time_of(&[&mov(30.0, 40.0, "S V=05 POST"), "END"], "").1, 0.2 + 20.0 / 200.0);
     let mut bench = Bench::with(&[&mov(30.0, 40.0, "S V=05 POST"), "END"], "");
@@ -76,7 +76,7 @@ fn override_takes_effect_at_the_next_start() {
 #[test]
 fn pass_points_are_rounded_and_do_not_stop() {
     let (first, second) = (mov(100.0, 0.0, "S V=05 PASS"), mov(100.0, 100.0, "S V=05 POST"));
-    // Two moves of 0.6 s each, which overlap by a ramp of 0.1 s.
+    // Two moves of 0.6 s each. They overlap by a ramp of 0.1 s.
     about(time_of(&[&first, &second, "END"], "").1, 1.1);
     about(time_of(&["PASS PASS=050.0", &first, &second, "END"], "").1, 1.15);
     let mut bench = Bench::with(&[&first, "OUT STN=0 PN01=.......1", &second, "END"], "instruction_us = 1");
@@ -134,8 +134,8 @@ fn arcs_go_through_their_points() {
     ];
     let mut bench = Bench::with(&steps, "points.1.1 = [-100.0, 0.0, 0.0, 20.0]");
     bench.start(600);
-    // Half a circle of 314.16 mm: 0.1 s, 294.16 mm at 200 mm/s, 0.1 s. After half the time, the axes are at the top of
-    // the circle.
+    // Half a circle has 314.16 mm: two ramps of 0.1 s, and 294.16 mm at 200 mm/s. After half the time, the axes are at
+    // the top of the circle.
     let half = f64::midpoint(0.2, (std::f64::consts::PI * 100.0 - 20.0) / 200.0);
     bench.now = Duration::from_secs_f64(0.6 + half);
     bench.sim.advance(bench.now);
@@ -184,7 +184,7 @@ fn soft_limits_are_checked_before_and_during_moves() {
     .at([1000.0, 0.0, 0.0, 0.0]);
     let offset = "OFS X=+0000.00 Y=-0950.00 Z=+0000.00 R=+0000.00";
     fails(&[offset, "MOV a X=+0000.00 Y=-0051.00 Z=+0000.00 R=+0000.00 S V=05 POST", "END"], 0x39).at([0.0; 4]);
-    // An arc whose points are within the limits, but which extends beyond the limits.
+    // The points of the arc are within the limits, but the arc itself extends beyond the limits.
     let bench = Bench::ran(
         &[
             "MVC a X=+0070.00 Y=+0070.00 Z=+0000.00 R=+0000.00 V=05 POST",
@@ -225,7 +225,7 @@ fn a_start_after_a_stop_continues_the_move() {
     bench.resume();
     bench.at([100.0, 0.0, 0.0, 0.0]);
     assert_eq!(bench.counter(1), 1);
-    // A start at the first step begins a new move, and does not complete the interrupted one.
+    // A start at the first step discards the interrupted move and begins a new one.
     bench.start(300);
     bench.ok("@STOP");
     bench.pass(1000);
@@ -286,7 +286,7 @@ fn the_origin_return_moves_axis_by_axis() {
     about(bench.now, 0.6 + 1.2 + 1.1 + 1.2);
     assert_eq!(bench.page(0), 0b0011_0000);
     bench.at([5.0, 0.0, 0.0, 0.0]);
-    // The second time, the origin is known: the axis moves fast to E13, then 5 mm to the sensor.
+    // The second time, the origin is known. The axis moves fast to the position of E13, and then 5 mm to the sensor.
     bench.ok("@HOME");
     bench.rest();
     assert_eq!(bench.page(0), 0b0011_0000);
@@ -484,7 +484,7 @@ fn torque_limits_end_moves() {
     bench1.rest();
     assert_eq!((bench1.error(), bench1.counter(1), bench1.port(1)), (None, 1, 0));
     bench1.at([100.0, 0.0, 0.0, 0.0]);
-    // Without an obstacle, the axis arrives. The arrival ends the move only if AE allows this.
+    // Without an obstacle, the axis arrives at its target. The arrival ends the move only if AE is on.
     let mut bench2 = bench("TE=ON LE=OFF AE=ON DD=ON", false);
     bench2.rest();
     assert_eq!(bench2.counter(1), 1);

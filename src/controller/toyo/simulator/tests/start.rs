@@ -73,7 +73,7 @@ fn events_happen_at_their_times() {
     bench.pass(1000);
     assert!(bench.ask("@MINP SNO=0 GN=1").contains("PN01=00000000"));
     assert_eq!(bench.sim.wake(), None);
-    // A scheduled line that is no longer possible is reported.
+    // The trace reports a scheduled line that is no longer possible.
     let mut bench = Bench::new("[[event]]\nat_ms = 1000\ndo = \"servo on\"\n[[event]]\nat_ms = 500\ndo = \"estop\"");
     bench.pass(2000);
     assert_eq!(bench.console("why"), "servo on: an error is active: cancel it first");

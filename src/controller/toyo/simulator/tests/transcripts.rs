@@ -17,7 +17,7 @@ fn corrected(pair: &Json) -> (String, String) {
     (text("tx"), text("rx"))
 }
 
-/// A controller that can execute the request.
+/// A controller in a state in which it can execute the request.
 fn suitable(request: &Request) -> Bench {
     let text = request.text();
     let of_models = |models: &[&str]| models.contains(&"KCA-20-M00") && !models.contains(&"KCA-25-M10");
@@ -51,7 +51,8 @@ fn every_printed_request_is_answered_as_printed() {
         let request = Request::parse(&tx).unwrap();
         let mut bench = suitable(&request);
         let reads_back = tx != "@RSTX 0000" && ["@RPAR", "@RSTX", "@RPLT"].iter().any(|word| tx.starts_with(word));
-        // In the manual, this read follows a write of the same object, so the new controller needs the write first.
+        // In the manual, a write of the same object comes before this read. The new controller does not have this
+        // value, so it needs the write first.
         if let Some(write) = written.take().filter(|_| reads_back) {
             bench.ok(&write);
         }
@@ -66,7 +67,8 @@ fn every_printed_request_is_answered_as_printed() {
             (Answer::Data(printed), Answer::Data(received)) => assert_eq!(received.layout(), printed.layout(), "{tx}"),
             _ => panic!("{tx}: {answer}, not {rx}: {why}"),
         }
-        // The manual prints E22 with a value other than the written one (ambiguity R15), and RSMV with POST (R4).
+        // For E22, the manual prints another value than the one written before (ambiguity R15). For RSMV, it prints
+        // POST (R4).
         if reads_back && !tx.contains("E22") {
             assert_eq!(answer, rx.trim_end(), "{tx}");
             exact += 1;
@@ -113,8 +115,8 @@ fn the_second_session_jogs_to_a_position() {
         assert_eq!(bench.ask(&tx), rx, "{tx}");
         bench.pass(1000);
     }
-    // X moves for 1 s at 50 mm/s in the plus direction and for 1 s back at 10 mm/s, ramps included. Y moves like X, and
-    // Z at 10 mm/s. Inching moves there and back.
+    // X moves for 1 s at 50 mm/s in the plus direction, and for 1 s back at 10 mm/s, ramps included. Y moves like X,
+    // and Z moves at 10 mm/s. An inching move goes there and back.
     bench.at([50.0 - 10.0, 50.0, 10.0, 0.0]);
     bench.answers("@MPST", "@MPST X=+0040.00 Y=+0050.00 Z=+0010.00 R=+0000.00");
 }

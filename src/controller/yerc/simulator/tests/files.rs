@@ -168,6 +168,7 @@ fn the_file_of_variables_is_what_the_variables_are() {
     assert_eq!(row(&after).as_deref(), Some("0,0,0,0,0,0,0,99,0,0"));
     assert_eq!(bench.load(b"VAR.DAT", &before, 479), Status::OK);
     assert_eq!(bench.ask(0x7A, 7, 1, 0x0E, &[]), (Status::OK, vec![7]));
-    // A new controller, because another load with the same name would look like a repeated frame.
+    // Each load needs a new controller. On the same controller, a second load with the same name would look like a
+    // repeated frame.
     assert_ne!(Bench::new("").load(b"VAR.DAT", b"//OTHER\r\n", 479), Status::OK);
 }

@@ -11,7 +11,7 @@ use crate::yrcx::value::{Key, Values};
 const STEP: u64 = 5;
 const RPI: u64 = 20;
 
-/// Behavior of the controller for the next command.
+/// How the simulated controller handles the next command.
 #[derive(Debug, Clone)]
 #[expect(clippy::struct_excessive_bools, reason = "a script is made of switches")]
 struct Script {
@@ -20,9 +20,9 @@ struct Script {
     /// Whether the controller sends the running status.
     shows_run: bool,
     answer: Words,
-    /// Whether the controller accepts commands.
+    /// Whether the controller reacts to commands.
     takes: bool,
-    /// Whether the status reset works.
+    /// Whether the controller reacts to the status reset.
     resets: bool,
     /// Words from WO1 on while the command runs.
     running: Words,
@@ -44,10 +44,10 @@ struct World {
     exchange: Exchange,
     output: Output,
     now: u64,
-    /// Image that the controller sends, and end time of the command.
+    /// Image that the controller sends. The field below is the end time of the command.
     shown: Image,
     started: Option<u64>,
-    /// Images that the master sent, only if they changed, with their times.
+    /// Changed images that the master sent, with their times.
     sent: Vec<(u64, Image)>,
     /// Time at which the link is lost.
     cut: Option<u64>,
@@ -160,7 +160,7 @@ impl World {
         }
     }
 
-    /// WI0 of each changed image, and whether the data words in the image are the data words of the order.
+    /// WI0 of each changed image, and whether the data words are those of the order.
     fn commands(&self) -> Vec<(u16, bool)> {
         let data = |image: &Image| image.command()[1..] == self.exchange.order().words()[1..];
         let mut seen: Vec<(u16, bool)> = self.sent.iter().map(|(_, image)| (image.0[0], data(image))).collect();
@@ -279,7 +279,7 @@ fn a_running_command_of_another_master_is_left_alone() {
 
 #[test]
 fn an_answer_that_is_not_ours_is_not_taken() {
-    // The status changes after the decision to send the command and before the sending.
+    // The status changes after the session decided to send the command, and before the command is sent.
     let mut exchange = Exchange::new(servo_status(), Policy::default());
     let mut output = Output::new(resting());
     output.sent(ms(0));

@@ -137,7 +137,7 @@ fn arm(entry: ArmEntry) -> Arm {
     }
 }
 
-/// Adds everything except the robots to the existing content.
+/// Adds the entries to the existing content, except the robots.
 pub(super) fn memory(world: &mut World, entries: &Entries, source: Source<'_>) -> Result<(), String> {
     let last_point = usize::from(POINTS) - 1;
     source.each_of(&entries.points, |number, entry| {

@@ -7,7 +7,7 @@ use super::*;
 
 const EXAMPLES: &str = include_str!("../../../../../tests/data/yrcx-examples.json");
 
-/// Start state that an example needs, in addition to a new controller.
+/// Additional start state that an example needs.
 fn state(id: &str) -> String {
     let robot = |keys: &str| format!("[[robot]]\n{keys}\n");
     let points = |rows: &str| format!("[points]\n{rows}\n");
@@ -96,8 +96,8 @@ fn answers_are_the_printed_words() {
         let Some(answer) = answer else { continue };
         let found = if id.starts_with("4.2.6") {
             jogs += 1;
-            // The stop position depends on the duration. So the jog starts from a position that is shifted by the
-            // distance.
+            // The stop position depends on the duration of the jog. So a second jog starts from a position that is
+            // shifted by the distance.
             let there = jog(0, &request);
             let there = (u32::from(there[5]) << 16 | u32::from(there[4])).cast_signed();
             jog(12_345 - there, &request)

@@ -105,7 +105,7 @@ fn what_ran_when_the_link_went_is_told_to_whoever_comes() {
     bench.simulator.input(bench.now, None);
     bench.now += Duration::from_secs(1);
     bench.simulator.advance(bench.now);
-    // The next master sends a command at once. The controller ignores it before a status reset.
+    // The next master sends a command at once. The controller ignores it, because it first requires a status reset.
     bench.image.set_command(&words(&[0x0503]));
     bench.wait(20);
     assert_eq!(bench.words(), words(&[0x4000, 12, 551]));

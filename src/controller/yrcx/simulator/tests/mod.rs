@@ -136,7 +136,7 @@ impl Bench {
     }
 }
 
-/// Words that begin with `head`; the others are 0.
+/// Words that begin with `head`. All other words are 0.
 fn words(head: &[u16]) -> Words {
     let mut words = [0; 16];
     words[..head.len()].copy_from_slice(head);

@@ -37,7 +37,7 @@ impl Bench {
 fn speeds_are_those_of_the_commands() {
     let mut bench = Bench::new("[points]\n1 = { pulse = [500000, 0, 0, 0] }");
     let near = |found: u128, wanted: u128| found.abs_diff(wanted) <= 15;
-    // 500 mm at 1000 mm/s with ramps of 0.2 s, plus about three scans.
+    // 500 mm at 1000 mm/s take 0.5 s. The ramps of 0.2 s and about three scans are added.
     let full = bench.time(to(1));
     assert!(near(full, 700 + 15), "{full}");
     let half = bench.time(to(0).with(Key::SpeedPercent, 50));
@@ -67,7 +67,7 @@ fn positions_are_reported_as_they_were_commanded() {
         let shown = bench.done(Command::ArmStatus.order()).int(Key::Arm);
         assert_eq!(shown, Some(i32::from(arm == "left")));
     }
-    // The hand system of the command has priority.
+    // The hand system in the command has priority over the current one.
     let draft = Command::MoveMm.order().with(Key::HandSystem, "right").with(Key::Report, "mm");
     let draft =
         ["200", "-100", "0", "0"].into_iter().zip(Key::AXES).fold(draft, |draft, (at, key)| draft.with(key, at));
@@ -81,12 +81,12 @@ fn one_axis_of_a_scara_may_take_others_along() {
     let mut bench = Bench::new(SCARA);
     bench.go_to(["200", "100", "0", "0"]);
     let before = bench.pulses(1);
-    // R rotates. X and Y of the command also count, although the command does not name them. Here they have their
-    // current values.
+    // Only R rotates. The values of X and Y in the command also count, although the command does not name these axes.
+    // Here they are the current values.
     let turn = |x, y| Command::MoveMm.order().with(Key::Axes, "4").with(Key::Axis1, x).with(Key::Axis2, y);
     bench.done(turn("200", "100").with(Key::Axis4, "30"));
     assert_eq!(bench.steps(1), [200_000, 100_000, 0, 30_000]);
-    // A value of 0 is a target too, and it is out of reach here.
+    // A value of 0 is a target too. Here the robot cannot reach it.
     assert_eq!(bench.refused(turn("0", "0").with(Key::Axis4, "40")), "2.905");
     // A move of X alone moves both arms and rotates R back.
     bench.done(turn("250", "100").with(Key::Axes, "1"));
@@ -105,7 +105,7 @@ fn lines_stay_on_their_line_and_arcs_on_their_arc() {
     let mut seen = 0;
     while bench.words()[0] == 0x0100 {
         let pose = bench.pose();
-        // 2 X + 3 Y = 900.
+        // The line is 2 X + 3 Y = 900.
         assert!((2.0 * pose[0] + 3.0 * pose[1] - 900.0).abs() < 1e-6, "{pose:?}");
         seen += 1;
         bench.wait(5);
@@ -309,7 +309,7 @@ fn shifts_and_hands_move_the_coordinates() {
     let mut bench = Bench::default();
     bench.go_to(["100", "50", "10", "0"]);
     bench.done(Command::ShiftSelect.order().with(Key::Shift, 5));
-    // The origin of shift 5 is at 10, -20, 5, and the shift is rotated by -18 degrees.
+    // The origin of shift 5 is at X = 10, Y = -20, Z = 5, and the shift is rotated by -18 degrees.
     let [x, y, z, r] = bench.steps(1);
     assert_eq!((z, r), (5000, 18_000));
     assert!((f64::from(x).hypot(f64::from(y)) - 90_000_f64.hypot(70_000.0)).abs() < 2.0);
@@ -363,7 +363,7 @@ fn an_emergency_stop_ends_a_motion_on_the_spot() {
 fn soft_limits_hold_on_the_way_too() {
     let mut bench = Bench::new(SCARA);
     bench.go_to(["-150", "200", "0", "0"]);
-    // The line between these positions goes through the middle, which the arms cannot reach.
+    // The line between these positions goes through the middle of the range, which the arms cannot reach.
     let through = Command::MoveiLinear.order().with(Key::Point, 9);
     bench.done(
         Command::PointSet

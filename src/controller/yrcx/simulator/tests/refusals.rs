@@ -58,7 +58,8 @@ fn both_checks_agree_on_every_word() {
         }
         let (client, simulator) = (Order::parse(&words), Request::read(&words));
         match (&client, &simulator) {
-            // The simulator is stricter here than the decoder of the client. The client never writes mixed padding.
+            // The simulator is stricter here than the decoder of the client: it refuses padding of different
+            // characters. The client never sends such padding.
             (Ok(_), Err(fault)) if fault.why.ends_with("characters after the end") => {}
             _ => assert_eq!(
                 client.is_ok(),

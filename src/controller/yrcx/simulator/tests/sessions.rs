@@ -29,7 +29,7 @@ impl MasterLink {
         Self { simulator, output, now: 500, cut: None, linked: true }
     }
 
-    /// A step of 5 ms.
+    /// Advances the time by 5 ms.
     fn step<S: ImageSession>(&mut self, session: &mut S) {
         let now = ms(self.now);
         if self.cut == Some(self.now) {

@@ -78,7 +78,7 @@ fn edges_closer_than_100_ms_are_not_seen() {
     assert!(!bench.is_on(output::SERVO_ON));
     assert!(bench.console("why").contains("less than 100 ms"));
     bench.set(input::SERVO_ON, false);
-    // Simultaneous edges are also too close to each other.
+    // Two edges in one scan are also too close to each other.
     input::PROGRAM_RESET.set(&mut bench.image, false);
     input::SERVO_ON.set(&mut bench.image, true);
     bench.wait(400);
@@ -87,7 +87,7 @@ fn edges_closer_than_100_ms_are_not_seen() {
     bench.set(input::SERVO_ON, true);
     bench.wait(200);
     assert!(bench.is_on(output::SERVO_ON));
-    // A stop is accepted without a minimum interval.
+    // A stop is accepted even directly after another edge.
     input::EMERGENCY_STOP.set(&mut bench.image, false);
     bench.wait(5);
     assert!(bench.is_on(output::EMERGENCY_STOP));

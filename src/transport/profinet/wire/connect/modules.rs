@@ -5,7 +5,7 @@ use super::super::{Reader, WireError, Writer, count16};
 /// An expected module.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExpectedModule {
-    /// API (profile); 0.
+    /// API (profile), always 0.
     pub api: u32,
     /// Slot.
     pub slot: u16,
@@ -22,7 +22,7 @@ pub struct ExpectedSubmodule {
     pub subslot: u16,
     /// Ident number.
     pub ident: u32,
-    /// Bits 0 and 1 are the directions of the data: 0 no data, 1 input, 2 output, 3 both.
+    /// Properties. Bits 0 and 1 are the directions of the data: 0 no data, 1 input, 2 output, 3 both.
     pub properties: u16,
     /// Data descriptions.
     pub data: Vec<DataDescription>,
@@ -102,7 +102,7 @@ pub struct ModuleDiff {
     pub slot: u16,
     /// Ident number of the real module.
     pub ident: u32,
-    /// State: 0 none, 1 wrong, 2 proper, 3 substitute.
+    /// State of the module: 0 none, 1 wrong, 2 proper, 3 substitute.
     pub state: u16,
     /// Submodules that differ.
     pub submodules: Vec<SubmoduleDiff>,
@@ -115,13 +115,14 @@ pub struct SubmoduleDiff {
     pub subslot: u16,
     /// Ident number of the real submodule.
     pub ident: u32,
-    /// State. If bit 15 is set, bits 11 to 14 are: 0 proper, 1 substitute, 2 wrong, 3 none.
+    /// State of the submodule. If bit 15 is set, bits 11 to 14 are: 0 proper, 1 substitute, 2 wrong, 3 none. If not,
+    /// the whole number is: 0 none, 1 wrong, 2 proper, 3 substitute.
     pub state: u16,
 }
 
 impl SubmoduleDiff {
-    /// Returns the state as bits 11 to 14. If bit 15 is not set, the whole state is 0 none, 1 wrong, 2 proper, 3
-    /// substitute. This value is converted.
+    /// Returns the state with the numbers of bits 11 to 14. If bit 15 is not set, the state has other numbers and is
+    /// converted.
     const fn ident_info(&self) -> u16 {
         match (self.state & 0x8000 != 0, self.state) {
             (true, state) => (state >> 11) & 0xF,
@@ -132,7 +133,7 @@ impl SubmoduleDiff {
         }
     }
 
-    /// Whether the submodule is the expected one or a substitute.
+    /// Whether the submodule is the expected submodule or a substitute.
     pub const fn is_usable(&self) -> bool {
         self.ident_info() < 2
     }
