@@ -6,7 +6,7 @@
 use std::error::Error;
 use std::time::Duration;
 
-use armctl_client::toyo::{Client, Endpoint, Moving, Options, jog};
+use armctl_client::toyo::{Client, Endpoint, MotionKind, Options, jog};
 use armctl_controller::Risk;
 use armctl_controller::toyo::request::Request;
 use armctl_controller::toyo::table::Parameter;
@@ -31,7 +31,7 @@ async fn main() -> Result<(), Box<dyn Error>> {
         tokio::time::sleep(Duration::from_millis(20)).await;
     }
     // Until it is told to stop, an axis may move.
-    let place = robot.stop(Moving::Jog).await?;
+    let place = robot.stop(MotionKind::Jog).await?;
     println!("axis 1 is at {:.2} mm", f64::from(place.number("x").unwrap_or_default()) / 100.0);
     let (_, closed) = robot.close().await;
     Ok(closed?)

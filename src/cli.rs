@@ -120,12 +120,12 @@ mod tests {
     use super::Cli;
 
     /// Commands in which `--wait TIME` is a response timeout.
-    const OTHERS: [&str; 2] = ["armctl yerc file cmos", "armctl robots discover"];
+    const WAIT_IS_TIMEOUT: [&str; 2] = ["armctl yerc file cmos", "armctl robots discover"];
 
     /// Finds subcommands that accept only one of the two options.
     fn selectors(command: &Command, path: &str, found: &mut Vec<String>) {
         let has = |long: &str| command.get_arguments().any(|argument| argument.get_long() == Some(long));
-        if has("wait") != has("no-wait") && !OTHERS.contains(&path) {
+        if has("wait") != has("no-wait") && !WAIT_IS_TIMEOUT.contains(&path) {
             found.push(path.to_owned());
         }
         for verb in command.get_subcommands() {

@@ -19,10 +19,10 @@ use proptest::prelude::*;
 use proptest::sample::{Index, select};
 
 /// Maximum length of a frame: the header and the maximum data.
-const LARGEST: usize = 32 + MAX_DATA;
+const MAX_DATAGRAM: usize = 32 + MAX_DATA;
 /// Longest pause between two datagrams, in milliseconds. It is longer than the timer of an idle transfer in the
 /// simulator and than the timeout of a session.
-const LONGEST: u64 = 6000;
+const MAX_STEPS: u64 = 6000;
 
 /// Damage to a frame during its transmission.
 #[derive(Debug, Clone)]
@@ -121,7 +121,7 @@ fn frame(
 type Sent = (u64, bool, u64, Vec<u8>);
 
 fn sent() -> impl Strategy<Value = Sent> {
-    let wait = prop_oneof![Just(0_u64), 0_u64..50, 0_u64..=LONGEST];
+    let wait = prop_oneof![Just(0_u64), 0_u64..50, 0_u64..=MAX_STEPS];
     // One frame in ten goes to the wrong port.
     (wait, 0_u8..10, 0_u64..3, request(), damage()).prop_map(|(wait, port, peer, frame, damage)| {
         let is_file = frame[9] == 2;
@@ -156,7 +156,7 @@ proptest! {
             }
         }
         for outgoing in answers {
-            prop_assert!(outgoing.bytes.len() <= LARGEST && outgoing.peer < 3);
+            prop_assert!(outgoing.bytes.len() <= MAX_DATAGRAM && outgoing.peer < 3);
             let answer = AnswerFrame::parse(&outgoing.bytes).unwrap();
             prop_assert_eq!(answer.division, outgoing.division);
         }
@@ -196,7 +196,7 @@ fn answer() -> impl Strategy<Value = Answer> {
             Status { code, added_size: size, added }
         }),
     ];
-    let wait = prop_oneof![Just(0_u64), 0_u64..50, 0_u64..=LONGEST];
+    let wait = prop_oneof![Just(0_u64), 0_u64..50, 0_u64..=MAX_STEPS];
     let id = prop_oneof![8 => Just(None), 1 => any::<u8>().prop_map(Some)];
     let data = prop_oneof![Just(Vec::new()), noise(0..=MAX_DATA), noise(MAX_DATA..=MAX_DATA)];
     (wait, id, block(), status, data, damage())
@@ -210,7 +210,7 @@ fn run<S: Session>(session: &mut S, script: Vec<Answer>, feed: impl Fn(&mut S)) 
     for _ in 0..10_000 {
         match session.poll(now) {
             Step::Send(bytes) => {
-                prop_assert!(bytes.len() <= LARGEST);
+                prop_assert!(bytes.len() <= MAX_DATAGRAM);
                 RequestFrame::parse(&bytes).unwrap();
                 last = bytes;
                 sends += 1;

@@ -203,7 +203,7 @@ fn write_frames() -> Vec<(&'static str, Vec<u8>)> {
     let pulses = position(PositionKind::Pulse, 0, [1000, -2000, 3000, -4000, 5000, -6000, 0, 0]);
     let in_user = position(PositionKind::User, 2, [1, 2, 3, 4, 5, 6, 0, 0]);
     let external = ExternalPosition { kind: PositionKind::Pulse, axes: Axes::full([100, 200, 0, 0, 0, 0, 0, 0]) };
-    let doubles = (0..118).map(|n| Value::Double(n * 1000)).collect();
+    let duplicates = (0..118).map(|n| Value::Double(n * 1000)).collect();
     let short = |n| Value::Short(Text::new(format!("STR{n:02}").as_bytes()).unwrap());
     let long = |n| Value::Long(Text::new(format!("LONG STRING {n:02}").as_bytes()).unwrap());
     let fan = |n| Value::Position(position(PositionKind::Pulse, 0, [n, -n, 2 * n, -2 * n, 3 * n, -3 * n, 0, 0]));
@@ -220,7 +220,7 @@ fn write_frames() -> Vec<(&'static str, Vec<u8>)> {
         ("R37", send(37, write(10, Value::External(external)))),
         ("R59", send(59, WriteIoGroups::new(Fs100, 2501, vec![0x01, 0x80]).unwrap())),
         ("R61", send(61, WriteRegisters::new(Fs100, 100, vec![100, 200, 300]).unwrap())),
-        ("R65", send(65, WriteVariables::new(0, doubles).unwrap())),
+        ("R65", send(65, WriteVariables::new(0, duplicates).unwrap())),
         ("R67", send(67, WriteVariables::new(0, (0..29).map(short).collect()).unwrap())),
         ("R69", send(69, WriteVariables::new(0, (0..9).map(fan).collect()).unwrap())),
         ("R79", send(79, WriteVariables::new(0, (0..14).map(long).collect()).unwrap())),

@@ -83,9 +83,9 @@ fn every_printed_pair_is_parsed_and_made_again() {
 fn misprints_are_never_sent() {
     for pair in transcripts().pairs {
         let Some(corrected) = &pair.corrected else { continue };
-        let produced = Request::parse(&corrected.tx).unwrap().text();
+        let produced_size = Request::parse(&corrected.tx).unwrap().text();
         if pair.tx != corrected.tx {
-            assert_ne!(produced, pair.tx, "TO {} {}", pair.section, pair.reference);
+            assert_ne!(produced_size, pair.tx, "TO {} {}", pair.section, pair.reference);
         }
     }
 }

@@ -222,7 +222,7 @@ fn recipes_work_with_jq() {
 /// Replaces `--jq FILTER` in a block by `--json | jq -rc FILTER`. Returns the block and the number of replacements.
 fn with_pipes(block: &str) -> (String, usize) {
     let mut parts = block.split(" --jq ");
-    let mut produced = parts.next().unwrap_or_default().to_owned();
+    let mut produced_size = parts.next().unwrap_or_default().to_owned();
     let mut found = 0;
     for part in parts {
         // A quoted filter ends with its quote. Another filter ends with the word.
@@ -231,10 +231,10 @@ fn with_pipes(block: &str) -> (String, usize) {
             None => part.find(|c: char| c.is_whitespace() || c == ')'),
         };
         let (filter, rest) = part.split_at(end.unwrap_or(part.len()));
-        write!(produced, " --json | jq -rc {filter}{rest}").expect("strings take text");
+        write!(produced_size, " --json | jq -rc {filter}{rest}").expect("strings take text");
         found += 1;
     }
-    (produced, found)
+    (produced_size, found)
 }
 
 /// Output of the commands of a page, without times and with the same notation for equal numbers.

@@ -10,11 +10,11 @@ use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 
 /// The environment of a user: a home folder.
-struct Desk {
+struct Workspace {
     folder: TempDir,
 }
 
-impl Desk {
+impl Workspace {
     fn new() -> Self {
         Self { folder: tempfile::tempdir().expect("a folder") }
     }
@@ -43,8 +43,8 @@ impl Desk {
 
 #[test]
 fn prompt_shows_the_robot_state() {
-    let desk = Desk::new();
-    let mut repl = desk.repl("yerc --sim");
+    let workspace = Workspace::new();
+    let mut repl = workspace.repl("yerc --sim");
     repl.wait_for_text("sim [simulated, servo on] yerc>");
     repl.press("servo off\r");
     repl.wait_for_text("servo power is off");
@@ -60,8 +60,8 @@ fn prompt_shows_the_robot_state() {
 
 #[test]
 fn completes_words_and_names_of_the_robot() {
-    let desk = Desk::new();
-    let mut repl = desk.repl("toyo repl --sim");
+    let workspace = Workspace::new();
+    let mut repl = workspace.repl("toyo repl --sim");
     repl.press("param get soft-limit-p\t\r");
     repl.wait_for_text("soft-limit-plus  P01");
     repl.press("robots l\t\r");
@@ -73,8 +73,8 @@ fn completes_words_and_names_of_the_robot() {
 
 #[test]
 fn ctrl_c_stops_the_motion_but_not_the_prompt() {
-    let desk = Desk::new();
-    let mut repl = desk.repl("yerc repl --sim");
+    let workspace = Workspace::new();
+    let mut repl = workspace.repl("yerc repl --sim");
     repl.press("move relative --z 400 --speed 1mm/s\r");
     repl.wait_for_text("R1 x=");
     repl.signal("INT");
@@ -98,8 +98,8 @@ fn ctrl_c_stops_the_motion_but_not_the_prompt() {
 
 #[test]
 fn ctrl_c_twice_at_the_prompt_leaves() {
-    let desk = Desk::new();
-    let mut repl = desk.repl("yerc repl --sim");
+    let workspace = Workspace::new();
+    let mut repl = workspace.repl("yerc repl --sim");
     repl.wait_for_text("yerc> ");
     repl.press("\x03");
     repl.wait_for_text("Ctrl-C again");
@@ -112,8 +112,8 @@ fn ctrl_c_twice_at_the_prompt_leaves() {
 #[test]
 fn termination_restores_the_terminal() {
     for signal in ["TERM", "HUP", "QUIT"] {
-        let desk = Desk::new();
-        let mut repl = desk.repl("yrcx repl --sim");
+        let workspace = Workspace::new();
+        let mut repl = workspace.repl("yrcx repl --sim");
         // Before the prompt is shown, the terminal itself echoes keys.
         repl.wait_for_text("yrcx>");
         repl.press("half a line");
@@ -127,25 +127,25 @@ fn termination_restores_the_terminal() {
 
 #[test]
 fn moves_a_real_robot_after_the_question_over_a_shared_link() {
-    let (desk, simulator) = (Desk::new(), Simulator::start("toyo"));
-    let mut repl = desk.repl(&format!("-t {} repl", simulator.url));
+    let (workspace, simulator) = (Workspace::new(), Simulator::start("toyo"));
+    let mut repl = workspace.repl(&format!("-t {} repl", simulator.url));
     repl.press("home\r");
     repl.wait_for_text("Continue? [y/N]");
     repl.press("n\r");
     repl.wait_for_text("not confirmed; nothing was changed");
-    let session = desk.data("session list")["sessions"][0].clone();
+    let session = workspace.data("session list")["sessions"][0].clone();
     assert_eq!((session["pid"].as_u64(), session["link"].as_str()), (Some(repl.child.id().into()), Some("up")));
-    assert!(desk.data(&format!("-t {} toyo status", simulator.url)).is_object());
+    assert!(workspace.data(&format!("-t {} toyo status", simulator.url)).is_object());
     repl.press("exit\r");
     assert_eq!(repl.end().code(), Some(0));
-    assert_eq!(desk.data("session list")["sessions"].as_array().map(Vec::len), Some(0));
+    assert_eq!(workspace.data("session list")["sessions"].as_array().map(Vec::len), Some(0));
 }
 
 #[test]
 fn stores_the_line_history() {
-    let desk = Desk::new();
+    let workspace = Workspace::new();
     for (typed, shown) in [("explain yerc 2060\r", "0x2060"), ("\x1b[A\r", "0x2060")] {
-        let mut repl = desk.repl("repl");
+        let mut repl = workspace.repl("repl");
         repl.press(typed);
         repl.wait_for_text(shown);
         repl.wait_for_text("> ");

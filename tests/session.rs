@@ -14,24 +14,24 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 /// The environment of a user: an inventory and a runtime folder.
-struct Desk {
+struct Workspace {
     folder: TempDir,
     program: PathBuf,
 }
 
-impl Desk {
+impl Workspace {
     /// Creates an inventory with these robots: name, family, target.
     fn new(robots: &[(&str, &str, &str)]) -> Self {
-        let desk = Self { folder: tempfile::tempdir().unwrap(), program: env!("CARGO_BIN_EXE_armctl").into() };
+        let workspace = Self { folder: tempfile::tempdir().unwrap(), program: env!("CARGO_BIN_EXE_armctl").into() };
         let robots: Vec<String> = robots
             .iter()
             .map(|(name, family, target)| {
                 format!("[[robot]]\nname = \"{name}\"\nfamily = \"{family}\"\ntarget = \"{target}\"\n")
             })
             .collect();
-        std::fs::write(desk.folder.path().join("robots.toml"), robots.concat()).unwrap();
-        std::fs::create_dir(desk.folder.path().join("run")).unwrap();
-        desk
+        std::fs::write(workspace.folder.path().join("robots.toml"), robots.concat()).unwrap();
+        std::fs::create_dir(workspace.folder.path().join("run")).unwrap();
+        workspace
     }
 
     fn command(&self, words: &str) -> Command {
@@ -78,7 +78,7 @@ impl Desk {
     }
 }
 
-impl Drop for Desk {
+impl Drop for Workspace {
     fn drop(&mut self) {
         // Background processes must not outlive the test.
         self.run("session close --all --force");
@@ -105,8 +105,8 @@ impl Running {
     }
 
     /// Starts a session in the foreground.
-    fn session(desk: &Desk, robot: &str) -> Self {
-        let session = Self::start(desk.command(&format!("-r {robot} session open")), true);
+    fn session(workspace: &Workspace, robot: &str) -> Self {
+        let session = Self::start(workspace.command(&format!("-r {robot} session open")), true);
         assert!(session.first.contains("held by process"), "{}", session.first);
         session
     }
@@ -153,13 +153,13 @@ impl Drop for Running {
 }
 
 /// A simulator on this address; port 0 selects a free port. The first output line of the simulator is its target.
-fn simulator(desk: &Desk, family: &str, address: &str) -> Running {
-    serve_simulator(desk, &format!("{family} --bind {address}"))
+fn simulator(workspace: &Workspace, family: &str, address: &str) -> Running {
+    serve_simulator(workspace, &format!("{family} --bind {address}"))
 }
 
 /// Starts a simulator with these arguments.
-fn serve_simulator(desk: &Desk, words: &str) -> Running {
-    let mut command = desk.command(&format!("sim {words} --console --jq .data.target"));
+fn serve_simulator(workspace: &Workspace, words: &str) -> Running {
+    let mut command = workspace.command(&format!("sim {words} --console --jq .data.target"));
     command.stdin(Stdio::piped());
     let mut simulator = Running::start(command, true);
     if !simulator.first.contains("://") {
@@ -171,18 +171,18 @@ fn serve_simulator(desk: &Desk, words: &str) -> Running {
 }
 
 /// A simulated YRCX, and a user whose inventory has it as `cell`. The long timeout allows for a busy machine.
-fn cell_arguments() -> (Running, Desk) {
-    let simulator = simulator(&Desk::new(&[]), "yrcx", "127.0.0.1:0");
-    let desk = Desk::new(&[("cell", "yrcx", &format!("{}?rpi=5ms&multiplier=512", simulator.first))]);
-    (simulator, desk)
+fn cell_arguments() -> (Running, Workspace) {
+    let simulator = simulator(&Workspace::new(&[]), "yrcx", "127.0.0.1:0");
+    let workspace = Workspace::new(&[("cell", "yrcx", &format!("{}?rpi=5ms&multiplier=512", simulator.first))]);
+    (simulator, workspace)
 }
 
 /// A motion that takes minutes.
 const SLOW_MOVE: &str = "-r cell yrcx move --to 900,0,0,0 --speed-of-max 0.1 --yes";
 
 /// Starts [`SLOW_MOVE`], and waits until the controller executes the motion.
-fn start_motion(desk: &Desk) -> Running {
-    let mut moving = Running::start(desk.command(&format!("{SLOW_MOVE} -vv")), false);
+fn start_motion(workspace: &Workspace) -> Running {
+    let mut moving = Running::start(workspace.command(&format!("{SLOW_MOVE} -vv")), false);
     moving.wait_for_message("<- WO 0100");
     moving
 }
@@ -203,16 +203,16 @@ fn mode(path: &Path) -> u32 {
 
 #[test]
 fn completion_asks_a_controller_only_through_its_session() {
-    let simulator = simulator(&Desk::new(&[]), "yerc", "127.0.0.1:0");
-    let desk = Desk::new(&[("cell", "yerc", &simulator.first)]);
+    let simulator = simulator(&Workspace::new(&[]), "yerc", "127.0.0.1:0");
+    let workspace = Workspace::new(&[("cell", "yerc", &simulator.first)]);
     let tab = |words: &str| {
-        let output = desk.command(&format!("-- {words}")).env("ARMCTL_COMPLETE", "zsh").output().unwrap();
+        let output = workspace.command(&format!("-- {words}")).env("ARMCTL_COMPLETE", "zsh").output().unwrap();
         assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""), "{words}");
         String::from_utf8(output.stdout).unwrap()
     };
     assert!(tab("armctl -r c").starts_with("+cell\tudp://"));
     assert_eq!(tab("armctl -r cell yerc job select TE"), "", "it opens no link of its own");
-    let _session = Running::session(&desk, "cell");
+    let _session = Running::session(&workspace, "cell");
     // On a busy machine, completion may be too slow for the first try.
     while tab("armctl -r cell yerc job select TE") != "+TESTJOB\n" {}
     while !tab("yerc -r cell file get TOOL").contains("+TOOL.CND\tcnd") {}
@@ -222,56 +222,60 @@ fn completion_asks_a_controller_only_through_its_session() {
 
 #[test]
 fn commands_use_a_session_automatically() {
-    let (_simulator, desk) = cell_arguments();
-    let session = Running::session(&desk, "cell");
-    let folder = desk.folder.path().join("run/armctl");
-    let sockets = desk.files("sock");
+    let (_simulator, workspace) = cell_arguments();
+    let session = Running::session(&workspace, "cell");
+    let folder = workspace.folder.path().join("run/armctl");
+    let sockets = workspace.files("sock");
     assert_eq!((mode(&folder), sockets.len(), mode(&sockets[0])), (0o700, 1, 0o600));
     for words in ["yrcx info servo -v", "yrcx status -v", "yrcx io get alarm -v", "status -v"] {
-        let output = desk.run(&format!("-r cell {words}"));
+        let output = workspace.run(&format!("-r cell {words}"));
         let stderr = stderr(&output);
         assert!(output.status.success() && stderr.contains("through the session of process"), "{words}: {stderr}");
         assert!(!stderr.contains("closed"), "no fault of the link: {stderr}");
     }
-    assert_eq!(desk.data("-r cell yrcx status")["alarm"], false, "the connection stayed open");
+    assert_eq!(workspace.data("-r cell yrcx status")["alarm"], false, "the connection stayed open");
     // A command that names the device by its URL uses the same session.
-    let url = desk.listed_sessions()["target"].as_str().unwrap().to_owned();
-    assert!(stderr(&desk.run(&format!("-t {url} yrcx status -v"))).contains("through the session"));
-    fails(&desk.run("-r cell --no-session --yes yrcx info servo"), 3, "[0x0106]");
-    let second = desk.run("-r cell session open");
+    let url = workspace.listed_sessions()["target"].as_str().unwrap().to_owned();
+    assert!(stderr(&workspace.run(&format!("-t {url} yrcx status -v"))).contains("through the session"));
+    fails(&workspace.run("-r cell --no-session --yes yrcx info servo"), 3, "[0x0106]");
+    let second = workspace.run("-r cell session open");
     fails(&second, 4, &format!("a session is already open: process {}, since", session.process.id()));
     session.signal("TERM");
     assert_eq!(session.end().0, Some(0));
-    assert!(desk.files("sock").is_empty());
+    assert!(workspace.files("sock").is_empty());
 }
 
 #[test]
 fn one_client_moves_and_another_stops() {
-    let (_simulator, desk) = cell_arguments();
-    let _session = Running::session(&desk, "cell");
-    let moving = start_motion(&desk);
+    let (_simulator, workspace) = cell_arguments();
+    let _session = Running::session(&workspace, "cell");
+    let moving = start_motion(&workspace);
     let pid = moving.process.id();
-    let listed = desk.listed_sessions();
+    let listed = workspace.listed_sessions();
     assert_eq!((&listed["motion"]["pid"], &listed["under_way"]), (&pid.into(), &true.into()));
     assert!(listed["motion"]["command"].as_str().unwrap().contains("yrcx move --to 900,0,0,0"), "{listed}");
-    fails(&desk.run("-r cell yrcx servo on --yes"), 7, &format!("another client is moving the robot: process {pid} ("));
-    fails(&desk.run("-r cell yrcx info servo --timeout 100ms"), 4, "the link is in use by process");
-    fails(&desk.run("session close cell"), 7, "moves the robot");
-    assert_eq!(desk.data("-r cell yrcx status")["command_status"], "running");
-    assert_eq!(desk.data("-r cell status")["reachable"], true);
+    fails(
+        &workspace.run("-r cell yrcx servo on --yes"),
+        7,
+        &format!("another client is moving the robot: process {pid} ("),
+    );
+    fails(&workspace.run("-r cell yrcx info servo --timeout 100ms"), 4, "the link is in use by process");
+    fails(&workspace.run("session close cell"), 7, "moves the robot");
+    assert_eq!(workspace.data("-r cell yrcx status")["command_status"], "running");
+    assert_eq!(workspace.data("-r cell status")["reachable"], true);
 
-    assert!(desk.run("-r cell yrcx stop").status.success());
+    assert!(workspace.run("-r cell yrcx stop").status.success());
     let (code, said) = moving.end();
     assert!(code == Some(3) && said.contains("12.400"), "{code:?} {said}");
-    desk.data("-r cell yrcx io set stop=on");
-    assert!(desk.run("-r cell yrcx servo on --yes").status.success(), "nobody moves it any more");
+    workspace.data("-r cell yrcx io set stop=on");
+    assert!(workspace.run("-r cell yrcx servo on --yes").status.success(), "nobody moves it any more");
 }
 
 #[test]
 fn interrupt_stops_a_motion_in_a_session() {
-    let (_simulator, desk) = cell_arguments();
-    let _session = Running::session(&desk, "cell");
-    let moving = start_motion(&desk);
+    let (_simulator, workspace) = cell_arguments();
+    let _session = Running::session(&workspace, "cell");
+    let moving = start_motion(&workspace);
     moving.signal("INT");
     let (code, said) = moving.end();
     assert!(code == Some(130) && said.contains("was stopped by the stop input SI(06), which is on again"), "{said}");
@@ -279,53 +283,53 @@ fn interrupt_stops_a_motion_in_a_session() {
 
 #[test]
 fn reports_and_handles_state_of_a_dead_client() {
-    let (_simulator, desk) = cell_arguments();
-    let mut session = Running::session(&desk, "cell");
-    let mut moving = Running::start(desk.command(&format!("{SLOW_MOVE} --on-interrupt leave -vv")), false);
+    let (_simulator, workspace) = cell_arguments();
+    let mut session = Running::session(&workspace, "cell");
+    let mut moving = Running::start(workspace.command(&format!("{SLOW_MOVE} --on-interrupt leave -vv")), false);
     moving.wait_for_message("<- WO 0100");
     let pid = moving.process.id();
     moving.signal("KILL");
     session.wait_for_message(&format!("client {pid} has died"));
-    let listed = desk.listed_sessions();
+    let listed = workspace.listed_sessions();
     assert_eq!((&listed["leftover"]["pid"], &listed["leftover"]["died"]), (&pid.into(), &true.into()));
     assert_eq!((&listed["motion"], &listed["under_way"]), (&Value::Null, &true.into()), "it goes on");
-    let output = desk.run("-r cell yrcx servo on --yes");
+    let output = workspace.run("-r cell yrcx servo on --yes");
     fails(&output, 4, "another client's command is still running: move-mm");
     assert!(stderr(&output).contains("a client ended and left a command running"), "{}", stderr(&output));
 
-    assert!(desk.run("-r cell yrcx stop").status.success());
+    assert!(workspace.run("-r cell yrcx stop").status.success());
     // The motion ends a moment after the stop. Until then, new commands are refused.
-    let mut next = (0..100).map(|_| desk.run("-r cell yrcx info servo"));
+    let mut next = (0..100).map(|_| workspace.run("-r cell yrcx info servo"));
     let next = next.find(|next| next.status.success()).expect("the motion ends");
     assert!(stderr(&next).contains("another client left move-mm "), "{}", stderr(&next));
-    assert_eq!(desk.listed_sessions()["leftover"], Value::Null);
+    assert_eq!(workspace.listed_sessions()["leftover"], Value::Null);
 }
 
 #[test]
 fn stops_the_jog_of_a_killed_client() {
-    let (_simulator, desk) = cell_arguments();
-    let mut session = Running::session(&desk, "cell");
-    let mut jogging = Running::start(desk.command("-r cell yrcx jog pulse 1 + --for 1m --yes -vv"), false);
+    let (_simulator, workspace) = cell_arguments();
+    let mut session = Running::session(&workspace, "cell");
+    let mut jogging = Running::start(workspace.command("-r cell yrcx jog pulse 1 + --for 1m --yes -vv"), false);
     jogging.wait_for_message("<- WO 0100");
     jogging.signal("KILL");
     session.wait_for_message("armctl sends the stop signals of the client");
-    desk.until(|session| session["under_way"] == false);
-    let next = desk.run("-r cell yrcx info servo");
+    workspace.until(|session| session["under_way"] == false);
+    let next = workspace.run("-r cell yrcx info servo");
     assert!(next.status.success() && stderr(&next).contains("12.400 stopped by the stop input"), "{}", stderr(&next));
 }
 
 #[test]
 fn motion_with_no_wait_continues_after_its_command() {
-    let (_simulator, desk) = cell_arguments();
-    let _session = Running::session(&desk, "cell");
-    let moved = desk.run("-r cell yrcx move --to 10,0,0,0 --speed-of-max 1 --yes --no-wait");
+    let (_simulator, workspace) = cell_arguments();
+    let _session = Running::session(&workspace, "cell");
+    let moved = workspace.run("-r cell yrcx move --to 10,0,0,0 --speed-of-max 1 --yes --no-wait");
     assert!(moved.status.success(), "{}", stderr(&moved));
-    assert_eq!(desk.listed_sessions()["leftover"]["died"], false);
+    assert_eq!(workspace.listed_sessions()["leftover"]["died"], false);
     let filter = ".data.command_status == \"normal end\"";
-    let mut watch = desk.command("-r cell yrcx status --watch 10ms --for 1m --json");
+    let mut watch = workspace.command("-r cell yrcx status --watch 10ms --for 1m --json");
     let watched = watch.args(["--until", filter]).output().unwrap();
     assert!(watched.status.success(), "{:?}", watched.stdout.rsplit(|byte| *byte == b'\n').nth(1));
-    assert_eq!(desk.data("-r cell yrcx status --full")["position"]["x_mm"], 10.0);
+    assert_eq!(workspace.data("-r cell yrcx status --full")["position"]["x_mm"], 10.0);
 }
 
 /// The session process is killed during a command. The command reports the end of the session, and that its own outcome
@@ -336,13 +340,13 @@ fn command_reports_its_killed_session() {
         ("yerc", "move relative --x 200 --speed 5mm/s --yes", "answer to 0x8a cartesian move: ok"),
         ("yerc", "file put UP.CND --yes", "data: file load, block 3"),
     ] {
-        let simulator = simulator(&Desk::new(&[]), family, "127.0.0.1:0");
-        let desk = Desk::new(&[("cell", family, &simulator.first)]);
-        let up = desk.folder.path().join("UP.CND");
+        let simulator = simulator(&Workspace::new(&[]), family, "127.0.0.1:0");
+        let workspace = Workspace::new(&[("cell", family, &simulator.first)]);
+        let up = workspace.folder.path().join("UP.CND");
         std::fs::write(&up, vec![b'x'; 16 << 20]).unwrap();
-        let session = Running::session(&desk, "cell");
-        let mut command = desk.command(&format!("-r cell {family} {words} -vv"));
-        command.current_dir(desk.folder.path());
+        let session = Running::session(&workspace, "cell");
+        let mut command = workspace.command(&format!("-r cell {family} {words} -vv"));
+        command.current_dir(workspace.folder.path());
         let mut commanding_client = Running::start(command, false);
         commanding_client.wait_for_message(until);
         session.signal("KILL");
@@ -354,35 +358,35 @@ fn command_reports_its_killed_session() {
 
 #[test]
 fn killed_session_makes_the_outcome_unknown() {
-    let (_simulator, desk) = cell_arguments();
-    let session = Running::session(&desk, "cell");
-    let moving = start_motion(&desk);
+    let (_simulator, workspace) = cell_arguments();
+    let session = Running::session(&workspace, "cell");
+    let moving = start_motion(&workspace);
     session.signal("KILL");
     let (code, said) = moving.end();
     assert!(
         code == Some(6) && said.contains("the process of the session has ended") && said.contains("hint: keep clear"),
         "{said}"
     );
-    assert_eq!((desk.files("sock").len(), desk.listed_sessions()["link"].as_str()), (1, Some("dead")));
+    assert_eq!((workspace.files("sock").len(), workspace.listed_sessions()["link"].as_str()), (1, Some("dead")));
     assert!(
-        stderr(&desk.run("-r cell yrcx status"))
+        stderr(&workspace.run("-r cell yrcx status"))
             .contains("the session process has ended, so the command runs without a session")
     );
     // A stale socket does not prevent a new session. The adapter needs a moment to detect the lost owner.
-    while !desk.run("-r cell session open --background").status.success() {}
-    assert_eq!(desk.listed_sessions()["link"], "up");
-    let killed = desk.listed_sessions()["pid"].to_string();
+    while !workspace.run("-r cell session open --background").status.success() {}
+    assert_eq!(workspace.listed_sessions()["link"], "up");
+    let killed = workspace.listed_sessions()["pid"].to_string();
     assert!(Command::new("kill").args(["-s", "KILL", &killed]).status().unwrap().success());
-    desk.until(|session| session["link"] == "dead");
-    assert_eq!(desk.data("session close cell")["sessions"][0]["became"], "forgotten");
-    assert!(desk.files("sock").is_empty());
+    workspace.until(|session| session["link"] == "dead");
+    assert_eq!(workspace.data("session close cell")["sessions"][0]["became"], "forgotten");
+    assert!(workspace.files("sock").is_empty());
 }
 
 #[test]
 fn closing_session_notifies_its_clients() {
-    let (_simulator, desk) = cell_arguments();
-    let session = Running::session(&desk, "cell");
-    let moving = start_motion(&desk);
+    let (_simulator, workspace) = cell_arguments();
+    let session = Running::session(&workspace, "cell");
+    let moving = start_motion(&workspace);
     session.signal("TERM");
     let (code, said) = moving.end();
     assert!(
@@ -391,23 +395,23 @@ fn closing_session_notifies_its_clients() {
     );
     let (code, said) = session.end();
     assert!(code == Some(0) && !said.contains("not closed correctly"), "{said}");
-    assert!(desk.files("sock").is_empty());
+    assert!(workspace.files("sock").is_empty());
 }
 
 #[test]
 fn reopens_a_lost_link() {
-    let (simulator, desk) = cell_arguments();
-    let mut session = Running::session(&desk, "cell");
+    let (simulator, workspace) = cell_arguments();
+    let mut session = Running::session(&workspace, "cell");
     let address = simulator.first.trim_start_matches("eip://").to_owned();
     drop(simulator);
     session.wait_for_message("the connection was lost");
-    desk.until(|session| session["link"] == "down");
-    fails(&desk.run("-r cell yrcx info servo --timeout 100ms"), 4, "the controller sends no data");
-    let _simulator = self::simulator(&desk, "yrcx", &format!("{address} --io-port 0"));
+    workspace.until(|session| session["link"] == "down");
+    fails(&workspace.run("-r cell yrcx info servo --timeout 100ms"), 4, "the controller sends no data");
+    let _simulator = self::simulator(&workspace, "yrcx", &format!("{address} --io-port 0"));
     session.wait_for_message("the connection is open again");
-    let listed = desk.until(|session| session["link"] == "up");
+    let listed = workspace.until(|session| session["link"] == "up");
     assert_eq!(listed["reopenings"], 1);
-    assert!(desk.run("-r cell yrcx info servo").status.success());
+    assert!(workspace.run("-r cell yrcx info servo").status.success());
 }
 
 #[test]
@@ -416,20 +420,23 @@ fn session_keeps_each_fieldbus_and_its_end_is_an_alarm() {
     for (words, patience, alarm) in
         [("--bus devicenet", "&rate=10s", "12.541"), ("--bus profibus", "&watchdog=60s&slot=500ms", "12.561")]
     {
-        let simulator = serve_simulator(&Desk::new(&[]), &format!("yrcx {words}"));
+        let simulator = serve_simulator(&Workspace::new(&[]), &format!("yrcx {words}"));
         let target = simulator.first.split("&slot=").next().unwrap();
-        let desk = Desk::new(&[("cell", "yrcx", &format!("{target}{patience}"))]);
-        let session = Running::session(&desk, "cell");
-        desk.data("-r cell yrcx io set 20=on");
-        assert_eq!(desk.data("-r cell yrcx io get SI20")["items"][0]["value"], true, "{target}");
-        assert!(desk.run("-r cell yrcx move --to 300,0,0,0 --speed-of-max 100 --yes").status.success(), "{target}");
-        desk.data("session close cell");
+        let workspace = Workspace::new(&[("cell", "yrcx", &format!("{target}{patience}"))]);
+        let session = Running::session(&workspace, "cell");
+        workspace.data("-r cell yrcx io set 20=on");
+        assert_eq!(workspace.data("-r cell yrcx io get SI20")["items"][0]["value"], true, "{target}");
+        assert!(
+            workspace.run("-r cell yrcx move --to 300,0,0,0 --speed-of-max 100 --yes").status.success(),
+            "{target}"
+        );
+        workspace.data("session close cell");
         assert_eq!(session.end().0, Some(0), "{target}");
-        let _session = Running::session(&desk, "cell");
-        assert_eq!(desk.data("-r cell yrcx alarm history 1")["alarms"][0]["code"], alarm);
-        fails(&desk.run("-r cell yrcx move --to 200,0,0,0 --yes"), 3, alarm);
-        assert!(desk.run("-r cell yrcx recover --yes").status.success(), "{target}");
-        assert!(desk.run("-r cell yrcx move --to 200,0,0,0 --yes").status.success(), "{target}");
+        let _session = Running::session(&workspace, "cell");
+        assert_eq!(workspace.data("-r cell yrcx alarm history 1")["alarms"][0]["code"], alarm);
+        fails(&workspace.run("-r cell yrcx move --to 200,0,0,0 --yes"), 3, alarm);
+        assert!(workspace.run("-r cell yrcx recover --yes").status.success(), "{target}");
+        assert!(workspace.run("-r cell yrcx move --to 200,0,0,0 --yes").status.success(), "{target}");
     }
 }
 
@@ -438,9 +445,9 @@ fn reports_the_stop_input_after_a_lost_link_returns() {
     const REPORTED: &str = "the connection was lost; the connection is up again, and the stop input SI(06) is on";
     // First through a session, then with a direct connection of the command.
     for is_held in [true, false] {
-        let (simulator, desk) = cell_arguments();
-        let mut session = is_held.then(|| Running::session(&desk, "cell"));
-        let mut moving = Running::start(desk.command(&format!("{SLOW_MOVE} -vv --timeout 1m")), false);
+        let (simulator, workspace) = cell_arguments();
+        let mut session = is_held.then(|| Running::session(&workspace, "cell"));
+        let mut moving = Running::start(workspace.command(&format!("{SLOW_MOVE} -vv --timeout 1m")), false);
         moving.wait_for_message("<- WO 0100");
         simulator.signal("STOP");
         let lost = " was lost";
@@ -457,9 +464,9 @@ fn reports_the_stop_input_after_a_lost_link_returns() {
 #[cfg(target_os = "linux")]
 #[test]
 fn background_session_keeps_no_file_of_its_starter_open() {
-    let (_simulator, desk) = cell_arguments();
-    let inherited = desk.folder.path().join("inherited");
-    let command = desk.command("-r cell session open --background --json");
+    let (_simulator, workspace) = cell_arguments();
+    let inherited = workspace.folder.path().join("inherited");
+    let command = workspace.command("-r cell session open --background --json");
     let open = format!("exec 7>'{}' 8</dev/null 9>&1; exec \"$0\" \"$@\"", inherited.display());
     let mut shell = Command::new("sh");
     shell.args(["-c", &open]).arg(command.get_program()).args(command.get_args()).stdin(Stdio::null());
@@ -475,21 +482,21 @@ fn background_session_keeps_no_file_of_its_starter_open() {
 
 #[test]
 fn background_session_is_ready_when_reported() {
-    let (_simulator, desk) = cell_arguments();
-    let opened = desk.data("-r cell session open --background");
+    let (_simulator, workspace) = cell_arguments();
+    let opened = workspace.data("-r cell session open --background");
     assert_eq!((&opened["robot"], &opened["background"]), (&"cell".into(), &true.into()));
     let log = PathBuf::from(opened["log"].as_str().unwrap());
     assert_eq!(mode(&log), 0o600);
     assert!(std::fs::read_to_string(&log).unwrap().contains("the connection is open"));
-    assert_eq!(desk.listed_sessions()["pid"], opened["pid"]);
-    fails(&desk.run("-r cell session open --background"), 4, "a session is already open");
-    fails(&desk.run("session close elsewhere"), 2, "no session of 'elsewhere' is open");
-    assert_eq!(desk.data("session close cell")["sessions"][0]["became"], "closed");
-    assert_eq!(desk.data("session list")["sessions"].as_array().unwrap().len(), 0);
+    assert_eq!(workspace.listed_sessions()["pid"], opened["pid"]);
+    fails(&workspace.run("-r cell session open --background"), 4, "a session is already open");
+    fails(&workspace.run("session close elsewhere"), 2, "no session of 'elsewhere' is open");
+    assert_eq!(workspace.data("session close cell")["sessions"][0]["became"], "closed");
+    assert_eq!(workspace.data("session list")["sessions"].as_array().unwrap().len(), 0);
     // The session and its connection have ended, so a new session is possible.
-    desk.data("-r cell session open --background");
+    workspace.data("-r cell session open --background");
 
-    let no_session = Desk::new(&[("cell", "yrcx", "eip://127.0.0.1:1"), ("yas", "yerc", "udp://127.0.0.1:1")]);
+    let no_session = Workspace::new(&[("cell", "yrcx", "eip://127.0.0.1:1"), ("yas", "yerc", "udp://127.0.0.1:1")]);
     for robot in ["cell", "yas"] {
         fails(&no_session.run(&format!("-r {robot} session open --background --retries 0")), 4, "127.0.0.1:1");
     }
@@ -498,28 +505,28 @@ fn background_session_is_ready_when_reported() {
 
 #[test]
 fn session_forwards_datagrams() {
-    let simulator = simulator(&Desk::new(&[]), "yerc", "127.0.0.1:0");
-    let desk = Desk::new(&[("cell", "yerc", &simulator.first)]);
-    let session = Running::session(&desk, "cell");
-    let through_session = desk.run("-r cell yerc status -v");
+    let simulator = simulator(&Workspace::new(&[]), "yerc", "127.0.0.1:0");
+    let workspace = Workspace::new(&[("cell", "yerc", &simulator.first)]);
+    let session = Running::session(&workspace, "cell");
+    let through_session = workspace.run("-r cell yerc status -v");
     assert!(stderr(&through_session).contains("through the session of process"), "{}", stderr(&through_session));
     for old in [0, 7] {
-        let written = &desk.data("-r cell yerc var set B0=7")["items"][0];
+        let written = &workspace.data("-r cell yerc var set B0=7")["items"][0];
         assert_eq!((&written["old"], &written["new"]), (&old.into(), &7.into()), "{written}");
     }
     // A file transfer needs many datagrams, and it uses the other port.
-    let file = desk.folder.path().join("COUNT.JBI");
-    let saved = desk.run(&format!("-r cell yerc file get COUNT.JBI --dir {}", desk.folder.path().display()));
+    let file = workspace.folder.path().join("COUNT.JBI");
+    let saved = workspace.run(&format!("-r cell yerc file get COUNT.JBI --dir {}", workspace.folder.path().display()));
     assert!(saved.status.success() && file.exists(), "{}", stderr(&saved));
-    let sent = desk.run(&format!("-r cell --yes yerc file put {} --replace", file.display()));
+    let sent = workspace.run(&format!("-r cell --yes yerc file put {} --replace", file.display()));
     assert!(sent.status.success(), "{}", stderr(&sent));
 
     let slow = "-r cell --yes yerc move relative --z -600 --speed 1mm/s";
-    let moving = Running::start(desk.command(slow), false);
-    let pid = desk.until(|session| session["motion"] != Value::Null)["motion"]["pid"].clone();
+    let moving = Running::start(workspace.command(slow), false);
+    let pid = workspace.until(|session| session["motion"] != Value::Null)["motion"]["pid"].clone();
     assert_eq!(pid, moving.process.id());
-    fails(&desk.run("-r cell --yes yerc servo on"), 7, "another client is moving the robot");
-    assert!(desk.run("-r cell yerc hold on").status.success(), "a hold gets through");
+    fails(&workspace.run("-r cell --yes yerc servo on"), 7, "another client is moving the robot");
+    assert!(workspace.run("-r cell yerc hold on").status.success(), "a hold gets through");
     moving.signal("INT");
     assert_eq!(moving.end().0, Some(130));
     session.signal("INT");
@@ -528,52 +535,52 @@ fn session_forwards_datagrams() {
 
 #[test]
 fn clients_take_turns_on_a_serial_line() {
-    let simulator = simulator(&Desk::new(&[]), "toyo", "127.0.0.1:0");
-    let desk = Desk::new(&[("cell", "toyo", &simulator.first)]);
-    let mut session = Running::session(&desk, "cell");
-    let homing = Running::start(desk.command("-r cell toyo home --yes -vv"), false);
-    let pid = desk.until(|session| session["motion"] != Value::Null)["motion"]["pid"].clone();
+    let simulator = simulator(&Workspace::new(&[]), "toyo", "127.0.0.1:0");
+    let workspace = Workspace::new(&[("cell", "toyo", &simulator.first)]);
+    let mut session = Running::session(&workspace, "cell");
+    let homing = Running::start(workspace.command("-r cell toyo home --yes -vv"), false);
+    let pid = workspace.until(|session| session["motion"] != Value::Null)["motion"]["pid"].clone();
     assert_eq!(pid, homing.process.id());
-    assert!(desk.run("-r cell toyo status").status.success(), "questions get through");
-    fails(&desk.run("-r cell toyo servo on --yes"), 7, "another client is moving the robot");
-    let stopped = desk.run("-r cell toyo stop");
+    assert!(workspace.run("-r cell toyo status").status.success(), "questions get through");
+    fails(&workspace.run("-r cell toyo servo on --yes"), 7, "another client is moving the robot");
+    let stopped = workspace.run("-r cell toyo stop");
     assert!(stopped.status.success(), "{}", stderr(&stopped));
     assert_eq!(homing.end().0, Some(8), "stopped by somebody else");
 
     let address = simulator.first.trim_start_matches("tcp://").to_owned();
     drop(simulator);
     session.wait_for_message("the connection was lost");
-    fails(&desk.run("-r cell toyo status"), 4, "the connection is lost");
-    let _simulator = self::simulator(&desk, "toyo", &address);
+    fails(&workspace.run("-r cell toyo status"), 4, "the connection is lost");
+    let _simulator = self::simulator(&workspace, "toyo", &address);
     session.wait_for_message("the connection is open again");
-    assert!(desk.run("-r cell toyo status").status.success());
+    assert!(workspace.run("-r cell toyo status").status.success());
 }
 
 #[test]
 fn simulator_in_a_session_keeps_its_state() {
-    let desk = Desk::new(&[("x", "yrcx", "sim:"), ("y", "yerc", "sim:"), ("t", "toyo", "sim:")]);
+    let workspace = Workspace::new(&[("x", "yrcx", "sim:"), ("y", "yerc", "sim:"), ("t", "toyo", "sim:")]);
     for robot in ["x", "y", "t"] {
-        assert!(desk.run(&format!("-r {robot} session open --background")).status.success());
+        assert!(workspace.run(&format!("-r {robot} session open --background")).status.success());
     }
-    assert_eq!(desk.data("session list")["sessions"].as_array().unwrap().len(), 3);
-    desk.data("-r x yrcx io set 20=on");
-    assert_eq!(desk.data("-r x yrcx io get SI20")["items"][0]["value"], true);
-    desk.data("-r y yerc var set B0=42");
-    assert_eq!(desk.data("-r y yerc var get B0")["items"][0]["value"], 42);
-    desk.data("-r t toyo counter set 7 42");
-    assert_eq!(desk.data("-r t toyo counter get 7")["items"][0]["value"], 42);
+    assert_eq!(workspace.data("session list")["sessions"].as_array().unwrap().len(), 3);
+    workspace.data("-r x yrcx io set 20=on");
+    assert_eq!(workspace.data("-r x yrcx io get SI20")["items"][0]["value"], true);
+    workspace.data("-r y yerc var set B0=42");
+    assert_eq!(workspace.data("-r y yerc var get B0")["items"][0]["value"], 42);
+    workspace.data("-r t toyo counter set 7 42");
+    assert_eq!(workspace.data("-r t toyo counter get 7")["items"][0]["value"], 42);
     // Without a session, each command has a new simulator with the default state.
-    assert_eq!(desk.data("--no-session -r t toyo counter get 7")["items"][0]["value"], 0);
-    assert_eq!(desk.data("session close --all")["sessions"].as_array().unwrap().len(), 3);
+    assert_eq!(workspace.data("--no-session -r t toyo counter get 7")["items"][0]["value"], 0);
+    assert_eq!(workspace.data("session close --all")["sessions"].as_array().unwrap().len(), 3);
 }
 
 #[test]
 fn does_not_trust_a_folder_of_another_user() {
-    let desk = Desk::new(&[("x", "yrcx", "sim:")]);
-    let folder = desk.folder.path().join("run/armctl");
+    let workspace = Workspace::new(&[("x", "yrcx", "sim:")]);
+    let folder = workspace.folder.path().join("run/armctl");
     std::fs::create_dir(&folder).unwrap();
     std::fs::set_permissions(&folder, std::fs::Permissions::from_mode(0o755)).unwrap();
-    fails(&desk.run("-r x session open"), 1, "other users have access to it");
-    let output = desk.run("-r x yrcx status");
+    fails(&workspace.run("-r x session open"), 1, "other users have access to it");
+    let output = workspace.run("-r x yrcx status");
     assert!(output.status.success() && stderr(&output).contains("armctl does not use sessions"), "{}", stderr(&output));
 }

@@ -10,11 +10,11 @@ use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 
 /// The environment of a user, who may have an inventory.
-struct Desk {
+struct Workspace {
     folder: TempDir,
 }
 
-impl Desk {
+impl Workspace {
     fn new() -> Self {
         Self { folder: tempfile::tempdir().expect("a folder") }
     }
@@ -46,9 +46,9 @@ fn answer(setup: &mut Terminal, answers: &[(&str, &str)]) {
 
 #[test]
 fn adds_a_checked_named_read_only_robot() {
-    let (desk, controller) = (Desk::new(), Simulator::start("yerc"));
+    let (workspace, controller) = (Workspace::new(), Simulator::start("yerc"));
     let (address, _) = controller.place();
-    let mut setup = desk.setup();
+    let mut setup = workspace.setup();
     answer(&mut setup, &[("Where is the robot?", ""), ("a URL:", &address.to_string())]);
     answer(&mut setup, &[("Which controller is it?", "")]);
     setup.wait_for_text("the controller answers a status request");
@@ -61,35 +61,35 @@ fn adds_a_checked_named_read_only_robot() {
     assert!(setup.is_restored());
     let expected =
         format!("default = \"cell3\"\n\n[[robot]]\nname = \"cell3\"\ntarget = \"udp://{address}\"\nread_only = true\n");
-    assert_eq!(desk.inventory(), Some(expected));
+    assert_eq!(workspace.inventory(), Some(expected));
 }
 
 #[test]
 fn adds_a_simulator_and_changes_the_default() {
-    let desk = Desk::new();
+    let workspace = Workspace::new();
     let simulator = [
         ("Where is the robot?", THIRD_ENTRY),
         ("Which controller is it?", SECOND_ENTRY),
         ("eip://127.0.0.1:44818]:", "sim:"),
     ];
-    let mut setup = desk.setup();
+    let mut setup = workspace.setup();
     answer(&mut setup, &simulator);
     answer(&mut setup, &[("Name [cell1]:", ""), ("Read-only", "n"), ("Hold", "y"), ("Write this", "y")]);
     assert_eq!(setup.end().code(), Some(0));
-    let mut setup = desk.setup();
+    let mut setup = workspace.setup();
     answer(&mut setup, &simulator);
     answer(&mut setup, &[("Name [cell2]:", "cell1"), ("robot 'cell1' already exists", "")]);
     answer(&mut setup, &[("Read-only", "yes"), ("instead of cell1? [y/N]", "y"), ("Write this", "")]);
     assert_eq!(setup.end().code(), Some(0));
-    let inventory = desk.inventory().expect("it was written");
+    let inventory = workspace.inventory().expect("it was written");
     assert!(inventory.starts_with("default = \"cell2\""), "{inventory}");
     assert!(inventory.contains("hold = true") && inventory.contains("read_only = true"), "{inventory}");
 }
 
 #[test]
 fn shows_problems_and_asks_whether_to_continue() {
-    let desk = Desk::new();
-    let mut setup = desk.setup();
+    let workspace = Workspace::new();
+    let mut setup = workspace.setup();
     answer(&mut setup, &[("Where is the robot?", ""), ("a URL:", "robot")]);
     setup.wait_for_text("error:");
     answer(&mut setup, &[("Where is the robot?", ""), ("a URL:", "udp://127.0.0.1:1")]);
@@ -101,14 +101,14 @@ fn shows_problems_and_asks_whether_to_continue() {
     answer(&mut setup, &[("What now?", THIRD_ENTRY), ("Name", "tray"), ("Read-only", ""), ("Write this", "n")]);
     setup.wait_for_text("nothing was written");
     assert_eq!(setup.end().code(), Some(7));
-    assert_eq!(desk.inventory(), None);
+    assert_eq!(workspace.inventory(), None);
 }
 
 #[test]
 fn escape_and_signals_write_nothing_and_restore_the_terminal() {
     for way in ["escape", "ctrl-c", "INT", "TERM"] {
-        let desk = Desk::new();
-        let mut setup = desk.setup();
+        let workspace = Workspace::new();
+        let mut setup = workspace.setup();
         setup.wait_for_text("no robot yet: use a simulator");
         setup.reads_keys();
         match way {
@@ -118,7 +118,7 @@ fn escape_and_signals_write_nothing_and_restore_the_terminal() {
         }
         assert_eq!(setup.end().code(), Some(130), "{way}");
         assert_terminal_restored(&setup, way);
-        assert_eq!(desk.inventory(), None);
+        assert_eq!(workspace.inventory(), None);
     }
 }
 
@@ -130,17 +130,17 @@ fn assert_terminal_restored(terminal: &Terminal, way: &str) {
 }
 
 /// Runs a command line on a terminal. The program asks for a missing name.
-fn line(desk: &Desk, words: &[&str]) -> Terminal {
+fn line(workspace: &Workspace, words: &[&str]) -> Terminal {
     let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
-    command.env_clear().env("HOME", desk.folder.path()).env("TERM", "xterm-256color").env("LANG", "C.UTF-8");
-    command.args(["--config", "robots.toml"]).args(words).current_dir(desk.folder.path());
+    command.env_clear().env("HOME", workspace.folder.path()).env("TERM", "xterm-256color").env("LANG", "C.UTF-8");
+    command.args(["--config", "robots.toml"]).args(words).current_dir(workspace.folder.path());
     Terminal::start(command, 80, 24).expect("a terminal")
 }
 
 #[test]
 fn offers_a_choice_for_a_missing_name() {
-    let desk = Desk::new();
-    let mut select = line(&desk, &["--sim", "yerc", "job", "select"]);
+    let workspace = Workspace::new();
+    let mut select = line(&workspace, &["--sim", "yerc", "job", "select"]);
     select.wait_for_text("> COUNT");
     select.reads_keys();
     select.press("WAIT\r");
@@ -150,8 +150,8 @@ fn offers_a_choice_for_a_missing_name() {
     assert_eq!(select.end().code(), Some(0));
     assert_terminal_restored(&select, "chosen");
     let robots = "[[robot]]\nname = \"cell3\"\ntarget = \"sim:\"\nfamily = \"yerc\"\n";
-    std::fs::write(desk.folder.path().join("robots.toml"), robots).unwrap();
-    let mut status = line(&desk, &["status", "-r"]);
+    std::fs::write(workspace.folder.path().join("robots.toml"), robots).unwrap();
+    let mut status = line(&workspace, &["status", "-r"]);
     status.wait_for_text("cell3");
     status.reads_keys();
     status.press("\r");
@@ -162,10 +162,10 @@ fn offers_a_choice_for_a_missing_name() {
 #[test]
 fn enter_does_not_remove_a_robot() {
     let robots = "[[robot]]\nname = \"cell3\"\ntarget = \"sim:\"\nfamily = \"yerc\"\n";
-    let desk = Desk::new();
-    std::fs::write(desk.folder.path().join("robots.toml"), robots).unwrap();
+    let workspace = Workspace::new();
+    std::fs::write(workspace.folder.path().join("robots.toml"), robots).unwrap();
     for (way, keys) in [("Esc", "\r\x1b"), ("Ctrl-C", "\r\x03"), ("TERM", "\r"), ("HUP", "\r")] {
-        let mut remove = line(&desk, &["robots", "remove"]);
+        let mut remove = line(&workspace, &["robots", "remove"]);
         remove.wait_for_text("cell3");
         remove.reads_keys();
         remove.press(keys);
@@ -176,14 +176,14 @@ fn enter_does_not_remove_a_robot() {
         }
         assert_eq!(remove.end().code(), Some(130), "{way}");
         assert_terminal_restored(&remove, way);
-        assert_eq!(desk.inventory().as_deref(), Some(robots), "{way}");
+        assert_eq!(workspace.inventory().as_deref(), Some(robots), "{way}");
     }
 }
 
 #[test]
 fn enter_does_not_select_a_deletion() {
-    let desk = Desk::new();
-    let mut delete = line(&desk, &["--sim", "yerc", "file", "delete"]);
+    let workspace = Workspace::new();
+    let mut delete = line(&workspace, &["--sim", "yerc", "file", "delete"]);
     delete.wait_for_text("COUNT.JBI");
     delete.reads_keys();
     delete.press("\r\x1b");
@@ -195,7 +195,7 @@ fn enter_does_not_select_a_deletion() {
 fn no_input_asks_nothing() {
     for words in [&["--no-input", "--sim", "yerc", "job", "select"][..], &["--json", "--sim", "yerc", "job", "select"]]
     {
-        let mut refused = line(&Desk::new(), words);
+        let mut refused = line(&Workspace::new(), words);
         assert_eq!(refused.end().code(), Some(2), "{words:?}");
     }
 }

@@ -11,13 +11,13 @@ use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 
 /// The environment of a user, and a controller with servo power.
-struct Desk {
+struct Workspace {
     folder: TempDir,
     family: &'static str,
     controller: Simulator,
 }
 
-impl Desk {
+impl Workspace {
     fn new(family: &'static str) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         Self { folder, family, controller: Simulator::start(family) }
@@ -34,10 +34,10 @@ impl Desk {
 
     /// Creates a controller whose axes can move.
     fn with_power(family: &'static str) -> Self {
-        let desk = Self::new(family);
-        let on = desk.run(&[family, "servo", "on", "--yes"]);
+        let workspace = Self::new(family);
+        let on = workspace.run(&[family, "servo", "on", "--yes"]);
         assert!(on.status.success(), "{}", String::from_utf8_lossy(&on.stderr));
-        desk
+        workspace
     }
 
     fn command(&self, words: &[&str]) -> Command {
@@ -113,7 +113,7 @@ const MAX_POLLS: usize = 2000;
 
 #[test]
 fn refuses_unsupported_uses() {
-    let desk = Desk::new("yerc");
+    let workspace = Workspace::new("yerc");
     for (words, part) in [
         (&["teach", "yerc", "--dry-run"][..], "has no dry run"),
         (&["teach", "yerc", "-o", "json"], "is interactive"),
@@ -121,12 +121,12 @@ fn refuses_unsupported_uses() {
         (&["teach", "yerc", "--yes"], "needs a terminal"),
         (&["teach", "yerc", "--watch"], "--watch"),
     ] {
-        let output = desk.run(words);
+        let output = workspace.run(words);
         let messages = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(2), "{words:?}: {messages}");
         assert!(messages.contains(part), "{words:?}: {messages}");
     }
-    let mut teach = desk.ask_panel(&["--max-step", "1", "--max-speed", "5"]);
+    let mut teach = workspace.ask_panel(&["--max-step", "1", "--max-speed", "5"]);
     let question = String::from_utf8_lossy(&teach.written).replace("\r\n", " ");
     for part in ["REAL CONTROLLER", "at most 1 mm", "at most 5 mm/s"] {
         assert!(question.contains(part), "{question}");
@@ -139,10 +139,10 @@ fn refuses_unsupported_uses() {
 
 #[test]
 fn limits_step_sizes_and_speeds() {
-    let desk = Desk::new("yerc");
+    let workspace = Workspace::new("yerc");
     for (words, largest, fastest) in [(&[][..], "step 10 mm", "speed 10 mm/s"), (&["--max-step", "1"], "step 1 mm", "")]
     {
-        let mut teach = desk.panel(words);
+        let mut teach = workspace.panel(words);
         teach.press("++++++>>>>>>");
         teach.wait_for_picture(largest);
         teach.wait_for_picture(fastest);
@@ -158,51 +158,51 @@ fn limits_step_sizes_and_speeds() {
 
 #[test]
 fn keys_move_one_axis_by_a_step() {
-    let desk = Desk::with_power("yerc");
-    let before = desk.data("yerc position --coordinates base")["positions"][0].clone();
-    let mut teach = desk.panel(&[]);
+    let workspace = Workspace::with_power("yerc");
+    let before = workspace.data("yerc position --coordinates base")["positions"][0].clone();
+    let mut teach = workspace.panel(&[]);
     teach.press("\x1b[B\x1b[C");
     teach.wait_for_picture("ok move relative --y 0.1 --coordinate base --speed 5mm/s");
     teach.press("c");
     teach.wait_for_picture("tool  axis Y");
     teach.press("q");
     assert_eq!(teach.end().code(), Some(0));
-    let after = desk.data("yerc position --coordinates base")["positions"][0].clone();
+    let after = workspace.data("yerc position --coordinates base")["positions"][0].clone();
     let moved = |name: &str| after[name].as_f64().unwrap() - before[name].as_f64().unwrap();
     assert!((moved("y_mm") - 0.1).abs() < 1e-6, "{before} {after}");
     for name in ["x_mm", "z_mm", "rx_deg", "ry_deg", "rz_deg"] {
         assert!(moved(name).abs() < 1e-6, "{name}: {before} {after}");
     }
 
-    let desk = Desk::with_power("toyo");
-    let before = desk.data("toyo position")["positions"][0].clone();
-    let mut teach = desk.panel(&[]);
+    let workspace = Workspace::with_power("toyo");
+    let before = workspace.data("toyo position")["positions"][0].clone();
+    let mut teach = workspace.panel(&[]);
     teach.press("\x1b[C");
     teach.wait_for_picture("ok jog X + inch");
     teach.press("q");
     assert_eq!(teach.end().code(), Some(0));
-    let after = desk.data("toyo position")["positions"][0].clone();
+    let after = workspace.data("toyo position")["positions"][0].clone();
     assert!(after["x_mm"].as_f64() > before["x_mm"].as_f64(), "{before} {after}");
     assert_eq!((&after["y_mm"], &after["z_mm"]), (&before["y_mm"], &before["z_mm"]));
 }
 
 #[test]
 fn stops_a_step_when_the_program_is_killed() {
-    let desk = Desk::with_power("yerc");
-    let start = desk.x();
-    let mut teach = desk.panel(&[]);
+    let workspace = Workspace::with_power("yerc");
+    let start = workspace.x();
+    let mut teach = workspace.panel(&[]);
     teach.press("<+");
     teach.wait_for_picture("step 1 mm");
     // Keys that are pressed during a step are discarded.
     teach.press("\x1b[C\x1b[C\x1b[C\x1b[C");
     teach.wait_for_picture("MOVING");
-    desk.wait_for_motion_from(start);
+    workspace.wait_for_motion_from(start);
     teach.child.kill().expect("it is killed");
     teach.child.wait().expect("it is our child");
     // The guardian stops the robot, and no further step follows.
-    assert!((0..MAX_POLLS).any(|_| desk.data("yerc status")["held"] == true), "{}", desk.data("yerc status"));
-    assert!((0..MAX_POLLS).any(|_| desk.data("yerc status")["running"] == false), "it does not stop");
-    assert!(desk.x() < start + 1.0 + 1e-6, "{start} {}", desk.x());
+    assert!((0..MAX_POLLS).any(|_| workspace.data("yerc status")["held"] == true), "{}", workspace.data("yerc status"));
+    assert!((0..MAX_POLLS).any(|_| workspace.data("yerc status")["running"] == false), "it does not stop");
+    assert!(workspace.x() < start + 1.0 + 1e-6, "{start} {}", workspace.x());
 }
 
 /// The process of the panel is killed or frozen during a motion. The robot must stop before it reaches the target.
@@ -210,29 +210,32 @@ fn stops_a_step_when_the_program_is_killed() {
 fn stops_a_motion_when_the_program_is_killed_or_frozen() {
     for signal in ["KILL", "STOP"] {
         // The motion is half a meter, at a tenth of the speed.
-        let desk = Desk::with_power("toyo");
-        desk.data("toyo home --yes");
-        desk.data("toyo param set M10 P --yes");
-        desk.data("toyo override set 10 --yes");
-        desk.data("toyo point set 5 x=500 y=0 z=0 r=0 --yes");
-        let mut teach = desk.panel(&[]);
+        let workspace = Workspace::with_power("toyo");
+        workspace.data("toyo home --yes");
+        workspace.data("toyo param set M10 P --yes");
+        workspace.data("toyo override set 10 --yes");
+        workspace.data("toyo point set 5 x=500 y=0 z=0 r=0 --yes");
+        let mut teach = workspace.panel(&[]);
         // Before the panel is drawn, the terminal is in normal mode and may interpret Enter.
         teach.wait_for_picture("step 0.1 mm");
         teach.press("g5\r");
         teach.wait_for_picture("y moves to point 5");
         teach.press("y");
         teach.wait_for_picture("MOVING");
-        let x = || desk.reported_states("toyo position")["positions"][0]["x_mm"].as_f64().expect("a number");
+        let x = || workspace.reported_states("toyo position")["positions"][0]["x_mm"].as_f64().expect("a number");
         assert!((0..MAX_POLLS).any(|_| x() > 0.0), "nothing moves");
         end(teach, signal);
-        assert!((0..MAX_POLLS).any(|_| desk.reported_states("toyo status")["running"] == false), "it does not stop");
+        assert!(
+            (0..MAX_POLLS).any(|_| workspace.reported_states("toyo status")["running"] == false),
+            "it does not stop"
+        );
         assert!(x() < 500.0, "{signal}: {}", x());
 
         // A step of ten millimeters at one millimeter per second. The adapter accepts no other master until it detects
         // that the first master is gone.
-        let desk = Desk::in_state("yrcx", "[[robot]]\nauto_speed = 10\n");
-        let x = || desk.reported_states("yrcx position --yes")["positions"][0]["x_mm"].as_f64().expect("a number");
-        let mut teach = desk.panel(&[]);
+        let workspace = Workspace::in_state("yrcx", "[[robot]]\nauto_speed = 10\n");
+        let x = || workspace.reported_states("yrcx position --yes")["positions"][0]["x_mm"].as_f64().expect("a number");
+        let mut teach = workspace.panel(&[]);
         teach.press("<<<+++");
         teach.wait_for_picture("step 10 mm");
         teach.press("\x1b[C");
@@ -256,31 +259,31 @@ fn end(mut teach: Terminal, signal: &str) {
 
 #[test]
 fn stop_works_during_a_step() {
-    let desk = Desk::with_power("yerc");
-    let start = desk.x();
-    let mut teach = desk.is_moving(start);
+    let workspace = Workspace::with_power("yerc");
+    let start = workspace.x();
+    let mut teach = workspace.is_moving(start);
     teach.press(" ");
     teach.wait_for_picture("ok hold on");
     teach.wait_until("it moves no more", |picture| !picture.text().contains("MOVING"));
-    let stopped = desk.x();
+    let stopped = workspace.x();
     assert!(start < stopped && stopped < start + 10.0, "{start} {stopped}");
-    assert_eq!(desk.data("yerc status")["held"], true);
+    assert_eq!(workspace.data("yerc status")["held"], true);
     teach.press("q");
     assert_eq!(teach.end().code(), Some(0));
-    assert!((desk.x() - stopped).abs() < 1e-6);
+    assert!((workspace.x() - stopped).abs() < 1e-6);
 }
 
 #[test]
 fn leaving_during_a_motion_stops_it() {
     for (key, code) in [("q", 0), ("\x03", 130)] {
-        let desk = Desk::with_power("yerc");
-        let start = desk.x();
-        let mut teach = desk.is_moving(start);
+        let workspace = Workspace::with_power("yerc");
+        let start = workspace.x();
+        let mut teach = workspace.is_moving(start);
         teach.press(key);
         assert_eq!(teach.end().code(), Some(code));
         assert!(teach.is_restored());
-        let left_position = desk.x();
+        let left_position = workspace.x();
         assert!(left_position < start + 10.0, "{start} {left_position}");
-        assert_eq!(desk.data("yerc status")["running"], false);
+        assert_eq!(workspace.data("yerc status")["running"], false);
     }
 }

@@ -15,12 +15,12 @@ const NAMED: &str = "# pick and place\nSPD V=5            # slow\nnext: MOVP pic
                      JMPC TAG=next parts>=5\nEND\n";
 
 /// A controller with the name `cell` in the inventory, and an inventory with names for points, timers and counters.
-struct Desk {
+struct Workspace {
     folder: TempDir,
     _controller: Simulator,
 }
 
-impl Desk {
+impl Workspace {
     fn new() -> Self {
         let (folder, controller) = (tempfile::tempdir().expect("a folder"), Simulator::start("toyo"));
         let url = &controller.url;
@@ -101,8 +101,8 @@ impl Put {
 
 #[test]
 fn names_replace_numbers_in_program_text() {
-    let desk = Desk::new();
-    let put = desk.put(NAMED, &[]);
+    let workspace = Workspace::new();
+    let put = workspace.put(NAMED, &[]);
     let written: Vec<&str> = put.sent("@WSTX").into_keys().collect();
     assert_eq!(
         written,
@@ -115,11 +115,11 @@ fn names_replace_numbers_in_program_text() {
             "@WSTX 0006 END",
         ]
     );
-    let inserted = desk.text(&["insert", "2", "MOVP", "pick"]);
+    let inserted = workspace.text(&["insert", "2", "MOVP", "pick"]);
     assert_eq!(inserted, "inserted in task 1: 0002  MOVP a PT=012 CN=00 S V=00 POST\n");
-    let inserted = desk.text(&["insert", "2", "CNT+", "parts=1"]);
+    let inserted = workspace.text(&["insert", "2", "CNT+", "parts=1"]);
     assert_eq!(inserted, "inserted in task 1: 0002  CNT+ CN03=0001\n");
-    let wrong = desk.command(&["insert", "2", "MOVP", "pikc"]).output().expect("armctl runs");
+    let wrong = workspace.command(&["insert", "2", "MOVP", "pikc"]).output().expect("armctl runs");
     assert_eq!(wrong.status.code(), Some(2));
     assert!(
         String::from_utf8_lossy(&wrong.stderr).contains("no point has the name 'pikc'\n\nhint: did you mean pick?"),
@@ -129,48 +129,51 @@ fn names_replace_numbers_in_program_text() {
 
 #[test]
 fn get_returns_the_source_text_while_the_steps_are_unchanged() {
-    let desk = Desk::new();
-    desk.put(NAMED, &[]);
-    assert_eq!(desk.text(&["get"]), NAMED);
-    assert_eq!(desk.text(&["diff", "program.toyo"]), "the program of task 1 and program.toyo are equal, 6 steps\n");
-    desk.write_at_pendant("4", "TIMP TN2=3.5\n");
-    let text = desk.text(&["get"]);
+    let workspace = Workspace::new();
+    workspace.put(NAMED, &[]);
+    assert_eq!(workspace.text(&["get"]), NAMED);
+    assert_eq!(
+        workspace.text(&["diff", "program.toyo"]),
+        "the program of task 1 and program.toyo are equal, 6 steps\n"
+    );
+    workspace.write_at_pendant("4", "TIMP TN2=3.5\n");
+    let text = workspace.text(&["get"]);
     assert!(text.contains("TIMP TN2=003.5") && !text.contains("pick and place"), "{text}");
-    let differs = desk.command(&["diff", "program.toyo"]).output().expect("armctl runs");
+    let differs = workspace.command(&["diff", "program.toyo"]).output().expect("armctl runs");
     let shown = String::from_utf8(differs.stdout).expect("UTF-8");
     assert_eq!(differs.status.code(), Some(8));
     assert!(shown.contains("-TIMP TN2=003.5\n+TIMP TN2=001.5\n"), "{shown}");
     // When the steps are the same as before, the source text is returned again.
-    desk.write_at_pendant("4", "TIMP TN2=1.5\n");
-    assert_eq!(desk.text(&["get"]), NAMED);
+    workspace.write_at_pendant("4", "TIMP TN2=1.5\n");
+    assert_eq!(workspace.text(&["get"]), NAMED);
 }
 
 #[test]
 fn put_reads_only_the_steps_that_it_needs() {
-    let desk = Desk::new();
-    assert_eq!(desk.put(NAMED, &[]).read(), 2000, "no step is known");
+    let workspace = Workspace::new();
+    assert_eq!(workspace.put(NAMED, &[]).read(), 2000, "no step is known");
     let changed = NAMED.replace("1.5", "2.5");
-    let put = desk.put(&changed, &[]);
+    let put = workspace.put(&changed, &[]);
     assert_eq!((put.read(), put.sent("@WSTX").len()), (7, 1), "the steps of the program, and the next one");
     assert_eq!((&put.data["unread_steps"], &put.data["cells_unchanged"]), (&1993.into(), &6.into()));
-    assert_eq!(desk.put(&changed, &["--read-all"]).read(), 2000);
+    assert_eq!(workspace.put(&changed, &["--read-all"]).read(), 2000);
     // A `put` of a part reads only the steps of this part.
-    assert_eq!(desk.put("SPD V=3\n", &["--at", "1"]).read(), 1);
-    assert_eq!(desk.put(&changed, &[]).read(), 2000, "a command changed steps after that");
+    assert_eq!(workspace.put("SPD V=3\n", &["--at", "1"]).read(), 1);
+    assert_eq!(workspace.put(&changed, &[]).read(), 2000, "a command changed steps after that");
 }
 
 #[test]
 fn put_finds_steps_from_the_pendant_that_affect_the_program() {
-    let desk = Desk::new();
+    let workspace = Workspace::new();
     let base = "next: SPD V=5\nJMP TAG=next\n";
-    desk.put(base, &[]);
+    workspace.put(base, &[]);
     // The person at the pendant has added a routine that no program calls yet.
-    desk.write_at_pendant("5", "TAG TAG=7\nEND\n");
-    let put = desk.put(&base.replace('5', "6"), &[]);
+    workspace.write_at_pendant("5", "TAG TAG=7\nEND\n");
+    let put = workspace.put(&base.replace('5', "6"), &[]);
     assert_eq!(put.read(), 4, "its tags are unchanged, and its end does not run into the next steps");
     // The person at the pendant has made the program longer.
-    desk.write_at_pendant("4", "SPD V=1\n");
-    let put = desk.put(base, &[]);
+    workspace.write_at_pendant("4", "SPD V=1\n");
+    let put = workspace.put(base, &[]);
     assert_eq!((put.read(), &put.data["cleared_steps"]), (2000, &3.into()));
     for program in [
         // One program per case: a tag that may exist twice, a last step that continues with the next step, and a
@@ -179,11 +182,11 @@ fn put_finds_steps_from_the_pendant_that_affect_the_program() {
         "next: SPD V=5\nJMPC TAG=next CN1<3\n",
         "next: SPD V=5\nBRAC CN=1 OFS=1\nJMP TAG=next\n",
     ] {
-        desk.put(base, &["--read-all"]);
-        desk.write_at_pendant("100", "TAG TAG=7\nHOME\n");
-        let put = desk.put(program, &[]);
+        workspace.put(base, &["--read-all"]);
+        workspace.write_at_pendant("100", "TAG TAG=7\nHOME\n");
+        let put = workspace.put(program, &[]);
         assert_eq!((put.read(), &put.data["cleared_steps"]), (2000, &2.into()), "{program}");
     }
-    let text = desk.text(&["get"]);
+    let text = workspace.text(&["get"]);
     assert!(!text.contains("HOME"), "{text}");
 }

@@ -7,7 +7,7 @@ use armctl_controller::toyo::describe::{Sender, describe, summary};
 use armctl_controller::toyo::field::{Field, Form, Mask, Value};
 use armctl_controller::toyo::layout::{Layout, Record};
 use armctl_controller::toyo::program;
-use armctl_controller::toyo::request::{MOST, Request, instruction};
+use armctl_controller::toyo::request::{MAX_BLOCK_LEN, Request, instruction};
 use armctl_controller::toyo::table::commands::ROWS;
 use armctl_controller::toyo::table::instructions::INSTRUCTIONS;
 use armctl_controller::toyo::table::palletizing::RECORDS;
@@ -137,7 +137,7 @@ proptest! {
         let fields: usize = layout.fields.iter().zip(&values).filter(|_| !stars).map(|(field, value)| width(field, value)).sum();
         prop_assert!(stars || text.len() == words + fields, "{}", text);
         let block = format!("{front}{text}\r\n");
-        prop_assert!(block.len() <= MOST, "{}", block);
+        prop_assert!(block.len() <= MAX_BLOCK_LEN, "{}", block);
         prop_assert!(block.split_ascii_whitespace().all(|item| item.len() <= 15), "{}", block);
     }
 
@@ -214,7 +214,7 @@ proptest! {
         if let Ok(request) = Request::parse(&text) {
             let _ = (request.check(), request.content(), request.risk(), request.parameter());
             let again = Request::parse(&request.text());
-            prop_assert!(again.is_ok() || request.text().len() + 2 > MOST, "{}", request.text());
+            prop_assert!(again.is_ok() || request.text().len() + 2 > MAX_BLOCK_LEN, "{}", request.text());
             for block in [&other, &text] {
                 if let Ok(armctl_controller::toyo::request::Answer::Data(record)) = request.answer(block) {
                     let _ = request.answered(&record);
@@ -258,7 +258,7 @@ proptest! {
     fn round_trips_programs(steps in steps(), numbered: bool, room in 0_usize..200) {
         let style = program::Style { first: 1, is_whole: true, is_numbered: numbered };
         let listing = program::listing(&steps, style, &program::Rows::new());
-        let checked = program::check(listing.text.as_bytes(), program::MOST_STEPS);
+        let checked = program::check(listing.text.as_bytes(), program::MAX_STEPS);
         prop_assert!(checked.errors().count() == 0, "{}{:?}", listing.text, checked.findings);
         let read: Vec<Record> = checked.program.unwrap().steps.into_iter().map(|step| step.record).collect();
         prop_assert_eq!(&read[..], &steps[..steps.len() - listing.left_out]);

@@ -13,13 +13,13 @@ use tempfile::TempDir;
 use crate::support::simulator::Simulator;
 
 /// The environment of a user with two robots: `here`, and `late`, whose port is closed.
-struct Desk {
+struct Workspace {
     folder: TempDir,
     _here: Simulator,
     late: String,
 }
 
-impl Desk {
+impl Workspace {
     fn new() -> Self {
         let (folder, here) = (tempfile::tempdir().expect("a folder"), Simulator::start("yerc"));
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
@@ -81,8 +81,8 @@ fn for_bounds_the_wait_for_a_silent_robot() {
 
 #[test]
 fn counts_failures_of_each_round() {
-    let desk = Desk::new();
-    let output = desk.watch("--watch 1ms --count 40").output().expect("armctl runs");
+    let workspace = Workspace::new();
+    let output = workspace.watch("--watch 1ms --count 40").output().expect("armctl runs");
     let said = String::from_utf8(output.stderr).expect("UTF-8");
     let failures: Vec<&str> = said.lines().filter(|line| line.contains("nothing listens on TCP port")).collect();
     assert_eq!(failures.len(), 6, "{said}");
@@ -95,14 +95,14 @@ fn counts_failures_of_each_round() {
 
 #[test]
 fn watches_a_robot_that_becomes_reachable() {
-    let desk = Desk::new();
-    let mut watch = desk.watch("--watch 20ms -o jsonl").spawn().expect("armctl starts");
+    let workspace = Workspace::new();
+    let mut watch = workspace.watch("--watch 20ms -o jsonl").spawn().expect("armctl starts");
     let lines = BufReader::new(watch.stdout.take().expect("a pipe")).lines().map_while(Result::ok);
     let mut late = lines
         .map(|line| serde_json::from_str::<Value>(&line).expect("an envelope"))
         .filter(|line| line["robot"] == "late");
     assert_eq!(late.next().expect("a line")["ok"], false);
-    let _simulator = Simulator::start_with("toyo", &["--bind", &desk.late]);
+    let _simulator = Simulator::start_with("toyo", &["--bind", &workspace.late]);
     assert!(late.any(|line| line["ok"] == true && line["data"]["reachable"] == true));
     watch.kill().expect("it runs");
     watch.wait().expect("it ends");

@@ -127,7 +127,7 @@ fn refused_alarm_does_not_hide_others() {
 
 #[test]
 fn every_refusal_of_30a_falls_back_to_70() {
-    const WAYS: [(&str, Spoil); 4] = [
+    const UNSUPPORTED_ANSWERS: [(&str, Spoil); 4] = [
         ("A001", |request| if request.command == 0x30A { refused(request, 0xA001) } else { None }),
         ("A002", |request| if request.command == 0x30A { refused(request, 0xA002) } else { None }),
         ("0x28", |request| plain(request, 0x28)),
@@ -137,7 +137,7 @@ fn every_refusal_of_30a_falls_back_to_70() {
         let status = Status { code, added_size: 0, added: 0 };
         (request.command == 0x30A).then(|| answer(request, LAST_BLOCK, status, &[]))
     }
-    for (way, spoil) in WAYS {
+    for (way, spoil) in UNSUPPORTED_ANSWERS {
         let (exit, list, _) = at_target(&controller("alarm = [{ code = 4315 }]", spoil), "alarm list");
         assert_eq!((exit, &list["data"]["alarms"][0]["code"]), (0, &json!("4315")), "{way}: {list}");
         assert_eq!(list["data"]["with_texts"], false, "{way}");

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Image};
 use armctl_controller::yrcx::signal::output;
-use armctl_transport::eip::adapter::server::{Listen, Server};
+use armctl_transport::eip::adapter::server::{AdapterAddresses, Server};
 use armctl_transport::eip::adapter::{Application, Event, Setup};
 use armctl_transport::eip::wire::{Identity, Revision};
 use serde_json::{Value, json};
@@ -294,7 +294,7 @@ impl Refusing {
         let mut shown = Image::default();
         output::CPU_OK.set(&mut shown, true);
         let setup = Setup::new(identity, (100, 48), (150, 48), 1);
-        let listen = Listen::anywhere(Ipv4Addr::LOCALHOST);
+        let listen = AdapterAddresses::anywhere(Ipv4Addr::LOCALHOST);
         let server = Server::start(setup, Self { commands, shown }, listen, None).unwrap();
         let target = format!("eip://{}?rpi=5ms&multiplier=512", server.address());
         (server, target)

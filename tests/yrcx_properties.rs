@@ -172,7 +172,7 @@ proptest! {
                             exchange.handle(now, &image);
                         }
                         Some((_, 5)) => exchange.interrupt(now),
-                        Some((391.., 6)) => exchange.lost(now),
+                        Some((391.., 6)) => exchange.handle_link_loss(now),
                         _ => {
                             shown.push(output.next.0[0]);
                             output.sent(now);

@@ -7,7 +7,7 @@ use std::sync::mpsc;
 use anyhow::ensure;
 use armctl_controller::{toyo as toyo_controller, yerc as yerc_controller, yrcx as yrcx_controller};
 use armctl_toyo as toyo;
-use armctl_transport::eip::adapter::server::Listen;
+use armctl_transport::eip::adapter::server::AdapterAddresses;
 use armctl_transport::fault::{Faults, SimulatorFaults};
 use armctl_transport::line::Pace;
 use armctl_transport::server::Server;
@@ -95,7 +95,11 @@ async fn toyo(tell: impl FnOnce(String) -> anyhow::Result<()>, delays: Delays) -
 async fn yrcx(tell: impl FnOnce(String) -> anyhow::Result<()>) -> anyhow::Result<()> {
     let start = yrcx_controller::simulator::Start::default();
     // The server runs on its own threads.
-    let server = yrcx::eip::simulated::serve(start, Listen::anywhere(Ipv4Addr::LOCALHOST), SimulatorFaults::default())?;
+    let server = yrcx::eip::simulated::serve(
+        start,
+        AdapterAddresses::anywhere(Ipv4Addr::LOCALHOST),
+        SimulatorFaults::default(),
+    )?;
     tell(format!("eip://{}", server.address()))?;
     std::future::pending().await
 }

@@ -18,7 +18,7 @@ use armctl_frame::output::{ColorChoice, Format, Screen};
 use armctl_frame::settings::target::Family as Name;
 use armctl_frame::settings::{Selection, Sources};
 use armctl_frame::{Access, ConnectMode, Family as _};
-use armctl_transport::eip::adapter::server::{Listen, Server};
+use armctl_transport::eip::adapter::server::{AdapterAddresses, Server};
 use armctl_transport::eip::adapter::{Application, Assembly, Event, Purpose, Setup};
 use armctl_transport::eip::originator::State;
 use armctl_transport::eip::scanner::{Connection, Scanner};
@@ -83,7 +83,7 @@ fn spread(effort: &Effort) -> anyhow::Result<()> {
     let mut ratios = Vec::new();
     for _ in 0..effort.rounds {
         let runtime = runtime()?;
-        let server = Server::start(setup(1), Mirror::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
+        let server = Server::start(setup(1), Mirror::default(), AdapterAddresses::anywhere(Ipv4Addr::LOCALHOST), None)?;
         let sent = Arc::new(Mutex::new(Vec::new()));
         let images = SocketAddrV4::new(Ipv4Addr::LOCALHOST, server.io_port());
         let tap = {
@@ -122,7 +122,7 @@ fn trips(effort: &Effort) -> anyhow::Result<()> {
     println!("from a new image until what the device makes of it is back: median");
     for rpi in [5, 10, 20].map(Duration::from_millis) {
         let runtime = runtime()?;
-        let server = Server::start(setup(1), Mirror::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
+        let server = Server::start(setup(1), Mirror::default(), AdapterAddresses::anywhere(Ipv4Addr::LOCALHOST), None)?;
         let scanner = Scanner::start(Ipv4Addr::LOCALHOST)?;
         let mut connection =
             runtime.block_on(scanner.open(server.address(), Settings { rpi, ..settings() }, Tap::default()))?;
@@ -149,8 +149,11 @@ fn commands(effort: &Effort) -> anyhow::Result<()> {
     println!("servo status, from giving it to the report: median");
     for rpi in [5, 10, 20].map(Duration::from_millis) {
         let runtime = runtime()?;
-        let server =
-            simulated::serve(Start::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), SimulatorFaults::default())?;
+        let server = simulated::serve(
+            Start::default(),
+            AdapterAddresses::anywhere(Ipv4Addr::LOCALHOST),
+            SimulatorFaults::default(),
+        )?;
         let target = format!("eip://{}?rpi={}ms", server.address(), rpi.as_millis()).parse()?;
         let sources =
             Sources { selection: Selection { target: Some(target), ..Selection::default() }, ..Sources::default() };
@@ -189,8 +192,12 @@ fn many_connections(effort: &Effort) -> anyhow::Result<()> {
         "{MANY_CONNECTIONS} connections at 10 ms, watchdogs of 160 ms at both ends, {} s",
         effort.many.as_secs_f64()
     );
-    let server =
-        Server::start(setup(MANY_CONNECTIONS), Mirror::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None)?;
+    let server = Server::start(
+        setup(MANY_CONNECTIONS),
+        Mirror::default(),
+        AdapterAddresses::anywhere(Ipv4Addr::LOCALHOST),
+        None,
+    )?;
     hold_connections("our adapter", server.address(), effort)?;
     let ended = server.with(|adapter, _| adapter.application().timed_out);
     println!("  our adapter: {ended} connections timed out there; goal 0 {}", verdict(ended == 0));
@@ -234,7 +241,7 @@ fn hold_connections(name: &str, target: SocketAddrV4, effort: &Effort) -> anyhow
     let (mut sent, mut received, mut lost, mut skipped) = (0, 0, 0, 0);
     for connection in &connections {
         let view = connection.view();
-        ensure!(view.state == State::Open && view.generation == 1, "{:?} {:?}", view.state, view.trouble);
+        ensure!(view.state == State::Open && view.generation == 1, "{:?} {:?}", view.state, view.last_error);
         let statistics = view.statistics;
         sent += statistics.sent;
         received += statistics.received;

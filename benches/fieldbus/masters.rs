@@ -89,7 +89,7 @@ fn rate() -> anyhow::Result<Rate> {
 
 /// Runs a slave on a pseudo-terminal while the function `master` uses it.
 fn with_slave(master: impl FnOnce(&Shared, &str) -> anyhow::Result<f64>) -> anyhow::Result<f64> {
-    let shared = Shared(Arc::new(Mutex::new(Slave::new(Setup::stand_in(rate()?), Echo::default()))));
+    let shared = Shared(Arc::new(Mutex::new(Slave::new(Setup::sample_controller(rate()?), Echo::default()))));
     let runtime = runtime()?;
     let (mut server, port) = {
         let _guard = runtime.enter();

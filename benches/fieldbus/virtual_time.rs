@@ -22,7 +22,7 @@ use super::common::table::{Goal, Row, Table};
 const SIZE: usize = 48;
 const LINK: u64 = 1;
 /// Time limit of a run that works.
-const LONGEST: Duration = Duration::from_secs(3600);
+const MAX_VIRTUAL_TIME: Duration = Duration::from_secs(3600);
 /// Maximum duration of an exchange relative to its bit times.
 const GOAL: Goal = Goal::AtMost(1.1, "x");
 
@@ -66,7 +66,7 @@ impl Application for Echo {
         image.copy_from_slice(&self.0);
     }
 
-    fn master_gone(&mut self, _: Duration) {}
+    fn on_master_lost(&mut self, _: Duration) {}
 }
 
 /// Measures polls of 48 bytes: the time from the first bit of a poll to the last bit of its answer, compared with the
@@ -77,7 +77,7 @@ pub fn devicenet(effort: &Effort) -> anyhow::Result<Table> {
 
     let (bitrate, slave) = (Bitrate::K500, Mac::new(5).context("a MAC")?);
     let identity = Identity { mac: Mac::new(1).context("a MAC")?, vendor: 0xFFFF, serial: 7 };
-    let setup = NodeSetup::stand_in(slave, bitrate, u16::try_from(SIZE)?);
+    let setup = NodeSetup::sample_controller(slave, bitrate, u16::try_from(SIZE)?);
     let images = Images {
         profiles: vec![Profile { name: "Normal", resting: resting() }],
         cycle: CYCLE,
@@ -90,7 +90,7 @@ pub fn devicenet(effort: &Effort) -> anyhow::Result<Table> {
     let (mut now, mut polls, mut frames) = (Duration::ZERO, Vec::new(), Vec::<(Duration, Frame)>::new());
     let (mut took, mut bits, mut count) = (Duration::ZERO, Duration::ZERO, 0);
     while count < effort.exchanges {
-        ensure!(now < LONGEST, "{:?}", scanner.view(LINK));
+        ensure!(now < MAX_VIRTUAL_TIME, "{:?}", scanner.view(LINK));
         while let Some(frame) = scanner.poll(now) {
             bus.send(now, 0, frame);
         }
@@ -122,7 +122,7 @@ pub fn devicenet(effort: &Effort) -> anyhow::Result<Table> {
             scanner.set_image(LINK, generation, &image)?;
         }
         frames.truncate(if frames.len() >= FRAMES { 0 } else { FRAMES });
-        let next = scanner.wake().into_iter().chain(device.wake()).chain(bus.wake()).min().unwrap_or(LONGEST);
+        let next = scanner.wake().into_iter().chain(device.wake()).chain(bus.wake()).min().unwrap_or(MAX_VIRTUAL_TIME);
         // Work that is due now is done at the start of the next pass of the loop.
         now = if has_passed { now } else { next.max(now + Duration::from_nanos(100)) };
     }
@@ -146,16 +146,16 @@ pub fn profibus(effort: &Effort) -> anyhow::Result<Table> {
         let rate = Rate::from_name(name).context("a speed")?;
         let settings = Settings { cycle: Some(Duration::ZERO), ..Settings::new(5, rate, resting()) };
         let mut master = Master::new(Duration::ZERO, settings)?;
-        let mut slave = Slave::new(Setup::stand_in(rate), Echo::default());
+        let mut slave = Slave::new(Setup::sample_controller(rate), Echo::default());
         let mut wire = Wire::new(Some(rate.pace()), None);
         let (mut now, mut start) = (Duration::ZERO, None);
         let exchanges = u64::from(effort.exchanges.min(500));
         while slave.exchanges() < exchanges + 1 {
-            ensure!(now < LONGEST, "{:?}", master.view());
+            ensure!(now < MAX_VIRTUAL_TIME, "{:?}", master.view());
             while let Some(bytes) = master.poll(now) {
                 wire.send(now, &bytes);
             }
-            let due = master.due().into_iter().chain(wire.due(&slave)).min().unwrap_or(LONGEST);
+            let due = master.due().into_iter().chain(wire.due(&slave)).min().unwrap_or(MAX_VIRTUAL_TIME);
             now = due.max(now + Duration::from_nanos(1));
             wire.run(now, &mut slave);
             let mut buffer = [0; 64];

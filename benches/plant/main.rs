@@ -44,7 +44,7 @@ const WARM_UP: u32 = 6;
 /// Interval of the reads; usual for Prometheus.
 const SCRAPE: Duration = Duration::from_secs(5);
 /// Limits of a process: percent of a CPU core, and MB.
-const HALF: f64 = 50.0;
+const MAX_CPU_PERCENT: f64 = 50.0;
 const MEMORY: f64 = 64.0;
 
 fn main() -> anyhow::Result<()> {
@@ -114,7 +114,9 @@ fn watched_plant(mut table: Table, plant: [usize; 3], time: Duration, processes:
         .map(|name| pairs().map(|(first, last)| sum(&last.page, name) - sum(&first.page, name)).sum::<f64>());
     let flat = pairs().map(|(first, last)| (last.memory, first.memory)).reduce(|a, b| if b.0 > a.0 { b } else { a });
     let (after, before) = flat.context("there is a process")?;
-    table.row(Row::new("of one core, each at most", format!("{share:.1} %")).goal(share, Goal::AtMost(HALF, "%")));
+    table.row(
+        Row::new("of one core, each at most", format!("{share:.1} %")).goal(share, Goal::AtMost(MAX_CPU_PERCENT, "%")),
+    );
     table.row(Row::new("memory, each at most", format!("{most:.1} MB")).goal(most, Goal::AtMost(MEMORY, "MB")));
     table.row(Row::new("memory, from begin to end", format!("{before:.1} to {after:.1} MB")));
     table.row(Row::new("polls a second", format!("{rate:.1}")));

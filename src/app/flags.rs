@@ -10,7 +10,7 @@ use armctl_frame::gate::OnInterrupt;
 /// Groups of global flags that a command uses. All commands also use the output flags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent group of flags")]
-struct Uses {
+struct FlagGroups {
     robots: bool,
     /// Flags for the link, for example the timeout.
     link: bool,
@@ -20,10 +20,10 @@ struct Uses {
     gate: bool,
 }
 
-const ALL: Uses = Uses { robots: true, link: true, repeat: true, gate: true };
-const NONE: Uses = Uses { robots: false, link: false, repeat: false, gate: false };
+const ALL: FlagGroups = FlagGroups { robots: true, link: true, repeat: true, gate: true };
+const NONE: FlagGroups = FlagGroups { robots: false, link: false, repeat: false, gate: false };
 
-impl Uses {
+impl FlagGroups {
     fn for_task(task: &Task) -> Self {
         match task {
             Task::Family(_, command) if command.driver().is_none() => NONE,
@@ -71,7 +71,7 @@ impl Uses {
 
 /// Rejects a flag that has no effect on the command.
 pub fn check(globals: &Globals, task: &Task) -> Result<(), Failure> {
-    let uses = Uses::for_task(task);
+    let uses = FlagGroups::for_task(task);
     match global_flags(globals).into_iter().find(|(flag, is_meant)| flag.is_some() && !is_meant(uses)) {
         Some((Some(flag), _)) => Err(unused_flag(flag, task)),
         _ => Ok(()),
@@ -79,7 +79,7 @@ pub fn check(globals: &Globals, task: &Task) -> Result<(), Failure> {
 }
 
 /// A flag as the user typed it, if present, and the function that returns whether a command uses it.
-type Flag = (Option<&'static str>, fn(Uses) -> bool);
+type Flag = (Option<&'static str>, fn(FlagGroups) -> bool);
 
 /// Returns all global flags of the line. `--for` is not included, because it belongs to `--until` or to the command
 /// itself.

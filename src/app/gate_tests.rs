@@ -72,16 +72,16 @@ fn named(name: &str) -> Selection {
 }
 
 /// Intent of a line, and what the gate decides about it.
-struct Seen {
+struct LineIntent {
     intent: Intent,
     alone: Result<(), Failure>,
     read_only: Result<(), Failure>,
     fleet: Result<(), Failure>,
 }
 
-fn observe(line: &str) -> Result<Seen, String> {
-    fn of(command: &dyn AnyCommand, family: &str) -> Seen {
-        Seen {
+fn observe(line: &str) -> Result<LineIntent, String> {
+    fn of(command: &dyn AnyCommand, family: &str) -> LineIntent {
+        LineIntent {
             intent: command.intent(None),
             alone: run(named(family)).check_gate(command),
             read_only: run(named(&format!("{family}-ro"))).check_gate(command),
@@ -113,7 +113,7 @@ fn observe(line: &str) -> Result<Seen, String> {
 fn gate_checks_every_command() {
     let mut wrong = Vec::new();
     for (line, risk) in robot_lines() {
-        let Seen { intent, alone, read_only, fleet } = match observe(&line) {
+        let LineIntent { intent, alone, read_only, fleet } = match observe(&line) {
             Ok(seen) => seen,
             Err(why) => {
                 wrong.push(why);

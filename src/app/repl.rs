@@ -28,7 +28,7 @@ use super::{line_words, name_lookup, refuse, report_failure, screen};
 use crate::cli::Words;
 use crate::command::families;
 use crate::command::fleet::session::host::{self, ManagerThread};
-use armctl_frame::Entry;
+use armctl_frame::ConnectionEffect;
 use armctl_frame::failure::omit_program_name;
 use armctl_frame::flags::Globals;
 use armctl_frame::interrupt::{catch_interrupts, clear_interrupt, interruptible, termination_request};
@@ -65,7 +65,7 @@ pub async fn run(globals: Globals, prefix: Vec<String>) -> Result<(), RunError> 
 struct Repl {
     globals: Globals,
     screen: Screen,
-    meaning: LineParser,
+    line_parser: LineParser,
     /// Robot for lines that select no robot. Present only if this is one robot of a known family.
     robot: Option<Robot>,
 }
@@ -83,8 +83,8 @@ impl Repl {
     fn new(globals: Globals, mut prefix: Vec<String>) -> Result<Self, Failure> {
         let family = prefix.first().and_then(|family| family.parse::<Family>().ok());
         let sources = sources(globals.clone(), Need::Inventory, true)?;
-        let names_nobody = sources.selection.is_empty() && sources.inventory.default.is_none();
-        let robots = if names_nobody { Vec::new() } else { sources.robots(family)? };
+        let has_no_selection = sources.selection.is_empty() && sources.inventory.default.is_none();
+        let robots = if has_no_selection { Vec::new() } else { sources.robots(family)? };
         // A simulator without a family can belong to any family, until a line names the family.
         let is_any = family.is_none() && sources.selection.sim;
         let robot = match &robots[..] {
@@ -94,14 +94,14 @@ impl Repl {
         if let (true, Some(robot)) = (prefix.is_empty(), &robot) {
             prefix.push(robot.family.name().to_owned());
         }
-        Ok(Self { screen: screen(&globals), globals, meaning: LineParser::new(prefix), robot })
+        Ok(Self { screen: screen(&globals), globals, line_parser: LineParser::new(prefix), robot })
     }
 
     /// Runs lines from a terminal.
     async fn read_lines(mut self) -> Result<(), RunError> {
         let terminal = Terminal::save();
         omit_program_name();
-        let (mut editor, say) = Editor::start(&self.screen, Assistant::new(&self.meaning, &self.globals))?;
+        let (mut editor, say) = Editor::start(&self.screen, Assistant::new(&self.line_parser, &self.globals))?;
         let (manager, thread) = host::start(say)?;
         let outcome = self.prompt(&mut editor, &terminal, &manager).await;
         thread.end().await;
@@ -118,7 +118,10 @@ impl Repl {
         // the connection opens it after a confirmation.
         if let Some(robot) = &self.robot
             && !self.globals.dry_run
-            && !matches!(families::of(robot.family).driver().entry(robot, ConnectMode::Control), Entry::Stops(_))
+            && !matches!(
+                families::of(robot.family).driver().connection_effect(robot, ConnectMode::Control),
+                ConnectionEffect::Stops(_)
+            )
         {
             line_of(manager, "repl").hold(robot, self.globals.trace.as_deref(), &self.screen).await?;
         }
@@ -138,7 +141,7 @@ impl Repl {
                     self.screen.note(&format!("left on by an earlier command: {}; {}", left.what, left.undo));
                 }
             }
-            let prompt = Prompt::new(self.meaning.prefix(), self.robot.as_ref(), &seen, self.screen.stdout_color());
+            let prompt = Prompt::new(self.line_parser.prefix(), self.robot.as_ref(), &seen, self.screen.stdout_color());
             let typed = tokio::select! {
                 typed = editor.read(prompt) => typed,
                 how = termination_request() => {
@@ -218,9 +221,9 @@ impl Repl {
             [word] if matches!(word.as_str(), "exit" | "quit") => return Next::Leave,
             _ => {}
         }
-        let args = self.meaning.args(&words);
+        let args = self.line_parser.args(&words);
         let Words { globals, command } =
-            match name_lookup::parse(&mut self.meaning.parser, &args, Some(&self.globals), true) {
+            match name_lookup::parse(&mut self.line_parser.parser, &args, Some(&self.globals), true) {
                 Ok(words) => words,
                 // In a script, a line without a verb is an error.
                 Err(error @ Refusal::Verb(..)) if !can_type() => return failed(&self.screen, error.failure().into()),
@@ -254,12 +257,12 @@ impl Repl {
 /// Reads the next line of a script; `None` at the end of the script.
 async fn line(script: impl AsyncBufRead + Unpin, number: usize) -> Result<Option<String>, Failure> {
     /// Maximum length of a line. Input without line ends is not a script.
-    const LONGEST: u64 = 1 << 20;
+    const MAX_LINE_LEN: u64 = 1 << 20;
 
     let mut bytes = Vec::new();
-    let read = script.take(LONGEST).read_until(b'\n', &mut bytes).await;
+    let read = script.take(MAX_LINE_LEN).read_until(b'\n', &mut bytes).await;
     let length = read.context("stdin")?;
-    if u64::try_from(length).unwrap_or(u64::MAX) >= LONGEST {
+    if u64::try_from(length).unwrap_or(u64::MAX) >= MAX_LINE_LEN {
         return Err(Failure::usage(format!("line {number} of stdin is longer than 1 MiB"))
             .hint("write one command per line; see `armctl help repl`"));
     }

@@ -12,7 +12,7 @@ use armctl_frame::face::Face;
 use armctl_frame::settings::target::Family;
 
 /// Word that means the current position of the robot.
-const HERE: &str = "here";
+const CURRENT_POSITION: &str = "here";
 
 /// Converts a line to the usual spelling of its command. Returns `None` if the line has the usual spelling already.
 pub fn rewrite_spelling(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
@@ -51,8 +51,8 @@ fn rewrite_teach(args: &[OsString], whole: &Command) -> Option<Vec<OsString>> {
     let (family, path) = typed.path.split_first()?;
     let replacements = match (path, &typed.rest[..]) {
         (["position" | "point"], ["teach", ..]) => [Some("teach".to_owned())].into(),
-        (["var" | "point", "set"], [one]) => vec![Some(one.strip_suffix(&format!("={HERE}"))?.to_owned())],
-        (["point", "set"], [point, HERE]) => vec![Some((*point).to_owned()), None],
+        (["var" | "point", "set"], [one]) => vec![Some(one.strip_suffix(&format!("={CURRENT_POSITION}"))?.to_owned())],
+        (["point", "set"], [point, CURRENT_POSITION]) => vec![Some((*point).to_owned()), None],
         (["point", "set"], [point, file]) if *family == "yrcx" => {
             vec![Some((*point).to_owned()), Some(format!("--position={}", file.strip_prefix('@')?))]
         }

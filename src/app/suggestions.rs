@@ -13,7 +13,7 @@ use super::spellings::families_with;
 use super::typed_line::TypedLine;
 use crate::command::example_lines::{self, is_dangerous};
 use armctl_controller::Risk;
-use armctl_controller::nearest::nearest;
+use armctl_controller::similar_word::nearest;
 use armctl_frame::failure::decimal_point;
 use armctl_frame::settings::target::Family;
 

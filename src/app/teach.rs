@@ -15,8 +15,8 @@ use crate::cli::Words;
 use crate::command::families;
 use crate::command::fleet::session::host;
 use crate::command::fleet::teach::{CommandRunner, Teach, show};
-use armctl_frame::Entry;
-use armctl_frame::authority;
+use armctl_frame::ConnectionEffect;
+use armctl_frame::confirmation;
 use armctl_frame::flags::Globals;
 use armctl_frame::gate::{Gate, Intent};
 use armctl_frame::interrupt::catch_interrupts;
@@ -35,7 +35,7 @@ pub async fn run(globals: Globals, teach: Teach) -> Result<(), RunError> {
     catch_interrupts();
     begin_trace(globals.trace.as_deref())?;
     let gate = Gate { yes: globals.yes, dry_run: false, on_interrupt: globals.on_interrupt };
-    authority::confirm_intent(gate, &screen, &robot, &intent(&teach, &robot)).await?;
+    confirmation::confirm_intent(gate, &screen, &robot, &intent(&teach, &robot)).await?;
     // Messages about the link would damage the screen, so they are dropped. The commands report link errors.
     let (manager, thread) = host::start(|_| {})?;
     let lines = Lines { globals: line_globals(&globals), manager, robot: robot.clone(), parser: RefCell::default() };
@@ -83,9 +83,9 @@ fn check_globals(globals: &Globals, screen: &Screen) -> Result<(), Failure> {
 /// Returns the intent for one confirmation. It covers all keys, and the effects of the link itself.
 fn intent(teach: &Teach, robot: &Robot) -> Intent {
     let intent = teach.intent();
-    match families::of(robot.family).driver().entry(robot, ConnectMode::Control) {
-        Entry::Stops(entry) => Intent { text: format!("{}, and {entry}", intent.text), ..intent },
-        Entry::Harmless | Entry::ThroughSession => intent,
+    match families::of(robot.family).driver().connection_effect(robot, ConnectMode::Control) {
+        ConnectionEffect::Stops(entry) => Intent { text: format!("{}, and {entry}", intent.text), ..intent },
+        ConnectionEffect::Harmless | ConnectionEffect::ThroughSession => intent,
     }
 }
 

@@ -25,12 +25,12 @@ pub mod yerc;
 pub mod yrcx;
 
 /// Repeat interval of an unconfirmed stop.
-const STOP_EVERY: Duration = Duration::from_millis(200);
+const STOP_INTERVAL: Duration = Duration::from_millis(200);
 /// Attempts to send an unconfirmed stop.
 const STOP_TRIES: u32 = 15;
 /// Time limit for the confirmation of a stop.
-const STOP_WITHIN: Duration = STOP_EVERY.saturating_mul(STOP_TRIES);
+const STOP_TIMEOUT: Duration = STOP_INTERVAL.saturating_mul(STOP_TRIES);
 
 pub use grant::{Grant, NotAuthorized};
 pub use plan::{Plan, Reason};
-pub use watcher::{Ends, Watcher};
+pub use watcher::{AddressPair, Watcher};

@@ -6,14 +6,14 @@ use std::net::SocketAddr;
 use armctl_transport::tap::Direction;
 
 /// Local and remote address of a connection.
-pub type Ends = (SocketAddr, SocketAddr);
+pub type AddressPair = (SocketAddr, SocketAddr);
 
 /// An observer of a client, for example a trace, a log or a counter. `E` is the event type of the controller family. A
 /// watcher does not change what the client does.
 pub trait Watcher<E>: Debug + Send {
     /// A frame was sent or received.
-    fn frame(&mut self, direction: Direction, ends: Ends, bytes: &[u8]) {
-        let _ = (direction, ends, bytes);
+    fn frame(&mut self, direction: Direction, address_pair: AddressPair, bytes: &[u8]) {
+        let _ = (direction, address_pair, bytes);
     }
 
     /// An event occurred.

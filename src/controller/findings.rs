@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// Maximum number of stored errors. A file with more errors is probably of another type.
-const MOST: usize = 100;
+const MAX_ERRORS: usize = 100;
 
 /// A finding at a position of the text.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -70,9 +70,9 @@ impl Findings {
     /// Adds an error.
     pub fn error(&mut self, at: SourceLocation, message: impl Into<String>, hint: Option<String>) {
         self.errors += 1;
-        if self.errors == MOST {
+        if self.errors == MAX_ERRORS {
             self.add(Severity::Error, at, "more errors follow; they are not shown".to_owned(), None);
-        } else if self.errors < MOST {
+        } else if self.errors < MAX_ERRORS {
             self.add(Severity::Error, at, message.into(), hint);
         }
     }
@@ -94,7 +94,7 @@ impl Findings {
 
     /// Whether the limit of stored errors is reached.
     pub const fn is_full(&self) -> bool {
-        self.errors >= MOST
+        self.errors >= MAX_ERRORS
     }
 
     /// Returns only the errors, in text order.

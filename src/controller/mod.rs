@@ -8,16 +8,16 @@ use std::time::Duration;
 
 pub mod findings;
 pub mod names;
-pub mod nearest;
 pub mod sheet;
+pub mod similar_word;
 pub mod simulator;
 mod source;
 #[cfg(test)]
 mod testing;
 pub mod text;
 pub mod toyo;
-pub mod typed;
 pub mod units;
+pub mod user_input;
 pub mod yerc;
 pub mod yrcx;
 

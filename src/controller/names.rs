@@ -100,13 +100,13 @@ impl Grammar {
 }
 
 /// Maximum length of a name in bytes. This is four times the maximum length on a pendant.
-pub const LONGEST: usize = 128;
+pub const MAX_NAME_BYTES: usize = 128;
 
 /// Returns the reason why a text cannot be used as a name, or `None` if it can be used.
 pub fn unusable(grammar: Grammar, text: &str) -> Option<&'static str> {
     if text.trim().is_empty() || text.trim() != text {
         Some("it is empty, or begins or ends with a blank")
-    } else if text.len() > LONGEST {
+    } else if text.len() > MAX_NAME_BYTES {
         Some("it is too long")
     } else if text.contains([',', '=']) || text.chars().any(char::is_control) {
         Some("it contains a comma, an equals sign or a control character")
@@ -121,7 +121,7 @@ pub fn unusable(grammar: Grammar, text: &str) -> Option<&'static str> {
 
 /// Result of a name lookup.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Found<'a> {
+pub enum NameMatch<'a> {
     /// One match.
     One(&'a Name),
     /// Several matches.
@@ -173,7 +173,7 @@ impl Names {
     }
 
     /// Looks up a name among the objects of these kinds.
-    pub fn find(&self, kinds: &[Kind], text: &str) -> Found<'_> {
+    pub fn find(&self, kinds: &[Kind], text: &str) -> NameMatch<'_> {
         let alike = self.by_name.get(&text.to_lowercase()).map(Vec::as_slice).unwrap_or_default();
         let alike = || alike.iter().filter_map(|at| self.all.get(*at)).filter(|name| kinds.contains(&name.kind));
         let is_own = |name: &Name| name.source == Source::Inventory;
@@ -189,11 +189,11 @@ impl Names {
             }
             match found[..] {
                 [] => {}
-                [one] => return Found::One(one),
-                _ => return Found::Several(found),
+                [one] => return NameMatch::One(one),
+                _ => return NameMatch::Several(found),
             }
         }
-        Found::None
+        NameMatch::None
     }
 }
 
@@ -221,14 +221,14 @@ mod tests {
 
     fn found(kinds: &[Kind], text: &str) -> String {
         match names().find(kinds, text) {
-            Found::One(name) => name.address.clone(),
-            Found::Several(names) => names.iter().map(|name| name.address.as_str()).collect::<Vec<_>>().join("+"),
-            Found::None => "-".to_owned(),
+            NameMatch::One(name) => name.address.clone(),
+            NameMatch::Several(names) => names.iter().map(|name| name.address.as_str()).collect::<Vec<_>>().join("+"),
+            NameMatch::None => "-".to_owned(),
         }
     }
 
     #[test]
-    fn the_inventory_comes_first_and_case_counts_where_it_must() {
+    fn inventory_names_come_first_and_controller_names_are_case_sensitive() {
         let signal = |text| found(&[Kind::Signal], text);
         assert_eq!(signal("clamp"), "#27010+#27011");
         assert_eq!(signal("lamp"), "#27012");
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn what_looks_like_an_address_is_no_name() {
+    fn rejects_names_that_look_like_addresses() {
         const GRAMMAR: Grammar = Grammar { address: |_| None, prefixes: &["B", "SO"] };
         for text in ["27018", "#9", "B300", "b5", "SO(05)", "SO20..27", "1.3", "", " x", "a,b", "a=b", "x\u{1b}", "-x"]
         {

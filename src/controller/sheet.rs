@@ -9,7 +9,7 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 
 use crate::findings::{Findings, SourceLocation};
-use crate::nearest::nearest;
+use crate::similar_word::nearest;
 use crate::source;
 
 /// Prefix of ignored columns.
@@ -415,7 +415,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_clear_is_refused() {
+    fn rejects_ambiguous_sheets() {
         let errors = |text: &str| read(text).unwrap_err();
         assert!(errors("point,x_mm\n1,\"1,5\"\n")[0].contains("use a decimal point"));
         assert!(errors("point;x_mm;y_mm\n1;1,5;1.234\n")[0].contains("the point is ambiguous"));
@@ -436,7 +436,7 @@ mod tests {
     }
 
     #[test]
-    fn an_update_keeps_what_a_person_wrote() {
+    fn update_keeps_comments_and_formulas() {
         let canonical = |text: &str| text.trim_start_matches('0').to_owned();
         let updated = |old: &str, new: &[[&str; 3]]| {
             update(old.as_bytes(), &columns(), &rows(new), canonical, &mut Findings::default())
@@ -456,7 +456,7 @@ mod tests {
     }
 
     #[test]
-    fn texts_come_back_as_they_are() {
+    fn texts_round_trip() {
         let texts = ["=1+1", "'=x", "''@", "-5", "-x", " a ", "a;b", "say \"x\"", "'", ""];
         let columns = [Column::number("point"), Column::text("comment")];
         let rows: Vec<Vec<String>> = texts.iter().map(|text| vec!["1".to_owned(), (*text).to_owned()]).collect();

@@ -303,14 +303,14 @@ mod tests {
     }
 
     #[test]
-    fn a_job_label_a_japanese_controller() {
+    fn converts_a_japanese_job_label() {
         let field = [0x82, 0xC4, 0x82, 0xB7, 0x82, 0xC6, 0, 0, 0, 0];
         assert_eq!(Encoding::default().decode(until_nul(&field)), "てすと");
         assert_eq!(Encoding::ShiftJis.encode("てすと").unwrap(), field[..6]);
     }
 
     #[test]
-    fn half_width_katakana_and_full_width_letters_come_back() {
+    fn half_width_katakana_and_full_width_letters_round_trip() {
         for (text, bytes) in [
             ("ｱｲｳﾞ", &[0xB1, 0xB2, 0xB3, 0xDE][..]),
             ("ＡＢ１", &[0x82, 0x60, 0x82, 0x61, 0x82, 0x50]),
@@ -324,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn ascii_is_ascii_everywhere() {
+    fn ascii_is_equal_in_every_encoding() {
         let ascii: Vec<u8> = (0..0x80).collect();
         for encoding in every() {
             let text = encoding.decode(&ascii);
@@ -334,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn other_languages() {
+    fn converts_other_languages() {
         for (encoding, text, bytes) in [
             (Encoding::Latin1, "Schweißen", &b"Schwei\xDFen"[..]),
             (Encoding::Windows1252, "5€", b"5\x80"),
@@ -352,14 +352,14 @@ mod tests {
     }
 
     #[test]
-    fn bytes_that_are_no_text_show_as_escapes() {
+    fn shows_invalid_bytes_as_escapes() {
         assert_eq!(Encoding::Utf8.decode(b"A\xFF\xFEB\xE3\x81"), "A\\xff\\xfeB\\xe3\\x81");
         assert_eq!(Encoding::ShiftJis.decode(b"A\x81 B\x85\x41\x82"), "A\\x81 B\\x85A\\x82");
         assert_eq!(Encoding::Utf8.decode(b"\xEF\xBB\xBFA"), "\u{FEFF}A");
     }
 
     #[test]
-    fn a_missing_character_is_named() {
+    fn error_names_the_missing_character() {
         let error = Encoding::ShiftJis.encode("AB한").unwrap_err();
         assert_eq!(error.to_string(), "'한' (U+D55C), character 3 of the text, does not exist in shift_jis");
         let error = Encoding::Latin1.encode("\u{202e}").unwrap_err();
@@ -367,7 +367,7 @@ mod tests {
     }
 
     #[test]
-    fn no_character_is_replaced_by_a_look_alike() {
+    fn never_replaces_a_character_by_a_similar_one() {
         for character in ["¥", "‾", "−"] {
             assert!(Encoding::ShiftJis.encode(character).is_err(), "{character}");
         }
@@ -384,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn names_of_encodings() {
+    fn parses_names_of_encodings() {
         for (name, encoding) in [
             ("Shift_JIS", Encoding::ShiftJis),
             ("shift-jis", Encoding::ShiftJis),
@@ -405,7 +405,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_keeps_its_bytes_where_text_does_not() {
+    fn name_round_trips_if_its_text_does_not() {
         assert_eq!(Encoding::ShiftJis.name(b"\x82\xC4.JBI"), Name { text: "て.JBI".into(), hex: None });
         let odd = Encoding::ShiftJis.name(b"\x85\x41.JBI");
         assert_eq!((odd.text.as_str(), odd.hex.as_deref()), ("\\x85A.JBI", Some("85412e4a4249")));
@@ -415,7 +415,7 @@ mod tests {
     }
 
     #[test]
-    fn a_shown_name_is_understood() {
+    fn parses_a_displayed_name() {
         assert_eq!(Encoding::ShiftJis.encode_name("\\x85A.JBI").unwrap(), b"\x85A.JBI");
         assert_eq!(Encoding::ShiftJis.encode_name("て\\x41\\xFF").unwrap(), b"\x82\xC4\\x41\\xFF");
         let error = Encoding::ShiftJis.encode_name("\\xff한").unwrap_err();
@@ -424,7 +424,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_bytes_lead_back_or_carry_hex(bytes in proptest::collection::vec(any::<u8>(), 0..64), which in 0..NAMES.len()) {
+        fn any_bytes_round_trip_or_have_hex(bytes in proptest::collection::vec(any::<u8>(), 0..64), which in 0..NAMES.len()) {
             let encoding = NAMES[which].0;
             let name = encoding.name(&bytes);
             prop_assert_eq!(&name.text, &encoding.decode(&bytes));
@@ -435,7 +435,7 @@ mod tests {
         }
 
         #[test]
-        fn any_text_comes_back_or_is_refused(text in "\\PC{0,24}", which in 0..NAMES.len()) {
+        fn any_text_round_trips_or_is_rejected(text in "\\PC{0,24}", which in 0..NAMES.len()) {
             let encoding = NAMES[which].0;
             if let Ok(bytes) = encoding.encode(&text) {
                 prop_assert_eq!(encoding.decode(&bytes), text);

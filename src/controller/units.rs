@@ -7,7 +7,7 @@ use std::fmt;
 
 use thiserror::Error;
 
-use super::typed::integer;
+use super::user_input::integer;
 
 /// A decimal unit: its symbol, and the number of decimals in the resolution of the protocol.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -148,11 +148,11 @@ impl fmt::Display for Quantity {
 
 /// Limits the length of a text in an error message.
 fn shorten(text: &str) -> String {
-    const LONGEST: usize = 40;
-    if text.chars().count() <= LONGEST {
+    const MAX_TEXT_LEN: usize = 40;
+    if text.chars().count() <= MAX_TEXT_LEN {
         return text.to_owned();
     }
-    text.chars().take(LONGEST).chain("...".chars()).collect()
+    text.chars().take(MAX_TEXT_LEN).chain("...".chars()).collect()
 }
 
 #[cfg(test)]
@@ -160,7 +160,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exact_both_ways() {
+    fn conversions_are_exact_in_both_directions() {
         assert_eq!(MILLIMETRE.parse("100.000"), Ok(100_000));
         assert_eq!(MILLIMETRE.parse("-0.001"), Ok(-1));
         assert_eq!(DEGREE.parse("180"), Ok(1_800_000));
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn refuses_what_it_cannot_send() {
+    fn rejects_values_out_of_range() {
         assert!(matches!(MILLIMETRE.parse("1.0005"), Err(UnitError::TooFine { decimals: 3, .. })));
         assert!(matches!(MILLIMETRE.parse("2147483.648"), Err(UnitError::Range { .. })));
         assert!(matches!(MILLIMETRE.parse(&"9".repeat(500)), Err(UnitError::Range { .. })));

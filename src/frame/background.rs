@@ -8,9 +8,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use tokio::task::spawn_blocking;
 
-use super::attach::{folder_failure, session_key};
 use super::interrupt::interruptible;
 use super::report::Report;
+use super::session_client::{folder_failure, session_key};
 use crate::failure::Failure;
 use crate::output::Screen;
 use crate::output::view::View;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use armctl_controller::typed;
+use armctl_controller::user_input;
 use clap::Args;
 
 /// Arguments of `batch`.
@@ -21,7 +21,7 @@ pub struct Batch {
 }
 
 fn assignment(text: &str) -> Result<(String, String), String> {
-    let (name, value) = typed::setting(text, "a name", "a value", "SPEED=50")?;
+    let (name, value) = user_input::split_setting(text, "a name", "a value", "SPEED=50")?;
     if is_name(name) { Ok((name.to_owned(), value.to_owned())) } else { Err(format!("'{name}' is not a valid name")) }
 }
 

@@ -3,8 +3,8 @@
 use futures_util::future::{LocalBoxFuture, ready};
 use futures_util::{FutureExt as _, TryFutureExt as _};
 
-use super::authority::Authority;
-use super::connection::{self, Access, ConnectMode, Connection, Driver, Entry, Family};
+use super::confirmation::Confirmer;
+use super::connection::{self, Access, ConnectMode, Connection, ConnectionEffect, Driver, Family};
 use super::report::{Outcome, Report, sheet_of};
 use crate::gate::Intent;
 use crate::output::csv::Sheet;
@@ -25,7 +25,7 @@ pub struct Context<'a, F: Family> {
     pub several: bool,
     /// Authority with which the command confirms deletions and overwrites, as soon as it has read the data that they
     /// affect.
-    pub authority: Authority<'a>,
+    pub confirmer: Confirmer<'a>,
 }
 
 /// [`Context`] with a connection of any family.
@@ -38,15 +38,15 @@ pub struct AnyContext<'a> {
     pub screen: &'a Screen,
     /// See [`Context::several`].
     pub several: bool,
-    /// See [`Context::authority`].
-    pub authority: Authority<'a>,
+    /// See [`Context::confirmer`].
+    pub confirmer: Confirmer<'a>,
 }
 
 impl<'a> AnyContext<'a> {
     /// Converts to the context of one family. The connection must belong to this family.
     pub fn of<F: Family>(self) -> Result<Context<'a, F>, Failure> {
-        let Self { robot, connection, screen, several, authority } = self;
-        Ok(Context { robot, link: connection::link::<F>(connection)?, screen, several, authority })
+        let Self { robot, connection, screen, several, confirmer } = self;
+        Ok(Context { robot, link: connection::link::<F>(connection)?, screen, several, confirmer })
     }
 }
 
@@ -198,8 +198,8 @@ pub trait AnyCommand {
 impl dyn AnyCommand + '_ {
     /// Runs the command, then checks that all answers belong to its requests ([`connection::Family::settle`]).
     pub async fn run(&self, context: AnyContext<'_>) -> Outcome {
-        let AnyContext { robot, connection, screen, several, authority } = context;
-        let context = AnyContext { robot, connection: &mut *connection, screen, several, authority };
+        let AnyContext { robot, connection, screen, several, confirmer } = context;
+        let context = AnyContext { robot, connection: &mut *connection, screen, several, confirmer };
         let report = self.run_unsettled(context).await?;
         connection.settle().await?;
         Ok(report)
@@ -211,8 +211,9 @@ impl dyn AnyCommand + '_ {
     }
 
     /// Effect that opening a connection for the command has on a robot.
-    pub fn entry(&self, robot: &Robot) -> Entry {
-        self.driver().map_or(Entry::Harmless, |driver| driver.entry(robot, self.connect_mode(robot)))
+    pub fn connection_effect(&self, robot: &Robot) -> ConnectionEffect {
+        self.driver()
+            .map_or(ConnectionEffect::Harmless, |driver| driver.connection_effect(robot, self.connect_mode(robot)))
     }
 
     /// Connects to a robot.

@@ -97,7 +97,7 @@ pub enum ConnectMode {
 
 /// Effect that a connection has on a controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Entry {
+pub enum ConnectionEffect {
     /// No effect.
     Harmless,
     /// No effect, because the link belongs to a session. A direct connection would have an effect.
@@ -136,8 +136,8 @@ pub trait Family: Sized + 'static {
     }
 
     /// Effect of opening and closing a connection of this kind.
-    fn entry(_robot: &Robot, _mode: ConnectMode) -> Entry {
-        Entry::Harmless
+    fn connection_effect(_robot: &Robot, _mode: ConnectMode) -> ConnectionEffect {
+        ConnectionEffect::Harmless
     }
 
     /// Whether the controller accepts only one client. In that case, all commands of this computer share its link.
@@ -176,8 +176,8 @@ pub trait Driver: Sync {
     fn family(&self) -> Option<target::Family>;
     /// See [`Family::STOP`].
     fn stop(&self) -> &'static [&'static str];
-    /// See [`Family::entry`].
-    fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry;
+    /// See [`Family::connection_effect`].
+    fn connection_effect(&self, robot: &Robot, mode: ConnectMode) -> ConnectionEffect;
     /// See [`Family::takes_one_client`].
     fn takes_one_client(&self, robot: &Robot) -> bool;
     /// See [`Family::addresses`].
@@ -207,8 +207,8 @@ impl<F: Family> Driver for Driving<F> {
         F::STOP
     }
 
-    fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry {
-        F::entry(robot, mode)
+    fn connection_effect(&self, robot: &Robot, mode: ConnectMode) -> ConnectionEffect {
+        F::connection_effect(robot, mode)
     }
 
     fn takes_one_client(&self, robot: &Robot) -> bool {

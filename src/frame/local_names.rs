@@ -261,7 +261,7 @@ mod tests {
     const SJIS: Encoding = Encoding::ShiftJis;
 
     #[test]
-    fn usual_names_stay_as_they_are() {
+    fn keeps_plain_names() {
         for (name, local) in
             [(&b"TESTJOB.JBI"[..], "TESTJOB.JBI"), (b"\x83\x5c\x83t.JBI", "ソフ.JBI"), (b"A B.CND", "A B.CND")]
         {
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn what_means_something_elsewhere_is_escaped() {
+    fn escapes_names_that_other_systems_reserve() {
         for (name, local) in [
             (&b"../A.JBI"[..], "%2E.%2FA.JBI"),
             (b"..", "%2E%2E"),
@@ -292,13 +292,13 @@ mod tests {
     }
 
     #[test]
-    fn local_files_with_percent_signs_of_their_own_keep_them() {
+    fn keeps_percent_signs_of_local_files() {
         assert_eq!(controller_name(SJIS, "A%20B.JBI").unwrap(), b"A%20B.JBI");
         assert_eq!(controller_name(SJIS, "50%.JBI").unwrap(), b"50%.JBI");
     }
 
     #[test]
-    fn names_that_differ_in_case_only_are_kept_apart() {
+    fn separates_names_that_differ_in_case_only() {
         let mut names = LocalNames::new(SJIS);
         assert_eq!(names.assign(b"Job.JBI").unwrap(), "Job.JBI");
         assert_eq!(names.assign(b"JOB.JBI").unwrap(), "%4A%4F%42%2E%4A%42%49");
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn manifests_cannot_point_elsewhere() {
+    fn manifests_cannot_name_files_outside_their_folder() {
         for local in ["TESTJOB.JBI", "ソフ.JBI", "%2E.%2FA.JBI"] {
             assert!(is_plain_file_name(local), "{local}");
         }
@@ -320,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn an_existing_file_is_kept_and_a_dropped_draft_leaves_nothing() {
+    fn keeps_an_existing_file_and_removes_a_dropped_draft() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("A.JBI");
         let target = Target::new(path.clone(), false).unwrap();
@@ -354,7 +354,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_name_stays_in_its_folder_and_leads_back(name in any_name(), encoding in prop::sample::select(vec![
+        fn any_name_round_trips_within_its_folder(name in any_name(), encoding in prop::sample::select(vec![
             SJIS, Encoding::EucJp, Encoding::Gbk, Encoding::Big5, Encoding::EucKr, Encoding::Latin1,
             Encoding::Windows1252, Encoding::Utf8,
         ])) {

@@ -12,14 +12,14 @@ use std::sync::{Mutex, PoisonError};
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
-use super::kind::Candidate;
 use super::report::Report;
+use super::value_kind::Candidate;
 use crate::output::csv::RowsOf;
 use crate::prelude::basics::*;
 use crate::settings::names::{KeptFile, RobotNames, grammar};
 use crate::settings::target::Family;
-use armctl_controller::names::{Found, Grammar, Kind, Name, Names, unusable};
-use armctl_controller::nearest::nearest;
+use armctl_controller::names::{Grammar, Kind, Name, NameMatch, Names, unusable};
+use armctl_controller::similar_word::nearest;
 
 /// What the parser does with a word that is not an address.
 #[derive(Debug, Clone, Default)]
@@ -123,9 +123,9 @@ impl NameLookup {
             addresses.push((
                 robot,
                 match names.all().names.find(kinds, text) {
-                    Found::One(name) => Some(name.address.clone()),
-                    Found::None => None,
-                    Found::Several(several) => return Err(ambiguous(text, &several)),
+                    NameMatch::One(name) => Some(name.address.clone()),
+                    NameMatch::None => None,
+                    NameMatch::Several(several) => return Err(ambiguous(text, &several)),
                 },
             ));
         }
@@ -236,13 +236,13 @@ fn not_typed(grammar: Grammar, names: &Names, name: &Name) -> Option<String> {
         return Some(why.to_owned());
     }
     match names.find(&[name.kind], &name.name) {
-        Found::One(found) if found.address == name.address => None,
-        Found::One(found) => Some(format!("the name belongs to {} in {}", found.address, found.source)),
-        Found::Several(several) => {
+        NameMatch::One(found) if found.address == name.address => None,
+        NameMatch::One(found) => Some(format!("the name belongs to {} in {}", found.address, found.source)),
+        NameMatch::Several(several) => {
             let other = several.iter().find(|other| other.address != name.address);
             Some(format!("the name also belongs to {}", other.map_or("another address", |other| &other.address)))
         }
-        Found::None => None,
+        NameMatch::None => None,
     }
 }
 

@@ -17,16 +17,16 @@ pub use self::print::as_value;
 use self::print::{ReportPosition, with_time};
 pub use self::rounds::Repeat;
 use self::rounds::{Deadline, Rounds};
-use super::attach::{identify, is_held_by_other_process};
-use super::authority::{self, Authority};
 use super::background;
 use super::command::{AnyCommand, AnyContext};
-use super::connection::{Access, Connection, Entry, FamilyArguments};
+use super::confirmation::{self, Confirmer};
+use super::connection::{Access, Connection, ConnectionEffect, FamilyArguments};
 use super::dry_run::{DryRun, Plan, is_end};
 use super::interrupt::{MotionInProgress, catch_interrupts, interruptible};
 use super::report::{AnyReport, Outcome};
 use super::script_line::Line;
-use super::share::open_shared_session;
+use super::session_client::{identify, is_held_by_other_process};
+use super::shared_session::open_shared_session;
 use crate::gate::{Gate, Grant, Intent, OnInterrupt};
 use crate::guardian::Guardian;
 use crate::output::envelope::Envelope;
@@ -133,7 +133,7 @@ impl Run {
         }
         for robot in &robots {
             let intent = self.intent(command, robot);
-            let authorized = authority::confirm_intent(self.gate, &self.screen, robot, &intent).await;
+            let authorized = confirmation::confirm_intent(self.gate, &self.screen, robot, &intent).await;
             authorized.map_err(|failure| RunError::for_robot(robot, command, failure))?;
         }
         for robot in robots.iter_mut().filter(|robot| self.opens_session(command, robot)) {
@@ -164,7 +164,7 @@ impl Run {
         self.identify(command, &mut robots)?;
         for robot in &mut robots {
             // If the session ends before the command runs, a direct connection must not be used without confirmation.
-            if !self.gate.dry_run && command.entry(robot) == Entry::ThroughSession {
+            if !self.gate.dry_run && command.connection_effect(robot) == ConnectionEffect::ThroughSession {
                 robot.sessions = Sessions::Only;
             }
         }
@@ -201,15 +201,15 @@ impl Run {
         is_wanted
             && !self.gate.dry_run
             && !command.intent(Some(robot)).is_stop
-            && matches!(command.entry(robot), Entry::Stops(_))
+            && matches!(command.connection_effect(robot), ConnectionEffect::Stops(_))
     }
 
     /// Intent for the gate: the effects of the command and of its connection.
     fn intent(&self, command: &dyn AnyCommand, robot: &Robot) -> Intent {
         let intent = self.own.complete(command.intent(Some(robot)));
         let is_free = self.gate.dry_run || intent.is_stop || self.opens_session(command, robot);
-        let entry = if is_free { Entry::Harmless } else { command.entry(robot) };
-        let Entry::Stops(entry) = entry else { return intent };
+        let entry = if is_free { ConnectionEffect::Harmless } else { command.connection_effect(robot) };
+        let ConnectionEffect::Stops(entry) = entry else { return intent };
         // If a command confirms its own action later, this question is only about the connection. Otherwise the action
         // is part of this question.
         let (asks, confirmation) = match intent.confirmation {
@@ -459,8 +459,8 @@ impl Run {
         (screen, grant): (&'a Screen, &Grant),
     ) -> AnyContext<'a> {
         let most = command.intent(Some(robot)).risk;
-        let authority = Authority::new(self.gate, screen, robot, most, grant.clone());
-        AnyContext { robot, connection, screen, several: self.sources.selection.is_plural(), authority }
+        let confirmer = Confirmer::new(self.gate, screen, robot, most, grant.clone());
+        AnyContext { robot, connection, screen, several: self.sources.selection.is_plural(), confirmer }
     }
 
     /// Whether a motion continues when this process ends. A jog never continues.
@@ -505,7 +505,7 @@ impl Run {
         let Some(driver) = command.driver().filter(|_| moves && !robot.target.value.is_simulated()) else {
             return Ok(None);
         };
-        let stops = command.entry(robot) == Entry::Harmless && !is_held_by_other_process(robot);
+        let stops = command.connection_effect(robot) == ConnectionEffect::Harmless && !is_held_by_other_process(robot);
         Guardian::start(robot, driver.stop(), stops).map(Some)
     }
 
@@ -551,8 +551,8 @@ impl Run {
         let mut link = command.connect(robot, access, screen).await?;
         let gate = Gate { dry_run: true, ..self.gate };
         let several = self.sources.selection.is_plural();
-        let authority = Authority::new(gate, screen, robot, command.intent(Some(robot)).risk, grant);
-        let ended = command.run(AnyContext { robot, connection: &mut *link, screen, several, authority }).await;
+        let confirmer = Confirmer::new(gate, screen, robot, command.intent(Some(robot)).risk, grant);
+        let ended = command.run(AnyContext { robot, connection: &mut *link, screen, several, confirmer }).await;
         match ended {
             Err(failure) if !is_end(&failure) => Err(failure),
             Ok(_) | Err(_) => Ok(link.planned()),

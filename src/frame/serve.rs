@@ -143,7 +143,7 @@ struct Console<R> {
 
 impl<R: AsyncRead + Unpin> Console<R> {
     /// Maximum length of a line.
-    const LONGEST: usize = 1 << 16;
+    const MAX_LINE_LEN: usize = 1 << 16;
 
     fn new(from: R) -> Self {
         Self { input: BufReader::new(from), buffered: Vec::new() }
@@ -151,9 +151,9 @@ impl<R: AsyncRead + Unpin> Console<R> {
 
     /// Next line; `None` at the end.
     async fn next(&mut self) -> Result<Option<String>, Failure> {
-        let room = u64::try_from(Self::LONGEST.saturating_sub(self.buffered.len())).unwrap_or_default();
+        let room = u64::try_from(Self::MAX_LINE_LEN.saturating_sub(self.buffered.len())).unwrap_or_default();
         (&mut self.input).take(room).read_until(b'\n', &mut self.buffered).await.context("stdin")?;
-        if self.buffered.len() >= Self::LONGEST {
+        if self.buffered.len() >= Self::MAX_LINE_LEN {
             return Err(Failure::usage("the console line is longer than 64 KiB")
                 .hint("use `help` to list the console commands"));
         }

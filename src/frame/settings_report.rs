@@ -87,15 +87,15 @@ impl NewValue {
     }
 
     /// Adds the old value and returns the report.
-    pub fn replaces(self, old: Old) -> Done {
+    pub fn replaces(self, old: Old) -> SetReport {
         let Self { name: set, arguments: with, new, text: words } = self;
-        Done { set, with, old, new, words }
+        SetReport { set, with, old, new, words }
     }
 }
 
 /// Result of a set command: `{"set":"B0","old":1,"new":5}`. JSON contains the values, the view is a sentence.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
-pub struct Done {
+pub struct SetReport {
     /// Name of the value, as read commands report it, for example `servo_on`.
     set: String,
     /// Index and other arguments of the command: numbers and names.
@@ -108,14 +108,14 @@ pub struct Done {
     words: String,
 }
 
-impl Done {
+impl SetReport {
     /// Text of the result.
     pub fn words(&self) -> &str {
         &self.words
     }
 }
 
-impl CommonReport for Done {
+impl CommonReport for SetReport {
     type Core = Self;
 
     fn core(&self) -> Self {
@@ -123,7 +123,7 @@ impl CommonReport for Done {
     }
 }
 
-impl Report for Done {
+impl Report for SetReport {
     fn view(&self) -> View {
         View::text(self.words.clone())
     }

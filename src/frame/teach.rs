@@ -12,7 +12,7 @@ use armctl_files as files;
 
 /// Result of teaching a point: the old and new content of the point, and the position of the robot.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Taught {
+pub struct TeachReport {
     /// Name of the point, for example `P5`, or its number.
     name: String,
     /// Old content; null if the point was not defined.
@@ -28,7 +28,7 @@ pub struct Taught {
     with: Map<String, Json>,
 }
 
-impl Taught {
+impl TeachReport {
     /// Creates a report from the old content, the new content and the robot position.
     pub fn new(name: impl Into<String>, old: Option<Position>, new: Position, position: Position) -> Self {
         Self { name: name.into(), old, new, position, written: true, with: Map::new() }
@@ -48,7 +48,7 @@ impl Taught {
     }
 }
 
-impl Report for Taught {
+impl Report for TeachReport {
     fn view(&self) -> View {
         let shown = |position: &Position| position.text.clone().unwrap_or_else(|| position.line());
         let old = self.old.as_ref().map_or_else(|| "undefined".to_owned(), shown);

@@ -4,8 +4,8 @@ use clap::{Args as _, FromArgMatches as _};
 use futures_util::FutureExt as _;
 use serde_json::Value;
 
-use super::authority::Authority;
 use super::command::{AnyCommand, AnyContext, Context};
+use super::confirmation::Confirmer;
 use super::connection::{self, Access, Borrowed, ConnectMode, Family};
 use super::dry_run::{DryRun, is_end};
 use super::report::{AnyReport as _, Outcome};
@@ -29,15 +29,15 @@ pub fn unlimited_access() -> Access {
 /// Context for a command in which all questions are confirmed, as with `--yes`.
 pub fn context<'a, F: Family>(robot: &'a Robot, link: &'a mut F::Link) -> Context<'a, F> {
     let gate = Gate { yes: true, ..Gate::default() };
-    let authority = Authority::new(gate, &QUIET, robot, Risk::Motion, Grant::up_to(Risk::Motion));
-    Context { robot, link, screen: &QUIET, several: false, authority }
+    let confirmer = Confirmer::new(gate, &QUIET, robot, Risk::Motion, Grant::up_to(Risk::Motion));
+    Context { robot, link, screen: &QUIET, several: false, confirmer }
 }
 
 /// Runs a command on a link that the test continues to own.
 pub async fn run<F: Family>(command: &dyn AnyCommand, context: Context<'_, F>) -> Outcome {
-    let Context { robot, link, screen, several, authority } = context;
+    let Context { robot, link, screen, several, confirmer } = context;
     let mut borrowed = Borrowed::<F>(link);
-    command.run(AnyContext { robot, connection: &mut borrowed, screen, several, authority }).await
+    command.run(AnyContext { robot, connection: &mut borrowed, screen, several, confirmer }).await
 }
 
 /// Report of a dry run.
@@ -53,8 +53,8 @@ pub fn planned<F: Family>(
     let mut connection = connected?;
     prepare(connection::link::<F>(&mut *connection)?);
     let gate = Gate { dry_run: true, ..Gate::default() };
-    let authority = Authority::new(gate, &QUIET, robot, intent.risk, grant);
-    let context = AnyContext { robot, connection: &mut *connection, screen: &QUIET, several: false, authority };
+    let confirmer = Confirmer::new(gate, &QUIET, robot, intent.risk, grant);
+    let context = AnyContext { robot, connection: &mut *connection, screen: &QUIET, several: false, confirmer };
     match command.run(context).now_or_never().expect("a dry run waits for nothing") {
         Err(failure) if !is_end(&failure) => Err(failure),
         _ => DryRun::from(connection.planned()).data(),

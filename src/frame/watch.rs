@@ -94,13 +94,13 @@ impl<C: Watchable + Args> Command for Watch<C> {
     }
 
     async fn run(&self, context: Context<'_, C::Family>) -> Result<Changes<C::Value>, Failure> {
-        let Context { robot, link, screen, several, authority } = context;
+        let Context { robot, link, screen, several, confirmer } = context;
         loop {
             if self.before.borrow().is_some() {
                 self.what.changed(link).await?;
             }
-            let authority = authority.clone();
-            let report = self.what.run(Context { robot, link: &mut *link, screen, several, authority }).await?;
+            let confirmer = confirmer.clone();
+            let report = self.what.run(Context { robot, link: &mut *link, screen, several, confirmer }).await?;
             let view = Report::view(&report);
             let now = C::WATCHED.watched_items(&report.data()?, view.as_table());
             let before = self.before.replace(Some(now.clone()));

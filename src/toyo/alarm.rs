@@ -40,7 +40,7 @@ impl Command for List {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Alarms<Axis>, Failure> {
         let link = context.link;
-        if link.is_dry() {
+        if link.is_dry_run() {
             link.plan(&status_page(0), "whether there is an error");
             link.plan(&status_page(1), "which");
             return Err(unknown());
@@ -118,7 +118,7 @@ impl Command for History {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Alarms<Axis>, Failure> {
         let link = context.link;
         let entry_request = |number: u8| Request::of(table::Command::Ehtr, [Value::Number(number.into())]);
-        if link.is_dry() {
+        if link.is_dry_run() {
             for number in 1..=self.limit {
                 match number {
                     1 => link.plan(&entry_request(number), "the latest"),
@@ -193,15 +193,15 @@ impl Command for Reset {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ResetReport {
     #[serde(flatten)]
-    done: Done,
+    done: SetReport,
     /// Alarms that are still present.
     alarms: Vec<Told>,
 }
 
 impl CommonReport for ResetReport {
-    type Core = Done;
+    type Core = SetReport;
 
-    fn core(&self) -> Done {
+    fn core(&self) -> SetReport {
         self.done.clone()
     }
 }

@@ -2,7 +2,7 @@
 
 use super::link::Toyo;
 use super::link::wrong;
-use super::numbers::small;
+use super::number_arguments::saturated_byte;
 use crate::prelude::*;
 
 /// Show settings and errors of CC-Link.
@@ -26,9 +26,9 @@ impl Command for Bus {
         let errors = context.link.ask(&errors).await?;
         let hex = |name| format!("{:02X}", errors.byte(name).unwrap_or(0));
         Ok(CcLink {
-            station: small(&settings, "station"),
+            station: saturated_byte(&settings, "station"),
             rate: settings.word("rate").unwrap_or_default(),
-            hardware_version: small(&settings, "version"),
+            hardware_version: saturated_byte(&settings, "version"),
             errors: ["error1", "error2", "error3"].map(hex),
             main_status: ["status1", "status2"].map(hex),
         })

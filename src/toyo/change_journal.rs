@@ -11,7 +11,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
 
-use armctl_client::toyo::Moving;
+use armctl_client::toyo::MotionKind;
 use armctl_files as files;
 use armctl_frame::local_names::state_folder;
 
@@ -94,8 +94,8 @@ impl ChangeJournal {
     }
 
     /// Records the start or the end of a motion.
-    pub fn moving(&mut self, moving: Option<Moving>) {
-        let word = |moving| if moving == Moving::Jog { "jog" } else { "program" }.to_owned();
+    pub fn moving(&mut self, moving: Option<MotionKind>) {
+        let word = |moving| if moving == MotionKind::Jog { "jog" } else { "program" }.to_owned();
         self.change(|entry| entry.moving = moving.map(word));
     }
 
@@ -210,7 +210,7 @@ mod tests {
         let mut journal = journal_of();
         journal.host(true);
         journal.push("@CTSK TASK=01");
-        journal.moving(Some(Moving::Jog));
+        journal.moving(Some(MotionKind::Jog));
         assert_eq!(file_count(), 1);
         // The process that wrote the entry is still running.
         assert!(

@@ -8,8 +8,8 @@ use crate::prelude::*;
 use armctl_controller::toyo::errors;
 use armctl_controller::toyo::status::RunMode;
 use armctl_frame::Family as _;
-use armctl_frame::attach::is_held;
 use armctl_frame::face::layers::{Layer, Layers};
+use armctl_frame::session_client::is_held;
 
 const LAYERS: &[&str] =
     &["line", "answer", "version", "teach pendant", "mode", "slaves", "power cycle", "error", "servo", "origin"];

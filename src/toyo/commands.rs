@@ -2,8 +2,9 @@
 
 use super::link::Toyo;
 use super::{
-    alarm, backup, bus, card, coordinate, counter, easy, home, host, info, init, io, jog, mvm, offset, orders,
-    overrides, palletizing, param, point, ports, position, program, raw, robot_type, rows, run, sim, status, task,
+    alarm, backup, bus, card, control_commands, coordinate, counter, easy, eeprom_tables, home, host, info, init, io,
+    jog, mvm, offset, overrides, palletizing, param, point, ports, position, program, raw, robot_type, run, sim,
+    status, task,
 };
 use armctl_frame::backup::family_backup::Diff;
 use armctl_frame::{Offline, Subcommands, commands};
@@ -27,13 +28,13 @@ commands! {
         /// Take or release host control (host ON / OFF)
         Host(host::Host),
         /// Switch servo power
-        Servo(orders::Servo),
+        Servo(control_commands::Servo),
         /// Select run mode or program type
-        Mode(orders::Mode),
+        Mode(control_commands::Mode),
         /// Stop the running program or jog
-        Stop(orders::Stop),
+        Stop(control_commands::Stop),
         /// Reset programs to the first step
-        Reset(orders::Reset),
+        Reset(control_commands::Reset),
         "Motion":
         /// Return to the origin
         #[command(alias = "origin")]
@@ -68,11 +69,11 @@ commands! {
         /// Parameters
         Param(Subcommands<param::Param>),
         /// Speed table
-        SpeedTable(Subcommands<rows::SpeedTable>),
+        SpeedTable(Subcommands<eeprom_tables::SpeedTable>),
         /// Acceleration table
-        AccelTable(Subcommands<rows::AccelTable>),
+        AccelTable(Subcommands<eeprom_tables::AccelTable>),
         /// Torque table
-        TorqueTable(Subcommands<rows::TorqueTable>),
+        TorqueTable(Subcommands<eeprom_tables::TorqueTable>),
         /// MVM table (matrix moves)
         Mvm(Subcommands<mvm::Mvm>),
         /// Save all data of the controller to a folder

@@ -4,8 +4,8 @@ use armctl_controller::names::Kind;
 use armctl_controller::toyo::table::instructions::INSTRUCTIONS;
 use armctl_controller::toyo::table::palletizing::RECORDS;
 use armctl_controller::toyo::table::parameters::PARAMETERS;
-use armctl_frame::kind::Named;
 use armctl_frame::settings::target::Family;
+use armctl_frame::value_kind::Named;
 use armctl_frame::{Candidate, ValueKind};
 
 /// A bit of an output port by its name, with the state to set.

@@ -9,7 +9,7 @@ use super::simulated;
 use crate::prelude::*;
 use armctl_client::toyo::{Client, Endpoint, Error, Line, Options};
 use armctl_frame::Family as _;
-use armctl_frame::attach::{LockResult, lock_soon};
+use armctl_frame::session_client::{LockResult, lock_or_attach};
 use armctl_frame::settings::Sessions;
 use armctl_frame::settings::target::{self, Place};
 use armctl_frame::trace::lock_writer;
@@ -88,7 +88,7 @@ impl Connector {
     async fn open(&self) -> Result<Line, Failure> {
         let Self { endpoint, robot, access, screen, claim } = self;
         if lock_writer(claim).is_none() {
-            match lock_soon(robot, access, screen).await? {
+            match lock_or_attach(robot, access, screen).await? {
                 LockResult::Session(attached) => return Ok(Stream::Session(attached)),
                 LockResult::Own(own) => *lock_writer(claim) = own,
             }
@@ -99,7 +99,7 @@ impl Connector {
 
 /// Opens a line for a session. The session opens it again after a loss. An open line does not prove that there is a
 /// controller, so a first request checks this.
-pub async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<shared_link::Line, Failure> {
+pub async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<shared_link::Line, Failure> {
     let robot = Robot { sessions: Sessions::None, ..robot.clone() };
     let mut link = Toyo::connect(&robot, access.clone(), screen).await?;
     overview(&mut link).await?;

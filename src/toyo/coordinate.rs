@@ -1,10 +1,10 @@
 //! `toyo coordinate set`: sends coordinates to a program that waits for them.
 
+use super::field_values::{Changes, assignment, json};
 use super::link::Toyo;
 use super::link::wrong;
 use super::point::table as point_table;
 use super::position::Coordinates;
-use super::values::{Changes, assignment, json};
 use crate::prelude::*;
 use armctl_controller::toyo::field::Field;
 
@@ -68,7 +68,7 @@ impl Set {
 
 impl Command for Set {
     type Family = Toyo;
-    type Report = Done;
+    type Report = SetReport;
     const ID: &'static str = "toyo.coordinate.set";
     const RISK: Risk = Risk::Motion;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
@@ -81,9 +81,9 @@ impl Command for Set {
         self.in_words(&axes.collect::<Vec<_>>().join(", "))
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport, Failure> {
         let Self { values, task, speed } = self;
-        let Context { link, authority, .. } = context;
+        let Context { link, confirmer, .. } = context;
         let letters = link.letters().await?;
         let changes = Changes::read("coordinates", &point_table().body(), &letters, values)?;
         let coordinates = changes.whole().ok_or_else(|| {
@@ -94,7 +94,7 @@ impl Command for Set {
         let request = Request::new(table::Command::Mrss, values).map_err(|error| wrong(&error))?;
         let coordinates = Coordinates::of(request.record(), letters);
         let target = format!("{} (mm)", coordinates.in_a_line());
-        authority.confirm(&Change::new(self.in_words(&target))).await?;
+        confirmer.confirm(&Change::new(self.in_words(&target))).await?;
         link.ask(&request).await?;
         let words =
             format!("task {} has received {target}, for a move at {}", field("task").meaning(task), self.pace());

@@ -1,9 +1,9 @@
 //! `toyo counter` and `toyo timer`.
 
-use super::items::read_each;
+use super::eeprom_tables::Listed;
+use super::item_reads::read_each;
 use super::link::{Link, Toyo, wrong};
-use super::numbers::{Numbers, number, read_back, stored_otherwise};
-use super::rows::Listed;
+use super::number_arguments::{Numbers, number, read_back, read_back_mismatch};
 use crate::complete;
 use crate::prelude::*;
 use armctl_controller::names::Kind;
@@ -144,14 +144,14 @@ impl Writable for Counters {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
         for (counter, _, new) in rows {
             let new_count = count(new).unwrap_or_default();
             let order = order(*counter, new_count);
             link.ask(&order).await?;
             match count(&read_back(link, &order, &read(*counter)).await?) {
                 Some(stored) if stored != new_count => {
-                    return Err(stored_otherwise(&order, &format!("the counter is {stored}"))
+                    return Err(read_back_mismatch(&order, &format!("the counter is {stored}"))
                         .hint("repeat the command; a running program can change the counter at the same time"));
                 }
                 _ => {}

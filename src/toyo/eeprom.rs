@@ -30,7 +30,7 @@ pub struct Cells {
 }
 
 /// Purpose of the read before a write, for dry runs.
-pub const THERE: &str = "the stored value";
+pub const STORED_VALUE: &str = "the stored value";
 /// Condition for the write.
 const DIFFERS: &str = "whether the new value differs from the stored value";
 
@@ -54,8 +54,8 @@ impl Link {
     /// Like [`Link::ask`]. [`Kind::OutcomeUnknown`] if the cell cannot be read back, and [`Kind::Malformed`] if it has
     /// another value after the write.
     pub async fn store(&mut self, screen: &Screen, cell: &Cell, cells: &mut Cells) -> Result<Option<Record>, Failure> {
-        if self.is_dry() {
-            self.plan(&cell.read, THERE);
+        if self.is_dry_run() {
+            self.plan(&cell.read, STORED_VALUE);
             return self.plan_overwriting(&cell.read, &cell.write.text()).await.map(|()| None);
         }
         let found = self.ask(&cell.read).await?;
@@ -105,7 +105,7 @@ impl Link {
 
     /// Reads data that only some controllers have. Returns `None` if the request is refused twice. A busy controller
     /// also refuses, so a single refusal is not enough.
-    pub async fn read_if_there(&mut self, request: &Request) -> Result<Option<Record>, Failure> {
+    pub async fn read_if_present(&mut self, request: &Request) -> Result<Option<Record>, Failure> {
         for _ in 0..2 {
             if let Ok(content) = self.try_ask(request).await? {
                 return Ok(Some(content));

@@ -2,11 +2,11 @@
 
 use super::instructions::InstructionHelp;
 use crate::prelude::*;
-use armctl_controller::nearest::nearest;
+use armctl_controller::similar_word::nearest;
 use armctl_controller::toyo::errors;
 use armctl_controller::toyo::table::Instruction;
 use armctl_controller::toyo::table::instructions::INSTRUCTIONS;
-use armctl_controller::typed;
+use armctl_controller::user_input;
 use armctl_frame::face::explain::{self as face, Codes, Known};
 use armctl_frame::output::csv::RowsOf;
 use armctl_frame::robot::alarm::{Alarm, ExtraColumns, Kind, Source};
@@ -31,7 +31,7 @@ enum Subject {
 /// Parses two hexadecimal digits or the word of an instruction.
 fn subject(text: &str) -> Result<Subject, String> {
     let instruction = || INSTRUCTIONS.iter().find(|row| row.word.eq_ignore_ascii_case(text)).map(Subject::Instruction);
-    typed::code(text).map(Subject::Code).or_else(instruction).ok_or_else(|| {
+    user_input::code(text).map(Subject::Code).or_else(instruction).ok_or_else(|| {
         let near = nearest(text, INSTRUCTIONS.iter().map(|row| row.word));
         let near = near.map(|near| format!("; did you mean {near}?")).unwrap_or_default();
         format!(

@@ -3,19 +3,19 @@
 use super::alarm;
 use super::backup::{back_up, restore};
 use super::commands::Commands;
+use super::control_commands::Stop;
 use super::decode::Decode;
 use super::explain::Explain;
 use super::instructions;
 use super::link::{Link, Toyo};
-use super::orders::Stop;
 use super::serve::Serve;
 use super::top::Poller;
-use super::{check, connect, overview, panel};
+use super::{check, connect, overview, teach_panel};
 use crate::prelude::*;
 use armctl_controller::toyo::table::instructions::INSTRUCTIONS;
-use armctl_controller::toyo::{errors, passing, simulator};
+use armctl_controller::toyo::{errors, read_only_filter, simulator};
 use armctl_frame::backup::family_backup::Backups;
-use armctl_frame::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
+use armctl_frame::backup::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
 use armctl_frame::face::HeldLink;
 use armctl_frame::face::layers::Layer;
 use armctl_frame::face::overview::OverviewReport;
@@ -46,8 +46,9 @@ impl Declaration for Toyo {
         "Cable, settings and first contact: `armctl help toyo-setup`. Serial ports: `armctl toyo ports`.";
     const SETUP: (&'static str, &'static str) = ("cable and settings of a Toyo controller", include_str!("setup.txt"));
     const START_STATE: &'static str = simulator::EXAMPLE;
-    const PANEL: Panel = panel::PANEL;
-    const GUARD: Guard = Guard { is_harmless_data: passing::only_reads_or_stops, is_harmless_image: |_, _| false };
+    const PANEL: Panel = teach_panel::PANEL;
+    const GUARD: Guard =
+        Guard { is_harmless_data: read_only_filter::only_reads_or_stops, is_harmless_image: |_, _| false };
 
     fn urls() -> Vec<(String, &'static str)> {
         vec![
@@ -85,8 +86,8 @@ impl Declaration for Toyo {
         check::check(robot, access, screen).await
     }
 
-    async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
-        Ok(SharedLink::Stream(connect::hold(robot, access, screen).await?).into())
+    async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
+        Ok(SharedLink::Stream(connect::open_session_link(robot, access, screen).await?).into())
     }
 }
 
@@ -98,7 +99,7 @@ impl Backups for Toyo {
         if robot.read_only.value { Risk::Read } else { Self::BACKUP_RISK }
     }
 
-    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackedUp, Failure> {
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport, Failure> {
         let current_task = context.robot.read_only.value;
         if current_task {
             context.screen.note(&format!(
@@ -110,7 +111,7 @@ impl Backups for Toyo {
         back_up(context, making, current_task).await
     }
 
-    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport, Failure> {
         restore(context, restoring).await
     }
 }

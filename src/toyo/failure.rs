@@ -7,17 +7,17 @@ use super::refusal;
 use armctl_client::toyo::{ConnectError, Error, OpenError, Refusal, Unanswered};
 use armctl_controller::toyo::layout::LayoutProblem;
 use armctl_controller::toyo::request::{BlockError, Request};
-use armctl_frame::attach::session_busy;
 use armctl_frame::dry_run::unknown;
 use armctl_frame::failure::{Failure, Kind, plain};
+use armctl_frame::session_client::session_busy;
 
-/// Failure for an error of the client. `label` is the name of the robot. [`refusal::explained`] adds the reason for a
+/// Failure for an error of the client. `label` is the name of the robot. [`refusal::with_reason`] adds the reason for a
 /// refusal.
 pub fn failure(label: &str, error: Error) -> Failure {
     let about = |kind, what: String| Failure::new(kind, format!("{label}: {what}"));
     match error {
         Error::Refused(Refusal(request)) => refusal::of_question(&request),
-        Error::StatusRefused => refusal::mute(),
+        Error::StatusRefused => refusal::status_refused(),
         Error::PendantOn => refusal::pendant(),
         Error::NoAnswer(unanswered) => {
             let kind = if unanswered.invalid_answer.is_some() { Kind::Malformed } else { Kind::NoAnswer };
@@ -41,7 +41,7 @@ pub fn failure(label: &str, error: Error) -> Failure {
         Error::TooMuchData { .. } => about(Kind::Malformed, error.to_string())
             .hint("check for another client of the device server, and check the baud rate"),
         Error::InvalidRequest(error) => misuse(&error),
-        Error::NotUndone { block, cause } => not_undone(label, &not_put_back(&block), cause).hint(
+        Error::NotUndone { block, cause } => not_undone(label, &restore_failed_message(&block), cause).hint(
             "restore the setting with `toyo mode` or `toyo task`; use `toyo status` to see the state of the \
              controller",
         ),
@@ -91,7 +91,7 @@ fn verification_hint(request: Option<&Request>) -> &'static str {
 }
 
 /// Message for a setting that the block `block` did not restore.
-pub fn not_put_back(block: &str) -> String {
+pub fn restore_failed_message(block: &str) -> String {
     format!("armctl could not undo a temporary change: {block} failed")
 }
 

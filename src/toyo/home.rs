@@ -50,12 +50,12 @@ impl Command for Home {
     }
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<HomeReport, Failure> {
-        let Context { link, screen, authority, .. } = context;
+        let Context { link, screen, confirmer, .. } = context;
         let (order, accepted) = self.order();
         let letters = link.letters().await?;
         let change = Change::new(self.intent());
-        let change = if authority.asks() { from_where(link, change, letters).await? } else { change };
-        authority.confirm(&change).await?;
+        let change = if confirmer.asks_user() { from_where(link, change, letters).await? } else { change };
+        confirmer.confirm(&change).await?;
         link.ask(&order).await?;
         if self.end.no_wait() {
             return Ok(HomeReport { motion: Motion { accepted: true, ..Motion::default() } });

@@ -2,7 +2,7 @@
 
 use super::link::Link;
 use super::link::Toyo;
-use super::numbers::small;
+use super::number_arguments::saturated_byte;
 use crate::prelude::*;
 
 /// Show robot type, versions, axes, task and override.
@@ -93,10 +93,11 @@ impl About {
     fn add_answer(&mut self, request: &Request, answer: &Record) {
         match request.command() {
             table::Command::Cver => {
-                self.stations.push(Station { station: small(answer, "station"), version: meaning(answer, "version") });
+                self.stations
+                    .push(Station { station: saturated_byte(answer, "station"), version: meaning(answer, "version") });
             }
-            table::Command::Mtsk => self.task = Some(small(answer, "task")),
-            _ => self.speed_override_percent = Some(small(answer, "override")),
+            table::Command::Mtsk => self.task = Some(saturated_byte(answer, "task")),
+            _ => self.speed_override_percent = Some(saturated_byte(answer, "override")),
         }
     }
 }

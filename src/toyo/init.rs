@@ -90,7 +90,7 @@ const POLL_INTERVAL: Duration = Duration::from_millis(200);
 
 /// Waits until the controller has completed the work that it accepted (ambiguity A3).
 async fn wait_until_cleared(link: &mut Link, screen: &Screen) -> Result<Status, Failure> {
-    if link.is_dry() {
+    if link.is_dry_run() {
         link.plan(&status_page(0), "every 200 ms until the memory is cleared");
         return Err(unknown());
     }

@@ -8,11 +8,11 @@ use std::time::Duration;
 use clap::ValueEnum;
 use tokio::time::{Instant, sleep, sleep_until, timeout_at};
 
+use super::field_values::machine;
 use super::link::Toyo;
-use super::link::{Link, Moving, jog};
+use super::link::{Link, MotionKind, jog};
 use super::position::{Coordinates, UNIT, titled};
 use super::refusal;
-use super::values::machine;
 use super::wait::{POLL_INTERVAL, explain_present_error, position_request, status_page};
 use crate::prelude::*;
 use armctl_frame::robot::motion::Motion;
@@ -130,15 +130,19 @@ pub enum Speed {
 
 /// Minimum duration of a jog, which is longer than an answer takes. `LONGEST` is the longest time for which a person
 /// can watch the axis.
-const SHORTEST: Duration = Duration::from_millis(100);
-const LONGEST: Duration = Duration::from_secs(60);
+const MIN_JOG_TIME: Duration = Duration::from_millis(100);
+const MAX_JOG_TIME: Duration = Duration::from_secs(60);
 
 fn parse_duration(text: &str) -> Result<Duration, String> {
     let time = duration::parse(text)?;
-    if (SHORTEST..=LONGEST).contains(&time) {
+    if (MIN_JOG_TIME..=MAX_JOG_TIME).contains(&time) {
         return Ok(time);
     }
-    Err(format!("the duration of a jog is from {} to {}", duration::display(SHORTEST), duration::display(LONGEST)))
+    Err(format!(
+        "the duration of a jog is from {} to {}",
+        duration::display(MIN_JOG_TIME),
+        duration::display(MAX_JOG_TIME)
+    ))
 }
 
 /// Time limit for the start of a step.
@@ -389,15 +393,15 @@ impl Command for Jog {
         if self.steps.is_some() && self.speed != Speed::Inch {
             return Err(Failure::usage("only inching uses --steps").hint("set the duration with --for"));
         }
-        let Context { link, screen, authority, .. } = context;
+        let Context { link, screen, confirmer, .. } = context;
         let letters = link.letters().await?;
         let index = self.axis.index(letters)?;
         let axis = MachineAxis { index, letters };
-        authority.confirm(&Change::new(self.in_words(&axis.in_words()))).await?;
+        confirmer.confirm(&Change::new(self.in_words(&axis.in_words()))).await?;
         link.ask(&jog("RS", None)).await?;
-        if link.is_dry() {
+        if link.is_dry_run() {
             self.plan(link);
-            link.stop(Moving::Jog).await?;
+            link.stop(MotionKind::Jog).await?;
         }
         let start = Coordinates::of(&link.ask(&position_request()).await?, letters);
         let display = LiveDisplay::new(screen);
@@ -406,14 +410,14 @@ impl Command for Jog {
         if let Err(JogError::Refused) = outcome {
             // This command caused no motion. If the axis moves, another client moves it, and this command need not wait
             // for a stop.
-            link.stop_refused_motion(Moving::Jog).await;
+            link.stop_refused_motion(MotionKind::Jog).await;
             display.end();
-            return Err(refusal::explained(link, &self.order(&axis)).await);
+            return Err(refusal::with_reason(link, &self.order(&axis)).await);
         }
         // The stop is sent, whatever happened before.
         let elapsed = began.elapsed();
         let end = Coordinates::of(
-            &link.stop(Moving::Jog).await.map_err(|failure| still_moving(outcome.as_ref().err(), failure))?,
+            &link.stop(MotionKind::Jog).await.map_err(|failure| still_moving(outcome.as_ref().err(), failure))?,
             letters,
         );
         display.end();
@@ -428,7 +432,7 @@ impl Command for Jog {
 async fn stopped_early(link: &mut Link, error: JogError, coordinates: &Coordinates) -> Failure {
     let stopped = format!("the axis was stopped at {}", coordinates.in_a_line());
     match error {
-        JogError::Refused => refusal::explained(link, &jog("RS", None)).await,
+        JogError::Refused => refusal::with_reason(link, &jog("RS", None)).await,
         JogError::Error => {
             let fail = |what: &str| Failure::new(Kind::ConditionNotMet, format!("{what}; {stopped}"));
             explain_present_error(link, &fail).await

@@ -13,14 +13,14 @@ use super::connect;
 use super::failure::failure;
 pub use super::failure::{misuse, wrong};
 use super::position::Coordinates;
-use super::program::kept::Sources;
+use super::program::source_texts::SourceTexts;
 use super::refusal;
 use super::trace::Trace;
 use super::user_choices::UserChoices;
 use super::write_log::WriteLog;
 use crate::prelude::*;
 use armctl_client::toyo::{Client, Error, Line, is_stop, status_page};
-pub use armctl_client::toyo::{Moving, Refusal, jog};
+pub use armctl_client::toyo::{MotionKind, Refusal, jog};
 use armctl_controller::toyo::request::Answer;
 use armctl_controller::toyo::session::Counters;
 use armctl_controller::toyo::table::Command;
@@ -51,7 +51,7 @@ pub struct Link {
     /// Log of the writes to the EEPROM.
     pub(super) write_log: WriteLog,
     /// Source texts of the programs that armctl wrote.
-    pub(super) sources: Sources,
+    pub(super) sources: SourceTexts,
 }
 
 impl Family for Toyo {
@@ -75,7 +75,7 @@ impl Family for Toyo {
     }
 
     fn needs_halt(link: &Link) -> bool {
-        link.moving() == Some(Moving::Jog)
+        link.moving() == Some(MotionKind::Jog)
     }
 
     /// A serial port and a device server have only one line each.
@@ -141,12 +141,12 @@ impl Link {
             (ChangeJournal::without_files(), UserChoices::without_file())
         };
         let abandoned = journal.abandoned_entries();
-        let trace = Trace::open(access, screen, client.ends())?;
+        let trace = Trace::open(access, screen, client.address_pair())?;
         let (screen, printed) = (*screen, PrintedNotices::from_journal(&abandoned));
         let observer = Observer { trace, journal, choices, printed, screen, label: label.clone() };
         let observer = Arc::new(Mutex::new(observer));
         client.watch(SharedObserver(Arc::clone(&observer)));
-        let sources = if access.dry_run { Sources::default() } else { Sources::of(robot) };
+        let sources = if access.dry_run { SourceTexts::default() } else { SourceTexts::of(robot) };
         Ok(Self { client, observer, screen, label, abandoned, write_log, sources })
     }
 
@@ -159,7 +159,7 @@ impl Link {
     pub async fn ask(&mut self, request: &Request) -> Result<Record, Failure> {
         match self.try_ask(request).await? {
             Ok(record) => Ok(record),
-            Err(Refusal(request)) => Err(refusal::explained(self, &request).await),
+            Err(Refusal(request)) => Err(refusal::with_reason(self, &request).await),
         }
     }
 
@@ -176,7 +176,7 @@ impl Link {
         let changes =
             [Command::Wstx, Command::Istx, Command::Dstx, Command::Dstl, Command::Cpss, Command::Mint, Command::Rmca];
         if changes.contains(&request.command()) {
-            self.sources.doubt();
+            self.sources.mark_uncertain();
         }
     }
 
@@ -192,14 +192,14 @@ impl Link {
     /// Sends a block that is not in the command table, and returns the answer.
     pub async fn raw_text(&mut self, block: &str) -> Result<String, Failure> {
         self.report_abandoned_changes().await;
-        self.sources.doubt();
+        self.sources.mark_uncertain();
         self.client.raw_text(block).await.map_err(|error| self.failure(error))
     }
 
     /// Reads the value that a write replaces. Returns `None` if the controller refuses to report it. A dry run records
     /// the request and returns `None`. If the line is lost, the failure states that nothing was written.
     pub async fn before(&mut self, question: &Request) -> Result<Option<Record>, Failure> {
-        if self.is_dry() {
+        if self.is_dry_run() {
             self.plan(question, OLD_VALUE);
             return Ok(None);
         }
@@ -246,7 +246,7 @@ impl Link {
     pub async fn borrow(&mut self, change: &Request, back: Request) -> Result<(), Failure> {
         self.report_abandoned_changes().await;
         match self.client.borrow(change, back).await {
-            Err(Error::Refused(Refusal(request))) => Err(refusal::explained(self, &request).await),
+            Err(Error::Refused(Refusal(request))) => Err(refusal::with_reason(self, &request).await),
             borrowed => borrowed.map_err(|error| self.failure(error)),
         }
     }
@@ -258,7 +258,7 @@ impl Link {
     }
 
     /// Stops the motion, and returns the position at rest.
-    pub async fn stop(&mut self, moving: Moving) -> Result<Record, Failure> {
+    pub async fn stop(&mut self, moving: MotionKind) -> Result<Record, Failure> {
         // Changes of earlier processes are reported after the stop.
         let printed = std::mem::replace(&mut lock_writer(&self.observer).printed, PrintedNotices::ALL);
         let stopped = self.client.stop(moving).await;
@@ -269,7 +269,7 @@ impl Link {
     }
 
     /// Stops a motion that the controller refused before it began. The stop is sent only once.
-    pub async fn stop_refused_motion(&mut self, moving: Moving) {
+    pub async fn stop_refused_motion(&mut self, moving: MotionKind) {
         self.client.stop_refused_motion(moving).await;
         lock_writer(&self.observer).trace.resume();
     }

@@ -1,11 +1,11 @@
 //! `toyo mvm`: groups of the MVM table. A group has five sheets: corners, pieces, counters, approach and destination.
 
 use super::eeprom::{Cells, parameter_cell, parameter_sketch};
-use super::items::read_each;
+use super::eeprom_tables::{Listed, WRITING, texts, unlisted};
+use super::field_values::{Changes, word};
+use super::item_reads::read_each;
 use super::link::{Link, Toyo, wrong};
-use super::numbers::Numbers;
-use super::rows::{Listed, WRITING, texts, unlisted};
-use super::values::{Changes, word};
+use super::number_arguments::Numbers;
 use crate::prelude::*;
 use armctl_controller::toyo::field;
 use armctl_frame::store::Row;
@@ -185,7 +185,7 @@ impl Store for Groups {
     }
 
     fn is_blank(&self, sheets: &Vec<Record>) -> bool {
-        sheets.iter().zip(&SHEETS).all(|(sheet, (_, fields))| super::rows::is_zero(sheet, fields.len()))
+        sheets.iter().zip(&SHEETS).all(|(sheet, (_, fields))| super::eeprom_tables::is_zero(sheet, fields.len()))
     }
 
     fn unsaved(&self, _group: i32, sheets: Option<&Vec<Record>>) -> Option<String> {
@@ -230,7 +230,7 @@ impl Writable for Groups {
             let values = match (changes.whole(), old) {
                 (Some(values), _) => values,
                 (None, Some(old)) if changes.values().iter().all(Option::is_none) => return Ok(old[index].clone()),
-                (None, Some(old)) => changes.over(&old[index])?,
+                (None, Some(old)) => changes.merged_with(&old[index])?,
                 (None, None) => {
                     let message =
                         format!("group {group} could not be read, so the values that are not typed are unknown");
@@ -258,7 +258,7 @@ impl Writable for Groups {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
         for (_, old, new) in rows {
             let differs = |(index, new): &(usize, &Record)| old.is_none_or(|old| old[*index] != **new);
             for (index, record) in new.iter().enumerate().filter(differs) {

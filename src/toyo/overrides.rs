@@ -3,7 +3,7 @@
 use super::eeprom::{Cell, Cells};
 use super::link::Toyo;
 use super::link::wrong;
-use super::numbers::{number, small};
+use super::number_arguments::{number, saturated_byte};
 use crate::prelude::*;
 use armctl_controller::toyo::field::Field;
 use armctl_frame::robot::item::{Columns, Item, Items, Written, WrittenItems};
@@ -54,7 +54,7 @@ impl Command for Get {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Items<u8>, Failure> {
         let answer = context.link.ask(&Request::bare(table::Command::Rovr)).await?;
         let columns = Columns { name: "override", values: vec!["percent"], empty: "nothing stored" };
-        Ok(Items::new(columns, vec![item(small(&answer, field().name))]))
+        Ok(Items::new(columns, vec![item(saturated_byte(&answer, field().name))]))
     }
 }
 
@@ -72,10 +72,10 @@ impl Command for Set {
             write: Request::of(table::Command::Wovr, [value]),
             wanted: wanted.map_err(|error| wrong(&error))?,
         };
-        let new = small(&cell.wanted, field().name);
+        let new = saturated_byte(&cell.wanted, field().name);
         let mut cells = Cells::default();
         let stored = context.link.store(context.screen, &cell, &mut cells).await?;
-        let old = stored.map(|record| small(&record, field().name));
+        let old = stored.map(|record| saturated_byte(&record, field().name));
         let written = Written::new(item(new), old, cells.cells_written > 0);
         Ok(WrittenItems::describe(format!("override {new} %: {}", cells.in_words()), vec![written]))
     }

@@ -4,13 +4,13 @@ use anyhow::Context as _;
 
 use crate::prelude::*;
 use armctl_frame::OfflineCommand;
-use armctl_transport::ports::{self, PortInfo, PortKind, PortUser};
+use armctl_transport::port_list::{self, PortInfo, PortKind, PortUser};
 
 /// Failure: another program uses the port. If that program is armctl and receives a termination signal, it first stops
 /// its motion.
 pub fn in_use(label: &str, path: &str) -> Failure {
     let failure = |by: &str| Failure::new(Kind::NoAnswer, format!("{label}: {by} uses {path}"));
-    match ports::user(path) {
+    match port_list::user(path) {
         Some(PortUser { pid, name }) if ["armctl", "toyo"].contains(&&name[..]) => failure(&format!(
             "another armctl, process {pid},"
         ))
@@ -38,7 +38,7 @@ impl OfflineCommand for Ports {
 
 /// Serial ports of this computer.
 pub fn all() -> Result<Vec<Port>, Failure> {
-    let ports = ports::ports().context("the list of serial ports")?;
+    let ports = port_list::ports().context("the list of serial ports")?;
     Ok(ports.into_iter().map(Port::from).collect())
 }
 

@@ -68,7 +68,7 @@ pub struct Coordinates {
 #[derive(JsonSchema)]
 #[schemars(rename = "Coordinates")]
 #[expect(dead_code, reason = "the shape of what is written below")]
-struct Shape {
+struct CoordinateShape {
     /// Coordinate of axis X.
     x_mm: Option<f64>,
     /// Coordinate of axis Y.
@@ -81,15 +81,15 @@ struct Shape {
 
 impl JsonSchema for Coordinates {
     fn schema_name() -> std::borrow::Cow<'static, str> {
-        Shape::schema_name()
+        CoordinateShape::schema_name()
     }
 
     fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        Shape::json_schema(generator)
+        CoordinateShape::json_schema(generator)
     }
 
     fn inline_schema() -> bool {
-        Shape::inline_schema()
+        CoordinateShape::inline_schema()
     }
 }
 

@@ -3,17 +3,17 @@
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
-use super::copies::{self, Copied};
 use super::link;
 use super::link::Toyo;
-use super::numbers::{number, read_back, stored_otherwise};
+use super::number_arguments::{number, read_back, read_back_mismatch};
+use super::program_copy::{self, Copied};
 use crate::prelude::*;
 use armctl_controller::toyo::field::Field;
 
 /// A type of program that has numbers.
 pub trait Kind: Debug + 'static {
     /// Name of the type, such as `easy program`.
-    const WHAT: &'static str;
+    const TYPE_NAME: &'static str;
     /// Names of the reports, such as `toyo.easy.copy` and `toyo.easy.select`.
     const IDS: [&'static str; 2];
     /// Text for a copy that completes "This will …".
@@ -63,28 +63,28 @@ impl<K: Kind> Command for Copy<K> {
         let Self { from, to, .. } = *self;
         let order = Request::new(K::COMMANDS[0], vec![Value::Number(from), Value::Number(to)]);
         let order = order.map_err(|error| link::wrong(&error))?;
-        let copy = copies::Copy { what: K::WHAT, from, to, order, reads: [K::reads(from)?, K::reads(to)?] };
-        copy.make(context.link, context.screen, &context.authority).await
+        let copy = program_copy::Copy { what: K::TYPE_NAME, from, to, order, reads: [K::reads(from)?, K::reads(to)?] };
+        copy.make(context.link, context.screen, &context.confirmer).await
     }
 }
 
 impl<K: Kind> Command for Select<K> {
     type Family = Toyo;
-    type Report = Done;
+    type Report = SetReport;
     const ID: &'static str = K::IDS[1];
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport, Failure> {
         let (link, order) = (context.link, Request::of(K::COMMANDS[1], [Value::Number(self.program)]));
         let selection_read = Request::bare(K::COMMANDS[2]);
         let old = Old::read(link.before(&selection_read).await?.and_then(|record| record.number("program")));
         link.ask(&order).await?;
         let selected = read_back(link, &order, &selection_read).await?.number("program");
         if let Some(selected) = selected.filter(|selected| *selected != self.program) {
-            return Err(stored_otherwise(&order, &format!("program {selected} is selected"))
+            return Err(read_back_mismatch(&order, &format!("program {selected} is selected"))
                 .hint("wait until the program has ended; a running program stays selected"));
         }
-        let words = format!("{} {} is selected; use `{}` to start it", K::WHAT, self.program, K::RUN);
-        Ok(NewValue::of(K::WHAT.replace(' ', "_"), self.program, words).replaces(old))
+        let words = format!("{} {} is selected; use `{}` to start it", K::TYPE_NAME, self.program, K::RUN);
+        Ok(NewValue::of(K::TYPE_NAME.replace(' ', "_"), self.program, words).replaces(old))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::decode::FieldRow;
 use super::link::Link;
-use super::numbers::small;
+use super::number_arguments::saturated_byte;
 use crate::link::Toyo;
 use crate::prelude::*;
 use armctl_controller::toyo::describe::{Sender, describe};
@@ -92,7 +92,7 @@ fn record_choice(link: &mut Link, request: &Request) {
     match request.command() {
         table::Command::Hson => link.choose_host(true),
         table::Command::Hsof => link.choose_host(false),
-        table::Command::Ctsk => link.choose_task(small(request.record(), "task")),
+        table::Command::Ctsk => link.choose_task(saturated_byte(request.record(), "task")),
         _ => {}
     }
 }

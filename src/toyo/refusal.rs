@@ -7,7 +7,7 @@ use armctl_controller::toyo::status::{ProgramKind, RunMode};
 use armctl_controller::toyo::table::commands::{Command, Row};
 
 /// Failure for a refusal. It contains the reason if the status shows one.
-pub async fn explained(link: &mut Link, request: &Request) -> Failure {
+pub async fn with_reason(link: &mut Link, request: &Request) -> Failure {
     let row = request.row();
     if row.risk == Risk::Read {
         return of_question(request);
@@ -44,7 +44,7 @@ pub fn pendant() -> Failure {
 }
 
 /// Failure: the controller refuses to report its status.
-pub fn mute() -> Failure {
+pub fn status_refused() -> Failure {
     Failure::new(Kind::Refused, "the controller refused to report its status (@NG)")
         .hint("try again, then check the teach pendant: the controller is busy or is another model")
         .code("NG")

@@ -1,7 +1,7 @@
 //! `toyo robot-type`: robot type of an axis.
 
 use super::link::Toyo;
-use super::numbers::number;
+use super::number_arguments::number;
 use crate::prelude::*;
 use armctl_controller::toyo::field::Field;
 use armctl_frame::dry_run::unknown;

@@ -4,17 +4,17 @@ use std::time::Duration;
 
 use super::complete;
 use super::link::{self, Link, Toyo};
-use super::numbers::small;
+use super::number_arguments::saturated_byte;
 use super::point::{parse_point, table as point_table};
 use super::position::{Coordinates, UNIT, titled};
 use super::program::steps;
-use super::tasks;
+use super::task_selection;
 use super::wait::{AcceptedWork, End, Work, step};
 use crate::prelude::*;
 use armctl_controller::toyo::status::RunMode;
-use armctl_frame::cycle::{Repeat, Runs};
 use armctl_frame::dry_run::unknown;
 use armctl_frame::gate::data_changed;
+use armctl_frame::repeated_runs::{Repeat, Runs};
 use armctl_frame::robot::motion::Motion;
 use armctl_frame::robot::position::Position;
 use armctl_frame::robot::program::{self as robot, ProgramState};
@@ -174,23 +174,23 @@ impl Command for Point {
     }
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<PointMoveReport, Failure> {
-        let Context { link, authority, .. } = context;
+        let Context { link, confirmer, .. } = context;
         let (mut from, mut to) = (None, None);
-        if authority.asks() {
+        if confirmer.asks_user() {
             let letters = link.letters().await?;
             let current = Coordinates::of(&link.ask(&Request::bare(table::Command::Mpst)).await?, letters);
             let target = self.read_point(link).await?;
             let change = self.change(link, current, target).await?;
-            authority.confirm(&change).await?;
+            confirmer.confirm(&change).await?;
             if self.read_point(link).await? != target {
                 let message = format!("point {} changed after the confirmation; the robot did not move", self.point);
                 return Err(data_changed(message));
             }
             (from, to) = (Some(current.position()), target.map(|target| target.position()));
         } else {
-            authority.confirm(&Change::new(Command::intent(self))).await?;
+            confirmer.confirm(&Change::new(Command::intent(self))).await?;
         }
-        let context = Context { link, authority, ..context };
+        let context = Context { link, confirmer, ..context };
         let start = Request::of(table::Command::Extp, [Value::Number(self.point)]);
         let result = start_and_wait(context, &start, (!self.end.no_wait()).then_some(None), Repeat::once()).await?;
         let robot::Program { state, elapsed_ms, more: StepReport { position, .. }, .. } = result.program;
@@ -245,7 +245,7 @@ impl Point {
         target: Option<Coordinates>,
     ) -> Result<Change, Failure> {
         let letters = link.letters().await?;
-        let percent = small(&link.ask(&Request::bare(table::Command::Rovr)).await?, "override");
+        let percent = saturated_byte(&link.ask(&Request::bare(table::Command::Rovr)).await?, "override");
         let mut change = Change::new(Command::intent(self));
         let mut distance = 0.0;
         for (at, (old, new)) in current.mm().into_iter().zip(target.iter().flat_map(Coordinates::mm)).enumerate() {
@@ -275,7 +275,7 @@ impl Program {
     async fn note(&self, link: &mut Link) -> Result<String, Failure> {
         match self {
             Self::Sequential(step) => {
-                let task = tasks::choose(link, None).await?;
+                let task = task_selection::select_task(link, None).await?;
                 let number = u16::try_from(step.unwrap_or(0)).unwrap_or(0);
                 Ok(match steps::numbered(link, number).await? {
                     Ok(record) => {
@@ -313,17 +313,17 @@ async fn progress(
 
 /// Asks for confirmation. The question has the number and step of the program, the position and the speed.
 async fn confirm_start(context: &mut Context<'_, Toyo>, change: Change, program: Program) -> Result<(), Failure> {
-    let Context { link, authority, .. } = context;
+    let Context { link, confirmer, .. } = context;
     let mut change = change;
-    if authority.asks() {
+    if confirmer.asks_user() {
         let letters = link.letters().await?;
         change = change.note(program.note(link).await?);
         let coordinates = Coordinates::of(&link.ask(&Request::bare(table::Command::Mpst)).await?, letters);
-        let percent = small(&link.ask(&Request::bare(table::Command::Rovr)).await?, "override");
+        let percent = saturated_byte(&link.ask(&Request::bare(table::Command::Rovr)).await?, "override");
         change = change.note(format!("The axes are at {} (mm).", coordinates.in_a_line()));
         change = change.note(format!("The speed override is {percent} %."));
     }
-    authority.confirm(&change).await
+    confirmer.confirm(&change).await
 }
 
 fn program_text(kind: &str, program: Option<i32>) -> String {
@@ -363,7 +363,8 @@ async fn start_and_wait(
             }));
         };
         let report = within(limit, wait(link, screen, start.command(), letters)).await;
-        let report = report.map_err(|failure| if link.is_dry() { failure } else { runs.add_to_failure(failure) })?;
+        let report =
+            report.map_err(|failure| if link.is_dry_run() { failure } else { runs.add_to_failure(failure) })?;
         if repeat.repeat.is_none() {
             return Ok(report);
         }
@@ -401,7 +402,7 @@ async fn wait(link: &mut Link, screen: &Screen, order: table::Command, letters: 
         table::Command::Extp => None,
         _ => step(link).await.map_err(|failure| after(&failure))?,
     };
-    if is_paused && !is_at_a_stop(link, last.as_ref()).await.map_err(|failure| after(&failure))? {
+    if is_paused && !is_at_stop_instruction(link, last.as_ref()).await.map_err(|failure| after(&failure))? {
         return Err(stopped(last.as_ref(), coordinates));
     }
     let (step, instruction) = last.unzip();
@@ -427,7 +428,7 @@ fn plan_end(link: &mut Link, order: table::Command) -> Failure {
 const DONE: &str = "the start was accepted";
 
 /// Whether a program is paused as intended: after a STOP step, or in step mode.
-async fn is_at_a_stop(link: &mut Link, last: Option<&(i32, String)>) -> Result<bool, Failure> {
+async fn is_at_stop_instruction(link: &mut Link, last: Option<&(i32, String)>) -> Result<bool, Failure> {
     if link.status_of(&[2]).await?.run_mode() == Some(RunMode::Step) {
         return Ok(true);
     }

@@ -2,7 +2,7 @@
 
 use super::link::Link;
 use super::link::Toyo;
-use super::numbers::{number, read_back, small, stored_otherwise};
+use super::number_arguments::{number, read_back, read_back_mismatch, saturated_byte};
 use crate::prelude::*;
 use armctl_controller::toyo::field::Field;
 
@@ -36,7 +36,7 @@ fn field() -> &'static Field {
 /// The current task.
 pub async fn current(link: &mut Link) -> Result<u8, Failure> {
     let answer = link.ask(&Request::bare(table::Command::Mtsk)).await?;
-    Ok(small(&answer, field().name))
+    Ok(saturated_byte(&answer, field().name))
 }
 
 impl Command for Get {
@@ -51,11 +51,11 @@ impl Command for Get {
 
 impl Command for Set {
     type Family = Toyo;
-    type Report = Done;
+    type Report = SetReport;
     const ID: &'static str = "toyo.task.set";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport, Failure> {
         let (link, order) = (context.link, Request::of(table::Command::Ctsk, [Value::Number(self.task)]));
         let read = Request::bare(table::Command::Mtsk);
         let task = |record: &Record| record.number(field().name);
@@ -66,7 +66,7 @@ impl Command for Set {
         let selected = task(&read_back(link, &order, &read).await?);
         if selected != Some(self.task) {
             let selected = selected.unwrap_or_default();
-            return Err(stored_otherwise(&order, &format!("the current task is {selected}"))
+            return Err(read_back_mismatch(&order, &format!("the current task is {selected}"))
                 .hint("check for a second client that selects tasks; `toyo task get` shows the current task"));
         }
         let words = current_in_words(task_number);

@@ -14,7 +14,7 @@ use super::simulated::Simulated;
 use crate::prelude::*;
 use armctl_client::toyo::{Client, FENCE};
 use armctl_controller::toyo::simulator::Start;
-use armctl_frame::authority::Authority;
+use armctl_frame::confirmation::Confirmer;
 use armctl_frame::face::Face;
 use armctl_frame::face::registration::Registered;
 use armctl_frame::gate::{Gate, Grant, Intent};
@@ -255,8 +255,8 @@ impl Bench {
         Gate::default().must_ask(&QUIET, &robot, &intent)?;
         let grant = Grant::up_to(intent.initial_risk());
         self.link.grant(grant.clone());
-        let authority = Authority::new(Gate::default(), &QUIET, &robot, intent.risk, grant);
-        let context = Context { robot: &robot, link: &mut self.link, screen: &QUIET, several: false, authority };
+        let confirmer = Confirmer::new(Gate::default(), &QUIET, &robot, intent.risk, grant);
+        let context = Context { robot: &robot, link: &mut self.link, screen: &QUIET, several: false, confirmer };
         let outcome = self.runtime.block_on(testing::run::<Toyo>(&*command, context)).and_then(|report| report.data());
         self.link.grant(Grant::up_to(Risk::Motion));
         outcome

@@ -12,7 +12,7 @@ use armctl_transport::tap::Direction;
 pub struct Trace {
     record: trace::Trace,
     /// Address of this computer, and address of the device server; `None` without a device server.
-    ends: Option<(SocketAddr, SocketAddr)>,
+    address_pair: Option<(SocketAddr, SocketAddr)>,
     /// Characters that the controller sent since its last line end.
     pending: Vec<u8>,
     /// Last request. It is stored because `@OK` and `@NG` do not name their request.
@@ -20,16 +20,20 @@ pub struct Trace {
 }
 
 /// Maximum number of characters in a line of text.
-const MOST: usize = 512;
+const MAX_LINE_CHARS: usize = 512;
 
 impl Trace {
     /// Opens the trace that the options request. `ends` are the addresses of a TCP connection.
-    pub fn open(access: &Access, screen: &Screen, ends: Option<(SocketAddr, SocketAddr)>) -> Result<Self, Failure> {
-        let record = match ends {
+    pub fn open(
+        access: &Access,
+        screen: &Screen,
+        address_pair: Option<(SocketAddr, SocketAddr)>,
+    ) -> Result<Self, Failure> {
+        let record = match address_pair {
             Some(_) => trace::Trace::of_network(access, screen)?,
             None => trace::Trace::of_lines(access, screen)?,
         };
-        Ok(Self { record, ends, pending: Vec::new(), last_request: None })
+        Ok(Self { record, address_pair, pending: Vec::new(), last_request: None })
     }
 
     /// Records characters.
@@ -37,7 +41,7 @@ impl Trace {
         if bytes.is_empty() {
             return;
         }
-        self.record.piece(direction, self.ends, bytes);
+        self.record.piece(direction, self.address_pair, bytes);
         if self.record.level() > 0 {
             match direction {
                 Direction::Sent => self.sent(bytes),
@@ -73,7 +77,7 @@ impl Trace {
     fn received(&mut self, bytes: &[u8]) {
         for byte in bytes {
             self.pending.push(*byte);
-            if *byte == b'\n' || self.pending.len() >= MOST {
+            if *byte == b'\n' || self.pending.len() >= MAX_LINE_CHARS {
                 self.flush();
             }
         }
@@ -109,10 +113,11 @@ mod tests {
     use armctl_frame::output::{ColorChoice, Format};
 
     /// Content of a capture file with a request and its answer.
-    fn recorded(ends: Option<(SocketAddr, SocketAddr)>) -> Vec<u8> {
+    fn recorded(address_pair: Option<(SocketAddr, SocketAddr)>) -> Vec<u8> {
         let file = tempfile::NamedTempFile::new().unwrap();
         let access = Access { trace: Some(file.path().to_owned()), ..Access::reading(ConnectMode::Control) };
-        let mut trace = Trace::open(&access, &Screen::new(Format::Json, ColorChoice::Never, true, 0), ends).unwrap();
+        let mut trace =
+            Trace::open(&access, &Screen::new(Format::Json, ColorChoice::Never, true, 0), address_pair).unwrap();
         trace.record(Direction::Sent, b"@HSON\r\n");
         trace.record(Direction::Received, b"");
         trace.record(Direction::Received, b"@OK\r\n");
@@ -132,8 +137,8 @@ mod tests {
 
     #[test]
     fn blocks_to_a_device_server_are_recorded_with_addresses_and_ports() {
-        let ends = ("10.0.0.1:40000".parse().unwrap(), "10.0.0.2:4001".parse().unwrap());
-        let record = recorded(Some(ends));
+        let address_pair = ("10.0.0.1:40000".parse().unwrap(), "10.0.0.2:4001".parse().unwrap());
+        let record = recorded(Some(address_pair));
         let [sent, received] = [[0x9C, 0x40, 0x0F, 0xA1], [0x0F, 0xA1, 0x9C, 0x40]];
         assert!(holds(&record, &sent) && holds(&record, &received), "{record:?}");
         assert!(holds(&record, b"@HSON\r\n") && holds(&record, b"@OK\r\n"), "{record:?}");

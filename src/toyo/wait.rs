@@ -70,7 +70,7 @@ impl AcceptedWork {
     /// # Errors
     /// [`Kind::ConditionNotMet`] if the work did not complete, [`Kind::OutcomeUnknown`] if the connection was lost.
     pub(super) async fn wait(self, link: &mut Link, screen: &Screen, letters: Letters) -> Result<End, Failure> {
-        if link.is_dry() {
+        if link.is_dry_run() {
             self.plan(link);
             return Err(unknown());
         }
@@ -225,7 +225,7 @@ pub(super) async fn wait_for_status(
     (page, about): (u8, &str),
     condition: impl Fn(Status) -> bool,
 ) -> Result<bool, Failure> {
-    if link.is_dry() {
+    if link.is_dry_run() {
         link.plan(&status_page(page), &format!("every 100 ms, at most 1s: {about}"));
         return Err(unknown());
     }
@@ -393,7 +393,7 @@ mod tests {
     }
 
     #[test]
-    fn work_that_never_appeared_is_not_an_end() {
+    fn work_that_never_started_has_not_ended() {
         let idle = page0(IDLE);
         assert_eq!(
             evaluate_reads(Work::Program, [(0, idle, 0), (1000, idle, 0)]),

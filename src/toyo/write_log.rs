@@ -23,7 +23,7 @@ const WINDOW: Duration = Duration::from_secs(600);
 /// If the log is longer than this, it is written again without old lines.
 const SIZE: u64 = 64 * 1024;
 /// Maximum size of the log.
-const MOST: u64 = 16 << 20;
+const MAX_LOG_SIZE: u64 = 16 << 20;
 
 /// Counter of the writes to each cell.
 #[derive(Debug, Default)]
@@ -140,7 +140,7 @@ impl LogFile {
 
 /// Reads the text of the log; empty if it cannot be read.
 fn content(path: &Path) -> String {
-    files::text(path, MOST).unwrap_or_default()
+    files::text(path, MAX_LOG_SIZE).unwrap_or_default()
 }
 
 /// Lines that are within the period.

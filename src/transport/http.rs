@@ -23,14 +23,14 @@ const HEAD: usize = 8 << 10;
 /// Maximum number of lines of a request head.
 const LINES: usize = 64;
 /// Time limit of a connection.
-const WITHIN: Duration = Duration::from_secs(10);
+const CONNECTION_TIMEOUT: Duration = Duration::from_secs(10);
 /// Maximum number of open connections.
-const MOST: usize = 32;
+const MAX_CONNECTIONS: usize = 32;
 /// Pause before the next accept, if the process has too many open files.
-const FULL: Duration = Duration::from_millis(100);
+const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 /// Maximum number of bytes that the server reads after it has sent the answer. Without this read, a client that is
 /// still sending could lose the answer.
-const REST: u64 = 64 << 10;
+const MAX_DISCARDED: u64 = 64 << 10;
 
 /// A request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -112,7 +112,7 @@ impl Server {
     /// The server can accept no more connections.
     pub async fn run(&self, answer: impl Fn(&Request<'_>) -> Answer) -> io::Result<()> {
         let mut peers = FuturesUnordered::new();
-        let mut seats = Seats::default();
+        let mut connections = Connections::default();
         loop {
             tokio::select! {
                 biased;
@@ -120,25 +120,25 @@ impl Server {
                 // connection could close these connections.
                 Some(ended) = peers.next() => {
                     if let Ok(number) = ended {
-                        seats.free(number);
+                        connections.release_connection(number);
                     }
                 }
                 accepted = self.listener.accept() => match accepted {
                     Ok((stream, _)) => {
-                        let (number, is_answered) = (seats.next, Rc::new(Cell::new(false)));
+                        let (number, is_answered) = (connections.next, Rc::new(Cell::new(false)));
                         let served = serve(stream, &answer, Rc::clone(&is_answered));
                         let (served, close) = abortable(async move {
                             // An error of one connection concerns only its client.
-                            let _served = timeout(WITHIN, served).await;
+                            let _served = timeout(CONNECTION_TIMEOUT, served).await;
                             number
                         });
-                        seats.take(Seat { number, is_answered, close });
+                        connections.take(Connection { number, is_answered, close });
                         peers.push(served);
                     }
-                    Err(error) if is_passing(&error) => {}
+                    Err(error) if is_sending(&error) => {}
                     Err(error) if is_full(&error) => {
-                        seats.evict();
-                        sleep(FULL).await;
+                        connections.evict();
+                        sleep(ACCEPT_PAUSE).await;
                     }
                     Err(error) => return Err(error),
                 },
@@ -147,7 +147,7 @@ impl Server {
     }
 }
 
-struct Seat {
+struct Connection {
     number: u64,
     /// Whether the request is complete, so that the answer is in progress.
     is_answered: Rc<Cell<bool>>,
@@ -156,37 +156,37 @@ struct Seat {
 
 /// The open connections, oldest first.
 #[derive(Default)]
-struct Seats {
-    taken: VecDeque<Seat>,
+struct Connections {
+    taken: VecDeque<Connection>,
     /// Number that the next connection gets.
     next: u64,
 }
 
-impl Seats {
-    fn take(&mut self, seat: Seat) {
-        if self.taken.len() >= MOST {
+impl Connections {
+    fn take(&mut self, connection: Connection) {
+        if self.taken.len() >= MAX_CONNECTIONS {
             self.evict();
         }
         self.next += 1;
-        self.taken.push_back(seat);
+        self.taken.push_back(connection);
     }
 
-    fn free(&mut self, number: u64) {
-        self.taken.retain(|seat| seat.number != number);
+    fn release_connection(&mut self, number: u64) {
+        self.taken.retain(|connection| connection.number != number);
     }
 
     /// Closes the oldest connection whose answer is not in progress. If there is no such connection, closes the oldest
     /// connection.
     fn evict(&mut self) {
-        let idle = self.taken.iter().position(|seat| !seat.is_answered.get());
-        if let Some(seat) = self.taken.remove(idle.unwrap_or(0)) {
-            seat.close.abort();
+        let idle = self.taken.iter().position(|connection| !connection.is_answered.get());
+        if let Some(connection) = self.taken.remove(idle.unwrap_or(0)) {
+            connection.close.abort();
         }
     }
 }
 
 /// Whether an error of `accept(2)` concerns only the client that tried to connect, or the network of this client.
-fn is_passing(error: &io::Error) -> bool {
+fn is_sending(error: &io::Error) -> bool {
     use io::ErrorKind::{
         ConnectionAborted, ConnectionReset, HostUnreachable, Interrupted, NetworkDown, NetworkUnreachable, TimedOut,
         WouldBlock,
@@ -210,7 +210,7 @@ fn is_full(error: &io::Error) -> bool {
     error.kind() == io::ErrorKind::OutOfMemory || matches!(error.raw_os_error(), Some(23 | 24 | 55 | 105))
 }
 
-enum Asked {
+enum RequestResult {
     /// A response. The flag says whether the client requested only the head.
     Text(Answer, bool),
     /// The client has disconnected.
@@ -222,7 +222,9 @@ async fn serve(
     answer: &impl Fn(&Request<'_>) -> Answer,
     is_answered: Rc<Cell<bool>>,
 ) -> io::Result<()> {
-    let Asked::Text(Answer { status, kind, body }, is_head) = asked(&mut stream, answer).await? else { return Ok(()) };
+    let RequestResult::Text(Answer { status, kind, body }, is_head) = read_request(&mut stream, answer).await? else {
+        return Ok(());
+    };
     is_answered.set(true);
     let allow = if status == Status::MethodNotAllowed { "Allow: GET, HEAD\r\n" } else { "" };
     let head = format!(
@@ -239,17 +241,17 @@ async fn serve(
     is_answered.set(false);
     // The server first reads the remaining bytes. If bytes arrived after the close, the system would discard the
     // answer.
-    tokio::io::copy(&mut stream.take(REST), &mut tokio::io::sink()).await.map(|_| ())
+    tokio::io::copy(&mut stream.take(MAX_DISCARDED), &mut tokio::io::sink()).await.map(|_| ())
 }
 
 /// Reads a request and creates the response.
-async fn asked(stream: &mut TcpStream, answer: &impl Fn(&Request<'_>) -> Answer) -> io::Result<Asked> {
+async fn read_request(stream: &mut TcpStream, answer: &impl Fn(&Request<'_>) -> Answer) -> io::Result<RequestResult> {
     let mut head = Vec::with_capacity(1 << 10);
     loop {
         let length = head.len();
         let read = (&mut *stream).take(u64::try_from(HEAD - length).unwrap_or(0)).read_buf(&mut head).await?;
         if read == 0 && length < HEAD {
-            return Ok(Asked::Nothing);
+            return Ok(RequestResult::Nothing);
         }
         let mut lines = [httparse::EMPTY_HEADER; LINES];
         let mut request = httparse::Request::new(&mut lines);
@@ -257,14 +259,14 @@ async fn asked(stream: &mut TcpStream, answer: &impl Fn(&Request<'_>) -> Answer)
             Ok(httparse::Status::Complete(_)) => answered(&request, answer),
             Ok(httparse::Status::Partial) if head.len() < HEAD => continue,
             Ok(httparse::Status::Partial) | Err(httparse::Error::TooManyHeaders) => {
-                Asked::Text(Answer::text(Status::TooLong, "the request is too long"), false)
+                RequestResult::Text(Answer::text(Status::TooLong, "the request is too long"), false)
             }
-            Err(_) => Asked::Text(Answer::text(Status::BadRequest, "this is not an HTTP request"), false),
+            Err(_) => RequestResult::Text(Answer::text(Status::BadRequest, "this is not an HTTP request"), false),
         });
     }
 }
 
-fn answered(request: &httparse::Request<'_, '_>, answer: &impl Fn(&Request<'_>) -> Answer) -> Asked {
+fn answered(request: &httparse::Request<'_, '_>, answer: &impl Fn(&Request<'_>) -> Answer) -> RequestResult {
     let is_head = request.method == Some("HEAD");
     let path = request.path.unwrap_or_default();
     let path = path.split('?').next().unwrap_or_default();
@@ -272,9 +274,9 @@ fn answered(request: &httparse::Request<'_, '_>, answer: &impl Fn(&Request<'_>) 
     let accept = accept.and_then(|line| std::str::from_utf8(line.value).ok());
     let answer = answer(&Request { path, accept });
     if answer.status == Status::Ok && !is_head && request.method != Some("GET") {
-        return Asked::Text(Answer::text(Status::MethodNotAllowed, "only GET and HEAD are possible"), false);
+        return RequestResult::Text(Answer::text(Status::MethodNotAllowed, "only GET and HEAD are possible"), false);
     }
-    Asked::Text(answer, is_head)
+    RequestResult::Text(answer, is_head)
 }
 
 #[cfg(test)]
@@ -285,7 +287,7 @@ mod tests {
 
     use super::*;
 
-    fn texts(request: &Request<'_>) -> Answer {
+    fn response_texts(request: &Request<'_>) -> Answer {
         match request.path {
             "/a" => Answer::text(Status::Ok, request.accept.unwrap_or("anything")),
             _ => Answer::text(Status::NotFound, "there is no such page"),
@@ -293,40 +295,40 @@ mod tests {
     }
 
     /// Sends the pieces to a server in real time, and returns the response of the server.
-    async fn said(pieces: &[&[u8]]) -> String {
+    async fn response_text(pieces: &[&[u8]]) -> String {
         let server = Server::bind((Ipv4Addr::LOCALHOST, 0).into()).await.unwrap();
-        let asked = async {
+        let read_request = async {
             let mut stream = TcpStream::connect(server.local().unwrap()).await.unwrap();
             for piece in pieces {
                 stream.write_all(piece).await.unwrap();
                 tokio::task::yield_now().await;
             }
-            let mut said = Vec::new();
-            stream.read_to_end(&mut said).await.unwrap();
-            String::from_utf8(said).unwrap()
+            let mut response_text = Vec::new();
+            stream.read_to_end(&mut response_text).await.unwrap();
+            String::from_utf8(response_text).unwrap()
         };
         tokio::select! {
-            said = asked => said,
-            ended = server.run(texts) => panic!("{ended:?}"),
+            response_text = read_request => response_text,
+            ended = server.run(response_texts) => panic!("{ended:?}"),
         }
     }
 
     #[tokio::test]
-    async fn a_text_is_handed_out_whole_or_its_head() {
-        let said_to_get = said(&[b"GET /a?x=1 HTTP/1.1\r\nHost: x\r\nACCEPT: text/plain\r\n\r\n"]).await;
+    async fn sends_the_body_or_the_head_only() {
+        let said_to_get = response_text(&[b"GET /a?x=1 HTTP/1.1\r\nHost: x\r\nACCEPT: text/plain\r\n\r\n"]).await;
         assert!(said_to_get.starts_with("HTTP/1.1 200 OK\r\n"), "{said_to_get}");
         assert!(said_to_get.ends_with("Connection: close\r\n\r\ntext/plain\n"), "{said_to_get}");
-        let said_to_head = said(&[b"HEAD /a HTTP/1.1\r\n\r\n"]).await;
+        let said_to_head = response_text(&[b"HEAD /a HTTP/1.1\r\n\r\n"]).await;
         assert!(said_to_head.contains("Content-Length: 9\r\n") && said_to_head.ends_with("\r\n\r\n"), "{said_to_head}");
-        let in_pieces = said(&[b"GE", b"T /a HT", b"TP/1.0\r\n", b"\r\n"]).await;
+        let in_pieces = response_text(&[b"GE", b"T /a HT", b"TP/1.0\r\n", b"\r\n"]).await;
         assert!(in_pieces.ends_with("anything\n"), "{in_pieces}");
     }
 
     #[tokio::test]
-    async fn what_is_not_there_or_no_request_is_refused() {
+    async fn refuses_unknown_paths_and_invalid_requests() {
         let long = [&b"GET /a HTTP/1.1\r\nX: "[..], &[b'x'; HEAD]].concat();
         let many = [&b"GET /a HTTP/1.1\r\n"[..], &b"X: y\r\n".repeat(LINES + 1), b"\r\n"].concat();
-        for (asked, status) in [
+        for (read_request, status) in [
             (&b"GET /b HTTP/1.1\r\n\r\n"[..], "404"),
             (b"POST /b HTTP/1.1\r\nContent-Length: 3\r\n\r\nabc", "404"),
             (b"POST /a HTTP/1.1\r\nContent-Length: 3\r\n\r\nabc", "405"),
@@ -335,20 +337,20 @@ mod tests {
             (&long, "431"),
             (&many, "431"),
         ] {
-            let said = said(&[asked]).await;
-            assert!(said.starts_with(&format!("HTTP/1.1 {status} ")), "{status}: {said}");
-            assert_eq!(said.contains("Allow: GET, HEAD"), status == "405");
+            let response_text = response_text(&[read_request]).await;
+            assert!(response_text.starts_with(&format!("HTTP/1.1 {status} ")), "{status}: {response_text}");
+            assert_eq!(response_text.contains("Allow: GET, HEAD"), status == "405");
         }
     }
 
     #[tokio::test]
-    async fn silent_connections_hold_up_no_new_one() {
+    async fn silent_connections_do_not_block_new_ones() {
         let server = Server::bind((Ipv4Addr::LOCALHOST, 0).into()).await.unwrap();
         let address = server.local().unwrap();
-        let asked = async {
+        let read_request = async {
             // Opens more connections than the limit. Some of them have sent half a request.
             let mut silent = Vec::new();
-            for number in 0..MOST + 4 {
+            for number in 0..MAX_CONNECTIONS + 4 {
                 let mut stream = TcpStream::connect(address).await.unwrap();
                 if number % 2 == 0 {
                     stream.write_all(b"GET /a HTTP/1.1\r\nX").await.unwrap();
@@ -357,9 +359,9 @@ mod tests {
             }
             let mut stream = TcpStream::connect(address).await.unwrap();
             stream.write_all(b"GET /a HTTP/1.1\r\n\r\n").await.unwrap();
-            let mut said = String::new();
-            stream.read_to_string(&mut said).await.unwrap();
-            assert!(said.ends_with("anything\n"), "{said}");
+            let mut response_text = String::new();
+            stream.read_to_string(&mut response_text).await.unwrap();
+            assert!(response_text.ends_with("anything\n"), "{response_text}");
             // The server has closed the oldest five connections. The other connections are still within their time
             // limit.
             let mut byte = [0; 1];
@@ -371,13 +373,13 @@ mod tests {
             }
         };
         tokio::select! {
-            () = asked => {}
-            ended = server.run(texts) => panic!("{ended:?}"),
+            () = read_request => {}
+            ended = server.run(response_texts) => panic!("{ended:?}"),
         }
     }
 
     #[tokio::test(start_paused = true)]
-    async fn a_silent_connection_has_its_time_and_no_more() {
+    async fn closes_a_silent_connection_after_its_timeout() {
         let server = Server::bind((Ipv4Addr::LOCALHOST, 0).into()).await.unwrap();
         let address = server.local().unwrap();
         let silent = async {
@@ -386,24 +388,26 @@ mod tests {
         };
         tokio::select! {
             is_closed = silent => assert!(is_closed),
-            ended = server.run(texts) => panic!("{ended:?}"),
+            ended = server.run(response_texts) => panic!("{ended:?}"),
         }
     }
 
     #[test]
-    fn an_answer_on_its_way_is_the_last_to_give_way() {
-        let mut seats = Seats::default();
+    fn evicts_connections_without_an_answer_first() {
+        let mut connections = Connections::default();
         for number in 0..3 {
             let (close, _) = AbortHandle::new_pair();
-            seats.take(Seat { number, is_answered: Rc::new(Cell::new(number != 1)), close });
+            connections.take(Connection { number, is_answered: Rc::new(Cell::new(number != 1)), close });
         }
-        let numbers = |seats: &Seats| seats.taken.iter().map(|seat| seat.number).collect::<Vec<_>>();
-        seats.evict();
-        assert_eq!(numbers(&seats), [0, 2]);
-        seats.evict();
-        assert_eq!(numbers(&seats), [2], "the oldest has had the most time");
-        seats.free(2);
-        seats.evict();
-        assert!(seats.taken.is_empty());
+        let numbers = |connections: &Connections| {
+            connections.taken.iter().map(|connection| connection.number).collect::<Vec<_>>()
+        };
+        connections.evict();
+        assert_eq!(numbers(&connections), [0, 2]);
+        connections.evict();
+        assert_eq!(numbers(&connections), [2], "the oldest has had the most time");
+        connections.release_connection(2);
+        connections.evict();
+        assert!(connections.taken.is_empty());
     }
 }

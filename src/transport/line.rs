@@ -6,7 +6,7 @@ use std::time::Duration;
 use tokio::task::coop::consume_budget;
 use tokio::time::Instant;
 
-use super::fault::{LineFaultSpec, LineFaults, Passed};
+use super::fault::{FaultedCharacters, LineFaultSpec, LineFaults};
 use super::sim::Peer;
 
 /// Speed of a line in characters per time.
@@ -74,9 +74,9 @@ impl<P: Peer> InProcessLine<P> {
         loop {
             let now = self.start.elapsed();
             self.wire.run(now, &mut self.peer);
-            let taken = self.wire.take(now, buffer);
-            if taken > 0 {
-                return Some(taken);
+            let delivered = self.wire.take(now, buffer);
+            if delivered > 0 {
+                return Some(delivered);
             }
             let now = self.start + now;
             if now >= until {
@@ -98,8 +98,8 @@ impl<P: Peer> InProcessLine<P> {
 /// Both directions of a line between host and peer. The line has no clock: the caller passes the time.
 #[derive(Debug)]
 pub struct Wire {
-    there: Way,
-    back: Way,
+    to_peer: Direction,
+    to_host: Direction,
     has_echo: bool,
     /// Time of the last call of `run`.
     time: Duration,
@@ -109,38 +109,43 @@ impl Wire {
     /// Creates an idle line.
     pub fn new(pace: Option<Pace>, faults: Option<LineFaultSpec>) -> Self {
         let has_echo = faults.as_ref().is_some_and(|spec| spec.echo);
-        let (there, back) = faults.map(LineFaults::pair).unzip();
-        Self { there: Way::new(pace, there), back: Way::new(pace, back), has_echo, time: Duration::ZERO }
+        let (to_peer, to_host) = faults.map(LineFaults::pair).unzip();
+        Self {
+            to_peer: Direction::new(pace, to_peer),
+            to_host: Direction::new(pace, to_host),
+            has_echo,
+            time: Duration::ZERO,
+        }
     }
 
     /// Changes the faults. Bytes that are already in transit keep the old faults.
     pub fn set_faults(&mut self, faults: Option<LineFaultSpec>) {
         self.has_echo = faults.as_ref().is_some_and(|spec| spec.echo);
-        (self.there.faults, self.back.faults) = faults.map(LineFaults::pair).unzip();
+        (self.to_peer.faults, self.to_host.faults) = faults.map(LineFaults::pair).unzip();
     }
 
     /// Sends bytes of the host at `now`.
     pub fn send(&mut self, now: Duration, bytes: &[u8]) {
-        self.there.put(now, bytes);
+        self.to_peer.queue_bytes(now, bytes);
         if self.has_echo {
-            self.back.put(now, bytes);
+            self.to_host.queue_bytes(now, bytes);
         }
     }
 
     /// Executes all events up to `now`, each at its own time.
     pub fn run(&mut self, now: Duration, peer: &mut impl Peer) {
         loop {
-            let due = earliest(self.there.due(), peer.wake());
+            let due = earliest(self.to_peer.due(), peer.wake());
             let at = due.filter(|due| *due > self.time && *due < now).unwrap_or(now);
             self.time = at;
-            while let Some(piece) = self.there.next(at, usize::MAX) {
+            while let Some(piece) = self.to_peer.next(at, usize::MAX) {
                 match piece {
-                    Piece::Whole(bytes) => peer.receive(at, 0, bytes),
-                    Piece::Damaged => peer.damaged(at, 0),
+                    ReceivedCharacters::Whole(bytes) => peer.receive(at, 0, bytes),
+                    ReceivedCharacters::Damaged => peer.damaged(at, 0),
                 }
             }
             while let Some((_, bytes)) = peer.transmit(at) {
-                self.back.put(at, &bytes);
+                self.to_host.queue_bytes(at, &bytes);
             }
             if at >= now {
                 return;
@@ -151,27 +156,27 @@ impl Wire {
     /// Reads the bytes that the host has received by `now`. A character with a parity error reads as NUL, as with the
     /// driver of a serial port.
     pub fn take(&mut self, now: Duration, buffer: &mut [u8]) -> usize {
-        let mut taken = 0;
-        while let Some(piece) = self.back.next(now, buffer.len() - taken) {
+        let mut delivered = 0;
+        while let Some(piece) = self.to_host.next(now, buffer.len() - delivered) {
             let bytes = match piece {
-                Piece::Whole(bytes) => bytes,
-                Piece::Damaged => &[0],
+                ReceivedCharacters::Whole(bytes) => bytes,
+                ReceivedCharacters::Damaged => &[0],
             };
-            buffer[taken..taken + bytes.len()].copy_from_slice(bytes);
-            taken += bytes.len();
+            buffer[delivered..delivered + bytes.len()].copy_from_slice(bytes);
+            delivered += bytes.len();
         }
-        taken
+        delivered
     }
 
     /// Time of the next event.
     pub fn due(&self, peer: &impl Peer) -> Option<Duration> {
-        earliest(earliest(self.there.due(), self.back.due()), peer.wake())
+        earliest(earliest(self.to_peer.due(), self.to_host.due()), peer.wake())
     }
 
     /// Drops all bytes that are in transit to the host.
     pub fn lose(&mut self, now: Duration) {
-        self.back.runs.clear();
-        self.back.free = now;
+        self.to_host.runs.clear();
+        self.to_host.idle_at = now;
     }
 }
 
@@ -180,13 +185,13 @@ fn earliest(one: Option<Duration>, other: Option<Duration>) -> Option<Duration> 
 }
 
 #[derive(Debug)]
-struct Way {
+struct Direction {
     pace: Option<Pace>,
     faults: Option<LineFaults>,
     /// Writes of which characters are in transit, in order.
     runs: VecDeque<Run>,
     /// Time at which the last written character ends.
-    free: Duration,
+    idle_at: Duration,
 }
 
 /// The characters of one write. There are no gaps between them.
@@ -194,66 +199,66 @@ struct Way {
 struct Run {
     /// Start of the first character.
     start: Duration,
-    passed: Passed,
+    passed: FaultedCharacters,
     /// Number of characters already delivered.
-    taken: usize,
+    delivered: usize,
 }
 
 /// Received characters.
-enum Piece<'a> {
+enum ReceivedCharacters<'a> {
     Whole(&'a [u8]),
     /// One character with a parity error.
     Damaged,
 }
 
-impl Way {
+impl Direction {
     const fn new(pace: Option<Pace>, faults: Option<LineFaults>) -> Self {
-        Self { pace, faults, runs: VecDeque::new(), free: Duration::ZERO }
+        Self { pace, faults, runs: VecDeque::new(), idle_at: Duration::ZERO }
     }
 
-    fn put(&mut self, now: Duration, bytes: &[u8]) {
+    fn queue_bytes(&mut self, now: Duration, bytes: &[u8]) {
         let passed = match &mut self.faults {
             Some(faults) => faults.pass(bytes),
-            None => Passed { bytes: bytes.to_vec(), ..Passed::default() },
+            None => FaultedCharacters { bytes: bytes.to_vec(), ..FaultedCharacters::default() },
         };
         if passed.bytes.is_empty() {
             return;
         }
-        let start = now.saturating_add(passed.delay).max(self.free);
-        self.free = start.saturating_add(self.pace.map_or(Duration::ZERO, |pace| pace.time(passed.bytes.len())));
-        self.runs.push_back(Run { start, passed, taken: 0 });
+        let start = now.saturating_add(passed.delay).max(self.idle_at);
+        self.idle_at = start.saturating_add(self.pace.map_or(Duration::ZERO, |pace| pace.time(passed.bytes.len())));
+        self.runs.push_back(Run { start, passed, delivered: 0 });
     }
 
     /// Time at which the next character ends.
     fn due(&self) -> Option<Duration> {
-        let run = self.runs.iter().find(|run| run.taken < run.passed.bytes.len())?;
-        Some(run.start.saturating_add(self.pace.map_or(Duration::ZERO, |pace| pace.time(run.taken + 1))))
+        let run = self.runs.iter().find(|run| run.delivered < run.passed.bytes.len())?;
+        Some(run.start.saturating_add(self.pace.map_or(Duration::ZERO, |pace| pace.time(run.delivered + 1))))
     }
 
     /// Returns at most `most` characters that are complete at `now`.
-    fn next(&mut self, now: Duration, most: usize) -> Option<Piece<'_>> {
-        while self.runs.front().is_some_and(|run| run.taken == run.passed.bytes.len()) {
+    fn next(&mut self, now: Duration, most: usize) -> Option<ReceivedCharacters<'_>> {
+        while self.runs.front().is_some_and(|run| run.delivered == run.passed.bytes.len()) {
             self.runs.pop_front();
         }
         let pace = self.pace;
-        let Run { start, passed, taken } = self.runs.front_mut()?;
+        let Run { start, passed, delivered } = self.runs.front_mut()?;
         let arrived = match (now.checked_sub(*start), pace) {
             (None, _) => 0,
             (Some(_), None) => passed.bytes.len(),
             (Some(time), Some(pace)) => pace.characters(time).min(passed.bytes.len()),
         };
-        let from = *taken;
+        let from = *delivered;
         let end = arrived.min(from.saturating_add(most));
         if from >= end {
             return None;
         }
         if passed.damaged.front() == Some(&from) {
             passed.damaged.pop_front();
-            *taken += 1;
-            return Some(Piece::Damaged);
+            *delivered += 1;
+            return Some(ReceivedCharacters::Damaged);
         }
-        *taken = passed.damaged.front().map_or(end, |damaged| end.min(*damaged));
-        passed.bytes.get(from..*taken).map(Piece::Whole)
+        *delivered = passed.damaged.front().map_or(end, |damaged| end.min(*damaged));
+        passed.bytes.get(from..*delivered).map(ReceivedCharacters::Whole)
     }
 }
 
@@ -265,7 +270,7 @@ mod tests {
     /// 9600 baud, 8 data bits, even parity, 1 stop bit.
     const USUAL: Pace = Pace { baud: 9600, bits: 11 };
 
-    fn faulty(text: &str) -> InProcessLine<Mirror> {
+    fn with_faults(text: &str) -> InProcessLine<Mirror> {
         let faults = text.parse().unwrap_or_else(|error| panic!("{text}: {error}"));
         InProcessLine::new(Mirror::default(), Some(USUAL), Some(faults))
     }
@@ -281,23 +286,23 @@ mod tests {
         (bytes, end)
     }
 
-    fn just_before(time: Duration) -> Duration {
+    fn before_next(time: Duration) -> Duration {
         time.saturating_sub(Duration::from_nanos(1))
     }
 
     #[test]
-    fn characters_take_their_bits() {
+    fn characters_take_their_transmission_time() {
         assert_eq!(USUAL.time(128), Duration::from_nanos(146_666_667));
         assert_eq!(USUAL.time(0), Duration::ZERO);
         for count in 0..2000 {
             assert_eq!(USUAL.characters(USUAL.time(count)), count);
-            assert_eq!(USUAL.characters(just_before(USUAL.time(count + 1))), count);
+            assert_eq!(USUAL.characters(before_next(USUAL.time(count + 1))), count);
         }
         assert_eq!(Pace::new(0, 0).time(1), Duration::from_secs(1), "no division by zero");
     }
 
     #[test]
-    fn a_line_takes_its_time_there_and_back() {
+    fn line_delays_both_directions() {
         let (mut wire, mut peer) = (Wire::new(Some(USUAL), None), Mirror::default());
         let mut line = vec![b'x'; 127];
         line.push(b'\n');
@@ -306,16 +311,16 @@ mod tests {
         wire.run(Duration::from_secs(1), &mut peer);
         assert_eq!(peer.heard, [(USUAL.time(128), line)]);
         let mut buffer = [0; 256];
-        let there = USUAL.time(128);
+        let to_peer = USUAL.time(128);
         for count in 1..=128 {
-            assert_eq!(wire.take(just_before(there + USUAL.time(count)), &mut buffer), 0);
-            assert_eq!(wire.take(there + USUAL.time(count), &mut buffer), 1);
+            assert_eq!(wire.take(before_next(to_peer + USUAL.time(count)), &mut buffer), 0);
+            assert_eq!(wire.take(to_peer + USUAL.time(count), &mut buffer), 1);
         }
         assert_eq!(wire.due(&peer), None);
     }
 
     #[tokio::test(start_paused = true)]
-    async fn an_exchange_takes_as_long_as_on_the_wire() {
+    async fn exchange_takes_as_long_as_on_a_real_line() {
         let mut line = InProcessLine::new(Mirror::default(), Some(USUAL), None);
         line.send(&[[b'x'; 127].as_slice(), b"\n"].concat());
         let (bytes, took) = all(&mut line).await;
@@ -353,7 +358,7 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn what_was_discarded_does_not_come_and_the_rest_does() {
+    async fn discards_only_earlier_bytes() {
         let mut line = InProcessLine::new(Mirror::default(), Some(USUAL), None);
         line.send(b"abc\n");
         tokio::time::sleep(USUAL.time(6)).await;
@@ -362,8 +367,8 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn a_damaged_character_is_told_to_the_peer_and_reads_as_nul() {
-        let mut line = faulty("parity=100%");
+    async fn damaged_character_is_reported_and_reads_as_nul() {
+        let mut line = with_faults("parity=100%");
         line.send(b"abc\n");
         assert_eq!(all(&mut line).await.0, b"");
         assert_eq!((line.peer.damaged, line.peer.heard.len()), (4, 0));
@@ -372,8 +377,8 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn damage_keeps_its_place_among_the_characters() {
-        let mut line = faulty("parity=30%,seed=4");
+    async fn damaged_characters_keep_their_position() {
+        let mut line = with_faults("parity=30%,seed=4");
         line.peer.answers.push_back((1..=40).collect());
         let bytes = all(&mut line).await.0;
         let expected: Vec<u8> = (1..=40).zip(&bytes).map(|(byte, got)| if *got == 0 { 0 } else { byte }).collect();
@@ -382,8 +387,8 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn delay_holds_a_whole_write_back() {
-        let mut line = faulty("delay=20ms");
+    async fn delay_applies_to_a_complete_write() {
+        let mut line = with_faults("delay=20ms");
         line.send(b"a\n");
         let (bytes, took) = all(&mut line).await;
         assert_eq!((bytes.as_slice(), took.as_millis()), (b"\na".as_slice(), 45));
@@ -391,7 +396,7 @@ mod tests {
 
     #[tokio::test(start_paused = true)]
     async fn an_echo_comes_before_the_answer() {
-        let mut line = faulty("echo");
+        let mut line = with_faults("echo");
         line.send(b"abc\n");
         assert_eq!(all(&mut line).await.0, b"abc\n\ncba");
     }
@@ -399,7 +404,7 @@ mod tests {
     #[tokio::test(start_paused = true)]
     async fn the_seed_decides_what_arrives() {
         let run = async |seed: u32| {
-            let mut line = faulty(&format!("noise=5%,parity=5%,drop=5%,dup=5%,delay=0..50ms,seed={seed}"));
+            let mut line = with_faults(&format!("noise=5%,parity=5%,drop=5%,dup=5%,delay=0..50ms,seed={seed}"));
             for _ in 0..20 {
                 line.send(b"@STAS SNO=0\r\n");
             }

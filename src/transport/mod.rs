@@ -13,11 +13,11 @@ pub mod image;
 #[cfg(all(unix, feature = "plant"))]
 pub mod journal;
 pub mod line;
-pub mod local;
+pub mod local_error;
 #[cfg(feature = "plant")]
 pub mod mqtt;
 mod port;
-pub mod ports;
+pub mod port_list;
 pub mod profibus;
 pub mod profinet;
 mod pty;
@@ -41,7 +41,7 @@ use std::io;
 pub use armctl_files::{plain, this_program};
 
 /// Returns the error of a byte stream whose other end was closed or unplugged.
-fn vanished(why: impl Display) -> io::Error {
+fn closed_error(why: impl Display) -> io::Error {
     io::Error::new(io::ErrorKind::NotConnected, why.to_string())
 }
 

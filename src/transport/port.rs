@@ -1,7 +1,7 @@
 //! Serial port whose reads and writes run on a blocking thread of tokio, one at a time.
 //!
 //! tokio's reactor could wait for a serial port only on Unix, and only with unsafe code. A read takes at most
-//! [`SLICE`], so a write waits at most this long for the port. All futures are cancel safe: received bytes are kept for
+//! [`READ_TIMEOUT`], so a write waits at most this long for the port. All futures are cancel safe: received bytes are kept for
 //! the next [`Threaded::receive`], and a started write is completed.
 
 use std::collections::VecDeque;
@@ -12,12 +12,12 @@ use serialport::{ClearBuffer, SerialPort};
 use tokio::task::JoinHandle;
 use tokio::time::{Instant, timeout_at};
 
-use super::vanished;
+use super::closed_error;
 
 /// Maximum duration of a read. The timeout of the port must be set to this value.
-pub(super) const SLICE: Duration = Duration::from_millis(10);
+pub(super) const READ_TIMEOUT: Duration = Duration::from_millis(10);
 /// Maximum number of bytes per read.
-const PIECE: usize = 1024;
+const READ_SIZE: usize = 1024;
 
 pub(super) type Port = Box<dyn SerialPort>;
 
@@ -34,7 +34,7 @@ enum State {
     Idle(Port),
     /// A thread uses the port. When the thread ends, it returns the port and the bytes that it read.
     Busy {
-        job: JoinHandle<(Port, io::Result<Vec<u8>>)>,
+        reader_task: JoinHandle<(Port, io::Result<Vec<u8>>)>,
         /// Whether the bytes of this read must be dropped.
         is_stale: bool,
     },
@@ -43,7 +43,7 @@ enum State {
 }
 
 impl Threaded {
-    /// Wraps a port whose timeout is [`SLICE`].
+    /// Wraps a port whose timeout is [`READ_TIMEOUT`].
     pub(super) fn new(port: Port) -> Self {
         Self { state: State::Idle(port), arrived: VecDeque::new() }
     }
@@ -91,11 +91,11 @@ impl Threaded {
     fn begin(&mut self, work: impl FnOnce(&mut Port) -> io::Result<Vec<u8>> + Send + 'static) {
         self.state = match std::mem::replace(&mut self.state, State::Lost) {
             State::Idle(mut port) => {
-                let job = tokio::task::spawn_blocking(move || {
+                let reader_task = tokio::task::spawn_blocking(move || {
                     let done = work(&mut port);
                     (port, done)
                 });
-                State::Busy { job, is_stale: false }
+                State::Busy { reader_task, is_stale: false }
             }
             state => state,
         };
@@ -105,13 +105,13 @@ impl Threaded {
     async fn settle(&mut self) -> io::Result<()> {
         match &mut self.state {
             State::Idle(_) => Ok(()),
-            State::Lost => Err(vanished("the thread of the port has ended")),
-            State::Busy { job, is_stale } => {
-                let done = job.await;
+            State::Lost => Err(closed_error("the thread of the port has ended")),
+            State::Busy { reader_task, is_stale } => {
+                let done = reader_task.await;
                 let is_stale = *is_stale;
                 let (port, bytes) = done.map_err(|error| {
                     self.state = State::Lost;
-                    vanished(error)
+                    closed_error(error)
                 })?;
                 if is_stale {
                     clear(port.as_ref());
@@ -127,17 +127,17 @@ impl Threaded {
     }
 }
 
-/// Reads once from the port. The result is empty if no byte arrives within [`SLICE`].
+/// Reads once from the port. The result is empty if no byte arrives within [`READ_TIMEOUT`].
 fn read(port: &mut Port) -> io::Result<Vec<u8>> {
-    let mut bytes = vec![0; PIECE];
+    let mut bytes = vec![0; READ_SIZE];
     match port.read(&mut bytes) {
-        Ok(0) => Err(vanished("the port was closed")),
+        Ok(0) => Err(closed_error("the port was closed")),
         Ok(len) => {
             bytes.truncate(len);
             Ok(bytes)
         }
         Err(error) if is_pause(&error) => Ok(Vec::new()),
-        Err(error) => Err(vanished(error)),
+        Err(error) => Err(closed_error(error)),
     }
 }
 
@@ -148,7 +148,7 @@ fn write(port: &mut Port, mut bytes: &[u8], longest: Duration) -> io::Result<()>
         match port.write(bytes) {
             Ok(len) => bytes = bytes.get(len..).unwrap_or_default(),
             Err(error) if is_pause(&error) => {}
-            Err(error) => return Err(vanished(error)),
+            Err(error) => return Err(closed_error(error)),
         }
         if !bytes.is_empty() && start.elapsed() > longest {
             return Err(io::Error::new(io::ErrorKind::TimedOut, "the port accepts no bytes"));
@@ -177,13 +177,13 @@ mod tests {
     use super::super::testing::soon;
     use super::*;
 
-    const STUCK: Duration = Duration::from_secs(60);
+    const WRITE_TIMEOUT: Duration = Duration::from_secs(60);
 
     /// A pseudo-terminal and the port at its other end.
     fn pair() -> (TTYPort, Threaded) {
         let (mut master, mut port) = TTYPort::pair().unwrap();
         master.set_timeout(Duration::from_secs(60)).unwrap();
-        port.set_timeout(SLICE).unwrap();
+        port.set_timeout(READ_TIMEOUT).unwrap();
         (master, Threaded::new(Box::new(port)))
     }
 
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn what_came_too_late_is_there_the_next_time() {
+    async fn late_bytes_are_available_for_the_next_read() {
         let (mut master, mut port) = pair();
         // After the timeout of this call, the thread continues its read.
         assert_eq!(port.receive(&mut [0; 8], Instant::now()).await.unwrap(), None);
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn what_has_arrived_can_be_discarded_wherever_it_is() {
+    async fn discards_received_bytes_in_every_buffer() {
         let (mut master, mut port) = pair();
         // Half of these bytes are still in the driver. A read has taken the other half from the driver, but the test
         // has not received them.
@@ -216,27 +216,27 @@ mod tests {
         master.write_all(&[b'x'; 64]).unwrap();
         wait_for(&mut port, 64).await;
         port.discard();
-        assert_eq!(port.receive(&mut [0; 8], Instant::now() + SLICE).await.unwrap(), None);
+        assert_eq!(port.receive(&mut [0; 8], Instant::now() + READ_TIMEOUT).await.unwrap(), None);
     }
 
     #[tokio::test]
-    async fn what_a_thread_is_reading_can_be_discarded() {
+    async fn discards_bytes_that_a_thread_reads() {
         let (mut master, mut port) = pair();
         port.begin(read);
         master.write_all(b"late").unwrap();
-        while matches!(&port.state, State::Busy { job, .. } if !job.is_finished()) {
+        while matches!(&port.state, State::Busy { reader_task, .. } if !reader_task.is_finished()) {
             tokio::task::yield_now().await;
         }
         port.discard();
-        port.send(b"?", STUCK).await.unwrap();
+        port.send(b"?", WRITE_TIMEOUT).await.unwrap();
         assert!(port.arrived.is_empty(), "{:?}", port.arrived);
     }
 
     #[tokio::test]
-    async fn a_send_that_is_dropped_goes_out_whole() {
+    async fn dropped_send_still_writes_all_bytes() {
         let (mut master, mut port) = pair();
         // The future is polled once and then dropped, as after Ctrl-C.
-        assert!(port.send(b"@STOP\r\n", STUCK).now_or_never().is_none());
+        assert!(port.send(b"@STOP\r\n", WRITE_TIMEOUT).now_or_never().is_none());
         let mut got = [0; 7];
         master.read_exact(&mut got).unwrap();
         assert_eq!(&got, b"@STOP\r\n");
@@ -248,7 +248,7 @@ mod tests {
         drop(master);
         let error = port.receive(&mut [0; 8], soon()).await.unwrap_err();
         assert_eq!(error.kind(), io::ErrorKind::NotConnected, "{error}");
-        assert_eq!(port.send(b"x", STUCK).await.unwrap_err().kind(), io::ErrorKind::NotConnected);
+        assert_eq!(port.send(b"x", WRITE_TIMEOUT).await.unwrap_err().kind(), io::ErrorKind::NotConnected);
         port.discard();
     }
 

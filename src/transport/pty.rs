@@ -15,13 +15,13 @@ mod unix {
     use serialport::{SerialPort as _, TTYPort};
     use tokio::time::Instant;
 
-    use super::super::port::{SLICE, Threaded};
+    use super::super::port::{READ_TIMEOUT, Threaded};
 
     /// Bytes per write.
-    const PIECE: usize = 128;
+    const WRITE_SIZE: usize = 128;
     /// Maximum number of bytes that the program has not read yet. The limit is smaller than the buffer of the system
     /// (4096 bytes on Linux, 1024 elsewhere), so that a write never blocks.
-    const MOST_UNREAD: u32 = if cfg!(target_os = "linux") { 3072 } else { 768 };
+    const MAX_UNREAD: u32 = if cfg!(target_os = "linux") { 3072 } else { 768 };
     /// Timeout of a read. After a timeout, the read is repeated, so the value is not important.
     const LONG: Duration = Duration::from_secs(3600);
 
@@ -40,7 +40,7 @@ mod unix {
         pub(crate) fn open() -> io::Result<(Self, String)> {
             let (mut writer, port) = TTYPort::pair()?;
             let mut reader = writer.try_clone_native()?;
-            reader.set_timeout(SLICE)?;
+            reader.set_timeout(READ_TIMEOUT)?;
             writer.set_timeout(Duration::ZERO)?;
             let path = port.name().ok_or_else(|| io::Error::other("the pseudo-terminal has no name"))?;
             Ok((Self { reader: Threaded::new(Box::new(reader)), writer, port }, path))
@@ -57,8 +57,8 @@ mod unix {
         /// Writes bytes without waiting. If the program has left too many bytes unread, the new bytes are lost, as on a
         /// real line.
         pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
-            for piece in bytes.chunks(PIECE) {
-                if self.port.bytes_to_read()? > MOST_UNREAD {
+            for piece in bytes.chunks(WRITE_SIZE) {
+                if self.port.bytes_to_read()? > MAX_UNREAD {
                     return Ok(());
                 }
                 match self.writer.write_all(piece) {

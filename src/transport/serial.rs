@@ -13,13 +13,13 @@ use thiserror::Error;
 use tokio::time::Instant;
 
 use super::line::Pace;
-use super::port::{SLICE, Threaded};
-use super::ports::ports;
+use super::port::{READ_TIMEOUT, Threaded};
+use super::port_list::ports;
 
 /// Time limit for a blocked write, in addition to the transmission time.
-const STUCK: Duration = Duration::from_secs(2);
+const WRITE_TIMEOUT: Duration = Duration::from_secs(2);
 /// Maximum deviation of the baud rate in thousandths. A receiver fails at a deviation of about 40.
-pub(super) const MOST_OFF: u32 = 30;
+pub(super) const MAX_BAUD_DEVIATION: u32 = 30;
 
 /// A port and its settings.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -78,7 +78,7 @@ pub struct Serial {
 impl Serial {
     /// Opens a port, and discards bytes that were received before.
     pub fn open(line: &Line) -> Result<Self, OpenError> {
-        Ok(Self { port: Threaded::new(open(line, MOST_OFF)?), pace: line.pace() })
+        Ok(Self { port: Threaded::new(open(line, MAX_BAUD_DEVIATION)?), pace: line.pace() })
     }
 
     /// Sends bytes. The driver may still be sending when this function returns.
@@ -87,7 +87,7 @@ impl Serial {
     /// [`NotConnected`](io::ErrorKind::NotConnected) if the port is gone, [`TimedOut`](io::ErrorKind::TimedOut) if the
     /// port accepts no bytes for two seconds.
     pub async fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.port.send(bytes, self.pace.time(bytes.len()) + STUCK).await
+        self.port.send(bytes, self.pace.time(bytes.len()) + WRITE_TIMEOUT).await
     }
 
     /// Waits until `until` for bytes. Returns `None` after a timeout.
@@ -114,7 +114,7 @@ pub(super) fn open(line: &Line, most_off: u32) -> Result<Box<dyn SerialPort>, Op
         .flow_control(FlowControl::None)
         // Converters without their own power supply take power from DTR. Unix always raises DTR.
         .dtr_on_open(true)
-        .timeout(SLICE)
+        .timeout(READ_TIMEOUT)
         .open()
         .map_err(|error| open_error(&error, &line.path))?;
     check(port.as_ref(), line, most_off)?;
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn what_arrived_before_is_dropped() {
+    async fn opening_drops_earlier_bytes() {
         let (mut master, slave) = TTYPort::pair().unwrap();
         master.write_all(b"old").unwrap();
         while slave.bytes_to_read().unwrap() < 3 {
@@ -261,16 +261,16 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn only_one_has_a_port() {
+    async fn port_has_one_owner() {
         let (_master, serial, path) = pair();
         assert!(matches!(Serial::open(&line(&path)), Err(OpenError::Busy)));
-        assert_eq!(crate::ports::user(&path), None, "this process is no other");
+        assert_eq!(crate::port_list::user(&path), None, "this process is no other");
         drop(serial);
         Serial::open(&line(&path)).unwrap();
     }
 
     #[test]
-    fn what_is_no_port_does_not_open() {
+    fn missing_port_does_not_open() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("file");
         std::fs::write(&file, "").unwrap();
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_of_opening_are_told_apart() {
+    fn distinguishes_errors_of_opening() {
         for (kind, text, message) in [
             (ErrorKind::Io(io::ErrorKind::NotFound), "", "no such port"),
             (ErrorKind::Unknown, "No such device or address", "no such port"),
@@ -305,7 +305,7 @@ mod tests {
     fn a_port_with_other_settings_is_refused() {
         let (_master, slave) = TTYPort::pair().unwrap();
         let usual = Line { parity: Parity::None, ..line("/dev/ttyUSB0") };
-        let settings = |line: Line| check(&slave, &line, MOST_OFF).err().map(|error| error.to_string());
+        let settings = |line: Line| check(&slave, &line, MAX_BAUD_DEVIATION).err().map(|error| error.to_string());
         assert_eq!(settings(Line { baud: 38_400, ..usual.clone() }), None);
         for (line, what) in [
             (Line { baud: 40_000, ..usual.clone() }, "40000 baud (the driver set 38400)"),

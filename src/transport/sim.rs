@@ -70,8 +70,8 @@ pub fn locked<P>(peer: &Mutex<P>) -> MutexGuard<'_, P> {
 pub struct InProcess<P> {
     peer: P,
     start: Instant,
-    there: Option<Faults>,
-    back: Option<Faults>,
+    to_peer_faults: Option<Faults>,
+    from_peer_faults: Option<Faults>,
     wire: BinaryHeap<Reverse<InFlight>>,
     sent: u64,
 }
@@ -89,8 +89,8 @@ struct InFlight {
 impl<P: Peer> InProcess<P> {
     /// Creates a link to a peer. `faults` contains the faults of both directions.
     pub fn new(peer: P, faults: Option<(Faults, Faults)>) -> Self {
-        let (there, back) = faults.unzip();
-        Self { peer, start: Instant::now(), there, back, wire: BinaryHeap::new(), sent: 0 }
+        let (to_peer_faults, from_peer_faults) = faults.unzip();
+        Self { peer, start: Instant::now(), to_peer_faults, from_peer_faults, wire: BinaryHeap::new(), sent: 0 }
     }
 
     /// Sends one datagram to the peer.
@@ -129,7 +129,7 @@ impl<P: Peer> InProcess<P> {
     }
 
     fn launch(&mut self, now: Duration, to_peer: bool, channel: usize, bytes: &[u8]) {
-        let faults = if to_peer { &mut self.there } else { &mut self.back };
+        let faults = if to_peer { &mut self.to_peer_faults } else { &mut self.from_peer_faults };
         let flights = match faults {
             Some(faults) => faults.pass(now, bytes),
             None => vec![(now, bytes.to_vec())],

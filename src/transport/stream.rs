@@ -37,7 +37,7 @@ impl<P: Peer> Stream<P> {
     }
 
     /// Ends the exclusive use.
-    pub fn give(&mut self) {
+    pub fn release_line(&mut self) {
         if let Self::Session(attached) = self {
             attached.release();
         }

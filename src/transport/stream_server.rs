@@ -16,9 +16,9 @@ use super::pty::Pty;
 use super::sim::Peer;
 
 /// Bytes per read or write.
-const PIECE: usize = 4096;
+const BUFFER_SIZE: usize = 4096;
 /// Maximum number of bytes that wait for a TCP client. The server disconnects a client that does not read them.
-const MOST_UNSENT: usize = 1 << 20;
+const MAX_UNSENT: usize = 1 << 20;
 
 /// A line with a peer, for one client at a time.
 #[derive(Debug)]
@@ -92,7 +92,7 @@ impl StreamServer {
 
     /// Waits for one event and handles it. The caller calls this function in a loop.
     pub async fn turn(&mut self, peer: &mut impl Peer) -> io::Result<()> {
-        let mut buffer = [0; PIECE];
+        let mut buffer = [0; BUFFER_SIZE];
         let due = self.wire.due(peer).map(|due| self.start + due);
         let event = tokio::select! {
             event = self.end.event(&mut buffer) => Some(event?),
@@ -187,7 +187,7 @@ impl Tcp {
         // An error is ignored here: the next read reports it.
         let written = if self.unsent.is_empty() { client.try_write(bytes).unwrap_or(0) } else { 0 };
         self.unsent.extend(bytes.get(written..).unwrap_or_default());
-        if self.unsent.len() > MOST_UNSENT {
+        if self.unsent.len() > MAX_UNSENT {
             self.leave();
         }
     }
@@ -243,7 +243,7 @@ mod tests {
     /// Sends a line, and receives the same number of bytes.
     async fn ask(client: &mut tcp::Tcp, line: &[u8]) -> io::Result<Vec<u8>> {
         client.send(line).await?;
-        let (mut bytes, mut buffer) = (Vec::new(), [0; PIECE]);
+        let (mut bytes, mut buffer) = (Vec::new(), [0; BUFFER_SIZE]);
         while bytes.len() < line.len() {
             let len = client.receive(&mut buffer, soon()).await?.expect("an answer");
             bytes.extend(&buffer[..len]);
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn clients_on_tcp_have_the_line_one_after_the_other() {
+    async fn tcp_clients_use_the_line_in_turn() {
         let (mut server, port) = on_loopback().await;
         let clients = async {
             for _ in 0..50 {
@@ -264,7 +264,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn a_second_client_is_let_go_and_the_first_one_stays() {
+    async fn rejects_a_second_client() {
         let (mut server, port) = on_loopback().await;
         let clients = async {
             let mut first = connect(port).await;
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn an_answer_on_its_way_to_one_that_left_is_lost() {
+    async fn drops_the_answer_for_a_disconnected_client() {
         let (mut server, port) = on_loopback().await;
         // One character takes eleven seconds, so the test ends before the answer is complete.
         server.wire = Wire::new(Some(Pace::new(1, 11)), None);
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn much_comes_whole_to_one_that_reads() {
+    async fn delivers_large_data_to_a_reading_client() {
         let (mut server, port) = on_loopback().await;
         let mut line = vec![b'x'; 500_000];
         line.push(b'\n');
@@ -325,7 +325,7 @@ mod tests {
 
         async fn ask(serial: &mut Serial, line: &[u8], count: usize) -> Vec<u8> {
             serial.send(line).await.unwrap();
-            let (mut bytes, mut buffer) = (Vec::new(), [0; PIECE]);
+            let (mut bytes, mut buffer) = (Vec::new(), [0; BUFFER_SIZE]);
             while bytes.len() < count {
                 let len = serial.receive(&mut buffer, soon()).await.unwrap().expect("an answer");
                 bytes.extend(&buffer[..len]);
@@ -345,7 +345,7 @@ mod tests {
         }
 
         #[tokio::test]
-        async fn faults_are_on_the_line() {
+        async fn applies_faults_to_the_line() {
             let faults = "echo,dup=100%".parse().unwrap();
             let (mut server, path) = StreamServer::pseudo_terminal(None, Some(faults)).unwrap();
             let clients = async { ask(&mut open(&path), b"ab\n", 18).await };
@@ -354,7 +354,7 @@ mod tests {
         }
 
         #[tokio::test]
-        async fn what_nobody_reads_does_not_stop_the_server() {
+        async fn unread_output_does_not_block_the_server() {
             let (mut server, path) = StreamServer::pseudo_terminal(None, None).unwrap();
             let mut peer = Mirror::default();
             for _ in 0..200 {
@@ -362,7 +362,7 @@ mod tests {
                 server.wire.run(server.now(), &mut peer);
                 // Writes as if an event of the peer were due.
                 let now = server.now();
-                let mut buffer = [0; PIECE];
+                let mut buffer = [0; BUFFER_SIZE];
                 let len = server.wire.take(now, &mut buffer);
                 server.end.write(&buffer[..len]).unwrap();
             }

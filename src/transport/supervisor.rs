@@ -33,32 +33,32 @@ impl Supervisor {
     }
 
     /// Interval of the keepalive messages: half of the watchdog time of the service manager.
-    pub fn pulse(&self) -> Option<Duration> {
+    pub fn keepalive_interval(&self) -> Option<Duration> {
         self.watchdog.map(|within| within / 2)
     }
 
     /// Reports that the service is ready, so that dependent services can start.
     pub fn ready(&self, status: &str) -> io::Result<()> {
-        self.tell(&format!("READY=1\nSTATUS={status}"))
+        self.send_state(&format!("READY=1\nSTATUS={status}"))
     }
 
     /// Sends a keepalive with a status text.
-    pub fn alive(&self, status: &str) -> io::Result<()> {
-        self.tell(&format!("WATCHDOG=1\nSTATUS={status}"))
+    pub fn send_keepalive(&self, status: &str) -> io::Result<()> {
+        self.send_state(&format!("WATCHDOG=1\nSTATUS={status}"))
     }
 
     /// Reports that the service is stopping.
     pub fn stopping(&self) -> io::Result<()> {
-        self.tell("STOPPING=1")
+        self.send_state("STOPPING=1")
     }
 
     #[cfg(unix)]
-    fn tell(&self, text: &str) -> io::Result<()> {
+    fn send_state(&self, text: &str) -> io::Result<()> {
         self.socket.as_ref().map_or(Ok(()), |socket| socket.send(text))
     }
 
     #[cfg(not(unix))]
-    fn tell(&self, _text: &str) -> io::Result<()> {
+    fn send_state(&self, _text: &str) -> io::Result<()> {
         Ok(())
     }
 }
@@ -114,13 +114,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_told_arrives_in_one_datagram() {
+    fn sends_a_state_in_one_datagram() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("notify");
         let manager = UnixDatagram::bind(&path).unwrap();
         let socket = Some(unix::Socket::named(path.as_os_str()).unwrap());
         let supervisor = Supervisor { socket, watchdog: Some(Duration::from_secs(10)) };
-        assert_eq!(supervisor.pulse(), Some(Duration::from_secs(5)));
+        assert_eq!(supervisor.keepalive_interval(), Some(Duration::from_secs(5)));
         let heard = || {
             let mut text = [0; 100];
             let length = manager.recv(&mut text).unwrap();
@@ -128,7 +128,7 @@ mod tests {
         };
         supervisor.ready("3 robots").unwrap();
         assert_eq!(heard(), "READY=1\nSTATUS=3 robots");
-        supervisor.alive("2 answer").unwrap();
+        supervisor.send_keepalive("2 answer").unwrap();
         assert_eq!(heard(), "WATCHDOG=1\nSTATUS=2 answer");
         supervisor.stopping().unwrap();
         assert_eq!(heard(), "STOPPING=1");
@@ -137,7 +137,7 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn a_name_that_is_no_file_is_reached_too() {
+    fn supports_abstract_socket_names() {
         use std::os::linux::net::SocketAddrExt as _;
         use std::os::unix::net::SocketAddr;
 
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn a_manager_that_is_gone_is_an_error() {
+    fn missing_manager_is_an_error() {
         let folder = tempfile::tempdir().unwrap();
         let socket = Some(unix::Socket::named(folder.path().join("nobody").as_os_str()).unwrap());
         assert!(Supervisor { socket, watchdog: None }.stopping().is_err());

@@ -47,7 +47,7 @@ const LINKTYPE_USER0: u16 = 147;
 const NETWORK: u32 = 0;
 const LINE: u32 = 1;
 /// Maximum number of bytes per TCP segment.
-const MOST_IN_SEGMENT: usize = 32 * 1024;
+const MAX_SEGMENT_LEN: usize = 32 * 1024;
 const SECTION_HEADER: u32 = 0x0A0D_0D0A;
 const INTERFACE: u32 = 1;
 const ENHANCED_PACKET: u32 = 6;
@@ -124,7 +124,7 @@ impl<W: Write> CaptureWriter<W> {
 
     /// Records bytes of a TCP stream. `time` counts from 1970.
     pub fn segment(&mut self, time: Duration, from: SocketAddr, to: SocketAddr, bytes: &[u8]) -> io::Result<()> {
-        for piece in bytes.chunks(MOST_IN_SEGMENT) {
+        for piece in bytes.chunks(MAX_SEGMENT_LEN) {
             let expected = self.sequence.get(&(to, from)).copied().unwrap_or(FIRST);
             let sent = self.sequence.entry((from, to)).or_insert(FIRST);
             let mut packet = Vec::with_capacity(piece.len() + 60);
@@ -182,15 +182,15 @@ fn block(kind: u32, mut body: Vec<u8>) -> Vec<u8> {
 
 /// Starts a packet with an IP header. If the two addresses have different IP versions, the header is IPv6.
 fn ip(from: SocketAddr, to: SocketAddr) -> PacketBuilderStep<IpHeaders> {
-    const HOPS: u8 = 64;
+    const IP_TTL: u8 = 64;
 
     let v6 = |address: IpAddr| match address {
         IpAddr::V4(address) => address.to_ipv6_mapped().octets(),
         IpAddr::V6(address) => address.octets(),
     };
     match (from.ip(), to.ip()) {
-        (IpAddr::V4(from), IpAddr::V4(to)) => PacketBuilder::ipv4(from.octets(), to.octets(), HOPS),
-        (from, to) => PacketBuilder::ipv6(v6(from), v6(to), HOPS),
+        (IpAddr::V4(from), IpAddr::V4(to)) => PacketBuilder::ipv4(from.octets(), to.octets(), IP_TTL),
+        (from, to) => PacketBuilder::ipv6(v6(from), v6(to), IP_TTL),
     }
 }
 
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn headers_check_out() {
+    fn checksums_of_headers_are_correct() {
         let mut out = Vec::new();
         let (from, to) = addresses();
         CaptureWriter::new(&mut out).unwrap().datagram(Duration::ZERO, from, to, b"YERC").unwrap();
@@ -294,7 +294,7 @@ mod tests {
             let mut capture = CaptureWriter::streams(&mut out).unwrap();
             capture.segment(Duration::ZERO, from, to, b"@HSON\r\n").unwrap();
             capture.segment(Duration::ZERO, to, from, b"@OK\r\n").unwrap();
-            capture.segment(Duration::ZERO, from, to, &vec![b'x'; MOST_IN_SEGMENT + 1]).unwrap();
+            capture.segment(Duration::ZERO, from, to, &vec![b'x'; MAX_SEGMENT_LEN + 1]).unwrap();
             let blocks = blocks(&out);
             let mut numbers = Vec::new();
             for (block, (from, to)) in blocks[3..].iter().zip([(from, to), (to, from), (from, to), (from, to)]) {
@@ -309,7 +309,7 @@ mod tests {
                 let word = |at: usize| u32::from_be_bytes(tcp[at..at + 4].try_into().unwrap());
                 numbers.push((word(4), word(8), tcp.len() - 20));
             }
-            assert_eq!(numbers, [(1, 1, 7), (1, 8, 5), (8, 6, MOST_IN_SEGMENT), (8 + 32 * 1024, 6, 1)]);
+            assert_eq!(numbers, [(1, 1, 7), (1, 8, 5), (8, 6, MAX_SEGMENT_LEN), (8 + 32 * 1024, 6, 1)]);
         }
     }
 }

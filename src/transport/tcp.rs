@@ -8,7 +8,7 @@ use tokio::io::AsyncReadExt as _;
 use tokio::net::TcpStream;
 use tokio::time::{Instant, timeout_at};
 
-use super::vanished;
+use super::closed_error;
 
 /// Reason why a server cannot be reached.
 #[derive(Debug, Error)]
@@ -51,7 +51,7 @@ impl Tcp {
     }
 
     /// Local and remote address.
-    pub fn ends(&self) -> io::Result<(SocketAddr, SocketAddr)> {
+    pub fn address_pair(&self) -> io::Result<(SocketAddr, SocketAddr)> {
         Ok((self.stream.local_addr()?, self.stream.peer_addr()?))
     }
 
@@ -62,11 +62,11 @@ impl Tcp {
     pub async fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.unsent.extend(bytes);
         while !self.unsent.is_empty() {
-            self.stream.writable().await.map_err(vanished)?;
+            self.stream.writable().await.map_err(closed_error)?;
             match self.stream.try_write(&self.unsent) {
                 Ok(len) => drop(self.unsent.drain(..len)),
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
-                Err(error) => return Err(vanished(error)),
+                Err(error) => return Err(closed_error(error)),
             }
         }
         Ok(())
@@ -79,9 +79,9 @@ impl Tcp {
     pub async fn receive(&mut self, buffer: &mut [u8], until: Instant) -> io::Result<Option<usize>> {
         match timeout_at(until, self.stream.read(buffer)).await {
             Err(_) => Ok(None),
-            Ok(Ok(0)) => Err(vanished("the server closed the connection")),
+            Ok(Ok(0)) => Err(closed_error("the server closed the connection")),
             Ok(Ok(len)) => Ok(Some(len)),
-            Ok(Err(error)) => Err(vanished(error)),
+            Ok(Err(error)) => Err(closed_error(error)),
         }
     }
 
@@ -140,11 +140,11 @@ mod tests {
         server.write_all(b"@OK\r\n").await.unwrap();
         assert_eq!(tcp.receive(&mut buffer, soon()).await.unwrap(), Some(5));
         assert_eq!(tcp.receive(&mut buffer, Instant::now()).await.unwrap(), None);
-        assert_eq!(tcp.ends().unwrap(), (server.peer_addr().unwrap(), server.local_addr().unwrap()));
+        assert_eq!(tcp.address_pair().unwrap(), (server.peer_addr().unwrap(), server.local_addr().unwrap()));
     }
 
     #[tokio::test]
-    async fn what_has_arrived_can_be_discarded() {
+    async fn discards_received_bytes() {
         let (mut tcp, mut server) = pair().await;
         server.write_all(&[b'x'; 5000]).await.unwrap();
         let mut buffer = [0; 64];
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn a_server_that_leaves_is_gone() {
+    async fn closed_server_is_an_error() {
         let (mut tcp, server) = pair().await;
         drop(server);
         let error = tcp.receive(&mut [0; 8], soon()).await.unwrap_err();
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn a_port_nobody_listens_on_refuses() {
+    async fn closed_port_refuses() {
         // The socket is bound but does not listen. So no other program gets the port, and a connection is refused.
         let socket = TcpSocket::new_v4().unwrap();
         socket.bind("127.0.0.1:0".parse().unwrap()).unwrap();
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn failures_are_told_apart() {
+    fn distinguishes_connect_errors() {
         use io::ErrorKind::{ConnectionRefused, HostUnreachable, NetworkUnreachable, Other, TimedOut};
 
         let texts = [ConnectionRefused, HostUnreachable, NetworkUnreachable, TimedOut, Other]

@@ -44,7 +44,7 @@ impl Udp {
 
     /// Creates channels to the same ports with new sockets.
     #[must_use]
-    pub fn another(&self) -> Self {
+    pub fn with_new_sockets(&self) -> Self {
         Self { channels: self.channels.iter().map(|channel| Channel { peer: channel.peer, open: None }).collect() }
     }
 

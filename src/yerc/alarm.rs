@@ -5,13 +5,13 @@ mod report;
 use clap::ValueEnum;
 
 pub(super) use self::report::in_a_line;
-use self::report::{Own, WithTexts, entry, explain, short};
-use super::existing_items::{Batch, Outcome, ReadError};
+use self::report::{WithTexts, YercAlarmFields, entry, explain, short};
+use super::control_commands::usage;
+use super::item_requests::{Batch, Outcome, ReadError};
 use super::link::Link;
 use super::link::Yerc;
-use super::numbers::parse_in_range;
-use super::switch_commands::usage;
-use crate::existing_items::read_failure;
+use super::number_arguments::parse_in_range;
+use crate::item_requests::read_failure;
 use crate::prelude::*;
 use armctl_controller::yerc::payload;
 use armctl_controller::yerc::query::{self, Query, ReadAlarm, ReadAlarmHistory};
@@ -49,10 +49,10 @@ pub(super) const SLOTS: u8 = 4;
 
 impl Command for List {
     type Family = Yerc;
-    type Report = Alarms<Own, WithTexts>;
+    type Report = Alarms<YercAlarmFields, WithTexts>;
     const ID: &'static str = "yerc.alarm.list";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Alarms<Own, WithTexts>, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Alarms<YercAlarmFields, WithTexts>, Failure> {
         let link = context.link;
         let mut texts = !self.no_texts;
         let question = |slot, texts| ReadAlarm::new(slot, texts).map_err(usage);
@@ -132,10 +132,10 @@ const HISTORY_SIZE: u8 = 100;
 
 impl Command for History {
     type Family = Yerc;
-    type Report = Alarms<Own, WithTexts>;
+    type Report = Alarms<YercAlarmFields, WithTexts>;
     const ID: &'static str = "yerc.alarm.history";
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Alarms<Own, WithTexts>, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<Alarms<YercAlarmFields, WithTexts>, Failure> {
         let link = context.link;
         let mut texts = !self.no_texts;
         let numbers = self.from..=self.from.saturating_add(self.limit - 1).min(HISTORY_SIZE);
@@ -205,7 +205,7 @@ pub(super) fn plan_latest(link: &mut Link) -> Result<(), Failure> {
 /// In a dry run, records all requests, and the first fallback request for an older controller.
 fn plan<Q: Query>(link: &mut Link, all: &[Q], texts: bool, older: &Q) -> Result<(), Failure> {
     let item_name = link.plan_all(all);
-    if texts && link.is_dry() {
+    if texts && link.is_dry_run() {
         let about = "without alarm texts, if the controller has no texts; armctl then sends all later requests \
                      without texts";
         link.plan_if(
@@ -249,14 +249,14 @@ macro_rules! order {
 
         impl Command for $name {
             type Family = Yerc;
-            type Report = Done;
+            type Report = SetReport;
             const ID: &'static str = $id;
 
             fn risk(&self) -> Risk {
                 $query.risk()
             }
 
-            async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
+            async fn run(&self, context: Context<'_, Yerc>) -> Result<SetReport, Failure> {
                 context.link.ask(&$query).await?;
                 Ok(NewValue::of($set, $new, $done).replaces(Old::UNREAD))
             }

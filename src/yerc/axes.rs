@@ -3,11 +3,11 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::existing_items::ask_existing;
+use super::control_commands::usage;
+use super::item_requests::ask_existing;
 use super::link::Yerc;
 use super::position::ByAxis;
-use super::switch_commands::usage;
-use crate::existing_items::read_failure;
+use crate::item_requests::read_failure;
 use crate::prelude::*;
 use armctl_controller::yerc::payload::AxisNames;
 use armctl_controller::yerc::query::{Coordinates, ReadAxes, ReadPositionError, ReadTorque};

@@ -3,7 +3,7 @@
 
 use std::collections::{HashMap, VecDeque};
 
-use super::existing_items::{Batch, Outcome, ReadError};
+use super::item_requests::{Batch, Outcome, ReadError};
 use super::link::Link;
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::variables::PlannedRead;
@@ -32,7 +32,7 @@ pub async fn read_in_batches<S: PlannedRead>(
     if wanted.is_empty() {
         return Ok(HashMap::new());
     }
-    if link.is_dry() {
+    if link.is_dry_run() {
         let purpose = link.take_purpose();
         plan_in_batches(link, plan, wanted, parts, |_| purpose.map(ToOwned::to_owned))?;
         return Err(unknown());

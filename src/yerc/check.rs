@@ -7,8 +7,8 @@ use crate::prelude::*;
 use armctl_controller::yerc::payload::StatusBit;
 use armctl_controller::yerc::query::{ReadStatus, ReadSystemInfo, SystemPart};
 use armctl_frame::Family as _;
-use armctl_frame::attach::is_held;
 use armctl_frame::face::layers::{Layer, Layers};
+use armctl_frame::session_client::is_held;
 use armctl_frame::settings::names::CacheFile;
 
 const LAYERS: &[&str] = &["name", "answer", "software", "model", "mode", "command remote", "hold", "alarm", "servo"];
@@ -104,7 +104,7 @@ fn model(robot: &Robot, link: &Link, layers: &mut Layers) {
 /// Checks whether the stored names belong to this controller.
 fn names(robot: &Robot, link: &Link, layers: &mut Layers) {
     let Some(Ok(Some(kept))) = robot.names.cache_file().map(CacheFile::read) else { return };
-    match link.told_software().map_or(Ok(()), |software| kept.check(&software)) {
+    match link.reported_software().map_or(Ok(()), |software| kept.check(&software)) {
         Ok(()) => layers.ok("names", format!("{} stored, read on {}", kept.count(), kept.read_at.strftime("%Y-%m-%d"))),
         Err(failure) => layers.warn("names", failure.message, failure.hint.unwrap_or_default()),
     }

@@ -2,7 +2,8 @@
 
 use super::link::Yerc;
 use super::{
-    alarm, axes, file, hours, info, io, job, moves, names, position, raw, register, status, switch_commands, teach, var,
+    alarm, axes, control_commands, file, hours, info, io, job, moves, names, position, raw, register, status, teach,
+    var,
 };
 use armctl_frame::backup::family_backup::{Backup, Diff, Restore};
 use armctl_frame::{Subcommands, commands};
@@ -29,17 +30,17 @@ commands! {
         Info(info::Info),
         "Power and operation":
         /// Switch servo power
-        Servo(switch_commands::Servo),
+        Servo(control_commands::Servo),
         /// Stop the running job and all motion: HOLD on
         Stop(job::Halt),
         /// Apply (on) or release (off) HOLD
-        Hold(switch_commands::Hold),
+        Hold(control_commands::Hold),
         /// Lock or unlock the pendant and the operation signals
-        Hlock(switch_commands::Hlock),
+        Hlock(control_commands::Hlock),
         /// Select step, one cycle or continuous
-        Cycle(switch_commands::Cycle),
+        Cycle(control_commands::Cycle),
         /// Show a message on the pendant
-        Say(switch_commands::Say),
+        Say(control_commands::Say),
         "Motion":
         /// Move a robot or station
         Move(Subcommands<moves::Move>),

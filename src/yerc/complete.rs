@@ -3,14 +3,14 @@
 use futures_util::FutureExt as _;
 
 use armctl_controller::names::Kind;
-use armctl_frame::kind::{Ask, Named, rows, text};
 use armctl_frame::settings::target::Family;
+use armctl_frame::value_kind::{Ask, Named, rows, text};
 use armctl_frame::{Candidate, ValueKind};
 
 /// A job on the controller.
-pub const JOB: ValueKind = ValueKind::Asked(Family::Yerc, |robot| jobs(robot).boxed_local());
+pub const JOB: ValueKind = ValueKind::FromRobot(Family::Yerc, |robot| jobs(robot).boxed_local());
 /// A file on the controller.
-pub const FILE: ValueKind = ValueKind::Asked(Family::Yerc, |robot| files(robot).boxed_local());
+pub const FILE: ValueKind = ValueKind::FromRobot(Family::Yerc, |robot| files(robot).boxed_local());
 /// The name of a variable, or the prefix of a variable reference: `B`.
 pub const VARIABLE: ValueKind = ValueKind::Named(
     Family::Yerc,

@@ -7,7 +7,7 @@ use super::simulator_start;
 use crate::prelude::*;
 use armctl_client::yerc::{Client, Endpoint, Options};
 use armctl_frame::Family as _;
-use armctl_frame::attach::attach;
+use armctl_frame::session_client::attach;
 use armctl_frame::settings::Sessions;
 use armctl_frame::settings::target::Place;
 use armctl_transport::fault::FaultSpec;
@@ -64,5 +64,5 @@ pub async fn hold_robot(robot: &Robot, access: &Access, screen: &Screen) -> Resu
     let mut link = Yerc::connect(robot, access.clone(), screen).await?;
     overview(&mut link).await?;
     Yerc::close(link, screen).await?;
-    endpoint(robot)?.hold().await.map_err(|error| failure(&robot.label(), error))
+    endpoint(robot)?.open_session_link().await.map_err(|error| failure(&robot.label(), error))
 }

@@ -4,7 +4,7 @@ mod capture;
 
 pub use self::capture::FrameDecoder;
 use crate::prelude::*;
-use armctl_controller::typed;
+use armctl_controller::user_input;
 use armctl_controller::yerc::describe::{Description, FieldNote, Sender, describe};
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::table::service;
@@ -39,7 +39,7 @@ pub struct Decode {
 }
 
 fn number(text: &str) -> Result<u16, String> {
-    typed::unsigned(text).ok_or_else(|| "expected a number from 0 to 65535 (0x0000 to 0xFFFF)".to_owned())
+    user_input::unsigned(text).ok_or_else(|| "expected a number from 0 to 65535 (0x0000 to 0xFFFF)".to_owned())
 }
 
 impl decode::Decode for Decode {
@@ -194,10 +194,10 @@ impl decode::Field for FieldRow {
 
     /// Long values are cut here. JSON has them in full.
     fn cells(&self) -> Vec<Cell> {
-        const LONGEST: usize = 32;
+        const MAX_SHOWN_LEN: usize = 32;
 
         let FieldNote { offset, size, name, raw, meaning } = &self.0;
-        let raw = shortened(raw, LONGEST);
+        let raw = shortened(raw, MAX_SHOWN_LEN);
         vec![(*offset).into(), (*size).into(), name.as_str().into(), raw.into(), meaning.as_str().into()]
     }
 }

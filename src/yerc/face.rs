@@ -2,18 +2,18 @@
 
 use super::alarm;
 use super::commands::Commands;
+use super::control_commands::Hold;
 use super::decode::Decode;
 use super::explain::Explain;
 use super::file::{Restore, back_up};
 use super::link::{Link, Yerc};
 use super::serve::Serve;
-use super::switch_commands::Hold;
 use super::top::Poller;
 use super::{check, connect, overview, teach_panel};
 use crate::prelude::*;
-use armctl_controller::yerc::{passing, simulator, status};
+use armctl_controller::yerc::{read_only_filter, simulator, status};
 use armctl_frame::backup::family_backup::Backups;
-use armctl_frame::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
+use armctl_frame::backup::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
 use armctl_frame::face::HeldLink;
 use armctl_frame::face::layers::Layer;
 use armctl_frame::face::overview::OverviewReport;
@@ -44,7 +44,8 @@ impl Declaration for Yerc {
     const SETUP: (&'static str, &'static str) = ("settings of a Yaskawa controller", include_str!("setup.txt"));
     const START_STATE: &'static str = simulator::EXAMPLE;
     const PANEL: Panel = teach_panel::PANEL;
-    const GUARD: Guard = Guard { is_harmless_data: passing::only_reads_or_stops, is_harmless_image: |_, _| false };
+    const GUARD: Guard =
+        Guard { is_harmless_data: read_only_filter::only_reads_or_stops, is_harmless_image: |_, _| false };
 
     fn urls() -> Vec<(String, &'static str)> {
         vec![("udp://".to_owned(), "yerc: name or address of the controller")]
@@ -75,7 +76,7 @@ impl Declaration for Yerc {
         check::check(robot, access, screen).await
     }
 
-    async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
+    async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
         Ok(SharedLink::Datagrams(connect::hold_robot(robot, access, screen).await?).into())
     }
 }
@@ -83,11 +84,11 @@ impl Declaration for Yerc {
 impl Backups for Yerc {
     const IDS: [&'static str; 3] = ["yerc.backup", "yerc.restore", "yerc.diff"];
 
-    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackedUp, Failure> {
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport, Failure> {
         back_up(context, making).await
     }
 
-    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport, Failure> {
         Restore::of(restoring).run(context).await
     }
 }

@@ -1,11 +1,11 @@
 //! `yerc hours`: running-time counters.
 
 use super::axes::{Groups, groups_of};
-use super::existing_items::{Outcome, ask_existing};
+use super::control_commands::usage;
+use super::item_requests::{Outcome, ask_existing};
 use super::link::Yerc;
-use super::numbers::parse_in_range;
-use super::switch_commands::usage;
-use crate::existing_items::read_failure;
+use super::number_arguments::parse_in_range;
+use crate::item_requests::read_failure;
 use crate::prelude::*;
 use armctl_controller::yerc::payload::ManagementTime;
 use armctl_controller::yerc::query::{QueryError, ReadManagementTime, TimeCounter};

@@ -9,17 +9,17 @@ use std::str::FromStr;
 
 use self::source::Source;
 pub use self::stop::Halt;
-use super::existing_items::{Outcome, ReadError};
+use super::control_commands::refuse_controls;
 use super::file::Edit;
+use super::item_requests::{Outcome, ReadError};
 use super::link::{Link, Yerc};
-use super::numbers::parse_in_range;
-use super::switch_commands::refuse_controls;
+use super::number_arguments::parse_in_range;
 use crate::complete;
-use crate::existing_items::read_failure;
+use crate::item_requests::read_failure;
 use crate::prelude::*;
 use armctl_controller::text::Name;
-use armctl_controller::typed;
 use armctl_controller::units;
+use armctl_controller::user_input;
 use armctl_controller::yerc::payload::JobInfo;
 use armctl_controller::yerc::query::{ReadJob, SelectJob, Selection};
 use armctl_controller::yerc::status::{self, is_absent};
@@ -69,7 +69,7 @@ impl FromStr for Tasks {
         if text.eq_ignore_ascii_case("all") {
             return Ok(Self::All);
         }
-        let task = typed::unsigned(text);
+        let task = user_input::unsigned(text);
         task.map(Self::One).ok_or_else(|| "a task is a number, starting with 0 (master), or all".to_owned())
     }
 }
@@ -84,7 +84,7 @@ impl Command for Show {
         let encoding = link.encoding;
         let jobs: Vec<(u8, Outcome<JobInfo>)> = match self.task {
             Tasks::One(task) => {
-                if link.is_dry() && self.source {
+                if link.is_dry_run() && self.source {
                     link.then("download of the job file, if the file exists");
                 }
                 let job = {
@@ -330,7 +330,7 @@ fn about(name: &str, failure: Failure) -> Failure {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Selected {
     #[serde(flatten)]
-    done: Done,
+    done: SetReport,
     /// Start line; null if a master job was selected.
     line: Option<u32>,
     /// Task whose master job was set; null if the job to start was selected.
@@ -350,7 +350,7 @@ mod tests {
     use crate::testing::{error_text, frames, frames_on, golden, intent, reports};
     use std::time::Duration;
 
-    use super::start::{Look, Watch};
+    use super::start::{JobProgress, Watch};
     use crate::motion::{START_TIMEOUT, StandstillCause};
     use armctl_controller::Risk;
     use armctl_controller::yerc::payload::{ControllerStatus, StatusBit, Text};
@@ -444,22 +444,22 @@ mod tests {
     fn watches_a_job_from_start_to_end() {
         let (idle, runs) = (status(&[StatusBit::ServoOn]), status(&[StatusBit::ServoOn, StatusBit::Running]));
         let mut watch = Watch::new(None);
-        assert_eq!(watch.look(Duration::ZERO, idle), Look::Running, "the bit may come a moment later");
-        assert_eq!(watch.look(Duration::from_millis(100), runs), Look::Running);
-        assert_eq!(watch.look(Duration::from_secs(3600), runs), Look::Running);
-        assert_eq!(watch.look(Duration::from_secs(3601), idle), Look::Ended);
-        assert_eq!(Watch::new(None).look(START_TIMEOUT, idle), Look::NeverStarted);
+        assert_eq!(watch.look(Duration::ZERO, idle), JobProgress::Running, "the bit may come a moment later");
+        assert_eq!(watch.look(Duration::from_millis(100), runs), JobProgress::Running);
+        assert_eq!(watch.look(Duration::from_secs(3600), runs), JobProgress::Running);
+        assert_eq!(watch.look(Duration::from_secs(3601), idle), JobProgress::Ended);
+        assert_eq!(Watch::new(None).look(START_TIMEOUT, idle), JobProgress::NeverStarted);
         let limit = Duration::from_secs(1);
-        assert_eq!(Watch::new(Some(limit)).look(limit, runs), Look::Timeout(limit));
+        assert_eq!(Watch::new(Some(limit)).look(limit, runs), JobProgress::Timeout(limit));
     }
 
     #[test]
     fn reports_what_stopped_a_job() {
         let base = [StatusBit::ServoOn, StatusBit::Running];
         let look = |more: StatusBit| Watch::new(None).look(Duration::ZERO, status(&base).with(more, true));
-        assert_eq!(look(StatusBit::Alarm), Look::Stopped(StandstillCause::Alarm));
-        assert!(matches!(look(StatusBit::HoldExternal), Look::Stopped(StandstillCause::Hold(_))));
-        assert_eq!(look(StatusBit::Error), Look::Running);
+        assert_eq!(look(StatusBit::Alarm), JobProgress::Stopped(StandstillCause::Alarm));
+        assert!(matches!(look(StatusBit::HoldExternal), JobProgress::Stopped(StandstillCause::Hold(_))));
+        assert_eq!(look(StatusBit::Error), JobProgress::Running);
     }
 
     #[tokio::test(start_paused = true)]

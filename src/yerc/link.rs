@@ -6,10 +6,10 @@ use std::time::Duration;
 use derive_more::{Deref, DerefMut};
 
 use super::connect;
-use super::existing_items::{Batch, Outcome};
+use super::control_commands::usage;
 use super::failure::{failure, refused};
+use super::item_requests::{Batch, Outcome};
 use super::model_cache::CachedModel;
-use super::switch_commands::usage;
 use super::trace::Trace;
 use crate::prelude::*;
 use armctl_client::Watcher;
@@ -130,13 +130,13 @@ impl Link {
     }
 
     /// Version of the system software, if it was read on this connection.
-    pub fn told_software(&self) -> Option<String> {
+    pub fn reported_software(&self) -> Option<String> {
         self.client.identity().map(|identity| self.encoding.decode(identity.software.as_bytes()))
     }
 
     /// Stores the model that the controller reported, if it is not stored yet.
     fn cache_model(&mut self) {
-        if let (Some(identity), Some(software)) = (self.client.identity(), self.told_software()) {
+        if let (Some(identity), Some(software)) = (self.client.identity(), self.reported_software()) {
             let reported_model = identity.model.map(|model| ReportedModel::now(model, software));
             self.cached_model.store_model(reported_model, &self.screen, &self.label);
         }
@@ -273,7 +273,7 @@ struct TraceObserver {
 }
 
 impl Watcher<Event> for TraceObserver {
-    fn frame(&mut self, direction: Direction, ends: armctl_client::Ends, bytes: &[u8]) {
+    fn frame(&mut self, direction: Direction, ends: armctl_client::AddressPair, bytes: &[u8]) {
         lock_writer(&self.trace).record(direction, ends, bytes);
     }
 

@@ -22,7 +22,7 @@ impl CachedModel {
         let store = if target.is_simulated() { None } else { ModelCache::of_user() };
         let is_open = client.known_model().is_none();
         let stored = store.as_ref().filter(|_| is_open).and_then(|store| store.find(&address));
-        if let Some(kept) = stored.as_ref().filter(|kept| kept.is_fresh() || client.is_dry()) {
+        if let Some(kept) = stored.as_ref().filter(|kept| kept.is_fresh() || client.is_dry_run()) {
             client.remember(kept.model());
         }
         Self { store, address, stored }

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use super::alarm;
+use super::control_commands::usage;
 use super::link::Link;
-use super::switch_commands::usage;
 use crate::prelude::*;
 use armctl_controller::yerc::payload::{ControllerStatus, StatusBit};
 use armctl_controller::yerc::query::{Query as _, ReadAlarm};

@@ -18,7 +18,7 @@ use self::question::Question;
 use self::variable_target::Motion;
 use super::link::Link;
 use super::link::Yerc;
-use crate::numbers::parse_in_range;
+use crate::number_arguments::parse_in_range;
 use crate::prelude::*;
 use armctl_controller::units;
 use armctl_controller::yerc::payload::{CartesianMove, ExtendedForm, Form, MoveLayout, PulseMove};
@@ -50,7 +50,7 @@ commands! {
 }
 
 /// Kind of motion, as text for the confirmation.
-fn way(kind: MoveKind) -> &'static str {
+fn describe_path(kind: MoveKind) -> &'static str {
     match kind {
         MoveKind::Link => "with joint interpolation",
         MoveKind::Straight | MoveKind::Incremental => "in a straight line",
@@ -82,7 +82,7 @@ impl Target {
         let robot = to.coordinates();
         let name = to.destination().map(|destination| format!(" to {destination}")).unwrap_or_default();
         Question {
-            what: format!("move {} {}{name}", mover.group, way(kind)),
+            what: format!("move {} {}{name}", mover.group, describe_path(kind)),
             preposition: "to",
             kind: frame.kind(),
             manner: robot.map(|_| format!("in {}, {}", frame.describe(), forms.describe())).unwrap_or_default(),
@@ -97,7 +97,9 @@ impl Target {
     async fn run(&self, context: Context<'_, Yerc>, kind: MoveKind, speed: Speed) -> Result<MotionReport, Failure> {
         match self.to.destination() {
             Some(destination) => Motion { target: self, kind, speed }.run(context, &destination).await,
-            None => self.going(context.link, kind, speed).await?.run(context, &self.question(kind, speed)).await,
+            None => {
+                self.describe_move(context.link, kind, speed).await?.run(context, &self.question(kind, speed)).await
+            }
         }
     }
 
@@ -119,7 +121,12 @@ impl Target {
         }
     }
 
-    async fn going(&self, link: &mut Link, kind: MoveKind, speed: Speed) -> Result<Execution<MoveCartesian>, Failure> {
+    async fn describe_move(
+        &self,
+        link: &mut Link,
+        kind: MoveKind,
+        speed: Speed,
+    ) -> Result<Execution<MoveCartesian>, Failure> {
         let Self { to, frame, forms, base_axes, station_axes, mover } = self;
         let part = split(mover.group, to.coordinates(), "--to", base_axes.as_ref(), station_axes.as_ref())?;
         let coordinate = frame.kind();
@@ -239,7 +246,7 @@ motion! {
         speed: Speed::path, distance: Distance
     }, "yerc.move.relative",
     |this, context| this.distance.question(this.speed),
-    this.distance.going(context.link, this.speed).await?.run(context, &this.distance.question(this.speed))
+    this.distance.describe_move(context.link, this.speed).await?.run(context, &this.distance.question(this.speed))
 }
 motion! {
     /// Moves to pulses with joint interpolation (0x8B, instance 1).
@@ -288,7 +295,7 @@ impl Distance {
         let Self { frame, base_axes, station_axes, mover, .. } = self;
         let robot = self.robot();
         Question {
-            what: format!("move {} {}", mover.group, way(MoveKind::Incremental)),
+            what: format!("move {} {}", mover.group, describe_path(MoveKind::Incremental)),
             preposition: "by",
             kind: frame.kind(),
             manner: robot.map(|_| format!("in {}", frame.describe())).unwrap_or_default(),
@@ -299,7 +306,7 @@ impl Distance {
         }
     }
 
-    async fn going(&self, link: &mut Link, speed: Speed) -> Result<Execution<MoveCartesian>, Failure> {
+    async fn describe_move(&self, link: &mut Link, speed: Speed) -> Result<Execution<MoveCartesian>, Failure> {
         let Self { frame, base_axes, station_axes, mover, .. } = self;
         let mut order = cartesian_move(link, mover, speed, frame);
         let goal = match split(mover.group, self.robot(), "--by", base_axes.as_ref(), station_axes.as_ref())? {
@@ -349,7 +356,7 @@ impl PulseTarget {
     fn question(&self, kind: MoveKind, speed: Speed) -> Question<'_> {
         let Self { pulses, tool, base_axes, station_axes, mover } = self;
         Question {
-            what: format!("move {} {}", mover.group, way(kind)),
+            what: format!("move {} {}", mover.group, describe_path(kind)),
             preposition: "to",
             kind: PositionKind::Pulse,
             manner: format!("in pulses, tool {tool},"),
@@ -361,10 +368,15 @@ impl PulseTarget {
     }
 
     async fn run(&self, context: Context<'_, Yerc>, kind: MoveKind, speed: Speed) -> Result<MotionReport, Failure> {
-        self.going(context.link, kind, speed).await?.run(context, &self.question(kind, speed)).await
+        self.describe_move(context.link, kind, speed).await?.run(context, &self.question(kind, speed)).await
     }
 
-    async fn going(&self, link: &mut Link, kind: MoveKind, speed: Speed) -> Result<Execution<MovePulse>, Failure> {
+    async fn describe_move(
+        &self,
+        link: &mut Link,
+        kind: MoveKind,
+        speed: Speed,
+    ) -> Result<Execution<MovePulse>, Failure> {
         let Self { pulses, tool, base_axes, station_axes, mover } = self;
         let part = split(mover.group, pulses.as_ref(), "--pulses", base_axes.as_ref(), station_axes.as_ref())?;
         let (robot, station) = mover.words();

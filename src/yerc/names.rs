@@ -43,7 +43,7 @@ impl Command for Get {
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Fetched, Failure> {
         let Context { link, robot, screen, .. } = context;
-        let Some(answers) = read_files(link, screen, &FILES, MOST).await? else {
+        let Some(answers) = read_files(link, screen, &FILES, MAX_FILE_SIZE).await? else {
             return Ok(Fetched::default());
         };
         let (mut files, mut kept, mut names) = (Vec::new(), Vec::new(), Vec::new());
@@ -77,7 +77,7 @@ impl Command for Get {
         if report.failure().is_none()
             && let Some(place) = robot.names.cache_file()
         {
-            let stored = CachedNames::new(place, link.encoding, told_software(link).await, (kept, &names));
+            let stored = CachedNames::new(place, link.encoding, reported_software(link).await, (kept, &names));
             place.write(&stored)?;
             (report.kept, report.read_at) = (true, Some(stored.read_at));
         }
@@ -92,16 +92,16 @@ impl Command for Get {
 }
 
 /// Software version of the controller; `None` if the controller refuses to report it.
-async fn told_software(link: &mut Link) -> Option<String> {
-    if link.told_software().is_none() {
+async fn reported_software(link: &mut Link) -> Option<String> {
+    if link.reported_software().is_none() {
         // The names are valid without the software version.
         let _refused = software(link).await;
     }
-    link.told_software()
+    link.reported_software()
 }
 
 /// Maximum size of a file with names. Such a file has some ten thousand lines.
-const MOST: u64 = 8 << 20;
+const MAX_FILE_SIZE: u64 = 8 << 20;
 const ANOTHER_FORM: &str =
     "define names in robots.toml instead; armctl reads only the format of FS100, DX200 and YRC1000";
 
@@ -143,7 +143,7 @@ enum State {
 
 impl Report for Fetched {
     fn view(&self) -> View {
-        let mut table = Table::new(&["file", "names", "passed over", "result"], "no files");
+        let mut table = Table::new(&["file", "names", "skipped", "result"], "no files");
         for file in &self.files {
             let result = match (file.state, &file.error) {
                 (State::Missing, _) => "no such file".into(),
@@ -154,7 +154,7 @@ impl Report for Fetched {
             let passed_over = Cell::optional(Some(file.passed_over).filter(|lines| *lines > 0));
             table.row([file.file.into(), file.names.into(), passed_over, result]);
         }
-        View::table(table.without_blank("passed over"))
+        View::table(table.without_blank("skipped"))
     }
 
     fn failure(&self) -> Option<Failure> {
@@ -168,7 +168,7 @@ impl Command for Forget {
     const ID: &'static str = "yerc.names.forget";
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Forgotten, Failure> {
-        let place = context.robot.names.cache_file().filter(|_| !context.link.is_dry());
+        let place = context.robot.names.cache_file().filter(|_| !context.link.is_dry_run());
         Ok(Forgotten { forgotten: place.map_or(Ok(false), CacheFile::forget)? })
     }
 }

@@ -10,7 +10,7 @@ use serde_json::{Map, Value};
 use super::link::Link;
 use super::link::Yerc;
 use super::var::{PositionData, as_position, stored_position};
-use crate::existing_items::read_failure;
+use crate::item_requests::read_failure;
 use crate::prelude::*;
 use armctl_client::yerc::AxisSet;
 use armctl_controller::units::{self, Unit};

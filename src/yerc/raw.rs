@@ -12,7 +12,7 @@ use crate::failure::refusal_failure;
 use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::text::hex;
-use armctl_controller::typed;
+use armctl_controller::user_input;
 use armctl_controller::yerc::describe::{Sender, describe};
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::session::{DownloadEnd, Reply};
@@ -69,12 +69,12 @@ impl Bytes {
 }
 
 fn word(text: &str) -> Result<u16, String> {
-    let number = typed::unsigned(text);
+    let number = user_input::unsigned(text);
     number.ok_or_else(|| "expected a number from 0 to 65535 (0x0000 to 0xFFFF)".to_owned())
 }
 
 fn byte(text: &str) -> Result<u8, String> {
-    let number = typed::unsigned(text);
+    let number = user_input::unsigned(text);
     number.ok_or_else(|| "expected a number from 0 to 255 (0x00 to 0xFF)".to_owned())
 }
 
@@ -119,7 +119,7 @@ impl Command for Raw {
     }
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Answer, Failure> {
-        let Context { link, screen, authority, .. } = context;
+        let Context { link, screen, confirmer, .. } = context;
         let request = self.request();
         if !self.file && request.division() == Division::File {
             return Err(Failure::usage("command 0 belongs to the file server").hint("use --file without --command"));
@@ -142,7 +142,7 @@ impl Command for Raw {
             screen.note(&format!("warning: {doubt}"));
         }
         if self.confirmation() == Confirmation::WhenKnown {
-            confirm_raw(link, &authority, &request, self.intent()).await?;
+            confirm_raw(link, &confirmer, &request, self.intent()).await?;
         }
         let reply = if self.file && matches!(request.service, service::SAVE | service::LIST) {
             transfer(link, &request).await?
@@ -184,7 +184,7 @@ async fn transfer(link: &mut Link, request: &Request) -> Result<Reply, Failure> 
 /// A raw request and its answer.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Answer {
-    request: Asked,
+    request: DecodedRequest,
     /// Status; `0x00` is success.
     status: String,
     /// Added status; null if the answer has none.
@@ -207,7 +207,7 @@ pub struct Answer {
 
 /// Decoded request.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Asked {
+struct DecodedRequest {
     command: String,
     instance: u16,
     attribute: u8,
@@ -237,7 +237,7 @@ impl Answer {
         let fields = describe(&frame.emit(), Sender::Controller, Some(request)).fields;
         let row = request.row();
         Self {
-            request: Asked {
+            request: DecodedRequest {
                 command: format!("{:#04x}", request.command),
                 instance: request.instance,
                 attribute: request.attribute,

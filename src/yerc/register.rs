@@ -5,12 +5,12 @@ use std::str::FromStr;
 
 use super::batch_split::{BatchSplit, read_in_batches};
 use super::complete;
+use super::control_commands::usage;
 use super::link::{Link, Yerc};
-use super::switch_commands::usage;
-use crate::existing_items::read_failure;
+use crate::item_requests::read_failure;
 use crate::prelude::*;
 use armctl_controller::names::Kind;
-use armctl_controller::typed;
+use armctl_controller::user_input;
 use armctl_controller::yerc::names::{register, register_address};
 use armctl_controller::yerc::query::Query as _;
 use armctl_controller::yerc::variables::{parse_numbers, plan_register_reads, plan_register_writes};
@@ -58,7 +58,7 @@ impl FromStr for Assignment {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (number, value) = typed::setting(text, "a number", "a value", "5=1000")?;
+        let (number, value) = user_input::split_setting(text, "a number", "a value", "5=1000")?;
         let numbers = names::parse_or_name(&[Kind::Register], &Registers::any(), number, Registers::keys)?;
         let [number] = numbers[..] else {
             return Err(format!("'{number}' is a range; type a value for each register"));
@@ -68,7 +68,7 @@ impl FromStr for Assignment {
 }
 
 fn parse_word(text: &str) -> Result<u16, String> {
-    typed::unsigned(text).ok_or_else(|| format!("'{text}' is not a number from 0 to 65535 (0x0000 to 0xFFFF)"))
+    user_input::unsigned(text).ok_or_else(|| format!("'{text}' is not a number from 0 to 65535 (0x0000 to 0xFFFF)"))
 }
 
 impl Command for Set {
@@ -78,7 +78,7 @@ impl Command for Set {
     const RISK: Risk = Registers::RISK;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenOf<Registers>, Failure> {
-        let Context { link, screen, robot, authority, .. } = context;
+        let Context { link, screen, robot, confirmer, .. } = context;
         let mut seen_numbers = HashSet::new();
         if let Some(twice) = self.assignments.iter().find(|assignment| !seen_numbers.insert(assignment.number)) {
             return Err(Failure::usage(format!("register {} appears twice", twice.number))
@@ -90,7 +90,7 @@ impl Command for Set {
         let values: Vec<(u16, u16)> = self.assignments.iter().map(|it| (it.number, it.value)).collect();
         link.by_model(|model| plan_register_writes(model, &values)).await?;
         let rows = values.into_iter().map(|(number, value)| (number, Some(value))).collect();
-        write(TableWrite { table, robot, link, screen, authority }, rows).await?.or_only_failure()
+        write(TableWrite { table, robot, link, screen, confirmer }, rows).await?.or_only_failure()
     }
 }
 
@@ -228,7 +228,7 @@ impl Writable for Registers {
     }
 
     /// Consecutive registers are written with one request.
-    fn blocks(&self, rows: &[Differing<'_, Self>]) -> Vec<Vec<usize>> {
+    fn blocks(&self, rows: &[RowDifference<'_, Self>]) -> Vec<Vec<usize>> {
         let values: Vec<(u16, u16)> = rows.iter().map(|(number, _, new)| (*number, **new)).collect();
         let index_of = |number: &u16| rows.iter().position(|(key, ..)| key == number);
         match plan_register_writes(self.model, &values) {
@@ -241,14 +241,14 @@ impl Writable for Registers {
         let values = |unknown: u16| rows.iter().map(move |(number, value)| (*number, value.unwrap_or(unknown)));
         let steps = |unknown| plan_register_writes(self.model, &values(unknown).collect::<Vec<_>>()).map_err(usage);
         for (step, other) in steps(0)?.iter().zip(steps(u16::MAX)?) {
-            let about = format!("writes register {}", typed::runs(step.written(), ".."));
+            let about = format!("writes register {}", user_input::format_ranges(step.written(), ".."));
             let reason = Reason::about(&about).depending_on(IF_DIFFERENT);
             link.plan_depending(&step.request(), &other.request(), reason);
         }
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
         let values: Vec<(u16, u16)> = rows.iter().map(|(number, _, new)| (*number, **new)).collect();
         for step in plan_register_writes(self.model, &values).map_err(usage)? {
             link.ask(&step).await?;

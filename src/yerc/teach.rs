@@ -4,20 +4,20 @@
 use clap::ValueEnum;
 
 use super::complete;
+use super::control_commands::usage;
 use super::link::{Link, Yerc};
 use super::moves::{compared, is_standing, moved_during_question};
 use super::position;
-use super::switch_commands::usage;
 use super::var::{PositionData, as_position, different_words, is_undefined, stored_position, variable_name};
-use crate::existing_items::ReadError;
 use crate::failure::refusal_failure;
+use crate::item_requests::ReadError;
 use crate::prelude::*;
 use armctl_controller::names::Kind;
 use armctl_controller::yerc::query::{Coordinates, Query as _, ReadPosition, ReadVariable, WriteVariable};
 use armctl_controller::yerc::variables::{Reference, Value, VariableKind};
 use armctl_frame::dry_run::unknown;
 use armctl_frame::names;
-use armctl_frame::teach::{Taught, mismatch, unverified};
+use armctl_frame::teach::{TeachReport, mismatch, unverified};
 
 /// Stores the current position of a group in a position variable and reads it back (FS and DX 3.3.6, 3.3.16 to
 /// 3.3.18).
@@ -72,7 +72,7 @@ fn position_variable(text: &str) -> Result<Reference, String> {
 
 impl Command for Teach {
     type Family = Yerc;
-    type Report = Taught;
+    type Report = TeachReport;
     const ID: &'static str = "yerc.teach";
     const RISK: Risk = Risk::Destroy;
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
@@ -82,7 +82,7 @@ impl Command for Teach {
     }
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Self::Report, Failure> {
-        let Context { link, authority, robot, screen, .. } = context;
+        let Context { link, confirmer, robot, screen, .. } = context;
         let label = variable_name(names::of_robot(robot, screen), self.variable);
         let (name, group) = (self.variable.to_string(), self.group()?);
         let Some(old) = self.read(link.for_purpose("content of the variable")).await.known()? else {
@@ -92,8 +92,8 @@ impl Command for Teach {
         let (here, report) = position::ask(link, group, coordinates).await?;
         let new = stored_position(group, here);
         let is_unchanged = old.as_ref().map(Value::emit) == Some(new.emit());
-        let is_asked = authority.asks();
-        authority.confirm(&self.change(link, group, &label, old.as_ref().filter(|_| !is_unchanged), &here)).await?;
+        let is_asked = confirmer.asks_user();
+        confirmer.confirm(&self.change(link, group, &label, old.as_ref().filter(|_| !is_unchanged), &here)).await?;
         if is_asked {
             let (now, _) = position::ask(link, group, coordinates).await?;
             if !is_standing(&here, &now) {
@@ -112,7 +112,7 @@ impl Command for Teach {
         }
         let per_degree = link.pulses_per_degree(group);
         let held = |value: &Value| position::has_taught_axes(group, value, per_degree);
-        Ok(Taught::new(name, old.as_ref().map(held), held(&new), report).unchanged(is_unchanged))
+        Ok(TeachReport::new(name, old.as_ref().map(held), held(&new), report).unchanged(is_unchanged))
     }
 }
 

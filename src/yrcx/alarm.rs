@@ -2,8 +2,8 @@
 
 use super::info::{Part, entry};
 use super::link::{Link, Yrcx};
-use super::numbers::Numbers;
-use super::several::ask_each;
+use super::number_arguments::Numbers;
+use super::read_requests::ask_each;
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
 use armctl_frame::dry_run::unknown;
@@ -43,7 +43,7 @@ impl Command for List {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Alarms<Part, Signals>, Failure> {
         let link = context.link;
         let latest = link.draft(table::Command::AlarmHistory)?.with(Key::History, 1).valid_order()?;
-        if link.is_dry() {
+        if link.is_dry_run() {
             link.plan_depending(
                 &latest,
                 &latest,
@@ -67,7 +67,7 @@ impl Command for List {
 /// an alarm occurs a second time, its entry is equal to the first entry.
 pub(super) async fn latest(link: &mut Link) -> Result<Option<AlarmEntry<Part>>, Failure> {
     let latest = link.draft(table::Command::AlarmHistory)?.with(Key::History, 1).valid_order()?;
-    if link.is_dry() {
+    if link.is_dry_run() {
         link.plan(&latest, "latest alarm, to recognize a new alarm");
         return Ok(None);
     }
@@ -196,7 +196,7 @@ const POWER_OFF: &str = "hint: use `yrcx recover` to clear the emergency stop an
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct WasReset {
     #[serde(flatten)]
-    done: Done,
+    done: SetReport,
     /// Whether SO(03) is on after the reset: an alarm is still present.
     alarm: bool,
     /// Whether SO(02) is on: the motor power is on.
@@ -204,9 +204,9 @@ pub struct WasReset {
 }
 
 impl CommonReport for WasReset {
-    type Core = Done;
+    type Core = SetReport;
 
-    fn core(&self) -> Done {
+    fn core(&self) -> SetReport {
         self.done.clone()
     }
 }
@@ -234,16 +234,16 @@ mod tests {
         assert!(objection(&["alarm", "history", "0"]).contains("allowed: 1 to 500"));
         let mut end = [0; 16];
         end[0] = 0x0200;
-        let (read, _) = run_on(Scripted::new([Reply::Ends(1, end)]), &["alarm", "history", "1"]);
+        let (read, _) = run_on(Scripted::new([Reply::AddressPair(1, end)]), &["alarm", "history", "1"]);
         assert_eq!(read.unwrap()["alarms"], json!([]), "an empty one is left out");
     }
 
     #[test]
-    fn what_is_present_is_the_latest_while_a_signal_says_so() {
+    fn latest_alarm_is_active_while_its_signal_is_on() {
         let none = json!({ "alarm": false, "warning": false, "alarms": [] });
         let (data, peer) = run_on(Scripted::new([]), &["alarm", "list"]);
         assert_eq!((data.unwrap(), peer.taken.len()), (none, 0), "nothing is asked");
-        let mut shown = Scripted::new([Reply::Ends(1, answer("4.7.7-reference"))]);
+        let mut shown = Scripted::new([Reply::AddressPair(1, answer("4.7.7-reference"))]);
         output::ALARM.set(&mut shown.image, true);
         let (data, peer) = run_on(shown, &["alarm", "list"]);
         let data = data.unwrap();

@@ -5,18 +5,18 @@ use clap::ValueEnum;
 
 use super::position::Unit;
 use crate::prelude::*;
-use armctl_controller::typed;
+use armctl_controller::user_input;
 use armctl_controller::yrcx::table::Command;
 use armctl_frame::wait_arguments::MotionEnd;
 
 /// Robot that `--unit` selects, for the confirmation question before a motion.
 #[derive(Debug, Clone, Copy, Args)]
-pub struct Which {
+pub struct UnitArgument {
     #[arg(from_global)]
     unit: u8,
 }
 
-impl Which {
+impl UnitArgument {
     /// Name of the robot, for example `robot 2`; without `--unit`, `robot 1`.
     pub fn name(self) -> String {
         format!("robot {}", self.unit.max(1))
@@ -30,7 +30,7 @@ impl Which {
 
 /// Speed options.
 #[derive(Debug, Args)]
-pub struct Pace {
+pub struct SpeedArguments {
     /// Speed in percent, for example 50 or 50%. It replaces the program speed
     #[arg(long, value_name = "SPEED", value_parser = speed)]
     pub speed: Option<Speed>,
@@ -63,18 +63,18 @@ fn speed(text: &str) -> Result<Speed, String> {
     speed.map_err(str::to_owned)
 }
 
-impl Pace {
+impl SpeedArguments {
     /// Sets the speed for a motion of axes; a speed in mm/s is an error.
-    pub fn put(&self, draft: Draft) -> Result<Draft, Failure> {
+    pub fn apply_to(&self, draft: Draft) -> Result<Draft, Failure> {
         match &self.speed {
             Some(Speed::MmS(_)) => Err(Failure::usage("a speed in mm/s needs a linear or circular move")
                 .hint("use percent, such as --speed 50, or add --linear")),
-            _ => Ok(self.put_linear(draft)),
+            _ => Ok(self.apply_linear(draft)),
         }
     }
 
     /// Sets the speed for a linear or circular motion.
-    pub fn put_linear(&self, draft: Draft) -> Draft {
+    pub fn apply_linear(&self, draft: Draft) -> Draft {
         let draft = draft.with_some(Key::SpeedOfMax, self.speed_of_max.clone());
         match self.speed.clone() {
             None => draft,
@@ -107,7 +107,7 @@ pub struct Ramps {
 
 impl Ramps {
     /// Sets acceleration and deceleration, if the command has the fields.
-    pub fn put(&self, draft: Draft, command: Command) -> Result<Draft, Failure> {
+    pub fn apply_to(&self, draft: Draft, command: Command) -> Result<Draft, Failure> {
         let row = command.row();
         if (self.accel.is_some() || self.decel.is_some()) && row.request().all(|field| field.key != Key::Accel) {
             return Err(Failure::usage(format!("{} has neither --accel nor --decel", row.id)).hint(
@@ -129,14 +129,14 @@ pub struct Axes {
 
 impl Axes {
     /// Sets the axes that move.
-    pub fn put(&self, draft: Draft) -> Draft {
+    pub fn apply_to(&self, draft: Draft) -> Draft {
         draft.with_some(Key::Axes, self.axes.clone())
     }
 
     /// Sets the axes that move, and a number for each axis; see [`Axes::pairs`].
-    pub fn put_numbers(&self, draft: Draft, given: &[String]) -> Result<Draft, Failure> {
+    pub fn apply_numbers(&self, draft: Draft, given: &[String]) -> Result<Draft, Failure> {
         let pairs = self.pairs(given)?;
-        let draft = if self.names_some(given) {
+        let draft = if self.names_axes(given) {
             let axes: Vec<String> = pairs.iter().map(|(axis, _)| axis.to_string()).collect();
             draft.with(Key::Axes, axes.join(","))
         } else {
@@ -182,7 +182,7 @@ impl Axes {
     }
 
     /// Whether the user named the axes; axes without a name then do not move.
-    fn names_some(&self, given: &[String]) -> bool {
+    fn names_axes(&self, given: &[String]) -> bool {
         self.axes.is_some() || given.iter().any(|text| text.contains('='))
     }
 
@@ -190,26 +190,26 @@ impl Axes {
         let Some(axes) = &self.axes else { return Ok((1..=4).collect()) };
         let wrong = || format!("'{axes}' is not a valid list of axes from 1 to 4, such as 1,3");
         let number = |text: &str| axis(text).map_err(|_| wrong());
-        let ranges = axes.split(',').map(|text| typed::range(text, number)).collect::<Result<Vec<_>, String>>();
+        let ranges = axes.split(',').map(|text| user_input::range(text, number)).collect::<Result<Vec<_>, String>>();
         let ranges = ranges.map_err(|why| Failure::usage(why).hint("type axis numbers with commas, such as 1,3"))?;
         Ok(ranges.into_iter().flatten().collect())
     }
 
     /// Returns axis 1, axis 2 or both axes, if the numbers do not name them (4.2.1); empty if all axes move.
-    pub fn unnamed(&self, given: &[String]) -> Vec<usize> {
+    pub fn unnamed_axes(&self, given: &[String]) -> Vec<usize> {
         let named = self.pairs(given).unwrap_or_default();
         let is_named = |axis: &usize| named.iter().any(|(named, _)| named == axis);
         if named.is_empty() { Vec::new() } else { (1..=2).filter(|axis| !is_named(axis)).collect() }
     }
 
     /// Whether axis 1 or 2 does not move in a motion to these points.
-    pub fn leaves_out(&self, points: &[String]) -> bool {
+    pub fn omits_axis(&self, points: &[String]) -> bool {
         let named = self.numbers().unwrap_or_default();
         !points.is_empty() && self.axes.is_some() && !(named.contains(&1) && named.contains(&2))
     }
 
     /// Describes the axes and their numbers, for example `axis 3: 10 mm, axis 2: 20 mm`.
-    pub fn told_numbers(&self, given: &[String], unit: Unit) -> String {
+    pub fn describe_numbers(&self, given: &[String], unit: Unit) -> String {
         match self.pairs(given) {
             Ok(pairs) => {
                 let told = pairs.iter().map(|(axis, text)| format!("axis {axis}: {text} {}", unit.symbol()));
@@ -224,7 +224,7 @@ impl Axes {
     /// axes.
     pub fn describe(&self, given: &[String]) -> String {
         let axes = match (&self.axes, self.pairs(given)) {
-            (_, Ok(pairs)) if !given.is_empty() && self.names_some(given) => {
+            (_, Ok(pairs)) if !given.is_empty() && self.names_axes(given) => {
                 pairs.iter().map(|(axis, _)| axis.to_string()).collect::<Vec<_>>().join(", ")
             }
             (Some(axes), _) => axes.clone(),
@@ -250,7 +250,7 @@ fn axis(text: &str) -> Result<usize, Failure> {
 pub struct Arch {
     /// Arch motion: arch axis and its arch position, for example 3:10.0
     #[arg(long = "arch", group = "way", value_name = "AXIS:POS", value_parser = peak)]
-    peak: Option<Peak>,
+    peak: Option<ArchPeak>,
     /// Start of the arch [default: 0]
     #[arg(long, value_name = "POS", requires = "peak", allow_hyphen_values = true)]
     arch_start: Option<String>,
@@ -264,14 +264,14 @@ pub struct Arch {
 
 /// An axis and a position as the user typed them.
 #[derive(Debug, Clone)]
-struct Peak {
+struct ArchPeak {
     axis: String,
     position: String,
 }
 
-fn peak(text: &str) -> Result<Peak, String> {
+fn peak(text: &str) -> Result<ArchPeak, String> {
     let (axis, position) = text.split_once(':').ok_or("an arch is an axis and a position, such as 3:10.0")?;
-    Ok(Peak { axis: axis.to_owned(), position: position.to_owned() })
+    Ok(ArchPeak { axis: axis.to_owned(), position: position.to_owned() })
 }
 
 impl Arch {
@@ -281,8 +281,8 @@ impl Arch {
     }
 
     /// Sets the arch, if the user requested one.
-    pub fn put(&self, draft: Draft) -> Draft {
-        let Some(Peak { axis, position }) = &self.peak else { return draft };
+    pub fn apply_to(&self, draft: Draft) -> Draft {
+        let Some(ArchPeak { axis, position }) = &self.peak else { return draft };
         draft
             .with(Key::ArchUnit, i32::from(self.arch_unit == Unit::Mm))
             .with(Key::ArchAxis, axis.as_str())
@@ -293,7 +293,7 @@ impl Arch {
 
     /// Describes the arch, for example ` in an arch over axis 3 at 10.0 mm`; empty without an arch.
     pub fn describe(&self) -> String {
-        let Some(Peak { axis, position }) = &self.peak else { return String::new() };
+        let Some(ArchPeak { axis, position }) = &self.peak else { return String::new() };
         format!(" in an arch over axis {axis} at {position} {}", self.arch_unit.symbol())
     }
 }
@@ -372,7 +372,7 @@ impl Direction {
 
 /// Options for the position report and the end of a motion.
 #[derive(Debug, Args)]
-pub struct Ending {
+pub struct EndOptions {
     /// Report the position after the motion, in this unit
     #[arg(long, value_name = "UNIT")]
     pub report: Option<Unit>,
@@ -380,9 +380,9 @@ pub struct Ending {
     pub end: MotionEnd,
 }
 
-impl Ending {
+impl EndOptions {
     /// Requests the position after the motion in `unit`, if there is one.
-    pub fn put(draft: Draft, unit: Option<Unit>) -> Draft {
+    pub fn apply_to(draft: Draft, unit: Option<Unit>) -> Draft {
         draft.with_some(Key::Report, unit.map(Unit::report))
     }
 }
@@ -392,7 +392,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn speeds_say_what_they_are_of() {
+    fn speeds_require_a_unit() {
         assert_eq!(speed("50"), Ok(Speed::Percent("50".to_owned())));
         assert_eq!(speed("50%"), Ok(Speed::Percent("50".to_owned())));
         assert_eq!(speed("200mm/s"), Ok(Speed::MmS("200".to_owned())));

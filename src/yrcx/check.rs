@@ -6,8 +6,8 @@ use super::overview::left_over;
 use crate::prelude::*;
 use armctl_controller::yrcx::answer::Status;
 use armctl_frame::Family as _;
-use armctl_frame::attach::is_held;
 use armctl_frame::face::layers::{Layer, Layers};
+use armctl_frame::session_client::is_held;
 use armctl_frame::settings::Sessions;
 
 /// Layers that follow the layers of the fieldbus.

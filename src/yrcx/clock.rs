@@ -3,9 +3,9 @@
 use jiff::Zoned;
 use jiff::civil::{Date, DateTime, Time};
 
+use super::confirmed_write::read_current;
 use super::link::{Link, Yrcx};
-use super::overwrite::there;
-use super::several::ask_each;
+use super::read_requests::ask_each;
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
 use armctl_frame::items;
@@ -249,12 +249,12 @@ async fn read_before(link: &mut Link, time: bool, date: bool) -> Result<[Option<
     let mut found = [None, None];
     if date {
         let order = link.draft(table::Command::DateGet)?.valid_order()?;
-        let values = there(link, &order, OLD_VALUE).await?;
+        let values = read_current(link, &order, OLD_VALUE).await?;
         found[0] = values.and_then(|values| date_of(&values).ok()).map(|date| date.to_string());
     }
     if time {
         let order = link.draft(table::Command::TimeGet)?.valid_order()?;
-        let values = there(link, &order, OLD_VALUE).await?;
+        let values = read_current(link, &order, OLD_VALUE).await?;
         found[1] = values.and_then(|values| time_of(&values).ok()).as_ref().map(describe);
     }
     Ok(found)
@@ -290,29 +290,29 @@ mod tests {
         let mut words = [0; 16];
         words[0] = 0x0200;
         words[2..5].copy_from_slice(&numbers);
-        Reply::Ends(1, words)
+        Reply::AddressPair(1, words)
     }
 
     #[test]
-    fn midnight_between_date_and_time_is_noticed() {
+    fn detects_midnight_between_date_and_time() {
         let replies = [answer([26, 12, 31]), answer([0, 0, 0]), answer([27, 1, 1])];
         let (read, peer) = run_on(Scripted::new(replies), &["clock", "get"]);
         assert_eq!((read.unwrap()["time"].as_str(), peer.taken.len()), (Some("2027-01-01T00:00:00"), 3));
     }
 
-    fn no() -> Reply {
+    fn unanswered_reply() -> Reply {
         let mut words = [0; 16];
         words[..3].copy_from_slice(&[0x4000, 5, 1]);
-        Reply::Ends(1, words)
+        Reply::AddressPair(1, words)
     }
 
     #[test]
-    fn a_part_that_is_refused_or_does_not_exist_hides_nothing() {
+    fn refused_part_does_not_hide_the_other() {
         let (date, time) = (answer([26, 3, 1]), answer([8, 45, 0]));
         for (replies, asked, of_date, of_time) in [
-            ([no(), time.clone()], "date", json!(null), json!("08:45:00")),
+            ([unanswered_reply(), time.clone()], "date", json!(null), json!("08:45:00")),
             ([answer([26, 2, 30]), time], "date", json!(null), json!("08:45:00")),
-            ([date.clone(), no()], "time", json!("2026-03-01"), json!(null)),
+            ([date.clone(), unanswered_reply()], "time", json!("2026-03-01"), json!(null)),
             ([date, answer([24, 0, 0])], "time", json!("2026-03-01"), json!(null)),
         ] {
             let (read, failure, peer) = report_on(Scripted::new(replies), &["clock", "get"]);
@@ -322,21 +322,25 @@ mod tests {
             assert_eq!(failure.kind.exit(), 9);
             assert!(failure.message.starts_with(&format!("1 of 2 failed: {asked}: ")), "{failure}");
         }
-        let (refused, _) = run_on(Scripted::new([no(), no()]), &["clock", "get"]);
+        let (refused, _) = run_on(Scripted::new([unanswered_reply(), unanswered_reply()]), &["clock", "get"]);
         let failure = refused.unwrap_err();
         assert_eq!(failure.message, "all 2 failed: date: the controller refused date-get: alarm 5.1, program syntax");
         assert_eq!(failure.kind.exit(), 3);
     }
 
     #[test]
-    fn a_time_that_is_set_is_told_where_the_date_is_refused() {
+    fn reports_the_time_that_was_set_if_the_date_is_refused() {
         let line = ["clock", "set", "2014-02-02T08:45:00"];
-        let (set, failure, _) = report_on(Scripted::new([no(), no(), answer([0; 3]), no()]), &line);
+        let (set, failure, _) = report_on(
+            Scripted::new([unanswered_reply(), unanswered_reply(), answer([0; 3]), unanswered_reply()]),
+            &line,
+        );
         let [date, time] = [&set["items"][0], &set["items"][1]];
         assert_eq!((&date["new"], &time["new"]), (&json!(null), &json!("08:45:00")));
         assert_eq!((&date["error"]["asked"], &date["error"]["code"]), (&json!("date"), &json!("5.1")));
         assert_eq!(failure.unwrap().kind.exit(), 9);
-        let (refused, peer) = run_on(Scripted::new([no(), no(), no()]), &line);
+        let (refused, peer) =
+            run_on(Scripted::new([unanswered_reply(), unanswered_reply(), unanswered_reply()]), &line);
         assert_eq!((refused.unwrap_err().kind.exit(), peer.taken.len()), (3, 3), "the date does not go alone");
     }
 
@@ -359,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn the_difference_is_told() {
+    fn reports_the_clock_difference() {
         let now = datetime(2026, 3, 1, 8, 45, 30, 500);
         let reading = |second| Reading::of(Ok(now.date()), Ok(Time::constant(8, 45, second, 0)), now);
         assert_eq!([29, 30, 35].map(|second| reading(second).ahead_s), [Some(-1), Some(0), Some(4)]);

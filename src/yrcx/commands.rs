@@ -3,8 +3,8 @@
 use super::link::Yrcx;
 use super::motion::Moving;
 use super::{
-    alarm, backup, clock, data, devicenet, eip, info, io, motion, orders, param, point_calc, port, procedures,
-    profibus, profinet, program, raw, status, teach, var,
+    alarm, backup, clock, control_commands, data, devicenet, eip, info, io, motion, param, point_calc, port,
+    procedure_commands, profibus, profinet, program, raw, status, teach, var,
 };
 use armctl_frame::backup::family_backup::{Diff, Restore};
 use armctl_frame::{Subcommands, commands};
@@ -20,28 +20,28 @@ commands! {
         /// Alarms
         Alarm(Subcommands<alarm::Alarm>),
         /// Current position of a robot
-        Position(info::Where),
+        Position(info::PositionArguments),
         /// The controller's clock
         Clock(Subcommands<clock::Clock>),
         "Power and operation":
         /// Switch servos on or off, or release their brakes
-        Servo(orders::Servo),
+        Servo(control_commands::Servo),
         /// Switch motor power on or off
-        Motor(orders::Motor),
+        Motor(control_commands::Motor),
         /// Switch servos on with the dedicated inputs
-        PowerOn(procedures::PowerOn),
+        PowerOn(procedure_commands::PowerOn),
         /// Trigger the emergency-stop input SI(00)
-        EmergencyStop(procedures::EmergencyStop),
+        EmergencyStop(procedure_commands::EmergencyStop),
         /// Clear the emergency stop and switch servos on
-        Recover(procedures::Recover),
+        Recover(procedure_commands::Recover),
         /// Wait for AUTO mode
-        AutoMode(procedures::AutoMode),
+        AutoMode(procedure_commands::AutoMode),
         /// Start the robot program with the dedicated inputs
-        Run(procedures::Run),
+        Run(procedure_commands::Run),
         /// Stop the robot program with the dedicated inputs
-        Stop(procedures::Stop),
+        Stop(procedure_commands::Stop),
         /// Reset the robot program with the dedicated inputs
-        Reset(procedures::Reset),
+        Reset(procedure_commands::Reset),
         "Motion":
         /// Move a robot to a point or to coordinates
         Move(Moving<motion::Move>),
@@ -62,22 +62,22 @@ commands! {
         /// Move an axis by the inching distance
         Inch(Moving<motion::Inch>),
         /// Set the inching distance
-        InchDistance(orders::InchDistance),
+        InchDistance(control_commands::InchDistance),
         /// Return to origin
         #[command(alias = "home")]
         Origin(motion::Origin),
         /// Reset the absolute position of an axis
         AbsReset(motion::AbsReset),
         /// Set a speed
-        Speed(orders::Speed),
+        Speed(control_commands::Speed),
         /// Coordinate shift selection
-        Shift(Subcommands<orders::Shift>),
+        Shift(Subcommands<control_commands::Shift>),
         /// Hand (end effector) selection
-        Hand(Subcommands<orders::Hand>),
+        Hand(Subcommands<control_commands::Hand>),
         /// Arm hand system
-        Arm(Subcommands<orders::Arm>),
+        Arm(Subcommands<control_commands::Arm>),
         /// Limit the torque of an axis
-        TorqueLimit(orders::TorqueLimit),
+        TorqueLimit(control_commands::TorqueLimit),
         "Programs":
         /// Programs and their tasks
         #[command(alias = "job")]
@@ -122,7 +122,7 @@ commands! {
         /// Diagnose PROFINET
         Profinet(Subcommands<profinet::Profinet>),
         /// Reset the remote command status
-        StatusReset(orders::StatusReset),
+        StatusReset(control_commands::StatusReset),
         /// Send the words of any remote command and decode the answer
         Raw(raw::Raw),
     }

@@ -7,8 +7,8 @@ use futures_util::FutureExt as _;
 use armctl_controller::names::Kind;
 use armctl_controller::yrcx::signal::{Side, Signal};
 use armctl_controller::yrcx::table::parameter::PARAMETERS;
-use armctl_frame::kind::{Ask, Named, rows, text};
 use armctl_frame::settings::target::Family;
+use armctl_frame::value_kind::{Ask, Named, rows, text};
 use armctl_frame::{Candidate, ValueKind};
 
 /// Name of an input signal.
@@ -31,7 +31,7 @@ pub const VARIABLE: ValueKind = named(&[Kind::Variable], &[""], || {
     whole.chain(numbered("SGR", 0..=31, "real number")).collect()
 });
 /// Task with a program.
-pub const TASK: ValueKind = ValueKind::Asked(Family::Yrcx, |robot| {
+pub const TASK: ValueKind = ValueKind::FromRobot(Family::Yrcx, |robot| {
     async {
         for (task, state) in tasks(robot).await {
             robot.add_candidate(Candidate::new(task, state));
@@ -40,11 +40,11 @@ pub const TASK: ValueKind = ValueKind::Asked(Family::Yrcx, |robot| {
     .boxed_local()
 });
 /// Number of a program that is in a task.
-pub const PROGRAM: ValueKind = ValueKind::Asked(Family::Yrcx, |robot| {
+pub const PROGRAM: ValueKind = ValueKind::FromRobot(Family::Yrcx, |robot| {
     programs(robot, |number, name, about| Candidate::new(number, format!("{name}: {about}"))).boxed_local()
 });
 /// Name of a program that is in a task.
-pub const PROGRAM_NAME: ValueKind = ValueKind::Asked(Family::Yrcx, |robot| {
+pub const PROGRAM_NAME: ValueKind = ValueKind::FromRobot(Family::Yrcx, |robot| {
     programs(robot, |number, name, about| Candidate::new(name, format!("program {number}: {about}"))).boxed_local()
 });
 

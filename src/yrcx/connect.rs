@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::buses::{self, BUSES};
-use super::fieldbus::{self, At, Board, Fieldbus, Purpose, Simulation};
+use super::fieldbus::{self, Board, ConnectionParameters, Fieldbus, Purpose, Simulation};
 use super::link_error::not_open;
 use super::simulated;
 use super::trace::{Opening, Recorder};
@@ -82,13 +82,15 @@ impl Endpoint<'_> {
         robot: &Robot,
         access: &Access,
         screen: &Screen,
-        open: impl for<'a> FnOnce(&'static Fieldbus, At<'a>) -> fieldbus::Opening<'a, T>,
+        open: impl for<'a> FnOnce(&'static Fieldbus, ConnectionParameters<'a>) -> fieldbus::Opening<'a, T>,
     ) -> Result<(WithSimulator<T>, Option<Recorder>), Failure> {
         match *self {
             Self::Bus(bus, fieldbus) => {
                 let (recorder, tap) = Recorder::start(access, screen, fieldbus.link_type)?.unzip();
                 let (watch, watched) = Opening::watch(screen).filter(|_| tap.is_none()).unzip();
-                match open(fieldbus, At { robot, bus, tap: tap.or(watched).unwrap_or_default() }).await {
+                match open(fieldbus, ConnectionParameters { robot, bus, tap: tap.or(watched).unwrap_or_default() })
+                    .await
+                {
                     Ok(opened) => Ok(((opened, None), recorder)),
                     Err(error) => {
                         if let Some(watch) = watch {
@@ -102,7 +104,7 @@ impl Endpoint<'_> {
             }
             Self::Sim(sim) => {
                 let (fieldbus, Simulation { bus, controller }) = simulate(sim)?;
-                let opened = open(fieldbus, At { robot, bus: &bus, tap: Tap::default() }).await;
+                let opened = open(fieldbus, ConnectionParameters { robot, bus: &bus, tap: Tap::default() }).await;
                 let opened = opened.map_err(|error| not_open(&robot.label(), bus.scheme, &error))?;
                 Ok(((opened, Some(controller)), None))
             }

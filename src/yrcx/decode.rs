@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn words_that_must_not_be_sent_are_a_failure_with_their_fields() {
+    fn invalid_words_fail_with_their_fields() {
         let wrong = explained(Some("1,0xC000"), None);
         assert!(!wrong.parts[0].fields.is_empty());
         assert_eq!(wrong.failure().unwrap().kind, Kind::Malformed);

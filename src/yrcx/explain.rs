@@ -1,12 +1,12 @@
 //! `armctl explain yrcx`: meaning of alarms and of fieldbus error codes.
 
 use super::buses::BUSES;
-use super::fieldbus::Explained;
-use super::info::told;
+use super::fieldbus::ErrorMeaning;
+use super::info::describe_alarm;
 use crate::prelude::*;
 use armctl_controller::yrcx::alarm::Alarm;
 use armctl_frame::face::explain::{self as face, Codes, Known};
-use armctl_frame::robot::alarm::{Alarm as Told, ExtraColumns, Kind, Source};
+use armctl_frame::robot::alarm::{Alarm as CommandResults, ExtraColumns, Kind, Source};
 use armctl_frame::settings::alarms::{Alarms, Origin};
 use armctl_frame::settings::target::Family;
 
@@ -23,7 +23,7 @@ pub struct Explain {
 #[derive(Debug, Clone)]
 enum Code {
     Alarm(Alarm),
-    Bus(Explained),
+    Bus(ErrorMeaning),
 }
 
 /// Parses an alarm number or a fieldbus error code.
@@ -43,17 +43,23 @@ impl face::Explain for Explain {
             Code::Alarm(alarm) => {
                 let site = alarms.find(origin, &alarm.to_string())?;
                 let known = alarm.known();
-                let (causes, remedies) = known.map_or((&[][..], LOOK), |known| (known.causes, known.remedies));
-                Known::new(known.is_some(), told(*alarm), [causes, remedies], site, Group { group: alarm.group_text() })
+                let (causes, remedies) = known.map_or((&[][..], SEE_MANUAL), |known| (known.causes, known.remedies));
+                Known::new(
+                    known.is_some(),
+                    describe_alarm(*alarm),
+                    [causes, remedies],
+                    site,
+                    Group { group: alarm.group_text() },
+                )
             }
-            Code::Bus(Explained { code, meaning, refused, remedies }) => {
+            Code::Bus(ErrorMeaning { code, meaning, refused, remedies }) => {
                 let text = meaning.clone().unwrap_or_else(|| "unknown error".to_owned());
-                let alarm = Told {
+                let alarm = CommandResults {
                     code: Some(code.clone()),
                     text: Some(text),
                     kind: Some(Kind::Error),
                     source: Source::Armctl,
-                    ..Told::default()
+                    ..CommandResults::default()
                 };
                 Known::new(meaning.is_some(), alarm, [&[], remedies], None, Group { group: Some(refused) })
             }
@@ -67,7 +73,7 @@ impl face::Explain for Explain {
 }
 
 /// Remedy for an alarm whose remedy is only in the controller's manual.
-const LOOK: &[&str] = &["look up the alarm in the controller's manual; use `yrcx info alarm` to see the source"];
+const SEE_MANUAL: &[&str] = &["look up the alarm in the controller's manual; use `yrcx info alarm` to see the source"];
 
 /// Group of a code.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -8,17 +8,17 @@ use super::commands::Commands;
 use super::decode::Decode;
 use super::explain::Explain;
 use super::link::{Link, Yrcx};
-use super::procedures::Stop;
+use super::procedure_commands::Stop;
 use super::serve::ServeArgs;
 use super::top::Poller;
 use super::trace::Recorder;
-use super::unit::Unit;
-use super::{check, hold, overview, panel};
+use super::unit_argument::Unit;
+use super::{check, overview, session_link, teach_panel};
 use crate::prelude::*;
-use armctl_controller::yrcx::{alarm, passing, simulator};
+use armctl_controller::yrcx::{alarm, read_only_filter, simulator};
 use armctl_frame::FamilyArguments;
 use armctl_frame::backup::family_backup::Backups;
-use armctl_frame::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
+use armctl_frame::backup::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
 use armctl_frame::face::HeldLink;
 use armctl_frame::face::layers::Layer;
 use armctl_frame::face::overview::OverviewReport;
@@ -37,7 +37,7 @@ impl Declaration for Yrcx {
     type Alarms = alarms::List;
     type AlarmHistory = alarms::History;
     type AlarmReset = alarms::Reset;
-    type Position = super::info::Where;
+    type Position = super::info::PositionArguments;
     type Stop = Stop;
     type Serve = ServeArgs;
     type Poller = Poller;
@@ -48,8 +48,8 @@ impl Declaration for Yrcx {
     const AFTER_HELP: &'static str = "Settings and first contact: `armctl help yrcx-setup`.";
     const SETUP: (&'static str, &'static str) = ("settings of a YRCX", include_str!("setup.txt"));
     const START_STATE: &'static str = simulator::EXAMPLE;
-    const PANEL: Panel = panel::PANEL;
-    const GUARD: Guard = Guard { is_harmless_data: |_| false, is_harmless_image: passing::only_stops };
+    const PANEL: Panel = teach_panel::PANEL;
+    const GUARD: Guard = Guard { is_harmless_data: |_| false, is_harmless_image: read_only_filter::only_stops };
     const SESSION_RECORDS: bool = true;
     const SESSION_COMMANDS: bool = true;
 
@@ -89,8 +89,8 @@ impl Declaration for Yrcx {
         Box::pin(check::check(robot, access, screen)).await
     }
 
-    async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
-        let (images, recorder) = hold::hold(robot, access, screen).await?;
+    async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure> {
+        let (images, recorder) = session_link::open_session_link(robot, access, screen).await?;
         let finish = recorder.map(|recorder| Box::new(|| Recorder::finish(recorder)) as Box<_>);
         Ok(HeldLink { held: SharedLink::Images(images), finish })
     }
@@ -99,11 +99,11 @@ impl Declaration for Yrcx {
 impl Backups for Yrcx {
     const IDS: [&'static str; 3] = ["yrcx.backup", "yrcx.restore", "yrcx.diff"];
 
-    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackedUp, Failure> {
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport, Failure> {
         back_up(context, making).await
     }
 
-    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport, Failure> {
         restore(context, restoring).await
     }
 }

@@ -4,16 +4,16 @@
 use std::fmt;
 
 use super::position::Unit;
-use super::refusal::kept;
+use super::refusal::relative_motion_warning;
 use crate::prelude::*;
 use crate::refusal::refusal_failure;
 use armctl_client::yrcx::{Error, StopResult};
 use armctl_controller::yrcx::describe::command_summary;
 use armctl_controller::yrcx::sequence;
 use armctl_controller::yrcx::session::{NotSentReason, Silence};
-use armctl_controller::yrcx::table::{Command, Pace};
-use armctl_frame::attach::session_busy;
+use armctl_controller::yrcx::table::{Command, DurationClass};
 use armctl_frame::dry_run::unknown;
+use armctl_frame::session_client::session_busy;
 
 /// Failure for an error of the client; `label` is the robot.
 pub fn failure(label: &str, error: Error) -> Failure {
@@ -55,20 +55,20 @@ pub fn failure(label: &str, error: Error) -> Failure {
             about(Kind::OutcomeUnknown, &what).hint(verification_hint(command))
         }
         Error::Unfinished { name, outcome } => unfinished(label, name, outcome),
-        Error::Cut { by, order, ended } => {
-            let cut = failure(label, *by);
+        Error::EndedEarly { by, order, ended } => {
+            let early_end = failure(label, *by);
             match ended {
                 Ok(values) => {
-                    let message = format!("{}; {STOPPED}{}", cut.message, place(&order, &values));
-                    Failure { message, ..cut }
+                    let message = format!("{}; {STOPPED}{}", early_end.message, place(&order, &values));
+                    Failure { message, ..early_end }
                 }
                 Err(error) => {
                     let failure = failure(label, *error);
-                    Failure { message: format!("{}; {}", cut.message, failure.message), ..failure }
+                    Failure { message: format!("{}; {}", early_end.message, failure.message), ..failure }
                 }
             }
         }
-        Error::StillMoving { cut: by } => {
+        Error::StillMoving { early_end: by } => {
             let why = by.map(|by| format!("{}; ", failure(label, *by).message)).unwrap_or_default();
             let message = format!("{why}the axis may still move: the connection to the controller is down");
             Failure::new(Kind::OutcomeUnknown, message).hint("press the emergency stop")
@@ -137,7 +137,7 @@ fn place(order: &Order, values: &Values) -> String {
         (Some(axes), _) => format!("; position: {} pulses", axes.map(|pulses| pulses.to_string()).join(", ")),
         (None, _) => String::new(),
     };
-    format!("{position}{}", kept(order.row(), ""))
+    format!("{position}{}", relative_motion_warning(order.row(), ""))
 }
 
 /// Failure for a procedure that did not complete.
@@ -165,16 +165,16 @@ fn unfinished(label: &str, name: &str, outcome: sequence::Outcome) -> Failure {
 fn verification_hint(command: Command) -> String {
     let row = command.row();
     match (row.category(), row.pace) {
-        (1, Pace::Motion | Pace::Jog) => {
-            let kept = kept(row, "");
+        (1, DurationClass::Motion | DurationClass::Jog) => {
+            let relative_motion_warning = relative_motion_warning(row, "");
             format!(
                 "keep clear of the robot; do not send the command again; use `yrcx position` to see the position of \
-                 the robot{kept}"
+                 the robot{relative_motion_warning}"
             )
         }
-        (1, Pace::Power) => "use `yrcx status` to see whether servos and motor power are on".to_owned(),
+        (1, DurationClass::Power) => "use `yrcx status` to see whether servos and motor power are on".to_owned(),
         (5, _) => "keep clear of the robot; use `yrcx info tasks` to see the running tasks".to_owned(),
-        _ => match TELLTALES.iter().find(|(commands, _)| commands.contains(&command)) {
+        _ => match VERIFICATION_HINTS.iter().find(|(commands, _)| commands.contains(&command)) {
             Some((_, words)) => format!("check with `yrcx {words}`"),
             None => "use `yrcx status` to see the state of the controller".to_owned(),
         },
@@ -182,7 +182,7 @@ fn verification_hint(command: Command) -> String {
 }
 
 /// For commands that write values, the command that reads the values back.
-const TELLTALES: [(&[Command], &str); 12] = [
+const VERIFICATION_HINTS: [(&[Command], &str); 12] = [
     (&[Command::InchAmountSet], "info inch"),
     (
         &[
@@ -228,7 +228,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_changes_something_names_what_tells() {
+    fn changes_have_a_verification_hint() {
         assert_eq!(verification_hint(Command::PointAdd), "check with `yrcx point get`");
         assert!(verification_hint(Command::MoveArch).contains("yrcx position"));
         assert!(verification_hint(Command::ProgramRun).contains("info tasks"));

@@ -41,11 +41,11 @@ pub struct Fieldbus {
     pub addresses: Option<Addresses>,
     /// Opens a link that sends commands, or a read-only link. A link that sends commands sends the resting image first.
     /// A read-only link does not affect the master.
-    pub open: for<'a> fn(At<'a>, Purpose) -> Opening<'a, ImageLink>,
+    pub open: for<'a> fn(ConnectionParameters<'a>, Purpose) -> Opening<'a, ImageLink>,
     /// Opens the explicit messaging client of the device.
-    pub board: for<'a> fn(At<'a>) -> Opening<'a, Box<dyn Board>>,
+    pub board: for<'a> fn(ConnectionParameters<'a>) -> Opening<'a, Box<dyn Board>>,
     /// Explains an error code of the fieldbus's devices; returns `None` for any other code.
-    pub explain: fn(code: &str) -> Option<Explained>,
+    pub explain: fn(code: &str) -> Option<ErrorMeaning>,
     /// Returns the decoder for images in captures.
     pub decoder: fn() -> Box<dyn BusDecoder>,
     /// Starts a simulated controller on this fieldbus, with the faults of the simulator's URL.
@@ -60,7 +60,7 @@ pub type Opening<'a, T> = LocalBoxFuture<'a, Result<T, LinkError>>;
 
 /// Meaning of an error code.
 #[derive(Debug, Clone)]
-pub struct Explained {
+pub struct ErrorMeaning {
     /// Code in normal form.
     pub code: String,
     /// Meaning of the code; `None` if unknown.
@@ -73,7 +73,7 @@ pub struct Explained {
 
 /// Parameters for a connection to a controller on a fieldbus.
 #[derive(Debug, Clone)]
-pub struct At<'a> {
+pub struct ConnectionParameters<'a> {
     /// Robot, for its timeout and its name.
     pub robot: &'a Robot,
     /// Parsed URL of the robot or of a simulator.
@@ -82,7 +82,7 @@ pub struct At<'a> {
     pub tap: Tap,
 }
 
-impl<'a> At<'a> {
+impl<'a> ConnectionParameters<'a> {
     /// Options of the URL.
     pub fn options<O: 'static>(&self) -> Result<&'a O, LinkError> {
         options(self.bus)
@@ -134,7 +134,7 @@ pub trait BusBoard: fmt::Debug + Any + Sized {
     const DEVICE: &'static str;
 
     /// Checks the layers: [`Board::check`].
-    async fn look(&mut self, layers: &mut Layers) -> Checked<Option<Image>>;
+    async fn check_layers(&mut self, layers: &mut Layers) -> Checked<Option<Image>>;
 
     /// Closes the connection, if there is one.
     async fn end(self) {}
@@ -143,7 +143,7 @@ pub trait BusBoard: fmt::Debug + Any + Sized {
 impl<B: BusBoard> Board for B {
     fn check<'a>(&'a mut self, layers: &'a mut Layers) -> LocalBoxFuture<'a, Option<Image>> {
         async move {
-            match self.look(layers).await {
+            match self.check_layers(layers).await {
                 Ok(image) => image,
                 Err((layer, failure)) => {
                     layers.fail(layer, &failure);
@@ -175,10 +175,10 @@ impl<T> InLayer<T> for Result<T, Failure> {
 }
 
 /// Vendor id of the manufacturer of YRCX at the ODVA: EtherNet/IP and DeviceNet.
-pub const MAKER: u16 = 636;
+pub const VENDOR_ID: u16 = 636;
 
 /// Converts the client of a fieldbus to a trait object.
-pub fn boxed(board: Result<impl Board, LinkError>) -> Result<Box<dyn Board>, LinkError> {
+pub fn into_board(board: Result<impl Board, LinkError>) -> Result<Box<dyn Board>, LinkError> {
     Ok(Box::new(board?))
 }
 
@@ -252,12 +252,12 @@ pub trait Serve {
     }
 
     /// Starts the server in its own threads or tasks.
-    fn serve(&self, work: ToServe<'_>) -> Result<Served, Failure>;
+    fn serve(&self, work: ServeOptions<'_>) -> Result<RunningSimulation, Failure>;
 }
 
 /// A controller to serve.
 #[derive(Debug)]
-pub struct ToServe<'a> {
+pub struct ServeOptions<'a> {
     /// Name of the simulator, if the fieldbus has several.
     pub simulator: Option<&'a str>,
     /// Start state of the controller.
@@ -278,7 +278,7 @@ pub trait Operator {
 }
 
 /// A controller that a simulator serves; it stops when this value is dropped.
-pub struct Served {
+pub struct RunningSimulation {
     /// URL of the controller.
     pub target: String,
     /// Address that the server listens on, if the server uses a network.
@@ -287,7 +287,7 @@ pub struct Served {
     pub operator: Box<dyn Operator>,
 }
 
-impl fmt::Debug for Served {
+impl fmt::Debug for RunningSimulation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.target)
     }

@@ -16,7 +16,7 @@ use crate::prelude::*;
 use armctl_controller::yrcx::image::COMMAND_WORDS;
 use armctl_controller::yrcx::signal::resting;
 use armctl_controller::yrcx::table::Row;
-use armctl_frame::authority::Authority;
+use armctl_frame::confirmation::Confirmer;
 use armctl_frame::gate::{Gate, Grant};
 use armctl_frame::settings::target::Sim;
 use armctl_frame::testing::{self, QUIET};
@@ -154,13 +154,13 @@ const SHOWN: [&str; 2] = ["io watch", "status-reset"];
 const WORD: &str = "abs-reset --axis 2";
 
 /// Folder with the backup files that the command lines name.
-struct Desk(tempfile::TempDir);
+struct Workspace(tempfile::TempDir);
 
-impl Desk {
+impl Workspace {
     fn new() -> Self {
-        let desk = Self(tempfile::tempdir().unwrap());
+        let workspace = Self(tempfile::tempdir().unwrap());
         let mut bench = Bench::new();
-        bench.run(&desk.line("backup @/saved --only pallets,shifts"), true).unwrap();
+        bench.run(&workspace.line("backup @/saved --only pallets,shifts"), true).unwrap();
         for (name, text) in [
             ("points.csv", "name;unit;axis_2;comment\n7;mm;-2,5;SEVEN\n"),
             ("comments-7.csv", "name,comment\n7,NEW\n"),
@@ -170,9 +170,9 @@ impl Desk {
             ("hands-7.csv", "name,data_3_mm\n7,4\n"),
             ("variables.csv", "name,value\nSGI1,1\n"),
         ] {
-            std::fs::write(desk.0.path().join(name), text).unwrap();
+            std::fs::write(workspace.0.path().join(name), text).unwrap();
         }
-        desk
+        workspace
     }
 
     fn line(&self, line: &str) -> String {
@@ -215,7 +215,7 @@ fn url_for(line: &str) -> &'static str {
 }
 
 #[test]
-fn every_leaf_has_the_risk_that_it_shall_have() {
+fn every_command_has_its_expected_risk() {
     let mut seen: BTreeSet<&str> = AT_DESK.into();
     for (line, risk) in lines() {
         let (_, command) = real(&line);
@@ -227,22 +227,22 @@ fn every_leaf_has_the_risk_that_it_shall_have() {
 }
 
 #[test]
-fn what_overwrites_is_not_done_where_nobody_says_yes() {
-    let desk = Desk::new();
+fn overwrites_only_after_confirmation() {
+    let workspace = Workspace::new();
     for (before, line) in DESTROYS {
         let mut bench = Bench::new();
         bench.run(before, true).unwrap();
         bench.sent();
-        let failure = bench.run(&desk.line(line), false).unwrap_err();
+        let failure = bench.run(&workspace.line(line), false).unwrap_err();
         assert_eq!((failure.kind.exit(), line), (7, line), "{failure}");
         assert!(failure.message.contains(" -> ") && failure.message.contains("would overwrite "), "{line}: {failure}");
         let risks = bench.sent().into_iter().map(|frame| frame.risk());
         assert!(risks.clone().all(|risk| risk == Risk::Read) && risks.count() > 0, "{line}");
-        bench.run(&desk.line(line), true).unwrap();
+        bench.run(&workspace.line(line), true).unwrap();
         assert_eq!(bench.sent().iter().map(Frame::risk).max(), Some(Risk::Destroy), "{line}");
         // The second run overwrites nothing, unless the command adds to a value or its result cannot be predicted.
         if !["add", "sub", "--place"].iter().any(|word| line.contains(word)) {
-            bench.run(&desk.line(line), false).unwrap();
+            bench.run(&workspace.line(line), false).unwrap();
         }
     }
     let motions = lines().filter(|(_, risk)| *risk == Risk::Motion).map(|(line, _)| line);
@@ -254,8 +254,8 @@ fn what_overwrites_is_not_done_where_nobody_says_yes() {
 }
 
 #[test]
-fn what_is_new_wants_no_yes() {
-    let desk = Desk::new();
+fn new_data_needs_no_confirmation() {
+    let workspace = Workspace::new();
     for line in [
         "teach --point 7 --in pulse",
         "point set 7 --mm 1,2,3,4",
@@ -267,16 +267,16 @@ fn what_is_new_wants_no_yes() {
         "restore @/saved",
     ] {
         let mut bench = Bench::new();
-        bench.run(&desk.line(line), false).unwrap_or_else(|failure| panic!("{line}: {failure}"));
+        bench.run(&workspace.line(line), false).unwrap_or_else(|failure| panic!("{line}: {failure}"));
     }
 }
 
 #[test]
 fn a_dry_run_shows_a_frame_of_its_own_risk() {
-    let desk = Desk::new();
+    let workspace = Workspace::new();
     for (line, risk) in lines() {
         let plan =
-            planned_line(url_for(&line), &desk.line(&line)).unwrap_or_else(|failure| panic!("{line}: {failure}"));
+            planned_line(url_for(&line), &workspace.line(&line)).unwrap_or_else(|failure| panic!("{line}: {failure}"));
         let risks: Vec<Risk> = frames(&plan).iter().map(|(frame, _)| frame.risk()).collect();
         if is_for_board(&line) {
             assert!(plan["frames"][0]["hex"].is_string() || plan["then"].is_string(), "{line}: {plan}");
@@ -292,11 +292,11 @@ fn a_dry_run_shows_a_frame_of_its_own_risk() {
 
 #[test]
 fn a_dry_run_shows_what_is_sent() {
-    let desk = Desk::new();
+    let workspace = Workspace::new();
     let befores = DESTROYS.iter().map(|(before, line)| (Some(*before), (*line).to_owned()));
     let others = lines().filter(|(_, risk)| *risk != Risk::Destroy).map(|(line, _)| (None, line));
     for (before, line) in befores.chain(others).filter(|(_, line)| !is_for_board(line) && !SHOWN.contains(&&**line)) {
-        let line = desk.line(&line);
+        let line = workspace.line(&line);
         let mut bench = Bench::new();
         if let Some(before) = before {
             bench.run(before, true).unwrap();
@@ -379,15 +379,15 @@ struct Bench {
     shown: Arc<Mutex<Vec<Frame>>>,
 }
 
-struct Noting<P>(P, Image, Arc<Mutex<Vec<Frame>>>);
+struct RecordingPeer<P>(P, Image, Arc<Mutex<Vec<Frame>>>);
 
-impl<P: std::fmt::Debug> std::fmt::Debug for Noting<P> {
+impl<P: std::fmt::Debug> std::fmt::Debug for RecordingPeer<P> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         self.0.fmt(f)
     }
 }
 
-impl<P: ImagePeer> ImagePeer for Noting<P> {
+impl<P: ImagePeer> ImagePeer for RecordingPeer<P> {
     fn input(&mut self, now: Duration, image: Option<&[u8]>) {
         if let Some(next) = image.and_then(Image::from_bytes) {
             let (was, is) = (self.1.0, next.0);
@@ -417,7 +417,7 @@ impl Bench {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().unwrap();
         let (simulated, _) = resolved("sim:", &["status"]).unwrap();
         let shown = Arc::default();
-        let peer = Noting(in_process(&Sim::default()).unwrap(), Image::default(), Arc::clone(&shown));
+        let peer = RecordingPeer(in_process(&Sim::default()).unwrap(), Image::default(), Arc::clone(&shown));
         let access = Access::reading(ConnectMode::Control);
         let link = runtime.block_on(Link::to_peer(&simulated, &access, &QUIET, Box::new(peer))).unwrap();
         // The tests use the settings of a real controller, because the gate must treat the simulator as a real
@@ -434,8 +434,8 @@ impl Bench {
         let grant = Grant::up_to(intent.initial_risk());
         let Self { runtime, robot, link, .. } = self;
         link.grant(grant.clone());
-        let authority = Authority::new(gate, &QUIET, robot, intent.risk, grant);
-        let context = Context { robot, link, screen: &QUIET, several: false, authority };
+        let confirmer = Confirmer::new(gate, &QUIET, robot, intent.risk, grant);
+        let context = Context { robot, link, screen: &QUIET, several: false, confirmer };
         let report = runtime.block_on(testing::run::<Yrcx>(&*command, context))?;
         report.failure().map_or_else(|| report.data(), Err)
     }

@@ -2,21 +2,21 @@
 //! client.
 
 mod board;
-mod onlooker;
+mod observer;
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use derive_more::{Deref, DerefMut};
 
-use self::onlooker::Onlooker;
+use self::observer::TrafficObserver;
+pub use super::command_result::CommandResult;
 use super::connect::{self, Endpoint, OpenBoard};
-pub use super::done::Done;
 use super::failure::{failure, stopped};
 use super::fieldbus::Fieldbus;
 use super::link_error::not_open;
 use super::trace::{Recorder, Trace};
-use super::unit::Unit;
+use super::unit_argument::Unit;
 use crate::prelude::*;
 use armctl_client::yrcx;
 pub use armctl_client::yrcx::hex;
@@ -25,12 +25,12 @@ use armctl_controller::yrcx::alarm::Alarm;
 use armctl_controller::yrcx::procedure::Procedure;
 use armctl_controller::yrcx::register::Register;
 use armctl_controller::yrcx::table::Command;
-use armctl_frame::attach::{attach, is_held};
 use armctl_frame::dry_run::Plan;
 use armctl_frame::face::sample::{Traffic, counter};
+use armctl_frame::session_client::{attach, is_held};
 use armctl_frame::settings::target;
 use armctl_frame::trace::lock_writer;
-use armctl_frame::{Entry, Family};
+use armctl_frame::{ConnectionEffect, Family};
 use armctl_transport::image::{self, ImageLink};
 
 /// The yrcx family.
@@ -58,9 +58,9 @@ pub struct Link {
     /// supports this.
     unit: u8,
     /// Last image that a watch reported.
-    pub told: Option<Image>,
+    pub last_reported: Option<Image>,
     /// Image that a watch received and has not reported yet.
-    pub seen: Option<Image>,
+    pub last_received: Option<Image>,
 }
 
 impl Family for Yrcx {
@@ -103,15 +103,15 @@ impl Family for Yrcx {
         link.take_plan()
     }
 
-    fn entry(robot: &Robot, mode: ConnectMode) -> Entry {
+    fn connection_effect(robot: &Robot, mode: ConnectMode) -> ConnectionEffect {
         let fieldbus = match connect::endpoint(robot) {
             Ok(Endpoint::Bus(bus, fieldbus)) if bus.is_owner && mode == ConnectMode::Control => fieldbus,
-            _ => return Entry::Harmless,
+            _ => return ConnectionEffect::Harmless,
         };
         if is_held(robot) {
-            Entry::ThroughSession
+            ConnectionEffect::ThroughSession
         } else {
-            Entry::Stops(format!(
+            ConnectionEffect::Stops(format!(
                 "open the command connection and close it at the end; closing it stops the robot: motor power goes off \
                  with alarm {} (`armctl session open` keeps a connection open)",
                 fieldbus.link_alarm
@@ -130,7 +130,7 @@ impl Family for Yrcx {
 
     async fn close(link: Link, screen: &Screen) -> Result<(), Failure> {
         let Link { mut client, board, trace, recorder, label, link_alarm, is_simulated, .. } = link;
-        if client.is_dry() {
+        if client.is_dry_run() {
             return Ok(());
         }
         let left = client.leave().await.map_err(|error| failure(&label, error));
@@ -140,7 +140,7 @@ impl Family for Yrcx {
             // The simulator must live until the connection is closed.
             drop(kept);
         } else {
-            tell_statistics(&client, screen);
+            print_statistics(&client, screen);
         }
         if let Err(error) = client.end().await {
             screen.detail(1, &format!("{label}: the connection was not closed properly: {error}"));
@@ -173,7 +173,7 @@ fn options(robot: &Robot, endpoint: &Endpoint<'_>, access: &Access) -> Options {
     }
 }
 
-fn tell_statistics(client: &Client, screen: &Screen) {
+fn print_statistics(client: &Client, screen: &Screen) {
     let Totals { commands, waited, losses } = client.totals();
     screen.detail(1, &format!("{commands} remote commands, {waited:.1?} from start to end"));
     let Some(image::Traffic { sent, received, intervals, mut irregular }) = client.traffic() else { return };
@@ -218,7 +218,7 @@ impl Link {
         let trace = Trace::open(access, screen, !is_simulated && !client.is_shared())?;
         let trace = Arc::new(Mutex::new(trace));
         let label = robot.label();
-        client.watch(Onlooker { trace: Arc::clone(&trace), screen: *screen, label: label.clone() });
+        client.watch(TrafficObserver { trace: Arc::clone(&trace), screen: *screen, label: label.clone() });
         let link_alarm = connect::endpoint(robot)?.fieldbus().link_alarm;
         Ok(Self {
             client,
@@ -229,8 +229,8 @@ impl Link {
             link_alarm,
             is_simulated,
             unit: access.own.get().map_or(0, Unit::number),
-            told: None,
-            seen: None,
+            last_reported: None,
+            last_received: None,
         })
     }
 
@@ -253,7 +253,7 @@ impl Link {
         match self.unit {
             0 => Ok(command.order()),
             unit if row.has_robot() => Ok(command.order().with(Key::Robot, i32::from(unit))),
-            _ => self.no_unit(&format!("{} applies to the whole controller", row.id)).map(|()| command.order()),
+            _ => self.reject_unit(&format!("{} applies to the whole controller", row.id)).map(|()| command.order()),
         }
     }
 
@@ -263,7 +263,7 @@ impl Link {
     }
 
     /// Returns a usage error if the user gave `--unit`; `why` is the reason why the command does not use this argument.
-    pub fn no_unit(&self, why: &str) -> Result<(), Failure> {
+    pub fn reject_unit(&self, why: &str) -> Result<(), Failure> {
         if self.unit == 0 {
             return Ok(());
         }
@@ -276,12 +276,12 @@ impl Link {
     }
 
     /// Executes a remote command; a refusal is a failure.
-    pub async fn ask(&mut self, order: &Order) -> Result<Done, Failure> {
-        self.client.ask(order).await.map(Done::from).map_err(|error| self.failure(error))
+    pub async fn ask(&mut self, order: &Order) -> Result<CommandResult, Failure> {
+        self.client.ask(order).await.map(CommandResult::from).map_err(|error| self.failure(error))
     }
 
     /// Executes a remote command; a refusal is a result.
-    pub async fn try_ask(&mut self, order: &Order) -> Result<Result<yrcx::Done, Refusal>, Failure> {
+    pub async fn try_ask(&mut self, order: &Order) -> Result<Result<yrcx::CompletedCommand, Refusal>, Failure> {
         self.client.try_ask(order).await.map_err(|error| self.failure(error))
     }
 
@@ -291,36 +291,36 @@ impl Link {
     }
 
     /// Executes a remote command until it has ended or runs independently: [`Client::begin`].
-    pub async fn begin(&mut self, order: &Order) -> Result<Option<Done>, Failure> {
+    pub async fn begin(&mut self, order: &Order) -> Result<Option<CommandResult>, Failure> {
         let begun = self.client.begin(order).await.map_err(|error| self.failure(error))?;
-        Ok(begun.map(Done::from))
+        Ok(begun.map(CommandResult::from))
     }
 
     /// Jogs: [`Client::jog`].
-    pub async fn jog(&mut self, order: &Order, time: Option<Duration>) -> Result<Done, Failure> {
-        self.client.jog(order, time).await.map(Done::from).map_err(|error| self.failure(error))
+    pub async fn jog(&mut self, order: &Order, time: Option<Duration>) -> Result<CommandResult, Failure> {
+        self.client.jog(order, time).await.map(CommandResult::from).map_err(|error| self.failure(error))
     }
 
     /// Next value of continuous output: [`Client::next_output`].
-    pub async fn next_output(&mut self, order: &Order) -> Result<Done, Failure> {
-        self.client.next_output(order).await.map(Done::from).map_err(|error| self.failure(error))
+    pub async fn next_output(&mut self, order: &Order) -> Result<CommandResult, Failure> {
+        self.client.next_output(order).await.map(CommandResult::from).map_err(|error| self.failure(error))
     }
 
     /// Executes a procedure on the dedicated signals, and returns its duration.
-    pub async fn carry_out(&mut self, procedure: Procedure) -> Result<Duration, Failure> {
-        self.no_unit("signals belong to the whole controller")?;
+    pub async fn execute(&mut self, procedure: Procedure) -> Result<Duration, Failure> {
+        self.reject_unit("signals belong to the whole controller")?;
         self.client.run_procedure(procedure).await.map_err(|error| self.failure(error))
     }
 
     /// Sets general-purpose words: [`Client::set_words`].
     pub async fn set_words(&mut self, changes: &[(Register, u32)]) -> Result<(), Failure> {
-        self.no_unit("words belong to the whole controller")?;
+        self.reject_unit("words belong to the whole controller")?;
         self.client.set_words(changes).await.map_err(|error| self.failure(error))
     }
 
     /// Current image of the controller, for a command about its signals.
     pub async fn read_signals(&mut self) -> Result<Image, Failure> {
-        self.no_unit("signals belong to the whole controller")?;
+        self.reject_unit("signals belong to the whole controller")?;
         self.look().await
     }
 
@@ -330,7 +330,7 @@ impl Link {
     }
 
     /// Waits for an image that matches, and returns it. A loss of the link is reported once.
-    pub async fn look_until(&mut self, matters: impl FnMut(&Image) -> bool) -> Result<Image, Failure> {
+    pub async fn wait_for_image(&mut self, matters: impl FnMut(&Image) -> bool) -> Result<Image, Failure> {
         self.client.wait_for_input(matters).await.map_err(|error| self.failure(error))
     }
 

@@ -50,7 +50,7 @@ mod tests {
     use armctl_transport::image::{Cause, Outputs};
 
     #[test]
-    fn what_a_fieldbus_says_reaches_people_with_what_to_set() {
+    fn link_errors_have_a_hint() {
         let scheme = target::bus::USUAL;
         let cause = || Cause { code: Some("0x0106".to_owned()), ..Cause::new("asked, and refused") };
         let outputs = Outputs::Released;

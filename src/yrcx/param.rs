@@ -5,12 +5,12 @@ use std::sync::LazyLock;
 
 use super::complete;
 use super::link::{Link, Yrcx};
-use super::numbers::single;
-use super::several::{ask_each, is_undefined};
+use super::number_arguments::single;
+use super::read_requests::{ask_each, is_undefined};
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_controller::nearest::nearest;
-use armctl_controller::typed;
+use armctl_controller::similar_word::nearest;
+use armctl_controller::user_input;
 use armctl_controller::yrcx::table::parameter::{PARAMETERS, Parameter};
 use armctl_frame::store::Row;
 
@@ -105,7 +105,7 @@ impl Store for Parameters {
             (false, None) => Ok(vec![(parameter, None)]),
             (false, Some(_)) => Err(format!("{} belongs to the robot, not to an axis", parameter.name)),
             (true, axes) => {
-                let axes = typed::range(axes.unwrap_or("1-4"), axis)?;
+                let axes = user_input::range(axes.unwrap_or("1-4"), axis)?;
                 Ok(axes.map(|axis| (parameter, Some(axis))).collect())
             }
         }
@@ -205,7 +205,7 @@ impl Writable for Parameters {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
         for (key, _, new) in rows {
             link.ask(&self.write_order(*key, &new.value.to_string())?).await?;
         }

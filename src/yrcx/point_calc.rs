@@ -2,9 +2,9 @@
 
 use clap::ArgGroup;
 
-use super::numbers::single;
-use super::overwrite::Stored;
-use super::single::one_row;
+use super::confirmed_write::StoredReport;
+use super::number_arguments::single;
+use super::single_command::one_row;
 use crate::prelude::*;
 use armctl_controller::yrcx::table::Command;
 
@@ -32,7 +32,7 @@ fn point(text: &str) -> Result<i32, String> {
 
 one_row! {
     /// Copies a point.
-    Copy(self) "yrcx.point-calc.copy" -> Stored {
+    Copy(self) "yrcx.point-calc.copy" -> StoredReport {
         /// Point to copy, 0 to 29999
         #[arg(value_name = "POINT", value_parser = point)]
         point: i32,
@@ -45,7 +45,7 @@ one_row! {
     done format!("P{} = P{}", self.to, self.point);
 
     /// Adds a point to another point, axis by axis.
-    Add(self) "yrcx.point-calc.add" -> Stored {
+    Add(self) "yrcx.point-calc.add" -> StoredReport {
         /// Point to add, 0 to 29999
         #[arg(value_name = "POINT", value_parser = point)]
         point: i32,
@@ -58,7 +58,7 @@ one_row! {
     done format!("P{to} = P{to} + P{}", self.point, to = self.to);
 
     /// Subtracts a point from another point, axis by axis.
-    Sub(self) "yrcx.point-calc.sub" -> Stored {
+    Sub(self) "yrcx.point-calc.sub" -> StoredReport {
         /// Point to subtract, 0 to 29999
         #[arg(value_name = "POINT", value_parser = point)]
         point: i32,
@@ -71,7 +71,7 @@ one_row! {
     done format!("P{from} = P{from} - P{}", self.point, from = self.from);
 
     /// Copies a pallet position to a point.
-    Pallet(self) "yrcx.point-calc.pallet" -> Stored {
+    Pallet(self) "yrcx.point-calc.pallet" -> StoredReport {
         /// Pallet, 0 to 39
         #[arg(value_name = "PALLET", value_parser = |text: &str| single(Command::PointPallet, Key::Pallet, text))]
         pallet: i32,
@@ -91,7 +91,7 @@ one_row! {
 
     /// Sets one element of a point, in the unit of the point.
     #[command(group = ArgGroup::new("value").required(true))]
-    Element(self) "yrcx.point-calc.element" -> Stored {
+    Element(self) "yrcx.point-calc.element" -> StoredReport {
         /// Point, 0 to 29999
         #[arg(value_name = "POINT", value_parser = point)]
         point: i32,
@@ -116,11 +116,11 @@ one_row! {
             None => (self.pulse.as_ref(), "pulses"),
         };
         let value = value.map_or("", String::as_str);
-        format!("element {} of P{} = {value} {unit}", place(self.element), self.point)
+        format!("element {} of P{} = {value} {unit}", single_bit_number(self.element), self.point)
     };
 
     /// Sets one element of a shift.
-    ShiftElement(self) "yrcx.point-calc.shift-element" -> Stored {
+    ShiftElement(self) "yrcx.point-calc.shift-element" -> StoredReport {
         /// Shift, 0 to 39
         #[arg(value_name = "SHIFT", value_parser = |text: &str| single(Command::ShiftElement, Key::Shift, text))]
         shift: i32,
@@ -136,10 +136,10 @@ one_row! {
         let draft = draft.with(Key::Shift, self.shift).with(Key::Element, self.element);
         draft.with(Key::Value, self.mm.as_str())
     },
-    done format!("element {} of shift {} = {} mm", place(self.element), self.shift, self.mm);
+    done format!("element {} of shift {} = {} mm", single_bit_number(self.element), self.shift, self.mm);
 }
 
 /// Returns the number of the only bit that is set, counted from 1.
-fn place(bits: i32) -> u32 {
+fn single_bit_number(bits: i32) -> u32 {
     bits.trailing_zeros() + 1
 }

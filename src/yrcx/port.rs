@@ -1,9 +1,9 @@
 //! `yrcx port` (4.5.1): ports of eight signals, read and written with remote commands.
 
 use super::link::Yrcx;
-use super::numbers::{Series, named, single};
-use super::several::ask_each;
-use super::single::one_row;
+use super::number_arguments::{Series, named, single};
+use super::read_requests::ask_each;
+use super::single_command::one_row;
 use crate::complete;
 use crate::prelude::*;
 use armctl_controller::names::{Kind, Names};
@@ -246,10 +246,10 @@ mod tests {
     use armctl_frame::failure::Kind;
 
     #[test]
-    fn an_answer_for_another_port_is_no_answer() {
+    fn rejects_the_answer_for_another_port() {
         let mut end = [0; 16];
         (end[0], end[2]) = (0x0200, 0x1020);
-        let (outcome, _) = run_on(Scripted::new([Reply::Ends(1, end)]), &["port", "get", "DO12"]);
+        let (outcome, _) = run_on(Scripted::new([Reply::AddressPair(1, end)]), &["port", "get", "DO12"]);
         assert_eq!(outcome.unwrap_err().kind, Kind::Malformed);
     }
 

@@ -3,7 +3,7 @@
 mod run;
 
 use super::link;
-use super::single::{Single, one_row, single_command};
+use super::single_command::{SingleCommand, one_row, single_command};
 use crate::complete;
 use crate::prelude::*;
 use armctl_controller::yrcx::table::{COMMON_LINES, Command};
@@ -34,7 +34,7 @@ commands! {
 /// Arguments that select a program.
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
-struct Which {
+struct ProgramSelection {
     /// Program by number, 1 to 100
     #[arg(long, value_name = "N", add = complete::PROGRAM)]
     program: Option<String>,
@@ -68,7 +68,7 @@ struct WhichOrAll {
 }
 
 /// Sets the fields that select the program.
-fn put(draft: Draft, program: Option<&String>, name: Option<&String>, task: Option<&String>) -> Draft {
+fn apply_to(draft: Draft, program: Option<&String>, name: Option<&String>, task: Option<&String>) -> Draft {
     draft
         .with_some(Key::Program, program.cloned())
         .with_some(Key::ProgramName, name.cloned())
@@ -90,13 +90,13 @@ fn named(new: NewValue, program: Option<&String>, name: Option<&String>, task: O
     new.with("program", numeric(program)).with("name", name.cloned()).with("task", numeric(task))
 }
 
-impl Which {
+impl ProgramSelection {
     fn named(&self, new: NewValue) -> NewValue {
         named(new, self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
     }
 
-    fn put(&self, draft: Draft) -> Draft {
-        put(draft, self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
+    fn apply_to(&self, draft: Draft) -> Draft {
+        apply_to(draft, self.program.as_ref(), self.name.as_ref(), self.task.as_ref())
     }
 
     fn describe(&self) -> String {
@@ -118,9 +118,9 @@ impl WhichOrAll {
         if self.all_programs { new.with("all_programs", true) } else { new }
     }
 
-    fn put(&self, draft: Draft) -> Draft {
+    fn apply_to(&self, draft: Draft) -> Draft {
         let draft = draft.with_some(Key::Selection, self.all_programs.then_some(0));
-        put(draft, self.program(), self.name(), self.task.as_ref())
+        apply_to(draft, self.program(), self.name(), self.task.as_ref())
     }
 
     fn describe(&self) -> String {
@@ -146,7 +146,7 @@ struct Registered {
 
 one_row! {
     /// Registers a program in a task.
-    Select(self) "yrcx.program.select" -> Done {
+    Select(self) "yrcx.program.select" -> SetReport {
         #[command(flatten)]
         program: Registered,
         /// Task, 1 to 16 [default: the lowest vacant task]
@@ -158,7 +158,7 @@ one_row! {
     }
     gives Command::ProgramSelect,
     with draft => {
-        let draft = put(draft, self.program.program.as_ref(), self.program.name.as_ref(), None);
+        let draft = apply_to(draft, self.program.program.as_ref(), self.program.name.as_ref(), None);
         draft.with_some(Key::Task, self.task).with(Key::Priority, self.priority.as_str())
     },
     done {
@@ -182,8 +182,8 @@ macro_rules! starts {
                 which: $which,
             }
 
-            impl Single for $name {
-                type Report = Done;
+            impl SingleCommand for $name {
+                type Report = SetReport;
                 const ID: &'static str = $id;
 
                 fn command(&self) -> Command {
@@ -191,14 +191,14 @@ macro_rules! starts {
                 }
 
                 fn fill(&self, draft: Draft) -> Draft {
-                    self.which.put(draft)
+                    self.which.apply_to(draft)
                 }
 
                 fn intent(&self) -> String {
                     format!($intent, self.which.describe())
                 }
 
-                fn report(&self, _done: &link::Done) -> Result<Done, Failure> {
+                fn report(&self, _done: &link::CommandResult) -> Result<SetReport, Failure> {
                     let new = NewValue::of("program_state", $new, format!($done, self.which.describe()));
                     Ok(self.which.named(new).replaces(Old::UNREAD))
                 }
@@ -211,11 +211,11 @@ macro_rules! starts {
 
 starts! {
     /// Runs one line of a program and enters subroutines.
-    Step "yrcx.program.step" ProgramStep Which "run one line of {}" "step_started" "started one line of {}";
+    Step "yrcx.program.step" ProgramStep ProgramSelection "run one line of {}" "step_started" "started one line of {}";
     /// Skips one line of a program.
-    Skip "yrcx.program.skip" ProgramSkip Which "skip one line of {}" "step_skipped" "skipped one line of {}";
+    Skip "yrcx.program.skip" ProgramSkip ProgramSelection "skip one line of {}" "step_skipped" "skipped one line of {}";
     /// Runs one line of a program, with a subroutine as one step.
-    Next "yrcx.program.next" ProgramNext Which "run one line of {}, with a subroutine as one step" "step_started" "started one line of {}";
+    Next "yrcx.program.next" ProgramNext ProgramSelection "run one line of {}, with a subroutine as one step" "step_started" "started one line of {}";
     /// Resets a program, or all registered programs, to the first line.
     #[command(after_help = "`yrcx io get program-reset` shows whether all programs are reset. `yrcx info line` shows \
                             the current line of each program.")]
@@ -226,10 +226,10 @@ one_row! {
     /// Reads the state of a program that is not running.
     Show(self) "yrcx.program.show" -> Execution {
         #[command(flatten)]
-        which: Which,
+        which: ProgramSelection,
     }
     gives Command::ProgramShow,
-    with draft => self.which.put(draft),
+    with draft => self.which.apply_to(draft),
     done as answer => {
         let int = |key| answer.values.int(key).unwrap_or_default();
         let ProgramLine { line, in_common } = ProgramLine::of(int(Key::Line));
@@ -306,7 +306,7 @@ mod tests {
     use super::ProgramLine;
 
     #[test]
-    fn lines_of_common_are_told_as_such() {
+    fn marks_lines_of_common() {
         assert_eq!(
             (ProgramLine::of(10_005).describe(), ProgramLine::of(10_000).describe()),
             ("5 of COMMON".into(), "10000".into())

@@ -2,11 +2,11 @@
 
 use super::field_row::FieldRow;
 use super::refusal::refused;
-use super::{link, overwrite};
+use super::{confirmed_write, link};
 use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_client::yrcx::Reply;
-use armctl_controller::typed;
+use armctl_controller::user_input;
 use armctl_controller::yrcx::answer::Answer;
 use armctl_controller::yrcx::describe;
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Words};
@@ -37,7 +37,8 @@ pub fn words(text: &str) -> Result<Words, String> {
         return Err(format!("expected 1 to {COMMAND_WORDS} words, got {}", pieces.len()));
     }
     for (word, piece) in words.iter_mut().zip(pieces) {
-        *word = typed::unsigned(piece).ok_or_else(|| format!("'{piece}' is not a valid word, such as 0x0032 or 50"))?;
+        *word = user_input::unsigned(piece)
+            .ok_or_else(|| format!("'{piece}' is not a valid word, such as 0x0032 or 50"))?;
     }
     Ok(words)
 }
@@ -56,13 +57,13 @@ impl Command for Raw {
     }
 
     fn confirmation(&self) -> Confirmation {
-        overwrite::confirmation(self.wi.command())
+        confirmed_write::confirmation(self.wi.command())
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Exchange, Failure> {
-        context.link.no_unit("the words contain the robot number")?;
+        context.link.reject_unit("the words contain the robot number")?;
         if self.confirmation() == Confirmation::WhenKnown {
-            overwrite::confirm(context.link, &context.authority, &self.wi).await?;
+            confirmed_write::confirm(context.link, &context.confirmer, &self.wi).await?;
         }
         let reply = context.link.raw(&self.wi).await?;
         Ok(Exchange::of(&self.wi, &reply))

@@ -4,7 +4,7 @@ use crate::prelude::*;
 use armctl_client::yrcx::Refusal;
 use armctl_controller::yrcx::alarm::{Alarm, STOP_INPUT};
 use armctl_controller::yrcx::codec::WordError;
-use armctl_controller::yrcx::table::{Pace, Row};
+use armctl_controller::yrcx::table::{DurationClass, Row};
 use armctl_controller::yrcx::value::Value;
 
 /// Builds the order of a command line.
@@ -82,7 +82,7 @@ const INSTANCES: [Key; 12] = [
 /// Refusal of a command by the controller.
 pub fn refused(row: &Row, alarm: Alarm) -> Failure {
     let what = match (row.risk, row.pace) {
-        (Risk::Motion, Pace::Motion | Pace::Jog) => "refused or aborted",
+        (Risk::Motion, DurationClass::Motion | DurationClass::Jog) => "refused or aborted",
         _ => "refused",
     };
     let remedy = match alarm.known().and_then(|known| known.remedies.first()) {
@@ -90,10 +90,10 @@ pub fn refused(row: &Row, alarm: Alarm) -> Failure {
         None => format!("look up {alarm} in the controller's manual; use `yrcx info alarm` to see the source"),
     };
     let way_out = WAYS_OUT.iter().find(|(_, alarms)| alarms.contains(&alarm)).map(|(way, _)| *way).unwrap_or_default();
-    let kept = kept(row, "if the robot had started to move, ");
+    let relative_motion_warning = relative_motion_warning(row, "if the robot had started to move, ");
     Failure::new(Kind::Refused, format!("the controller {what} {}: alarm {alarm}, {}", row.id, alarm.text()))
         .code(alarm.to_string())
-        .hint(format!("{remedy}{way_out}{kept}"))
+        .hint(format!("{remedy}{way_out}{relative_motion_warning}"))
 }
 
 /// Hints with the commands that remove the cause of an alarm.
@@ -114,7 +114,7 @@ const RECOVERABLE: [Alarm; 9] = [
 ];
 
 /// Warns how a relative motion behaves if it is repeated after a stop (4.2.2, 4.2.4); empty for other commands.
-pub fn kept(row: &Row, condition: &str) -> String {
+pub fn relative_motion_warning(row: &Row, condition: &str) -> String {
     if !row.keeps_target() {
         return String::new();
     }
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn words_that_must_not_be_sent_are_a_mistake_of_the_command_line() {
+    fn invalid_words_are_a_usage_error() {
         let error = Command::MovePtp.order().with(Key::Point, 30_000).build().unwrap_err();
         let failure = invalid_words(&WordError { alarm: Some(INPUT_FORMAT), ..error });
         assert_eq!(failure.kind, Kind::Usage);

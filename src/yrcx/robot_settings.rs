@@ -1,8 +1,8 @@
 //! Settings of a robot that can be read and written, as a table.
 
 use super::link::{Link, Yrcx};
-use super::several::{ask_each, is_undefined};
-use super::single::shown;
+use super::read_requests::{ask_each, is_undefined};
+use super::single_command::format_field;
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::table::Command;
@@ -135,7 +135,7 @@ impl Store for Settings {
         let row = |Setting { read: (command, key), .. }: &Setting| {
             let answer = orders.iter().position(|order| order.command() == *command).map(|at| &answers[at]);
             let values = answer.expect("there is a request for each setting").as_ref().map_err(Clone::clone)?;
-            Ok(shown(*command, values, *key).unwrap_or_default())
+            Ok(format_field(*command, values, *key).unwrap_or_default())
         };
         Ok(Answers::of(keys.iter().map(|key| row(key)).collect()))
     }
@@ -151,7 +151,7 @@ impl Writable for Settings {
         let order = self.write_order(setting, text).map_err(|failure| failure.message)?;
         let Setting { read, write, .. } = setting;
         let value = order.values().value(write.1).cloned().unwrap_or(Value::Int(0));
-        Ok(shown(read.0, &Values::from_iter([(read.1, value)]), read.1))
+        Ok(format_field(read.0, &Values::from_iter([(read.1, value)]), read.1))
     }
 
     fn complete_draft(
@@ -174,7 +174,7 @@ impl Writable for Settings {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
         for (setting, _, value) in rows {
             link.ask(&self.write_order(setting, value)?).await?;
         }

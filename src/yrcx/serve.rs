@@ -4,7 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use super::buses::Servers;
-use super::fieldbus::{Fieldbus, Served, ToServe};
+use super::fieldbus::{Fieldbus, RunningSimulation, ServeOptions};
 use super::simulated::start;
 use super::typed_arguments::TypedArguments;
 use crate::prelude::*;
@@ -64,7 +64,7 @@ impl serve::Serve for ServeArgs {
     const ID: &'static str = "sim.yrcx";
     const TARGET: &'static str = "eip://127.0.0.1:44818";
     type Report = Serving;
-    type Server = Served;
+    type Server = RunningSimulation;
 
     async fn start(self) -> Result<Started<Self>, Failure> {
         let wanted = self.bus.as_deref();
@@ -78,7 +78,7 @@ impl serve::Serve for ServeArgs {
             return Err(misplaced("link", fieldbus.name, "a simulator with a pseudo-terminal"));
         }
         let (start, link, faults) = (start(self.state.as_deref())?, self.link.as_deref(), self.fault.as_deref());
-        let server = serve.serve(ToServe { simulator: wanted, start, link, faults })?;
+        let server = serve.serve(ServeOptions { simulator: wanted, start, link, faults })?;
         Ok(Started {
             reach: serve::connect_hint("yrcx", &server.target),
             report: Serving { family: "yrcx", target: server.target.clone() },
@@ -89,7 +89,7 @@ impl serve::Serve for ServeArgs {
     }
 }
 
-impl serve::Server for Served {
+impl serve::Server for RunningSimulation {
     async fn run_until_change(&mut self) -> io::Result<()> {
         std::future::pending().await
     }

@@ -5,7 +5,7 @@ use super::link::Link;
 use super::link::Yrcx;
 use super::overview::{alarm, latest, not_asked, state};
 use super::position::{Unit, mm, position};
-use super::several::{ask_each, plan_each};
+use super::read_requests::{ask_each, plan_each};
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::answer::Status as CommandStatus;
@@ -43,13 +43,13 @@ impl Command for Status {
         let place = link.draft(table::Command::PositionMm)?.valid_order()?;
         let mut orders = vec![servo, place];
         let latest = latest()?;
-        if link.is_dry() && (self.full || link.commands()) {
+        if link.is_dry_run() && (self.full || link.commands()) {
             let noted = plan_each(link, &orders);
             let reason = Reason::about("which alarm").depending_on("the signals: sent only if there is an alarm");
             link.plan_depending(&latest, &latest, reason);
             noted?;
         }
-        if link.is_dry() && link.is_held() {
+        if link.is_dry_run() && link.is_held() {
             let reason = Reason::default().depending_on("the session: sent only if no other command is running");
             for order in &orders {
                 link.plan_depending(order, order, reason);

@@ -1,12 +1,12 @@
 //! `yrcx teach` (4.2.9): stores the current position as a point. `point set 19 here` is an alias.
 
+use super::confirmed_write::{self, confirmation, read_current};
 use super::link::{Link, Yrcx};
-use super::overwrite::{self, confirmation, there};
 use super::position::{Unit, group, position, unit_of};
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
 use armctl_frame::dry_run::unknown;
-use armctl_frame::teach::{Taught, mismatch, unverified};
+use armctl_frame::teach::{TeachReport, mismatch, unverified};
 
 /// Stores the current position as a point, replaces the old point, and reads the point back.
 #[derive(Debug, Args)]
@@ -31,7 +31,7 @@ const NEAR: i32 = 100;
 
 impl Command for Teach {
     type Family = Yrcx;
-    type Report = Taught;
+    type Report = TeachReport;
     const ID: &'static str = "yrcx.teach";
 
     fn risk(&self) -> Risk {
@@ -47,24 +47,24 @@ impl Command for Teach {
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Self::Report, Failure> {
-        let Context { link, authority, .. } = context;
+        let Context { link, confirmer, .. } = context;
         let read = table::Command::PointGet.order().with(Key::Point, self.number()).valid_order()?;
-        let old = there(link, &read, "current point").await?;
+        let old = read_current(link, &read, "current point").await?;
         let unit = self.unit_of_point.or_else(|| old.as_ref().map(unit_of)).unwrap_or(Unit::Mm);
         let order = self.order(link, unit)?;
         // In a dry run, the unit of the point is unknown.
         let other = if self.unit_of_point.is_none() { self.order(link, Unit::Pulse)? } else { self.order(link, unit)? };
-        overwrite::give_either(link, &authority, &order, &other).await?;
+        confirmed_write::execute_with_alternative(link, &confirmer, &order, &other).await?;
         let row = if unit == Unit::Mm { table::Command::PositionMm } else { table::Command::PositionPulse };
         let here = link.draft(row)?.valid_order()?;
-        if link.is_dry() {
+        if link.is_dry_run() {
             link.plan(&read, "the point after the write");
             link.plan(&here, "current position, for the comparison");
             return Err(unknown());
         }
         let name = self.number();
         let unread = |failure| unverified(&format!("point {name}"), failure, &format!("yrcx point get {name}"));
-        let held = there(link, &read, "").await.map_err(unread)?;
+        let held = read_current(link, &read, "").await.map_err(unread)?;
         let held =
             held.ok_or_else(|| unread(Failure::new(Kind::Refused, "the point is not defined on the controller")))?;
         let here = link.ask(&here).await.map_err(unread)?.values;
@@ -74,7 +74,7 @@ impl Command for Teach {
         if unit_of(&held) != unit || !is_near(&held, &here) {
             return Err(mismatch(&format!("point {name}"), &place.line(), &new.line()));
         }
-        let taught = Taught::new(name, old.as_ref().map(point), new, place);
+        let taught = TeachReport::new(name, old.as_ref().map(point), new, place);
         Ok(taught.with("set", "point").with("point", held.int(Key::Point)))
     }
 }

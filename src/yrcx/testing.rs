@@ -8,7 +8,7 @@ use std::time::Duration;
 use serde_json::Value;
 
 use super::link::{Link, Yrcx};
-use super::unit::Unit;
+use super::unit_argument::Unit;
 use crate::prelude::*;
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Words};
 use armctl_controller::yrcx::table::Row;
@@ -67,7 +67,7 @@ fn numbers(texts: &Value) -> Words {
 pub(super) fn read_example(id: &str, line: &[&str]) -> Value {
     let before = undefined(line);
     let count = before.len();
-    let scripted = Scripted::new(before.into_iter().chain([Reply::Ends(1, answer(id))]));
+    let scripted = Scripted::new(before.into_iter().chain([Reply::AddressPair(1, answer(id))]));
     let (outcome, peer) = run_on(scripted, line);
     assert_eq!(peer.taken[count..], [numbers(corrected(&entry(id), "wi"))]);
     outcome.unwrap()
@@ -79,7 +79,7 @@ pub(super) fn undefined(line: &[&str]) -> Vec<Reply> {
     refused[..3].copy_from_slice(&[0x4000, 2, 904]);
     let count = if risk(line) == Risk::Destroy { words(line).unwrap().len() - written(line).unwrap().len() } else { 0 };
     let count = count + testing::count_before(&plan(line).unwrap());
-    vec![Reply::Ends(0, refused); count]
+    vec![Reply::AddressPair(0, refused); count]
 }
 
 /// Runs a command line that sends several commands, each with the answer of its example, and returns its report.
@@ -88,7 +88,7 @@ pub(super) fn read_in_turn(ids: &[&str], line: &[&str]) -> Value {
     let examples: Vec<Value> = ids.iter().map(|id| entry(id)).collect();
     let before = undefined(line);
     let count = before.len();
-    let answers = examples.iter().map(|example| Reply::Ends(1, numbers(corrected(example, "wo"))));
+    let answers = examples.iter().map(|example| Reply::AddressPair(1, numbers(corrected(example, "wo"))));
     let (outcome, peer) = run_on(Scripted::new(before.into_iter().chain(answers)), line);
     let sent = examples.iter().map(|example| numbers(corrected(example, "wi")));
     assert_eq!(peer.taken[count..], sent.collect::<Vec<_>>());
@@ -111,7 +111,7 @@ pub(super) fn risk(words: &[&str]) -> Risk {
 }
 
 /// Data of a command that needs no robot.
-pub(super) fn desk(words: &[&str]) -> Value {
+pub(super) fn workspace(words: &[&str]) -> Value {
     let command = resolved(DRY, words).unwrap().1;
     command.without_robot(&quiet()).expect("no robot is wanted").unwrap().data().unwrap()
 }
@@ -168,14 +168,14 @@ pub(super) struct Bench {
     pub(super) runtime: tokio::runtime::Runtime,
     pub(super) robot: Robot,
     pub(super) link: Link,
-    peer: Shared,
+    peer: SharedController,
 }
 
 /// Controller that the link and the test share.
-type Shared = std::sync::Arc<std::sync::Mutex<Scripted>>;
+type SharedController = std::sync::Arc<std::sync::Mutex<Scripted>>;
 
 #[derive(Debug)]
-struct Handle(Shared);
+struct Handle(SharedController);
 
 impl ImagePeer for Handle {
     fn input(&mut self, now: Duration, image: Option<&[u8]>) {
@@ -220,22 +220,22 @@ impl Bench {
 
     /// Creates a bench whose fieldbus supports only signals.
     pub(super) fn signals_alone(scripted: Scripted) -> Self {
-        Self::over(scripted, Risk::Motion, |handle| Box::new(SignalsOnly(handle)))
+        Self::bench_with(scripted, Risk::Motion, |handle| Box::new(SignalsOnly(handle)))
     }
 
     /// Creates a bench that grants commands up to this risk.
     pub(super) fn grant(scripted: Scripted, grant: Risk) -> Self {
-        Self::over(scripted, grant, |handle| Box::new(handle))
+        Self::bench_with(scripted, grant, |handle| Box::new(handle))
     }
 
-    fn over(scripted: Scripted, grant: Risk, end: impl FnOnce(Handle) -> Box<dyn ImagePeer>) -> Self {
+    fn bench_with(scripted: Scripted, grant: Risk, end: impl FnOnce(Handle) -> Box<dyn ImagePeer>) -> Self {
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
         let (robot, _) = resolved("sim:", &["status"]).expect("a robot");
-        let peer = Shared::new(scripted.into());
+        let peer = SharedController::new(scripted.into());
         let access = Access { grant: Grant::up_to(grant), ..Access::reading(ConnectMode::Control) };
         let screen = quiet();
-        let opening = Link::to_peer(&robot, &access, &screen, end(Handle(Shared::clone(&peer))));
+        let opening = Link::to_peer(&robot, &access, &screen, end(Handle(SharedController::clone(&peer))));
         let link = runtime.block_on(opening).expect("a link");
         Self { runtime, robot, link, peer }
     }
@@ -258,11 +258,11 @@ impl Bench {
 
     /// Runs a command line for the time `after`, then drops it, as Ctrl-C does. The command line must still be running.
     pub(super) fn interrupt(&mut self, words: &[&str], after: Duration) {
-        assert!(self.cut(words, after), "it still runs");
+        assert!(self.run_and_drop(words, after), "it still runs");
     }
 
     /// Runs a command line for the time `after`, then drops it. Returns whether it was still running.
-    pub(super) fn cut(&mut self, words: &[&str], after: Duration) -> bool {
+    pub(super) fn run_and_drop(&mut self, words: &[&str], after: Duration) -> bool {
         let (_, command) = resolved("sim:", words).unwrap();
         let Self { runtime, robot, link, .. } = self;
         link.set_unit(unit(words));
@@ -293,7 +293,7 @@ impl Bench {
 #[derive(Debug, Clone)]
 pub(super) enum Reply {
     /// Reports the status "running" for this number of scans, then ends with these words.
-    Ends(u32, Words),
+    AddressPair(u32, Words),
     /// Sends these words, one set per scan, then repeats the last set until the master clears the command (continuous
     /// output).
     Shows(Vec<Words>),
@@ -364,7 +364,7 @@ impl Scripted {
         let mut running = [0; COMMAND_WORDS];
         running[0] = 0x0100;
         match reply {
-            Reply::Ends(after, words) if *scans > *after => {
+            Reply::AddressPair(after, words) if *scans > *after => {
                 let words = *words;
                 self.image.set_command(&words);
                 self.current = None;
@@ -390,7 +390,7 @@ impl Scripted {
                 self.current = None;
             }
             Reply::Ignores => self.current = None,
-            Reply::Ends(..) | Reply::UntilStop(_) | Reply::Loses(..) => self.image.set_command(&running),
+            Reply::AddressPair(..) | Reply::UntilStop(_) | Reply::Loses(..) => self.image.set_command(&running),
         }
     }
 

@@ -28,7 +28,7 @@ use armctl_frame::settings::target::Place;
 #[derive(Debug)]
 pub struct Poller {
     link: Link,
-    told: Told,
+    told: CommandResults,
     /// Index of the next remote command in a session, and the time of the last remote command.
     next: usize,
     asked: Option<Instant>,
@@ -36,7 +36,7 @@ pub struct Poller {
 
 /// Results of remote commands.
 #[derive(Debug, Default)]
-struct Told {
+struct CommandResults {
     /// Numbers of the existing axes, starting with 1.
     axes: Option<Vec<usize>>,
     position_mm: Option<[f64; 4]>,
@@ -45,9 +45,9 @@ struct Told {
 }
 
 /// Minimum interval of reads by explicit messages: network boards answer such messages with low priority.
-const LOOKS: Duration = Duration::from_millis(100);
+const MIN_MESSAGE_INTERVAL: Duration = Duration::from_millis(100);
 /// Minimum interval of remote commands in a session.
-const TURNS: Duration = Duration::from_millis(500);
+const MIN_COMMAND_INTERVAL: Duration = Duration::from_millis(500);
 
 /// Number of the first general-purpose signals, SI(20) and SO(20). `GROUPS` is the number of groups of eight signals.
 const FIRST: u16 = 20;
@@ -60,10 +60,10 @@ impl registration::Poller for Poller {
     async fn open(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
         let mut robot = robot.clone();
         if let Place::Bus(bus) = &mut robot.target.value.place {
-            bus.listen_before = LOOKS;
+            bus.listen_before = MIN_MESSAGE_INTERVAL;
         }
         let link = Yrcx::connect(&robot, access, screen).await?;
-        Ok(Self { link, told: Told::default(), next: 0, asked: None })
+        Ok(Self { link, told: CommandResults::default(), next: 0, asked: None })
     }
 
     async fn look(&mut self, detail: Detail) -> Result<Sample, Failure> {
@@ -101,7 +101,7 @@ impl Poller {
             return Ok(());
         }
         let now = Instant::now();
-        if questions.is_empty() || self.asked.is_some_and(|asked| now < asked + TURNS) {
+        if questions.is_empty() || self.asked.is_some_and(|asked| now < asked + MIN_COMMAND_INTERVAL) {
             return Ok(());
         }
         self.asked = Some(now);

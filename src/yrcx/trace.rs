@@ -12,9 +12,9 @@ use anyhow::Context as _;
 
 use crate::prelude::*;
 use armctl_controller::text::hex;
-use armctl_controller::yrcx::changes::changes;
+use armctl_controller::yrcx::image_changes::changes;
 use armctl_frame::trace;
-use armctl_transport::image::tap::{Passage, Tap};
+use armctl_transport::image::tap::{Tap, TrafficRecord};
 use armctl_transport::tap::Direction;
 
 /// Text trace of the images of one link. If the link uses no network, the trace also records the bytes of the images.
@@ -79,7 +79,7 @@ pub struct Opening {
 }
 
 /// Maximum number of packets that are printed after a failure.
-const MOST_SHOWN: usize = 64;
+const MAX_PRINTED: usize = 64;
 
 impl Opening {
     /// Returns a tap that records packets, if `-vvv` is set.
@@ -92,17 +92,17 @@ impl Opening {
         }
         let passed = Arc::new(Mutex::new(VecDeque::new()));
         let kept = Arc::clone(&passed);
-        let tap = Tap::new(move |packet: Passage| {
+        let tap = Tap::new(move |packet: TrafficRecord| {
             let line = match packet {
-                Passage::Datagram { from, to, bytes } => format!("udp {from} -> {to}  {}", hex(&bytes)),
-                Passage::Segment { from, to, bytes } => format!("tcp {from} -> {to}  {}", hex(&bytes)),
-                Passage::Adapter { direction, bytes } => {
+                TrafficRecord::Datagram { from, to, bytes } => format!("udp {from} -> {to}  {}", hex(&bytes)),
+                TrafficRecord::Segment { from, to, bytes } => format!("tcp {from} -> {to}  {}", hex(&bytes)),
+                TrafficRecord::Adapter { direction, bytes } => {
                     format!("adapter {}  {}", direction.arrow(), bytes.escape_ascii())
                 }
-                Passage::Frame(bytes) => format!("frame  {}", hex(&bytes)),
+                TrafficRecord::Frame(bytes) => format!("frame  {}", hex(&bytes)),
             };
             let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
-            if kept.len() == MOST_SHOWN {
+            if kept.len() == MAX_PRINTED {
                 kept.pop_front();
             }
             kept.push_back(line);
@@ -121,7 +121,7 @@ impl Opening {
 }
 
 /// Maximum number of packets that wait for the disk: a few minutes of one connection.
-const MOST_WAITING: usize = 65_536;
+const MAX_QUEUED: usize = 65_536;
 
 /// Writes the packets of `--trace` in its own thread, because the threads that transfer images must not wait for the
 /// disk.
@@ -129,7 +129,7 @@ const MOST_WAITING: usize = 65_536;
 pub struct Recorder {
     writer: JoinHandle<Result<(), Failure>>,
     /// Packets with their time; `None` marks the end.
-    packets: SyncSender<Option<(Duration, Passage)>>,
+    packets: SyncSender<Option<(Duration, TrafficRecord)>>,
     /// Number of packets dropped because the queue was full.
     lost: Arc<AtomicU64>,
 }
@@ -141,14 +141,14 @@ impl Recorder {
             return Ok(None);
         }
         let mut record = trace::Trace::of_packets(access, screen, link_type)?;
-        let (packets, coming) = mpsc::sync_channel::<Option<(Duration, Passage)>>(MOST_WAITING);
+        let (packets, coming) = mpsc::sync_channel::<Option<(Duration, TrafficRecord)>>(MAX_QUEUED);
         let writer = std::thread::Builder::new().name("trace".to_owned()).spawn(move || {
             while let Ok(Some((time, passed))) = coming.recv() {
                 record.capture(|capture, _| match passed {
-                    Passage::Datagram { from, to, bytes } => capture.datagram(time, from, to, &bytes),
-                    Passage::Segment { from, to, bytes } => capture.segment(time, from, to, &bytes),
-                    Passage::Adapter { .. } => Ok(()),
-                    Passage::Frame(bytes) => capture.frame(time, &bytes),
+                    TrafficRecord::Datagram { from, to, bytes } => capture.datagram(time, from, to, &bytes),
+                    TrafficRecord::Segment { from, to, bytes } => capture.segment(time, from, to, &bytes),
+                    TrafficRecord::Adapter { .. } => Ok(()),
+                    TrafficRecord::Frame(bytes) => capture.frame(time, &bytes),
                 });
             }
             record.finish()

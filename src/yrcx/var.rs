@@ -3,9 +3,9 @@
 use serde_json::{Number, Value as Json};
 
 use super::link;
-use super::numbers::{named, single};
-use super::single::{Single, single_command};
-use super::stores::{Kind, Numbered};
+use super::number_arguments::{named, single};
+use super::numbered_tables::{Kind, Numbered};
+use super::single_command::{SingleCommand, single_command};
 use crate::complete;
 use crate::prelude::*;
 use armctl_controller::names;
@@ -141,7 +141,7 @@ impl Operand {
     }
 
     /// Report of an assignment or a calculation.
-    fn report(&self, variable: String, operation: &'static str, words: String, done: &link::Done) -> Changed {
+    fn report(&self, variable: String, operation: &'static str, words: String, done: &link::CommandResult) -> Changed {
         let operand = match self {
             Self::Number(text) => settings_report::number(text),
             Self::Variable(number) => name(*number).into(),
@@ -187,7 +187,7 @@ macro_rules! changes {
                 operand: Operand,
             }
 
-            impl Single for $name {
+            impl SingleCommand for $name {
                 type Report = Changed;
                 const ID: &'static str = $id;
 
@@ -202,7 +202,7 @@ macro_rules! changes {
                     self.operand.put(draft.with(Key::Variable, self.variable))
                 }
 
-                fn report(&self, done: &link::Done) -> Result<Changed, Failure> {
+                fn report(&self, done: &link::CommandResult) -> Result<Changed, Failure> {
                     let (variable, operand) = (name(self.variable), self.operand.describe());
                     let words = format!($told, variable = variable, operand = operand);
                     Ok(self.operand.report(variable, $does, words, done))
@@ -241,7 +241,7 @@ mod tests {
         let answered = |low, high| {
             let mut words = [0; 16];
             (words[0], words[2], words[4], words[5]) = (0x0200, 0x0101, low, high);
-            run_on(Scripted::new([Reply::Ends(1, words)]), &["var", "get", "SGR1"]).0.unwrap()
+            run_on(Scripted::new([Reply::AddressPair(1, words)]), &["var", "get", "SGR1"]).0.unwrap()
         };
         assert_eq!(answered(0xCCCD, 0x3F8C)["items"][0]["value"].to_string(), "1.1");
         assert_eq!(answered(0, 0x7FC0)["items"][0]["value"], json!(null), "not a number");

@@ -45,7 +45,7 @@ impl Source {
             rest = &rest[start..];
             let end = rest.find(|c| !is_word(c)).unwrap_or(rest.len());
             let (word, after) = rest.split_at(end);
-            let consumed = if word == "use" {
+            let consumed_size = if word == "use" {
                 let end = after.find(';').unwrap_or(after.len());
                 expand_tree(&after[..end], "", &mut |path| paths.push((line, resolve(&module, path))));
                 end
@@ -66,8 +66,8 @@ impl Source {
                 }
                 at
             };
-            line += after[..consumed].matches('\n').count();
-            rest = &after[consumed..];
+            line += after[..consumed_size].matches('\n').count();
+            rest = &after[consumed_size..];
         }
         paths
     }

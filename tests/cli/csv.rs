@@ -9,7 +9,7 @@ use armctl_frame::output::csv::{RowsOf, Sheet};
 use serde_json::Value;
 
 /// Words of commands that write files, wait, or need another target than a simulator.
-const LEFT_OUT: [&str; 10] =
+const EXCLUDED: [&str; 10] =
     ["watch", "--for", "--continuous", "auto-mode", "backup", "diff", "dump", "file", " -t ", "program get"];
 
 /// stdout of a command line on the simulator; `None` if the command failed.
@@ -31,7 +31,7 @@ fn columns_come_from_the_schema_of_the_json() {
     let folder = tempfile::tempdir().expect("there is room for a folder");
     let mut compared = 0;
     for (line, _) in
-        robot_lines().filter(|(line, risk)| *risk == Risk::Read && !LEFT_OUT.iter().any(|out| line.contains(out)))
+        robot_lines().filter(|(line, risk)| *risk == Risk::Read && !EXCLUDED.iter().any(|out| line.contains(out)))
     {
         if line.contains(" -r ") || line.contains("--jq") || line.contains("--json") {
             continue;

@@ -11,7 +11,7 @@ use std::thread;
 use serde_json::Value;
 
 use super::json;
-use super::transcript::{Desk, Simulator};
+use super::transcript::{Simulator, Workspace};
 
 /// A controller that answers each request with the result of `answer`. It ends with the process.
 fn peer(answer: impl Fn(&[u8]) -> Option<Vec<u8>> + Send + 'static) -> String {
@@ -53,10 +53,10 @@ fn failure(output: &Output) -> Value {
 
 #[test]
 fn exits_5_for_a_malformed_answer() {
-    let desk = Desk::new();
+    let workspace = Workspace::new();
     // The answer to a status read has eight bytes of data, but this answer has none.
     let target = peer(|request| Some(set_value(request)));
-    let output = desk.armctl(&["-t", &target, "yerc", "status", "--json"]).output().expect("it runs");
+    let output = workspace.armctl(&["-t", &target, "yerc", "status", "--json"]).output().expect("it runs");
     assert_eq!(output.status.code(), Some(5), "{output:?}");
     let error = failure(&output);
     assert_eq!(error["kind"], "malformed");
@@ -64,10 +64,10 @@ fn exits_5_for_a_malformed_answer() {
 
 #[test]
 fn exits_5_for_garbage() {
-    let desk = Desk::new();
+    let workspace = Workspace::new();
     let target = peer(|_| Some(b"HTTP/1.1 400 Bad Request\r\n\r\n".to_vec()));
     let line = ["-t", &target, "yerc", "status", "--json", "--timeout", "200ms", "--retries", "0"];
-    let output = desk.armctl(&line).output().expect("it runs");
+    let output = workspace.armctl(&line).output().expect("it runs");
     let error = failure(&output);
     snapbox::assert_data_eq!(
         format!("{} {}\n{}\n", error["exit"], error["kind"], error["message"])
@@ -89,12 +89,12 @@ fn refuses_to_report(request: &[u8]) -> Option<Vec<u8>> {
 
 #[test]
 fn exits_6_if_the_answer_of_a_change_is_lost() {
-    let desk = Desk::new();
+    let workspace = Workspace::new();
     for change in [&["cycle", "once"][..], &["var", "set", "B0=1"], &["hold", "on"], &["job", "select", "MAIN"]] {
         let target = peer(refuses_to_report);
         let mut line = vec!["-t", &target, "--json", "--timeout", "100ms", "yerc"];
         line.extend(change);
-        let output = desk.armctl(&line).output().expect("it runs");
+        let output = workspace.armctl(&line).output().expect("it runs");
         assert_eq!(output.status.code(), Some(6), "{change:?}: {output:?}");
         let error = failure(&output);
         assert_eq!(error["kind"], "outcome_unknown");
@@ -106,7 +106,7 @@ fn exits_6_if_the_answer_of_a_change_is_lost() {
 fn exits_4_if_the_old_value_is_not_answered() {
     let target = peer(|_| None);
     let line = ["-t", &target, "--json", "--timeout", "100ms", "--retries", "0", "yerc", "var", "set", "B0=1"];
-    let output = Desk::new().armctl(&line).output().expect("it runs");
+    let output = Workspace::new().armctl(&line).output().expect("it runs");
     assert_eq!(output.status.code(), Some(4), "{output:?}");
     let message = failure(&output)["message"].as_str().map(ToOwned::to_owned);
     assert!(message.is_some_and(|message| message.ends_with("; nothing was written")), "{output:?}");
@@ -114,10 +114,10 @@ fn exits_4_if_the_old_value_is_not_answered() {
 
 #[test]
 fn describes_exit_6() {
-    let desk = Desk::new();
+    let workspace = Workspace::new();
     let target = peer(refuses_to_report);
     let line = ["-t", &target, "--timeout", "100ms", "yerc", "cycle", "once"];
-    let output = desk.armctl(&line).output().expect("it runs");
+    let output = workspace.armctl(&line).output().expect("it runs");
     let stderr = String::from_utf8_lossy(&output.stderr).replace(&target, "udp://127.0.0.1:10040");
     snapbox::assert_data_eq!(
         stderr,
@@ -133,9 +133,9 @@ hint: check before you repeat the command: use `armctl yerc status` to see the s
 #[cfg(target_os = "linux")]
 #[test]
 fn exits_1_for_a_full_disk() {
-    let desk = Desk::new();
+    let workspace = Workspace::new();
     let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("a disk that is full");
-    let output = desk.armctl(&["--sim", "yerc", "status"]).stdout(full).output().expect("it runs");
+    let output = workspace.armctl(&["--sim", "yerc", "status"]).stdout(full).output().expect("it runs");
     assert_eq!(output.status.code(), Some(1));
     snapbox::assert_data_eq!(
         String::from_utf8_lossy(&output.stderr).into_owned(),
@@ -150,8 +150,8 @@ hint: free some space, and repeat the command
 
 #[test]
 fn exits_0_if_the_reader_of_a_watch_closes() {
-    let desk = Desk::new();
-    let mut child = spawn(desk.armctl(&["--sim", "yerc", "status", "--watch", "1ms", "-o", "jsonl"]));
+    let workspace = Workspace::new();
+    let mut child = spawn(workspace.armctl(&["--sim", "yerc", "status", "--watch", "1ms", "-o", "jsonl"]));
     first_line(&mut child);
     let status = child.wait().expect("it ends by itself");
     assert_eq!(status.code(), Some(0), "{}", read_output(&mut child));
@@ -160,8 +160,8 @@ fn exits_0_if_the_reader_of_a_watch_closes() {
 
 #[test]
 fn interrupted_during_a_watch() {
-    let desk = Desk::new();
-    let mut child = spawn(desk.armctl(&["--sim", "yerc", "status", "--watch", "1h", "-o", "jsonl"]));
+    let workspace = Workspace::new();
+    let mut child = spawn(workspace.armctl(&["--sim", "yerc", "status", "--watch", "1h", "-o", "jsonl"]));
     let line = first_line(&mut child);
     json::format_value(&line);
     interrupt(&child, "INT");
@@ -173,17 +173,17 @@ fn interrupted_during_a_watch() {
 
 #[test]
 fn interrupted_during_a_move() {
-    let desk = Desk::new();
+    let workspace = Workspace::new();
     let simulator = Simulator::start("yerc", None);
     let status = |filter: &str| {
         let output =
-            desk.armctl(&["-t", &simulator.target, "yerc", "status", "--jq", filter]).output().expect("it runs");
+            workspace.armctl(&["-t", &simulator.target, "yerc", "status", "--jq", filter]).output().expect("it runs");
         String::from_utf8(output.stdout).expect("UTF-8")
     };
     let line = ["-t", &simulator.target, "--yes", "yerc", "move", "relative", "--z", "-600", "--speed", "1mm/s"];
-    let mut child = spawn(desk.armctl(&line));
+    let mut child = spawn(workspace.armctl(&line));
     // The motion takes ten minutes, so it is in progress when the controller reports that it runs.
-    wait(&desk, &simulator, ".data.running");
+    wait(&workspace, &simulator, ".data.running");
     interrupt(&child, "INT");
     assert_eq!(child.wait().expect("it ends").code(), Some(130));
     snapbox::assert_data_eq!(
@@ -196,15 +196,16 @@ interrupted: the robot was stopped: HOLD is on; use `yerc hold off` to release H
     );
     assert_eq!(status(".data.hold_sources"), "[\"command\"]\n");
     // The robot slows down and stops. Only a command releases HOLD.
-    wait(&desk, &simulator, ".data.running | not");
-    let released = desk.armctl(&["-t", &simulator.target, "--yes", "yerc", "hold", "off"]).output().expect("it runs");
+    wait(&workspace, &simulator, ".data.running | not");
+    let released =
+        workspace.armctl(&["-t", &simulator.target, "--yes", "yerc", "hold", "off"]).output().expect("it runs");
     assert!(released.status.success());
     assert_eq!(status("[.data.running, .data.hold_sources]"), "[false,[]]\n", "what was stopped does not go on");
 }
 
 #[test]
 fn interrupted_during_a_move_with_on_interrupt_leave() {
-    let desk = Desk::new();
+    let workspace = Workspace::new();
     let simulator = Simulator::start("yerc", None);
     let line = [
         "-t",
@@ -221,26 +222,28 @@ fn interrupted_during_a_move_with_on_interrupt_leave() {
         "1mm/s",
         "--json",
     ];
-    let mut child = spawn(desk.armctl(&line));
-    wait(&desk, &simulator, ".data.running");
+    let mut child = spawn(workspace.armctl(&line));
+    wait(&workspace, &simulator, ".data.running");
     interrupt(&child, "INT");
     assert_eq!(child.wait().expect("it ends").code(), Some(130));
     let error: Value = serde_json::from_str(&read_output(&mut child)).expect("one line of JSON");
     assert_eq!(error["error"]["exit"], 130);
-    let output =
-        desk.armctl(&["-t", &simulator.target, "yerc", "status", "--jq", ".data.running"]).output().expect("it runs");
+    let output = workspace
+        .armctl(&["-t", &simulator.target, "yerc", "status", "--jq", ".data.running"])
+        .output()
+        .expect("it runs");
     assert_eq!(String::from_utf8_lossy(&output.stdout), "true\n");
 }
 
 #[test]
 fn interrupted_while_points_are_stored() {
-    let desk = Desk::new();
+    let workspace = Workspace::new();
     let rows: String = (1..=999).map(|point| format!("{point},{point},0,0,0\n")).collect();
-    std::fs::write(desk.path().join("many.csv"), format!("name,x_mm,y_mm,z_mm,r_mm\n{rows}")).expect("a file");
+    std::fs::write(workspace.path().join("many.csv"), format!("name,x_mm,y_mm,z_mm,r_mm\n{rows}")).expect("a file");
     // At this baud rate, the command takes half a minute.
     let line = ["-t", "sim:?baud=115200", "-vv", "toyo", "point", "restore", "many.csv", "--task", "2"];
     let line = [&line[..], &["--jq", "[.data.items[] | select(.written)] | length"]].concat();
-    let mut child = spawn(desk.armctl(&line));
+    let mut child = spawn(workspace.armctl(&line));
     let mut stderr = BufReader::new(child.stderr.take().expect("stderr is a pipe")).lines().map_while(Result::ok);
     assert!(stderr.any(|line| line.contains("@WPAR T1 PT=003")));
     interrupt(&child, "INT");
@@ -258,14 +261,14 @@ fn interrupted_while_points_are_stored() {
 
 #[test]
 fn server_prints_its_address_and_ends_on_a_signal() {
-    let desk = Desk::new();
+    let workspace = Workspace::new();
     for signal in ["INT", "TERM"] {
-        let mut child = spawn(desk.armctl(&["sim", "yerc", "--bind", "127.0.0.1:0", "--json"]));
+        let mut child = spawn(workspace.armctl(&["sim", "yerc", "--bind", "127.0.0.1:0", "--json"]));
         let line = first_line(&mut child);
         json::format_value(&line);
         let envelope: Value = serde_json::from_str(&line).expect("an envelope");
         let target = envelope["data"]["target"].as_str().expect("a URL");
-        assert!(desk.armctl(&["-t", target, "yerc", "status"]).output().expect("it runs").status.success());
+        assert!(workspace.armctl(&["-t", target, "yerc", "status"]).output().expect("it runs").status.success());
         interrupt(&child, signal);
         assert_eq!(child.wait().expect("it ends").code(), Some(0), "this is how one ends a server");
         assert_eq!(read_output(&mut child), "");
@@ -273,10 +276,10 @@ fn server_prints_its_address_and_ends_on_a_signal() {
 }
 
 /// Waits until this filter is true for the status of a controller.
-fn wait(desk: &Desk, simulator: &Simulator, until: &str) {
+fn wait(workspace: &Workspace, simulator: &Simulator, until: &str) {
     let target = simulator.target.as_str();
     let line = ["-t", target, "yerc", "status", "--watch", "5ms", "--until", until, "--for", "1m"];
-    let output = desk.armctl(&line).output().expect("it runs");
+    let output = workspace.armctl(&line).output().expect("it runs");
     assert!(output.status.success(), "{until}: {output:?}");
 }
 

@@ -28,7 +28,7 @@ macro_rules! transcripts {
 
 transcripts! {
     alarms
-    alike
+    common_commands
     backups
     batch
     captures
@@ -38,7 +38,7 @@ transcripts! {
     exit_codes
     explain
     files
-    finding
+    command_help
     fleet_backups
     fleets
     help
@@ -50,7 +50,7 @@ transcripts! {
     models
     moves
     names
-    orders
+    yerc_control
     positions
     publish
     raw
@@ -78,7 +78,7 @@ transcripts! {
     usage
     variables
     watches
-    words
+    common_terms
     yrcx
     yrcx_data
     yrcx_devicenet
@@ -106,9 +106,9 @@ fn every_command_has_transcripts() {
     let (mut tables, mut jsons) = (BTreeSet::new(), BTreeSet::new());
     for line in transcript::commands() {
         for typed in line.split(['|', ';', '&']) {
-            let words: Vec<&str> = typed.split_whitespace().collect();
-            let path = path(&root, &words);
-            let is_json = ["--json", "json", "jsonl", "--jq"].iter().any(|word| words.contains(word));
+            let common_terms: Vec<&str> = typed.split_whitespace().collect();
+            let path = path(&root, &common_terms);
+            let is_json = ["--json", "json", "jsonl", "--jq"].iter().any(|word| common_terms.contains(word));
             if is_json {
                 jsons.insert(path)
             } else {
@@ -127,10 +127,10 @@ fn every_command_has_transcripts() {
 }
 
 /// The command at the beginning of these words, for example `yerc file get`.
-fn path(root: &clap::Command, words: &[&str]) -> String {
+fn path(root: &clap::Command, common_terms: &[&str]) -> String {
     let mut command = root;
     let mut path = Vec::new();
-    for word in words {
+    for word in common_terms {
         if let Some(sub) = command.get_subcommands().find(|sub| sub.get_name() == *word) {
             path.push(*word);
             command = sub;

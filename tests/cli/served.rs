@@ -11,7 +11,7 @@ use armctl::command::example_lines::robot_lines;
 use crate::support::simulator::Simulator;
 
 /// Lines that do not end, that have a robot name, or that take seconds, such as motions and complete backups.
-const LEFT_OUT: &[&str] = &[
+const EXCLUDED: &[&str] = &[
     "watch",
     "--for",
     "--continuous",
@@ -89,7 +89,7 @@ fn help_examples_work_on_a_served_simulator() {
     let lines: Vec<String> = robot_lines()
         .map(|(line, _)| line)
         .filter(|line| ["yerc ", "yrcx ", "toyo "].iter().any(|family| line.starts_with(family)))
-        .filter(|line| !LEFT_OUT.iter().any(|out| line.contains(out)))
+        .filter(|line| !EXCLUDED.iter().any(|out| line.contains(out)))
         .collect();
     assert!(lines.len() > 300, "{} examples", lines.len());
     let next = AtomicUsize::new(0);

@@ -29,7 +29,7 @@ const DOCUMENTED: [(&str, &str); 3] =
 pub fn check(name: &str) {
     let path = folder().join(format!("{name}.console"));
     let text = std::fs::read_to_string(&path).expect("the transcript is there");
-    let desk = Desk::new();
+    let workspace = Workspace::new();
     let families = DOCUMENTED.iter().filter(|(_, target)| text.contains(target));
     let simulators: Vec<Simulator> = families
         .map(|(family, _)| {
@@ -48,7 +48,7 @@ pub fn check(name: &str) {
             if !printed.is_empty() && !printed.lines().last().is_some_and(|last| last.starts_with("## ")) {
                 printed.push('\n');
             }
-            printed.push_str(&format!("{line}\n{}", desk.command_line(command, &simulators)));
+            printed.push_str(&format!("{line}\n{}", workspace.command_line(command, &simulators)));
         }
     }
     let expected = snapbox::Data::read_from(&path, Some(snapbox::data::DataFormat::Text)).raw();
@@ -77,20 +77,20 @@ fn folder() -> PathBuf {
 }
 
 /// Test environment with its own folder and home, without variables of armctl, and without a terminal.
-pub struct Desk {
+pub struct Workspace {
     folder: TempDir,
 }
 
-impl Desk {
+impl Workspace {
     /// Creates an environment with the files of `files/`.
     pub fn new() -> Self {
-        let desk = Self { folder: tempfile::tempdir().expect("a folder") };
-        std::fs::create_dir(desk.path().join(".run")).expect("a folder for sockets");
+        let workspace = Self { folder: tempfile::tempdir().expect("a folder") };
+        std::fs::create_dir(workspace.path().join(".run")).expect("a folder for sockets");
         for file in std::fs::read_dir(folder().join("files")).expect("the folder of files") {
             let file = file.expect("an entry");
-            std::fs::copy(file.path(), desk.path().join(file.file_name())).expect("a file is copied");
+            std::fs::copy(file.path(), workspace.path().join(file.file_name())).expect("a file is copied");
         }
-        desk
+        workspace
     }
 
     /// Folder of the environment.
@@ -151,7 +151,7 @@ fn is_progress(line: &str) -> bool {
     line.ends_with(" left") && line.contains(" %, ")
 }
 
-impl Drop for Desk {
+impl Drop for Workspace {
     fn drop(&mut self) {
         // A background session must not outlive its test.
         if self.path().join(".run/armctl").exists() {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use armctl_transport::eip::adapter::Adapter;
-use armctl_transport::eip::originator::{Numbers, Originator};
+use armctl_transport::eip::originator::{Identifiers, Originator};
 use armctl_transport::eip::wire::{
     Close, Closed, Command, Cyclic, Flow, Frame, Frames, Identity, Item, Key, Net, Open, Opened, Path, Refused, Reply,
     Request, RrData, Segment, Services, Status, Triad,
@@ -147,7 +147,7 @@ proptest! {
         let mut adapter = Adapter::new(setup(), Mirror::default());
         adapter.connected(1, ORIGINATOR_ADDRESS);
         let target = SocketAddrV4::new(Ipv4Addr::LOCALHOST, 1);
-        let numbers = Arc::new(Numbers::new(0x0506_0708, 0x0101, 0x1000));
+        let numbers = Arc::new(Identifiers::new(0x0506_0708, 0x0101, 0x1000));
         let mut originator = Originator::new(target, 2222, settings(), numbers).unwrap();
         while originator.poll(now).is_some() {}
         originator.connected(now);
@@ -161,10 +161,10 @@ proptest! {
             while originator.poll(now).is_some() {}
         }
         for (_, image) in &world.images_out {
-            adapter.hear(now, SocketAddrV4::new(ORIGINATOR_ADDRESS, 2222), &damaged(image));
+            adapter.receive_datagram(now, SocketAddrV4::new(ORIGINATOR_ADDRESS, 2222), &damaged(image));
             adapter.discovered(SocketAddrV4::new(ORIGINATOR_ADDRESS, 2222), &damaged(image));
             if let Ok(datagram) = Cyclic::parse(&damaged(image)) {
-                originator.hear(now + MS, &datagram);
+                originator.receive_datagram(now + MS, &datagram);
             }
         }
         let later = now + Duration::from_secs(60);

@@ -10,7 +10,7 @@ use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
 
 use armctl_transport::eip::IO_PORT;
-use armctl_transport::eip::adapter::server::{Listen, Server};
+use armctl_transport::eip::adapter::server::{AdapterAddresses, Server};
 use armctl_transport::eip::discovery::list_identity;
 use armctl_transport::eip::scanner::Scanner;
 use armctl_transport::eip::settings::{Role, Settings};
@@ -25,7 +25,8 @@ async fn every_subscriber_receives_a_multicast_group() {
         return println!("skipped: another program has UDP port {IO_PORT}");
     }
     assert_eq!(Scanner::shared().unwrap().port(), IO_PORT, "it is the same one");
-    let server = Server::start(setup(), Mirror::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None).unwrap();
+    let server =
+        Server::start(setup(), Mirror::default(), AdapterAddresses::anywhere(Ipv4Addr::LOCALHOST), None).unwrap();
     let owner = Settings { multicast: true, ..with_long_timeout() };
     let listener = Settings { role: Role::ListenOnly, output: 237, output_size: 0, resting: vec![], ..owner.clone() };
     let mut owner = scanner.open(server.address(), owner, Tap::default()).await.unwrap();
@@ -45,7 +46,7 @@ async fn every_subscriber_receives_a_multicast_group() {
 
 #[tokio::test]
 async fn broadcast_finds_all_devices() {
-    let anywhere = Listen::anywhere(Ipv4Addr::UNSPECIFIED);
+    let anywhere = AdapterAddresses::anywhere(Ipv4Addr::UNSPECIFIED);
     let server = Server::start(setup(), Mirror::default(), anywhere, None).unwrap();
     let everybody = SocketAddrV4::new(Ipv4Addr::new(127, 255, 255, 255), server.address().port());
     match list_identity(Ipv4Addr::UNSPECIFIED, &[everybody], Duration::from_millis(500), &Tap::default()).await {

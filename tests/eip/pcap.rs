@@ -1,6 +1,6 @@
 //! A capture file of the exchanged packets. Their IP, UDP and TCP headers are synthetic (link type RAW).
 
-use armctl_transport::eip::tap::Passed;
+use armctl_transport::eip::tap::TappedPacket;
 use std::collections::HashMap;
 use std::net::SocketAddrV4;
 
@@ -13,7 +13,7 @@ pub struct Capture {
 }
 
 impl Capture {
-    pub fn add(&mut self, passed: &Passed<'_>) {
+    pub fn add(&mut self, passed: &TappedPacket<'_>) {
         let mut segment = [passed.from.port().to_be_bytes(), passed.to.port().to_be_bytes()].concat();
         let len = u16::try_from(passed.bytes.len()).unwrap();
         if passed.is_tcp {

@@ -10,7 +10,7 @@ use std::process::Command;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use armctl_transport::eip::adapter::server::{Listen, Server};
+use armctl_transport::eip::adapter::server::{AdapterAddresses, Server};
 use armctl_transport::eip::client::Client;
 use armctl_transport::eip::discovery::list_identity;
 use armctl_transport::eip::explicit::Message;
@@ -73,7 +73,7 @@ async fn our_scanner_owns_ciplink() {
     connection.set_image(1, &[0x5A; 48]).unwrap();
     let run = connection.set_run(1, true).unwrap();
     let view = connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [0x77; 48])).await;
-    assert_eq!(view.statistics.misfit, 0);
+    assert_eq!(view.statistics.size_error, 0);
     connection.until(|view| view.sent >= run).await;
     loop {
         let output = adapter.output(150).unwrap();
@@ -124,8 +124,8 @@ async fn ciplink_refuses_wrong_settings() {
         (Settings { rpi: MS, ..with_long_timeout() }, "(0x01/0x0111)"),
     ];
     for (settings, end) in cases {
-        let trouble = scanner.open(v4(adapter.addr()), settings, Tap::default()).await.unwrap_err().to_string();
-        assert!(trouble.ends_with(end), "{trouble}");
+        let last_error = scanner.open(v4(adapter.addr()), settings, Tap::default()).await.unwrap_err().to_string();
+        assert!(last_error.ends_with(end), "{last_error}");
     }
 }
 
@@ -150,7 +150,7 @@ async fn ciplink_reports_its_identity() {
 
 /// Starts the adapter of this project on its default ports.
 fn serve(address: Ipv4Addr) -> Option<Server<Mirror>> {
-    Server::start(setup(), Mirror::default(), Listen::usual(address), None).ok()
+    Server::start(setup(), Mirror::default(), AdapterAddresses::usual(address), None).ok()
 }
 
 #[test]
@@ -173,7 +173,8 @@ fn st_ethernet_ip_owns_our_adapter() {
 #[test]
 fn pycomm3_asks_our_adapter() {
     let Some(folder) = folder() else { return println!("{NO_FOLDER}") };
-    let server = Server::start(setup(), Mirror::default(), Listen::anywhere(Ipv4Addr::LOCALHOST), None).unwrap();
+    let server =
+        Server::start(setup(), Mirror::default(), AdapterAddresses::anywhere(Ipv4Addr::LOCALHOST), None).unwrap();
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/eip/peers/explicit.py");
     let mut python = Command::new("timeout");
     python.arg("60").arg(folder.join("venv/bin/python")).arg(script);

@@ -4,15 +4,15 @@ use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use armctl_transport::eip::adapter::server::{Listen, Server};
+use armctl_transport::eip::adapter::server::{AdapterAddresses, Server};
 use armctl_transport::eip::adapter::{AdapterFault, Setup};
 use armctl_transport::eip::client::Client;
 use armctl_transport::eip::discovery::list_identity;
 use armctl_transport::eip::error::EipError;
 use armctl_transport::eip::explicit::{Answer, Message};
+use armctl_transport::eip::image_reader::{Assembly, Reader, Reading};
 use armctl_transport::eip::originator::State;
-use armctl_transport::eip::probe::{self, Connectable, Instances, Presence, probe};
-use armctl_transport::eip::reader::{Assembly, Reader, Reading};
+use armctl_transport::eip::probe::{self, AssemblyPresence, Connectable, Instances, probe};
 use armctl_transport::eip::scanner::Scanner;
 use armctl_transport::eip::settings::{Multiplier, Settings};
 use armctl_transport::eip::tap::Tap;
@@ -24,7 +24,7 @@ use super::world::{MS, Mirror, identity, resting, setup, with_long_timeout};
 const LOOPBACK: Ipv4Addr = Ipv4Addr::LOCALHOST;
 
 fn serve(setup: Setup) -> Server<Mirror> {
-    Server::start(setup, Mirror::default(), Listen::anywhere(LOOPBACK), None).unwrap()
+    Server::start(setup, Mirror::default(), AdapterAddresses::anywhere(LOOPBACK), None).unwrap()
 }
 
 fn quick() -> Settings {
@@ -95,7 +95,7 @@ async fn survey_reads_assemblies_without_a_connection() {
     let expected = Connectable { instances: right, output_size: Some(48), input_size: Some(48) };
     assert_eq!((found.connectable, found.attempts), (Some(expected), Vec::new()));
     assert_eq!(probe::survey(&mut client, &[absent]).await.unwrap().connectable, None);
-    assert_eq!(probe::assembly(&mut client, 7).await.unwrap(), Presence::Absent);
+    assert_eq!(probe::assembly(&mut client, 7).await.unwrap(), AssemblyPresence::Absent);
     let events = server.with(|adapter, _| adapter.application().events.len());
     assert_eq!(events, 0, "nothing was opened on the way");
     client.close().await;
@@ -121,7 +121,7 @@ async fn several_connections_share_a_socket() {
 #[tokio::test]
 async fn survives_a_bad_network() {
     let faults: FaultSpec = "drop=10%,dup=5%,delay=0..20ms,reorder=2%,seed=5".parse().unwrap();
-    let listen = Listen::anywhere(LOOPBACK);
+    let listen = AdapterAddresses::anywhere(LOOPBACK);
     let server = Server::start(setup(), Mirror::default(), listen, Some(Faults::pair(faults))).unwrap();
     let scanner = Scanner::start(LOOPBACK).unwrap();
     let mut connection = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
@@ -157,8 +157,8 @@ async fn closes_a_dropped_connection() {
     let scanner = Scanner::start(LOOPBACK).unwrap();
     drop(scanner.open(server.address(), quick(), Tap::default()).await.unwrap());
     // The device is free for the next owner. This owner may have to wait until the first connection is closed.
-    while let Err(trouble) = scanner.open(server.address(), quick(), Tap::default()).await {
-        assert_eq!(trouble.code().unwrap().code, 0x0106, "{trouble}");
+    while let Err(last_error) = scanner.open(server.address(), quick(), Tap::default()).await {
+        assert_eq!(last_error.code().unwrap().code, 0x0106, "{last_error}");
     }
 }
 
@@ -172,7 +172,7 @@ async fn reopens_a_lost_link() {
     connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [!7; 48])).await;
     server.with(|adapter, _| adapter.set_fault(Some(AdapterFault::Stall)));
     let view = connection.until(|view| view.state == State::Lost).await;
-    assert_eq!(view.trouble, Some(EipError::Silent { after: 640 * MS }));
+    assert_eq!(view.last_error, Some(EipError::Silent { after: 640 * MS }));
     assert_eq!(connection.set_image(1, &[8; 48]), Err(EipError::Outdated));
     server.with(|adapter, _| adapter.set_fault(None));
     connection.until(|view| view.generation == 2 && view.state == State::Open).await;

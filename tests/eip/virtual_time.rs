@@ -21,7 +21,7 @@ fn native_order(image: &[u8]) -> Vec<u8> {
 }
 
 fn refusal(world: &World) -> Status {
-    match world.view().trouble {
+    match world.view().last_error {
         Some(EipError::Refused { status, .. }) => status,
         other => panic!("it was not refused: {other:?}"),
     }
@@ -109,7 +109,7 @@ fn close_sends_idle_and_is_confirmed() {
     world.originator.close();
     assert_eq!(world.originator.set_image(generation, &image(1)), Err(EipError::Ended));
     world.run_until(1000 * MS, |world| world.originator.is_finished());
-    assert_eq!((world.view().state, world.view().trouble), (State::Closed, None));
+    assert_eq!((world.view().state, world.view().last_error), (State::Closed, None));
     assert!(!world.adapter.application().run, "the last image was idle");
     world.run(100 * MS);
     let events = &world.adapter.application().events;
@@ -126,7 +126,7 @@ fn reopened_device_starts_with_resting_image() {
     world.run(200 * MS);
     world.cable = false;
     world.run_until(400 * MS, |world| world.view().state == State::Lost);
-    assert_eq!(world.view().trouble, Some(EipError::Silent { after: 320 * MS }));
+    assert_eq!(world.view().last_error, Some(EipError::Silent { after: 320 * MS }));
     assert_eq!(world.originator.set_image(1, &image(8)), Err(EipError::Outdated));
     let before = world.adapter.application().history.len();
     world.run(30_000 * MS);
@@ -173,7 +173,7 @@ fn opened(frame: &[u8]) -> Option<Open> {
 fn images_continue_without_tcp() {
     let mut world = World::open(setup(), settings(), "");
     world.tcp = false;
-    world.originator.hung_up(&EipError::Hangup { what: "the test" });
+    world.originator.disconnected(&EipError::Hangup { what: "the test" });
     world.run(60_000 * MS);
     assert_eq!((world.view().state, world.view().generation), (State::Open, 1));
     world.tcp = true;
@@ -191,7 +191,7 @@ fn scanner_waits_ten_seconds_for_the_first_image() {
     world.run(9_900 * MS);
     assert_eq!((world.view().state, world.view().input), (State::Open, None));
     world.run_until(200 * MS, |world| world.view().state == State::Lost);
-    assert_eq!(world.view().trouble, Some(EipError::Silent { after: 10_000 * MS }));
+    assert_eq!(world.view().last_error, Some(EipError::Silent { after: 10_000 * MS }));
 }
 
 #[test]
@@ -238,7 +238,7 @@ fn detects_adapter_faults() {
         match fault {
             AdapterFault::HalfRate => assert!(statistics.lost > 20 && statistics.late > 20),
             AdapterFault::Double | AdapterFault::Stale => assert!(statistics.stale >= 15),
-            AdapterFault::WrongSize => assert!(statistics.misfit >= 15),
+            AdapterFault::WrongSize => assert!(statistics.size_error >= 15),
             _ => {}
         }
     }
@@ -248,9 +248,9 @@ fn detects_adapter_faults() {
 fn silent_adapter_ends_the_opening() {
     type IsIt = fn(&EipError) -> bool;
     let cases: [(AdapterFault, IsIt); 3] = [
-        (AdapterFault::Mute, |trouble| matches!(trouble, EipError::NoAnswer { what: "RegisterSession", .. })),
-        (AdapterFault::Reset, |trouble| matches!(trouble, EipError::Hangup { what: "ForwardOpen" })),
-        (AdapterFault::Garbage, |trouble| matches!(trouble, EipError::Malformed { what: "ForwardOpen", .. })),
+        (AdapterFault::Mute, |last_error| matches!(last_error, EipError::NoAnswer { what: "RegisterSession", .. })),
+        (AdapterFault::Reset, |last_error| matches!(last_error, EipError::Hangup { what: "ForwardOpen" })),
+        (AdapterFault::Garbage, |last_error| matches!(last_error, EipError::Malformed { what: "ForwardOpen", .. })),
     ];
     for (fault, is_it) in cases {
         let mut world = World::new(setup(), settings(), "");
@@ -258,7 +258,7 @@ fn silent_adapter_ends_the_opening() {
         world.run_until(20_000 * MS, |world| world.originator.is_finished());
         let view = world.view();
         assert_eq!((view.state, view.generation), (State::Closed, 0));
-        assert!(is_it(view.trouble.as_ref().unwrap()), "{fault:?}: {:?}", view.trouble);
+        assert!(is_it(view.last_error.as_ref().unwrap()), "{fault:?}: {:?}", view.last_error);
     }
 }
 
@@ -267,12 +267,12 @@ fn reports_an_absent_device_at_once() {
     let mut world = World::new(setup(), settings(), "");
     world.tcp = false;
     world.run_until(100 * MS, |world| world.originator.is_finished());
-    assert!(matches!(world.view().trouble, Some(EipError::Unreachable { .. })));
+    assert!(matches!(world.view().last_error, Some(EipError::Unreachable { .. })));
     let mut world = World::new(setup(), settings(), "");
     world.cable = false;
     world.run_until(3000 * MS, |world| world.originator.is_finished());
     let after = Duration::from_secs(3);
-    assert_eq!(world.view().trouble, Some(EipError::NoAnswer { what: "the TCP connection", after }));
+    assert_eq!(world.view().last_error, Some(EipError::NoAnswer { what: "the TCP connection", after }));
 }
 
 /// If the answer to ForwardOpen is lost, the device may have opened the connection. The originator therefore closes it.
@@ -284,7 +284,7 @@ fn closes_an_opening_of_unknown_outcome() {
     world.run(2900 * MS);
     world.cable = true;
     world.run_until(10_000 * MS, |world| world.originator.is_finished());
-    assert!(matches!(world.view().trouble, Some(EipError::NoAnswer { what: "ForwardOpen", .. })));
+    assert!(matches!(world.view().last_error, Some(EipError::NoAnswer { what: "ForwardOpen", .. })));
     let events = &world.adapter.application().events;
     assert!(matches!(events[..], [Event::Opened(_), Event::Closed(_)]), "{events:?}");
 }
@@ -487,7 +487,7 @@ fn ignores_images_of_other_senders() {
     forged[10] = 0xF0;
     let before = world.adapter.application().history.clone();
     let stranger = std::net::SocketAddrV4::new([10, 0, 0, 9].into(), 2222);
-    world.adapter.hear(world.now, stranger, &forged);
+    world.adapter.receive_datagram(world.now, stranger, &forged);
     assert_eq!(world.adapter.application().history, before);
     assert!(!world.originator.expects(ORIGINATOR_ADDRESS, 0x1000));
 }

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use armctl_transport::eip::adapter::{Adapter, Application, Event, Output, Setup};
 use armctl_transport::eip::error::EipError;
-use armctl_transport::eip::originator::{Action, Numbers, Originator, State, View};
+use armctl_transport::eip::originator::{Action, Identifiers, Originator, State, View};
 use armctl_transport::eip::session::{Ask, Token};
 use armctl_transport::eip::settings::{Multiplier, Settings};
 use armctl_transport::eip::wire::{Command, Cyclic, Identity, Revision};
@@ -123,7 +123,7 @@ pub struct World {
 impl World {
     pub fn new(setup: Setup, settings: Settings, faults: &str) -> Self {
         let target = SocketAddrV4::new(ADAPTER_ADDRESS, PORT);
-        let numbers = Arc::new(Numbers::new(0x0506_0708, 0x0101, 0x1000));
+        let numbers = Arc::new(Identifiers::new(0x0506_0708, 0x0101, 0x1000));
         let faults: FaultSpec = if faults.is_empty() { FaultSpec::default() } else { faults.parse().unwrap() };
         Self {
             // The start time is not 0, so that no code can rely on 0.
@@ -231,7 +231,7 @@ impl World {
                 self.send(Packet::ToAdapter(self.connection, bytes));
             }
             Action::Disconnect => {
-                self.adapter.hung_up(self.connection.into());
+                self.adapter.disconnected(self.connection.into());
                 self.connection += 1;
             }
             Action::Datagram(to, bytes) => {
@@ -276,7 +276,8 @@ impl World {
             }
             Packet::Refused(connection) if connection == current => {
                 let text = "refused".to_owned();
-                self.originator.hung_up(&EipError::Unreachable { kind: std::io::ErrorKind::ConnectionRefused, text });
+                self.originator
+                    .disconnected(&EipError::Unreachable { kind: std::io::ErrorKind::ConnectionRefused, text });
             }
             Packet::ToAdapter(connection, bytes) if connection == current || bytes[0] == 0x66 => {
                 self.adapter.received(self.now, connection.into(), &bytes);
@@ -285,16 +286,16 @@ impl World {
                 self.originator.received(self.now, &bytes);
             }
             Packet::HangUp(connection) if connection == current => {
-                self.adapter.hung_up(connection.into());
-                self.originator.hung_up(&EipError::Hangup { what: "the test" });
+                self.adapter.disconnected(connection.into());
+                self.originator.disconnected(&EipError::Hangup { what: "the test" });
             }
             Packet::ImageOut(to, bytes) if to == SocketAddrV4::new(ADAPTER_ADDRESS, IO_PORT) => {
-                self.adapter.hear(self.now, SocketAddrV4::new(ORIGINATOR_ADDRESS, IO_PORT), &bytes);
+                self.adapter.receive_datagram(self.now, SocketAddrV4::new(ORIGINATOR_ADDRESS, IO_PORT), &bytes);
             }
             Packet::ImageIn(to, bytes) if *to.ip() == ORIGINATOR_ADDRESS || self.joined.contains(to.ip()) => {
                 let Ok(datagram) = Cyclic::parse(&bytes) else { return };
                 if self.originator.expects(ADAPTER_ADDRESS, datagram.id) {
-                    self.originator.hear(self.now, &datagram);
+                    self.originator.receive_datagram(self.now, &datagram);
                 }
             }
             _ => {}

@@ -12,7 +12,7 @@ use armctl_transport::fault::{FaultSpec, Faults};
 /// Time that a controller needs for an answer.
 const SERVICE_TIME: Duration = Duration::from_millis(8);
 /// Maximum number of steps of a session. A session with more steps is considered endless.
-const MOST_STEPS: usize = 100_000;
+const MAX_STEPS: usize = 100_000;
 
 /// Class of a command. The classes differ in the effect of a repetition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -140,7 +140,7 @@ impl<C: Controller> Link<C> {
         let (started, busy) = (self.now, self.busy);
         let mut progress = started;
         let (mut data, mut sent) = (Vec::new(), Vec::<Vec<u8>>::new());
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             match session.poll(self.now) {
                 Step::Send(frame) => {
                     if sent.last().is_none_or(|last| !is_equal_except_id(last, &frame)) {
@@ -165,7 +165,7 @@ impl<C: Controller> Link<C> {
                 }
             }
         }
-        panic!("the session has not ended after {MOST_STEPS} steps at {:?}", self.now);
+        panic!("the session has not ended after {MAX_STEPS} steps at {:?}", self.now);
     }
 
     /// Delivers all datagrams in transit.

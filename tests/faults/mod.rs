@@ -158,7 +158,7 @@ fn reads_survive_moderate_loss() {
 
 // ---- transfers
 
-const WAYS: [TransferKind; 3] = [TransferKind::Save, TransferKind::List, TransferKind::Load];
+const TRANSFER_KINDS: [TransferKind; 3] = [TransferKind::Save, TransferKind::List, TransferKind::Load];
 
 /// How a transfer can end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -270,7 +270,7 @@ fn upload(link: &mut Link<impl Controller>, content: &[u8], ids: &Ids) -> End {
 /// Runs transfers of every kind and size with these faults.
 fn transfers(text: &str, manners: ControllerKind, seeds: u64) -> Vec<End> {
     let mut ends = Vec::new();
-    for way in WAYS {
+    for way in TRANSFER_KINDS {
         for size in SIZES {
             for seed in 0..seeds {
                 let mut link = link_to(manners, spec(text, seed));
@@ -348,7 +348,7 @@ fn consecutive_transfers_do_not_mix() {
             let mut link = link_to(ControllerKind::Resends, spec(text, seed));
             let ids = Ids::starting_at(250);
             for round in 0..4 {
-                for way in WAYS {
+                for way in TRANSFER_KINDS {
                     transfer(&mut link, way, &content(1000, seed << 8 | round), &ids);
                 }
                 exchange(&mut link, Class::Move, &ids);

@@ -21,8 +21,8 @@ use armctl_transport::fault::FaultSpec;
 
 use super::link::{Class, Controller, Link, TransferKind};
 use super::{
-    End, FAULTS, SIZES, WAYS, check_exchanges, check_moderate_loss, content, exchange, exchanges, file_request,
-    has_valid_answer, spec, successes, transfer,
+    End, FAULTS, SIZES, TRANSFER_KINDS, check_exchanges, check_moderate_loss, content, exchange, exchanges,
+    file_request, has_valid_answer, spec, successes, transfer,
 };
 
 const MODELS: [Model; 2] = [Dx200, Fs100];
@@ -319,7 +319,7 @@ fn executes_everything_once_without_faults() {
 /// Runs transfers of every kind and size with these faults.
 fn transfers(model: Model, text: &str, seeds: u64) -> Vec<End> {
     let mut ends = Vec::new();
-    for way in WAYS {
+    for way in TRANSFER_KINDS {
         for size in SIZES {
             for seed in 0..seeds {
                 let mut link = link_to(model, spec(text, seed));
@@ -363,7 +363,7 @@ fn consecutive_transfers_do_not_mix() {
             let mut link = link_to(Dx200, spec(text, seed));
             let ids = Ids::starting_at(250);
             for round in 0..4 {
-                for way in WAYS {
+                for way in TRANSFER_KINDS {
                     transfer(&mut link, way, &content(958, seed << 8 | round | 128), &ids);
                 }
                 exchange(&mut link, Class::Move, &ids);

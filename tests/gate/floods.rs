@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use serialport::{SerialPort as _, TTYPort};
 
-use super::desk::{CommandResult, Workspace, result_of};
+use super::workspace::{CommandResult, Workspace, result_of};
 
 /// How a peer sends.
 #[derive(Debug, Clone, Copy)]

@@ -1,6 +1,6 @@
 //! Rules that every family follows.
 
-use super::desk::Workspace;
+use super::workspace::Workspace;
 use crate::support::simulator::Simulator;
 
 fn entry(name: &str, target: &str, more: &str) -> String {

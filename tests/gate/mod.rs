@@ -2,11 +2,11 @@
 
 #![cfg(unix)]
 
-mod desk;
 mod floods;
 mod frame;
 mod recorder;
 mod safety_page;
 mod toyo;
+mod workspace;
 mod yerc;
 mod yrcx;

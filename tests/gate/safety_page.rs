@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use super::desk::Workspace;
+use super::workspace::Workspace;
 use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 

@@ -1,7 +1,7 @@
 //! Rules for Toyo controllers: an overwrite needs a confirmation, dry runs reach their end, and a stop is always
 //! allowed.
 
-use super::desk::Workspace;
+use super::workspace::Workspace;
 use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 

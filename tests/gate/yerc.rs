@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::desk::Workspace;
+use super::workspace::Workspace;
 use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 

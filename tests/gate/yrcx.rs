@@ -1,6 +1,6 @@
 //! Rules for YRCX controllers.
 
-use super::desk::Workspace;
+use super::workspace::Workspace;
 use crate::support::simulator::Simulator;
 use crate::support::terminal::Terminal;
 

@@ -19,15 +19,15 @@ use self::broker::{Mosquitto, NOT_INSTALLED, flooding, hostile};
 use crate::support::schemas;
 
 /// The environment of a user: an inventory.
-pub struct Desk {
+pub struct Workspace {
     pub folder: TempDir,
 }
 
-impl Desk {
+impl Workspace {
     pub fn new(robots: &[(&str, &str, &str)]) -> Self {
-        let desk = Self { folder: tempfile::tempdir().unwrap() };
-        desk.write(robots);
-        desk
+        let workspace = Self { folder: tempfile::tempdir().unwrap() };
+        workspace.write(robots);
+        workspace
     }
 
     pub fn write(&self, robots: &[(&str, &str, &str)]) {
@@ -49,8 +49,8 @@ impl Desk {
     }
 }
 
-pub fn fleet() -> Desk {
-    Desk::new(&[("press", "yerc", "sim:"), ("loader", "toyo", "sim:"), ("picker", "yrcx", "sim:")])
+pub fn fleet() -> Workspace {
+    Workspace::new(&[("press", "yerc", "sim:"), ("loader", "toyo", "sim:"), ("picker", "yrcx", "sim:")])
 }
 
 /// A publisher that runs until it is dropped.
@@ -158,10 +158,10 @@ fn every_exit_publishes_the_last_will() {
         return eprintln!("{NOT_INSTALLED}");
     }
     let broker = Mosquitto::start();
-    let (desk, url) = (fleet(), broker.url());
+    let (workspace, url) = (fleet(), broker.url());
     let mut listener = broker.listen("armctl/cell7/state");
     for (signal, code) in [("-TERM", Some(0)), ("-INT", Some(0)), ("-KILL", None)] {
-        let publisher = Publisher::start(desk.command(&["publish", &url, "--node", "cell7", "--json"]));
+        let publisher = Publisher::start(workspace.command(&["publish", &url, "--node", "cell7", "--json"]));
         listener.wait_for("armctl/cell7/state", |state| state == "online");
         publisher.signal(signal);
         listener.wait_for("armctl/cell7/state", |state| state == "offline");
@@ -175,11 +175,11 @@ fn returning_broker_gets_missed_records_in_order() {
         return eprintln!("{NOT_INSTALLED}");
     }
     let mut broker = Mosquitto::start();
-    let (desk, url) = (fleet(), broker.url());
+    let (workspace, url) = (fleet(), broker.url());
     // With `--every 1ms`, unchanged data is also published at every poll.
     let words =
         ["publish", &url, "--node", "cell7", "--json", "--watch", "50ms", "--every", "1ms", "--kinds", "status"];
-    let mut publisher = Publisher::start(desk.command(&words));
+    let mut publisher = Publisher::start(workspace.command(&words));
     publisher.wait_for_message("connected to");
     broker.listen("armctl/press/status").next();
     let time_of = |payload: &str| {
@@ -217,11 +217,11 @@ fn queued_records_outlive_the_process() {
         return eprintln!("{NOT_INSTALLED}");
     }
     let mut broker = Mosquitto::start();
-    let (desk, url) = (fleet(), broker.url());
+    let (workspace, url) = (fleet(), broker.url());
     broker.kill();
     let words =
         ["publish", &url, "--node", "cell7", "--json", "--watch", "50ms", "--every", "1ms", "--kinds", "status"];
-    let mut publisher = Publisher::start(desk.command(&[&words[..], &["-v"]].concat()));
+    let mut publisher = Publisher::start(workspace.command(&[&words[..], &["-v"]].concat()));
     publisher.wait_for_message("next try in");
     // The second try is a second later, so the robots were polled in the meantime.
     publisher.wait_for_message("next try in");
@@ -232,7 +232,7 @@ fn queued_records_outlive_the_process() {
     let ended = jiff::Timestamp::now();
     broker.start_again();
     let mut listener = broker.listen("armctl/+/status");
-    let output = desk.run(&["publish", &url, "--node", "cell7", "--count", "1", "--kinds", "status"]);
+    let output = workspace.run(&["publish", &url, "--node", "cell7", "--count", "1", "--kinds", "status"]);
     assert!(stderr(&output).contains(" KiB "), "{}", stderr(&output));
     let envelope: Value = serde_json::from_str(&listener.next().payload).unwrap();
     assert!(envelope["time"].as_str().unwrap().parse::<jiff::Timestamp>().unwrap() < ended);
@@ -244,11 +244,11 @@ fn removed_robot_is_cleared_at_the_broker() {
         return eprintln!("{NOT_INSTALLED}");
     }
     let broker = Mosquitto::start();
-    let desk = fleet();
+    let workspace = fleet();
     let mut listener = broker.listen("armctl/+/status");
-    let publisher = Publisher::start(desk.command(&["publish", &broker.url(), "--watch", "50ms"]));
+    let publisher = Publisher::start(workspace.command(&["publish", &broker.url(), "--watch", "50ms"]));
     listener.wait_for("armctl/press/status", |payload| !payload.is_empty());
-    desk.write(&[("loader", "toyo", "sim:")]);
+    workspace.write(&[("loader", "toyo", "sim:")]);
     listener.wait_for("armctl/press/status", str::is_empty);
     drop(publisher);
 }
@@ -259,7 +259,7 @@ fn escapes_unusual_names_in_topics() {
         return eprintln!("{NOT_INSTALLED}");
     }
     let broker = Mosquitto::start();
-    let desk = Desk::new(&[]);
+    let workspace = Workspace::new(&[]);
     // The port does not exist. The robot has no other name than its port.
     let words = [
         "-t",
@@ -273,7 +273,7 @@ fn escapes_unusual_names_in_topics() {
         "--kinds",
         "status",
     ];
-    let output = desk.run(&words);
+    let output = workspace.run(&words);
     assert!(output.status.success(), "{}", stderr(&output));
     let mut listener = broker.listen("armctl/#");
     let mut topics = [listener.next().topic, listener.next().topic];
@@ -292,14 +292,14 @@ fn needs_the_right_password_and_never_prints_it() {
         command.args(["-b", "-c"]).arg(&file).args(["plant", "hunter2"]).stderr(Stdio::null());
         assert!(command.status().unwrap().success());
     });
-    let (desk, url) = (fleet(), broker.url());
+    let (workspace, url) = (fleet(), broker.url());
     let publish = ["publish", &url[..], "--user", "plant", "--count", "1", "-vvv", "--kinds", "status"];
     for protocol in ["5", "3.1.1"] {
         let words = [&publish[..], &["--protocol", protocol]].concat();
-        let mut right = desk.command(&words);
+        let mut right = workspace.command(&words);
         let right = right.env("ARMCTL_MQTT_PASSWORD", "hunter2").output().unwrap();
         assert!(right.status.success(), "{}", stderr(&right));
-        let mut wrong = desk.command(&words);
+        let mut wrong = workspace.command(&words);
         let wrong = wrong.env("ARMCTL_MQTT_PASSWORD", "hunter3").output().unwrap();
         assert_eq!(wrong.status.code(), Some(2), "{}", stderr(&wrong));
         assert!(stderr(&wrong).contains("check --user"), "{}", stderr(&wrong));
@@ -307,12 +307,12 @@ fn needs_the_right_password_and_never_prints_it() {
             assert!(!stderr(output).contains("hunter") && !String::from_utf8_lossy(&output.stdout).contains("hunter"));
         }
     }
-    let file = desk.folder.path().join("password");
+    let file = workspace.folder.path().join("password");
     std::fs::write(&file, "hunter2\n").unwrap();
     let words = [&publish[..], &["--password-file", file.to_str().unwrap()]].concat();
-    assert!(desk.run(&words).status.success());
+    assert!(workspace.run(&words).status.success());
     // A password in the URL is refused, because other users could see it.
-    let output = desk.run(&["publish", "mqtt://plant:hunter2@127.0.0.1"]);
+    let output = workspace.run(&["publish", "mqtt://plant:hunter2@127.0.0.1"]);
     assert_eq!(output.status.code(), Some(2));
     let messages = stderr(&output);
     assert!(messages.contains("--password-file") && messages.matches("hunter2").count() <= 1, "{messages}");
@@ -320,12 +320,12 @@ fn needs_the_right_password_and_never_prints_it() {
 
 /// Messages of a publisher that uses a password file with these permissions and this URL. It runs in an empty network.
 fn password_messages(url: &str, rights: u32, more: &[&str]) -> String {
-    let desk = fleet();
-    let file = desk.folder.path().join("password");
+    let workspace = fleet();
+    let file = workspace.folder.path().join("password");
     std::fs::write(&file, "hunter2\n").unwrap();
     std::fs::set_permissions(&file, Permissions::from_mode(rights)).unwrap();
     let words = ["publish", url, "--count", "1", "--user", "plant", "--password-file", file.to_str().unwrap()];
-    let own_file = desk.command(&[&words[..], more].concat());
+    let own_file = workspace.command(&[&words[..], more].concat());
     let mut command = Command::new("unshare");
     command.arg("-Urn").arg(own_file.get_program()).args(own_file.get_args()).stdin(Stdio::null());
     command.envs(own_file.get_envs().filter_map(|(name, value)| Some((name, value?))));
@@ -356,7 +356,7 @@ fn warns_once_about_a_readable_password() {
 
 #[test]
 fn reports_peers_that_are_not_brokers() {
-    let desk = fleet();
+    let workspace = fleet();
     for (answer, closes, code, why) in [
         (&[0x20, 2, 0, 5][..], false, 2, "not authorized to connect"),
         (&[0x20, 2, 0, 2], false, 2, "does not accept the name of this client"),
@@ -370,7 +370,7 @@ fn reports_peers_that_are_not_brokers() {
         (&[], true, 4, "closed the connection"),
     ] {
         let url = hostile(answer, closes);
-        let output = desk.run(&["publish", &url, "--count", "1", "--protocol", "3.1.1", "--kinds", "status"]);
+        let output = workspace.run(&["publish", &url, "--count", "1", "--protocol", "3.1.1", "--kinds", "status"]);
         let said = stderr(&output);
         assert!(said.contains(why) && said.contains("hint:"), "{why}: {said}");
         assert_eq!(output.status.code(), Some(code), "{why}: {said}");
@@ -388,9 +388,9 @@ fn leaves_and_retries_flooding_brokers_without_blocking_the_exit() {
         (&[0x30, 3, 0, 1, b'a'], "it sends too much: "),
         (&[0xd0, 0], "it sends too much: "),
     ] {
-        let desk = fleet();
+        let workspace = fleet();
         let words = ["publish", &flooding(packet), "--protocol", "3.1.1", "--buffer-memory", "64K", "--json"];
-        let mut publisher = Publisher::start(desk.command(&words));
+        let mut publisher = Publisher::start(workspace.command(&words));
         let mut lines = publisher.wait_for_message("connected to");
         lines += publisher.wait_for_message(why);
         lines += publisher.wait_for_message("again after");
@@ -410,12 +410,12 @@ fn reports_a_full_disk_and_continues() {
     }
     let names: Vec<String> = (0..20).map(|number| format!("cell{number}")).collect();
     let robots: Vec<(&str, &str, &str)> = names.iter().map(|name| (&name[..], "yerc", "sim:")).collect();
-    let desk = Desk::new(&robots);
-    let full = desk.folder.path().join("disk");
+    let workspace = Workspace::new(&robots);
+    let full = workspace.folder.path().join("disk");
     std::fs::create_dir(&full).unwrap();
     let words = ["publish", "mqtt://127.0.0.1:1", "--watch", "50ms", "--every", "1ms", "--kinds", "status", "--json"];
     let buffer = ["--buffer-memory", "64K", "--buffer-disk", "16M", "--buffer-dir", full.to_str().unwrap()];
-    let publish = desk.command(&[&words[..], &buffer].concat());
+    let publish = workspace.command(&[&words[..], &buffer].concat());
     let mut command = Command::new("unshare");
     command.args(["-Urm", "sh", "-c", "mount -t tmpfs -o size=128k none \"$0\" && exec \"$@\""]).arg(&full);
     command.arg(publish.get_program()).args(publish.get_args()).stdin(Stdio::null());
@@ -435,10 +435,10 @@ fn reports_two_publishers_with_the_same_name() {
         return eprintln!("{NOT_INSTALLED}");
     }
     let broker = Mosquitto::start();
-    let (desk, url) = (fleet(), broker.url());
-    let mut first = Publisher::start(desk.command(&["publish", &url, "--node", "cell7"]));
+    let (workspace, url) = (fleet(), broker.url());
+    let mut first = Publisher::start(workspace.command(&["publish", &url, "--node", "cell7"]));
     first.wait_for_message("connected to");
-    let output = desk.run(&["publish", &url, "--node", "cell7", "--count", "1"]);
+    let output = workspace.run(&["publish", &url, "--node", "cell7", "--count", "1"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("another armctl publishes as 'cell7'"), "{}", stderr(&output));
 }

@@ -48,11 +48,11 @@ fn another_decoder_reads_births_data_and_deaths() {
         return eprintln!("{NOT_INSTALLED}, or {NO_FOLDER}");
     };
     let broker = Mosquitto::start();
-    let desk = fleet();
+    let workspace = fleet();
     let mut listener = broker.listen_hex("spBv1.0/Plant/#");
     let words = ["-r", "press", "publish", &broker.url(), "--sparkplug", "--group", "Plant", "--node", "Cell7"];
     let also = ["--also", "parts=yerc var get B0", "--watch", "50ms", "--every", "100ms", "-v"];
-    let mut publisher = Publisher::start(desk.command(&[&words[..], &also].concat()));
+    let mut publisher = Publisher::start(workspace.command(&[&words[..], &also].concat()));
     let heard = ["NBIRTH/Cell7", "DBIRTH/Cell7/press", "DDATA/Cell7/press"]
         .map(|what| next(&mut listener, &format!("spBv1.0/Plant/{what}")));
     assert!(heard.iter().all(|heard| !heard.is_kept));
@@ -92,7 +92,7 @@ fn another_decoder_reads_births_data_and_deaths() {
     assert_eq!(publisher.end().0, Some(0));
 
     // The next process uses the next number (bdSeq). When it is killed, the broker publishes its will.
-    let publisher = Publisher::start(desk.command(&words));
+    let publisher = Publisher::start(workspace.command(&words));
     let birth = next(&mut listener, "spBv1.0/Plant/NBIRTH/Cell7");
     publisher.signal("-KILL");
     let death = next(&mut listener, "spBv1.0/Plant/NDEATH/Cell7");
@@ -109,12 +109,12 @@ fn waits_for_the_primary_host() {
         return eprintln!("{NOT_INSTALLED}, or {NO_FOLDER}");
     };
     let broker = Mosquitto::start();
-    let desk = fleet();
+    let workspace = fleet();
     let mut listener = broker.listen_hex("spBv1.0/Plant/#");
     let words = ["-r", "press", "publish", &broker.url(), "--sparkplug", "--group", "Plant", "--node", "Cell7"];
     let host = ["--host", "SCADA", "--watch", "50ms", "--every", "50ms"];
     broker.send("spBv1.0/STATE/SCADA", b"{\"online\":false,\"timestamp\":1}", true);
-    let mut publisher = Publisher::start(desk.command(&[&words[..], &host].concat()));
+    let mut publisher = Publisher::start(workspace.command(&[&words[..], &host].concat()));
     publisher.wait_for_message("waiting for the primary host SCADA");
     broker.send("spBv1.0/STATE/SCADA", b"{\"online\":true,\"timestamp\":2}", true);
     let first = listener.next();

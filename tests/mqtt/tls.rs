@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use super::broker::{self, Mosquitto, NOT_INSTALLED};
-use super::{Desk, Publisher, fleet, stderr};
+use super::{Publisher, Workspace, fleet, stderr};
 
 fn has_openssl() -> bool {
     Command::new("openssl").arg("version").stdout(Stdio::null()).status().is_ok_and(|status| status.success())
@@ -35,7 +35,7 @@ signed client DNS:client.example
     assert!(command.status().unwrap().success(), "the certificates are made");
 }
 
-fn publish(desk: &Desk, broker: &Mosquitto, more: &[&str]) -> (Option<i32>, String) {
+fn publish(workspace: &Workspace, broker: &Mosquitto, more: &[&str]) -> (Option<i32>, String) {
     let url = broker.url().replace("mqtt:", "mqtts:");
     let files: Vec<String> = more
         .iter()
@@ -46,7 +46,7 @@ fn publish(desk: &Desk, broker: &Mosquitto, more: &[&str]) -> (Option<i32>, Stri
         .collect();
     let mut words = vec!["publish", &url, "--count", "1", "--kinds", "status"];
     words.extend(files.iter().map(String::as_str));
-    let output = desk.run(&words);
+    let output = workspace.run(&words);
     (output.status.code(), stderr(&output))
 }
 
@@ -60,9 +60,9 @@ fn trusts_a_broker_only_by_its_certificate() {
             "allow_anonymous true\ncafile FOLDER/ca.pem\ncertfile FOLDER/{name}.pem\nkeyfile FOLDER/{name}.key\n{more}"
         )
     };
-    let desk = fleet();
+    let workspace = fleet();
     let broker = Mosquitto::with(&settings("broker", ""), certificates);
-    let (code, said) = publish(&desk, &broker, &["--ca", "ca.pem"]);
+    let (code, said) = publish(&workspace, &broker, &["--ca", "ca.pem"]);
     assert_eq!(code, Some(0), "{said}");
     for (words, why) in [
         (&["--ca", "stranger.pem"][..], "does not trust the issuer"),
@@ -70,29 +70,29 @@ fn trusts_a_broker_only_by_its_certificate() {
         (&["--ca", "ca.key"], "not a certificate in PEM"),
         (&["--ca", "ca.pem", "--cert", "client.pem", "--key", "ca.pem"], "not a private key in PEM"),
     ] {
-        let (code, said) = publish(&desk, &broker, words);
+        let (code, said) = publish(&workspace, &broker, words);
         assert!(code == Some(2) && said.contains(why) && said.contains("hint:"), "{words:?}: {code:?} {said}");
     }
 
     let other_host = Mosquitto::with(&settings("elsewhere", ""), certificates);
-    let (code, said) = publish(&desk, &other_host, &["--ca", "ca.pem"]);
+    let (code, said) = publish(&workspace, &other_host, &["--ca", "ca.pem"]);
     assert!(code == Some(2) && said.contains("for another name"), "{said}");
 
     let strict = Mosquitto::with(&settings("broker", "require_certificate true\n"), certificates);
     let client = ["--ca", "ca.pem", "--cert", "client.pem", "--key", "client.key"];
-    let (code, said) = publish(&desk, &strict, &client);
+    let (code, said) = publish(&workspace, &strict, &client);
     assert!(code == Some(0) && !said.contains("can read"), "{said}");
     std::fs::set_permissions(strict.folder().join("client.key"), Permissions::from_mode(0o640)).unwrap();
-    let (code, said) = publish(&desk, &strict, &client);
+    let (code, said) = publish(&workspace, &strict, &client);
     assert!(code == Some(0) && said.matches("users of this computer can read this private key").count() == 1, "{said}");
-    let (code, said) = publish(&desk, &strict, &["--ca", "ca.pem"]);
+    let (code, said) = publish(&workspace, &strict, &["--ca", "ca.pem"]);
     assert!(code == Some(2) && said.contains("does not accept this client's certificate"), "{code:?} {said}");
 
     // First, a publisher with TLS at a port without TLS. Then, a publisher without TLS at a port with TLS.
     let plain = Mosquitto::start();
-    let (code, said) = publish(&desk, &plain, &[]);
+    let (code, said) = publish(&workspace, &plain, &[]);
     assert!(code == Some(2) && said.contains("does not use TLS"), "{code:?} {said}");
-    let output = desk.run(&["publish", &broker.url(), "--count", "1", "--kinds", "status"]);
+    let output = workspace.run(&["publish", &broker.url(), "--count", "1", "--kinds", "status"]);
     assert!(output.status.code() == Some(4) && stderr(&output).contains("mqtts://"), "{}", stderr(&output));
 }
 
@@ -111,9 +111,9 @@ fn service_waits_for_the_right_certificate() {
         certificates(folder);
         install_certificate(folder, "elsewhere");
     });
-    let (desk, ca) = (fleet(), broker.folder().join("ca.pem").display().to_string());
+    let (workspace, ca) = (fleet(), broker.folder().join("ca.pem").display().to_string());
     let url = broker.url().replace("mqtt:", "mqtts:");
-    let mut publisher = Publisher::start(desk.command(&["publish", &url, "--ca", &ca, "--json"]));
+    let mut publisher = Publisher::start(workspace.command(&["publish", &url, "--ca", &ca, "--json"]));
     publisher.wait_for_message(
         "its certificate is for another name (use the name in the certificate as the host of the URL); next try",
     );

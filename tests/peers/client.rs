@@ -238,10 +238,10 @@ async fn single_and_multiple_numbers_agree() {
         peer.robot.write_multiple_i16(0, integers.clone()).await.unwrap();
         assert_eq!(peer.robot.read_multiple_i16(0, 100).await.unwrap(), integers);
         assert_eq!(peer.variables(I, 0, 100).await, integers.into_iter().map(Value::Integer).collect::<Vec<_>>());
-        let doubles: Vec<i32> = (-50..50).map(|value| value * 42_000_000).collect();
-        peer.robot.write_multiple_i32(0, doubles.clone()).await.unwrap();
-        assert_eq!(peer.robot.read_multiple_i32(0, 100).await.unwrap(), doubles);
-        assert_eq!(peer.variables(D, 0, 100).await, doubles.into_iter().map(Value::Double).collect::<Vec<_>>());
+        let duplicates: Vec<i32> = (-50..50).map(|value| value * 42_000_000).collect();
+        peer.robot.write_multiple_i32(0, duplicates.clone()).await.unwrap();
+        assert_eq!(peer.robot.read_multiple_i32(0, 100).await.unwrap(), duplicates);
+        assert_eq!(peer.variables(D, 0, 100).await, duplicates.into_iter().map(Value::Double).collect::<Vec<_>>());
         let reals: Vec<f32> = (0_i16..100).map(|value| f32::from(value) * 0.1 - 3.0).collect();
         peer.robot.write_multiple_f32(0, reals.clone()).await.unwrap();
         assert_eq!(peer.robot.read_multiple_f32(0, 100).await.unwrap(), reals);

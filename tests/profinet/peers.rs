@@ -67,16 +67,16 @@ fn our_controller_finds_reads_and_runs_our_device() {
 
 #[test]
 fn another_controller_runs_our_device() {
-    run_theirs("python");
+    run_peer_program("python");
 }
 
 #[test]
 fn another_dcp_client_finds_and_names_our_device() {
-    run_theirs("dcp");
+    run_peer_program("dcp");
 }
 
 /// Runs a test with programs of other authors. It needs the folder that `tests/profinet/install` creates.
-fn run_theirs(name: &str) {
+fn run_peer_program(name: &str) {
     if std::env::var_os(PEERS).is_none() {
         println!("skipped: {PEERS} does not name a folder of tests/profinet/install");
     } else if run(name).is_none() {
@@ -115,7 +115,7 @@ fn run(name: &str) -> Option<String> {
     Some(text)
 }
 
-fn is_an_end() -> bool {
+fn is_end_line() -> bool {
     std::env::var_os("ROLE").is_some()
 }
 
@@ -125,7 +125,7 @@ fn is_an_end() -> bool {
 #[ignore = "one end of a test above"]
 fn others_device() {
     const ALARM_MARK: u16 = 0x4141;
-    if !is_an_end() {
+    if !is_end_line() {
         return;
     }
     let config = DeviceConfig::builder("yrcx-sim")
@@ -182,7 +182,7 @@ fn settings() -> Settings {
 #[test]
 #[ignore = "one end of a test above"]
 fn others_controller() {
-    if !is_an_end() {
+    if !is_end_line() {
         return;
     }
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
@@ -223,7 +223,7 @@ fn others_controller() {
         let pause = format!("kill -STOP {0}; sleep 4; kill -CONT {0}", std::process::id());
         let mut pause = Command::new("sh").args(["-c", &pause]).spawn().unwrap();
         let lost = connection.until(|view| view.statistics.losses == 1).await;
-        println!("after a pause: {:?}", lost.trouble);
+        println!("after a pause: {:?}", lost.last_error);
         connection.until(|view| view.state == State::Open && view.generation == 2).await;
         pause.wait().unwrap();
         connection.close().await.unwrap();
@@ -265,7 +265,7 @@ impl Application for Echo {
 #[test]
 #[ignore = "one end of a test above"]
 fn our_device() {
-    if !is_an_end() {
+    if !is_end_line() {
         return;
     }
     let interface = Interface::find("pd0").unwrap();
@@ -301,7 +301,7 @@ fn our_device() {
 #[test]
 #[ignore = "one end of a test above"]
 fn our_controller() {
-    if !is_an_end() {
+    if !is_end_line() {
         return;
     }
     let Err(ProfinetError::NoInterface { present, .. }) = Interface::find("eth9") else { panic!("there is eth9") };
@@ -381,7 +381,7 @@ fn dcp_device() {
 #[test]
 #[ignore = "one end of a test above"]
 fn python_controller() {
-    if is_an_end() {
+    if is_end_line() {
         run_python(include_str!("controller.py"), &["pc0", "yrcx-sim"], "profinet-py has seen its data come back");
     }
 }
@@ -389,7 +389,7 @@ fn python_controller() {
 #[test]
 #[ignore = "one end of a test above"]
 fn dcp_controller() {
-    if is_an_end() {
+    if is_end_line() {
         run_python(include_str!("dcp.py"), &["192.168.79.1", "yrcx-sim"], "pnio-dcp has seen all");
     }
 }

@@ -4,7 +4,7 @@
 use std::io::Write as _;
 use std::process::Command;
 
-use super::{Desk, Running, serve_simulator, stderr};
+use super::{Running, Workspace, serve_simulator, stderr};
 #[cfg(target_os = "linux")]
 use crate::support::namespaces;
 use crate::support::terminal::Terminal;
@@ -88,16 +88,16 @@ const START_KINDS: [(StartKind, bool); 7] = [
 ];
 
 /// Two robots `a` and `b`. Each has its own simulator.
-fn two_robots(motion: &Motion) -> (Vec<Running>, Desk) {
-    let no_robots = Desk::new(&[]);
+fn two_robots(motion: &Motion) -> (Vec<Running>, Workspace) {
+    let no_robots = Workspace::new(&[]);
     let simulators: Vec<_> = (0..2).map(|_| serve_simulator(&no_robots, motion.serve)).collect();
     let targets: Vec<_> = simulators.iter().map(|simulator| format!("{}{}", simulator.first, motion.with)).collect();
-    let desk = Desk::new(&[("a", motion.family, &targets[0]), ("b", motion.family, &targets[1])]);
-    (simulators, desk)
+    let workspace = Workspace::new(&[("a", motion.family, &targets[0]), ("b", motion.family, &targets[1])]);
+    (simulators, workspace)
 }
 
 /// Waits until the simulator itself reports that the robot has stopped. The alarm must show that the master is lost.
-fn has_no_processes(simulator: &mut Running) {
+fn wait_until_stopped(simulator: &mut Running) {
     loop {
         writeln!(simulator.process.stdin.as_ref().unwrap(), "robot").unwrap();
         let now = simulator.line("now ");
@@ -109,21 +109,21 @@ fn has_no_processes(simulator: &mut Running) {
 }
 
 /// The process that moves a robot.
-enum Moving {
+enum MovingProcess {
     Process(Running),
     Prompt(Box<Terminal>),
 }
 
-impl Moving {
-    fn start_motion(desk: &Desk, motion: &Motion, way: StartKind) -> Self {
-        let file = desk.folder.path().join("lines");
+impl MovingProcess {
+    fn start_motion(workspace: &Workspace, motion: &Motion, way: StartKind) -> Self {
+        let file = workspace.folder.path().join("lines");
         std::fs::write(&file, format!("{}\n", motion.words)).unwrap();
         let words = match way {
             StartKind::Direct => format!("-r a {} --yes -vv", motion.words),
             StartKind::Several => format!("-r a -r b {} --yes -vv", motion.words),
             StartKind::Batch => format!("-r a batch {} --yes -vv", file.display()),
             StartKind::Prompt => {
-                let mut command = desk.command("-r a --yes -vv repl");
+                let mut command = workspace.command("-r a --yes -vv repl");
                 command.env("TERM", "xterm-256color").env("LANG", "C.UTF-8");
                 let mut prompt = Terminal::start(command, 200, 50).unwrap();
                 prompt.wait_for_text("ends the prompt.");
@@ -132,9 +132,9 @@ impl Moving {
                 return Self::Prompt(Box::new(prompt));
             }
         };
-        let mut moving = Running::start(desk.command(&words), false);
+        let mut moving = Running::start(workspace.command(&words), false);
         if motion.motion_state.is_empty() {
-            while (motion.is_standing)(&desk.data(&format!("-r a {}", motion.state_command))) {}
+            while (motion.is_standing)(&workspace.data(&format!("-r a {}", motion.state_command))) {}
         } else {
             for _ in 0..if way == StartKind::Several { 2 } else { 1 } {
                 moving.wait_for_message(motion.motion_state);
@@ -159,21 +159,21 @@ impl Moving {
 
     /// Waits until the process has ended, and until no guardian remains that would stop the robot. The guardian of a
     /// session may remain. Returns the output.
-    fn has_ended(self, desk: &Desk, session: Option<&Running>) -> String {
+    fn has_ended(self, workspace: &Workspace, session: Option<&Running>) -> String {
         let (code, said) = match self {
             // The guardian of the process has the same stderr. When stderr ends, both have ended.
             Self::Process(process) => process.end(),
             Self::Prompt(mut prompt) => (prompt.end().code(), String::from_utf8_lossy(&prompt.written).into_owned()),
         };
         assert_eq!(code, None, "it was killed: {said}");
-        no_guardian(desk, session);
+        no_guardian(workspace, session);
         said
     }
 }
 
 /// Waits until no guardian of this user remains. The guardian of a session may remain.
-fn no_guardian(desk: &Desk, session: Option<&Running>) {
-    let home = format!("HOME={}", desk.folder.path().display());
+fn no_guardian(workspace: &Workspace, session: Option<&Running>) {
+    let home = format!("HOME={}", workspace.folder.path().display());
     let parent = session.map_or_else(|| "none".to_owned(), |session| format!("PPid:\t{}\n", session.process.id()));
     let is_guardian = |process: &std::path::Path| {
         let has = |file: &str, what: &str| {
@@ -187,17 +187,17 @@ fn no_guardian(desk: &Desk, session: Option<&Running>) {
 fn wait_for_stop(motion: &Motion, signals: &[&str], ways: &[(StartKind, bool)]) {
     for signal in signals {
         for &(way, in_session) in ways {
-            let (mut simulators, desk) = two_robots(motion);
-            let session = in_session.then(|| Running::session(&desk, "a"));
-            let moving = Moving::start_motion(&desk, motion, way);
+            let (mut simulators, workspace) = two_robots(motion);
+            let session = in_session.then(|| Running::session(&workspace, "a"));
+            let moving = MovingProcess::start_motion(&workspace, motion, way);
             moving.signal(signal);
-            let messages = moving.has_ended(&desk, session.as_ref());
+            let messages = moving.has_ended(&workspace, session.as_ref());
             assert_eq!(*signal == "STOP", messages.contains("did not respond for 2 s"), "{way:?}: {messages}");
             if let Some(mut session) = session {
                 session.wait_for_message("the client moved the robot");
                 session.wait_for_message("the robot was stopped");
                 if motion.family == "yrcx" {
-                    desk.until(|session| session["under_way"] == false);
+                    workspace.until(|session| session["under_way"] == false);
                     continue;
                 }
                 // `session` is dropped here. The session process then ends, and its link with it.
@@ -205,10 +205,10 @@ fn wait_for_stop(motion: &Motion, signals: &[&str], ways: &[(StartKind, bool)]) 
             let robots: &[_] = if way == StartKind::Several { &["a", "b"] } else { &["a"] };
             for (robot, simulator) in robots.iter().zip(&mut simulators) {
                 if motion.family == "yrcx" {
-                    has_no_processes(simulator);
+                    wait_until_stopped(simulator);
                     continue;
                 }
-                let state = desk.data(&format!("-r {robot} {}", motion.state_command));
+                let state = workspace.data(&format!("-r {robot} {}", motion.state_command));
                 assert!((motion.is_standing)(&state), "{signal} {way:?} {in_session}: {robot}: {state}");
             }
         }
@@ -262,9 +262,9 @@ fn yrcx_on_profibus_stops_if_its_master_or_client_is_killed_or_frozen() {
 fn stops_a_motion_when_its_session_process_ends() {
     for motion in [&MOVE, &HOME, &SERIAL] {
         for (holder, client) in [("KILL", "KILL"), ("KILL", ""), ("STOP", ""), ("TERM", ""), ("STOP", "KILL")] {
-            let (_simulators, desk) = two_robots(motion);
-            let session = Running::session(&desk, "a");
-            let moving = Moving::start_motion(&desk, motion, StartKind::Direct);
+            let (_simulators, workspace) = two_robots(motion);
+            let session = Running::session(&workspace, "a");
+            let moving = MovingProcess::start_motion(&workspace, motion, StartKind::Direct);
             let (session_id, moving_id) = (session.process.id(), moving.pid());
             // One `kill` command gets both ids: if only one process were killed first, the other process would end by
             // itself.
@@ -282,11 +282,11 @@ fn stops_a_motion_when_its_session_process_ends() {
             }
             let (code, said) = session.end();
             assert_eq!(code, (holder == "TERM").then_some(0), "{said}");
-            let Moving::Process(process) = moving else { unreachable!() };
+            let MovingProcess::Process(process) = moving else { unreachable!() };
             let (code, said) = process.end();
             assert_ne!(code, Some(0), "{holder} {client}: {said}");
-            no_guardian(&desk, None);
-            let state = desk.data(&format!("-r a --no-session {}", motion.state_command));
+            no_guardian(&workspace, None);
+            let state = workspace.data(&format!("-r a --no-session {}", motion.state_command));
             assert!((motion.is_standing)(&state), "{holder} {client}: {}: {state}", motion.words);
         }
     }
@@ -294,11 +294,11 @@ fn stops_a_motion_when_its_session_process_ends() {
 
 #[test]
 fn background_session_logs_the_result_of_a_stop() {
-    let (_simulators, desk) = two_robots(&MOVE);
-    desk.data("-r a session open --background");
-    let moving = Moving::start_motion(&desk, &MOVE, StartKind::Direct);
+    let (_simulators, workspace) = two_robots(&MOVE);
+    workspace.data("-r a session open --background");
+    let moving = MovingProcess::start_motion(&workspace, &MOVE, StartKind::Direct);
     moving.signal("KILL");
-    let log = desk.files("log").remove(0);
+    let log = workspace.files("log").remove(0);
     while !std::fs::read_to_string(&log).unwrap().contains(": the robot was stopped\n") {}
 }
 
@@ -306,48 +306,48 @@ fn background_session_logs_the_result_of_a_stop() {
 #[test]
 fn removed_program_file_does_not_prevent_the_stop() {
     for in_session in [false, true] {
-        let (_simulators, mut desk) = two_robots(&MOVE);
-        let copy = desk.folder.path().join("armctl");
-        std::fs::copy(&desk.program, &copy).unwrap();
-        let installed = std::mem::replace(&mut desk.program, copy.clone());
-        let session = in_session.then(|| Running::session(&desk, "a"));
-        let moving = Moving::start_motion(&desk, &MOVE, StartKind::Direct);
-        desk.program = installed;
+        let (_simulators, mut workspace) = two_robots(&MOVE);
+        let copy = workspace.folder.path().join("armctl");
+        std::fs::copy(&workspace.program, &copy).unwrap();
+        let installed = std::mem::replace(&mut workspace.program, copy.clone());
+        let session = in_session.then(|| Running::session(&workspace, "a"));
+        let moving = MovingProcess::start_motion(&workspace, &MOVE, StartKind::Direct);
+        workspace.program = installed;
         std::fs::remove_file(copy).unwrap();
         moving.signal("KILL");
-        let said = moving.has_ended(&desk, session.as_ref());
+        let said = moving.has_ended(&workspace, session.as_ref());
         assert!(!said.contains("may still move"), "{said}");
         if let Some(mut session) = session {
             session.wait_for_message("the robot was stopped");
         }
-        assert_eq!(desk.data("-r a yerc status")["held"], true, "in a session: {in_session}");
+        assert_eq!(workspace.data("-r a yerc status")["held"], true, "in a session: {in_session}");
     }
 }
 
 /// After a normal end, the guardian sends no additional stop: HOLD stays off.
 #[test]
 fn does_not_stop_a_finished_motion() {
-    let (_simulators, desk) = two_robots(&MOVE);
-    let moved = desk.run("-r a yerc move relative --x 1 --speed 100mm/s --yes");
+    let (_simulators, workspace) = two_robots(&MOVE);
+    let moved = workspace.run("-r a yerc move relative --x 1 --speed 100mm/s --yes");
     assert!(moved.status.success(), "{}", stderr(&moved));
     // The guardian keeps stderr open. The test has read stderr to its end, so the guardian has ended.
-    assert_eq!(desk.data("-r a yerc status")["held"], false);
+    assert_eq!(workspace.data("-r a yerc status")["held"], false);
 }
 
 #[test]
 fn move_with_on_interrupt_leave_continues_after_a_kill() {
     for in_session in [false, true] {
-        let (_simulators, desk) = two_robots(&MOVE);
-        let mut session = in_session.then(|| Running::session(&desk, "a"));
+        let (_simulators, workspace) = two_robots(&MOVE);
+        let mut session = in_session.then(|| Running::session(&workspace, "a"));
         let words = format!("-r a {} --on-interrupt leave --yes -vv", MOVE.words);
-        let mut moving = Running::start(desk.command(&words), false);
+        let mut moving = Running::start(workspace.command(&words), false);
         moving.wait_for_message(MOVE.motion_state);
         moving.signal("KILL");
         assert_eq!(moving.end().0, None);
         if let Some(session) = &mut session {
             session.wait_for_message("the client moved the robot");
         }
-        let status = desk.data("-r a yerc status");
+        let status = workspace.data("-r a yerc status");
         assert_eq!((&status["held"], &status["running"]), (&false.into(), &true.into()), "{status}");
     }
 }
@@ -357,21 +357,22 @@ fn move_with_on_interrupt_leave_continues_after_a_kill() {
 fn terminal_signals_stop_the_motion() {
     for signal in ["QUIT", "TSTP"] {
         for motion in [&MOVE, &JOG] {
-            let (_simulators, desk) = two_robots(motion);
-            let _session = Running::session(&desk, "a");
-            let Moving::Process(moving) = Moving::start_motion(&desk, motion, StartKind::Direct) else {
+            let (_simulators, workspace) = two_robots(motion);
+            let _session = Running::session(&workspace, "a");
+            let MovingProcess::Process(moving) = MovingProcess::start_motion(&workspace, motion, StartKind::Direct)
+            else {
                 unreachable!()
             };
             moving.signal(signal);
             let (code, said) = moving.end();
             assert_eq!(code, Some(130), "{signal} {}: {said}", motion.words);
             assert!(said.contains("the robot was stopped"), "{signal} {}: {said}", motion.words);
-            let state = desk.data(&format!("-r a {}", motion.state_command));
+            let state = workspace.data(&format!("-r a {}", motion.state_command));
             assert!((motion.is_standing)(&state), "{signal} {}: {state}", motion.words);
         }
-        let (_simulator, desk) = super::cell_arguments();
-        let _session = Running::session(&desk, "cell");
-        let moving = super::start_motion(&desk);
+        let (_simulator, workspace) = super::cell_arguments();
+        let _session = Running::session(&workspace, "cell");
+        let moving = super::start_motion(&workspace);
         moving.signal(signal);
         let (code, said) = moving.end();
         assert!(code == Some(130) && said.contains("the robot was stopped"), "{signal}: {code:?}: {said}");
@@ -382,20 +383,20 @@ fn terminal_signals_stop_the_motion() {
 #[test]
 fn stop_bypasses_an_unresponsive_session() {
     for (motion, stop) in [(&MOVE, "yerc hold on"), (&JOG, "toyo stop")] {
-        let (_simulators, desk) = two_robots(motion);
-        let session = Running::session(&desk, "a");
+        let (_simulators, workspace) = two_robots(motion);
+        let session = Running::session(&workspace, "a");
         let pid = session.process.id();
         session.signal("STOP");
-        let blocked_session = desk.run(&format!("-r a {}", motion.state_command));
+        let blocked_session = workspace.run(&format!("-r a {}", motion.state_command));
         assert_eq!(blocked_session.status.code(), Some(4), "{}", stderr(&blocked_session));
         for part in [format!("the session (process {pid}) does not respond"), format!("`kill -CONT {pid}`")] {
             assert!(stderr(&blocked_session).contains(&part), "{part}: {}", stderr(&blocked_session));
         }
-        let stopped = desk.run(&format!("-r a {stop}"));
+        let stopped = workspace.run(&format!("-r a {stop}"));
         if motion.family == "yerc" {
             assert!(stopped.status.success(), "{}", stderr(&stopped));
             assert!(stderr(&stopped).contains("so armctl sends the stop directly"), "{}", stderr(&stopped));
-            assert_eq!(desk.data("-r a --no-session yerc status")["held"], true);
+            assert_eq!(workspace.data("-r a --no-session yerc status")["held"], true);
         } else {
             assert_eq!(stopped.status.code(), Some(4), "{}", stderr(&stopped));
             assert!(stderr(&stopped).contains(&format!("`kill -KILL {pid}`")), "{}", stderr(&stopped));

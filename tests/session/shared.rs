@@ -10,7 +10,7 @@ use std::thread;
 
 use serde_json::Value;
 
-use super::{Desk, Running, simulator, stderr};
+use super::{Running, Workspace, simulator, stderr};
 use crate::support::terminal::Terminal;
 
 /// A serial device server.
@@ -107,17 +107,17 @@ impl Watch {
 #[test]
 fn monitors_share_a_link_for_one_client() {
     for evicts in [false, true] {
-        let simulator = simulator(&Desk::new(&[]), "toyo", "127.0.0.1:0");
+        let simulator = simulator(&Workspace::new(&[]), "toyo", "127.0.0.1:0");
         let server = DeviceServer::proxy(&simulator.first, evicts);
-        let desk = Desk::new(&[("cell", "toyo", &server.url)]);
-        let mut top = Terminal::start(desk.command("top --all --watch 50ms"), 100, 30).unwrap();
-        let watch = Watch::start(desk.command("-r cell toyo position --watch 50ms -o jsonl"));
-        let metrics = Watch::start(desk.command("serve metrics --all --listen 127.0.0.1:0 --watch 50ms"));
+        let workspace = Workspace::new(&[("cell", "toyo", &server.url)]);
+        let mut top = Terminal::start(workspace.command("top --all --watch 50ms"), 100, 30).unwrap();
+        let watch = Watch::start(workspace.command("-r cell toyo position --watch 50ms -o jsonl"));
+        let metrics = Watch::start(workspace.command("serve metrics --all --listen 127.0.0.1:0 --watch 50ms"));
         // `publish` polls the robots with and without a broker.
-        let publish = Watch::start(desk.command("publish mqtt://127.0.0.1:1 --all --watch 50ms"));
+        let publish = Watch::start(workspace.command("publish mqtt://127.0.0.1:1 --all --watch 50ms"));
         let seen = |watch: &Watch| watch.lines.lock().unwrap().len();
         while seen(&watch) < 40 {
-            let output = desk.run("-r cell toyo position --json");
+            let output = workspace.run("-r cell toyo position --json");
             assert!(output.status.success(), "{}", stderr(&output));
         }
         top.wait_for_picture("cell  toyo  answer");
@@ -125,7 +125,11 @@ fn monitors_share_a_link_for_one_client() {
             assert_eq!(serde_json::from_str::<Value>(line).unwrap()["ok"], true, "{line}");
         }
         assert_eq!(server.conflicts.load(Ordering::Relaxed), 0, "evicts: {evicts}");
-        assert!(desk.listed_sessions()["clients"].as_array().unwrap().len() >= 4, "{}", desk.listed_sessions());
+        assert!(
+            workspace.listed_sessions()["clients"].as_array().unwrap().len() >= 4,
+            "{}",
+            workspace.listed_sessions()
+        );
         for mut watch in [watch, metrics, publish] {
             watch.running.signal("TERM");
             let mut messages = String::new();
@@ -135,34 +139,34 @@ fn monitors_share_a_link_for_one_client() {
         top.press("q");
         assert!(top.end().success());
         // A session without clients ends by itself.
-        while !desk.files("sock").is_empty() {}
+        while !workspace.files("sock").is_empty() {}
     }
 }
 
 /// Without a session, commands open the link one after the other.
 #[test]
 fn commands_wait_for_a_link_for_one_client() {
-    let simulator = simulator(&Desk::new(&[]), "toyo", "127.0.0.1:0");
+    let simulator = simulator(&Workspace::new(&[]), "toyo", "127.0.0.1:0");
     let server = DeviceServer::proxy(&simulator.first, true);
-    let desk = Desk::new(&[("cell", "toyo", &server.url)]);
-    let asked: Vec<_> = (0..8).map(|_| Running::start(desk.command("-r cell toyo position"), false)).collect();
+    let workspace = Workspace::new(&[("cell", "toyo", &server.url)]);
+    let asked: Vec<_> = (0..8).map(|_| Running::start(workspace.command("-r cell toyo position"), false)).collect();
     for asked in asked {
         let (code, said) = asked.end();
         assert_eq!(code, Some(0), "{said}");
     }
     assert_eq!((server.conflicts.load(Ordering::Relaxed), server.accepted.load(Ordering::Relaxed)), (0, 8));
-    assert!(desk.files("sock").is_empty(), "a command opens no session");
+    assert!(workspace.files("sock").is_empty(), "a command opens no session");
 }
 
 /// The server does not evict a command with a direct link. Other commands report the process of this command.
 #[test]
 fn names_the_process_that_holds_a_link() {
-    let simulator = simulator(&Desk::new(&[]), "toyo", "127.0.0.1:0");
+    let simulator = simulator(&Workspace::new(&[]), "toyo", "127.0.0.1:0");
     let server = DeviceServer::proxy(&simulator.first, true);
-    let desk = Desk::new(&[("cell", "toyo", &server.url)]);
-    let jog = Running::start(desk.command("-r cell toyo jog X + low --for 60s --yes"), false);
+    let workspace = Workspace::new(&[("cell", "toyo", &server.url)]);
+    let jog = Running::start(workspace.command("-r cell toyo jog X + low --for 60s --yes"), false);
     while server.accepted.load(Ordering::Relaxed) == 0 {}
-    let blocked_command = desk.run("-r cell toyo position");
+    let blocked_command = workspace.run("-r cell toyo position");
     super::fails(
         &blocked_command,
         4,

@@ -17,11 +17,11 @@ use crate::support::terminal::Terminal;
 use recorded::Recorded;
 
 /// The environment of a user. The robots of the inventory are robot1, robot2 … with these targets.
-struct Desk {
+struct Workspace {
     folder: TempDir,
 }
 
-impl Desk {
+impl Workspace {
     fn new(targets: &[String]) -> Self {
         let folder = tempfile::tempdir().expect("a folder");
         let robots = (1..).zip(targets).map(|(number, target)| {
@@ -46,14 +46,14 @@ impl Desk {
 }
 
 /// An inventory with the built-in simulator of each family.
-fn simulated_robot() -> Desk {
-    Desk::new(&["yerc sim:", "toyo sim:", "yrcx sim:"].map(str::to_owned))
+fn simulated_robot() -> Workspace {
+    Workspace::new(&["yerc sim:", "toyo sim:", "yrcx sim:"].map(str::to_owned))
 }
 
 #[test]
 fn lists_and_opens_robots_and_q_quits() {
-    let desk = simulated_robot();
-    let mut top = desk.top(&["--watch", "100ms"]);
+    let workspace = simulated_robot();
+    let mut top = workspace.top(&["--watch", "100ms"]);
     top.wait_for_picture("3 robots · 3 answer");
     top.wait_for_picture("robot2  toyo");
     assert!(top.picture.is_alternate && !top.picture.has_cursor && top.picture.has_color);
@@ -80,8 +80,8 @@ fn lists_and_opens_robots_and_q_quits() {
 
 #[test]
 fn single_robot_uses_the_full_screen() {
-    let desk = simulated_robot();
-    let mut top = desk.top(&["-r", "robot1"]);
+    let workspace = simulated_robot();
+    let mut top = workspace.top(&["-r", "robot1"]);
     top.wait_for_picture("SIGNALS");
     top.press("q");
     assert_eq!(top.end().code(), Some(0));
@@ -89,7 +89,7 @@ fn single_robot_uses_the_full_screen() {
 
 #[test]
 fn every_exit_restores_the_terminal() {
-    let desk = simulated_robot();
+    let workspace = simulated_robot();
     // Each way to end: a key (no signal) or a signal.
     let ends = [
         ("Ctrl-C", None),
@@ -99,7 +99,7 @@ fn every_exit_restores_the_terminal() {
         ("SIGQUIT", Some("QUIT")),
     ];
     for (said, signal) in ends {
-        let mut top = desk.top(&[]);
+        let mut top = workspace.top(&[]);
         top.wait_for_picture("3 answer");
         match signal {
             Some(signal) => top.signal(signal),
@@ -114,8 +114,8 @@ fn every_exit_restores_the_terminal() {
 #[cfg(target_os = "linux")]
 #[test]
 fn ctrl_z_suspends_and_continues() {
-    let desk = simulated_robot();
-    let mut top = desk.top(&[]);
+    let workspace = simulated_robot();
+    let mut top = workspace.top(&[]);
     top.wait_for_picture("3 answer");
     top.press("\x1a");
     top.is_suspended();
@@ -147,9 +147,9 @@ fn ctrl_z_suspends_in_a_pid_namespace() {
 
 #[test]
 fn limits_output_to_terminal_capabilities() {
-    let desk = simulated_robot();
+    let workspace = simulated_robot();
     for (variable, value, words) in [("NO_COLOR", "1", &[][..]), ("LANG", "C", &["--color", "never"])] {
-        let mut command = desk.command(&[&["top"], words].concat());
+        let mut command = workspace.command(&[&["top"], words].concat());
         command.env(variable, value);
         let mut top = Terminal::start(command, 80, 24).expect("a terminal");
         top.wait_for_picture("3 answer");
@@ -163,8 +163,8 @@ fn limits_output_to_terminal_capabilities() {
 #[test]
 fn sends_only_reads_for_every_key() {
     let controllers = Recorded::start();
-    let desk = Desk::new(&controllers.targets);
-    let mut top = desk.top(&["--watch", "50ms"]);
+    let workspace = Workspace::new(&controllers.targets);
+    let mut top = workspace.top(&["--watch", "50ms"]);
     top.wait_for_picture("3 robots · 3 answer");
     for robot in ["robot1", "robot2", "robot3"] {
         top.press("\r");
@@ -190,8 +190,8 @@ fn sends_only_reads_for_every_key() {
 fn services_send_only_reads() {
     for words in [["serve", "metrics", "--listen", "127.0.0.1:0"], ["publish", "mqtt://127.0.0.1:1", "--every", "1s"]] {
         let controllers = Recorded::start();
-        let desk = Desk::new(&controllers.targets);
-        let mut command = desk.command(&[&words[..], &["--all", "--watch", "50ms"]].concat());
+        let workspace = Workspace::new(&controllers.targets);
+        let mut command = workspace.command(&[&words[..], &["--all", "--watch", "50ms"]].concat());
         let mut service = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("it starts");
         while controllers.fewest_requests() < 60 {
             assert!(service.try_wait().expect("it is our child").is_none(), "{words:?} goes on");
@@ -205,14 +205,14 @@ fn services_send_only_reads() {
 
 #[test]
 fn lost_terminal_ends_the_monitor_if_hangups_are_ignored() {
-    let desk = simulated_robot();
+    let workspace = simulated_robot();
     // This end is closed in every child process, because it would keep the terminal open.
     let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).expect("a pseudo-terminal");
     grantpt(&master).and_then(|()| unlockpt(&master)).expect("it can be opened");
     let name = ptsname(&master, Vec::new()).expect("it has a name").into_string().expect("in UTF-8");
     let slave = std::fs::File::options().read(true).write(true).open(name).expect("opened");
     let mut master = std::fs::File::from(master);
-    let command = desk.command(&[]);
+    let command = workspace.command(&[]);
     let armctl = command.get_program().to_owned();
     let mut program = Command::new("sh");
     program.args(["-c", "trap '' HUP; exec \"$0\" top"]).arg(armctl).env_clear();

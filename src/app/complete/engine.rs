@@ -23,12 +23,12 @@ pub(super) fn complete(
     mut before: Vec<OsString>,
     current: &OsStr,
     (is_among, connects): (bool, bool),
-    patience: Duration,
+    time_limit: Duration,
 ) -> Option<Vec<Candidate>> {
     let mut root = Cli::command().ignore_errors(true);
     let matches = root.try_get_matches_from_mut(&before).ok()?;
     let path = path(&matches);
-    let context = Arc::new(Context::new(&matches, (is_among, connects), patience));
+    let context = Arc::new(Context::new(&matches, (is_among, connects), time_limit));
     let mut reduced = narrow(&root, &path, &context)?;
     if !is_among {
         // The tree is leaked: freeing its thousands of parts takes time, and the process is about to exit.

@@ -14,12 +14,12 @@ use tokio::time::timeout;
 
 use crate::app::parser::Parser;
 use crate::app::prepare::{Invocation, Task};
-use armctl_frame::authority::Authority;
-use armctl_frame::kind::{Ask, Question};
+use armctl_frame::confirmation::Confirmer;
 use armctl_frame::output::{ColorChoice, Format, Screen, escape};
 use armctl_frame::settings::target::Family;
 use armctl_frame::settings::{Robot, Sessions, Setting, Sources};
-use armctl_frame::{Access, AnyContext, Candidate, Entry};
+use armctl_frame::value_kind::{Ask, CandidateFunction};
+use armctl_frame::{Access, AnyContext, Candidate, ConnectionEffect};
 
 /// Maximum time to wait for a robot.
 pub(super) const ASK_TIMEOUT: Duration = Duration::from_millis(300);
@@ -27,12 +27,12 @@ pub(super) const ASK_TIMEOUT: Duration = Duration::from_millis(300);
 /// Returns the values that the robot of the line reports in time.
 pub(super) fn values(
     family: Family,
-    ask: Question,
+    ask: CandidateFunction,
     sources: &Sources,
-    (patience, connects): (Duration, bool),
+    (time_limit, connects): (Duration, bool),
 ) -> Vec<Candidate> {
-    let Some(robot) = robot(family, sources, patience, connects) else { return Vec::new() };
-    let until = Instant::now() + patience;
+    let Some(robot) = robot(family, sources, time_limit, connects) else { return Vec::new() };
+    let until = Instant::now() + time_limit;
     let (found, arrived) = mpsc::channel();
     // The request runs on its own thread: the line editor may call this function from any context, and the wait must be
     // limited.
@@ -40,7 +40,7 @@ pub(super) fn values(
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         if let Ok(runtime) = runtime {
             // A timeout is not an error: the values that were found before are used.
-            let _ = runtime.block_on(async { timeout(patience, ask(&Asker::new(robot, found))).await });
+            let _ = runtime.block_on(async { timeout(time_limit, ask(&LiveReader::new(robot, found))).await });
             runtime.shutdown_background();
         }
     };
@@ -58,7 +58,7 @@ pub(super) fn values(
 
 /// Returns the robot of the line, if there is exactly one. A real controller is reached only through a session, unless
 /// `connects` is `true`.
-fn robot(family: Family, sources: &Sources, patience: Duration, connects: bool) -> Option<Robot> {
+fn robot(family: Family, sources: &Sources, time_limit: Duration, connects: bool) -> Option<Robot> {
     let [robot] = <[Robot; 1]>::try_from(sources.robots(Some(family)).ok()?).ok()?;
     let sessions = match (robot.target.value.is_simulated(), robot.sessions) {
         (true, sessions) => sessions,
@@ -66,19 +66,19 @@ fn robot(family: Family, sources: &Sources, patience: Duration, connects: bool) 
         (false, Sessions::None) => return None,
         (false, _) => Sessions::Only,
     };
-    let patience = Setting { value: patience, ..robot.timeout };
+    let time_limit = Setting { value: time_limit, ..robot.timeout };
     let retries = Setting { value: 0, ..robot.retries };
-    Some(Robot { sessions, timeout: patience, retries, ..robot })
+    Some(Robot { sessions, timeout: time_limit, retries, ..robot })
 }
 
 /// Reader of values from one robot.
-struct Asker {
+struct LiveReader {
     robot: Robot,
     found: Sender<Candidate>,
     start: Instant,
 }
 
-impl Asker {
+impl LiveReader {
     fn new(robot: Robot, found: Sender<Candidate>) -> Self {
         Self { robot, found, start: Instant::now() }
     }
@@ -95,21 +95,21 @@ impl Asker {
         let typed = Some(Arc::from("completion of a command line"));
         let robot = &self.robot;
         // If the end of a connection stops the controller, only a session may be used.
-        if robot.sessions != Sessions::Only && command.entry(robot) != Entry::Harmless {
+        if robot.sessions != Sessions::Only && command.connection_effect(robot) != ConnectionEffect::Harmless {
             return None;
         }
         let access = Access { typed, ..Access::reading(command.connect_mode(robot)) };
         let screen = Screen::new(Format::Json, ColorChoice::Never, true, 0).silenced();
         let mut connection = command.connect(robot, access, &screen).await.ok()?;
-        let authority = Authority::reading(&screen, robot);
-        let context = AnyContext { robot, connection: &mut *connection, screen: &screen, several: false, authority };
+        let confirmer = Confirmer::reading(&screen, robot);
+        let context = AnyContext { robot, connection: &mut *connection, screen: &screen, several: false, confirmer };
         let report = command.run(context).await;
         connection.close(&screen).await.ok()?;
         report.ok()?.data().ok()
     }
 }
 
-impl Ask for Asker {
+impl Ask for LiveReader {
     fn data<'a>(&'a self, words: &'a [&'a str]) -> LocalBoxFuture<'a, Option<Value>> {
         self.report(words).boxed_local()
     }

@@ -38,7 +38,7 @@ pub fn complete_within(
     words: &[OsString],
     index: usize,
     is_among: bool,
-    patience: Duration,
+    time_limit: Duration,
     connects: bool,
 ) -> Vec<Candidate> {
     let before: Vec<OsString> = words.iter().take(index).cloned().collect();
@@ -47,7 +47,7 @@ pub fn complete_within(
         return Vec::new();
     }
     let before = with_family(before);
-    engine::complete(before, &current, (is_among, connects), patience).unwrap_or_default()
+    engine::complete(before, &current, (is_among, connects), time_limit).unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -14,10 +14,10 @@ use crate::command::about::{help, schema};
 use crate::command::families::{self, FAMILIES};
 use armctl_frame::backup::manifest;
 use armctl_frame::flags::Globals;
-use armctl_frame::kind::Named;
 use armctl_frame::names;
 use armctl_frame::settings::Sources;
 use armctl_frame::settings::inventory::{Inventory, Location};
+use armctl_frame::value_kind::Named;
 use armctl_frame::{Candidate, ValueKind};
 use armctl_transport::session::location::{SessionFolder, SessionPath};
 
@@ -30,13 +30,13 @@ pub(super) struct Context {
     /// Whether a connection to a controller is allowed without a session.
     connects: bool,
     /// Time limit for reading values from a controller.
-    patience: Duration,
+    time_limit: Duration,
 }
 
 impl Context {
     /// Creates the context from the parsed part of a line. A mistake in a flag of the command does not affect the
     /// global flags.
-    pub fn new(matches: &ArgMatches, (is_among, connects): (bool, bool), patience: Duration) -> Self {
+    pub fn new(matches: &ArgMatches, (is_among, connects): (bool, bool), time_limit: Duration) -> Self {
         let command = Globals::augment_args(Command::new("armctl"));
         let value_of_argument = command.get_arguments().flat_map(|argument| {
             let id = argument.get_id().as_str();
@@ -56,7 +56,7 @@ impl Context {
         let words: Vec<_> = std::iter::once("armctl".into()).chain(value_of_argument).collect();
         let parsed = command.try_get_matches_from(words);
         let globals = parsed.and_then(|matches| Globals::from_arg_matches(&matches)).ok();
-        Self { globals, is_among, connects, patience }
+        Self { globals, is_among, connects, time_limit }
     }
 
     /// Whether a connection to a controller is allowed.
@@ -113,11 +113,11 @@ fn all(kind: ValueKind, context: &Context) -> Vec<Candidate> {
             let named = endings.iter().flat_map(|ending| names::candidates(&robots, kinds, ending));
             named.chain(listed()).collect()
         }
-        ValueKind::Asked(family, ask) => {
-            let (patience, connects) = (context.patience, context.connects);
+        ValueKind::FromRobot(family, ask) => {
+            let (time_limit, connects) = (context.time_limit, context.connects);
             context
                 .parse_sources()
-                .map_or_else(Vec::new, |sources| live::values(family, ask, &sources, (patience, connects)))
+                .map_or_else(Vec::new, |sources| live::values(family, ask, &sources, (time_limit, connects)))
         }
     }
 }

@@ -17,7 +17,7 @@ use armctl_frame::flags::Globals;
 
 /// Assistant of the line editor.
 pub struct Assistant {
-    meaning: RefCell<LineParser>,
+    line_parser: RefCell<LineParser>,
     /// Flags of the REPL that select the robots for all lines.
     flags: Vec<OsString>,
     hinter: HistoryHinter,
@@ -26,9 +26,9 @@ pub struct Assistant {
 
 impl Assistant {
     /// Creates an assistant for lines that are parsed with this parser and these flags.
-    pub fn new(meaning: &LineParser, globals: &Globals) -> Self {
+    pub fn new(line_parser: &LineParser, globals: &Globals) -> Self {
         Self {
-            meaning: RefCell::new(LineParser::new(meaning.prefix().to_vec())),
+            line_parser: RefCell::new(LineParser::new(line_parser.prefix().to_vec())),
             flags: globals.robot_words().into_iter().map(OsString::from).collect(),
             hinter: HistoryHinter::new(),
             colour: screen(globals).stdout_color(),
@@ -43,7 +43,7 @@ impl Assistant {
         let typed = typed.trim_start_matches(['\'', '"']).replace('\\', "");
         let mut found: Vec<Pair> = Vec::new();
         let mut is_whole = false;
-        for mut words in self.meaning.borrow_mut().beginnings(&before) {
+        for mut words in self.line_parser.borrow_mut().beginnings(&before) {
             words.splice(1..1, self.flags.iter().cloned());
             words.push(OsString::from(&typed));
             for candidate in complete(&words, words.len() - 1, true) {

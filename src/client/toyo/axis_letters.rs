@@ -71,7 +71,7 @@ impl Client {
             return Ok(letters);
         }
         let system = Request::bare(Command::Sysp);
-        if self.is_dry() {
+        if self.is_dry_run() {
             self.plan(&system, "the letters of the axes; the following lines assume X, Y, Z and R");
             self.plan_if(&letters_request(), "whether the controller refuses the previous request");
             self.letters = Some(Letters::USUAL);

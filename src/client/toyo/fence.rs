@@ -21,7 +21,7 @@ impl Client {
         if self.is_fenced {
             return Ok(());
         }
-        if self.is_dry() {
+        if self.is_dry_run() {
             self.plan_fence();
             return Ok(());
         }
@@ -55,7 +55,7 @@ impl Client {
         let opening = (opener.0)();
         let line = opening.await.map_err(|error| Error::NotReopened(Box::new(error)))?;
         self.transport = Transport::Line(Box::new(line));
-        self.ends = self.transport.ends();
+        self.address_pair = self.transport.address_pair();
         self.session.reset();
         self.is_line_lost = false;
         self.host = HostState::Unknown;

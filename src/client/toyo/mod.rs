@@ -33,11 +33,11 @@ pub use self::axis_letters::{Letters, letters_request};
 pub use self::error::{Error, Refusal, Unanswered};
 pub use self::fence::FENCE;
 pub use self::simulated::Simulated;
-pub use self::stop::Moving;
+pub use self::stop::MotionKind;
 use self::temporary_changes::{HostState, needs_host};
 pub use self::transport::{BAUD, BITS, Endpoint, Line, Opening};
 use self::transport::{Opener, Transport, no_addresses};
-use crate::{Ends, Grant, NotAuthorized, Plan, Reason, Watcher};
+use crate::{AddressPair, Grant, NotAuthorized, Plan, Reason, Watcher};
 
 /// A connection to one controller.
 ///
@@ -53,7 +53,7 @@ pub struct Client {
     policy: Policy,
     grant: Grant,
     /// The motion that this client started.
-    moving: Option<Moving>,
+    moving: Option<MotionKind>,
     host: HostState,
     /// Requests that undo temporary changes, in the order of the changes.
     undo_requests: Vec<Request>,
@@ -63,7 +63,7 @@ pub struct Client {
     /// Whether the line is lost. The client then sends only reads, and reopens the line first.
     is_line_lost: bool,
     opener: Option<Opener>,
-    ends: Option<Ends>,
+    address_pair: Option<AddressPair>,
     /// Whether all answers to earlier requests have arrived, so that an order needs no fence.
     is_fenced: bool,
     /// Dry run: the earlier answer that decides whether the last planned frame is sent.
@@ -106,7 +106,7 @@ impl Options {
 #[non_exhaustive]
 pub enum Event {
     /// A motion is about to start; `None` after the motion has ended.
-    Motion(Option<Moving>),
+    Motion(Option<MotionKind>),
     /// `true`: the client is about to switch the host ON temporarily. `false`: the host is OFF again.
     HostSwitch(bool),
     /// The client is about to make a temporary change. This request undoes the change.
@@ -168,7 +168,7 @@ impl Client {
     fn with(transport: Transport, character: Duration, options: Options) -> Self {
         let policy = Policy { timeout: options.timeout, retries: options.retries, character };
         Self {
-            ends: transport.ends(),
+            address_pair: transport.address_pair(),
             transport,
             session: LineSession::new(policy),
             configured_policy: policy,
@@ -205,8 +205,8 @@ impl Client {
     }
 
     /// Local and remote address of a TCP connection.
-    pub fn ends(&self) -> Option<Ends> {
-        self.ends
+    pub fn address_pair(&self) -> Option<AddressPair> {
+        self.address_pair
     }
 
     /// Sends one request, and returns a refusal as an error. The record of a parameter (RPAR), step (RSTX) or
@@ -236,7 +236,7 @@ impl Client {
     /// Sends one request like [`Self::try_ask`], but does not switch the host ON and sends no fence.
     async fn ask_now(&mut self, request: &Request) -> Result<Result<Record, Refusal>, Error> {
         let done = || Record::unlisted("OK");
-        if self.is_dry() {
+        if self.is_dry_run() {
             self.authorize(request.risk(), &request.text())?;
             self.note(request, Reason::default());
             return if request.row().is_order() { Ok(Ok(done())) } else { Err(Error::DryRun) };
@@ -273,13 +273,13 @@ impl Client {
     pub async fn raw_text(&mut self, block: &str) -> Result<String, Error> {
         self.authorize(Risk::Motion, block)?;
         self.fence().await?;
-        if self.is_dry() {
+        if self.is_dry_run() {
             self.note_text(block, Reason::default());
             return Err(Error::DryRun);
         }
         self.acquire(Risk::Motion).await?;
         self.is_fenced = false;
-        self.set_moving(Some(Moving::Program));
+        self.set_moving(Some(MotionKind::Program));
         self.session.begin_raw(block);
         match self.exchange(Risk::Motion).await? {
             ExchangeResult::Answered(answer) => Ok(answer),
@@ -294,7 +294,7 @@ impl Client {
     /// # Errors
     /// [`Error::OutcomeUnknown`] if the order received two contradictory answers.
     pub async fn settle(&mut self) -> Result<(), Error> {
-        let is_open = if self.is_dry() { self.transport.has_notes() } else { self.session.is_open() };
+        let is_open = if self.is_dry_run() { self.transport.has_notes() } else { self.session.is_open() };
         if !is_open || self.is_line_lost {
             return Ok(());
         }
@@ -367,7 +367,7 @@ impl Client {
     }
 
     /// The motion that this client started, if it may still be in progress.
-    pub fn moving(&self) -> Option<Moving> {
+    pub fn moving(&self) -> Option<MotionKind> {
         self.moving
     }
 
@@ -386,7 +386,7 @@ impl Client {
         self.session.set_policy(policy);
     }
 
-    fn set_moving(&mut self, moving: Option<Moving>) {
+    fn set_moving(&mut self, moving: Option<MotionKind>) {
         self.moving = moving;
         self.watcher.event(Event::Motion(moving));
     }
@@ -413,7 +413,11 @@ impl Client {
             self.letters = None;
         }
         if risk == Risk::Motion {
-            self.set_moving(Some(if request.command() == Command::Jgst { Moving::Jog } else { Moving::Program }));
+            self.set_moving(Some(if request.command() == Command::Jgst {
+                MotionKind::Jog
+            } else {
+                MotionKind::Program
+            }));
         }
         self.session.begin(request, is_repeatable);
         let ended = self.exchange(risk).await?;
@@ -436,7 +440,7 @@ impl Client {
     async fn exchange(&mut self, risk: Risk) -> Result<ExchangeResult, Error> {
         let ended = self.run_exchange(risk).await;
         if let Some(line) = self.transport.line() {
-            line.give();
+            line.release_line();
         }
         ended
     }
@@ -476,7 +480,7 @@ impl Client {
                 }
                 Step::Data(_) | Step::Feed => Ok(0),
             };
-            let received = step.map_err(|error| self.broken(error, is_sent && risk > Risk::Read))?;
+            let received = step.map_err(|error| self.line_error(error, is_sent && risk > Risk::Read))?;
             total += received;
             if total > MAX_RECEIVED {
                 let error = Error::TooMuchData { received: total };
@@ -493,7 +497,7 @@ impl Client {
 
     async fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         let Some(line) = self.transport.line() else { return Ok(()) };
-        self.watcher.frame(Direction::Sent, self.ends.unwrap_or_else(no_addresses), bytes);
+        self.watcher.frame(Direction::Sent, self.address_pair.unwrap_or_else(no_addresses), bytes);
         line.send(bytes).await
     }
 
@@ -502,7 +506,11 @@ impl Client {
         let Some(line) = self.transport.line() else { return Ok(0) };
         let received = line.receive(buffer, until).await?.unwrap_or(0);
         if received > 0 {
-            self.watcher.frame(Direction::Received, self.ends.unwrap_or_else(no_addresses), &buffer[..received]);
+            self.watcher.frame(
+                Direction::Received,
+                self.address_pair.unwrap_or_else(no_addresses),
+                &buffer[..received],
+            );
         }
         Ok(received)
     }
@@ -518,7 +526,7 @@ impl Client {
     }
 
     /// Returns the error of a failed line. `is_open` is `true` if the client sent an order and received no answer yet.
-    fn broken(&mut self, error: io::Error, is_open: bool) -> Error {
+    fn line_error(&mut self, error: io::Error, is_open: bool) -> Error {
         // A session that rejects a block has not sent it, and the line is unchanged.
         if let Some(busy) = SessionBusy::of(&error) {
             return Error::Session(busy);

@@ -12,7 +12,7 @@ use crate::{Plan, Reason};
 
 impl Client {
     /// Whether this is a dry run.
-    pub fn is_dry(&self) -> bool {
+    pub fn is_dry_run(&self) -> bool {
         matches!(self.transport, Transport::DryRun(_))
     }
 
@@ -24,7 +24,7 @@ impl Client {
 
     /// Dry run: plans reads. In a dry run, their answers stay unknown.
     pub fn plan_all(&mut self, requests: &[Request]) -> Result<(), Error> {
-        if !self.is_dry() || requests.is_empty() {
+        if !self.is_dry_run() || requests.is_empty() {
             return Ok(());
         }
         for request in requests {
@@ -46,7 +46,7 @@ impl Client {
     /// Dry run: plans a block that depends on an earlier answer. Either a part of the block depends on the answer and
     /// is written as `?`, or the answer decides whether the block is sent.
     pub fn plan_depending(&mut self, text: &str, reason: Reason<'_>) {
-        if !self.is_dry() {
+        if !self.is_dry_run() {
             return;
         }
         self.note_text(text, reason);

@@ -11,7 +11,7 @@ use tokio::time::{Instant, timeout_at};
 
 use super::temporary_changes::HostState;
 use super::{Client, Error, jog, status_page};
-use crate::{Grant, STOP_EVERY, STOP_WITHIN};
+use crate::{Grant, STOP_INTERVAL, STOP_TIMEOUT};
 
 /// If a program still seems to run after this time, the motion is assumed to be a jog: STOP would have stopped a
 /// program.
@@ -23,14 +23,14 @@ const REPETITIONS: u32 = 3;
 
 /// Kind of motion that a stop must end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Moving {
+pub enum MotionKind {
     /// A jog: runs until it is stopped.
     Jog,
     /// A program, an origin return, or a change of servo power.
     Program,
 }
 
-impl Moving {
+impl MotionKind {
     /// The order that stops this kind of motion (JGST or STOP, TO 2-7).
     pub fn stop(self) -> Request {
         match self {
@@ -53,25 +53,25 @@ impl Client {
     ///
     /// # Errors
     /// [`Error::StopUnconfirmed`] if no answer confirms the stop, [`Error::StillMoving`] if the robot still moves.
-    pub async fn stop(&mut self, moving: Moving) -> Result<Record, Error> {
-        if self.is_dry() {
+    pub async fn stop(&mut self, moving: MotionKind) -> Result<Record, Error> {
+        if self.is_dry_run() {
             self.plan(&moving.stop(), "repeated until the robot stands still");
             self.plan(&status_page(0), "whether a program runs; repeated until the robot stands still");
-            if moving == Moving::Program {
-                self.plan_if(&Moving::Jog.stop(), "whether something still runs: an axis may be jogging");
+            if moving == MotionKind::Program {
+                self.plan_if(&MotionKind::Jog.stop(), "whether something still runs: an axis may be jogging");
                 self.plan_if(&status_page(0), "whether something still runs");
             }
             self.plan(&Request::bare(Command::Mpst), "position; repeated until the robot stands still");
             if self.host == HostState::Unknown {
                 let on = "whether the controller refuses the stop of a jog, for example while the host is OFF";
                 self.plan_to_take_host(Some(on));
-                self.plan_if(&Moving::Jog.stop(), on);
+                self.plan_if(&MotionKind::Jog.stop(), on);
             }
             return Err(Error::DryRun);
         }
-        self.set_policy(Policy { timeout: STOP_EVERY, retries: REPETITIONS, ..self.configured_policy });
+        self.set_policy(Policy { timeout: STOP_INTERVAL, retries: REPETITIONS, ..self.configured_policy });
         let mut why = None;
-        let until = Instant::now() + STOP_WITHIN;
+        let until = Instant::now() + STOP_TIMEOUT;
         let stopped = timeout_at(until, self.stop_until_at_rest(moving, &mut why)).await;
         let stopped = stopped.unwrap_or_else(|_| {
             let silent = || self.unanswered(ExchangeResult::NoAnswer, Risk::Read, Some(&moving.stop()));
@@ -87,7 +87,7 @@ impl Client {
     }
 
     /// Sends a stop at once while an answer is pending. [`Client::stop`] would wait for that answer first.
-    pub async fn send_urgent(&mut self, moving: Moving) {
+    pub async fn send_urgent(&mut self, moving: MotionKind) {
         if let Some(bytes) = self.session.begin_urgent(self.started.elapsed(), &moving.stop()) {
             // If the line is broken, the stop that follows reports the error.
             self.send(&bytes).await.unwrap_or_default();
@@ -96,7 +96,7 @@ impl Client {
 
     /// Repeats the stop, and returns only when the robot has stopped or the line is lost. `why` contains the latest
     /// reason why the stop is not confirmed.
-    async fn stop_until_at_rest(&mut self, moving: Moving, why: &mut Option<Error>) -> Result<Record, Error> {
+    async fn stop_until_at_rest(&mut self, moving: MotionKind, why: &mut Option<Error>) -> Result<Record, Error> {
         let began = Instant::now();
         let stop = moving.stop();
         // Position at the previous attempt; `None` if a program or a return to origin was still in progress at that
@@ -113,11 +113,11 @@ impl Client {
                 Ok(Attempt { is_refused, is_busy, position }) => {
                     *why = Some(Error::StillMoving { is_refused });
                     // An error of the following requests can be ignored: the next attempt reports it.
-                    if is_refused && moving == Moving::Jog {
+                    if is_refused && moving == MotionKind::Jog {
                         // Stopping a jog requires host control.
                         self.take_host_to_stop().await.unwrap_or_default();
                         self.transact(&stop, true).await.map(|_| ()).unwrap_or_default();
-                    } else if moving == Moving::Program && (is_slow || (!is_busy && previous.is_some())) {
+                    } else if moving == MotionKind::Program && (is_slow || (!is_busy && previous.is_some())) {
                         // The robot still moves, perhaps although no program runs: an axis may be jogging.
                         self.stop_a_jog().await;
                     }
@@ -133,11 +133,11 @@ impl Client {
     }
 
     /// Sends the stop, then reads status and position. An `@OK` alone does not prove that the robot has stopped.
-    async fn try_stop(&mut self, moving: Moving, stop: &Request) -> Result<Attempt, Error> {
+    async fn try_stop(&mut self, moving: MotionKind, stop: &Request) -> Result<Attempt, Error> {
         self.send_urgent(moving).await;
         let answer = self.transact(stop, true).await?;
         let mut state = self.status_of(&[0]).await?;
-        if moving == Moving::Program && (state.executing() || state.homing()) {
+        if moving == MotionKind::Program && (state.executing() || state.homing()) {
             // An axis may still be jogging, and STOP does not stop a jog.
             self.stop_a_jog().await;
             state = self.status_of(&[0]).await?;
@@ -154,7 +154,7 @@ impl Client {
     /// Stops the jog of all axes. Takes host control first if the controller refuses the stop. Errors are ignored: the
     /// next attempt reports them.
     async fn stop_a_jog(&mut self) {
-        let stop = Moving::Jog.stop();
+        let stop = MotionKind::Jog.stop();
         if matches!(self.transact(&stop, true).await, Ok(Answer::Refused)) && self.take_host_to_stop().await.is_ok() {
             self.transact(&stop, true).await.map(|_| ()).unwrap_or_default();
         }
@@ -162,7 +162,7 @@ impl Client {
 
     /// Sends one stop after the controller refused a motion. The client does not wait for the robot to stop: if there
     /// is a motion on the controller, this client did not start it.
-    pub async fn stop_refused_motion(&mut self, moving: Moving) {
+    pub async fn stop_refused_motion(&mut self, moving: MotionKind) {
         self.set_policy(self.configured_policy);
         self.transact(&moving.stop(), true).await.map(|_| ()).unwrap_or_default();
         self.end_motion();

@@ -35,7 +35,7 @@ impl Client {
 
     /// Takes host control like [`Self::take_host`], but checks `grant` instead of the grant of the client.
     pub(super) async fn take_host_by(&mut self, grant: &Grant) -> Result<(), Error> {
-        if self.is_dry() {
+        if self.is_dry_run() {
             self.plan_to_take_host(None);
             return Ok(());
         }
@@ -154,7 +154,7 @@ impl Client {
     /// # Errors
     /// [`Error::HostNotReleased`].
     pub async fn give_back(&mut self) -> Result<(), Error> {
-        if self.host != HostState::SwitchedOn || self.is_dry() || self.is_line_lost {
+        if self.host != HostState::SwitchedOn || self.is_dry_run() || self.is_line_lost {
             return Ok(());
         }
         self.host = HostState::Unknown;
@@ -197,7 +197,7 @@ impl Client {
 
     pub(super) fn plan_end(&mut self) {
         self.plan_put_back();
-        if !self.is_dry() || !matches!(self.host, HostState::SwitchedOn | HostState::Conditional) {
+        if !self.is_dry_run() || !matches!(self.host, HostState::SwitchedOn | HostState::Conditional) {
             return;
         }
         self.host = HostState::Unknown;

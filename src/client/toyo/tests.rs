@@ -23,7 +23,7 @@ fn client_and_its_futures_are_send() {
     fn send(_: impl Send) {}
     let mut client = Client::dry_run(Options::default());
     send(client.status());
-    send(client.stop(Moving::Jog));
+    send(client.stop(MotionKind::Jog));
     send(client);
 }
 
@@ -33,8 +33,8 @@ async fn only_a_stop_is_sent_without_a_grant() {
     let denied = client.ask(&Request::bare(Command::Home)).await.unwrap_err();
     assert!(matches!(&denied, Error::NotAuthorized(denied) if denied.risk == Risk::Write), "{denied}: the host first");
     assert!(client.raw_text("@XXXX").await.is_err() && client.moving().is_none());
-    client.stop(Moving::Program).await.unwrap();
-    client.stop(Moving::Jog).await.unwrap();
+    client.stop(MotionKind::Program).await.unwrap();
+    client.stop(MotionKind::Jog).await.unwrap();
     let sent_before = client.session.counters().sent;
     let denied = client.ask(&Request::bare(Command::Hson)).await.unwrap_err();
     assert!(matches!(denied, Error::NotAuthorized(_)), "a stop grants nothing");
@@ -64,7 +64,7 @@ async fn silence_after_an_order_leaves_its_outcome_unknown() {
     client.is_fenced = true;
     let unknown = client.ask(&counter(1, 2)).await.unwrap_err();
     assert!(matches!(&unknown, Error::OutcomeUnknown(open) if open.request == Some(counter(1, 2))), "{unknown}");
-    assert!(matches!(client.stop(Moving::Program).await, Err(Error::StopUnconfirmed(_))));
+    assert!(matches!(client.stop(MotionKind::Program).await, Err(Error::StopUnconfirmed(_))));
 }
 
 #[tokio::test(start_paused = true)]
@@ -81,7 +81,7 @@ async fn a_dry_run_plans_orders_and_has_no_answers() {
 struct Keeper(Arc<Mutex<(String, Vec<Event>)>>);
 
 impl Watcher<Event> for Keeper {
-    fn frame(&mut self, direction: Direction, _: Ends, bytes: &[u8]) {
+    fn frame(&mut self, direction: Direction, _: AddressPair, bytes: &[u8]) {
         if direction == Direction::Sent {
             self.0.lock().unwrap().0.push_str(&String::from_utf8_lossy(bytes));
         }
@@ -122,9 +122,9 @@ async fn a_jog_moves_until_stop_and_stop_returns_the_final_position() {
     let before = client.read_position().await.unwrap();
     client.ask(&jog("RS", None)).await.unwrap();
     client.ask(&jog("+L", Some(0))).await.unwrap();
-    assert_eq!(client.moving(), Some(Moving::Jog));
+    assert_eq!(client.moving(), Some(MotionKind::Jog));
     tokio::time::sleep(Duration::from_secs(1)).await;
-    let after = client.stop(Moving::Jog).await.unwrap();
+    let after = client.stop(MotionKind::Jog).await.unwrap();
     assert!(after.number("x") > before.number("x") && client.moving().is_none());
     assert_eq!(client.read_position().await.unwrap(), after);
 }

@@ -17,7 +17,7 @@ use tokio::time::Instant;
 
 use super::error::Error;
 use super::simulated::Simulated;
-use crate::{Ends, Plan};
+use crate::{AddressPair, Plan};
 
 /// An open line to a controller.
 pub type Line = Stream<Box<dyn Peer + Send>>;
@@ -171,10 +171,10 @@ impl Transport {
     }
 
     /// Local and remote address of a TCP connection.
-    pub(super) fn ends(&self) -> Option<Ends> {
+    pub(super) fn address_pair(&self) -> Option<AddressPair> {
         match self {
             Self::Line(line) => match &**line {
-                Stream::Tcp(tcp) => tcp.ends().ok(),
+                Stream::Tcp(tcp) => tcp.address_pair().ok(),
                 Stream::Serial(_) | Stream::InProcess(_) | Stream::Session(_) => None,
             },
             Self::DryRun(_) => None,
@@ -182,7 +182,7 @@ impl Transport {
     }
 }
 
-pub(super) fn no_addresses() -> Ends {
+pub(super) fn no_addresses() -> AddressPair {
     let nowhere = SocketAddr::from(([0, 0, 0, 0], 0));
     (nowhere, nowhere)
 }

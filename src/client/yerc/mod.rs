@@ -21,7 +21,7 @@ use armctl_controller::yerc::group::Group;
 use armctl_controller::yerc::query::{Coordinates, Hold, Query};
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::session::{
-    Abandon, Counters, Download, DownloadEnd, Ended, Exchange, Ids, Policy, Reply, Upload, UploadEnd, is_busy,
+    Abort, Counters, Download, DownloadEnd, Ended, Exchange, Ids, Policy, Reply, Upload, UploadEnd, is_busy,
 };
 use armctl_controller::yerc::table::service;
 use armctl_controller::yerc::wire::Division;
@@ -39,7 +39,7 @@ pub use self::simulated::Simulated;
 use self::simulated::channel;
 use self::transport::Transport;
 pub use self::transport::{Endpoint, PORTS};
-use crate::{Grant, NotAuthorized, Plan, STOP_EVERY, STOP_TRIES, STOP_WITHIN, Watcher};
+use crate::{Grant, NotAuthorized, Plan, STOP_INTERVAL, STOP_TIMEOUT, STOP_TRIES, Watcher};
 
 /// A connection to one controller.
 ///
@@ -65,7 +65,7 @@ pub struct Client {
     /// The last completed download. The client keeps it, because the final ACK may have been lost.
     last_download: Option<Download>,
     /// The session that ends an aborted transfer at the controller. `None` if no transfer is open there.
-    open: Option<Abandon>,
+    open: Option<Abort>,
     /// Dry run: purpose of the next request.
     purpose: Option<&'static str>,
     /// Existing axes of the groups whose axis configuration was read.
@@ -203,7 +203,7 @@ impl Client {
     /// returns [`Error::DryRun`].
     pub async fn try_ask<Q: Query>(&mut self, query: &Q) -> Result<Result<Q::Answer, Refusal>, Error> {
         let request = query.request();
-        if self.is_dry() && request.risk() > Risk::Read {
+        if self.is_dry_run() && request.risk() > Risk::Read {
             self.plan_next(&request)?;
             // The answer to an accepted order contains no data.
             return query.decode(&[]).map(Ok).map_err(|_| Error::DryRun);
@@ -233,13 +233,14 @@ impl Client {
     /// [`Error::Unconfirmed`] without an answer within 3 s.
     pub async fn stop(&mut self) -> Result<(), Error> {
         let request = Hold(true).request();
-        if self.is_dry() {
+        if self.is_dry_run() {
             return Ok(self.plan_next(&request)?);
         }
         let normal_policy = self.policy;
-        self.policy = Policy { timeout: STOP_EVERY, attempt: STOP_EVERY, doubles: false, retries: STOP_TRIES - 1 };
+        self.policy =
+            Policy { timeout: STOP_INTERVAL, attempt: STOP_INTERVAL, duplicates: false, retries: STOP_TRIES - 1 };
         let mut lost = None;
-        let until = Instant::now() + STOP_WITHIN;
+        let until = Instant::now() + STOP_TIMEOUT;
         let attempts = async {
             loop {
                 match self.transact(&request, true).await {
@@ -247,13 +248,13 @@ impl Client {
                     reply => return reply,
                 }
                 // The cause may be temporary, for example an unreachable network.
-                sleep(STOP_EVERY).await;
+                sleep(STOP_INTERVAL).await;
             }
         };
         let reply = match timeout_at(until, attempts).await {
-            Ok(Err(Error::NoAnswer { .. } | Error::Garbage { .. })) => Err(Error::Unconfirmed { waited: STOP_WITHIN }),
+            Ok(Err(Error::NoAnswer { .. } | Error::Garbage { .. })) => Err(Error::Unconfirmed { waited: STOP_TIMEOUT }),
             Ok(reply) => reply,
-            Err(_) => Err(lost.unwrap_or(Error::Unconfirmed { waited: STOP_WITHIN })),
+            Err(_) => Err(lost.unwrap_or(Error::Unconfirmed { waited: STOP_TIMEOUT })),
         };
         self.policy = normal_policy;
         match reply?.status {
@@ -296,7 +297,7 @@ impl Client {
         first_wait: Option<Duration>,
         mut take: impl FnMut(&[u8]) -> Result<(), E>,
     ) -> Result<DownloadEnd, TransferError<E>> {
-        if self.is_dry() {
+        if self.is_dry_run() {
             self.plan_download(request, crate::Reason::default())?;
             return Err(Error::DryRun.into());
         }
@@ -347,7 +348,7 @@ impl Client {
         request: &Request,
         mut give: impl FnMut() -> Result<Vec<u8>, E>,
     ) -> Result<UploadEnd, TransferError<E>> {
-        if self.is_dry() {
+        if self.is_dry_run() {
             self.plan_upload(request, crate::Reason::default(), || {
                 give().map_err(|error| TransferError { bytes: 0, cause: Cause::Caller(error) })
             })?;
@@ -403,7 +404,7 @@ impl Client {
     /// Ends an aborted transfer at the controller. Otherwise the controller refuses other transfers until its timer
     /// expires.
     async fn abandon(&mut self) {
-        let Some(mut abandon) = self.open.take().filter(Abandon::is_open) else { return };
+        let Some(mut abandon) = self.open.take().filter(Abort::is_open) else { return };
         let ended = self.drive(Division::File, &mut abandon, |_| Ok::<(), Infallible>(())).await;
         self.open = None;
         if !matches!(ended, Ok(true)) {
@@ -434,7 +435,7 @@ impl Client {
     /// [`Error::DryRun`].
     async fn prepare(&mut self, request: &Request) -> Result<(), Error> {
         self.authorize(request)?;
-        if self.is_dry() {
+        if self.is_dry_run() {
             self.plan_next(request)?;
             return Err(Error::DryRun);
         }
@@ -540,9 +541,9 @@ impl Client {
         self.transport.send(channel, bytes).await.map_err(|error| self.io_error(channel, error))?;
         self.totals.sent += 1;
         if channel == simulated::channel(Division::File) {
-            self.open = Abandon::after(bytes);
+            self.open = Abort::after(bytes);
         }
-        self.watcher.frame(Direction::Sent, self.transport.ends(channel), bytes);
+        self.watcher.frame(Direction::Sent, self.transport.address_pair(channel), bytes);
         Ok(())
     }
 
@@ -551,7 +552,7 @@ impl Client {
         let received = self.transport.receive(channel, &mut self.buffer[..], until).await;
         let Some(len) = received.map_err(|error| self.io_error(channel, error))? else { return Ok(None) };
         self.totals.received += 1;
-        self.watcher.frame(Direction::Received, self.transport.ends(channel), &self.buffer[..len]);
+        self.watcher.frame(Direction::Received, self.transport.address_pair(channel), &self.buffer[..len]);
         Ok(Some(len))
     }
 

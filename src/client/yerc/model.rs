@@ -109,7 +109,7 @@ impl Client {
         let is_supported = || Model::ALL.iter().any(|model| make(*model).is_ok());
         match self.model_source {
             ModelSource::Configured(model) | ModelSource::Reported(model) => Ok(model),
-            ModelSource::Remembered(model) if self.is_dry() || make(model).is_ok() || !is_supported() => Ok(model),
+            ModelSource::Remembered(model) if self.is_dry_run() || make(model).is_ok() || !is_supported() => Ok(model),
             ModelSource::Remembered(_) => self.ask_model().await,
             ModelSource::Nothing | ModelSource::Assumed => {
                 let first = make(DEFAULT_MODEL);
@@ -123,7 +123,7 @@ impl Client {
                     return Ok(DEFAULT_MODEL);
                 }
                 let reported = self.model().await?;
-                if self.is_dry() && first.is_err() {
+                if self.is_dry_run() && first.is_err() {
                     // A dry run cannot read the model, so the plan is shown for the first model that supports the
                     // request.
                     self.plan_model = Model::ALL.into_iter().find(|model| make(*model).is_ok());
@@ -138,7 +138,7 @@ impl Client {
         let query =
             ReadSystemInfo::new(DEFAULT_MODEL, SystemPart::Group(Group::R1)).expect("every model has a first robot");
         let request = query.request();
-        if self.is_dry() {
+        if self.is_dry_run() {
             let purpose = self.purpose.take();
             self.plan_if(&request, Reason::about("the model of the controller"));
             self.purpose = purpose;
@@ -230,12 +230,12 @@ mod tests {
         Ok(VariableKind::S32.string_form(model, false))
     }
 
-    fn third(model: Model) -> Result<ReadPosition, QueryError> {
+    fn third_string(model: Model) -> Result<ReadPosition, QueryError> {
         ReadPosition::new(model, Group::Robot(3), Coordinates::Pulse)
     }
 
     #[tokio::test(start_paused = true)]
-    async fn what_is_the_same_to_every_model_is_sent_without_knowing_it() {
+    async fn sends_model_independent_requests_without_a_model() {
         let mut client = unknown("").await;
         let first = |model| ReadPosition::new(model, Group::R1, Coordinates::Base);
         let model = client.model_for(first).await.unwrap();
@@ -247,11 +247,11 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn what_differs_is_asked_for_once() {
+    async fn asks_for_the_model_once() {
         for model in Model::ALL {
             let mut client = unknown(&format!("model = \"{model}\"")).await;
             assert_eq!(client.model_for(strings).await.unwrap(), model);
-            assert_eq!(client.model_for(third).await.unwrap(), model);
+            assert_eq!(client.model_for(third_string).await.unwrap(), model);
             assert_eq!(client.model().await.unwrap(), model);
             assert_eq!((client.known_model(), client.totals.exchanges), (Some(model), 1), "{model}");
             assert_eq!(client.identity().unwrap().model, Some(model));
@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn a_controller_that_tells_nothing_known_is_not_guessed_at() {
+    async fn fails_for_an_unknown_software_version() {
         let mut client = unknown("software = \"XS1.00 \\u001b\"").await;
         let error = client.model().await.unwrap_err();
         assert!(matches!(&error, Error::UnknownSoftware { version } if version == "XS1.00 \\x1b"), "{error}");
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn what_is_remembered_counts_until_the_controller_says_otherwise() {
+    async fn uses_the_remembered_model_until_the_controller_reports_another() {
         let mut client = unknown("model = \"fs100\"").await;
         client.remember(Model::Dx200);
         assert_eq!(client.model_for(strings).await.unwrap(), Model::Dx200);
@@ -282,34 +282,34 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn a_refusal_of_another_kind_asks_nothing() {
+    async fn other_refusals_do_not_ask_for_the_model() {
         let mut client = unknown("").await;
         client.remember(Model::Dx200);
         for _ in 0..2 {
-            assert!(client.try_ask(&third(Model::Dx200).unwrap()).await.unwrap().is_err(), "there is one robot");
+            assert!(client.try_ask(&third_string(Model::Dx200).unwrap()).await.unwrap().is_err(), "there is one robot");
         }
         assert_eq!((client.totals.exchanges, client.identity()), (2, None));
     }
 
     #[tokio::test(start_paused = true)]
-    async fn what_the_remembered_model_cannot_is_asked_again() {
+    async fn asks_again_if_the_remembered_model_lacks_the_command() {
         let mut client = unknown("").await;
         client.remember(Model::Fs100);
-        assert_eq!(client.model_for(third).await.unwrap(), Model::Dx200);
+        assert_eq!(client.model_for(third_string).await.unwrap(), Model::Dx200);
         assert_eq!(client.totals.exchanges, 1);
         client.remember(Model::Fs100);
         assert_eq!(client.known_model(), Some(Model::Dx200), "a reported model is kept");
     }
 
     #[tokio::test(start_paused = true)]
-    async fn what_is_read_anyway_tells_the_model_too() {
+    async fn learns_the_model_from_other_reads() {
         let mut client = unknown("model = \"yrc1000\"").await;
         client.ask(&ReadSystemInfo::new(DEFAULT_MODEL, SystemPart::Application(1)).unwrap()).await.unwrap();
         assert_eq!((client.known_model(), client.totals.exchanges), (Some(Model::Yrc1000), 1));
     }
 
     #[tokio::test]
-    async fn a_dry_run_notes_the_question_and_what_depends_on_it() {
+    async fn dry_run_plans_the_model_request_and_dependent_requests() {
         let mut client = Client::dry_run(Options::auto());
         let same = ReadVariable::new(VariableKind::B, 0);
         assert!(client.model_for(|_| Ok::<_, QueryError>(())).await.is_ok());

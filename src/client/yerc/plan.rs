@@ -15,7 +15,7 @@ use crate::{NotAuthorized, Plan, Reason};
 
 impl Client {
     /// Whether this is a dry run.
-    pub fn is_dry(&self) -> bool {
+    pub fn is_dry_run(&self) -> bool {
         matches!(self.transport, Transport::DryRun(_))
     }
 
@@ -26,7 +26,7 @@ impl Client {
 
     /// Dry run: sets the purpose of the next request.
     pub fn for_purpose(&mut self, purpose: &'static str) -> &mut Self {
-        self.purpose = self.is_dry().then_some(purpose);
+        self.purpose = self.is_dry_run().then_some(purpose);
         self
     }
 
@@ -37,7 +37,7 @@ impl Client {
 
     /// Dry run: plans reads. In a dry run, their answers stay unknown.
     pub fn plan_all<Q: Query>(&mut self, queries: &[Q]) -> Result<(), Error> {
-        if !self.is_dry() || queries.is_empty() {
+        if !self.is_dry_run() || queries.is_empty() {
             return Ok(());
         }
         queries.iter().try_for_each(|query| self.plan_next(&query.request()))?;

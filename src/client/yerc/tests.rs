@@ -30,7 +30,7 @@ fn clients_can_be_sent_to_other_threads() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn nothing_leaves_that_was_not_granted_but_a_stop() {
+async fn sends_only_granted_requests_and_stops() {
     let mut client = simulated(Risk::Read).await;
     let denied = client.ask(&Servo(true)).await.unwrap_err();
     assert!(matches!(&denied, Error::NotAuthorized(denied) if denied.risk == Risk::Motion), "{denied}");
@@ -57,7 +57,7 @@ async fn a_refusal_is_an_answer_or_an_error() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn silence_after_a_change_is_not_silence_after_a_question() {
+async fn no_answer_to_a_change_is_an_unknown_outcome() {
     let mut client = connected(Risk::Motion, Some("drop=100%")).await;
     let silent = client.ask(&ReadStatus).await.unwrap_err();
     assert!(matches!(&silent, Error::NoAnswer { counters, .. } if counters.repeats == 3), "{silent}");
@@ -70,7 +70,7 @@ async fn silence_after_a_change_is_not_silence_after_a_question() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_dry_run_notes_orders_and_knows_no_answers() {
+async fn dry_run_plans_requests_and_has_no_answers() {
     let mut client = Client::dry_run(Options::new(MODEL).with_risk(Risk::Motion));
     client.for_purpose("power for the move").ask(&Servo(true)).await.unwrap();
     assert!(matches!(client.ask(&ReadStatus).await, Err(Error::DryRun)));
@@ -83,25 +83,25 @@ async fn a_dry_run_notes_orders_and_knows_no_answers() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_caller_that_fails_ends_a_transfer() {
+async fn failing_caller_ends_a_transfer() {
     let mut client = simulated(Risk::Destroy).await;
     let file = FileName::new("TESTJOB.JBI").unwrap();
     let full = |_: &[u8]| Err("disk full");
-    let broken = client.download(&file.save(), MAX_FILE, None, full).await.unwrap_err();
-    assert!(matches!(broken, TransferError { bytes, cause: Cause::Caller("disk full") } if bytes > 0));
+    let line_error = client.download(&file.save(), MAX_FILE, None, full).await.unwrap_err();
+    assert!(matches!(line_error, TransferError { bytes, cause: Cause::Caller("disk full") } if bytes > 0));
     let mut pieces = vec![Err("gone"), Ok(vec![b' '; 1000])];
-    let broken = client
+    let line_error = client
         .upload(&FileName::new("NEW.JBI").unwrap().load(), || pieces.pop().unwrap_or(Ok(Vec::new())))
         .await
         .unwrap_err();
-    assert!(matches!(broken, TransferError { bytes, cause: Cause::Caller("gone") } if bytes > 0));
+    assert!(matches!(line_error, TransferError { bytes, cause: Cause::Caller("gone") } if bytes > 0));
 }
 
 #[derive(Debug, Default)]
 struct Counter(Arc<std::sync::Mutex<(Vec<Direction>, Vec<Event>)>>);
 
 impl Watcher<Event> for Counter {
-    fn frame(&mut self, direction: Direction, _: crate::Ends, bytes: &[u8]) {
+    fn frame(&mut self, direction: Direction, _: crate::AddressPair, bytes: &[u8]) {
         assert!(bytes.starts_with(b"YERC"));
         self.0.lock().unwrap().0.push(direction);
     }
@@ -112,7 +112,7 @@ impl Watcher<Event> for Counter {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_watcher_is_told_frames_and_what_else_was_on_the_line() {
+async fn watcher_gets_frames_and_other_traffic() {
     let mut client = connected(Risk::Read, Some("drop=100%")).await;
     let told = Arc::default();
     client.watch(Counter(Arc::clone(&told)));
@@ -125,7 +125,7 @@ async fn a_watcher_is_told_frames_and_what_else_was_on_the_line() {
 
 /// Callers match errors, send them to other threads and print them.
 #[test]
-fn errors_are_errors() {
+fn implements_the_error_trait() {
     fn is_error<E: std::error::Error + Send + Sync + Clone + fmt::Debug + 'static>() {}
     is_error::<Error>();
     is_error::<Refusal>();

@@ -14,7 +14,7 @@ use tokio::time::{Instant, timeout_at};
 
 use super::error::Error;
 use super::simulated::Simulated;
-use crate::{Ends, Plan};
+use crate::{AddressPair, Plan};
 
 /// Address of a controller.
 #[derive(Debug, Clone)]
@@ -67,7 +67,7 @@ impl Endpoint {
     }
 
     /// Opens the transport for a session. The session shares the transport between clients.
-    pub async fn hold(self) -> Result<Datagrams, Error> {
+    pub async fn open_session_link(self) -> Result<Datagrams, Error> {
         Ok(match self {
             Self::Udp { host, ports } => Datagrams::udp(connect(host, ports).await?),
             Self::Simulator { start, faults } => {
@@ -96,7 +96,7 @@ pub(super) enum Transport {
 
 impl Transport {
     /// Local and remote address of a channel. Loopback addresses if this process has no socket.
-    pub(super) fn ends(&self, channel: usize) -> Ends {
+    pub(super) fn address_pair(&self, channel: usize) -> AddressPair {
         let loopback = |port| SocketAddr::from(([127, 0, 0, 1], port));
         match self {
             Self::Udp(udp) => (udp.local(channel).unwrap_or(loopback(0)), udp.peer(channel)),

@@ -8,26 +8,26 @@ use armctl_controller::yrcx::value::Value;
 use tokio::time::Instant;
 
 use super::error::Error;
-use super::{Client, Done};
+use super::{Client, CompletedCommand};
 
 /// The controller may set the running status before it sets the data. Until this time after the status, zeros count as
 /// missing data.
-const DATA_WITHIN: Duration = Duration::from_millis(100);
+const DATA_TIMEOUT: Duration = Duration::from_millis(100);
 
 impl Client {
     /// Returns the next values of continuous output (4.7.4). The first call starts the output. The output runs until
     /// another command resets the status, or until the link ends.
-    pub async fn next_output(&mut self, order: &Order) -> Result<Done, Error> {
+    pub async fn next_output(&mut self, order: &Order) -> Result<CompletedCommand, Error> {
         let is_running = self.exchange.as_ref().is_some_and(|exchange| exchange.order() == order);
-        if self.is_dry() || !is_running {
+        if self.is_dry_run() || !is_running {
             self.authorize_command(order.row().id, order.risk())?;
-            if self.is_dry() {
+            if self.is_dry_run() {
                 return self.ask(order).await;
             }
             self.start(order).await?;
             self.totals.commands += 1;
         }
-        let mut pending: Option<(Done, Instant)> = None;
+        let mut pending: Option<(CompletedCommand, Instant)> = None;
         loop {
             if let Some(outcome) = self.ended.take() {
                 return self.reply(outcome)?.done(order);
@@ -37,16 +37,16 @@ impl Client {
                 && let Some(Answer::Running(values)) = exchange.running()
             {
                 let is_empty = values.iter().all(|(_, value)| *value == Value::Int(0));
-                let done = Done { values, elapsed: exchange.elapsed(now) };
+                let done = CompletedCommand { values, elapsed: exchange.elapsed(now) };
                 if is_running || !is_empty {
                     return Ok(done);
                 }
-                pending = Some((done, Instant::now() + DATA_WITHIN));
+                pending = Some((done, Instant::now() + DATA_TIMEOUT));
             }
             match pending {
                 Some((done, until)) if Instant::now() >= until => return Ok(done),
-                Some((_, until)) => self.turn_until(until).await?,
-                None => self.turn().await?,
+                Some((_, until)) => self.run_until(until).await?,
+                None => self.run_turn().await?,
             }
         }
     }

@@ -61,7 +61,7 @@ pub enum Error {
     },
     /// A jog ended early.
     #[error("{by}; armctl stopped the jog for this reason")]
-    Cut {
+    EndedEarly {
         /// The cause.
         by: Box<Error>,
         /// The jog command.
@@ -73,7 +73,7 @@ pub enum Error {
     #[error("the axis may still move: armctl cannot reach the controller any longer")]
     StillMoving {
         /// The cause, if the jog ended early.
-        cut: Option<Box<Error>>,
+        early_end: Option<Box<Error>>,
     },
     /// An earlier command of this client is still running; the controller executes one command at a time.
     #[error("{} still runs", .command.row().id)]
@@ -175,8 +175,8 @@ mod tests {
             "move-ptp was sent, and may or may not have been carried out: the connection was lost"
         );
         let outcome = sequence::Outcome::Broken { signal: output::ALARM };
-        let broken = Error::Unfinished { name: "run", outcome };
-        assert_eq!(broken.to_string(), "run: alarm (SO(03)) switched on during the procedure");
+        let line_error = Error::Unfinished { name: "run", outcome };
+        assert_eq!(line_error.to_string(), "run: alarm (SO(03)) switched on during the procedure");
         let busy = Error::Session(SessionBusy::Busy(None));
         assert_eq!(busy.to_string(), "another client uses the connection");
     }

@@ -10,7 +10,7 @@ use armctl_controller::yrcx::register::general;
 use armctl_controller::yrcx::sequence::{self, Sequence};
 use armctl_controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next, Outcome, Silence};
 use armctl_controller::yrcx::signal::{input, output};
-use armctl_controller::yrcx::table::Pace;
+use armctl_controller::yrcx::table::DurationClass;
 use armctl_transport::image::{Event as LinkEvent, LinkError};
 use armctl_transport::session::client::SessionBusy;
 use tokio::time::Instant;
@@ -22,7 +22,7 @@ use super::{Client, Event, Reply, Transport};
 /// Poll interval of a session without a deadline.
 pub(super) const NO_DEADLINE: Duration = Duration::from_secs(3600);
 /// Time limit for sending the last change before the connection is closed.
-const LEAVE_WITHIN: Duration = Duration::from_secs(1);
+const LEAVE_TIMEOUT: Duration = Duration::from_secs(1);
 
 impl Client {
     /// Waits for the first input image. On a commanding connection, also waits until the resting image is sent:
@@ -36,7 +36,7 @@ impl Client {
             if Instant::now() >= until {
                 return Err(Error::Silent);
             }
-            self.turn_until(until).await?;
+            self.run_until(until).await?;
         }
         if !self.is_owner && self.input.is_some_and(|image| !output::CPU_OK.is_on(&image)) {
             // A monitoring connection also opens if the controller does not work or the data comes from another device.
@@ -73,7 +73,7 @@ impl Client {
     /// command is still running.
     async fn end_previous_command(&mut self) -> Result<(), Error> {
         if self.exchange.is_some() {
-            self.turn_until(Instant::now()).await?;
+            self.run_until(Instant::now()).await?;
         }
         let now = self.now();
         while let Some(exchange) = &mut self.exchange {
@@ -82,7 +82,7 @@ impl Client {
             } else if exchange.is_running() {
                 return Err(Error::CommandRunning { command: exchange.order().command() });
             }
-            self.turn().await?;
+            self.run_turn().await?;
         }
         if let Some(outcome) = self.ended.take().filter(|outcome| outcome.ended != Ended::Stopped) {
             let command = outcome.row.command;
@@ -105,20 +105,20 @@ impl Client {
                 self.await_link(&outcome, until).await;
                 return Ok(outcome);
             }
-            self.turn().await?;
+            self.run_turn().await?;
         }
     }
 
     /// Waits until the link is up again, if the link was lost during a motion. The client can then report the state of
     /// the stop input.
     pub(super) async fn await_link(&mut self, outcome: &Outcome, until: Option<Instant>) {
-        let moves = matches!(outcome.row.pace, Pace::Motion | Pace::Jog);
+        let moves = matches!(outcome.row.pace, DurationClass::Motion | DurationClass::Jog);
         if !moves || outcome.ended != Ended::OutcomeUnknown(Silence::LinkLost) {
             return;
         }
         let until = until.unwrap_or_else(|| Instant::now() + self.timeout);
         // An error of this wait is ignored: the next call reports the error.
-        while !self.is_up && Instant::now() < until && self.turn_until(until).await.is_ok() {}
+        while !self.is_up && Instant::now() < until && self.run_until(until).await.is_ok() {}
     }
 
     pub(super) fn start_sequence(&mut self, mut sequence: Sequence) -> Result<(), Error> {
@@ -138,7 +138,7 @@ impl Client {
             if let Some(outcome) = self.finished.take() {
                 return Ok(outcome);
             }
-            self.turn().await?;
+            self.run_turn().await?;
         }
     }
 
@@ -146,7 +146,7 @@ impl Client {
     pub(super) fn abandon_sequence(&mut self) {
         let now = self.now();
         if let Some(mut sequence) = self.sequence.take() {
-            sequence.lost(now);
+            sequence.handle_link_loss(now);
             // The outcome is known: aborted.
             let _ = sequence.poll(now, &mut self.output);
         }
@@ -165,33 +165,33 @@ impl Client {
     /// Errors of the link.
     pub async fn leave(&mut self) -> Result<(), Error> {
         self.abandon_sequence();
-        if self.is_dry() || !self.is_owner {
+        if self.is_dry_run() || !self.is_owner {
             return Ok(());
         }
         let now = self.now();
         // A jog counts as a short command here: it does not end by itself, so the client stops it.
-        let is_short = |exchange: &Exchange| exchange.order().row().pace != Pace::Motion;
+        let is_short = |exchange: &Exchange| exchange.order().row().pace != DurationClass::Motion;
         if let Some(exchange) = self.exchange.as_mut().filter(|exchange| is_short(exchange)) {
             exchange.interrupt(now);
         }
-        let until = Instant::now() + LEAVE_WITHIN;
+        let until = Instant::now() + LEAVE_TIMEOUT;
         while self.is_up && Instant::now() < until {
             let is_done = self.exchange.as_ref().is_none_or(|exchange| !is_short(exchange));
             if is_done && self.output.last_sent() == Some(&self.output.next) {
                 break;
             }
-            self.turn_until(until).await?;
+            self.run_until(until).await?;
         }
         Ok(())
     }
 
     /// Runs one turn of the event loop: polls, sends, and returns after one event or deadline.
-    pub(super) async fn turn(&mut self) -> Result<(), Error> {
-        self.turn_until(Instant::now() + NO_DEADLINE).await
+    pub(super) async fn run_turn(&mut self) -> Result<(), Error> {
+        self.run_until(Instant::now() + NO_DEADLINE).await
     }
 
-    /// Runs one [`turn`](Self::turn) with a deadline.
-    pub(super) async fn turn_until(&mut self, until: Instant) -> Result<(), Error> {
+    /// Runs one [`run_turn`](Self::run_turn) with a deadline.
+    pub(super) async fn run_until(&mut self, until: Instant) -> Result<(), Error> {
         let mut due = until;
         if !self.in_flight {
             let next = self.poll();
@@ -268,8 +268,8 @@ impl Client {
                 self.output.sent(now);
                 self.watcher.event(Event::ImageSent(self.output.next));
             }
-            LinkEvent::Image(bytes) => self.take(now, &bytes)?,
-            LinkEvent::Lost(why) => self.lost(now, why),
+            LinkEvent::Image(bytes) => self.handle_image(now, &bytes)?,
+            LinkEvent::Lost(why) => self.handle_link_loss(now, why),
             LinkEvent::Reopened => {
                 self.is_up = true;
                 if self.is_shared {
@@ -294,7 +294,7 @@ impl Client {
         Ok(true)
     }
 
-    fn take(&mut self, now: Now, bytes: &[u8]) -> Result<(), Error> {
+    fn handle_image(&mut self, now: Now, bytes: &[u8]) -> Result<(), Error> {
         let image = Image::from_link(bytes).ok_or(Error::NoImage { bytes: bytes.len() })?;
         self.watcher.event(Event::ImageReceived(image));
         self.input = Some(image);
@@ -307,7 +307,7 @@ impl Client {
         Ok(())
     }
 
-    fn lost(&mut self, now: Now, why: LinkError) {
+    fn handle_link_loss(&mut self, now: Now, why: LinkError) {
         self.watcher.event(Event::Lost { why, is_reopening: self.check_session().is_ok() });
         self.totals.losses += 1;
         self.is_up = false;
@@ -317,10 +317,10 @@ impl Client {
         self.output.unlinked();
         self.words = Words::default();
         if let Some(exchange) = &mut self.exchange {
-            exchange.lost(now);
+            exchange.handle_link_loss(now);
         }
         if let Some(sequence) = &mut self.sequence {
-            sequence.lost(now);
+            sequence.handle_link_loss(now);
         }
     }
 }

@@ -8,7 +8,7 @@ use armctl_controller::yrcx::image::Words;
 use armctl_controller::yrcx::order::Order;
 use armctl_controller::yrcx::session::{Ended, Exchange, Outcome};
 use armctl_controller::yrcx::signal::input;
-use armctl_controller::yrcx::table::Pace;
+use armctl_controller::yrcx::table::DurationClass;
 use armctl_controller::yrcx::value::Values;
 use armctl_transport::session::client::SessionBusy;
 use tokio::time::Instant;
@@ -19,7 +19,7 @@ use crate::Reason;
 
 /// Result of a completed command.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Done {
+pub struct CompletedCommand {
     /// Data of the answer. The names are those of the fields in the table row of the command (chapter 4 of the manual).
     /// Empty in a dry run. See [`Values`] for the units.
     pub values: Values,
@@ -40,14 +40,14 @@ pub struct Reply {
 
 impl Reply {
     /// Converts the reply to the result or the refusal.
-    pub(super) fn of(self, order: &Order) -> Result<Done, Refusal> {
+    pub(super) fn of(self, order: &Order) -> Result<CompletedCommand, Refusal> {
         match self.answer {
-            Answer::Done(values) | Answer::Running(values) => Ok(Done { values, elapsed: self.elapsed }),
+            Answer::Done(values) | Answer::Running(values) => Ok(CompletedCommand { values, elapsed: self.elapsed }),
             Answer::Refused { alarm, positions } => Err(Refusal { order: order.clone(), alarm, positions }),
         }
     }
 
-    pub(super) fn done(self, order: &Order) -> Result<Done, Error> {
+    pub(super) fn done(self, order: &Order) -> Result<CompletedCommand, Error> {
         self.of(order).map_err(|refusal| Box::new(refusal).into())
     }
 }
@@ -59,19 +59,19 @@ impl Client {
     /// # Errors
     /// [`Error::Refused`] with the alarm. After [`Error::NotSent`] and [`Error::NoAnswer`], the command can be repeated
     /// without harm. After [`Error::OutcomeUnknown`], it must not be repeated.
-    pub async fn ask(&mut self, order: &Order) -> Result<Done, Error> {
+    pub async fn ask(&mut self, order: &Order) -> Result<CompletedCommand, Error> {
         self.raw(order).await?.done(order)
     }
 
     /// Sends a command like [`ask`](Self::ask), but returns a refusal as a value.
-    pub async fn try_ask(&mut self, order: &Order) -> Result<Result<Done, Refusal>, Error> {
+    pub async fn try_ask(&mut self, order: &Order) -> Result<Result<CompletedCommand, Refusal>, Error> {
         Ok(self.raw(order).await?.of(order))
     }
 
     /// Sends a command like [`ask`](Self::ask), but returns the whole answer.
     pub async fn raw(&mut self, order: &Order) -> Result<Reply, Error> {
         self.authorize_command(order.row().id, order.risk())?;
-        if self.is_dry() {
+        if self.is_dry_run() {
             self.plan_order(order, Reason::default());
             if order.risk() == Risk::Read {
                 return Err(Error::DryRun);
@@ -99,11 +99,11 @@ impl Client {
     ///
     /// # Errors
     /// [`Error::NotHeld`] if the end of the connection would stop the command; also the errors of [`ask`](Self::ask).
-    pub async fn begin(&mut self, order: &Order) -> Result<Option<Done>, Error> {
+    pub async fn begin(&mut self, order: &Order) -> Result<Option<CompletedCommand>, Error> {
         if !self.is_held {
             return Err(Error::NotHeld);
         }
-        if self.is_dry() {
+        if self.is_dry_run() {
             return self.ask(order).await.map(Some);
         }
         self.authorize_command(order.row().id, order.risk())?;
@@ -115,12 +115,12 @@ impl Client {
             if self.exchange.as_ref().is_some_and(Exchange::is_running) {
                 return Ok(None);
             }
-            self.turn().await?;
+            self.run_turn().await?;
         }
     }
 
     async fn transact(&mut self, order: &Order) -> Result<Outcome, Error> {
-        if order.row().pace == Pace::Jog {
+        if order.row().pace == DurationClass::Jog {
             return Ok(self.run_jog(order, None).await?.outcome);
         }
         self.start(order).await?;
@@ -142,7 +142,7 @@ impl Client {
         }
         // For a motion, the command ends when the motion ends. For a start of a program, the command ends while the
         // program still runs.
-        self.has_started |= order.risk() == Risk::Motion && order.row().pace == Pace::Quick;
+        self.has_started |= order.risk() == Risk::Motion && order.row().pace == DurationClass::Quick;
     }
 
     pub(super) fn reply(&self, outcome: Outcome) -> Result<Reply, Error> {
@@ -174,7 +174,7 @@ impl Client {
     /// Authorizes a command, and checks that this connection may command the controller.
     pub(super) fn authorize_command(&self, name: &str, risk: Risk) -> Result<(), Error> {
         self.authorize(name, risk)?;
-        if !self.is_owner && !self.is_dry() {
+        if !self.is_owner && !self.is_dry_run() {
             return Err(Error::MonitorOnly { what: name.to_owned() });
         }
         Ok(())

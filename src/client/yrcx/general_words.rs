@@ -18,7 +18,7 @@ impl Client {
     /// [`Error::WordsNotSent`] if the words were not sent within the time limit.
     pub async fn set_words(&mut self, changes: &[(Register, u32)]) -> Result<(), Error> {
         self.authorize_command("set-words", Risk::Write)?;
-        if self.is_dry() {
+        if self.is_dry_run() {
             let mut words = self.output.next.command();
             for (register, value) in changes {
                 register.write(&mut words, *value);
@@ -47,7 +47,7 @@ impl Client {
             if !self.is_up || Instant::now() >= until {
                 return Err(Error::WordsNotSent);
             }
-            self.turn_until(until).await?;
+            self.run_until(until).await?;
         }
         Ok(())
     }

@@ -15,18 +15,18 @@ use tokio::time::Instant;
 
 use super::error::Error;
 use super::event_loop::NO_DEADLINE;
-use super::{Client, Done, Transport};
+use super::{Client, CompletedCommand, Transport};
 use crate::Reason;
 
 /// Maximum number of link errors while the client stops a jog.
-const MOST_FAULTS: u32 = 100;
+const MAX_LINK_ERRORS: u32 = 100;
 
 pub(super) struct JogOutcome {
     pub(super) outcome: Outcome,
     /// Whether the jog was still running when the client stopped it.
     is_stopped: bool,
     /// The cause, if the jog ended early.
-    cut: Option<Error>,
+    early_end: Option<Error>,
 }
 
 impl Client {
@@ -35,55 +35,55 @@ impl Client {
     ///
     /// # Errors
     /// The jog was refused or ended by itself, or the client did not observe the end of the jog. In the last case, the
-    /// stop input stays off. [`Error::Cut`] if another cause ended the jog early.
-    pub async fn jog(&mut self, order: &Order, time: Option<Duration>) -> Result<Done, Error> {
+    /// stop input stays off. [`Error::EndedEarly`] if another cause ended the jog early.
+    pub async fn jog(&mut self, order: &Order, time: Option<Duration>) -> Result<CompletedCommand, Error> {
         self.authorize_command(order.row().id, order.risk())?;
-        if self.is_dry() {
+        if self.is_dry_run() {
             self.plan_order(order, Reason::default());
             for procedure in [false, true].into_iter().filter_map(|on| Procedure::set(input::STOP, on)) {
                 self.plan_steps(&procedure);
             }
-            return Ok(Done::default());
+            return Ok(CompletedCommand::default());
         }
-        let JogOutcome { outcome, is_stopped, cut } = self.run_jog(order, time).await?;
+        let JogOutcome { outcome, is_stopped, early_end } = self.run_jog(order, time).await?;
         let done = self.reply(outcome).and_then(|reply| match reply.answer {
             Answer::Refused { alarm: STOP_INPUT, positions } if is_stopped => {
-                Ok(Done { values: positions, elapsed: reply.elapsed })
+                Ok(CompletedCommand { values: positions, elapsed: reply.elapsed })
             }
             _ => reply.done(order),
         });
-        let Some(by) = cut.map(Box::new) else { return done };
+        let Some(by) = early_end.map(Box::new) else { return done };
         let ended = done.map(|done| done.values).map_err(Box::new);
-        Err(Error::Cut { by, order: Box::new(order.clone()), ended })
+        Err(Error::EndedEarly { by, order: Box::new(order.clone()), ended })
     }
 
     /// Jogs and stops. The stop input stays off if the exchange does not end normally.
     pub(super) async fn run_jog(&mut self, order: &Order, time: Option<Duration>) -> Result<JogOutcome, Error> {
         self.start(order).await?;
         self.set_stop_last_will(true);
-        let cut = self.run_for(time).await.err();
+        let early_end = self.run_for(time).await.err();
         let (now, is_stopped) = (self.now(), self.exchange.is_some());
         if let Some(exchange) = &mut self.exchange {
             exchange.interrupt(now);
         }
         let mut faults = 0;
-        while self.exchange.is_some() && faults < MOST_FAULTS {
-            faults += u32::from(self.turn().await.is_err());
+        while self.exchange.is_some() && faults < MAX_LINK_ERRORS {
+            faults += u32::from(self.run_turn().await.is_err());
         }
         let Some(outcome) = self.ended.take() else {
-            return Err(match cut {
+            return Err(match early_end {
                 // The session did not send the jog, so there is no motion to stop.
                 Some(denied @ Error::Session(SessionBusy::ReadOnly)) if self.exchange.is_none() => {
                     self.set_stop_last_will(false);
                     denied
                 }
-                cut => Error::StillMoving { cut: cut.map(Box::new) },
+                early_end => Error::StillMoving { early_end: early_end.map(Box::new) },
             });
         };
         self.await_link(&outcome, None).await;
         self.set_stop_last_will(false);
         self.count(order, &outcome);
-        Ok(JogOutcome { outcome, is_stopped, cut })
+        Ok(JogOutcome { outcome, is_stopped, early_end })
     }
 
     /// Sets or clears the last will of the session. With the last will, the session switches the stop input off if this
@@ -106,7 +106,7 @@ impl Client {
             if Instant::now() >= until {
                 break;
             }
-            self.turn_until(until).await?;
+            self.run_until(until).await?;
         }
         Ok(())
     }

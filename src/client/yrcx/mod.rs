@@ -37,12 +37,12 @@ use armctl_transport::image::{ImageLink, LinkError, Traffic};
 use tokio::time::Instant;
 
 pub use self::error::{Error, Refusal};
-pub use self::exchange::{Done, Reply};
+pub use self::exchange::{CompletedCommand, Reply};
 pub use self::plan::hex;
-pub use self::session_rules::hold;
+pub use self::session_rules::open_session_link;
 pub use self::simulated::Simulated;
 pub use self::stop::StopResult;
-use crate::{Grant, Plan, STOP_WITHIN, Watcher};
+use crate::{Grant, Plan, STOP_TIMEOUT, Watcher};
 
 /// A connection to one controller. The client must stay on one thread, because fieldbus links must too.
 #[derive(Debug)]
@@ -187,8 +187,8 @@ pub struct Totals {
 }
 
 /// Shortest time limit of a command for which the manual gives no limit.
-const QUICK_WITHIN: Duration = Duration::from_secs(10);
-const POWER_WITHIN: Duration = Duration::from_secs(30);
+const QUICK_TIMEOUT: Duration = Duration::from_secs(10);
+const POWER_TIMEOUT: Duration = Duration::from_secs(30);
 
 impl Client {
     /// Creates a client on a link ([`over`](Self::over)) and waits for the first image of the controller
@@ -244,9 +244,9 @@ impl Client {
             ready: timeout,
             accept: timeout,
             release: timeout,
-            stop: STOP_WITHIN,
-            quick: timeout.max(QUICK_WITHIN),
-            power: timeout.max(POWER_WITHIN),
+            stop: STOP_TIMEOUT,
+            quick: timeout.max(QUICK_TIMEOUT),
+            power: timeout.max(POWER_TIMEOUT),
             ..Policy::default()
         };
         Self {
@@ -263,7 +263,7 @@ impl Client {
             sequence: None,
             finished: None,
             policy,
-            procedure_timeout: timeout.max(QUICK_WITHIN),
+            procedure_timeout: timeout.max(QUICK_TIMEOUT),
             timeout,
             retries,
             grant,

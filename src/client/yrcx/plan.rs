@@ -13,7 +13,7 @@ use crate::{Plan, Reason};
 
 impl Client {
     /// Whether this is a dry run.
-    pub fn is_dry(&self) -> bool {
+    pub fn is_dry_run(&self) -> bool {
         matches!(self.transport, Transport::DryRun(_))
     }
 

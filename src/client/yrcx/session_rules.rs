@@ -14,7 +14,7 @@ use super::Error;
 ///
 /// # Errors
 /// [`Error::Silent`] without an image.
-pub async fn hold(link: ImageLink, commands: bool, until: Instant) -> Result<Images, Error> {
+pub async fn open_session_link(link: ImageLink, commands: bool, until: Instant) -> Result<Images, Error> {
     let size = link.output_size();
     let has_commands = Image::has_commands(size);
     let rules = Rules {

@@ -105,7 +105,7 @@ impl Client {
                     return Err(Error::OtherClientRunning { words: Box::new(words) });
                 }
                 // The controller may not have accepted the other command yet.
-                Status::Ready if Instant::now() < until && self.is_up => self.turn_until(until).await?,
+                Status::Ready if Instant::now() < until && self.is_up => self.run_until(until).await?,
                 _ => {
                     self.watcher.event(Event::OtherCommandEnded { words, answer: seen });
                     return Ok(());

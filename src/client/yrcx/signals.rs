@@ -10,7 +10,7 @@ use tokio::time::Instant;
 
 use super::Client;
 use super::error::Error;
-use crate::STOP_WITHIN;
+use crate::STOP_TIMEOUT;
 
 impl Client {
     /// Runs a signal procedure, for example [`Procedure::run`], and returns its duration. A dry run plans the image of
@@ -22,11 +22,11 @@ impl Client {
         if !procedure.only_awaits() {
             self.authorize_command(procedure.name, procedure.risk)?;
         }
-        if self.is_dry() {
+        if self.is_dry_run() {
             self.plan_steps(&procedure);
             return if procedure.risk == Risk::Read { Err(Error::DryRun) } else { Ok(Duration::ZERO) };
         }
-        let limit = if procedure.stops() { STOP_WITHIN } else { Duration::MAX };
+        let limit = if procedure.stops() { STOP_TIMEOUT } else { Duration::MAX };
         self.switch(procedure, limit).await
     }
 
@@ -50,7 +50,7 @@ impl Client {
     /// # Errors
     /// [`Error::Silent`] without an image within the time limit.
     pub async fn input_image(&mut self) -> Result<Image, Error> {
-        if self.is_dry() {
+        if self.is_dry_run() {
             return Err(Error::DryRun);
         }
         self.catch_up().await?;
@@ -62,7 +62,7 @@ impl Client {
             if Instant::now() >= until {
                 return Err(Error::Silent);
             }
-            self.turn_until(until).await?;
+            self.run_until(until).await?;
         }
     }
 
@@ -76,7 +76,7 @@ impl Client {
             if let Some(image) = self.input.filter(|image| condition(image)) {
                 return Ok(image);
             }
-            self.turn().await?;
+            self.run_turn().await?;
             if was_up && !self.is_up {
                 return Err(Error::Silent);
             }

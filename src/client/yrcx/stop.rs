@@ -6,14 +6,14 @@ use armctl_controller::yrcx::order::Order;
 use armctl_controller::yrcx::procedure::Procedure;
 use armctl_controller::yrcx::session::Ended;
 use armctl_controller::yrcx::signal::input;
-use armctl_controller::yrcx::table::{Command, Pace};
+use armctl_controller::yrcx::table::{Command, DurationClass};
 use armctl_controller::yrcx::value::Values;
 
 use tokio::time::Instant;
 
 use super::error::Error;
 use super::{Client, Event};
-use crate::STOP_WITHIN;
+use crate::STOP_TIMEOUT;
 
 /// What a stop ended.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,12 +43,12 @@ impl Client {
     /// [`Error::OutcomeUnknown`] if the client did not observe the end. The stop input then stays off.
     pub async fn stop(&mut self) -> Result<StopResult, Error> {
         self.abandon_sequence();
-        let until = Instant::now() + STOP_WITHIN;
+        let until = Instant::now() + STOP_TIMEOUT;
         let now = self.now();
         if let Some(exchange) = &mut self.exchange {
             exchange.interrupt(now);
             let order = exchange.order().clone();
-            if matches!(order.row().pace, Pace::Motion | Pace::Jog) {
+            if matches!(order.row().pace, DurationClass::Motion | DurationClass::Jog) {
                 self.watcher.event(Event::Stopping);
             }
             let outcome = self.wait_for_outcome(Some(until)).await?;
@@ -77,6 +77,6 @@ impl Client {
 
     /// Whether a jog is running. Only a stop ends a jog.
     pub fn is_jogging(&self) -> bool {
-        self.exchange.as_ref().is_some_and(|exchange| exchange.order().row().pace == Pace::Jog)
+        self.exchange.as_ref().is_some_and(|exchange| exchange.order().row().pace == DurationClass::Jog)
     }
 }

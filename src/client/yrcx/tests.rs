@@ -41,9 +41,9 @@ fn jog() -> Order {
 /// A peer that always sends the same image and ignores what it receives. With a duration, it sends nothing after this
 /// time.
 #[derive(Debug)]
-struct Deaf(Option<Duration>);
+struct ConstantPeer(Option<Duration>);
 
-impl ImagePeer for Deaf {
+impl ImagePeer for ConstantPeer {
     fn input(&mut self, _: Duration, _: Option<&[u8]>) {}
 
     fn output(&mut self, now: Duration) -> Option<Vec<u8>> {
@@ -57,18 +57,18 @@ impl ImagePeer for Deaf {
     }
 }
 
-async fn deaf(risk: Risk, gone: Option<Duration>) -> Client {
-    let link = ImageLink::in_process(Box::new(Deaf(gone)));
+async fn constant_peer_client(risk: Risk, gone: Option<Duration>) -> Client {
+    let link = ImageLink::in_process(Box::new(ConstantPeer(gone)));
     Client::connect(link, Options::default().with_risk(risk)).await.unwrap()
 }
 
 /// A peer that accepts a command and then executes it forever.
 #[derive(Debug, Default)]
-struct Stuck {
+struct EndlessCommandPeer {
     runs: bool,
 }
 
-impl ImagePeer for Stuck {
+impl ImagePeer for EndlessCommandPeer {
     fn input(&mut self, _: Duration, bytes: Option<&[u8]>) {
         self.runs |= bytes.is_some_and(|bytes| bytes[..2] != [0, 0]);
     }
@@ -87,10 +87,10 @@ impl ImagePeer for Stuck {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_stop_says_within_3_s_that_nobody_confirmed_it() {
+async fn unconfirmed_stop_fails_within_3_s() {
     let power = order(Command::ServoFree.order().with(Key::Axes, "1"));
     for what in [motion(), jog(), power] {
-        let link = ImageLink::in_process(Box::<Stuck>::default());
+        let link = ImageLink::in_process(Box::<EndlessCommandPeer>::default());
         let mut client = Client::connect(link, Options::default().with_risk(Risk::Motion)).await.unwrap();
         assert!(timeout(Duration::from_secs(1), client.ask(&what)).await.is_err());
         let began = Instant::now();
@@ -98,7 +98,7 @@ async fn a_stop_says_within_3_s_that_nobody_confirmed_it() {
         assert!(matches!(stopped, Err(Error::OutcomeUnknown { .. })), "{stopped:?}");
         assert!(began.elapsed() <= Duration::from_secs(3), "{:?}", began.elapsed());
     }
-    let link = ImageLink::in_process(Box::<Stuck>::default());
+    let link = ImageLink::in_process(Box::<EndlessCommandPeer>::default());
     let mut client = Client::connect(link, Options::default().with_risk(Risk::Write)).await.unwrap();
     for stop in [Procedure::stop(), Procedure::emergency_stop()] {
         let began = Instant::now();
@@ -109,26 +109,27 @@ async fn a_stop_says_within_3_s_that_nobody_confirmed_it() {
 }
 
 /// Creates a client of the session at this path.
-async fn attached(location: &SessionPath) -> Client {
-    let AttachResult::Session(attached) =
+async fn attached_client(location: &SessionPath) -> Client {
+    let AttachResult::Session(attached_client) =
         attach_at(location, "cell", "test", armctl_transport::session::wire::Purpose::Any).await.unwrap()
     else {
         panic!("nobody holds it")
     };
-    Client::connect(ImageLink::in_session(attached), Options::default()).await.unwrap()
+    Client::connect(ImageLink::in_session(attached_client), Options::default()).await.unwrap()
 }
 
 #[tokio::test]
-async fn who_waited_for_his_turn_knows_what_others_gave_meanwhile() {
+async fn waiting_client_sees_changes_of_other_clients() {
     let folder = tempfile::tempdir().unwrap();
     let location = SessionPath::at(folder.path().join("cell"));
     let info = Info { pid: 1, ..Info::own("cell", "yrcx", "sim:", "armctl session open") };
     let claim = location.claim(&info).unwrap().unwrap();
     let link = ImageLink::in_process(Box::new(Simulated::new(Start::default())));
-    let held = SharedLink::Images(hold(link, true, Instant::now() + Duration::from_secs(60)).await.unwrap());
+    let held =
+        SharedLink::Images(open_session_link(link, true, Instant::now() + Duration::from_secs(60)).await.unwrap());
     let mut host = Host::new(claim, "cell".to_owned(), info, held, |_| {}).unwrap();
     let work = async {
-        let (mut one, mut other) = (attached(&location).await, attached(&location).await);
+        let (mut one, mut other) = (attached_client(&location).await, attached_client(&location).await);
         let (here, there) = (point(1), point(2));
         for _ in 0..100 {
             // Both clients need the link at the same time: each must wait for the command of the other.
@@ -144,7 +145,7 @@ async fn who_waited_for_his_turn_knows_what_others_gave_meanwhile() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn nothing_leaves_that_was_not_granted_but_a_stop() {
+async fn sends_only_granted_requests_and_stops() {
     let mut client = simulated(Risk::Motion).await;
     client.run_procedure(Procedure::run()).await.unwrap();
     client.grant(Grant::default());
@@ -171,8 +172,8 @@ async fn a_refusal_is_an_answer_or_an_error() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn silence_after_a_change_is_not_silence_after_a_question() {
-    let mut client = deaf(Risk::Write, None).await;
+async fn no_answer_to_a_change_is_an_unknown_outcome() {
+    let mut client = constant_peer_client(Risk::Write, None).await;
     let silent = client.ask(&point(1)).await.unwrap_err();
     assert!(matches!(&silent, Error::NoAnswer { why: Silence::NotTaken, .. }), "{silent}");
     let before = client.totals().commands;
@@ -182,9 +183,9 @@ async fn silence_after_a_change_is_not_silence_after_a_question() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_read_is_tried_once_more_than_retries_says_each_as_long_as_the_timeout() {
+async fn sends_a_read_once_plus_retries_with_a_timeout_each() {
     for retries in [0, 4] {
-        let link = ImageLink::in_process(Box::new(Deaf(None)));
+        let link = ImageLink::in_process(Box::new(ConstantPeer(None)));
         let options = Options { timeout: Duration::from_millis(300), retries, ..Options::default() };
         let mut client = Client::connect(link, options).await.unwrap();
         let (began, before) = (Instant::now(), client.totals().commands);
@@ -197,7 +198,7 @@ async fn a_read_is_tried_once_more_than_retries_says_each_as_long_as_the_timeout
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_dry_run_notes_orders_and_knows_no_answers() {
+async fn dry_run_plans_requests_and_has_no_answers() {
     let mut client = Client::dry_run(Options::default().with_risk(Risk::Motion));
     client.ask(&motion()).await.unwrap();
     assert!(matches!(client.ask(&point(1)).await, Err(Error::DryRun)));
@@ -214,7 +215,7 @@ async fn a_dry_run_notes_orders_and_knows_no_answers() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_motion_that_is_dropped_goes_on_until_it_is_stopped() {
+async fn dropped_motion_continues_until_a_stop() {
     let mut client = simulated(Risk::Motion).await;
     assert!(timeout(Duration::from_millis(300), client.ask(&motion())).await.is_err());
     let stopped = client.stop().await.unwrap();
@@ -236,7 +237,7 @@ async fn a_jog_ends_after_its_time() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn what_only_looks_sees_and_gives_no_commands() {
+async fn monitor_reads_images_and_sends_no_commands() {
     let link = ImageLink::in_process(Box::new(Simulated::new(Start::default())));
     let options = Options { commands: false, ..Options::default() };
     let mut client = Client::connect(link, options).await.unwrap();
@@ -248,20 +249,20 @@ async fn what_only_looks_sees_and_gives_no_commands() {
 }
 
 #[derive(Debug, Default)]
-struct Onlooker(Arc<Mutex<Vec<Event>>>);
+struct EventRecorder(Arc<Mutex<Vec<Event>>>);
 
-impl Watcher<Event> for Onlooker {
+impl Watcher<Event> for EventRecorder {
     fn event(&mut self, event: Event) {
         self.0.lock().unwrap().push(event);
     }
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_watcher_is_told_images_and_losses() {
-    let link = ImageLink::in_process(Box::new(Deaf(Some(Duration::from_secs(1)))));
+async fn watcher_gets_images_and_losses() {
+    let link = ImageLink::in_process(Box::new(ConstantPeer(Some(Duration::from_secs(1)))));
     let mut client = Client::over(link, Options::default());
     let told = Arc::default();
-    client.watch(Onlooker(Arc::clone(&told)));
+    client.watch(EventRecorder(Arc::clone(&told)));
     client.ready().await.unwrap();
     let lost = client.wait_for_input(|_| false).await.unwrap_err();
     assert!(matches!(lost, Error::Silent), "{lost}");
@@ -273,14 +274,14 @@ async fn a_watcher_is_told_images_and_losses() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_controller_that_shows_nothing_is_none() {
-    let link = ImageLink::in_process(Box::new(Deaf(Some(Duration::ZERO))));
+async fn controller_without_image_is_an_error() {
+    let link = ImageLink::in_process(Box::new(ConstantPeer(Some(Duration::ZERO))));
     assert!(matches!(Client::connect(link, Options::default()).await, Err(Error::Silent)));
 }
 
 /// Callers match errors, send them to other threads and print them.
 #[test]
-fn errors_are_errors() {
+fn implements_the_error_trait() {
     fn is_error<E: std::error::Error + Send + Sync + Clone + fmt::Debug + 'static>() {}
     is_error::<Error>();
     is_error::<Refusal>();

@@ -5,7 +5,7 @@ use clap::builder::StyledStr;
 
 use super::{environment, page};
 use crate::command::families::FAMILIES;
-use armctl_controller::nearest::nearest;
+use armctl_controller::similar_word::nearest;
 use armctl_frame::face::Face;
 use armctl_frame::prelude::*;
 

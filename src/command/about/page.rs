@@ -128,7 +128,7 @@ mod tests {
     /// Number of lines of a small terminal.
     const ROWS: usize = 24;
     /// If a command's own options need more lines than this, its help may be longer than a small terminal.
-    const OWN: usize = 7;
+    const MAX_SHORT_OPTION_LINES: usize = 7;
 
     fn whole() -> Command {
         let mut whole = Cli::command().term_width(80);
@@ -136,11 +136,11 @@ mod tests {
         whole
     }
 
-    fn each(command: &Command, path: &mut Vec<String>, look: &mut dyn FnMut(&Command, &[&str])) {
+    fn option_lines(command: &Command, path: &mut Vec<String>, look: &mut dyn FnMut(&Command, &[&str])) {
         look(command, &path.iter().map(String::as_str).collect::<Vec<_>>());
         for verb in command.get_subcommands() {
             path.push(verb.get_name().to_owned());
-            each(verb, path, look);
+            option_lines(verb, path, look);
             path.pop();
         }
     }
@@ -149,7 +149,7 @@ mod tests {
     fn help_fits_a_small_terminal() {
         let whole = whole();
         let mut wrong = Vec::new();
-        each(&whole, &mut Vec::new(), &mut |command, path| {
+        option_lines(&whole, &mut Vec::new(), &mut |command, path| {
             let text = page(&whole, path, false).to_string();
             let name = path.join(" ");
             wrong.extend(text.lines().filter(|line| line.chars().count() > 80).map(|line| format!("{name}: {line}")));
@@ -160,7 +160,7 @@ mod tests {
                 .lines()
                 .filter(|line| line.starts_with("      ") || line.starts_with("  <") || line.starts_with("  ["));
             let (own, lines) = (own.count(), text.lines().count());
-            if lines > ROWS && own <= OWN {
+            if lines > ROWS && own <= MAX_SHORT_OPTION_LINES {
                 wrong.push(format!("{name}: {lines} lines, {own} of them its own options"));
             }
             if !text.contains("\nExamples:\n  armctl ")

@@ -9,7 +9,7 @@ use crate::command::fleet::status::{Fleet, Overview};
 use crate::command::fleet::{common, names, robots, session, tools, wait};
 #[cfg(feature = "plant")]
 use crate::command::fleet::{metrics, publish};
-use armctl_controller::nearest::nearest;
+use armctl_controller::similar_word::nearest;
 use armctl_frame::background::Opened;
 use armctl_frame::backup::check::Checked;
 use armctl_frame::backup::family_backup::{Backup, Diff, Restore};

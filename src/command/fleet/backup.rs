@@ -9,7 +9,7 @@ use crate::command::fleet::status::{Fleet, Link};
 use armctl_frame::AnyContext;
 use armctl_frame::backup::check::Checked;
 use armctl_frame::backup::family_backup::{self, Backups};
-use armctl_frame::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
+use armctl_frame::backup::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
 use armctl_frame::face::Face;
 use armctl_frame::local_names::private_folder;
 use armctl_frame::prelude::*;
@@ -98,7 +98,7 @@ impl Reading {
 
 impl Command for Reading {
     type Family = Fleet;
-    type Report = BackedUp;
+    type Report = BackupReport;
     const ID: &'static str = "diff";
     const RISK: Risk = Fleet::BACKUP_RISK;
 
@@ -106,7 +106,7 @@ impl Command for Reading {
         Fleet::backup_risk(robot)
     }
 
-    async fn run(&self, context: Context<'_, Fleet>) -> Result<BackedUp, Failure> {
+    async fn run(&self, context: Context<'_, Fleet>) -> Result<BackupReport, Failure> {
         let folder = self.place(context.robot);
         let options = SaveOptions { folder, scope: Some(self.scope.clone()), resume: false, force: false };
         let result = Fleet::back_up(context, options).await?;
@@ -123,12 +123,12 @@ impl Backups for Fleet {
         families::of(robot.family).backup_risk(robot)
     }
 
-    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackedUp, Failure> {
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport, Failure> {
         let (face, context) = open_folder(context)?;
         face.back_up(context, making).await
     }
 
-    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport, Failure> {
         let (face, context) = open_folder(context)?;
         face.restore(context, restoring).await
     }
@@ -136,10 +136,10 @@ impl Backups for Fleet {
 
 /// Splits a context of any family into its face and connection.
 fn open_folder(context: Context<'_, Fleet>) -> Result<(&'static dyn Face, AnyContext<'_>), Failure> {
-    let Context { link, screen, robot, authority, .. } = context;
+    let Context { link, screen, robot, confirmer, .. } = context;
     match link {
         Link::Open(face, connection) => {
-            Ok((*face, AnyContext { robot, connection: &mut **connection, screen, several: false, authority }))
+            Ok((*face, AnyContext { robot, connection: &mut **connection, screen, several: false, confirmer }))
         }
         Link::Absent(absent) => Err(absent.failure.clone()),
     }

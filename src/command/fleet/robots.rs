@@ -95,7 +95,7 @@ impl Show {
         let mut settings = vec![row("target", &robot.target, ToString::to_string)];
         if robot.family.has_model() {
             settings.push(row("model", &robot.model, ToString::to_string));
-            settings.extend(told_model(&robot));
+            settings.extend(reported_model(&robot));
         }
         settings.extend([
             row("read_only", &robot.read_only, ToString::to_string),
@@ -124,7 +124,7 @@ impl Show {
 }
 
 /// Model that the controller reported earlier, if no setting contains a model.
-fn told_model(robot: &Robot) -> Option<Value> {
+fn reported_model(robot: &Robot) -> Option<Value> {
     if robot.model.value.named().is_some() {
         return None;
     }

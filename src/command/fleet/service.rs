@@ -64,12 +64,12 @@ impl Service {
         /// Interval of the status without a watchdog.
         const STATUS: Duration = Duration::from_secs(30);
 
-        let every = self.supervisor.pulse().unwrap_or(STATUS);
+        let every = self.supervisor.keepalive_interval().unwrap_or(STATUS);
         let mut notification = true;
         loop {
             sleep(every).await;
             self.log.summarize(false);
-            let now = self.supervisor.alive(&status());
+            let now = self.supervisor.send_keepalive(&status());
             if let (Err(error), true) = (&now, notification) {
                 self.log_line(Level::Error, &format!("cannot reach the service manager: {error}"), &[]);
             }

@@ -20,7 +20,7 @@ use armctl_frame::settings::target::{Family, Target, TargetArgument};
 pub struct Setup {}
 
 /// Limit of the numbers in a proposed name.
-const MOST_NAMES: u32 = 999;
+const MAX_NAME_NUMBER: u32 = 999;
 
 /// Target and family of the new robot.
 struct FoundTarget {
@@ -185,7 +185,7 @@ async fn check(run: &Run, found: &FoundTarget) -> Result<bool, Failure> {
 async fn describe(run: &Run, family: Family, target: Target) -> Result<NewRobot, Failure> {
     let (screen, inventory) = (&run.screen, &run.sources.inventory);
     let unused_name =
-        (1..=MOST_NAMES).map(|number| format!("cell{number}")).find(|name| check_new(inventory, name).is_ok());
+        (1..=MAX_NAME_NUMBER).map(|number| format!("cell{number}")).find(|name| check_new(inventory, name).is_ok());
     screen.ask_note("");
     let name = loop {
         let name = line(run, "Name", unused_name.as_deref()).await?;

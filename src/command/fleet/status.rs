@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::command::families;
-use armctl_frame::authority::Authority;
+use armctl_frame::confirmation::Confirmer;
 use armctl_frame::dry_run::Plan;
 use armctl_frame::face::Face;
 use armctl_frame::face::overview::OverviewReport;
@@ -12,8 +12,8 @@ use armctl_frame::prelude::*;
 use armctl_frame::script_line::Line;
 use armctl_frame::settings::place::Place;
 use armctl_frame::settings::target;
-use armctl_frame::share::{can_share, open_shared_session};
-use armctl_frame::{Connection, Entry, Family};
+use armctl_frame::shared_session::{can_share, open_shared_session};
+use armctl_frame::{Connection, ConnectionEffect, Family};
 
 /// Robots of any family, for commands that all families support.
 #[derive(Debug)]
@@ -94,8 +94,8 @@ impl Family for Fleet {
         }
     }
 
-    fn entry(robot: &Robot, mode: ConnectMode) -> Entry {
-        families::of(robot.family).driver().entry(robot, mode)
+    fn connection_effect(robot: &Robot, mode: ConnectMode) -> ConnectionEffect {
+        families::of(robot.family).driver().connection_effect(robot, mode)
     }
 
     fn takes_one_client(robot: &Robot) -> bool {
@@ -188,8 +188,8 @@ pub async fn look(robot: &Robot, line: &Line, screen: &Screen) -> Result<Overvie
     let access = Access::reading(overview.connect_mode());
     let access = line.connect(robot, access, screen).await?;
     let mut connection = Fleet::connect(robot, access, screen).await?;
-    let authority = Authority::reading(screen, robot);
-    let context = Context { robot, link: &mut connection, screen, several: false, authority };
+    let confirmer = Confirmer::reading(screen, robot);
+    let context = Context { robot, link: &mut connection, screen, several: false, confirmer };
     let report = overview.run(context).await;
     Fleet::close(connection, screen).await?;
     report

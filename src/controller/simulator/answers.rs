@@ -7,20 +7,20 @@ use crate::Now;
 
 /// Queue of delayed answers. A full queue drops the oldest answer, because a client may send without end.
 #[derive(Debug, Clone)]
-pub(crate) struct Answers<T> {
+pub(crate) struct DelayedAnswers<T> {
     delay: Duration,
-    most: usize,
+    capacity: usize,
     waiting: VecDeque<(Now, T)>,
 }
 
-impl<T> Answers<T> {
+impl<T> DelayedAnswers<T> {
     /// An empty queue for at most `most` answers.
-    pub(crate) fn new(delay: Duration, most: usize) -> Self {
-        Self { delay, most, waiting: VecDeque::new() }
+    pub(crate) fn new(delay: Duration, capacity: usize) -> Self {
+        Self { delay, capacity, waiting: VecDeque::new() }
     }
 
     pub(crate) fn push(&mut self, now: Now, answer: T) {
-        if self.waiting.len() >= self.most {
+        if self.waiting.len() >= self.capacity {
             self.waiting.pop_front();
         }
         self.waiting.push_back((now.saturating_add(self.delay), answer));

@@ -36,7 +36,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_come_at_their_time_and_once() {
+    fn timeline_delivers_each_line_once_at_its_time() {
         let lines = [(20, "b"), (10, "a"), (20, "c")].map(|(ms, line)| (ms, line.to_owned()));
         let mut timeline = Timeline::from_iter(lines);
         let at = Duration::from_millis;

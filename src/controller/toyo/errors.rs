@@ -45,7 +45,7 @@ pub fn explain(code: u8) -> Explanation {
             (Some((code - 0xC0) / 2 + 1), Some((name, LIMIT_CAUSE, LIMIT_REMEDY)))
         }
         _ => {
-            let row = OTHERS.iter().find(|(other, ..)| *other == code);
+            let row = WITHOUT_AXIS.iter().find(|(other, ..)| *other == code);
             (None, row.map(|(_, name, cause, remedy)| (*name, *cause, *remedy)))
         }
     };
@@ -123,7 +123,7 @@ const AXIS: [(u8, Text, Text, Text); 14] = [
 
 /// Errors without an axis.
 #[rustfmt::skip] // Six lines per row would hide the table.
-const OTHERS: [(u8, Text, Text, Text); 40] = [
+const WITHOUT_AXIS: [(u8, Text, Text, Text); 40] = [
     (0x12, "watchdog timer", "the controller's software did not answer in time", "switch the power off and on"),
     (0x13, "emergency stop",
         "the emergency stop is or was pressed",

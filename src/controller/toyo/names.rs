@@ -2,7 +2,7 @@
 //! `TN1` and `PT012`.
 
 use crate::names::{Grammar, Kind};
-use crate::typed::unsigned;
+use crate::user_input::unsigned;
 
 /// Address notation: bits of internal ports and of ports of station 0, counters, timers and points.
 pub const GRAMMAR: Grammar = Grammar { address, prefixes: &["IN", "OUT", "INT", "CN", "TN", "PT", "PN", "F"] };

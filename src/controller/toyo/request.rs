@@ -10,7 +10,7 @@ use super::table::{Instruction, Op, Pallet, Parameter};
 use crate::Risk;
 
 /// Maximum length of a block in bytes, including `@` and line end (TO 1-4; ambiguity A1).
-pub const MOST: usize = 128;
+pub const MAX_BLOCK_LEN: usize = 128;
 
 /// A block of the host.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -37,7 +37,7 @@ pub enum BlockError {
     #[error("a block must begin with @")]
     Start,
     /// The block is too long.
-    #[error("the block has {len} characters; the maximum is {MOST}, with the line end")]
+    #[error("the block has {len} characters; the maximum is {MAX_BLOCK_LEN}, with the line end")]
     Long {
         /// Characters, without line end.
         len: usize,
@@ -379,7 +379,7 @@ fn agree(request: &Record, answer: &Record) -> Result<(), BlockError> {
 /// The text between `@` and line end.
 fn unwrapped(block: &str) -> Result<&str, BlockError> {
     let text = block.trim_end_matches(['\r', '\n']);
-    if text.len() + 2 > MOST {
+    if text.len() + 2 > MAX_BLOCK_LEN {
         return Err(BlockError::Long { len: text.len() });
     }
     if let Some((at, char)) = text.char_indices().find(|(_, char)| !matches!(char, ' '..='~')) {

@@ -439,7 +439,7 @@ mod tests {
     }
 
     #[test]
-    fn the_file_server_says_by_its_service_what_it_sends() {
+    fn service_determines_the_content_of_a_file_frame() {
         let answer = |service: u8, data: &[u8]| {
             let (block, status) = (1 | LAST_BLOCK, Status::OK);
             let frame = AnswerFrame { division: Division::File, ack: true, id: 8, block, service, status, data }.emit();
@@ -450,7 +450,7 @@ mod tests {
     }
 
     #[test]
-    fn a_count_that_is_not_allowed_shows() {
+    fn shows_an_invalid_count() {
         let count = |command, count: u8| {
             let frame = request(command, 0, 0, 0x33, &[count, 0, 0, 0]).frame(0);
             let description = describe(&frame, Sender::Client, None);
@@ -463,7 +463,7 @@ mod tests {
     }
 
     #[test]
-    fn damage_is_named() {
+    fn describes_damage() {
         let frame = request(0x72, 1, 0, 1, &[]).frame(0);
         let cut = describe(&frame[..20], Sender::Client, None);
         assert_eq!(cut.fields.last().unwrap().name, "block number");

@@ -332,7 +332,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_that_may_and_may_not_be_sent() {
+    fn checks_names_before_sending() {
         assert!(check_name(b"TESTJOB.JBI").is_ok());
         assert!(check_name(b"\x83\x5c.JBI").is_ok());
         assert!(check_name(b"/SPDRV/CMOSBK.BIN").is_ok());
@@ -357,7 +357,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_bear_other_ends_of_lines_and_padding() {
+    fn parses_lists_with_other_line_ends_and_padding() {
         let names = |data: &'static [u8]| split_list(data).unwrap();
         assert_eq!(names(b"1.JBI\r\n22.JBI\r\n"), [&b"1.JBI"[..], b"22.JBI"]);
         assert_eq!(names(b"A.JBI\nB.JBI\rC.JBI\0D.JBI"), [&b"A.JBI"[..], b"B.JBI", b"C.JBI", b"D.JBI"]);
@@ -366,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_longer_than_a_frame_is_no_name() {
+    fn rejects_a_line_longer_than_a_frame() {
         let longest = [b'A'; MAX_DATA];
         assert_eq!(split_list(&longest).unwrap(), [longest]);
         let longer = [&b"A.JBI\r\n"[..], &[b'A'; MAX_DATA + 1]].concat();

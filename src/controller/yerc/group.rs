@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn text_and_instances() {
+    fn converts_groups_to_text_and_instances() {
         assert_eq!("r1".parse(), Ok(Group::R1));
         assert_eq!("S24".parse(), Ok(Group::Station(24)));
         for junk in ["", "R", "R0", "R9", "S25", "X1", "R+1", "R01x", "B999"] {

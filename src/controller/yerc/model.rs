@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn software_tells_the_model() {
+    fn identifies_the_model_by_its_software() {
         for (version, model) in [
             ("FS1.14.00A(JP/US)-00", Some(Model::Fs100)),
             ("DS3.93.00(us/de)-14", Some(Model::Dx100)),
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn names_lead_back() {
+    fn names_round_trip() {
         for model in Model::ALL {
             assert_eq!(model.name().parse(), Ok(model));
         }

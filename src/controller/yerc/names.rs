@@ -19,9 +19,9 @@ use thiserror::Error;
 
 use super::signal::Signal;
 use super::variables::Reference;
-use crate::names::{Grammar, Kind, LONGEST, Name, Source};
+use crate::names::{Grammar, Kind, MAX_NAME_BYTES, Name, Source};
 use crate::text::Encoding;
-use crate::typed::unsigned;
+use crate::user_input::unsigned;
 
 /// Files with names, in the order of reading.
 pub const FILES: [&str; 4] = ["IONAME.DAT", "EXIONAME.DAT", "VARNAME.DAT", "IOMNAME.DAT"];
@@ -30,7 +30,7 @@ pub const FILES: [&str; 4] = ["IONAME.DAT", "EXIONAME.DAT", "VARNAME.DAT", "IOMN
 pub const GRAMMAR: Grammar = Grammar { address, prefixes: &["B", "I", "D", "R", "S", "P", "BP", "EX", "M"] };
 
 /// Maximum number of names in a file. A controller has 8192 signals, and some thousand variables of each kind.
-const MOST: usize = 1 << 16;
+const MAX_NAMES: usize = 1 << 16;
 
 /// Why a file cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -42,7 +42,7 @@ pub enum WrongFile {
     #[error("it has no known section")]
     Sections,
     /// The file has too many names.
-    #[error("it has more than {MOST} names")]
+    #[error("it has more than {MAX_NAMES} names")]
     Many,
 }
 
@@ -160,7 +160,7 @@ impl Reader<'_> {
                 Err(_) => self.found.passed_over += 1,
             },
         }
-        if self.found.names.len() > MOST { Err(WrongFile::Many) } else { Ok(()) }
+        if self.found.names.len() > MAX_NAMES { Err(WrongFile::Many) } else { Ok(()) }
     }
 
     fn signals(&mut self, first_group: u16, at: usize, line: &[u8]) {
@@ -213,7 +213,7 @@ impl Reader<'_> {
             return;
         }
         let name = self.encoding.decode(name);
-        if name.len() > LONGEST {
+        if name.len() > MAX_NAME_BYTES {
             self.found.passed_over += 1;
             return;
         }
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn signals_have_four_names_a_line() {
+    fn signal_files_have_four_names_per_line() {
         // OT#(17) is #10030, OT#(19) #10032, OT#(21) #10034 (see the module comment); IN#(1) is #00010.
         let text = "/IONAME\n//IN\nGATE,VACUUM GOOD,,\n,,,\n//OUT\nRUN,,,\n,,,\n,,,\n,,,\nAIR,,LOCK,\nFILTER,,,LAST\n";
         let expected = [
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn variables_say_their_number() {
+    fn variable_lines_contain_their_number() {
         let text = "//VARNAME\n///SHARE 100,100,100,100,100,128,128,128\n///B\n0000 1,0,MOVE\n\n0017 1,0,A, B\n\n\n\
                     ///P\n0000 1,0,HERE\n0120 1,0,FAR\n0002 1,0,NEAR\n///BP\n///EX\n0000 1,0,HOME\n";
         assert_eq!(
@@ -278,13 +278,13 @@ mod tests {
     }
 
     #[test]
-    fn registers_are_counted_by_lines() {
+    fn line_number_is_the_register_number() {
         // Controllers write the first line with this spelling.
         assert_eq!(read_text("IOMNAME.DAT", "/IOMMAME\n//NAME\n\n\nSPEED\n\nCOUNT\n"), ["M2=SPEED", "M4=COUNT"]);
     }
 
     #[test]
-    fn what_has_another_form_is_passed_over_or_refused() {
+    fn skips_or_rejects_other_formats() {
         let read = |text: &str| read("X.DAT", &encode(text), Encoding::ShiftJis);
         let odd = read("/IONAME\n//IN\nA,B\nC,,,\n//ELSE\nX,,,\n///B\nno number\n0001 NAME\n1 1,0,OK\n").unwrap();
         assert_eq!(odd.passed_over, 3);
@@ -292,12 +292,12 @@ mod tests {
         assert_eq!(read("IONAME\n//IN\n"), Err(WrongFile::Head));
         assert_eq!(read("/IONAME\n//OTHER\nA,,,\n"), Err(WrongFile::Sections));
         assert_eq!(read(""), Err(WrongFile::Head));
-        let long = format!("/IOMMAME\n//NAME\n{}\n", "A".repeat(LONGEST + 1));
+        let long = format!("/IOMMAME\n//NAME\n{}\n", "A".repeat(MAX_NAME_BYTES + 1));
         assert_eq!(read(&long).unwrap().passed_over, 1);
     }
 
     #[test]
-    fn addresses_are_written_one_way() {
+    fn addresses_have_a_canonical_form() {
         let written = |text| (GRAMMAR.address)(text).map(|(_, address)| address);
         for (text, address) in [("27010", "#27010"), ("#10", "#00010"), ("b005", "B5"), ("M007", "M7"), ("ex1", "EX1")]
         {

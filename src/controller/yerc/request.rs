@@ -359,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn risk_sees_the_data() {
+    fn risk_depends_on_the_data() {
         assert_eq!(request(0x83, 2, 1, 0x10, &[1, 0, 0, 0]).risk(), Risk::Motion);
         assert_eq!(request(0x83, 2, 1, 0x10, &[2, 0, 0, 0]).risk(), Risk::Motion);
         assert_eq!(request(0x83, 2, 1, 0x10, &[2]).risk(), Risk::Motion);
@@ -419,7 +419,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_stay_inside_the_span() {
+    fn plural_counts_stay_within_the_range() {
         assert_eq!(request(0x301, 990, 0, 0x33, &[10, 0, 0, 0]).check(Model::Dx200), Ok(()));
         assert!(matches!(
             request(0x301, 990, 0, 0x33, &[11, 0, 0, 0]).check(Model::Dx200),

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::Model;
 use super::table::{Row, Span};
-use crate::typed::unsigned;
+use crate::user_input::unsigned;
 
 /// A signal, identified by its logical number. The last digit of this number is 0 to 7.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_name_group_bit_and_class() {
+    fn signal_number_contains_group_bit_and_class() {
         let signal: Signal = "#29563".parse().unwrap();
         assert_eq!((signal.group(), signal.bit(), signal.to_string().as_str()), (2956, 3, "#29563"));
         assert!(signal.class(Model::Dx200).unwrap().writable);

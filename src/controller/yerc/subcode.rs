@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn subsets_name_their_members() {
+    fn subsets_list_their_members() {
         assert_eq!(dx200(3, 0b10_0101).0, "[SUT]");
         assert_eq!(dx200(3, 0x41).0, "[SE]");
         assert_eq!(dx200(5, 0b01_0010).0, "[YRy]");
@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn groups_past_the_robots_keep_their_bit_number() {
+    fn other_groups_keep_their_bit_number() {
         assert_eq!(dx200(8, 0x0101).0, "[R1(bit 8)]");
         assert_eq!(render(AlarmKind(8), 0b111, Model::Fs100).text, "[R1R2(bit 2)]");
         assert_eq!(dx200(12, 0x8000_0000).0, "[(bit 31)]");
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_comes_through_raw() {
+    fn shows_unsuitable_values_raw() {
         for (alarm_type, data) in [
             (0, 5),
             (1, 0x1_0000),
@@ -275,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn uncertain_text_shows_the_raw_value_too() {
+    fn uncertain_text_includes_the_raw_value() {
         let shown = |alarm_type, data| render(AlarmKind(alarm_type), data, Model::Dx200).to_string();
         assert_eq!(shown(1, 3), "[3]");
         assert_eq!(shown(3, 3), "[SL]? (3 = 0x3)");

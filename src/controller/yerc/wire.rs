@@ -367,7 +367,7 @@ mod tests {
     }
 
     #[test]
-    fn a_short_datagram_names_its_length() {
+    fn error_contains_the_length_of_a_short_datagram() {
         assert_eq!(AnswerFrame::parse(&[0; 31]), Err(WireError::Truncated { len: 31 }));
     }
 }

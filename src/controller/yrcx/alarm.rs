@@ -191,7 +191,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_read_both_ways() {
+    fn alarm_numbers_round_trip() {
         assert_eq!("12.600".parse(), Ok(Alarm::new(0x000C, 0x0258)));
         assert_eq!("2:334".parse(), Ok(Alarm::new(0x0002, 0x014E)));
         assert_eq!(Alarm::new(12, 75).to_string(), "12.75");

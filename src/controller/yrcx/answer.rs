@@ -6,7 +6,7 @@ use super::alarm::{Alarm, STOP_INPUT};
 use super::codec::{self, Side, WordError};
 use super::image::Words;
 use super::order::Order;
-use super::table::{Field, Pace};
+use super::table::{DurationClass, Field};
 use super::value::{Value, Values};
 
 /// Status of a remote command in WO0 (chapter 2, 1.2).
@@ -120,7 +120,7 @@ impl Answer {
 
 /// Whether an abnormal end contains positions.
 pub(super) fn is_stopped_jog(order: &Order, alarm: Alarm) -> bool {
-    order.row().pace == Pace::Jog && alarm == STOP_INPUT
+    order.row().pace == DurationClass::Jog && alarm == STOP_INPUT
 }
 
 /// The fields and values of an answer to `order`. The words can have any content.

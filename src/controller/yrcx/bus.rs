@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn every_bit_of_the_image_has_one_place() {
+    fn every_bit_of_the_image_has_one_position() {
         for bus in Bus::ALL {
             for side in [Side::Input, Side::Output] {
                 let bits: usize = map(bus)

@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said() {
+    fn describes_problems() {
         let problems = |head: &[u16]| command(&words(head)).problems;
         assert_eq!(
             problems(&[0x0001, 0xC004, 0, 0x0032, 0x0013]),

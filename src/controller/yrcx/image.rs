@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn signals_alone_are_an_image_too() {
+    fn accepts_an_image_of_signals_only() {
         // DeviceNet, I/O size Compact: word 0 contains the dedicated signals, word 1 the first general-purpose signals.
         let mut image = Image::default();
         (image.0[0], image.0[DEDICATED_WORD], image.0[17], image.0[18]) = (1, 0x0041, 0x8001, 7);
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn what_another_one_changes_is_not_undone() {
+    fn keeps_changes_of_other_clients() {
         let at = Duration::from_millis;
         let mut output = Output::default();
         output.sent(at(1));
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn edges_count_for_their_word() {
+    fn edges_are_counted_per_word() {
         let at = Duration::from_millis;
         let mut output = Output::default();
         output.sent(at(1));

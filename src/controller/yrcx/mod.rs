@@ -8,14 +8,14 @@
 pub mod alarm;
 pub mod answer;
 pub mod bus;
-pub mod changes;
 pub mod codec;
 pub mod describe;
 pub mod image;
+pub mod image_changes;
 pub mod names;
 pub mod order;
-pub mod passing;
 pub mod procedure;
+pub mod read_only_filter;
 pub mod register;
 pub mod sequence;
 pub mod session;

@@ -3,7 +3,7 @@
 use super::register::Register;
 use super::signal::{Side, Signal};
 use crate::names::{Grammar, Kind};
-use crate::typed::unsigned;
+use crate::user_input::unsigned;
 
 /// Address notation: signals and words, static variables, ports and their bits.
 pub const GRAMMAR: Grammar = Grammar {
@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn addresses_are_written_one_way() {
+    fn addresses_have_a_canonical_form() {
         let written = |text| (GRAMMAR.address)(text).map(|(kind, address)| format!("{} {address}", kind.word()));
         for (text, address) in [
             ("SO20", "signal SO(20)"),

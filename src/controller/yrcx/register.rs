@@ -5,7 +5,7 @@ use std::fmt;
 
 use super::image::{COMMAND_WORDS, Words};
 use super::signal::Side;
-use crate::typed::integer;
+use crate::user_input::integer;
 
 /// A general-purpose word or double word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_has_the_words_for_itself() {
+    fn command_uses_the_words_exclusively() {
         let mut words = [7; COMMAND_WORDS];
         assert_eq!(general(&words), [0; COMMAND_WORDS]);
         words[0] = 0;

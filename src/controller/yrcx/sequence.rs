@@ -231,7 +231,7 @@ impl ImageSession for Sequence {
         }
     }
 
-    fn lost(&mut self, _now: Now) {
+    fn handle_link_loss(&mut self, _now: Now) {
         self.linked = false;
     }
 }

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use super::image::{Image, Output};
 use super::signal::Signal;
-use super::table::Pace;
+use super::table::DurationClass;
 use crate::Now;
 
 pub use exchange::{Ended, Exchange, NotSentReason, Outcome, Silence};
@@ -38,7 +38,7 @@ pub trait ImageSession {
     fn handle(&mut self, now: Now, input: &Image);
 
     /// Records that the link was lost. The session receives no more images; poll for the outcome.
-    fn lost(&mut self, now: Now);
+    fn handle_link_loss(&mut self, now: Now);
 }
 
 /// Time limits of an exchange. Each field is the maximum time until its event.
@@ -62,11 +62,11 @@ pub struct Policy {
 
 impl Policy {
     /// Time limit of a command, by its duration class.
-    pub const fn longest(&self, pace: Pace) -> Option<Duration> {
+    pub const fn longest(&self, pace: DurationClass) -> Option<Duration> {
         match pace {
-            Pace::Quick => Some(self.quick),
-            Pace::Power => Some(self.power),
-            Pace::Motion | Pace::Jog => self.motion,
+            DurationClass::Quick => Some(self.quick),
+            DurationClass::Power => Some(self.power),
+            DurationClass::Motion | DurationClass::Jog => self.motion,
         }
     }
 }

@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use super::image::{DEDICATED_WORD, Image};
 use crate::Risk;
-use crate::nearest::nearest;
+use crate::similar_word::nearest;
 
 /// Direction of a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -379,7 +379,7 @@ mod tests {
     }
 
     #[test]
-    fn a_resting_master_stops_nothing() {
+    fn resting_image_stops_nothing() {
         let image = resting();
         assert_eq!(image.0[DEDICATED_WORD], 0b0100_0001);
         let mut changed = image;

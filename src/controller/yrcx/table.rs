@@ -19,7 +19,7 @@ pub const STATUS_RESET: u16 = 0x0000;
 
 /// Duration class of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Pace {
+pub enum DurationClass {
     /// The command ends at once. A start of a program ends when the controller accepts it (chapter 2, 1.2).
     Quick,
     /// The command ends when servos or motor power have switched.
@@ -57,7 +57,7 @@ pub struct Row {
     /// Risk of the command.
     pub risk: Risk,
     /// Duration class.
-    pub pace: Pace,
+    pub pace: DurationClass,
     /// Fields of the command words WI.
     pub request: &'static [&'static [Field]],
     /// Fields of the answer words WO after a normal end.
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_is_named_only_where_there_is_a_place_for_it() {
+    fn only_commands_with_a_robot_field_have_a_robot() {
         assert!(Row::from_word(0x4001).is_some());
         assert!(Row::from_word(0x1042).is_none(), "motor power is that of the whole system");
         assert!(Row::from_word(0x1111).is_none(), "the layout of 4.3.5 has a robot, all else has not");

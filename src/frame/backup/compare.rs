@@ -51,8 +51,8 @@ impl CompareOptions {
 /// Differences between two backups, or a backup and a controller.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Differences {
-    old: Of,
-    new: Of,
+    old: SideReport,
+    new: SideReport,
     /// Whether nothing differs, apart from the tolerance and ignored lines.
     equal: bool,
     tolerance: Tolerance,
@@ -62,7 +62,7 @@ pub struct Differences {
 
 /// One side in the report.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Of {
+struct SideReport {
     /// Folder of the backup; null for the controller.
     folder: Option<String>,
     robot: String,
@@ -140,7 +140,7 @@ impl Differences {
             files.push(compare_files(old, new, None, Some(entry), manner));
         }
         let equal = files.iter().all(|file| file.more.state.is_equal());
-        Ok(Self { old: Of::new(old), new: Of::new(new), equal, tolerance: manner.tolerance, files })
+        Ok(Self { old: SideReport::new(old), new: SideReport::new(new), equal, tolerance: manner.tolerance, files })
     }
 
     fn count(&self, states: &[State]) -> usize {
@@ -162,7 +162,7 @@ impl Differences {
     }
 }
 
-impl std::fmt::Display for Of {
+impl std::fmt::Display for SideReport {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match &self.folder {
             Some(folder) => f.write_str(folder),
@@ -171,7 +171,7 @@ impl std::fmt::Display for Of {
     }
 }
 
-impl Of {
+impl SideReport {
     fn new(side: &BackupSide) -> Self {
         let BackupSide { folder, manifest, is_controller } = side;
         let folder = (!is_controller).then(|| folder.display().to_string());
@@ -235,7 +235,7 @@ fn compare_files(
         _ => {
             let other = if entry.is_some() { new } else { old };
             let why = if other.manifest.complete { "the file was not selected" } else { "the backup is incomplete" };
-            let why = format!("{} does not contain this file: {why}", Of::new(other));
+            let why = format!("{} does not contain this file: {why}", SideReport::new(other));
             let failure = Failure::new(Kind::ConditionNotMet, why);
             let failure = failure.hint("complete the backup with `armctl backup --resume`");
             return described(FileItem::new(name, Compared::new(State::Unknown), Err(failure)));
@@ -293,7 +293,7 @@ fn pair_files(
 fn copy<'e>(side: &BackupSide, entry: &'e Entry) -> Result<&'e Saved, Failure> {
     let copy = entry.copy.as_ref().ok_or_else(|| {
         let why = entry.error.as_ref().map_or("no reason recorded", |reason| &reason.message);
-        Failure::new(Kind::ConditionNotMet, format!("{} does not contain this file: {why}", Of::new(side)))
+        Failure::new(Kind::ConditionNotMet, format!("{} does not contain this file: {why}", SideReport::new(side)))
             .hint("see manifest.json: the backup does not contain data that the controller refused")
     })?;
     copy.check(&side.folder)?;
@@ -335,9 +335,9 @@ impl Compared {
 }
 
 impl Difference {
-    fn result(&self, old: &Of, new: &Of) -> Cell {
+    fn result(&self, old: &SideReport, new: &SideReport) -> Cell {
         let are_robots = old.folder.is_none() && new.folder.is_none();
-        let only = |of: &Of| match &of.folder {
+        let only = |of: &SideReport| match &of.folder {
             Some(folder) => Cell::from(format!("only in {folder}")).tone(Tone::Warning),
             None if are_robots => Cell::from(format!("only on {}", of.robot)).tone(Tone::Warning),
             None => Cell::from("only on the controller").tone(Tone::Warning),
@@ -375,7 +375,7 @@ impl Report for Differences {
         let mut view = View::default();
         for file in &self.files {
             let Some(hunks) = file.more.changes() else { continue };
-            let named = |of: &Of, other: &Of| match &*file.more.file {
+            let named = |of: &SideReport, other: &SideReport| match &*file.more.file {
                 "" => format!("{of}: {}", file.name),
                 own => of.of(own, other),
             };

@@ -8,7 +8,7 @@ use anyhow::Context as _;
 use super::compare::{BackupSide, CompareOptions, Differences};
 use super::manifest;
 use super::tolerance::{Limit, Tolerance};
-use super::{BackedUp, Only, SaveOptions};
+use super::{BackupReport, Only, SaveOptions};
 use crate::dry_run::unknown;
 use crate::prelude::basics::*;
 
@@ -73,7 +73,7 @@ impl DiffOptions {
         &self,
         old: PathBuf,
         robot: &Robot,
-        read: impl AsyncFnOnce(SaveOptions) -> Result<BackedUp, Failure>,
+        read: impl AsyncFnOnce(SaveOptions) -> Result<BackupReport, Failure>,
     ) -> Result<Differences, Failure> {
         let old = side(old)?;
         manifest::check_origin(&old.manifest, robot, true)?;

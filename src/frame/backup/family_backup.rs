@@ -9,7 +9,7 @@ use super::arguments::{BackupOptions, RestoreOptions};
 use super::compare::Differences;
 use super::diff::DiffOptions;
 use super::manifest;
-use super::{BackedUp, RestoreSelection, Restored, SaveOptions};
+use super::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
 use crate::local_names::private_folder;
 use crate::prelude::basics::*;
 use crate::settings::inventory::Inventory;
@@ -30,9 +30,9 @@ pub trait Backups: Family {
         Self::BACKUP_RISK
     }
     /// Makes a backup.
-    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackedUp, Failure>;
+    async fn back_up(context: Context<'_, Self>, making: SaveOptions) -> Result<BackupReport, Failure>;
     /// Restores a backup.
-    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<Restored, Failure>;
+    async fn restore(context: Context<'_, Self>, restoring: &RestoreSelection) -> Result<RestoreReport, Failure>;
 }
 
 /// Saves the data of a controller to a folder of files.
@@ -62,7 +62,7 @@ impl<F: Backups> Backup<F> {
 
 impl<F: Backups> Command for Backup<F> {
     type Family = F;
-    type Report = BackedUp;
+    type Report = BackupReport;
     const ID: &'static str = F::IDS[0];
     const RISK: Risk = F::BACKUP_RISK;
 
@@ -70,7 +70,7 @@ impl<F: Backups> Command for Backup<F> {
         F::backup_risk(robot)
     }
 
-    async fn run(&self, context: Context<'_, F>) -> Result<BackedUp, Failure> {
+    async fn run(&self, context: Context<'_, F>) -> Result<BackupReport, Failure> {
         let making = self.options.making(None);
         let folder = private_folder(&making.folder, &context.robot.name, context.several);
         F::back_up(context, SaveOptions { folder, ..making }).await
@@ -103,13 +103,13 @@ impl<F: Backups> Restore<F> {
 
 impl<F: Backups> Command for Restore<F> {
     type Family = F;
-    type Report = Restored;
+    type Report = RestoreReport;
     const ID: &'static str = F::IDS[1];
     const RISK: Risk = Risk::Destroy;
     const INTENT: &'static str = "overwrite data of the controller with the backup";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, F>) -> Result<Restored, Failure> {
+    async fn run(&self, context: Context<'_, F>) -> Result<RestoreReport, Failure> {
         let restoring = self.options.restoring();
         let folder = place(&restoring.folder, context.robot, context.several);
         manifest::check_origin(&manifest::open_existing::<Value>(&folder)?, context.robot, restoring.force)?;

@@ -24,7 +24,7 @@ use crate::items::ItemError;
 use crate::output::csv::RowsOf;
 use crate::prelude::basics::*;
 use crate::settings::inventory::matches_pattern;
-use armctl_controller::nearest::nearest;
+use armctl_controller::similar_word::nearest;
 
 /// Selection of files or parts by name patterns; an empty list selects all.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -131,7 +131,7 @@ pub fn add_hint(failure: Failure, again: &str) -> Failure {
 
 /// Content of a folder after a backup.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct BackedUp {
+pub struct BackupReport {
     /// Folder.
     pub folder: String,
     /// Manifest.
@@ -144,7 +144,7 @@ pub struct BackedUp {
     files: Files,
 }
 
-impl BackedUp {
+impl BackupReport {
     /// Result for a folder.
     pub fn new(folder: &Path, scope: Vec<String>, complete: bool, files: Vec<FileItem>) -> Self {
         let manifest = folder.join(MANIFEST).display().to_string();
@@ -158,7 +158,7 @@ impl BackedUp {
     }
 }
 
-impl Report for BackedUp {
+impl Report for BackupReport {
     fn view(&self) -> View {
         self.files.view()
     }
@@ -174,7 +174,7 @@ impl Report for BackedUp {
 
 /// Result of a restore.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Restored {
+pub struct RestoreReport {
     /// Folder of the backup.
     folder: String,
     #[serde(flatten)]
@@ -184,7 +184,7 @@ pub struct Restored {
     pub needs_power_cycle: bool,
 }
 
-impl Restored {
+impl RestoreReport {
     /// Result for a folder.
     pub fn new(folder: &Path, files: Vec<FileItem>) -> Self {
         let files = Files::new(files, |files| FileItem::results(files, ["written", NO_DIFFERENCE]));
@@ -202,7 +202,7 @@ impl Restored {
 const POWER_CYCLE: &str = "machine parameters were changed: switch the controller's power off and on, then restore \
                            again without --machine";
 
-impl Report for Restored {
+impl Report for RestoreReport {
     fn view(&self) -> View {
         self.files.view()
     }
@@ -231,9 +231,9 @@ mod tests {
         let mut part = FileItem::pending("a");
         part.fail(Failure::new(Kind::NoAnswer, "silence").hint("cable"));
         let hint = |report: &dyn Fn(Vec<FileItem>) -> Option<Failure>| report(vec![part.clone()]).unwrap().hint;
-        let backed_up = |files| BackedUp::new("here".as_ref(), Vec::new(), false, files).failure();
+        let backed_up = |files| BackupReport::new("here".as_ref(), Vec::new(), false, files).failure();
         assert_eq!(hint(&backed_up).as_deref(), Some("cable\nuse --resume to read the missing parts"));
-        let restored = |files| Restored::new("here".as_ref(), files).failure();
+        let restored = |files| RestoreReport::new("here".as_ref(), files).failure();
         assert_eq!(hint(&restored).as_deref(), Some(format!("cable\n{RETRY_HINT}").as_str()));
     }
 

@@ -80,7 +80,7 @@ pub fn settle(result: &mut FileItem, outcome: Result<PartResult, Failure>) -> bo
 
 /// Values of a part that a restore replaces.
 #[derive(Debug)]
-pub struct Replaced {
+pub struct ReplacedValues {
     /// Name of the part.
     pub part: String,
     /// Singular and plural of a value.
@@ -91,7 +91,7 @@ pub struct Replaced {
     pub notes: Vec<String>,
 }
 
-impl Replaced {
+impl ReplacedValues {
     /// Values of a table that was compared.
     pub fn of<F: Family>(part: &dyn fmt::Display, table: &Table<F>) -> Self {
         let (values, notes) = (table.replaced(), table.consequences());
@@ -104,7 +104,7 @@ impl Replaced {
 const SHOWN: usize = 10;
 
 /// Change to confirm. It shows a few values one by one, but of many values only their number per part.
-pub fn overwriting(folder: &Path, replaced: &[Replaced]) -> Change {
+pub fn overwriting(folder: &Path, replaced: &[ReplacedValues]) -> Change {
     let (total, folder) = (replaced.iter().map(|part| part.values.len()).sum::<usize>(), folder.display());
     let change = match total {
         0 => return Change::none(),
@@ -114,7 +114,7 @@ pub fn overwriting(folder: &Path, replaced: &[Replaced]) -> Change {
     let change = replaced.iter().flat_map(|part| part.notes.iter().cloned()).fold(change, Change::note);
     replaced.iter().filter(|part| !part.values.is_empty()).fold(
         change,
-        |change, Replaced { part, nouns, values, .. }| {
+        |change, ReplacedValues { part, nouns, values, .. }| {
             if total > SHOWN {
                 let [one, many] = nouns;
                 let count = values.len();

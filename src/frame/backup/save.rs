@@ -8,7 +8,7 @@ use serde_json::Value;
 use tokio::time::Instant;
 
 use super::manifest::{self, About, Entry, Hash, LeftOut, MANIFEST, Manifest, Reason, Saved};
-use super::{BackedUp, SaveOptions};
+use super::{BackupReport, SaveOptions};
 use crate::interrupt::interruptible;
 use crate::local_names::{Target, make_folder, private_folder};
 use crate::prelude::basics::*;
@@ -183,13 +183,13 @@ impl<C: About> BackupWriter<'_, C> {
     }
 
     /// Ends the backup. `rest` are the parts that were not read.
-    pub fn end(mut self, rest: impl IntoIterator<Item = FileItem>) -> Result<BackedUp, Failure> {
+    pub fn end(mut self, rest: impl IntoIterator<Item = FileItem>) -> Result<BackupReport, Failure> {
         self.is_closed = true;
         self.files.extend(rest);
         let files = std::mem::take(&mut self.files);
         self.list.complete = files.iter().all(|file| file.ok);
         self.list.write(self.folder)?;
-        Ok(BackedUp::new(self.folder, self.list.scope.clone(), self.list.complete, files))
+        Ok(BackupReport::new(self.folder, self.list.scope.clone(), self.list.complete, files))
     }
 }
 

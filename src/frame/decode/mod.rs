@@ -63,9 +63,9 @@ pub fn stdin() -> Result<String, Failure> {
 /// Bytes on stdin.
 pub fn stdin_bytes() -> Result<Vec<u8>, Failure> {
     /// Maximum size. It is enough for thousands of frames.
-    const MOST: u64 = 16 << 20;
+    const MAX_INPUT_SIZE: u64 = 16 << 20;
 
-    Ok(files::stdin(MOST).context("stdin")?)
+    Ok(files::stdin(MAX_INPUT_SIZE).context("stdin")?)
 }
 
 /// A field of a message: an object in JSON, a row of a table.

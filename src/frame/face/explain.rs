@@ -6,13 +6,13 @@ use futures_util::future::LocalBoxFuture;
 use super::registration::Declaration;
 use super::shared_commands::default_arguments;
 use super::tool::ToolTask;
-use crate::authority::Authority;
+use crate::confirmation::Confirmer;
 use crate::output::csv::RowsOf;
 use crate::prelude::basics::*;
 use crate::robot::alarm::{Alarm, AlarmEntry, Alarms, ExtraColumns, Row};
 use crate::run::{Run, RunError};
 use crate::settings::alarms::{self, Explanation, Origin};
-use crate::{Access, Command, ConnectMode, Context, Entry, Report};
+use crate::{Access, Command, ConnectMode, ConnectionEffect, Context, Report};
 
 /// A parsed code of a family.
 pub trait Explain {
@@ -120,17 +120,17 @@ pub struct Occurrence {
 
 /// Meaning of a code, and its occurrences on controllers.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Explained<R> {
+pub struct CodeExplanation<R> {
     #[serde(flatten)]
     known: R,
     /// Selected robots; absent if none was selected.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    robots: Vec<Told>,
+    robots: Vec<RobotOccurrences>,
 }
 
 /// Occurrences of a code on a robot.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Told {
+struct RobotOccurrences {
     robot: String,
     /// Occurrences in the robot's alarm list and history, the latest first.
     alarms: Vec<Occurrence>,
@@ -138,7 +138,7 @@ struct Told {
     errors: Vec<String>,
 }
 
-impl<R: Report> Report for Explained<R> {
+impl<R: Report> Report for CodeExplanation<R> {
     const ROWS: RowsOf = R::ROWS;
 
     fn view(&self) -> View {
@@ -146,7 +146,7 @@ impl<R: Report> Report for Explained<R> {
     }
 }
 
-impl Told {
+impl RobotOccurrences {
     fn sections(&self) -> Vec<Section> {
         let mut table = Table::new(&["where", "text", "data", "time"], "");
         for Occurrence { place, data, alarm: Alarm { text, time, .. } } in &self.alarms {
@@ -183,9 +183,9 @@ impl<F: Declaration> ToolTask for Explaining<F> {
                     Some(alarm) => recall::<F>(run, robot, &alarm).await,
                     None => (Vec::new(), vec!["not read: the code is not an alarm number".to_owned()]),
                 };
-                told.push(Told { robot: robot.name.clone(), alarms, errors });
+                told.push(RobotOccurrences { robot: robot.name.clone(), alarms, errors });
             }
-            run.local(id, &Explained { known, robots: told })
+            run.local(id, &CodeExplanation { known, robots: told })
         }
         .boxed_local()
     }
@@ -210,7 +210,7 @@ async fn recall<F: Declaration>(run: &Run, robot: &Robot, alarm: &str) -> (Vec<O
 
 /// Connects, unless the connection would affect the robot.
 async fn connect<F: Declaration>(run: &Run, robot: &Robot) -> Result<F::Link, String> {
-    if matches!(F::entry(robot, ConnectMode::Control), Entry::Stops(_)) {
+    if matches!(F::connection_effect(robot, ConnectMode::Control), ConnectionEffect::Stops(_)) {
         return Err("not read: the read needs a command connection, and the end of that connection stops the robot. \
                     Use `armctl session open` to keep a connection open"
             .to_owned());
@@ -246,8 +246,8 @@ impl Recall<'_> {
         what: &str,
     ) {
         let screen = run.screen.silenced();
-        let authority = Authority::reading(&screen, robot);
-        let context = Context { robot, link, screen: &screen, several: false, authority };
+        let confirmer = Confirmer::reading(&screen, robot);
+        let context = Context { robot, link, screen: &screen, several: false, confirmer };
         match default_arguments::<C>().run(context).await {
             Ok(report) => {
                 let is_it = |found: &Occurrence| found.alarm.code.as_deref().is_some_and(|code| same(code, self.alarm));

@@ -21,7 +21,7 @@ use self::sample::{Detail, Sample, Traffic};
 use self::shared_commands::SharedVerb;
 use self::teach_panel::Panel;
 use self::tool::{Tool, ToolKind};
-use super::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
+use super::backup::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
 use super::robot::alarm::Alarm;
 use crate::prelude::basics::*;
 use crate::settings::target::Family;
@@ -88,7 +88,7 @@ pub trait Face: Sync {
     ) -> LocalBoxFuture<'a, Result<Box<dyn Watch>, Failure>>;
 
     /// Opens a link for a session.
-    fn hold<'a>(
+    fn open_session_link<'a>(
         &self,
         robot: &'a Robot,
         access: &'a Access,
@@ -110,13 +110,13 @@ pub trait Face: Sync {
         &self,
         context: AnyContext<'a>,
         making: SaveOptions,
-    ) -> LocalBoxFuture<'a, Result<BackedUp, Failure>>;
+    ) -> LocalBoxFuture<'a, Result<BackupReport, Failure>>;
     /// Restores a backup.
     fn restore<'a>(
         &self,
         context: AnyContext<'a>,
         restoring: &'a RestoreSelection,
-    ) -> LocalBoxFuture<'a, Result<Restored, Failure>>;
+    ) -> LocalBoxFuture<'a, Result<RestoreReport, Failure>>;
 }
 
 /// Repeated reads of a robot, for the poller.

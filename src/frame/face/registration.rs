@@ -15,9 +15,9 @@ use super::shared_commands::{self, CommonReport, SharedVerb};
 use super::teach_panel::Panel;
 use super::tool::{Tool, ToolKind};
 use super::{Face, HeldLink, Watch};
-use crate::authority::Authority;
 use crate::backup::family_backup::Backups;
-use crate::backup::{BackedUp, RestoreSelection, Restored, SaveOptions};
+use crate::backup::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
+use crate::confirmation::Confirmer;
 use crate::connection;
 use crate::decode::Decode;
 use crate::prelude::basics::*;
@@ -101,7 +101,7 @@ pub trait Declaration: Backups {
     /// Layers of `robots check`.
     async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec<Layer>, Failure>;
     /// Opens a link for a session.
-    async fn hold(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure>;
+    async fn open_session_link(robot: &Robot, access: &Access, screen: &Screen) -> Result<HeldLink, Failure>;
 }
 
 /// Poller that reads a robot repeatedly.
@@ -232,13 +232,13 @@ impl<F: Declaration> Face for Registered<F> {
         async move { Ok(Box::new(F::Poller::open(robot, access, screen).await?) as Box<dyn Watch>) }.boxed_local()
     }
 
-    fn hold<'a>(
+    fn open_session_link<'a>(
         &self,
         robot: &'a Robot,
         access: &'a Access,
         screen: &'a Screen,
     ) -> LocalBoxFuture<'a, Result<HeldLink, Failure>> {
-        F::hold(robot, access, screen).boxed_local()
+        F::open_session_link(robot, access, screen).boxed_local()
     }
 
     fn panel(&self) -> Panel {
@@ -269,7 +269,7 @@ impl<F: Declaration> Face for Registered<F> {
         &self,
         context: AnyContext<'a>,
         making: SaveOptions,
-    ) -> LocalBoxFuture<'a, Result<BackedUp, Failure>> {
+    ) -> LocalBoxFuture<'a, Result<BackupReport, Failure>> {
         async move { F::back_up(context.of()?, making).await }.boxed_local()
     }
 
@@ -277,7 +277,7 @@ impl<F: Declaration> Face for Registered<F> {
         &self,
         context: AnyContext<'a>,
         restoring: &'a RestoreSelection,
-    ) -> LocalBoxFuture<'a, Result<Restored, Failure>> {
+    ) -> LocalBoxFuture<'a, Result<RestoreReport, Failure>> {
         async move { F::restore(context.of()?, restoring).await }.boxed_local()
     }
 }
@@ -294,9 +294,9 @@ impl<E: Poller> Watch for E {
         screen: &'a Screen,
     ) -> LocalBoxFuture<'a, Outcome> {
         async move {
-            let authority = Authority::reading(screen, robot);
+            let confirmer = Confirmer::reading(screen, robot);
             let mut borrowed = connection::Borrowed::<E::Family>(self.link());
-            command.run(AnyContext { robot, connection: &mut borrowed, screen, several: false, authority }).await
+            command.run(AnyContext { robot, connection: &mut borrowed, screen, several: false, confirmer }).await
         }
         .boxed_local()
     }

@@ -4,7 +4,7 @@ use clap::{ArgMatches, Args, Command, FromArgMatches as _};
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
-use super::explain::{Explain, Explained, Explaining};
+use super::explain::{CodeExplanation, Explain, Explaining};
 use super::registration::Declaration;
 use crate::SchemaEntry;
 use crate::decode::{self, Decode};
@@ -59,7 +59,7 @@ impl Tool {
         Self {
             augment: F::Explain::augment_args,
             read: |matches| Ok(Box::new(Explaining::<F>(F::Explain::from_arg_matches_mut(matches)?))),
-            schemas: || vec![SchemaEntry::of::<Explained<<F::Explain as Explain>::Report>>(F::Explain::ID)],
+            schemas: || vec![SchemaEntry::of::<CodeExplanation<<F::Explain as Explain>::Report>>(F::Explain::ID)],
         }
     }
 

@@ -230,9 +230,9 @@ impl Screen {
 
     /// Prints a note that the output is from a simulator, once, and only on a terminal.
     pub fn note_simulator(&self) {
-        static IS_TOLD: AtomicBool = AtomicBool::new(false);
+        static IS_PRINTED: AtomicBool = AtomicBool::new(false);
 
-        if self.format == Format::Table && io::stderr().is_terminal() && !IS_TOLD.swap(true, Ordering::Relaxed) {
+        if self.format == Format::Table && io::stderr().is_terminal() && !IS_PRINTED.swap(true, Ordering::Relaxed) {
             self.note("this is the built-in simulator, not a controller");
         }
     }

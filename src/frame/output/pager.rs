@@ -11,7 +11,7 @@ use crate::failure::Failure;
 
 /// Maximum length of a text for the pager, in bytes. A text up to this length fits into a pipe before the pager reads
 /// it.
-const MAX_LINES: usize = 60_000;
+const MAX_BYTES: usize = 60_000;
 
 impl Screen {
     /// Prints a text. If the text is longer than the terminal, uses a pager.
@@ -19,7 +19,7 @@ impl Screen {
         let (rows, _) = Term::stdout().size();
         let is_terminal = self.is_stdout_terminal();
         let text = if is_terminal { wrap(text, self.width().into()) } else { text.into() };
-        let is_long = text.lines().count() >= rows.into() && text.len() < MAX_LINES;
+        let is_long = text.lines().count() >= rows.into() && text.len() < MAX_BYTES;
         let can_page = self.pager && is_long && is_terminal && self.can_interrupt() && !is_dumb();
         if can_page && show(&text) { Ok(()) } else { self.data(&text) }
     }

@@ -51,7 +51,7 @@ impl Palette {
 
 /// A key with its help texts.
 #[derive(Debug, Clone, Copy)]
-pub struct Explained {
+pub struct KeyHelp {
     /// Name of the key.
     pub key: &'static str,
     /// Text for the last line of the screen. Empty if the key is only in the help.
@@ -104,9 +104,9 @@ impl Painter<'_> {
     }
 
     /// Draws the last line of a screen with as many keys as fit. The last two keys are always shown.
-    pub fn draw_keys(&mut self, line: Rect, keys: &[&Explained]) {
+    pub fn draw_keys(&mut self, line: Rect, keys: &[&KeyHelp]) {
         let (accent, quiet) = (self.palette.accent(), self.palette.quiet());
-        let columns = |key: &Explained| width(key.key) + width(key.short) + 3;
+        let columns = |key: &KeyHelp| width(key.key) + width(key.short) + 3;
         let mut at = 1;
         for (index, key) in keys.iter().enumerate() {
             let taken = u16::try_from(columns(key)).unwrap_or(u16::MAX);
@@ -126,12 +126,7 @@ impl Painter<'_> {
     }
 
     /// Draws the help for all keys over the screen.
-    pub fn draw_help<'a>(
-        &mut self,
-        area: Rect,
-        title: &str,
-        keys: impl ExactSizeIterator<Item = &'a Explained> + Clone,
-    ) {
+    pub fn draw_help<'a>(&mut self, area: Rect, title: &str, keys: impl ExactSizeIterator<Item = &'a KeyHelp> + Clone) {
         const KEY: u16 = 8;
         let columns = keys.clone().map(|key| width(key.full)).max().unwrap_or_default();
         let needed =

@@ -1,8 +1,8 @@
 //! Programs and jobs: the report keys that all families share.
 
 use super::item::Plain;
-use crate::cycle::Cycle;
 use crate::prelude::basics::*;
+use crate::repeated_runs::Cycle;
 
 /// A program or job. A field is null if the protocol does not report it, or if the command did not wait for the end.
 #[derive(Debug, Default, Serialize, JsonSchema)]

@@ -83,7 +83,12 @@ impl Run {
             let reason = match outcome {
                 Ok(report) => {
                     let failure = report.failure();
-                    views.push(RobotView { robot, view: report.view(), has_failed: failure.is_some(), alike: 0 });
+                    views.push(RobotView {
+                        robot,
+                        view: report.view(),
+                        has_failed: failure.is_some(),
+                        merged_count: 0,
+                    });
                     failure
                 }
                 Err(failure) => Some(failure.clone()),
@@ -275,13 +280,13 @@ struct RobotView<'r> {
     view: View,
     has_failed: bool,
     /// Number of other robots with the same view.
-    alike: usize,
+    merged_count: usize,
 }
 
 impl RobotView<'_> {
     /// Name, with the number of robots that failed alike.
     fn named(&self, name: &str) -> String {
-        if self.alike == 0 { name.to_owned() } else { format!("{name} and {} more", self.alike) }
+        if self.merged_count == 0 { name.to_owned() } else { format!("{name} and {} more", self.merged_count) }
     }
 }
 
@@ -300,10 +305,10 @@ fn fold_failed(views: Vec<RobotView<'_>>) -> Vec<RobotView<'_>> {
     for of in views {
         match group_of(&groups, &of.view).filter(|_| of.has_failed) {
             Some(at) => {
-                let alike = std::mem::take(&mut groups[at].1);
+                let merged_count = std::mem::take(&mut groups[at].1);
                 // Only the first of the group has not been counted yet.
-                if alike > 0 {
-                    folded.push(RobotView { alike: alike - 1, ..of });
+                if merged_count > 0 {
+                    folded.push(RobotView { merged_count: merged_count - 1, ..of });
                 }
             }
             None => folded.push(of),
@@ -428,7 +433,7 @@ mod tests {
                 robot,
                 view: View::text(if failed(at) { "no answer" } else { "stopped" }.to_owned()),
                 has_failed: failed(at),
-                alike: 0,
+                merged_count: 0,
             };
             let folded = fold_failed(robots.iter().enumerate().map(view).collect());
             folded.iter().map(|of| of.named(&of.robot.name)).collect()

@@ -12,7 +12,7 @@ use crate::settings::duration;
 
 /// Minimum time of each read, even if `--for` ends earlier. Otherwise a robot that answers at once could count as a
 /// robot that does not answer.
-const SHORTEST_LOOK: Duration = Duration::from_millis(250);
+const MIN_READ_TIME: Duration = Duration::from_millis(250);
 
 /// Repetition options: `--watch`, `--count`, `--until`, `--for`.
 #[derive(Debug, Default)]
@@ -60,7 +60,7 @@ impl Deadline {
     /// Result of `work` with a robot, or a missing answer when the time is over.
     pub async fn bound<T>(self, robot: &Robot, work: impl Future<Output = Result<T, Failure>>) -> Result<T, Failure> {
         let Some((end, within)) = self.0 else { return work.await };
-        let end = end.max(Instant::now() + SHORTEST_LOOK);
+        let end = end.max(Instant::now() + MIN_READ_TIME);
         timeout_at(end, work).await.unwrap_or_else(|_| {
             let (label, typed, within) = (robot.label(), robot.as_typed(), duration::display(within));
             Err(Failure::new(Kind::NoAnswer, format!("{label}: no answer within {within} (--for)"))
@@ -184,9 +184,9 @@ mod tests {
         // be reachable.
         rounds.completed = 1;
         rounds.deadline().bound(&robot, silent()).await.unwrap_err();
-        assert_eq!(rounds.began.elapsed(), within + SHORTEST_LOOK);
+        assert_eq!(rounds.began.elapsed(), within + MIN_READ_TIME);
         assert!(rounds.is_cut(&failure));
-        let answer = answer_after(SHORTEST_LOOK / 2);
+        let answer = answer_after(MIN_READ_TIME / 2);
         assert_eq!(rounds.deadline().bound(&robot, answer).await, Ok(()));
     }
 

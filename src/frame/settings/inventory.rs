@@ -37,7 +37,7 @@ use super::place::{self, Place};
 use super::target::{Family, Target, TargetArgument};
 use crate::failure::{Failure, plain};
 use armctl_controller::names::{Name, Source, unusable};
-use armctl_controller::nearest::nearest;
+use armctl_controller::similar_word::nearest;
 use armctl_controller::text::Encoding;
 use armctl_controller::yerc::payload::MAX_AXES;
 use armctl_files as files;

@@ -22,7 +22,7 @@ use etcetera::BaseStrategy as _;
 use crate::failure::Failure;
 use alarms::Alarms;
 use armctl_controller::names::Name;
-use armctl_controller::nearest::nearest;
+use armctl_controller::similar_word::nearest;
 use armctl_controller::text::Encoding;
 use armctl_controller::yerc::Model;
 use inventory::{Entry, Inventory, Options};

@@ -281,7 +281,7 @@ mod tests {
     use super::*;
     use crate::settings::model::ReportedModel;
     use crate::settings::target::Target;
-    use armctl_controller::names::{Found, Kind};
+    use armctl_controller::names::{Kind, NameMatch};
     use armctl_controller::yerc::Model;
 
     #[test]
@@ -304,7 +304,9 @@ mod tests {
         assert_eq!(read, kept);
         assert_eq!(read.names().collect::<Vec<_>>(), names);
         let robot = RobotNames { cache: Some(place.clone()), ..RobotNames::default() };
-        assert!(matches!(robot.all().names.find(&[Kind::Variable], "扉"), Found::One(found) if found.address == "B5"));
+        assert!(
+            matches!(robot.all().names.find(&[Kind::Variable], "扉"), NameMatch::One(found) if found.address == "B5")
+        );
         std::fs::write(&place.path, "{}").unwrap();
         assert!(place.read().unwrap_err().hint.unwrap().contains("forget"));
         let robot = RobotNames { cache: Some(place.clone()), ..RobotNames::default() };
@@ -336,7 +338,7 @@ mod tests {
     fn simulator_has_the_names_of_its_files() {
         let robot = RobotNames::new(Arc::default(), Family::Yerc, &Address::Simulated);
         assert!(
-            matches!(robot.all().names.find(&[Kind::Signal], "gripper"), Found::One(found) if found.address == "#10010")
+            matches!(robot.all().names.find(&[Kind::Signal], "gripper"), NameMatch::One(found) if found.address == "#10010")
         );
         let other = RobotNames::new(Arc::default(), Family::Toyo, &Address::Simulated);
         assert!(other.all().names.is_empty());

@@ -18,7 +18,7 @@ use serialport::{DataBits, Parity, StopBits};
 
 use crate::failure::Failure;
 
-use self::url::{Query, authority, baud, choice, host_and_port, percent_decoded, port};
+use self::url::{Query, baud, choice, confirmer, host_and_port, percent_decoded, port};
 
 use super::model::ModelSetting;
 
@@ -328,8 +328,8 @@ const FORMS: [(&str, &str); 4] = [
 ];
 
 fn udp(place: &str, query: &mut Query) -> Result<Udp, String> {
-    let authority = authority("udp", place)?;
-    let (host, port) = host_and_port(authority)?;
+    let confirmer = confirmer("udp", place)?;
+    let (host, port) = host_and_port(confirmer)?;
     let port = match port {
         Some(port) => self::port("port", port)?,
         None => ROBOT_PORT,
@@ -364,7 +364,7 @@ fn serial(place: &str, query: &mut Query) -> Result<Serial, String> {
 }
 
 fn tcp(place: &str, query: &mut Query) -> Result<Tcp, String> {
-    let (host, port) = host_and_port(authority("tcp", place)?)?;
+    let (host, port) = host_and_port(confirmer("tcp", place)?)?;
     let port = self::port("port", port.ok_or("the port is missing; device servers have no default port")?)?;
     Ok(Tcp { host, port, baud: baud(query)?.unwrap_or(BAUD) })
 }

@@ -1,8 +1,8 @@
 //! Write of rows: reads the old rows, confirms the changes, and writes the rows that differ. Each row has its own
 //! result.
 
-use super::{Answers, Differing, Store, Writable, WrittenOf, columns, item};
-use crate::authority::Authority;
+use super::{Answers, RowDifference, Store, Writable, WrittenOf, columns, item};
+use crate::confirmation::Confirmer;
 use crate::connection::Family;
 use crate::dry_run::{Known as _, unknown};
 use crate::interrupt::interruptible;
@@ -39,7 +39,7 @@ pub struct TableWrite<'a, S: Store> {
     /// Screen for progress and notes.
     pub screen: &'a Screen,
     /// Authority that confirms the overwriting of user data.
-    pub authority: Authority<'a>,
+    pub confirmer: Confirmer<'a>,
 }
 
 /// A row, and its comparison with the controller.
@@ -71,9 +71,9 @@ impl<S: Store> ComparedRow<S> {
 
 /// Writes the rows that differ. Stops at the first failure of the link. Each row has its own result.
 pub async fn write<S: Writable>(work: TableWrite<'_, S>, rows: Vec<Row<S>>) -> Result<WrittenOf<S>, Failure> {
-    let TableWrite { mut table, robot, link, screen, authority } = work;
+    let TableWrite { mut table, robot, link, screen, confirmer } = work;
     table.select(link).await.map_err(nothing_written)?;
-    let compared = write_rows(&table, link, screen, authority, rows).await;
+    let compared = write_rows(&table, link, screen, confirmer, rows).await;
     // After Ctrl-C, no more requests are sent. When the link is closed, the selected table is restored.
     let is_interrupted = |rows: &Vec<ComparedRow<S>>| {
         rows.iter().any(|row| row.outcome.as_ref().is_err_and(|failure| failure.kind == Kind::Interrupted))
@@ -108,14 +108,14 @@ pub async fn write_rows<S: Writable>(
     table: &S,
     link: &mut <S::Family as Family>::Link,
     screen: &Screen,
-    authority: Authority<'_>,
+    confirmer: Confirmer<'_>,
     rows: Vec<Row<S>>,
 ) -> Result<Vec<ComparedRow<S>>, Failure> {
     let Some(mut compared) = compare(table, link, screen, &rows).await? else {
         table.plan(link, &rows).await?;
         return Err(unknown());
     };
-    authority.confirm(&describe_change(table, &differing(&compared))).await?;
+    confirmer.confirm(&describe_change(table, &differing(&compared))).await?;
     write_each(table, link, screen, &mut compared).await;
     Ok(compared)
 }
@@ -161,12 +161,12 @@ pub async fn compare<S: Writable>(
 }
 
 /// Rows that will be written.
-pub fn differing<S: Writable>(rows: &[ComparedRow<S>]) -> Vec<Differing<'_, S>> {
+pub fn differing<S: Writable>(rows: &[ComparedRow<S>]) -> Vec<RowDifference<'_, S>> {
     rows.iter().filter(|row| row.is_different()).map(|row| (row.key, row.old.as_ref(), &row.new)).collect()
 }
 
 /// Values that a person wrote and that will be replaced: name, old value, new value.
-pub fn replaced<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Vec<[String; 3]> {
+pub fn replaced<S: Writable>(table: &S, rows: &[RowDifference<'_, S>]) -> Vec<[String; 3]> {
     let lost = rows.iter().filter_map(|(key, old, new)| {
         let is_lost = |old: &&S::Wire| S::risk(*key) == S::RISK && !S::is_equal(old, new) && !table.is_blank(old);
         let old = old.filter(is_lost)?;
@@ -177,7 +177,7 @@ pub fn replaced<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Vec<[Strin
 }
 
 /// Question about the data that a person wrote and that will be overwritten.
-pub fn describe_change<S: Writable>(table: &S, rows: &[Differing<'_, S>]) -> Change {
+pub fn describe_change<S: Writable>(table: &S, rows: &[RowDifference<'_, S>]) -> Change {
     table.consequences(rows).into_iter().fold(overwriting(table, &replaced(table, rows)), Change::note)
 }
 
@@ -233,7 +233,7 @@ pub async fn write_each<S: Writable>(
 }
 
 /// The rows with these indices, each with its old and new content.
-fn changes<'r, S: Writable>(rows: &'r [ComparedRow<S>], indices: &[usize]) -> Vec<Differing<'r, S>> {
+fn changes<'r, S: Writable>(rows: &'r [ComparedRow<S>], indices: &[usize]) -> Vec<RowDifference<'r, S>> {
     indices.iter().map(|index| &rows[*index]).map(|row| (row.key, row.old.as_ref(), &row.new)).collect()
 }
 

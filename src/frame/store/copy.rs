@@ -34,7 +34,7 @@ impl<S: Writable> Command for Copy<S> {
     }
 
     async fn run(&self, context: Context<'_, S::Family>) -> Result<WrittenOf<S>, Failure> {
-        let Context { robot, link, screen, authority, .. } = context;
+        let Context { robot, link, screen, confirmer, .. } = context;
         let copy_one = S::WORDS.nouns[0];
         let [from] = self.from.0[..] else {
             return Err(Failure::usage(format!("only one {copy_one} can be copied at a time"))
@@ -66,6 +66,6 @@ impl<S: Writable> Command for Copy<S> {
             ))
         };
         let rows = to.into_iter().map(draft).collect::<Result<_, Failure>>()?;
-        write(TableWrite { table, robot, link, screen, authority }, rows).await?.or_only_failure()
+        write(TableWrite { table, robot, link, screen, confirmer }, rows).await?.or_only_failure()
     }
 }

@@ -10,7 +10,7 @@ use crate::items::{ItemError, verdict};
 use crate::prelude::basics::*;
 use crate::report::Report;
 use crate::robot::item::as_requested;
-use crate::sheet::SheetManner;
+use crate::table_file::SheetManner;
 use crate::text_files;
 use crate::{Command, Context};
 use armctl_controller::findings::Findings;
@@ -37,14 +37,14 @@ pub struct Dump<S: Store> {
 
 impl<S: Store> Command for Dump<S> {
     type Family = S::Family;
-    type Report = Dumped;
+    type Report = DumpReport;
     const ID: &'static str = S::IDS.dump;
 
     fn risk(&self) -> Risk {
         S::risk_of_reading(&self.options)
     }
 
-    async fn run(&self, context: Context<'_, S::Family>) -> Result<Dumped, Failure> {
+    async fn run(&self, context: Context<'_, S::Family>) -> Result<DumpReport, Failure> {
         let Context { link, screen, several, .. } = context;
         let target = self.manner.target(self.file.clone(), several)?;
         // An update writes all rows of the file, including rows that are blank now.
@@ -55,7 +55,7 @@ impl<S: Store> Command for Dump<S> {
         let mut table = S::open(link, &self.options).await?;
         table.prepare(link, &keys).await?;
         let answers = read(&mut table, link, screen, &keys).await?;
-        let (mut kept, mut undefined) = (Kept::default(), Vec::new());
+        let (mut kept, mut undefined) = (SavedRows::default(), Vec::new());
         for (key, outcome) in keys.iter().zip(answers.rows) {
             let is_wanted = |wire: &S::Wire| S::SAVES_BLANK || old.is_some() || !table.is_blank(wire);
             match kept.add(&table, *key, outcome) {
@@ -68,13 +68,13 @@ impl<S: Store> Command for Dump<S> {
                 Answer::Row(_) | Answer::LeftOut => {}
             }
         }
-        let Kept { mut rows, left_out, failed } = kept;
+        let SavedRows { mut rows, left_out, failed } = kept;
         let mut columns = sheet(&table);
         if old.is_none() {
             leave_out_unused(&table, &mut columns, &mut rows);
         }
         let file = target.write(&columns, &rows, canonical::<S>)?;
-        Ok(Dumped { file, saved: rows.len(), not_defined: S::names(&undefined), left_out, failed })
+        Ok(DumpReport { file, saved: rows.len(), not_defined: S::names(&undefined), left_out, failed })
     }
 }
 
@@ -86,7 +86,7 @@ impl<S: Store> Dump<S> {
 
 /// Rows for a file, as they were read.
 #[derive(Debug, Default)]
-pub struct Kept {
+pub struct SavedRows {
     /// Name and values of each row in the file.
     pub rows: Vec<Vec<String>>,
     /// Rows that cannot be written back.
@@ -115,7 +115,7 @@ pub enum Answer<W> {
     LeftOut,
 }
 
-impl Kept {
+impl SavedRows {
     /// Decides whether an answer can be in the file. Records a row that cannot.
     pub fn add<S: Store>(
         &mut self,
@@ -206,7 +206,7 @@ fn canonical<S: Store>(text: &str) -> String {
 
 /// Report of `dump`.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Dumped {
+pub struct DumpReport {
     file: String,
     /// Number of rows in the file.
     saved: usize,
@@ -218,7 +218,7 @@ pub struct Dumped {
     failed: Vec<ItemError>,
 }
 
-impl Report for Dumped {
+impl Report for DumpReport {
     fn view(&self) -> View {
         let mut fields = vec![("file", self.file.as_str().into()), ("rows", self.saved.into())];
         if !self.not_defined.is_empty() {
@@ -265,7 +265,7 @@ impl<S: Writable> Command for Restore<S> {
     }
 
     async fn run(&self, context: Context<'_, S::Family>) -> Result<WrittenOf<S>, Failure> {
-        let Context { robot, link, screen, authority, .. } = context;
+        let Context { robot, link, screen, confirmer, .. } = context;
         let name = text_files::display_path(&self.file);
         let mut table = S::open(link, &self.options).await?;
         let bytes = text_files::read(&self.file)?;
@@ -288,7 +288,7 @@ impl<S: Writable> Command for Restore<S> {
             let message = format!("{name}: the file has no {} to write", S::WORDS.nouns[1]);
             return Err(Failure::usage(message).hint("use `dump FILE` to write such a file"));
         }
-        write(TableWrite { table, robot, link, screen, authority }, rows).await
+        write(TableWrite { table, robot, link, screen, confirmer }, rows).await
     }
 }
 

@@ -7,7 +7,7 @@ use crate::prelude::basics::*;
 use crate::robot::item::{Item, Items};
 use crate::watch::{Watchable, Watched};
 use crate::{Command, Context};
-use armctl_controller::typed;
+use armctl_controller::user_input;
 
 /// Row arguments, after parsing.
 #[derive(Debug)]
@@ -30,7 +30,11 @@ impl<S: Store> Rows<S> {
 
     /// The rows that the user typed, without duplicates; all rows if the user typed none.
     pub fn of(given: &[Self]) -> Vec<S::Key> {
-        if given.is_empty() { S::all() } else { typed::once(given.iter().flat_map(|rows| rows.0.iter().copied())) }
+        if given.is_empty() {
+            S::all()
+        } else {
+            user_input::without_duplicates(given.iter().flat_map(|rows| rows.0.iter().copied()))
+        }
     }
 }
 

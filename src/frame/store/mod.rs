@@ -19,8 +19,8 @@ pub use self::get::{Get, List};
 pub use self::part::{Part, PartResult, TablePart, Text, part_text};
 pub use self::set::Set;
 use super::connection::Family;
-use super::kind::ValueKind;
 use super::names as labels;
+use super::value_kind::ValueKind;
 use crate::prelude::basics::*;
 use crate::robot::item::{Columns, Item, Items, WrittenItems, as_requested};
 use armctl_controller::names::{Kind, Names};
@@ -334,7 +334,7 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
     }
 
     /// Consequences of the write, for the question to the user.
-    fn consequences(&self, _rows: &[Differing<'_, Self>]) -> Vec<String> {
+    fn consequences(&self, _rows: &[RowDifference<'_, Self>]) -> Vec<String> {
         Vec::new()
     }
 
@@ -357,7 +357,7 @@ pub trait Store: Debug + Send + Sync + Sized + 'static {
 }
 
 /// A row to write: its key, its old content if known, and its new content.
-pub type Differing<'r, S> = (<S as Store>::Key, Option<&'r <S as Store>::Wire>, &'r <S as Store>::Wire);
+pub type RowDifference<'r, S> = (<S as Store>::Key, Option<&'r <S as Store>::Wire>, &'r <S as Store>::Wire);
 
 /// A table that can be written.
 #[expect(async_fn_in_trait, reason = "everything runs on one thread")]
@@ -414,7 +414,7 @@ pub trait Writable: Store {
     }
 
     /// Groups of row indices that one request can write. By default, each request writes one row.
-    fn blocks(&self, rows: &[Differing<'_, Self>]) -> Vec<Vec<usize>> {
+    fn blocks(&self, rows: &[RowDifference<'_, Self>]) -> Vec<Vec<usize>> {
         (0..rows.len()).map(|index| vec![index]).collect()
     }
 
@@ -426,7 +426,7 @@ pub trait Writable: Store {
         &self,
         link: &mut <Self::Family as Family>::Link,
         screen: &Screen,
-        rows: &[Differing<'_, Self>],
+        rows: &[RowDifference<'_, Self>],
     ) -> Result<(), Failure>;
 }
 

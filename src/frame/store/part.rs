@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use futures_util::future::LocalBoxFuture;
 
 use super::change::{ComparedRow, Row, compare, differing, replaced, write_each};
-use super::file::{Answer, Kept, LeftOut, leave_out_unused, parse};
+use super::file::{Answer, LeftOut, SavedRows, leave_out_unused, parse};
 use super::get::defined;
 use super::{Store, Writable, read, sheet};
 use crate::connection::Family;
@@ -149,7 +149,7 @@ pub fn part_text<S: Writable>(
     keys: &[S::Key],
     rows: Vec<Result<Option<S::Wire>, Failure>>,
 ) -> Result<Text, Failure> {
-    let (mut kept, mut refused) = (Kept::default(), Vec::new());
+    let (mut kept, mut refused) = (SavedRows::default(), Vec::new());
     let fields = table.fields();
     for (key, outcome) in keys.iter().zip(rows) {
         if let Some(failure) = outcome.as_ref().err().filter(|failure| S::is_undefined(failure)) {
@@ -174,7 +174,7 @@ pub fn part_text<S: Writable>(
             }
         }
     }
-    let Kept { mut rows, left_out, .. } = kept;
+    let SavedRows { mut rows, left_out, .. } = kept;
     let mut columns = sheet(table);
     leave_out_unused(table, &mut columns, &mut rows);
     let text = sheet::write(Dialect::COMMAS, &columns, &rows);

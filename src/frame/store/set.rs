@@ -8,7 +8,7 @@ use super::{Store, Writable, WrittenOf, read_keys};
 use crate::prelude::basics::*;
 use crate::robot::item::as_requested;
 use crate::{Command, Context};
-use armctl_controller::nearest::nearest;
+use armctl_controller::similar_word::nearest;
 
 /// A row, and its new content.
 #[derive(Debug, Args)]
@@ -54,11 +54,11 @@ impl<S: Writable> Command for Set<S> {
     }
 
     async fn run(&self, context: Context<'_, S::Family>) -> Result<WrittenOf<S>, Failure> {
-        let Context { robot, link, screen, authority, .. } = context;
+        let Context { robot, link, screen, confirmer, .. } = context;
         let key = self.row.0;
         let table = S::open(link, &self.options).await?;
         let draft = table.typed(key, &self.values)?;
-        write(TableWrite { table, robot, link, screen, authority }, vec![(key, draft)]).await?.or_only_failure()
+        write(TableWrite { table, robot, link, screen, confirmer }, vec![(key, draft)]).await?.or_only_failure()
     }
 }
 

@@ -5,6 +5,8 @@ use std::path::Path;
 use super::manifest::Controller;
 use super::parts::Part;
 use crate::easy::Numbered;
+use crate::eeprom_tables::Rows as TableRows;
+use crate::field_values::NOT_IN_MANUAL;
 use crate::link::{Link, Toyo};
 use crate::palletizing::Records;
 use crate::param::{Parameters, is_machine};
@@ -12,13 +14,11 @@ use crate::point::Points;
 use crate::prelude::*;
 use crate::program::table::Steps;
 use crate::program::{steps, text};
-use crate::rows::Rows as TableRows;
-use crate::values::NOT_IN_MANUAL;
-use crate::{files, numbers, tasks};
+use crate::{files, number_arguments, task_selection};
 use armctl_client::toyo::letters_request;
 use armctl_controller::findings::Finding;
 use armctl_controller::toyo::field::Field;
-use armctl_controller::toyo::program::{MOST_STEPS, Program, Rows, Style, check_kept, listing, used};
+use armctl_controller::toyo::program::{MAX_STEPS, Program, Rows, Style, check_kept, listing, used};
 use armctl_controller::toyo::table::Command;
 use armctl_frame::backup::manifest::LeftOut;
 use armctl_frame::backup::parts;
@@ -52,7 +52,7 @@ pub async fn controller(link: &mut Link) -> Result<Controller, Failure> {
         task_axes: axes.word("axes").or(axes.text("axes")).unwrap_or_default().to_owned(),
         axis_letters: letters.map(|record| written(&record)),
         task_steps: steps::rooms(link).await?,
-        speed_override_percent: speed.map(|record| numbers::small(&record, "override")),
+        speed_override_percent: speed.map(|record| number_arguments::saturated_byte(&record, "override")),
     })
 }
 
@@ -125,7 +125,7 @@ pub async fn read(link: &mut Link, screen: &Screen, part: Part, controller: &Con
         }
         Source::Program(task) => task,
     };
-    tasks::choose(link, Some(task)).await?;
+    task_selection::select_task(link, Some(task)).await?;
     let room = controller.task_steps[usize::from(task) - 1];
     let read = steps::read_all(link, screen, 1..=room).await?;
     let text = listing(&read, Style { first: 1, is_whole: true, is_numbered: false }, &Rows::new()).text;
@@ -176,7 +176,7 @@ impl Content {
             }
             Part::Program(task) => {
                 // The program in a backup was already on a controller, so its warnings are not shown again.
-                Self::Program(task, text::program(&name, check_kept(&bytes, MOST_STEPS), &screen.silenced())?)
+                Self::Program(task, text::program(&name, check_kept(&bytes, MAX_STEPS), &screen.silenced())?)
             }
         })
     }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use armctl_controller::nearest::nearest;
+use armctl_controller::similar_word::nearest;
 
 /// A part of a backup. Each part has its own file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -6,17 +6,17 @@ use super::parts::Part;
 use crate::eeprom::{Cell, Cells};
 use crate::link::Toyo;
 use crate::link::{Link, wrong};
-use crate::numbers::small;
+use crate::number_arguments::saturated_byte;
 use crate::prelude::*;
 use crate::program::steps;
-use crate::tasks;
+use crate::task_selection;
 use armctl_controller::toyo::table::Group;
-use armctl_frame::authority::Authority;
 use armctl_frame::backup::arguments::RestoreOptions;
 use armctl_frame::backup::manifest;
 use armctl_frame::backup::manifest::{MANIFEST, Saved};
-use armctl_frame::backup::parts::{Replaced, compare_all, overwriting, settle, write_all};
-use armctl_frame::backup::{NOT_CHOSEN, NOT_MACHINE, Only, RestoreSelection, Restored, would_leave, would_write};
+use armctl_frame::backup::parts::{ReplacedValues, compare_all, overwriting, settle, write_all};
+use armctl_frame::backup::{NOT_CHOSEN, NOT_MACHINE, Only, RestoreReport, RestoreSelection, would_leave, would_write};
+use armctl_frame::confirmation::Confirmer;
 use armctl_frame::dry_run::unknown;
 use armctl_frame::interrupt::interruptible;
 use armctl_frame::local_names::private_folder;
@@ -42,7 +42,7 @@ pub struct Restore {
 }
 
 /// Options of a restore.
-struct Asked {
+struct RestoreRequest {
     restoring: RestoreSelection,
     resume: Option<Part>,
 }
@@ -68,27 +68,27 @@ struct Jobs {
 
 impl Command for Restore {
     type Family = Toyo;
-    type Report = Restored;
+    type Report = RestoreReport;
     const ID: &'static str = "toyo.restore";
     const RISK: Risk = Risk::Destroy;
     const INTENT: &'static str = "overwrite the data of the controller with the backup";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Restored, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<RestoreReport, Failure> {
         let restoring = self.options.restoring();
         let folder = private_folder(&restoring.folder, &context.robot.name, context.several);
-        Asked { restoring: RestoreSelection { folder, ..restoring }, resume: self.resume }.run(context).await
+        RestoreRequest { restoring: RestoreSelection { folder, ..restoring }, resume: self.resume }.run(context).await
     }
 }
 
 /// Writes the data of a backup back to the controller.
-pub async fn restore(context: Context<'_, Toyo>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
-    Asked { restoring: restoring.clone(), resume: None }.run(context).await
+pub async fn restore(context: Context<'_, Toyo>, restoring: &RestoreSelection) -> Result<RestoreReport, Failure> {
+    RestoreRequest { restoring: restoring.clone(), resume: None }.run(context).await
 }
 
-impl Asked {
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Restored, Failure> {
-        let Context { link, screen, robot, authority, .. } = context;
+impl RestoreRequest {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<RestoreReport, Failure> {
+        let Context { link, screen, robot, confirmer, .. } = context;
         let folder = &self.restoring.folder;
         let manifest: Manifest = manifest::open_existing(folder)?;
         // Checks that robot and address are as in the backup. The machine itself is checked later.
@@ -106,15 +106,15 @@ impl Asked {
                 contents.push((part, copy.clone(), loaded));
             }
         }
-        if link.is_dry() {
+        if link.is_dry_run() {
             let jobs = self.jobs(&manifest.controller, contents, None)?;
             return self.dry_run(link, screen, &manifest, jobs).await;
         }
-        let outcome = self.restore((link, screen, &authority), &manifest.controller, contents).await;
+        let outcome = self.restore((link, screen, &confirmer), &manifest.controller, contents).await;
         match outcome {
             // After Ctrl-C, only the blocks that restore temporary changes are sent, when the link is closed.
             Ok(report) if report.is_interrupted() => Ok(report),
-            outcome => tasks::done(link, outcome).await,
+            outcome => task_selection::restore_task(link, outcome).await,
         }
     }
 
@@ -174,10 +174,10 @@ impl Asked {
 
     async fn restore(
         &self,
-        (link, screen, authority): (&mut Link, &Screen, &Authority<'_>),
+        (link, screen, confirmer): (&mut Link, &Screen, &Confirmer<'_>),
         backup: &Controller,
         contents: Vec<(Part, Saved, Content)>,
-    ) -> Result<Restored, Failure> {
+    ) -> Result<RestoreReport, Failure> {
         let found = content::controller(link).await?;
         if !self.restoring.force {
             identify(backup, &found, self.restoring.machine)?;
@@ -201,14 +201,14 @@ impl Asked {
             compare_all(link, screen, tables(&mut parts).zip(&mut results)).await?;
             if let Some((cell, present)) = &mut speed {
                 *present =
-                    link.read_if_there(&cell.read).await.map_err(nothing_written)?.map(|record| percent(&record));
+                    link.read_if_present(&cell.read).await.map_err(nothing_written)?.map(|record| percent(&record));
             }
         }
         let compared = || parts.iter().zip(&results).filter(|(_, result)| !needs_power_cycle && result.error.is_none());
-        let machine_values = machine.iter().map(|table| Replaced::of(&"machine", table));
-        let values = compared().map(|(job, _)| Replaced::of(&job.part, &job.table));
+        let machine_values = machine.iter().map(|table| ReplacedValues::of(&"machine", table));
+        let values = compared().map(|(job, _)| ReplacedValues::of(&job.part, &job.table));
         let replaced: Vec<_> = machine_values.chain(values).chain(speed.as_ref().and_then(replaced_speed)).collect();
-        authority.confirm(&overwriting(folder, &replaced)).await?;
+        confirmer.confirm(&overwriting(folder, &replaced)).await?;
         steps::open(link).await?;
         if let Some(machine) = &mut machine {
             let written = interruptible(machine.write(link, screen)).await.and_then(|written| written);
@@ -221,7 +221,7 @@ impl Asked {
                         (result.more.state, result.ok) = (State::NotTried, false);
                     }
                 }
-                let mut restored = Restored::new(folder, results);
+                let mut restored = RestoreReport::new(folder, results);
                 restored.needs_power_cycle = is_whole;
                 return Ok(restored);
             }
@@ -234,7 +234,7 @@ impl Asked {
             }
             results.push(result);
         }
-        Ok(Restored::new(folder, results))
+        Ok(RestoreReport::new(folder, results))
     }
 
     async fn dry_run(
@@ -243,7 +243,7 @@ impl Asked {
         screen: &Screen,
         manifest: &Manifest,
         jobs: Jobs,
-    ) -> Result<Restored, Failure> {
+    ) -> Result<RestoreReport, Failure> {
         const ON: &str = "the comparison: armctl writes the values that differ";
         let Jobs { machine, mut parts, speed } = jobs;
         for entry in manifest.files.iter().filter(|entry| entry.copy.is_some()) {
@@ -303,16 +303,16 @@ fn tables(parts: &mut [Job]) -> impl ExactSizeIterator<Item = &mut Table> {
 }
 
 /// The override, if it will be replaced.
-fn replaced_speed((cell, present): &(Cell, Option<u8>)) -> Option<Replaced> {
+fn replaced_speed((cell, present): &(Cell, Option<u8>)) -> Option<ReplacedValues> {
     let (present, new) = ((*present)?, percent(&cell.wanted));
     let row = ["override".to_owned(), format!("{present} %"), format!("{new} %")];
     let values = if new == present { Vec::new() } else { vec![row] };
-    Some(Replaced { part: "override".to_owned(), nouns: ["override", "overrides"], values, notes: Vec::new() })
+    Some(ReplacedValues { part: "override".to_owned(), nouns: ["override", "overrides"], values, notes: Vec::new() })
 }
 
 /// Speed override in an answer or a request.
 fn percent(record: &Record) -> u8 {
-    small(record, "override")
+    saturated_byte(record, "override")
 }
 
 /// Speed override of the backup.

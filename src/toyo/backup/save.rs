@@ -6,11 +6,11 @@ use super::parts::Part;
 use crate::link::Link;
 use crate::link::Toyo;
 use crate::prelude::*;
-use crate::tasks;
+use crate::task_selection;
 use armctl_frame::backup::arguments::BackupOptions;
 use armctl_frame::backup::manifest::Entry;
 use armctl_frame::backup::save::{self, Task, interrupted_failure};
-use armctl_frame::backup::{BackedUp, Only, SaveOptions};
+use armctl_frame::backup::{BackupReport, Only, SaveOptions};
 use armctl_frame::dry_run::unknown;
 use armctl_frame::robot::file::FileItem;
 
@@ -36,14 +36,14 @@ const CURRENT_TASK: &str = "the current task";
 
 impl Command for Backup {
     type Family = Toyo;
-    type Report = BackedUp;
+    type Report = BackupReport;
     const ID: &'static str = "toyo.backup";
 
     fn risk(&self) -> Risk {
         if self.current_task { Risk::Read } else { Risk::Write }
     }
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<BackedUp, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<BackupReport, Failure> {
         let making = self.options.making(self.current_task.then(|| CURRENT_TASK.to_owned()));
         make(context, making, self.current_task).await
     }
@@ -54,7 +54,7 @@ pub async fn back_up(
     context: Context<'_, Toyo>,
     mut making: SaveOptions,
     current_task: bool,
-) -> Result<BackedUp, Failure> {
+) -> Result<BackupReport, Failure> {
     let is_said = making.scope.iter().flatten().any(|word| word == CURRENT_TASK);
     if current_task && !making.resume && !is_said {
         making.scope.get_or_insert_default().push(CURRENT_TASK.to_owned());
@@ -62,10 +62,10 @@ pub async fn back_up(
     make(context, making, current_task).await
 }
 
-async fn make(context: Context<'_, Toyo>, making: SaveOptions, current_task: bool) -> Result<BackedUp, Failure> {
+async fn make(context: Context<'_, Toyo>, making: SaveOptions, current_task: bool) -> Result<BackupReport, Failure> {
     let Context { link, screen, robot, several, .. } = context;
     let task = Task::new(making, robot, several)?;
-    if link.is_dry() {
+    if link.is_dry_run() {
         return dry_run(link, current_task).await;
     }
     if current_task && !task.scope.iter().any(|word| word == CURRENT_TASK) {
@@ -73,14 +73,14 @@ async fn make(context: Context<'_, Toyo>, making: SaveOptions, current_task: boo
             .hint("use another folder for a backup of the current task"));
     }
     let outcome = interrupted_failure(&task.folder, Box::pin(save(link, (screen, robot), &task))).await;
-    tasks::done(link, outcome).await
+    task_selection::restore_task(link, outcome).await
 }
 
 async fn save(
     link: &mut Link,
     (screen, robot): (&Screen, &Robot),
     task: &Task<Controller>,
-) -> Result<BackedUp, Failure> {
+) -> Result<BackupReport, Failure> {
     let controller = content::controller(link).await?;
     let mut chosen = parts(link, &controller, task.scope.iter().any(|word| word == CURRENT_TASK)).await?;
     let only = Only::of_scope(&task.scope);
@@ -106,13 +106,13 @@ async fn save(
     list.end(chosen[tried..].iter().map(FileItem::pending))
 }
 
-async fn dry_run(link: &mut Link, current_task: bool) -> Result<BackedUp, Failure> {
+async fn dry_run(link: &mut Link, current_task: bool) -> Result<BackupReport, Failure> {
     content::plan_controller(link);
     link.plan(&Request::bare(table::Command::Mtsk), "the current task");
     let first = Parameter::named("M01").and_then(|first| Request::read_parameter(first, None).ok());
     link.plan(&first.expect("the table has M01"), "the first of the parameters");
     if !current_task {
-        tasks::choose(link, Some(1)).await?;
+        task_selection::select_task(link, Some(1)).await?;
     }
     let points = if current_task { "of the current task" } else { "of every task, after the selection of the task" };
     link.then(&format!("every parameter, row, easy program and record is read, then every point and step {points}"));
@@ -121,7 +121,7 @@ async fn dry_run(link: &mut Link, current_task: bool) -> Result<BackedUp, Failur
 
 /// Parts of the controller. With `current_task`, the points and the program of the other tasks are omitted.
 async fn parts(link: &mut Link, controller: &Controller, current_task: bool) -> Result<Vec<Part>, Failure> {
-    let current = tasks::choose(link, None).await?;
+    let current = task_selection::select_task(link, None).await?;
     let wanted = |task: &u8| !current_task || *task == current;
     let points: Vec<u8> = controller.point_tasks().into_iter().filter(wanted).collect();
     let programs: Vec<u8> = controller.program_tasks().into_iter().filter(wanted).collect();

@@ -28,11 +28,11 @@ static SAVED: LazyLock<BTreeMap<String, String>> = LazyLock::new(|| {
 });
 
 /// A folder for backups.
-struct Desk {
+struct Workspace {
     folder: TempDir,
 }
 
-impl Desk {
+impl Workspace {
     fn new() -> Self {
         Self { folder: tempfile::tempdir().unwrap() }
     }
@@ -100,9 +100,9 @@ fn a_backup_holds_all_that_is_stored() {
 }
 
 #[test]
-fn what_is_restored_is_what_was_saved() {
-    let desk = Desk::new();
-    let first = desk.saved();
+fn restores_the_saved_data() {
+    let workspace = Workspace::new();
+    let first = workspace.saved();
     let mut bench = controller(EMPTY);
     let restored = bench.data(&["restore", &first]);
     let written = |data: &Value, name: &str| part(data, name)["written"].clone();
@@ -116,7 +116,7 @@ fn what_is_restored_is_what_was_saved() {
     let status = bench.data(&["status"]);
     assert_eq!(status["mode"], "automatic", "the mode is as it was found");
     assert_eq!(bench.data(&["task", "get"])["task"], 1);
-    let second = desk.path("second");
+    let second = workspace.path("second");
     bench.data(&["backup", second.to_str().unwrap()]);
     let (mut first, mut second) = (files(first), files(second));
     assert_ne!(first.remove("manifest.json"), second.remove("manifest.json"), "the time is another one");
@@ -124,9 +124,9 @@ fn what_is_restored_is_what_was_saved() {
 }
 
 #[test]
-fn what_is_there_is_not_written_again() {
-    let desk = Desk::new();
-    let folder = desk.saved();
+fn does_not_write_equal_data() {
+    let workspace = Workspace::new();
+    let folder = workspace.saved();
     let restored = controller(FULL).data(&["restore", &folder]);
     for part in restored["files"].as_array().unwrap() {
         assert_eq!((&part["state"], &part["written"]), (&"done".into(), &0.into()), "{part}");
@@ -134,9 +134,9 @@ fn what_is_there_is_not_written_again() {
 }
 
 #[test]
-fn a_backup_that_was_cut_off_goes_on() {
-    let desk = Desk::new();
-    let folder = desk.path("saved");
+fn resumes_an_interrupted_backup() {
+    let workspace = Workspace::new();
+    let folder = workspace.path("saved");
     let folder = folder.to_str().unwrap();
     let silent = |block: &str, _| if block == "@RPLT 05 SNO=07" { Fault::Lost } else { Fault::None };
     let (mut bench, _) = Bench::with_faults(FULL, silent);
@@ -157,24 +157,24 @@ fn a_backup_that_was_cut_off_goes_on() {
 }
 
 #[test]
-fn what_a_controller_refuses_is_told_and_does_not_end_the_work() {
-    let desk = Desk::new();
-    let folder = desk.path("saved");
+fn reports_refused_parts_and_continues() {
+    let workspace = Workspace::new();
+    let folder = workspace.path("saved");
     let folder = folder.to_str().unwrap();
     let refuse = |block: &str, _| if block.starts_with("@RESY") { Fault::Answered("@NG") } else { Fault::None };
     let (mut bench, _) = Bench::with_faults(FULL, refuse);
     let (data, failed) = bench.run(&["backup", folder]).unwrap();
     assert_eq!((failed.unwrap().kind, &part(&data, "program-2")["state"]), (Kind::Mixed, &"done".into()));
-    let list = std::fs::read_to_string(desk.path("saved/manifest.json")).unwrap();
+    let list = std::fs::read_to_string(workspace.path("saved/manifest.json")).unwrap();
     let list: Value = serde_json::from_str(&list).unwrap();
     assert!(list["files"][1]["error"]["message"].as_str().unwrap().contains("@NG"));
 }
 
 #[test]
 fn a_changed_file_is_not_sent() {
-    let desk = Desk::new();
-    let folder = desk.saved();
-    std::fs::write(desk.path("saved/points-1.csv"), "point,x_mm,y_mm,z_mm,r_mm\n").unwrap();
+    let workspace = Workspace::new();
+    let folder = workspace.saved();
+    std::fs::write(workspace.path("saved/points-1.csv"), "point,x_mm,y_mm,z_mm,r_mm\n").unwrap();
     let (mut bench, heard) = Bench::with_faults(FULL, |_, _| Fault::None);
     assert_eq!(failure(&mut bench, &["restore", &folder]).kind, Kind::Local);
     assert_eq!(heard.borrow().len(), 0);
@@ -183,8 +183,8 @@ fn a_changed_file_is_not_sent() {
 
 #[test]
 fn another_robot_is_refused() {
-    let desk = Desk::new();
-    let folder = desk.saved();
+    let workspace = Workspace::new();
+    let folder = workspace.saved();
     let mut other = controller(&format!("robot_types = [7]\n{EMPTY}"));
     let failed = failure(&mut other, &["restore", &folder]);
     assert_eq!(failed.kind, Kind::Rejected);
@@ -197,8 +197,8 @@ fn another_robot_is_refused() {
 
 #[test]
 fn a_program_must_have_room_before_anything_is_written() {
-    let desk = Desk::new();
-    let folder = desk.saved();
+    let workspace = Workspace::new();
+    let folder = workspace.saved();
     let (mut bench, heard) = Bench::with_faults("axes = 2", |_, _| Fault::None);
     let failed = failure(&mut bench, &["restore", &folder]);
     assert_eq!((failed.kind, failed.message.as_str()), (Kind::Usage, "program-2 needs 2 steps, but task 2 has 0"));
@@ -207,8 +207,8 @@ fn a_program_must_have_room_before_anything_is_written() {
 
 #[test]
 fn machine_parameters_come_first_and_alone() {
-    let desk = Desk::new();
-    let folder = desk.saved();
+    let workspace = Workspace::new();
+    let folder = workspace.saved();
     let (mut bench, heard) = Bench::with_faults("axes = 2", |_, _| Fault::None);
     let (data, failed) = bench.run(&["restore", &folder, "--machine"]).unwrap();
     assert_eq!(failed.unwrap().kind, Kind::ConditionNotMet);
@@ -221,9 +221,9 @@ fn machine_parameters_come_first_and_alone() {
 }
 
 #[test]
-fn a_restore_that_fails_says_how_far_it_got() {
-    let desk = Desk::new();
-    let folder = desk.saved();
+fn failed_restore_reports_its_progress() {
+    let workspace = Workspace::new();
+    let folder = workspace.saved();
     let lost = |block: &str, _| if block.starts_with("@WPLT 03") { Fault::Unanswered } else { Fault::None };
     let (mut bench, _) = Bench::with_faults(EMPTY, lost);
     let (data, failed) = bench.run(&["restore", &folder]).unwrap();
@@ -246,8 +246,8 @@ fn a_restore_that_fails_says_how_far_it_got() {
 
 #[test]
 fn a_dry_run_shows_what_would_be_written() {
-    let desk = Desk::new();
-    let folder = desk.saved();
+    let workspace = Workspace::new();
+    let folder = workspace.saved();
     let blocks = blocks(&["restore", &folder, "--force", "--only", "program-2,easy"]).unwrap();
     assert!(blocks.contains(&"@WSTX 0001 OUT STN=0 PN01=.......1".to_owned()));
     assert!(blocks.contains(&"@WESY PNO=02 ST=000 START=010 LOOP=0005 END=020".to_owned()));
@@ -256,9 +256,9 @@ fn a_dry_run_shows_what_would_be_written() {
 
 #[test]
 fn a_folder_with_other_files_is_left_alone() {
-    let desk = Desk::new();
-    std::fs::write(desk.path("letter.txt"), "x").unwrap();
-    let folder = desk.folder.path().to_str().unwrap();
+    let workspace = Workspace::new();
+    std::fs::write(workspace.path("letter.txt"), "x").unwrap();
+    let folder = workspace.folder.path().to_str().unwrap();
     for words in [["backup", folder], ["restore", folder]] {
         assert_eq!(blocks(&words).unwrap_err().kind, Kind::Local);
     }
@@ -266,9 +266,9 @@ fn a_folder_with_other_files_is_left_alone() {
 }
 
 #[test]
-fn one_word_that_the_manual_does_not_list_spoils_no_backup() {
-    let desk = Desk::new();
-    let folder = desk.path("odd");
+fn unlisted_value_does_not_prevent_a_backup() {
+    let workspace = Workspace::new();
+    let folder = workspace.path("odd");
     let folder = folder.to_str().unwrap();
     let odd = |block: &str, _| match block {
         "@RPAR M18" => Fault::Answered("@RPAR M18 STN=01 BRT=156K"),
@@ -308,8 +308,8 @@ fn one_word_that_the_manual_does_not_list_spoils_no_backup() {
 
 #[test]
 fn axes_of_another_machine_are_refused_before_anything_is_written() {
-    let desk = Desk::new();
-    let folder = desk.saved();
+    let workspace = Workspace::new();
+    let folder = workspace.saved();
     for (other, told) in [
         ("write = [\"WPAR E19 1100\"]\n", "E19 (task-axes) is 2000 in the backup and 1100 on this controller"),
         (

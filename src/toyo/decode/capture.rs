@@ -57,11 +57,11 @@ struct ReceivedLine {
 /// Size of a conversation in bytes, without its lines.
 const CONVERSATION: usize = 1024;
 /// Maximum number of stored bytes. All lines are stored, because they are printed in order at the end.
-const ROOM: usize = 64 << 20;
+const MEMORY_LIMIT: usize = 64 << 20;
 /// Maximum number of characters without a line end. The longest block is shorter.
-const MOST: usize = 512;
+const MAX_LINE_CHARS: usize = 512;
 /// If a stream has this number of lines without a block, no more of it is stored.
-const MOST_FOREIGN: usize = 1000;
+const MAX_FOREIGN_LINES: usize = 1000;
 
 impl CaptureDecoder for LineDecoder {
     type Field = FieldRow;
@@ -75,7 +75,7 @@ impl CaptureDecoder for LineDecoder {
                 (Connection::Serial(section), usize::from(direction == Direction::Received))
             }
         };
-        if self.kept > ROOM {
+        if self.kept > MEMORY_LIMIT {
             let full = "the capture exceeds the memory limit; only the first lines are shown";
             if !self.decoded.notes.iter().any(|note| note == full) {
                 self.decoded.notes.push(full.to_owned());
@@ -102,7 +102,7 @@ impl CaptureDecoder for LineDecoder {
         }
         for byte in message.bytes {
             conversation.pending[end].push(*byte);
-            if *byte == b'\n' || conversation.pending[end].len() >= MOST {
+            if *byte == b'\n' || conversation.pending[end].len() >= MAX_LINE_CHARS {
                 conversation.line(end, message, false);
             }
         }
@@ -136,7 +136,7 @@ impl Conversation {
     fn line(&mut self, end: usize, message: &Message<'_>, is_cut: bool) {
         let bytes = std::mem::take(&mut self.pending[end]);
         let text = String::from_utf8_lossy(&bytes).trim_end_matches(['\r', '\n']).to_owned();
-        if self.lines.len() >= MOST_FOREIGN && !self.is_ours {
+        if self.lines.len() >= MAX_FOREIGN_LINES && !self.is_ours {
             return;
         }
         if !text.is_empty() {

@@ -3,9 +3,9 @@
 mod progress;
 
 use super::eeprom::Cell;
+use super::eeprom_tables::{self, Rows, WRITING};
 use super::link::wrong;
 use super::programs::{Copy, Kind, Select};
-use super::rows::{self, Rows, WRITING};
 use crate::prelude::*;
 use armctl_controller::toyo::field;
 use armctl_controller::toyo::layout::Layout;
@@ -39,7 +39,7 @@ commands! {
 pub struct Numbered;
 
 impl Kind for Numbered {
-    const WHAT: &'static str = "easy program";
+    const TYPE_NAME: &'static str = "easy program";
     const IDS: [&'static str; 2] = ["toyo.easy.copy", "toyo.easy.select"];
     const INTENT: &'static str = "overwrite an easy program";
     const HELP: [&'static str; 3] = ["Program to copy, 1 to 8", "Program to replace, 1 to 8", "Program, 1 to 8"];
@@ -73,7 +73,7 @@ pub fn cell(program: i32, values: Vec<Value>) -> Result<Cell, Failure> {
     Ok(Cell { read: read(program)?, write, wanted })
 }
 
-impl rows::Kind for Numbered {
+impl eeprom_tables::Kind for Numbered {
     type Value = Program;
     const WORDS: TableWords = TableWords {
         nouns: ["easy program", "easy programs"],

@@ -6,7 +6,7 @@ use super::{BITS, Station, list};
 use crate::complete;
 use crate::link::Toyo;
 use crate::prelude::*;
-use armctl_controller::typed;
+use armctl_controller::user_input;
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoValue, Signals, WATCHED};
 use armctl_frame::watch;
@@ -41,7 +41,8 @@ async fn get(
         return Err(Failure::usage("names belong to ports of station 0, the controller itself")
             .hint("type the port and the bit, such as IN1.3"));
     }
-    let signals: Vec<Signal> = typed::once(arguments.iter().flat_map(|signals| signals.signals.iter().copied()));
+    let signals: Vec<Signal> =
+        user_input::without_duplicates(arguments.iter().flat_map(|signals| signals.signals.iter().copied()));
     let names = names::of_robot(context.robot, context.screen);
     let bytes = read(context.link, station, &signals).await?;
     Signals::new(signals.into_iter().filter_map(|signal| row(signal, station, &bytes, names)).collect())

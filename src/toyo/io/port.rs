@@ -5,11 +5,11 @@ use std::str::FromStr;
 use crate::prelude::*;
 use armctl_controller::names::{Kind, Names};
 use armctl_controller::toyo::names as names_of;
-use armctl_controller::typed;
+use armctl_controller::user_input;
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoItem, IoKind};
 
-use super::super::numbers::small;
+use super::super::number_arguments::saturated_byte;
 
 /// A port with its bits.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -126,7 +126,7 @@ pub fn ports_of(record: &Record) -> Vec<Port> {
     for (number, bits) in [("port1", "bits1"), ("port2", "bits2"), ("port3", "bits3"), ("port4", "bits4")] {
         let Some(byte) = record.bits(bits) else { break };
         let previous = ports.last().map(|port| port.number).filter(|number| *number > 0);
-        let number = match small(record, number) {
+        let number = match saturated_byte(record, number) {
             number if Some(number) == previous => number.saturating_add(1),
             number => number,
         };
@@ -201,7 +201,7 @@ fn addresses(text: &str) -> Result<Vec<Signal>, String> {
     let (bank, rest) = bank_of(text).ok_or_else(wrong)?;
     let ends = rest.split_once("..").or_else(|| rest.split_once('-'));
     let first = ends.map_or(rest, |(first, _)| first);
-    let port_of = |text: &str| typed::unsigned::<u8>(text).filter(|port| *port <= 99);
+    let port_of = |text: &str| user_input::unsigned::<u8>(text).filter(|port| *port <= 99);
     // `IN1.3` is port 1, bit 3. The end of a range can omit the part that is equal to its beginning.
     let parse_signal = |text: &str| {
         let text = bank_of(text).filter(|(other, _)| *other == bank).map_or(text, |(_, rest)| rest);
@@ -215,7 +215,7 @@ fn addresses(text: &str) -> Result<Vec<Signal>, String> {
         let bit = match bit {
             None => None,
             Some(bit) => Some(
-                typed::unsigned::<u8>(bit)
+                user_input::unsigned::<u8>(bit)
                     .filter(|bit| (1..=8).contains(bit))
                     .ok_or_else(|| format!("'{bit}' is not a valid bit; a port has the bits 1 to 8"))?,
             ),
@@ -231,7 +231,7 @@ fn addresses(text: &str) -> Result<Vec<Signal>, String> {
         Some((from, to)) => (number(from)?, number(to)?),
     };
     if least > most {
-        return Err(typed::RangeError { meant: reversed(text) }.to_string());
+        return Err(user_input::RangeError { meant: reversed(text) }.to_string());
     }
     let most = if parse_signal(first)?.1.is_some() { most } else { most + 7 };
     let signal_at =

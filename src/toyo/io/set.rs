@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use super::super::link::{Link, wrong};
-use super::super::numbers::{number, read_back, stored_otherwise};
+use super::super::number_arguments::{number, read_back, read_back_mismatch};
 use super::super::refusal;
 use super::Station;
 use super::port::{OUTPUTS, Signal, name, ports_of};
@@ -12,7 +12,7 @@ use crate::link::Toyo;
 use crate::prelude::*;
 use armctl_controller::names::{Kind as NameKind, Names};
 use armctl_controller::toyo::field::{Field, Mask};
-use armctl_controller::typed;
+use armctl_controller::user_input;
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoValue, WrittenSignal, WrittenSignals};
 
@@ -78,7 +78,7 @@ impl FromStr for Assignment {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (place, value) = typed::setting(text, "a port", "a value", "OUT1.3=on")?;
+        let (place, value) = user_input::split_setting(text, "a port", "a value", "OUT1.3=on")?;
         let Target { port, bit } = names::parse_or_name(&[NameKind::Output], "OUT1.1", place, place_of)?;
         let mask = match bit {
             Some(bit) => one_bit(bit, value)?,
@@ -98,7 +98,7 @@ impl FromStr for Assignment {
 
 fn one_bit(number: u8, value: &str) -> Result<Mask, String> {
     let care = 1 << (number - 1);
-    Ok(Mask { care, bits: if typed::state(value)? { care } else { 0 } })
+    Ok(Mask { care, bits: if user_input::state(value)? { care } else { 0 } })
 }
 
 impl Set {
@@ -187,7 +187,7 @@ impl Assignment {
         let own = |answer: &Record| ports_of(answer).into_iter().find(|port| port.number == self.port);
         let old = link.before(&read).await?.as_ref().and_then(own).map(|port| port.byte);
         link.ask(&order).await?;
-        if link.is_dry() {
+        if link.is_dry_run() {
             link.plan(&read, "the port after the change");
             return Ok(PortChange::UNREAD);
         }
@@ -202,7 +202,7 @@ impl Assignment {
             return Err(Failure::new(Kind::OutcomeUnknown, message).hint(refusal::verification_hint(order.command())));
         };
         let reads = format!("{} reads {:08b}", written.name, written.byte);
-        let failure = stored_otherwise(&order, &reads)
+        let failure = read_back_mismatch(&order, &reads)
             .hint("use `toyo io list --out` to see the outputs; a running program can set the same outputs");
         Ok(PortChange { old, now: Some(written.byte), failure: Some(failure) })
     }
@@ -233,11 +233,11 @@ fn with_results(failure: Failure, orders: &[Assignment], done: usize) -> Failure
 
 impl Command for Direct {
     type Family = Toyo;
-    type Report = Done;
+    type Report = SetReport;
     const ID: &'static str = "toyo.io.direct";
     const RISK: Risk = Risk::Write;
 
-    async fn run(&self, context: Context<'_, Toyo>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<SetReport, Failure> {
         let values = vec![Value::Number(self.number.into())];
         let request = Request::in_form(table::Command::Dout, 1, values).map_err(|error| wrong(&error))?;
         context.link.ask(&request).await?;

@@ -11,7 +11,7 @@ impl Link {
     /// Reads whether the changes are still present, and reports how to undo them. armctl does this before every command
     /// except a stop, and after a stop.
     pub(super) async fn report_abandoned_changes(&mut self) {
-        if self.is_dry() || self.is_line_lost() {
+        if self.is_dry_run() || self.is_line_lost() {
             return;
         }
         for abandoned in std::mem::take(&mut self.abandoned) {

@@ -5,12 +5,12 @@
 use std::sync::{Arc, Mutex};
 
 use crate::change_journal::{AbandonedEntry, ChangeJournal};
-use crate::failure::not_put_back;
+use crate::failure::restore_failed_message;
 use crate::prelude::*;
 use crate::trace::Trace;
 use crate::user_choices::UserChoices;
 use armctl_client::toyo::Event;
-use armctl_client::{Ends, Watcher};
+use armctl_client::{AddressPair, Watcher};
 use armctl_controller::toyo::table::commands::Command;
 use armctl_frame::trace::lock_writer;
 use armctl_transport::tap::Direction;
@@ -53,7 +53,7 @@ impl PrintedNotices {
 pub(super) struct SharedObserver(pub(super) Arc<Mutex<Observer>>);
 
 impl Watcher<Event> for SharedObserver {
-    fn frame(&mut self, direction: Direction, _: Ends, bytes: &[u8]) {
+    fn frame(&mut self, direction: Direction, _: AddressPair, bytes: &[u8]) {
         lock_writer(&self.0).trace.record(direction, bytes);
     }
 
@@ -65,7 +65,7 @@ impl Watcher<Event> for SharedObserver {
             Event::TemporaryChange(back) => observer.journal.push(&back.text()),
             Event::Undone(back) => observer.journal.pop(&back.text()),
             Event::NotUndone(back) => {
-                observer.screen.note(&format!("{}: the connection is lost", not_put_back(&back.text())));
+                observer.screen.note(&format!("{}: the connection is lost", restore_failed_message(&back.text())));
             }
             Event::Host { status, is_taken } => observer.report_foreign_host(status, is_taken),
             Event::Task(task) => observer.report_foreign_task(task),

@@ -6,14 +6,14 @@ use std::hash::{Hash, Hasher};
 
 use super::complete;
 use super::eeprom::Cell;
-use super::items::read_each;
+use super::eeprom_tables::{EepromRow, Listed, is_zero, unlisted};
+use super::field_values::{self, NamedValue};
+use super::item_reads::read_each;
 use super::link::{Link, Toyo, wrong};
-use super::numbers;
+use super::number_arguments;
 use super::programs::{Copy, Kind, Select};
-use super::rows::{EepromRow, Listed, is_zero, unlisted};
-use super::values::{self, NamedValue};
 use crate::prelude::*;
-use armctl_controller::nearest::nearest;
+use armctl_controller::similar_word::nearest;
 use armctl_controller::toyo::field;
 use armctl_controller::toyo::layout::Layout;
 use armctl_controller::toyo::table::palletizing::RECORDS;
@@ -48,7 +48,7 @@ commands! {
 pub struct Numbered;
 
 impl Kind for Numbered {
-    const WHAT: &'static str = "palletizing program";
+    const TYPE_NAME: &'static str = "palletizing program";
     const IDS: [&'static str; 2] = ["toyo.palletizing.copy", "toyo.palletizing.select"];
     const INTENT: &'static str = "overwrite a palletizing program";
     const HELP: [&'static str; 3] = ["Program to copy, 1 to 16", "Program to replace, 1 to 16", "Program, 1 to 16"];
@@ -71,7 +71,7 @@ fn field() -> &'static field::Field {
 
 /// Parses a program number.
 fn parse_program(text: &str) -> Result<i32, String> {
-    numbers::number(field(), text)
+    number_arguments::number(field(), text)
 }
 
 /// Requests that read records of a program.
@@ -195,7 +195,7 @@ impl Store for Records {
     }
 
     fn texts(&self, record: &Record) -> Vec<String> {
-        vec![values::as_typed(&values::named_values_with(record, &self.letters))]
+        vec![field_values::as_typed(&field_values::named_values_with(record, &self.letters))]
     }
 
     fn headings(&self) -> Vec<&'static str> {
@@ -203,16 +203,16 @@ impl Store for Records {
     }
 
     fn cells(&self, Key(pallet): Key, record: &Record) -> Vec<view::Cell> {
-        let value = values::in_a_line(&values::named_values_with(record, &self.letters));
+        let value = field_values::in_a_line(&field_values::named_values_with(record, &self.letters));
         vec![pallet.number.into(), value.into()]
     }
 
     fn difference(&self, old: &Record, new: &Record) -> [String; 2] {
-        values::difference(old, new, &self.letters)
+        field_values::difference(old, new, &self.letters)
     }
 
     fn value(&self, record: &Record) -> Option<Vec<NamedValue>> {
-        Some(values::named_values_with(record, &self.letters))
+        Some(field_values::named_values_with(record, &self.letters))
     }
 
     fn more(&self, Key(pallet): Key, record: Option<&Record>) -> About {

@@ -4,7 +4,7 @@ use crate::prelude::*;
 use armctl_controller::toyo::table::Group;
 
 /// Maximum number of steps of all tasks together (TO 2-4, parameter E22).
-const MOST_STEPS: i32 = 5000;
+const MAX_STEPS: i32 = 5000;
 /// Maximum number of steps if there are easy programs.
 const BESIDE_EASY: i32 = 2000;
 
@@ -45,8 +45,8 @@ pub fn warnings(parameter: &Parameter, stored: Option<&Record>, values: &[Value]
 /// Checks that the new values are consistent.
 pub fn check(parameter: &Parameter, values: &[Value]) -> Result<(), Failure> {
     let steps = total(values);
-    if is_task_steps(parameter) && steps > MOST_STEPS {
-        return Err(Failure::usage(format!("all tasks together would have {steps} steps; the limit is {MOST_STEPS}"))
+    if is_task_steps(parameter) && steps > MAX_STEPS {
+        return Err(Failure::usage(format!("all tasks together would have {steps} steps; the limit is {MAX_STEPS}"))
             .hint("reduce the steps of another task: `toyo param get task-steps`"));
     }
     Ok(())

@@ -8,13 +8,13 @@ use std::hash::{Hash, Hasher};
 
 use super::complete;
 use super::eeprom::{Cell, parameter_cell, parameter_sketch};
-use super::items::{Answers as Records, read_each_twice};
+use super::eeprom_tables::{EepromRow, Listed, unlisted};
+use super::field_values::{self, NamedValue};
+use super::item_reads::{Answers as Records, read_each_with_retry};
 use super::link::{Link, Toyo, wrong};
-use super::numbers::Numbers;
-use super::rows::{EepromRow, Listed, unlisted};
-use super::values::{self, NamedValue};
+use super::number_arguments::Numbers;
 use crate::prelude::*;
-use armctl_controller::nearest::nearest;
+use armctl_controller::similar_word::nearest;
 use armctl_controller::toyo::layout::Layout;
 use armctl_controller::toyo::table::Group;
 use armctl_controller::toyo::table::parameters::PARAMETERS;
@@ -152,7 +152,7 @@ fn values_of(record: &Record) -> Vec<NamedValue> {
         let values = record.values()[table.key.fields.len()..].to_vec();
         table.body().record(values).ok()
     });
-    values::named_values(body.as_ref().unwrap_or(record))
+    field_values::named_values(body.as_ref().unwrap_or(record))
 }
 
 /// Returns the name of the command that reads the rows of a table.
@@ -179,7 +179,7 @@ pub async fn read(link: &mut Link, screen: &Screen, keys: &[Key]) -> Result<Reco
         }
         _ => failure,
     };
-    let answers = read_each_twice(link, screen, "reading parameters", &requests).await;
+    let answers = read_each_with_retry(link, screen, "reading parameters", &requests).await;
     match (answers, keys) {
         (Ok(answers), _) => {
             Ok(keys.iter().zip(answers).map(|(key, answer)| answer.map_err(|failure| rare(key, failure))).collect())
@@ -249,7 +249,7 @@ impl Store for Parameters {
     }
 
     fn texts(&self, record: &Record) -> Vec<String> {
-        vec![values::as_typed(&values_of(record))]
+        vec![field_values::as_typed(&values_of(record))]
     }
 
     fn headings(&self) -> Vec<&'static str> {
@@ -258,11 +258,11 @@ impl Store for Parameters {
 
     fn cells(&self, key: Key, record: &Record) -> Vec<view::Cell> {
         let body = values_of(record);
-        vec![view::Cell::from(key.parameter.id).whole(), values::in_a_line(&body).into()]
+        vec![view::Cell::from(key.parameter.id).whole(), field_values::in_a_line(&body).into()]
     }
 
     fn difference(&self, old: &Record, new: &Record) -> [String; 2] {
-        values::difference(old, new, &Letters::USUAL)
+        field_values::difference(old, new, &Letters::USUAL)
     }
 
     fn value(&self, record: &Record) -> Option<Vec<NamedValue>> {
@@ -283,7 +283,7 @@ impl Store for Parameters {
         let values = &record.values()[key.parameter.key.fields.len()..];
         let unwritable = || {
             let error = self.cell(key, values.to_vec()).err()?;
-            let value = values::in_a_line(&values_of(record));
+            let value = field_values::in_a_line(&values_of(record));
             Some(format!("the value {value} cannot be written back: {}", error.message))
         };
         unlisted(Some(record)).or_else(unwritable)
@@ -297,7 +297,7 @@ impl Store for Parameters {
         !key.parameter.only_on.is_empty()
     }
 
-    fn consequences(&self, rows: &[Differing<'_, Self>]) -> Vec<String> {
+    fn consequences(&self, rows: &[RowDifference<'_, Self>]) -> Vec<String> {
         let is_machine = |key: &Key| key.parameter.group() == Group::Machine;
         let changed: Vec<&Parameter> =
             rows.iter().filter(|(key, ..)| is_machine(key)).map(|(key, ..)| key.parameter).collect();

@@ -6,7 +6,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 
 use super::{Parameters, key_text, machine};
-use crate::rows::EepromRow as _;
+use crate::eeprom_tables::EepromRow as _;
 use armctl_controller::toyo::field::{Field, Form, Mask, Value};
 use armctl_controller::toyo::table::Parameter;
 use armctl_frame::store::{Store as _, Writable as _};

@@ -7,12 +7,12 @@ pub use teach::Teach;
 use std::path::Path;
 
 use super::eeprom::{Cell, parameter_cell, parameter_sketch};
-use super::items::{Answers as Records, read_each};
+use super::eeprom_tables::{EepromRow, Listed, is_zero, texts, unlisted};
+use super::item_reads::{Answers as Records, read_each};
 use super::link::{Link, Toyo, wrong};
-use super::numbers::{Numbers, named, number};
+use super::number_arguments::{Numbers, named, number};
 use super::position::{Coordinates, heading};
-use super::rows::{EepromRow, Listed, is_zero, texts, unlisted};
-use super::{complete, tasks, values};
+use super::{complete, field_values, task_selection};
 use crate::prelude::*;
 use armctl_controller::names::Kind;
 use armctl_controller::toyo::field;
@@ -155,12 +155,12 @@ impl Store for Points {
     }
 
     async fn select(&mut self, link: &mut Link) -> Result<(), Failure> {
-        self.task = tasks::choose(link, self.selected_task).await?;
+        self.task = task_selection::select_task(link, self.selected_task).await?;
         Ok(())
     }
 
     async fn deselect<T>(&self, link: &mut Link, outcome: Result<T, Failure>) -> Result<T, Failure> {
-        tasks::done(link, outcome).await
+        task_selection::restore_task(link, outcome).await
     }
 
     fn table_suffix(&self) -> String {
@@ -185,7 +185,7 @@ impl Store for Points {
     }
 
     fn difference(&self, old: &Record, new: &Record) -> [String; 2] {
-        values::difference(old, new, &self.letters)
+        field_values::difference(old, new, &self.letters)
     }
 
     fn value(&self, record: &Record) -> Option<FourAxes> {

@@ -2,16 +2,16 @@
 
 use super::{AXES, Points, TaskOptions, parse_point};
 use crate::complete;
+use crate::eeprom_tables::EepromRow as _;
+use crate::field_values::Changes;
 use crate::link::{Link, Toyo};
 use crate::position::{Coordinates, UNIT};
 use crate::prelude::*;
-use crate::rows::EepromRow as _;
-use crate::values::Changes;
 use armctl_controller::toyo::table::Command as Word;
 use armctl_frame::dry_run::unknown;
 use armctl_frame::gate::data_changed;
 use armctl_frame::store::{Store as _, Writable as _, describe_change};
-use armctl_frame::teach::Taught;
+use armctl_frame::teach::TeachReport;
 
 /// Store the current position as a point, and read it back.
 #[derive(Debug, Args)]
@@ -34,7 +34,7 @@ fn position_text(coordinates: &Coordinates) -> String {
 
 impl Command for Teach {
     type Family = Toyo;
-    type Report = Taught;
+    type Report = TeachReport;
     const ID: &'static str = "toyo.teach";
     const RISK: Risk = Risk::Destroy;
     const INTENT: &'static str = "overwrite a point";
@@ -57,8 +57,8 @@ impl Command for Teach {
 }
 
 impl Teach {
-    async fn teach(&self, context: Context<'_, Toyo>, points: &Points) -> Result<Taught, Failure> {
-        let Context { link, screen, authority, .. } = context;
+    async fn teach(&self, context: Context<'_, Toyo>, points: &Points) -> Result<TeachReport, Failure> {
+        let Context { link, screen, confirmer, .. } = context;
         let point = self.point;
         let current = read_position(link).await.known()?;
         let stored = link.ask(&points.request(point)?).await.known()?;
@@ -70,9 +70,9 @@ impl Teach {
         let old = Coordinates::of(&stored, points.letters());
         let axes = ["x", "y", "z", "r"].map(|axis| Value::Number(current.number(axis).unwrap_or_default()));
         let new = points.cell(point, axes.into())?.wanted;
-        let needs_confirmation = authority.asks();
+        let needs_confirmation = confirmer.asks_user();
         let change = describe_change(points, &[(point, Some(&stored), &new)]);
-        authority.confirm(&change).await?;
+        confirmer.confirm(&change).await?;
         if needs_confirmation {
             let moved_to = Coordinates::of(&read_position(link).await?, points.letters());
             if moved_to != coordinates {
@@ -87,7 +87,7 @@ impl Teach {
         // The position was written and read back.
         let name = point.to_string();
         let taught =
-            Taught::new(name, Some(old.position()), coordinates.position(), coordinates.position().of_group(UNIT));
+            TeachReport::new(name, Some(old.position()), coordinates.position(), coordinates.position().of_group(UNIT));
         Ok(taught.unchanged(is_stored).with("point", point).with("task", points.task()))
     }
 }

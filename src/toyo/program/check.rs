@@ -10,7 +10,7 @@ use crate::sim::{self, Stop};
 use armctl_controller::findings::{Finding, Severity};
 use armctl_controller::names::{Name, Names};
 use armctl_controller::toyo::errors;
-use armctl_controller::toyo::program::{self, Checked, Known, MOST_STEPS};
+use armctl_controller::toyo::program::{self, Checked, ControllerData, MAX_STEPS};
 use armctl_frame::OfflineCommand;
 use armctl_frame::store::keys_of;
 
@@ -51,10 +51,10 @@ impl OfflineCommand for Check {
     const ID: &'static str = "toyo.program.check";
 
     fn run(&self, _screen: &Screen) -> Result<Verdict, Failure> {
-        let room = usize::from(self.room).min(MOST_STEPS);
+        let room = usize::from(self.room).min(MAX_STEPS);
         let names = Names::new(self.name.clone());
         let points = self.points.as_ref().map(|path| keys_of::<Points>(path, &files::read(path)?));
-        let known = Known { points: points.transpose()?.map(|points| points.into_iter().collect()) };
+        let known = ControllerData { points: points.transpose()?.map(|points| points.into_iter().collect()) };
         let verdict = |path: &PathBuf| {
             let (bytes, name) = (files::read(path)?, files::display_path(path));
             let mut checked = program::check_known(&bytes, room, None, &names, &known);
@@ -223,12 +223,12 @@ mod tests {
     fn verdict(texts: &[(&str, &str)], strict: bool) -> Verdict {
         let files = texts
             .iter()
-            .map(|(name, text)| FileVerdict::new(name, text.as_bytes(), &program::check(text.as_bytes(), MOST_STEPS)));
+            .map(|(name, text)| FileVerdict::new(name, text.as_bytes(), &program::check(text.as_bytes(), MAX_STEPS)));
         Verdict { files: files.collect(), strict }
     }
 
     #[test]
-    fn mistakes_are_shown_where_they_are() {
+    fn shows_errors_at_their_position() {
         let verdict = verdict(&[("a.txt", "SPD V=11\nEMD\n"), ("b.txt", "x: JMP TAG=x\n")], false);
         assert_eq!(
             render::text(&verdict.view(), 80, false),
@@ -257,7 +257,7 @@ b.txt: 2 steps, 1 label
 
     /// A run finds errors that the steps alone do not show.
     #[test]
-    fn a_run_finds_what_the_steps_do_not_show() {
+    fn simulated_run_finds_further_errors() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.txt");
         let findings = |text: &str| {
@@ -287,7 +287,7 @@ b.txt: 2 steps, 1 label
     }
 
     #[test]
-    fn warnings_count_when_they_should() {
+    fn strict_check_fails_on_warnings() {
         let texts = [("a.txt", "SPD V=1\n")];
         assert!(verdict(&texts, false).failure().is_none());
         assert_eq!(verdict(&texts, true).failure().unwrap().message, "a.txt has warnings");

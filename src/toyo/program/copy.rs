@@ -6,9 +6,9 @@ use super::steps;
 use crate::link::Link;
 use crate::link::Toyo;
 use crate::prelude::*;
-use crate::tasks;
+use crate::task_selection;
 use armctl_controller::toyo::program::tags;
-use armctl_frame::authority::Authority;
+use armctl_frame::confirmation::Confirmer;
 use armctl_frame::dry_run::unknown;
 
 /// Copy steps over other steps, within a task or to another task.
@@ -42,23 +42,23 @@ impl Command for Copy {
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Copied, Failure> {
-        let Context { link, screen, authority, .. } = context;
+        let Context { link, screen, confirmer, .. } = context;
         if self.to < self.from {
             return Err(Failure::usage(format!("the last step {} is before the first step {}", self.to, self.from))
                 .hint("type the lower step first"));
         }
-        if usize::from(self.end()) > armctl_controller::toyo::program::MOST_STEPS {
+        if usize::from(self.end()) > armctl_controller::toyo::program::MAX_STEPS {
             return Err(Failure::usage(format!("the copy would end at step {}; the limit is 5000", self.end()))
                 .hint("copy fewer steps, or choose a lower target"));
         }
         if self.to_task.is_none() || self.from_task == self.to_task {
             self.overlap()?;
         }
-        if link.is_dry() {
+        if link.is_dry_run() {
             return self.dry_run(link).await;
         }
-        let outcome = self.copy(link, screen, &authority).await;
-        tasks::done(link, outcome).await
+        let outcome = self.copy(link, screen, &confirmer).await;
+        task_selection::restore_task(link, outcome).await
     }
 }
 
@@ -95,8 +95,8 @@ impl Copy {
         format!("@{}", table::Command::Cpss.row().requests[0].sketch(&values).unwrap_or_default())
     }
 
-    async fn copy(&self, link: &mut Link, screen: &Screen, authority: &Authority<'_>) -> Result<Copied, Failure> {
-        let source = tasks::choose(link, self.from_task).await?;
+    async fn copy(&self, link: &mut Link, screen: &Screen, confirmer: &Confirmer<'_>) -> Result<Copied, Failure> {
+        let source = task_selection::select_task(link, self.from_task).await?;
         let target = self.to_task.unwrap_or(source);
         if source == target {
             self.overlap()?;
@@ -104,7 +104,7 @@ impl Copy {
         steps::room(link, source, self.to).await?;
         steps::room(link, target, self.end()).await?;
         let wanted = steps::read_all(link, screen, self.from..=self.to).await?;
-        tasks::choose(link, Some(target)).await?;
+        task_selection::select_task(link, Some(target)).await?;
         let found = steps::read_all(link, screen, self.at..=self.end()).await?;
         let report = Copied {
             from_task: source,
@@ -129,7 +129,7 @@ impl Copy {
         let lost = lost.filter(|(_, (wanted, found))| wanted != found && **found != steps::nop());
         let lost: Vec<[String; 3]> =
             lost.map(|(step, (wanted, found))| [format!("step {step}"), found.written(), wanted.written()]).collect();
-        authority.confirm(&steps::overwriting(target, &lost)).await?;
+        confirmer.confirm(&steps::overwriting(target, &lost)).await?;
         steps::open(link).await?;
         link.ask(&self.order(source, target)).await?;
         let found = steps::read_all(link, screen, self.at..=self.end()).await?;
@@ -141,13 +141,13 @@ impl Copy {
     }
 
     async fn dry_run(&self, link: &mut Link) -> Result<Copied, Failure> {
-        tasks::choose(link, self.from_task).await?;
+        task_selection::select_task(link, self.from_task).await?;
         link.plan(&steps::rooms_request(), "the number of steps of the task");
         link.plan(&steps::rooms_request(), "the number of steps of the target task");
         for step in self.from..=self.to {
             link.plan(&steps::read_request(step), "the source of the copy");
         }
-        tasks::choose(link, self.to_task.or(self.from_task)).await?;
+        task_selection::select_task(link, self.to_task.or(self.from_task)).await?;
         let there: Vec<Request> = (self.at..=self.end()).map(steps::read_request).collect();
         for read in &there {
             link.plan(read, "the target of the copy");

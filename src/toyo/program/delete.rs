@@ -7,8 +7,8 @@ use super::steps;
 use crate::link::Link;
 use crate::link::Toyo;
 use crate::prelude::*;
-use crate::tasks;
-use armctl_frame::authority::Authority;
+use crate::task_selection;
+use armctl_frame::confirmation::Confirmer;
 use armctl_frame::dry_run::unknown;
 
 /// Delete steps; later steps move up.
@@ -35,18 +35,18 @@ impl Command for Delete {
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Deleted, Failure> {
-        let Context { link, screen, authority, .. } = context;
+        let Context { link, screen, confirmer, .. } = context;
         let last = self.to.unwrap_or(self.step);
         if last < self.step {
             return Err(
                 Failure::usage(format!("--to {last} is before step {}", self.step)).hint("type the lower step first")
             );
         }
-        if link.is_dry() {
-            return self.dry_run(link, &authority, last).await;
+        if link.is_dry_run() {
+            return self.dry_run(link, &confirmer, last).await;
         }
-        let outcome = self.delete(link, screen, &authority, last).await;
-        tasks::done(link, outcome).await
+        let outcome = self.delete(link, screen, &confirmer, last).await;
+        task_selection::restore_task(link, outcome).await
     }
 }
 
@@ -75,17 +75,17 @@ impl Delete {
         &self,
         link: &mut Link,
         screen: &Screen,
-        authority: &Authority<'_>,
+        confirmer: &Confirmer<'_>,
         last: u16,
     ) -> Result<Deleted, Failure> {
-        let task = tasks::choose(link, self.task).await?;
+        let task = task_selection::select_task(link, self.task).await?;
         let room = steps::room(link, task, last).await?;
         let deleted = steps::read_all(link, screen, self.step..=last).await?;
         let behind = match last {
             last if last < room => link.ask(&steps::read_request(last + 1)).await?,
             _ => steps::nop(),
         };
-        authority.confirm(&self.change(&deleted, task)).await?;
+        confirmer.confirm(&self.change(&deleted, task)).await?;
         steps::open(link).await?;
         link.ask(&self.order(last)).await?;
         let found = link.ask(&steps::read_request(self.step)).await?;
@@ -97,15 +97,15 @@ impl Delete {
         Ok(Deleted { task, deleted })
     }
 
-    async fn dry_run(&self, link: &mut Link, authority: &Authority<'_>, last: u16) -> Result<Deleted, Failure> {
-        tasks::choose(link, self.task).await?;
+    async fn dry_run(&self, link: &mut Link, confirmer: &Confirmer<'_>, last: u16) -> Result<Deleted, Failure> {
+        task_selection::select_task(link, self.task).await?;
         link.plan(&steps::rooms_request(), "number of steps of the task");
         for step in self.step..=last {
             link.plan(&steps::read_request(step), "the deleted steps");
         }
         let behind = steps::read_request(last.saturating_add(1).min(5000));
         link.plan_if(&behind, "whether a later step exists");
-        authority.confirm(&Change::none()).await?;
+        confirmer.confirm(&Change::none()).await?;
         steps::plan_open(link).await?;
         link.ask(&self.order(last)).await?;
         link.plan(&steps::read_request(self.step), "the steps after the change");

@@ -6,9 +6,9 @@ use super::get::Get;
 use super::text;
 use crate::link::Toyo;
 use crate::prelude::*;
-use crate::{files, tasks};
+use crate::{files, task_selection};
 use armctl_controller::text::Encoding;
-use armctl_controller::toyo::program::{MOST_STEPS, check_named, used};
+use armctl_controller::toyo::program::{MAX_STEPS, check_named, used};
 use armctl_frame::backup::compare::{Compared, State};
 use armctl_frame::backup::manifest::Hash;
 use armctl_frame::backup::text_diff::{self, TextDifference};
@@ -52,14 +52,14 @@ impl Command for Diff {
         let Context { robot, link, screen, .. } = context;
         let name = files::display_path(&self.file);
         let bytes = files::read(&self.file)?;
-        let checked = check_named(&bytes, MOST_STEPS, None, names::of_robot(robot, screen));
+        let checked = check_named(&bytes, MAX_STEPS, None, names::of_robot(robot, screen));
         let program = text::program(&name, checked, &screen.silenced())?;
         let get = Get::whole(self.task());
-        if link.is_dry() {
+        if link.is_dry_run() {
             get.dry_run(link).await?;
         }
         let outcome = get.read(link, screen).await;
-        let (task, _, answers) = tasks::done(link, outcome).await?;
+        let (task, _, answers) = task_selection::restore_task(link, outcome).await?;
         let found: Vec<Record> = answers.into_iter().collect::<Result<_, _>>()?;
         let wanted: Vec<Record> = program.steps.into_iter().map(|step| step.record).collect();
         let difference = Difference::new(task, &found[..used(&found)], &wanted[..used(&wanted)]);

@@ -6,10 +6,10 @@ use super::and_mode;
 use super::get::Get;
 use super::put::{Put, Stored};
 use super::steps;
-use crate::items::Answers;
+use crate::item_reads::Answers;
 use crate::link::Toyo;
 use crate::prelude::*;
-use crate::tasks;
+use crate::task_selection;
 use armctl_controller::text::Encoding;
 use armctl_controller::toyo::program::{Rows, Style, listing_with};
 use armctl_frame::backup::text_diff::{self, Hunk, TextDifference};
@@ -37,19 +37,19 @@ impl Command for Edit {
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<EditedProgram, Failure> {
-        let Context { robot, link, screen, several, authority } = context;
+        let Context { robot, link, screen, several, confirmer } = context;
         if several {
             return Err(Failure::usage("the editor needs one robot").hint("select the robot with -r"));
         }
         let get = Get::whole(self.task);
-        if link.is_dry() {
+        if link.is_dry_run() {
             let planned = get.dry_run(link).await;
             link.plan_overwriting(&steps::read_request(1), "@WSTX ?").await?;
             link.then("you edit the text, and armctl writes the changed steps and reads them back");
             return planned.map(|_| EditedProgram { changed: false, hunks: Vec::new(), stored: None });
         }
         let outcome = get.read(link, screen).await;
-        let (task, _, answers): (u8, u16, Answers) = tasks::done(link, outcome).await?;
+        let (task, _, answers): (u8, u16, Answers) = task_selection::restore_task(link, outcome).await?;
         let read: Vec<Record> = answers.into_iter().collect::<Result<_, _>>()?;
         let style = Style { first: 1, is_whole: true, is_numbered: false };
         let text = match link.sources.get(task).filter(|source| source.is(&read)) {
@@ -66,7 +66,7 @@ impl Command for Edit {
             screen.note(&line.text);
         }
         let put = Put::edited(edited.path().to_owned(), self.task, read);
-        match put.run(Context { robot, link, screen, several, authority }).await {
+        match put.run(Context { robot, link, screen, several, confirmer }).await {
             Ok(stored) => {
                 edited.mark_stored();
                 Ok(EditedProgram { changed: true, hunks, stored: Some(stored) })

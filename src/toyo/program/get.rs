@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::kept::Source;
+use super::source_texts::Source;
 use super::steps;
-use crate::items::Answers;
+use crate::item_reads::Answers;
 use crate::link::{Link, Toyo, misuse};
 use crate::prelude::*;
-use crate::tasks;
+use crate::task_selection;
 use armctl_controller::toyo::program::{self, Rows, Style, Unread, listing_named, not_read};
 use armctl_controller::toyo::table::Op;
 use armctl_frame::backup::manifest::Hash;
@@ -93,11 +93,11 @@ impl Command for Get {
                 .hint("run the command once for each robot, or `toyo backup` for all robots"));
         }
         let target = self.file.clone().map(|file| Target::new(file, self.force)).transpose()?;
-        if link.is_dry() {
+        if link.is_dry_run() {
             return self.dry_run(link).await;
         }
         let outcome = self.read(link, screen).await;
-        let (task, room, answers) = tasks::done(link, outcome).await?;
+        let (task, room, answers) = task_selection::restore_task(link, outcome).await?;
         let unread = unread(&answers);
         let read: Vec<Record> = answers.iter().map(|answer| answer.clone().unwrap_or_else(|_| not_read())).collect();
         let rows = if self.explain { rows(link, &read).await? } else { Rows::new() };
@@ -172,7 +172,7 @@ impl Get {
 
     /// Reads the steps. Returns their task, the number of steps of this task, and each step.
     pub async fn read(&self, link: &mut Link, screen: &Screen) -> Result<(u8, u16, Answers), Failure> {
-        let task = tasks::choose(link, self.task).await?;
+        let task = task_selection::select_task(link, self.task).await?;
         let room = steps::room(link, task, self.to.unwrap_or(self.from)).await?;
         let is_end = |record: &Record| self.until_end && record.layout() == Op::End.row().layout;
         let read = steps::read_each(link, screen, self.from..=self.to.unwrap_or(room), is_end).await?;
@@ -181,7 +181,7 @@ impl Get {
 
     /// Records the requests in a dry run.
     pub async fn dry_run(&self, link: &mut Link) -> Result<Got, Failure> {
-        tasks::choose(link, self.task).await?;
+        task_selection::select_task(link, self.task).await?;
         link.plan(&steps::rooms_request(), "number of steps of the task");
         link.plan(&steps::read_request(self.from), "the first step");
         link.then("the later steps are read in order");
@@ -339,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refused_step_hides_no_other_and_makes_no_program() {
+    fn refused_step_prevents_the_program_but_not_other_steps() {
         let mut bench = with_step_2(Fault::Answered("@NG"));
         let (got, failure) = bench.run(&["program", "get"]).unwrap();
         let failure = failure.unwrap();
@@ -389,7 +389,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_there_is_kept() {
+    fn keeps_an_existing_program_file() {
         let file = tempfile::NamedTempFile::new().unwrap();
         let failure = blocks(&["program", "get", file.path().to_str().unwrap()]).unwrap_err();
         assert_eq!(failure.kind.exit(), 1);

@@ -4,14 +4,14 @@ use super::and_mode;
 use super::get::Step;
 use super::steps;
 use crate::complete;
-use crate::eeprom::{Cells, THERE};
+use crate::eeprom::{Cells, STORED_VALUE};
 use crate::link::Link;
 use crate::link::Toyo;
 use crate::prelude::*;
-use crate::tasks;
+use crate::task_selection;
 use armctl_controller::names::Names;
 use armctl_controller::toyo::program::{Part, check_named};
-use armctl_frame::authority::Authority;
+use armctl_frame::confirmation::Confirmer;
 use armctl_frame::dry_run::unknown;
 use armctl_frame::names;
 
@@ -40,13 +40,13 @@ impl Command for Insert {
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Inserted, Failure> {
-        let Context { robot, link, screen, authority, .. } = context;
+        let Context { robot, link, screen, confirmer, .. } = context;
         let instruction = self.instruction(names::of_robot(robot, screen))?;
-        if link.is_dry() {
-            return self.dry_run(link, &authority, &instruction).await;
+        if link.is_dry_run() {
+            return self.dry_run(link, &confirmer, &instruction).await;
         }
-        let outcome = self.insert(link, screen, &authority, &instruction).await;
-        tasks::done(link, outcome).await
+        let outcome = self.insert(link, screen, &confirmer, &instruction).await;
+        task_selection::restore_task(link, outcome).await
     }
 }
 
@@ -78,11 +78,11 @@ impl Insert {
         &self,
         link: &mut Link,
         screen: &Screen,
-        authority: &Authority<'_>,
+        confirmer: &Confirmer<'_>,
         instruction: &Record,
     ) -> Result<Inserted, Failure> {
         let step = self.step;
-        let task = tasks::choose(link, self.task).await?;
+        let task = task_selection::select_task(link, self.task).await?;
         let room = steps::room(link, task, step).await?;
         let before = link.ask(&steps::read_request(step)).await?;
         let last = link.ask(&steps::read_request(room)).await?;
@@ -92,7 +92,7 @@ impl Insert {
                 "delete the step first, or increase the steps of the task with machine parameter E22 (task-steps)",
             ));
         }
-        authority.confirm(&self.change(task, &before)).await?;
+        confirmer.confirm(&self.change(task, &before)).await?;
         steps::open(link).await?;
         link.ask(&self.order()).await?;
         if step < room {
@@ -115,22 +115,22 @@ impl Insert {
     async fn dry_run(
         &self,
         link: &mut Link,
-        authority: &Authority<'_>,
+        confirmer: &Confirmer<'_>,
         instruction: &Record,
     ) -> Result<Inserted, Failure> {
-        tasks::choose(link, self.task).await?;
+        task_selection::select_task(link, self.task).await?;
         link.plan(&steps::rooms_request(), "number of steps of the task");
         link.plan(&steps::read_request(self.step), "the steps that move");
         let last = Reason::about("the last step, which must be a NOP").depending_on("number of steps of the task");
         link.plan_depending("@RSTX ?", last);
-        authority.confirm(&Change::none()).await?;
+        confirmer.confirm(&Change::none()).await?;
         steps::plan_open(link).await?;
         link.ask(&self.order()).await?;
         if self.step < 5000 {
             link.plan_if(&steps::read_request(self.step + 1), "whether the inserted step is the last step");
         }
         let cell = steps::cell(self.step, instruction)?;
-        link.plan(&cell.read, THERE);
+        link.plan(&cell.read, STORED_VALUE);
         link.plan_overwriting(&cell.read, &cell.write.text()).await?;
         link.put_back().await?;
         Err(unknown())

@@ -4,7 +4,7 @@ use super::steps;
 use crate::link::Link;
 use crate::link::Toyo;
 use crate::prelude::*;
-use crate::tasks;
+use crate::task_selection;
 use armctl_controller::toyo::program::{tags, used};
 use armctl_frame::dry_run::unknown;
 use armctl_frame::items::{ItemError, verdict};
@@ -32,8 +32,8 @@ impl Command for List {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Listed, Failure> {
         let Context { link, screen, .. } = context;
-        if link.is_dry() {
-            tasks::choose(link, None).await?;
+        if link.is_dry_run() {
+            task_selection::select_task(link, None).await?;
             link.plan(&steps::rooms_request(), "number of steps of the tasks");
             if self.used {
                 link.then("each task is selected, and all its steps are read");
@@ -41,19 +41,19 @@ impl Command for List {
             return Err(unknown());
         }
         let outcome = self.list(link, screen).await;
-        tasks::done(link, outcome).await
+        task_selection::restore_task(link, outcome).await
     }
 }
 
 impl List {
     async fn list(&self, link: &mut Link, screen: &Screen) -> Result<Listed, Failure> {
-        let current = tasks::choose(link, None).await?;
+        let current = task_selection::select_task(link, None).await?;
         let mut tasks = Vec::new();
         for (task, room) in (1..).zip(steps::rooms(link).await?) {
             let mut listed =
                 Task { task, current: task == current, room_steps: room, used_steps: None, tags: None, error: None };
             if self.used && room > 0 {
-                tasks::choose(link, Some(task)).await?;
+                task_selection::select_task(link, Some(task)).await?;
                 match steps::read_all(link, screen, 1..=room).await {
                     Ok(read) => {
                         listed.used_steps = Some(used(&read));

@@ -7,11 +7,11 @@ mod diff;
 mod edit;
 mod get;
 mod insert;
-pub mod kept;
 mod list;
 mod put;
 mod search;
 mod show;
+pub mod source_texts;
 pub mod steps;
 pub mod table;
 #[cfg(test)]

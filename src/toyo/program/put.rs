@@ -8,15 +8,15 @@ use super::and_mode;
 use super::check::Labelled;
 use super::steps;
 use super::text;
-use crate::eeprom::{Cells, THERE};
+use crate::eeprom::{Cells, STORED_VALUE};
 use crate::link::Link;
 use crate::link::Toyo;
 use crate::prelude::*;
-use crate::{files, tasks};
+use crate::{files, task_selection};
 use armctl_controller::names::Names;
-use armctl_controller::toyo::program::{self, MOST_STEPS, Part, Program, check_named};
-use armctl_frame::authority::Authority;
+use armctl_controller::toyo::program::{self, MAX_STEPS, Part, Program, check_named};
 use armctl_frame::backup::manifest::Hash;
+use armctl_frame::confirmation::Confirmer;
 use armctl_frame::dry_run::unknown;
 use armctl_frame::interrupt::interruptible;
 use armctl_frame::names;
@@ -78,13 +78,13 @@ impl Command for Put {
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Stored, Failure> {
-        let Context { robot, link, screen, authority, .. } = context;
+        let Context { robot, link, screen, confirmer, .. } = context;
         let name = self.name();
         let bytes = files::read(&self.file)?;
         let names = names::of_robot(robot, screen);
         // The tags around a part are only known later.
         let around = self.at.map(|at| part(at, None));
-        let room = MOST_STEPS + 1 - usize::from(self.at.unwrap_or(1));
+        let room = MAX_STEPS + 1 - usize::from(self.at.unwrap_or(1));
         let program = text::program(&name, check_named(&bytes, room, around.as_ref(), names), screen)?;
         let first = self.at.unwrap_or(1);
         let last = last_of(first, &program);
@@ -93,11 +93,11 @@ impl Command for Put {
             return Err(Failure::usage(format!("--resume={from} is after step {last}, the last step of the file"))
                 .hint("remove --resume to write the whole file"));
         }
-        if link.is_dry() {
+        if link.is_dry_run() {
             return self.dry_run(link, &program, from).await;
         }
-        let outcome = self.store((link, screen, &authority), (&bytes, names), &program, from..=last).await;
-        tasks::done(link, outcome).await
+        let outcome = self.store((link, screen, &confirmer), (&bytes, names), &program, from..=last).await;
+        task_selection::restore_task(link, outcome).await
     }
 }
 
@@ -114,7 +114,7 @@ impl Put {
 
     async fn store(
         &self,
-        (link, screen, authority): (&mut Link, &Screen, &Authority<'_>),
+        (link, screen, confirmer): (&mut Link, &Screen, &Confirmer<'_>),
         (bytes, names): (&[u8], &Names),
         program: &Program,
         steps: RangeInclusive<u16>,
@@ -122,7 +122,7 @@ impl Put {
         let name = self.name();
         let first = self.at.unwrap_or(1);
         let (from, last) = (*steps.start(), *steps.end());
-        let task = tasks::choose(link, self.task).await?;
+        let task = task_selection::select_task(link, self.task).await?;
         let room = steps::room(link, task, last).await?;
         let program = match self.at {
             None => {
@@ -151,7 +151,7 @@ impl Put {
             .filter(|((_, wanted), found)| wanted != *found)
             .map(|((step, instruction), found)| Edit { step, instruction, found: found.clone() })
             .collect();
-        authority.confirm(&replacing(&changes, task)).await?;
+        confirmer.confirm(&replacing(&changes, task)).await?;
         let mut cells = Cells::default();
         if !changes.is_empty() {
             steps::open(link).await?;
@@ -205,7 +205,7 @@ impl Put {
     ) -> Result<Vec<Record>, Failure> {
         let whole = from == 1 && end > last && !self.read_all;
         let steps = records(program);
-        let source = link.sources.get(task).filter(|source| whole && source.knows_rest(&steps, end));
+        let source = link.sources.get(task).filter(|source| whole && source.has_all_steps(&steps, end));
         let known = source.and_then(|source| Some((u16::try_from(source.len()).ok()?.max(last) + 1, source)));
         let Some((known, source)) = known.filter(|(known, _)| *known < end) else {
             return steps::read_all(link, screen, from..=end).await;
@@ -221,7 +221,7 @@ impl Put {
     fn keep(&self, link: &mut Link, screen: &Screen, (task, room): (u8, u16), bytes: &[u8], program: &Program) {
         let Ok(text) = std::str::from_utf8(bytes) else { return };
         let steps = records(program);
-        link.sources.trust();
+        link.sources.mark_certain();
         if let Err(error) = link.sources.keep(task, (&self.name(), text), &steps, room) {
             screen.detail(1, &format!("the text of the program was not saved: {error}"));
         }
@@ -230,7 +230,7 @@ impl Put {
     async fn dry_run(&self, link: &mut Link, program: &Program, from: u16) -> Result<Stored, Failure> {
         let first = self.at.unwrap_or(1);
         let last = last_of(first, program);
-        tasks::choose(link, self.task).await?;
+        task_selection::select_task(link, self.task).await?;
         link.plan(&steps::rooms_request(), "number of steps of the task");
         if let Some(at) = self.at.filter(|_| names_tags(program)) {
             let around = (1..at).chain(last.saturating_add(1)..=5000).next();
@@ -241,9 +241,9 @@ impl Put {
         let wanted = (first..).zip(&program.steps).filter(|(step, _)| *step >= from);
         let cells = wanted.map(|(step, wanted)| steps::cell(step, &wanted.record)).collect::<Result<Vec<_>, _>>()?;
         for cell in &cells {
-            link.plan(&cell.read, THERE);
+            link.plan(&cell.read, STORED_VALUE);
         }
-        let clears = self.at.is_none() && !self.keep_rest && usize::from(last) < MOST_STEPS;
+        let clears = self.at.is_none() && !self.keep_rest && usize::from(last) < MAX_STEPS;
         if clears {
             link.plan(&steps::read_request(last + 1), "and so on to the last step of the task");
         }

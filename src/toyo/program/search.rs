@@ -5,7 +5,7 @@ use crate::link::Link;
 use crate::link::Toyo;
 use crate::prelude::*;
 use crate::refusal;
-use crate::tasks;
+use crate::task_selection;
 use crate::wait::status_page;
 use armctl_client::toyo::Refusal;
 use armctl_controller::toyo::table::Op;
@@ -33,8 +33,8 @@ impl Command for Search {
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<TagReport, Failure> {
         let link = context.link;
-        if link.is_dry() {
-            tasks::choose(link, self.task).await?;
+        if link.is_dry_run() {
+            task_selection::select_task(link, self.task).await?;
             link.plan(&status_page(0), "whether a program runs");
             link.ask(&self.order()).await?;
             link.plan(&steps::read_request(0), "the current step");
@@ -42,7 +42,7 @@ impl Command for Search {
             return Err(unknown());
         }
         let outcome = self.search(link).await;
-        tasks::done(link, outcome).await
+        task_selection::restore_task(link, outcome).await
     }
 }
 
@@ -52,7 +52,7 @@ impl Search {
     }
 
     async fn search(&self, link: &mut Link) -> Result<TagReport, Failure> {
-        let task = tasks::choose(link, self.task).await?;
+        let task = task_selection::select_task(link, self.task).await?;
         let status = link.status_of(&[0]).await?;
         if status.executing() || status.paused() {
             return Err(Failure::new(

@@ -20,7 +20,7 @@ impl Command for Show {
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Current, Failure> {
         let link = context.link;
         let (which, request) = (Request::bare(table::Command::Mtsk), steps::read_request(0));
-        if link.is_dry() {
+        if link.is_dry_run() {
             link.plan(&which, "the current task");
             link.plan(&request, "the current step");
             return Err(unknown());

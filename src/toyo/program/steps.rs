@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use crate::eeprom::Cell;
-use crate::items::{Answers, read_until};
+use crate::item_reads::{Answers, read_until};
 use crate::link::{Link, Refusal, misuse};
 use crate::prelude::*;
 use armctl_controller::toyo::request::Answer;

@@ -2,11 +2,11 @@
 
 use super::steps;
 use crate::eeprom::Cells;
-use crate::items::read_each;
+use crate::field_values::NOT_IN_MANUAL;
+use crate::item_reads::read_each;
 use crate::link::{Link, Toyo};
 use crate::prelude::*;
-use crate::tasks;
-use crate::values::NOT_IN_MANUAL;
+use crate::task_selection;
 use armctl_controller::toyo::table::Op;
 use armctl_frame::robot::item::Plain;
 use armctl_frame::store::Row;
@@ -45,15 +45,15 @@ impl Store for Steps {
     }
 
     async fn open(link: &mut Link, _options: &Single) -> Result<Self, Failure> {
-        Ok(Self::of_task(tasks::choose(link, None).await?))
+        Ok(Self::of_task(task_selection::select_task(link, None).await?))
     }
 
     async fn select(&mut self, link: &mut Link) -> Result<(), Failure> {
-        tasks::choose(link, Some(self.task)).await.map(|_| ())
+        task_selection::select_task(link, Some(self.task)).await.map(|_| ())
     }
 
     async fn deselect<T>(&self, link: &mut Link, outcome: Result<T, Failure>) -> Result<T, Failure> {
-        tasks::done(link, outcome).await
+        task_selection::restore_task(link, outcome).await
     }
 
     fn table_suffix(&self) -> String {
@@ -122,7 +122,7 @@ impl Writable for Steps {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
         for (step, _, instruction) in rows {
             link.overwrite(screen, &steps::cell(*step, instruction)?, &mut Cells::default()).await?;
         }

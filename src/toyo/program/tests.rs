@@ -10,12 +10,12 @@ use armctl_frame::failure::{Failure, Kind};
 const SAMPLE: &str = "SPD V=5\nMOVP a PT=1 CN=0 S V=0 POST\nOUT STN=0 PN1=.......1\nEND\n";
 
 /// A controller, and a folder for its programs.
-struct Desk {
+struct Workspace {
     bench: Bench,
     folder: TempDir,
 }
 
-impl Desk {
+impl Workspace {
     fn new() -> Self {
         Self::with("")
     }
@@ -50,173 +50,173 @@ impl Desk {
 
 #[test]
 fn a_program_is_stored_and_read_back() {
-    let mut desk = Desk::new();
-    let stored = desk.put(SAMPLE, &[]).unwrap();
+    let mut workspace = Workspace::new();
+    let stored = workspace.put(SAMPLE, &[]).unwrap();
     assert_eq!((&stored["cells_written"], &stored["cells_unchanged"]), (&4.into(), &1996.into()));
     assert_eq!(
-        desk.text(&[]),
+        workspace.text(&[]),
         "SPD V=05\nMOVP a PT=001 CN=00 S V=00 POST\nOUT STN=0 PN01=.......1\nEND\n# 1996 NOP at the end of the \
          program are omitted\n"
     );
-    assert_eq!(desk.bench.data(&["status"])["mode"], "automatic", "the mode is as it was found");
-    let again = desk.put(SAMPLE, &[]).unwrap();
+    assert_eq!(workspace.bench.data(&["status"])["mode"], "automatic", "the mode is as it was found");
+    let again = workspace.put(SAMPLE, &[]).unwrap();
     assert_eq!((&again["cells_written"], &again["cells_unchanged"]), (&0.into(), &2000.into()));
 }
 
 #[test]
 fn the_sample_session_of_the_manual_ends_at_its_place_with_its_output_on() {
-    let mut desk = Desk::with("points = { 1 = { 1 = [100.0, 20.0, 0.0, 0.0] } }");
-    desk.put(SAMPLE, &[]).unwrap();
-    desk.bench.data(&["home"]);
-    let ran = desk.bench.data(&["run", "sequential", "1", "--wait"]);
+    let mut workspace = Workspace::with("points = { 1 = { 1 = [100.0, 20.0, 0.0, 0.0] } }");
+    workspace.put(SAMPLE, &[]).unwrap();
+    workspace.bench.data(&["home"]);
+    let ran = workspace.bench.data(&["run", "sequential", "1", "--wait"]);
     assert_eq!(ran["position"]["text"], "x=100.00 y=20.00 z=0.00 r=0.00");
-    let out = desk.bench.data(&["raw", "@MOUT SNO=0 GN=1"]);
+    let out = workspace.bench.data(&["raw", "@MOUT SNO=0 GN=1"]);
     assert!(out["answer"].as_str().unwrap().contains("PN01=00000001"), "{out}");
 }
 
 #[test]
-fn what_is_left_of_a_longer_program_goes() {
-    let mut desk = Desk::new();
-    desk.put("a: NOP\nJMP TAG=a\nTAG TAG=9\nEND\n", &[]).unwrap();
-    let stored = desk.put("SPD V=1\nEND\n", &[]).unwrap();
+fn clears_the_rest_of_a_longer_program() {
+    let mut workspace = Workspace::new();
+    workspace.put("a: NOP\nJMP TAG=a\nTAG TAG=9\nEND\n", &[]).unwrap();
+    let stored = workspace.put("SPD V=1\nEND\n", &[]).unwrap();
     assert_eq!((&stored["cells_written"], &stored["cleared_steps"]), (&5.into(), &3.into()));
-    assert_eq!(desk.text(&["--to", "6", "--numbers"]).lines().nth(2), Some("0003  NOP"));
-    let stored = desk.put("SPD V=2\n", &["--keep-rest"]).unwrap();
+    assert_eq!(workspace.text(&["--to", "6", "--numbers"]).lines().nth(2), Some("0003  NOP"));
+    let stored = workspace.put("SPD V=2\n", &["--keep-rest"]).unwrap();
     assert_eq!(stored["cleared_steps"], 0);
-    assert!(desk.text(&[]).starts_with("SPD V=02\nEND\n"));
+    assert!(workspace.text(&[]).starts_with("SPD V=02\nEND\n"));
 }
 
 #[test]
 fn a_part_takes_tags_that_are_free() {
-    let mut desk = Desk::new();
-    desk.put("TAG TAG=1\nNOP\nNOP\nNOP\nTAG TAG=2\nEND\n", &[]).unwrap();
-    let stored = desk.put("x: CNT+ CN1=1\nJMPC TAG=x CN1<5\n", &["--at", "2"]).unwrap();
+    let mut workspace = Workspace::new();
+    workspace.put("TAG TAG=1\nNOP\nNOP\nNOP\nTAG TAG=2\nEND\n", &[]).unwrap();
+    let stored = workspace.put("x: CNT+ CN1=1\nJMPC TAG=x CN1<5\n", &["--at", "2"]).unwrap();
     assert_eq!(stored["labels"][0], serde_json::json!({ "name": "x", "tag": 3, "step": 2, "line": 1 }));
-    let text = desk.text(&[]);
+    let text = workspace.text(&[]);
     let steps: Vec<&str> = text.lines().take(6).map(|line| line.split("  #").next().unwrap()).collect();
     assert_eq!(
         steps,
         ["TAG TAG=001", "TAG TAG=003", "CNT+ CN01=0001", "JMPC TAG=003 CN01< 0005", "TAG TAG=002", "END"]
     );
-    let failure = desk.put("TAG TAG=2\n", &["--at", "2"]).unwrap_err();
+    let failure = workspace.put("TAG TAG=2\n", &["--at", "2"]).unwrap_err();
     assert_eq!(failure.kind, Kind::Usage);
     assert!(
         failure.message.contains("tag 002 already exists in a step before or after the steps of this file"),
         "{}",
         failure.message
     );
-    assert!(desk.put("JMP TAG=7\n", &["--at", "2"]).is_err(), "there is no such tag around it");
-    assert!(desk.put("JMP TAG=2\n", &["--at", "2"]).is_ok());
+    assert!(workspace.put("JMP TAG=7\n", &["--at", "2"]).is_err(), "there is no such tag around it");
+    assert!(workspace.put("JMP TAG=2\n", &["--at", "2"]).is_ok());
 }
 
 #[test]
 fn a_program_must_fit_its_task() {
-    let mut desk = Desk::new();
-    let failure = desk.put(SAMPLE, &["--task", "2"]).unwrap_err();
+    let mut workspace = Workspace::new();
+    let failure = workspace.put(SAMPLE, &["--task", "2"]).unwrap_err();
     assert_eq!(
         (failure.kind, failure.message.as_str()),
         (Kind::Usage, "task 2 has no steps, but the command needs step 4")
     );
-    let failure = desk.put(SAMPLE, &["--at", "1998"]).unwrap_err();
+    let failure = workspace.put(SAMPLE, &["--at", "1998"]).unwrap_err();
     assert_eq!(failure.message, "task 1 has 2000 steps, but the command needs step 2001");
 }
 
 #[test]
-fn another_task_is_the_current_one_only_for_a_while() {
-    let mut desk = Desk::with("steps = { 2 = [\"NOP\", \"NOP\", \"NOP\", \"NOP\", \"NOP\"] }");
-    desk.put(SAMPLE, &["--task", "2"]).unwrap();
-    assert!(desk.text(&["--task", "2"]).starts_with("SPD V=05\n"));
-    assert!(desk.text(&[]).starts_with("NOP\n"), "task 1 is the current one again");
-    let listed = desk.bench.data(&["program", "list", "--used"]);
+fn selects_another_task_temporarily() {
+    let mut workspace = Workspace::with("steps = { 2 = [\"NOP\", \"NOP\", \"NOP\", \"NOP\", \"NOP\"] }");
+    workspace.put(SAMPLE, &["--task", "2"]).unwrap();
+    assert!(workspace.text(&["--task", "2"]).starts_with("SPD V=05\n"));
+    assert!(workspace.text(&[]).starts_with("NOP\n"), "task 1 is the current one again");
+    let listed = workspace.bench.data(&["program", "list", "--used"]);
     let task = |index: usize| (&listed["tasks"][index]["used_steps"], &listed["tasks"][index]["room_steps"]);
     assert_eq!(task(1), (&4.into(), &5.into()));
     assert_eq!(task(2), (&Value::Null, &0.into()));
     assert_eq!(listed["tasks"][0]["current"], true);
-    assert_eq!(desk.bench.data(&["program", "show"])["task"], 1);
+    assert_eq!(workspace.bench.data(&["program", "show"])["task"], 1);
 }
 
 #[test]
 fn steps_are_inserted_and_deleted() {
-    let mut desk = Desk::new();
-    desk.put(SAMPLE, &[]).unwrap();
-    let inserted = desk.bench.data(&["program", "insert", "2", "acc", "a=1"]);
+    let mut workspace = Workspace::new();
+    workspace.put(SAMPLE, &[]).unwrap();
+    let inserted = workspace.bench.data(&["program", "insert", "2", "acc", "a=1"]);
     assert_eq!(inserted["inserted"], serde_json::json!({ "step": 2, "instruction": "ACC A=01", "in_manual": true }));
-    assert!(desk.text(&[]).starts_with("SPD V=05\nACC A=01\nMOVP"));
-    let deleted = desk.bench.data(&["program", "delete", "1", "--to", "2"]);
+    assert!(workspace.text(&[]).starts_with("SPD V=05\nACC A=01\nMOVP"));
+    let deleted = workspace.bench.data(&["program", "delete", "1", "--to", "2"]);
     assert_eq!(deleted["deleted"][1]["instruction"], "ACC A=01");
-    desk.bench.data(&["program", "delete", "1"]);
-    assert!(desk.text(&[]).starts_with("OUT STN=0 PN01=.......1\nEND\n"));
+    workspace.bench.data(&["program", "delete", "1"]);
+    assert!(workspace.text(&[]).starts_with("OUT STN=0 PN01=.......1\nEND\n"));
 }
 
 #[test]
-fn nothing_falls_out_at_the_end() {
-    let mut desk = Desk::with("steps = { 2 = [\"NOP\", \"END\"] }");
-    let failure = desk.failure(&["insert", "1", "--task", "2"]);
+fn insert_loses_no_step_at_the_end() {
+    let mut workspace = Workspace::with("steps = { 2 = [\"NOP\", \"END\"] }");
+    let failure = workspace.failure(&["insert", "1", "--task", "2"]);
     assert_eq!(failure.kind, Kind::Rejected);
     assert_eq!(failure.message, "step 2, the last step of task 2, would be lost: END");
-    assert_eq!(desk.text(&["--task", "2"]), "NOP\nEND\n");
+    assert_eq!(workspace.text(&["--task", "2"]), "NOP\nEND\n");
 }
 
 #[test]
 fn steps_are_copied_and_tags_found() {
-    let mut desk = Desk::with("steps = { 2 = [\"NOP\", \"NOP\", \"NOP\", \"NOP\", \"NOP\"] }");
-    desk.put("NOP\nTAG TAG=7\nHOME\nEND\n", &[]).unwrap();
-    let copied = desk.bench.data(&["program", "copy", "2", "4", "--at", "3", "--to-task", "2"]);
+    let mut workspace = Workspace::with("steps = { 2 = [\"NOP\", \"NOP\", \"NOP\", \"NOP\", \"NOP\"] }");
+    workspace.put("NOP\nTAG TAG=7\nHOME\nEND\n", &[]).unwrap();
+    let copied = workspace.bench.data(&["program", "copy", "2", "4", "--at", "3", "--to-task", "2"]);
     assert_eq!(copied["was_there"], false);
-    assert_eq!(desk.text(&["--task", "2"]), "NOP\nNOP\nTAG TAG=007\nHOME\nEND\n");
-    let again = desk.bench.data(&["program", "copy", "2", "4", "--at", "3", "--to-task", "2"]);
+    assert_eq!(workspace.text(&["--task", "2"]), "NOP\nNOP\nTAG TAG=007\nHOME\nEND\n");
+    let again = workspace.bench.data(&["program", "copy", "2", "4", "--at", "3", "--to-task", "2"]);
     assert_eq!(again["was_there"], true);
-    let found = desk.bench.data(&["program", "search", "7", "--task", "2"]);
+    let found = workspace.bench.data(&["program", "search", "7", "--task", "2"]);
     assert_eq!((&found["task"], &found["step"]), (&2.into(), &3.into()));
-    let failure = desk.failure(&["search", "8"]);
+    let failure = workspace.failure(&["search", "8"]);
     assert_eq!((failure.kind, failure.message.as_str()), (Kind::Refused, "task 1 has no tag 008 (@NG)"));
-    assert_eq!(desk.failure(&["copy", "2", "4", "--at", "4"]).kind, Kind::Usage);
+    assert_eq!(workspace.failure(&["copy", "2", "4", "--at", "4"]).kind, Kind::Usage);
 }
 
 #[test]
-fn while_a_program_runs_nothing_is_written() {
-    let mut desk = Desk::with(
+fn writes_nothing_during_a_run() {
+    let mut workspace = Workspace::with(
         "origin = true\nsteps = { 1 = [\"TAG TAG=001\", \"JMP TAG=001\"] }\nevent = [{ at_ms = 0, do = \"start\" }]",
     );
-    let failure = desk.put(SAMPLE, &[]).unwrap_err();
+    let failure = workspace.put(SAMPLE, &[]).unwrap_err();
     assert_eq!(failure.kind, Kind::Rejected);
     assert!(failure.message.starts_with("the controller executes a program"), "{}", failure.message);
-    assert_eq!(desk.failure(&["search", "1"]).kind, Kind::Rejected);
+    assert_eq!(workspace.failure(&["search", "1"]).kind, Kind::Rejected);
 }
 
 #[test]
-fn what_was_written_before_a_failure_is_told() {
+fn failure_reports_written_steps() {
     // The fourth write to a cell is lost. Three programs are written, and the fourth fails at its first step.
-    let mut desk = Desk::with("eeprom_limit = 1");
-    desk.put("SPD V=1\nEND\n", &[]).unwrap();
-    let failure = desk.put("SPD V=1\nNOP\nHOME\nEND\n", &[]).unwrap_err();
+    let mut workspace = Workspace::with("eeprom_limit = 1");
+    workspace.put("SPD V=1\nEND\n", &[]).unwrap();
+    let failure = workspace.put("SPD V=1\nNOP\nHOME\nEND\n", &[]).unwrap_err();
     assert_eq!(failure.kind, Kind::Malformed);
     assert!(failure.message.contains("; step 1 equals "), "{}", failure.message);
     assert!(failure.message.ends_with("3 steps are still to be written"), "{}", failure.message);
     assert!(failure.hint.unwrap().contains("use --resume=2 to continue at that step"));
-    assert_eq!(desk.bench.data(&["status"])["mode"], "automatic", "the mode is put back after a failure, too");
-    let stored = desk.put("SPD V=1\nNOP\nHOME\nEND\n", &["--resume=3"]).unwrap();
+    assert_eq!(workspace.bench.data(&["status"])["mode"], "automatic", "the mode is put back after a failure, too");
+    let stored = workspace.put("SPD V=1\nNOP\nHOME\nEND\n", &["--resume=3"]).unwrap();
     assert_eq!(stored["cells_written"], 2);
 }
 
 #[test]
 fn names_of_table_rows_are_explained() {
-    let mut desk = Desk::with("points = { 1 = { 1 = [100.0, 20.0, 0.0, 0.0] } }");
-    desk.put(SAMPLE, &[]).unwrap();
-    let text = desk.text(&["--explain", "--until-end"]);
+    let mut workspace = Workspace::with("points = { 1 = { 1 = [100.0, 20.0, 0.0, 0.0] } }");
+    workspace.put(SAMPLE, &[]).unwrap();
+    let text = workspace.text(&["--explain", "--until-end"]);
     assert!(text.contains("# point 1: x 100.00 mm, y 20.00 mm"), "{text}");
 }
 
 #[test]
 fn a_file_that_was_read_writes_nothing_when_put_back() {
-    let mut desk = Desk::new();
-    desk.put("start: SPD V=1\nJMPC TAG=start CN1<=3\nEND\n", &[]).unwrap();
-    let path = desk.folder.path().join("read.txt");
+    let mut workspace = Workspace::new();
+    workspace.put("start: SPD V=1\nJMPC TAG=start CN1<=3\nEND\n", &[]).unwrap();
+    let path = workspace.folder.path().join("read.txt");
     let path = path.to_str().unwrap();
-    desk.bench.data(&["program", "get", path]);
-    let stored = desk.bench.data(&["program", "put", path]);
+    workspace.bench.data(&["program", "get", path]);
+    let stored = workspace.bench.data(&["program", "put", path]);
     assert_eq!(stored["cells_written"], 0);
-    assert_eq!(desk.failure(&["get", path]).kind, Kind::Local);
+    assert_eq!(workspace.failure(&["get", path]).kind, Kind::Local);
 }
 
 #[test]

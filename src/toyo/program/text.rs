@@ -96,7 +96,7 @@ impl Remark {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use armctl_controller::toyo::program::{MOST_STEPS, check};
+    use armctl_controller::toyo::program::{MAX_STEPS, check};
     use armctl_frame::failure::Kind;
 
     fn screen() -> Screen {
@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn a_faulty_file_fails_with_all_its_errors() {
-        let checked = check(b"EMD\nJMP TAG=no\nSPD V=1\n", MOST_STEPS);
+        let checked = check(b"EMD\nJMP TAG=no\nSPD V=1\n", MAX_STEPS);
         let failed = program("pick.txt", checked, &screen()).unwrap_err();
         assert_eq!(failed.kind, Kind::Usage);
         assert_eq!(
@@ -115,9 +115,9 @@ mod tests {
     }
 
     #[test]
-    fn a_remark_points_at_its_place() {
+    fn remark_has_its_position() {
         let text = "ラベル: NOP\n\tJMP TAG=ラベル X\nEND";
-        let checked = check(text.as_bytes(), MOST_STEPS);
+        let checked = check(text.as_bytes(), MAX_STEPS);
         let lines: Vec<&str> = text.lines().collect();
         let shown: Vec<String> =
             Remark::new(&checked.findings[0], &lines).lines("a.txt").into_iter().map(|cell| cell.text).collect();

@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use super::trace::{End, Recorder, Source, Stop, Trace};
+use crate::eeprom_tables::EepromRow;
+use crate::field_values::Changes;
 use crate::files;
 use crate::param::{Parameters, key_text};
 use crate::point::Points;
 use crate::prelude::*;
 use crate::program::text;
-use crate::rows::EepromRow;
-use crate::values::Changes;
 use armctl_controller::names::{Name, Names};
-use armctl_controller::toyo::program::{MOST_STEPS, Program, check_named};
+use armctl_controller::toyo::program::{MAX_STEPS, Program, check_named};
 use armctl_controller::toyo::simulator::{Simulator, Start, What};
 use armctl_frame::OfflineCommand;
 use armctl_frame::settings::duration;
@@ -72,7 +72,7 @@ struct Input {
 }
 
 /// Default time limit of a run.
-const WITHIN: Duration = Duration::from_secs(600);
+const DEFAULT_TIME_LIMIT: Duration = Duration::from_secs(600);
 /// Time limit of the run that `program check` makes.
 const REHEARSAL: Duration = Duration::from_secs(30);
 /// Minimum interval of printed positions.
@@ -221,7 +221,7 @@ impl Run {
         inputs.sort_by_key(|input| input.at);
         let mut inputs = inputs.into_iter().peekable();
         let mut sample = self.every.map(|_| Duration::ZERO);
-        let limit = self.within.unwrap_or(WITHIN);
+        let limit = self.within.unwrap_or(DEFAULT_TIME_LIMIT);
         let mut now = Duration::ZERO;
         loop {
             let mut end = None;
@@ -313,9 +313,5 @@ fn place(state: &mut toml::Table, task: usize, point: i32, values: &[Value]) {
 fn source(screen: &Screen, names: &Names, task: usize, file: &Path) -> Result<Source, Failure> {
     let name = files::display_path(file);
     let bytes = files::read(file)?;
-    Ok(Source {
-        task,
-        program: text::program(&name, check_named(&bytes, MOST_STEPS, None, names), screen)?,
-        file: name,
-    })
+    Ok(Source { task, program: text::program(&name, check_named(&bytes, MAX_STEPS, None, names), screen)?, file: name })
 }

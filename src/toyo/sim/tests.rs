@@ -9,11 +9,11 @@ const SAMPLE: &str = "SPD V=5\nMOVP a PT=1 CN=0 S V=0 POST\nOUT STN=0 PN1=......
 const POINTS: &str = "name,x_mm,y_mm,z_mm,r_mm\n1,100,20,0,0\n";
 
 /// A folder with program files.
-struct Desk {
+struct Workspace {
     folder: TempDir,
 }
 
-impl Desk {
+impl Workspace {
     fn new(files: &[(&str, &str)]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         for (name, text) in files {
@@ -54,8 +54,8 @@ fn words(data: &Value) -> Vec<&str> {
 
 #[test]
 fn the_sample_program_ends_at_its_position_with_its_output_on() {
-    let desk = Desk::new(&[("a.txt", SAMPLE), ("points.csv", POINTS)]);
-    let data = desk.data(&["./a.txt", "--points", "./points.csv"]);
+    let workspace = Workspace::new(&[("a.txt", SAMPLE), ("points.csv", POINTS)]);
+    let data = workspace.data(&["./a.txt", "--points", "./points.csv"]);
     assert_eq!(data["end"], "ended");
     assert_eq!(data["position"], json!({ "x_mm": 100.0, "y_mm": 20.0, "z_mm": 0.0, "r_mm": 0.0 }));
     assert_eq!(data["outputs"], json!([{ "station": 0, "port": 1, "bits": "00000001" }]));
@@ -74,8 +74,8 @@ fn the_sample_program_ends_at_its_position_with_its_output_on() {
 
 #[test]
 fn the_trace_shows_steps_with_line_and_label() {
-    let desk = Desk::new(&[("a.txt", "# A comment.\n\nnext: CNT+ CN1=1\nJMPC TAG=next CN1<2\nEND\n")]);
-    let data = desk.data(&["./a.txt"]);
+    let workspace = Workspace::new(&[("a.txt", "# A comment.\n\nnext: CNT+ CN1=1\nJMPC TAG=next CN1<2\nEND\n")]);
+    let data = workspace.data(&["./a.txt"]);
     assert_eq!(words(&data)[..3], ["next: TAG TAG=001", "CNT+ CN01=0001", "JMPC TAG=001 CN01< 0002 (next)"]);
     let at = &data["trace"][2]["at"];
     assert_eq!((&at["line"], &at["step"], &at["label"]), (&4.into(), &3.into(), &"next".into()));
@@ -83,19 +83,19 @@ fn the_trace_shows_steps_with_line_and_label() {
 
 #[test]
 fn inputs_change_at_their_times() {
-    let desk = Desk::new(&[("a.txt", "IN STN=0 PN1=.....1.. AND\nEND\n")]);
-    let data = desk.data(&["./a.txt", "--input", "at 2s 0/01/3 on"]);
+    let workspace = Workspace::new(&[("a.txt", "IN STN=0 PN1=.....1.. AND\nEND\n")]);
+    let data = workspace.data(&["./a.txt", "--input", "at 2s 0/01/3 on"]);
     assert_eq!(words(&data), ["IN STN=0 PN01=.....1.. AND", "input 0/01/3 on", "END", "task 1 has ended"]);
     assert_eq!((&data["trace"][1]["time_s"], &data["trace"][2]["time_s"]), (&2.0.into(), &2.0.into()));
-    assert_eq!(words(&desk.data(&["./a.txt", "--input", "0/01 00000100"])).len(), 4);
+    assert_eq!(words(&workspace.data(&["./a.txt", "--input", "0/01 00000100"])).len(), 4);
     assert!(objection(&["sim", "run", "a.txt", "--input", "at 2s 0/01/9 on"]).contains("a number from 1 to 8"));
     assert!(objection(&["sim", "run", "a.txt", "--input", "at soon 0/01/1 on"]).contains("is not a valid duration"));
 }
 
 #[test]
 fn a_program_that_waits_forever_is_reported_with_its_step() {
-    let desk = Desk::new(&[("a.txt", "NOP\nIN STN=0 PN1=.....1.. AND\nEND\n")]);
-    let failure = desk.failure(&["./a.txt"]);
+    let workspace = Workspace::new(&[("a.txt", "NOP\nIN STN=0 PN1=.....1.. AND\nEND\n")]);
+    let failure = workspace.failure(&["./a.txt"]);
     assert_eq!(failure.kind, Kind::ConditionNotMet);
     let (message, hint) = (failure.message, failure.hint.unwrap());
     assert!(message.contains("all tasks wait for an input without end: "), "{message}");
@@ -105,8 +105,8 @@ fn a_program_that_waits_forever_is_reported_with_its_step() {
 
 #[test]
 fn an_error_is_reported_with_code_and_step() {
-    let desk = Desk::new(&[("a.txt", "NOP\nMOV a X=8000 Y=0 Z=0 R=0 S V=1 POST\nEND\n")]);
-    let (data, failure) = desk.run(&["./a.txt"]).unwrap();
+    let workspace = Workspace::new(&[("a.txt", "NOP\nMOV a X=8000 Y=0 Z=0 R=0 S V=1 POST\nEND\n")]);
+    let (data, failure) = workspace.run(&["./a.txt"]).unwrap();
     let failure = failure.unwrap();
     assert_eq!((data["alarm"]["code"].as_str(), failure.code.as_deref()), (Some("C0"), Some("C0")));
     assert_eq!(failure.kind, Kind::ConditionNotMet);
@@ -115,8 +115,8 @@ fn an_error_is_reported_with_code_and_step() {
 
 #[test]
 fn the_run_ends_at_its_time_limit() {
-    let desk = Desk::new(&[("a.txt", "a: JMP TAG=a\n")]);
-    let (data, failure) = desk.run(&["./a.txt", "--for", "2s", "--rows", "3"]).unwrap();
+    let workspace = Workspace::new(&[("a.txt", "a: JMP TAG=a\n")]);
+    let (data, failure) = workspace.run(&["./a.txt", "--for", "2s", "--rows", "3"]).unwrap();
     assert_eq!(
         (&data["end"], &data["elapsed_s"], &data["rows_left_out"]),
         (&"time_up".into(), &2.0.into(), &1998.into())
@@ -126,8 +126,8 @@ fn the_run_ends_at_its_time_limit() {
 
 #[test]
 fn positions_are_sampled() {
-    let desk = Desk::new(&[("a.txt", SAMPLE), ("points.csv", POINTS)]);
-    let data = desk.data(&["./a.txt", "--points", "./points.csv", "--trace-every", "200ms"]);
+    let workspace = Workspace::new(&[("a.txt", SAMPLE), ("points.csv", POINTS)]);
+    let data = workspace.data(&["./a.txt", "--points", "./points.csv", "--trace-every", "200ms"]);
     let rows = data["trace"].as_array().unwrap();
     let places: Vec<f64> =
         rows.iter().filter(|row| row["event"] == "position").map(|row| row["x_mm"].as_f64().unwrap()).collect();
@@ -137,7 +137,7 @@ fn positions_are_sampled() {
 
 #[test]
 fn parameters_and_other_tasks_come_from_files() {
-    let desk = Desk::new(&[
+    let workspace = Workspace::new(&[
         ("a.txt", "TSTR TASK=2\nIN STN=0 PN1=.......1 AND\nMOVP a PT=1 CN=0 S V=5 POST\nEND\n"),
         ("b.txt", "OUT STN=0 PN2=1.......\nEND\n"),
         ("points.csv", POINTS),
@@ -146,14 +146,14 @@ fn parameters_and_other_tasks_come_from_files() {
     ]);
     let words_of = ["./a.txt", "--task", "2=./b.txt", "--points", "./points.csv", "--points", "2=./more.csv"];
     let words_of = [&words_of[..], &["--params", "./params.csv"]].concat();
-    let data = desk.data(&[&words_of[..], &["--input", "at 1s 0/01/1 on"]].concat());
+    let data = workspace.data(&[&words_of[..], &["--input", "at 1s 0/01/1 on"]].concat());
     assert_eq!(data["outputs"][0]["bits"], "10000000");
     assert!(data["elapsed_s"].as_f64().unwrap() > 10.0, "100 mm at 10 mm/s");
 }
 
 #[test]
 fn faulty_files_are_wrong_arguments() {
-    let desk = Desk::new(&[
+    let workspace = Workspace::new(&[
         ("a.txt", "EMD\n"),
         ("good.txt", "END\n"),
         ("points.csv", "name,x_mm\n1,0\n"),
@@ -166,9 +166,9 @@ fn faulty_files_are_wrong_arguments() {
         (&["./good.txt", "--params", "./params.csv"], "params.csv:2:1: T2.5: speed: 0.0 is out of range"),
         (&["./good.txt", "--state", "./state.toml"], "state.toml: line 1: axes must be from 1 to 4"),
     ] {
-        let failure = desk.failure(words);
+        let failure = workspace.failure(words);
         assert_eq!(failure.kind, Kind::Usage);
         assert!(failure.message.contains(message), "{}", failure.message);
     }
-    assert_eq!(desk.failure(&["./nothing.txt"]).kind, Kind::Local);
+    assert_eq!(workspace.failure(&["./nothing.txt"]).kind, Kind::Local);
 }

@@ -8,12 +8,12 @@ use crate::profibus::wire::{CHECKSUM, Parsed, START, Telegram};
 use crate::tap::LINKTYPE_PROFIBUS_DL;
 
 /// Maximum length of a line of a hexadecimal dump.
-const MOST_LINE: usize = 16 << 20;
+const MAX_LINE_LEN: usize = 16 << 20;
 /// A length greater than that of any telegram. If this many bytes do not contain a complete telegram, more bytes do not
 /// help.
-const MOST_TELEGRAM: usize = 512;
+const MAX_TELEGRAM_LEN: usize = 512;
 /// Maximum number of noise bytes that are kept in memory.
-const MOST_NOISE: usize = 1 << 16;
+const MAX_NOISE: usize = 1 << 16;
 
 /// Encoding of a dump.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,14 +34,14 @@ impl Form {
         // Only whole frames identify a dump. Tokens and acknowledgements of one byte also occur in other files by
         // chance.
         let begins = |at| matches!(Telegram::parse(&beginning[at..]), Ok(Parsed::Whole(Telegram::Frame(_), _)));
-        (0..beginning.len().min(MOST_TELEGRAM)).any(begins).then_some(Self::Bytes)
+        (0..beginning.len().min(MAX_TELEGRAM_LEN)).any(begins).then_some(Self::Bytes)
     }
 }
 
 /// Reads a dump. The messages are numbered from 1: telegrams, damaged telegrams and the bytes between them. A dump
 /// contains no times.
 pub fn read(mut file: impl BufRead, form: Form, mut each: impl FnMut(&Message<'_>)) -> Summary {
-    let mut pieces = Pieces::default();
+    let mut pieces = PieceReader::default();
     let mut offset = 0;
     loop {
         let next = match form {
@@ -79,9 +79,9 @@ const UNREADABLE: &str = "cannot read more of the file";
 /// Reads the next line. The line is empty at the end of the file.
 fn line(file: &mut impl BufRead) -> Result<Vec<u8>, &'static str> {
     let mut line = Vec::new();
-    let most = u64::try_from(MOST_LINE).unwrap_or(u64::MAX);
-    match file.by_ref().take(most).read_until(b'\n', &mut line) {
-        Ok(len) if len == MOST_LINE => Err("a line is too long"),
+    let snap_len = u64::try_from(MAX_LINE_LEN).unwrap_or(u64::MAX);
+    match file.by_ref().take(snap_len).read_until(b'\n', &mut line) {
+        Ok(len) if len == MAX_LINE_LEN => Err("a line is too long"),
         Ok(_) => Ok(line),
         Err(_) => Err(UNREADABLE),
     }
@@ -89,7 +89,7 @@ fn line(file: &mut impl BufRead) -> Result<Vec<u8>, &'static str> {
 
 /// Bytes that were read but not delivered yet.
 #[derive(Debug, Default)]
-struct Pieces {
+struct PieceReader {
     bytes: Vec<u8>,
     /// Number of bytes that were already delivered.
     start: usize,
@@ -98,7 +98,7 @@ struct Pieces {
     summary: Summary,
 }
 
-impl Pieces {
+impl PieceReader {
     /// Delivers the complete telegrams. At the end of the file, also delivers the remaining bytes.
     fn take(&mut self, is_end: bool, each: &mut impl FnMut(&Message<'_>)) {
         loop {
@@ -108,7 +108,7 @@ impl Pieces {
             }
             let len = match Telegram::parse(rest) {
                 Ok(Parsed::Whole(_, len)) => len,
-                Ok(Parsed::Part(_)) if !is_end && rest.len() < MOST_TELEGRAM => break,
+                Ok(Parsed::Part(_)) if !is_end && rest.len() < MAX_TELEGRAM_LEN => break,
                 Ok(Parsed::Part(_)) => rest.len(),
                 // The whole damaged telegram is skipped. Its content could be mistaken for acknowledgements and tokens,
                 // which have no checksum.
@@ -118,12 +118,12 @@ impl Pieces {
                     continue;
                 }
             };
-            self.hand_on(self.noise, each);
-            self.hand_on(len, each);
+            self.deliver(self.noise, each);
+            self.deliver(len, each);
             self.noise = 0;
         }
-        if is_end || self.noise >= MOST_NOISE {
-            self.hand_on(self.noise, each);
+        if is_end || self.noise >= MAX_NOISE {
+            self.deliver(self.noise, each);
             self.noise = 0;
         }
         self.bytes.drain(..self.start);
@@ -131,7 +131,7 @@ impl Pieces {
     }
 
     /// Delivers the next `len` bytes as one message.
-    fn hand_on(&mut self, len: usize, each: &mut impl FnMut(&Message<'_>)) {
+    fn deliver(&mut self, len: usize, each: &mut impl FnMut(&Message<'_>)) {
         if len == 0 {
             return;
         }
@@ -157,7 +157,7 @@ fn is_between(c: char) -> bool {
 /// commas or dashes.
 pub fn parse_hex(text: &str) -> Result<Vec<u8>, String> {
     /// Maximum number of digits that an error message quotes.
-    const MOST: usize = 24;
+    const MAX_QUOTED_DIGITS: usize = 24;
 
     let mut bytes = Vec::with_capacity(text.len() / 2);
     for token in text.split(is_between) {
@@ -166,8 +166,11 @@ pub fn parse_hex(text: &str) -> Result<Vec<u8>, String> {
             return Err(format!("'{}' is not a valid hexadecimal digit", wrong.escape_debug()));
         }
         if digits.len() > 1 && digits.len() % 2 == 1 {
-            let rest = if digits.len() > MOST { "…" } else { "" };
-            return Err(format!("'{}{rest}' has an odd number of digits", &digits[..digits.len().min(MOST)]));
+            let rest = if digits.len() > MAX_QUOTED_DIGITS { "…" } else { "" };
+            return Err(format!(
+                "'{}{rest}' has an odd number of digits",
+                &digits[..digits.len().min(MAX_QUOTED_DIGITS)]
+            ));
         }
         // Only digits are left, so every pair is a byte.
         let pairs = digits.as_bytes().chunks(2).filter_map(|pair| std::str::from_utf8(pair).ok());
@@ -202,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn damage_stays_one_piece_and_what_follows_is_found() {
+    fn finds_telegrams_after_damage() {
         // The bytes are a telegram with a wrong checksum and an acknowledgement inside, noise, a telegram, and an
         // incomplete telegram.
         let (all, _) = pieces(b"68 05 05 68 85 82 E5 3C 3E 00 16 FF 16 10 05 02 49 50 16 68 05 05 68 85");
@@ -211,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_is_no_hexadecimal_ends_the_dump_where_it_is() {
+    fn invalid_line_ends_the_dump() {
         let (all, summary) = pieces(b"E5\n1 0 5\n123\n");
         assert_eq!(all.len(), 2, "{all:?}");
         let damage = summary.damage.unwrap();
@@ -219,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn other_files_are_no_dump() {
+    fn rejects_other_files() {
         for other in [&b""[..], b"\n \n", b"YERC", b"\x10\x05\x02\x49\x51\x16", b"\xD4\xC3\xB2\xA1"] {
             assert_eq!(Form::of(other), None, "{other:?}");
         }

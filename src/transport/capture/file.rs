@@ -61,9 +61,9 @@ const TIME_OFFSET: u16 = 14;
 const FILE_HEADER: usize = 24;
 const PACKET_HEADER: usize = 16;
 /// Upper limit of a packet length. A larger value means a damaged file.
-const MOST: usize = 16 << 20;
+const MAX_PACKET_LEN: usize = 16 << 20;
 /// Maximum number of interfaces per section. Each interface is kept in memory.
-const MOST_INTERFACES: usize = 1 << 16;
+const MAX_INTERFACES: usize = 1 << 16;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ByteOrder {
@@ -128,7 +128,7 @@ impl Clock {
 struct Interface {
     link_type: u16,
     /// Maximum number of recorded bytes per packet (snapshot length). 0 means that there is no limit.
-    most: usize,
+    snap_len: usize,
     clock: Clock,
 }
 
@@ -145,7 +145,7 @@ pub fn is_capture(beginning: &[u8]) -> bool {
 }
 
 /// Number of bytes per read.
-const PIECE: usize = 1 << 16;
+const READ_SIZE: usize = 1 << 16;
 
 /// The part of a file that is in memory. It contains the bytes of only one packet.
 #[derive(Debug)]
@@ -155,16 +155,16 @@ struct Window<R> {
     /// Start of the unread bytes.
     start: usize,
     /// File offset of the unread bytes.
-    passed: usize,
+    consumed: usize,
 }
 
 impl<R: Read> Window<R> {
     /// Returns the next `len` bytes without consuming them. Returns fewer bytes at the end of the file.
-    fn look(&mut self, len: usize) -> std::io::Result<&[u8]> {
+    fn peek(&mut self, len: usize) -> std::io::Result<&[u8]> {
         if self.bytes.len() - self.start < len {
             self.bytes.drain(..self.start);
             self.start = 0;
-            let missing = (len - self.bytes.len()).max(PIECE);
+            let missing = (len - self.bytes.len()).max(READ_SIZE);
             let missing = u64::try_from(missing).unwrap_or(u64::MAX);
             (&mut self.file).take(missing).read_to_end(&mut self.bytes)?;
         }
@@ -173,13 +173,13 @@ impl<R: Read> Window<R> {
     }
 
     /// Bytes that the last `look` has loaded.
-    fn seen(&self) -> &[u8] {
+    fn loaded(&self) -> &[u8] {
         &self.bytes[self.start..]
     }
 
-    fn pass(&mut self, len: usize) {
+    fn skip(&mut self, len: usize) {
         self.start += len;
-        self.passed += len;
+        self.consumed += len;
     }
 }
 
@@ -208,14 +208,14 @@ const UNREADABLE: &str = "cannot read more of the file";
 impl<R: Read> Packets<R> {
     /// Reads the header of a file.
     pub fn open(file: R) -> Result<Self, OpenError> {
-        let mut file = Window { file, bytes: Vec::new(), start: 0, passed: 0 };
-        let head = file.look(FILE_HEADER).map_err(|_| OpenError::Unreadable)?;
+        let mut file = Window { file, bytes: Vec::new(), start: 0, consumed: 0 };
+        let head = file.peek(FILE_HEADER).map_err(|_| OpenError::Unreadable)?;
         let magic = head.first_chunk::<4>().map(|bytes| u32::from_be_bytes(*bytes)).ok_or(OpenError::Other)?;
         let classic = |order: ByteOrder, clock| {
-            let most = order.size(head, 16)?;
+            let snap_len = order.size(head, 16)?;
             // The upper half of this word may contain the length of a frame checksum.
             let link_type = u16::try_from(order.word(head, 20)? & 0xFFFF).ok()?;
-            Some((order, Format::Classic(Interface { link_type, most, clock }), FILE_HEADER))
+            Some((order, Format::Classic(Interface { link_type, snap_len, clock }), FILE_HEADER))
         };
         let opened = match magic {
             SECTION_HEADER => Some((ByteOrder::Little, Format::Blocks(Vec::new()), 0)),
@@ -227,7 +227,7 @@ impl<R: Read> Packets<R> {
             _ => None,
         };
         let (byte_order, format, at) = opened.ok_or(OpenError::Other)?;
-        file.pass(at);
+        file.skip(at);
         Ok(Self { file, byte_order, format, number: 0, section: 0, time: Duration::ZERO, is_over: false })
     }
 
@@ -239,16 +239,16 @@ impl<R: Read> Packets<R> {
                 return None;
             }
             let next = match self.format {
-                _ if self.file.look(1).is_ok_and(<[u8]>::is_empty) => return None,
+                _ if self.file.peek(1).is_ok_and(<[u8]>::is_empty) => return None,
                 Format::Classic(interface) => self.record(interface).map(|(span, len)| (Some(span), len)),
                 Format::Blocks(_) => self.block(),
             };
             match next {
                 Ok((Some(span), len)) => break (span, len),
-                Ok((None, len)) => self.file.pass(len),
+                Ok((None, len)) => self.file.skip(len),
                 Err(problem) => {
                     self.is_over = true;
-                    return Some(Err(Damage { offset: self.file.passed, problem }));
+                    return Some(Err(Damage { offset: self.file.consumed, problem }));
                 }
             }
         };
@@ -257,7 +257,7 @@ impl<R: Read> Packets<R> {
         self.time = time.unwrap_or(self.time);
         let (number, section, time) = (self.number, self.section, self.time);
         let before = self.file.start;
-        self.file.pass(len);
+        self.file.skip(len);
         // The bytes stay in the buffer until the next `look`, although they count as consumed.
         let bytes = self.file.bytes.get(before + bytes.start..before + bytes.end).unwrap_or_default();
         let is_cut = bytes.len() < original;
@@ -267,18 +267,18 @@ impl<R: Read> Packets<R> {
     /// Returns the next packet of a pcap file and the length of its record.
     fn record(&mut self, interface: Interface) -> Result<(PacketSpan, usize), &'static str> {
         let order = self.byte_order;
-        let head = self.file.look(PACKET_HEADER).map_err(|_| UNREADABLE)?;
+        let head = self.file.peek(PACKET_HEADER).map_err(|_| UNREADABLE)?;
         let header = || {
             let seconds = u64::from(order.word(head, 0)?);
             let parts = u64::from(order.word(head, 4)?);
             Some((seconds, parts, order.size(head, 8)?, order.size(head, 12)?))
         };
         let (seconds, parts, len, original) = header().ok_or("the file ends inside the header of a packet")?;
-        if len > MOST {
+        if len > MAX_PACKET_LEN {
             return Err("a packet with an invalid length");
         }
         let whole = PACKET_HEADER + len;
-        if self.file.look(whole).map_err(|_| UNREADABLE)?.len() < whole {
+        if self.file.peek(whole).map_err(|_| UNREADABLE)?.len() < whole {
             return Err("the file ends inside a packet");
         }
         let time = Some(Clock { offset: seconds, ..interface.clock }.time(parts));
@@ -289,7 +289,7 @@ impl<R: Read> Packets<R> {
     /// block.
     fn block(&mut self) -> Result<(Option<PacketSpan>, usize), &'static str> {
         let short = "the file ends inside a block";
-        let head = self.file.look(12).map_err(|_| UNREADABLE)?;
+        let head = self.file.peek(12).map_err(|_| UNREADABLE)?;
         let kind = self.byte_order.word(head, 0).ok_or(short)?;
         if kind == SECTION_HEADER {
             // The type of this block is the same in both byte orders. The magic number in the block shows the byte
@@ -303,10 +303,10 @@ impl<R: Read> Packets<R> {
         }
         let order = self.byte_order;
         let len = order.size(head, 4).ok_or(short)?;
-        if len < 12 || len % 4 != 0 || len > MOST {
+        if len < 12 || len % 4 != 0 || len > MAX_PACKET_LEN {
             return Err("a block with an invalid length");
         }
-        let block = self.file.look(len).map_err(|_| UNREADABLE)?;
+        let block = self.file.peek(len).map_err(|_| UNREADABLE)?;
         if block.len() < len {
             return Err(short);
         }
@@ -323,7 +323,7 @@ impl<R: Read> Packets<R> {
             INTERFACE => {
                 let interface = interface(order, body).ok_or("a truncated interface block")?;
                 if let Format::Blocks(interfaces) = &mut self.format {
-                    if interfaces.len() >= MOST_INTERFACES {
+                    if interfaces.len() >= MAX_INTERFACES {
                         return Err("too many interfaces");
                     }
                     interfaces.push(interface);
@@ -337,7 +337,7 @@ impl<R: Read> Packets<R> {
 
     /// Decodes the packet in a block of `len` bytes. The caller has loaded the block with `look`.
     fn packet_of(&self, kind: u32, len: usize) -> Result<PacketSpan, &'static str> {
-        let body = &self.file.seen()[8..len - 4];
+        let body = &self.file.loaded()[8..len - 4];
         let order = self.byte_order;
         let Format::Blocks(interfaces) = &self.format else { return Err("a block outside a section") };
         let number = match kind {
@@ -351,11 +351,16 @@ impl<R: Read> Packets<R> {
         let parts = || {
             if kind == SIMPLE_PACKET {
                 let original = order.size(body, 0)?;
-                let most = if interface.most == 0 { usize::MAX } else { interface.most };
-                return Some((None, 4, original.min(most).min(MOST), original));
+                let snap_len = if interface.snap_len == 0 { usize::MAX } else { interface.snap_len };
+                return Some((None, 4, original.min(snap_len).min(MAX_PACKET_LEN), original));
             }
             let count = u64::from(order.word(body, 4)?) << 32 | u64::from(order.word(body, 8)?);
-            Some((Some(interface.clock.time(count)), 20, order.size(body, 12)?.min(MOST), order.size(body, 16)?))
+            Some((
+                Some(interface.clock.time(count)),
+                20,
+                order.size(body, 12)?.min(MAX_PACKET_LEN),
+                order.size(body, 16)?,
+            ))
         };
         let whole = parts().filter(|(_, start, len, _)| start + len <= body.len());
         let (time, start, len, original) = whole.ok_or("a packet longer than its block")?;
@@ -365,7 +370,7 @@ impl<R: Read> Packets<R> {
 
 /// Decodes an Interface Description Block.
 fn interface(order: ByteOrder, body: &[u8]) -> Option<Interface> {
-    let (link_type, most) = (order.short(body, 0)?, order.size(body, 4)?);
+    let (link_type, snap_len) = (order.short(body, 0)?, order.size(body, 4)?);
     let (mut resolution, mut offset, mut at) = (6, 0, 8);
     while let (Some(code), Some(len)) = (order.short(body, at), order.short(body, at + 2)) {
         let value = body.get(at + 4..).unwrap_or_default();
@@ -377,7 +382,7 @@ fn interface(order: ByteOrder, body: &[u8]) -> Option<Interface> {
         }
         at += 4 + usize::from(len).next_multiple_of(4);
     }
-    Some(Interface { link_type, most, clock: Clock::new(resolution, offset) })
+    Some(Interface { link_type, snap_len, clock: Clock::new(resolution, offset) })
 }
 
 #[cfg(test)]
@@ -395,7 +400,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_capture_is_told() {
+    fn rejects_files_that_are_not_captures() {
         assert_eq!(Packets::open(&b""[..]).unwrap_err(), OpenError::Other);
         assert_eq!(Packets::open(&b"YERC"[..]).unwrap_err(), OpenError::Other);
         assert_eq!(
@@ -407,9 +412,9 @@ mod tests {
     }
 
     /// A reader that returns a few bytes per call and cannot seek.
-    struct Pieces<'a>(&'a [u8]);
+    struct PieceReader<'a>(&'a [u8]);
 
-    impl Read for Pieces<'_> {
+    impl Read for PieceReader<'_> {
         fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
             let len = buffer.len().min(7).min(self.0.len());
             let (now, later) = self.0.split_at(len);
@@ -420,15 +425,15 @@ mod tests {
     }
 
     #[test]
-    fn of_a_long_file_only_a_window_is_in_memory() {
+    fn keeps_only_a_window_of_a_long_file_in_memory() {
         let header = [&0xA1B2_C3D4_u32.to_be_bytes()[..], &[0; 16], &[0, 0, 0, 101]].concat();
         let record = |byte: u8| [&[0; 8][..], &1000_u32.to_be_bytes(), &1000_u32.to_be_bytes(), &[byte; 1000]].concat();
         let file = [header, (0..=u8::MAX).cycle().take(1000).flat_map(record).collect()].concat();
-        let mut packets = Packets::open(Pieces(&file)).unwrap();
+        let mut packets = Packets::open(PieceReader(&file)).unwrap();
         for byte in (0..=u8::MAX).cycle().take(1000) {
             let packet = packets.next().unwrap().unwrap();
             assert_eq!((packet.bytes, packet.is_cut), (&[byte; 1000][..], false));
-            assert!(packets.file.bytes.capacity() <= 4 * PIECE);
+            assert!(packets.file.bytes.capacity() <= 4 * READ_SIZE);
         }
         assert_eq!(packets.next(), None);
     }

@@ -106,9 +106,9 @@ fn ip(packet: &[u8]) -> Option<PacketContent<'_>> {
 /// Cuts the packet to the length in its IP header. A length of 0 sets no limit: it is valid in a capture, because the
 /// network card fills the length in later.
 fn bounded(packet: &[u8]) -> &[u8] {
-    const LONGEST: usize = 40 + 0xFFFF;
+    const MAX_DATAGRAM_LEN: usize = 40 + 0xFFFF;
 
-    packet.get(..LONGEST).unwrap_or(packet)
+    packet.get(..MAX_DATAGRAM_LEN).unwrap_or(packet)
 }
 
 fn transport<'a>(packet: &LaxSlicedPacket<'a>) -> Option<PacketContent<'a>> {
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn a_packet_whose_length_the_card_fills_in_is_no_longer_than_any() {
+    fn accepts_packets_without_an_ip_length() {
         let mut packet = IP.to_vec();
         (packet[2], packet[3], packet[9]) = (0, 0, 6);
         packet.resize(200_000, 0);
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn the_rest_is_other() {
+    fn other_packets_have_no_content() {
         let mut fragment = IP;
         fragment[6] = 0x20;
         assert_eq!(content_of(101, &fragment), PacketContent::Fragment);

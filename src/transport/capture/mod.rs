@@ -20,7 +20,7 @@ use std::time::Duration;
 use self::dump::Form;
 use self::file::{Packets, is_capture};
 use self::layers::{PacketContent, Payload, content_of};
-use self::stream::{Piece, Streams};
+use self::stream::{StreamPiece, Streams};
 use super::devicenet::can::Frame;
 use super::tap::Direction;
 
@@ -151,7 +151,7 @@ pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summa
             PacketContent::Packet { from, to, payload: Payload::Segment(segment), is_cut } => {
                 let key = (packet.section, from, to);
                 let is_cut = is_cut || packet.is_cut;
-                streams.take(key, &segment, (number, time, is_cut), &mut |arrived| pass_on(arrived, &mut each));
+                streams.take(key, &segment, (number, time, is_cut), &mut |ordered| deliver(ordered, &mut each));
             }
             PacketContent::Frame if !packet.bytes.is_empty() => {
                 say(Carrier::Frame { link_type: packet.link_type }, packet.bytes, packet.is_cut);
@@ -160,13 +160,13 @@ pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summa
             PacketContent::Fragment => summary.fragments += 1,
         }
     }
-    streams.finish(&mut |arrived| pass_on(arrived, &mut each));
+    streams.finish(&mut |ordered| deliver(ordered, &mut each));
     summary.repeated = streams.repeated();
     Ok(summary)
 }
 
 /// Longest line of a candump log.
-const MOST_LINE: u64 = 4096;
+const MAX_LINE_LEN: u64 = 4096;
 
 fn candump(mut file: impl BufRead, mut each: impl FnMut(&Message<'_>)) -> Summary {
     let mut summary = Summary::default();
@@ -174,7 +174,7 @@ fn candump(mut file: impl BufRead, mut each: impl FnMut(&Message<'_>)) -> Summar
     let mut offset = 0;
     loop {
         line.clear();
-        let len = match file.by_ref().take(MOST_LINE).read_until(b'\n', &mut line) {
+        let len = match file.by_ref().take(MAX_LINE_LEN).read_until(b'\n', &mut line) {
             Ok(0) => return summary,
             Ok(len) => len,
             Err(_) => {
@@ -195,8 +195,8 @@ fn candump(mut file: impl BufRead, mut each: impl FnMut(&Message<'_>)) -> Summar
     }
 }
 
-fn pass_on(arrived: &Piece<'_>, each: &mut impl FnMut(&Message<'_>)) {
-    let Piece { key: (_, from, to), origin: (number, time, is_cut), begins, lost, bytes } = *arrived;
+fn deliver(ordered: &StreamPiece<'_>, each: &mut impl FnMut(&Message<'_>)) {
+    let StreamPiece { key: (_, from, to), origin: (number, time, is_cut), begins, lost, bytes } = *ordered;
     let carrier = Carrier::Stream { from, to, begins, lost };
     each(&Message { number, time, carrier, bytes, is_cut });
 }
@@ -223,9 +223,9 @@ mod tests {
         file
     }
 
-    type Owned = (u64, Duration, Carrier, Vec<u8>);
+    type OwnedMessage = (u64, Duration, Carrier, Vec<u8>);
 
-    fn messages_of(file: &[u8]) -> (Vec<Owned>, Summary) {
+    fn messages_of(file: &[u8]) -> (Vec<OwnedMessage>, Summary) {
         let mut all = Vec::new();
         let summary = read(file, |message| {
             assert!(!message.bytes.is_empty() && !message.is_cut);
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_tap_writes_is_read_back() {
+    fn reads_captures_of_the_tap() {
         let (from, to) = ends();
         let from = SocketAddr::new(std::net::IpAddr::V6("::ffff:10.0.0.1".parse().unwrap()), from.port());
         let (all, summary) = messages_of(&recorded());
@@ -271,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_cut_anywhere_gives_what_came_before() {
+    fn truncated_file_yields_earlier_messages() {
         let file = recorded();
         let (all, _) = messages_of(&file);
         for end in 12..file.len() {

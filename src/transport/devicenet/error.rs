@@ -28,14 +28,14 @@ pub enum Error {
         mac: Mac,
     },
     /// The image sizes of the slave do not match any of the expected profiles.
-    #[error("MAC {mac} receives {consumed} bytes and sends {produced}; armctl supports {known}")]
+    #[error("MAC {mac} receives {consumed_size} bytes and sends {produced_size}; armctl supports {known}")]
     Size {
         /// MAC of the slave.
         mac: Mac,
         /// Size of the image from the slave, in bytes.
-        produced: u16,
+        produced_size: u16,
         /// Size of the image to the slave, in bytes.
-        consumed: u16,
+        consumed_size: u16,
         /// Sizes of the expected profiles, as text.
         known: String,
     },

@@ -24,11 +24,11 @@ use crate::pty::Pty;
 
 /// Maximum number of bytes that wait for a client. Further frames for this client are lost, as in the full queue of a
 /// real adapter.
-const MOST_WAITING: usize = 64 * 1024;
+const MAX_QUEUED_BYTES: usize = 64 * 1024;
 /// Maximum number of clients. Further clients are disconnected at once.
-const MOST_CLIENTS: usize = 64;
+const MAX_CLIENTS: usize = 64;
 /// Maximum number of frames that fault injection delays at the same time.
-const MOST_DELAYED: usize = 1024;
+const MAX_DELAYED: usize = 1024;
 /// Pause after a failed accept.
 const PAUSE: Duration = Duration::from_millis(50);
 const BUFFER: usize = 4096;
@@ -45,14 +45,14 @@ pub enum Listen {
 /// A running hub. It stops when it is dropped.
 pub struct Hub<A: Application + 'static> {
     inner: Arc<Inner<A>>,
-    places: Vec<String>,
+    endpoint_addresses: Vec<String>,
     quit: Option<oneshot::Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl<A: Application + 'static> fmt::Debug for Hub<A> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Hub {:?}", self.places)
+        write!(f, "Hub {:?}", self.endpoint_addresses)
     }
 }
 
@@ -60,10 +60,10 @@ struct Inner<A> {
     start: Instant,
     bitrate: Bitrate,
     wake: Notify,
-    state: Mutex<Inside<A>>,
+    state: Mutex<SharedState<A>>,
 }
 
-struct Inside<A> {
+struct SharedState<A> {
     device: Option<Device<A>>,
     clients: BTreeMap<u64, Client>,
     last: u64,
@@ -99,30 +99,30 @@ impl<A: Application + 'static> Hub<A> {
         faults: Option<(Faults, Faults)>,
     ) -> io::Result<Self> {
         let runtime = Builder::new_current_thread().enable_all().build()?;
-        let state = Inside { device, clients: BTreeMap::new(), last: 0, faults, delayed: Vec::new() };
+        let state = SharedState { device, clients: BTreeMap::new(), last: 0, faults, delayed: Vec::new() };
         let inner = Arc::new(Inner { start: Instant::now(), bitrate, wake: Notify::new(), state: Mutex::new(state) });
-        let mut places = Vec::new();
+        let mut endpoint_addresses = Vec::new();
         for listen in listen {
-            places.push(serve(&runtime, &inner, *listen)?);
+            endpoint_addresses.push(serve(&runtime, &inner, *listen)?);
         }
         let (quit, quits) = oneshot::channel::<()>();
         let shared = Arc::clone(&inner);
         let work = move || {
             runtime.block_on(async {
                 tokio::select! {
-                    () = turn(&shared) => {}
+                    () = run_slave(&shared) => {}
                     // An error means that the hub was dropped. The thread must then end too.
                     _ = quits => {}
                 }
             });
         };
         let thread = thread::Builder::new().name("slcan-hub".to_owned()).spawn(work)?;
-        Ok(Self { inner, places, quit: Some(quit), thread: Some(thread) })
+        Ok(Self { inner, endpoint_addresses, quit: Some(quit), thread: Some(thread) })
     }
 
     /// Addresses of the endpoints in the order of `listen`, for example `127.0.0.1:40000` or `/dev/pts/4`.
-    pub fn places(&self) -> &[String] {
-        &self.places
+    pub fn endpoint_addresses(&self) -> &[String] {
+        &self.endpoint_addresses
     }
 
     /// Changes the faults for frames to the slave and from the slave.
@@ -151,7 +151,7 @@ impl<A: Application + 'static> Drop for Hub<A> {
 }
 
 impl<A> Inner<A> {
-    fn lock(&self) -> MutexGuard<'_, Inside<A>> {
+    fn lock(&self) -> MutexGuard<'_, SharedState<A>> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -185,7 +185,7 @@ async fn accept<A: Application + 'static>(inner: Arc<Inner<A>>, listener: TcpLis
             sleep(PAUSE).await;
             continue;
         };
-        if inner.lock().clients.len() >= MOST_CLIENTS {
+        if inner.lock().clients.len() >= MAX_CLIENTS {
             continue;
         }
         // The client may already have disconnected.
@@ -203,7 +203,7 @@ async fn accept<A: Application + 'static>(inner: Arc<Inner<A>>, listener: TcpLis
 }
 
 async fn terminal<A: Application + 'static>(inner: Arc<Inner<A>>, mut pty: Pty) {
-    let (writer, mut leaving) = Writer::queue();
+    let (writer, mut outgoing) = Writer::queue();
     let number = inner.join(writer.clone());
     let mut lines = Lines::default();
     let mut buffer = vec![0; BUFFER];
@@ -213,7 +213,7 @@ async fn terminal<A: Application + 'static>(inner: Arc<Inner<A>>, mut pty: Pty) 
                 Ok(len) => inner.take(number, &mut lines, buffer.get(..len).unwrap_or_default()),
                 Err(_) => break,
             },
-            bytes = leaving.recv() => match bytes {
+            bytes = outgoing.recv() => match bytes {
                 Some(bytes) => {
                     writer.written(bytes.len());
                     if pty.write(&bytes).is_err() {
@@ -228,7 +228,7 @@ async fn terminal<A: Application + 'static>(inner: Arc<Inner<A>>, mut pty: Pty) 
 }
 
 /// Runs the slave until its next event.
-async fn turn<A: Application>(inner: &Inner<A>) {
+async fn run_slave<A: Application>(inner: &Inner<A>) {
     loop {
         let wake = inner.lock().advance(inner.start.elapsed());
         tokio::select! {
@@ -268,7 +268,7 @@ impl<A: Application> Inner<A> {
     }
 }
 
-impl<A: Application> Inside<A> {
+impl<A: Application> SharedState<A> {
     /// Executes a line from a client, and returns the answer.
     fn command(&mut self, now: Now, number: u64, line: &Line, bitrate: Bitrate) -> Vec<u8> {
         let is_off = self.device.as_ref().is_some_and(|device| device.fault() == Some(DeviceFault::BusOff));
@@ -318,7 +318,7 @@ impl<A: Application> Inside<A> {
             }
             Command::Send(frame) => {
                 if is_right {
-                    self.spread(Some(number), &frame, bitrate);
+                    self.broadcast(Some(number), &frame, bitrate);
                     self.deliver(now, frame);
                 }
                 b"z\r".to_vec()
@@ -328,12 +328,12 @@ impl<A: Application> Inside<A> {
     }
 
     /// Sends a frame to all clients with an open channel, except the sender of the frame.
-    fn spread(&mut self, from: Option<u64>, frame: &Frame, bitrate: Bitrate) {
+    fn broadcast(&mut self, from: Option<u64>, frame: &Frame, bitrate: Bitrate) {
         for (number, client) in &mut self.clients {
             if Some(*number) == from || client.mode == Mode::Closed || client.bitrate != Some(digit(bitrate)) {
                 continue;
             }
-            if client.writer.waiting() > MOST_WAITING {
+            if client.writer.waiting() > MAX_QUEUED_BYTES {
                 client.flags |= flag::OVERRUN;
                 continue;
             }
@@ -357,7 +357,7 @@ impl<A: Application> Inside<A> {
                 let passed = to.pass(now, &frame.to_capture());
                 let frames = passed.iter().filter_map(|(at, bytes)| Some((*at, true, Frame::from_capture(bytes)?)));
                 self.delayed.extend(frames);
-                self.delayed.truncate(MOST_DELAYED);
+                self.delayed.truncate(MAX_DELAYED);
             }
         }
     }
@@ -370,13 +370,13 @@ impl<A: Application> Inside<A> {
         for (_, to_device, frame) in due {
             match &mut self.device {
                 Some(device) if to_device => device.handle(now, &frame),
-                _ => self.spread(None, &frame, bitrate),
+                _ => self.broadcast(None, &frame, bitrate),
             }
         }
         while let Some(frame) = self.device.as_mut().and_then(|device| device.poll(now)) {
             match &mut self.faults {
                 _ if is_off => {}
-                None => self.spread(None, &frame, bitrate),
+                None => self.broadcast(None, &frame, bitrate),
                 Some((_, from)) => {
                     let passed = from.pass(now, &frame.to_capture());
                     let frames =

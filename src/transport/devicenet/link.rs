@@ -15,7 +15,7 @@ use super::scanner::{Details, State, Statistics, View, Views};
 use super::settings::{Purpose, Settings};
 use super::wire::{Answer, Mac, Request, class, connection};
 use crate::image::cyclic::{Bus, Cyclic};
-use crate::image::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
+use crate::image::{Cause, Event, ImageConnection, LinkError, Outputs, ReportedState, Sizes, Traffic};
 
 /// After this multiple of the packet rate without a poll, a slave clears its outputs.
 const WATCHDOG: u32 = 4;
@@ -51,7 +51,7 @@ impl Bus for Connection {
 
     fn loss(&self, view: View) -> (Cause, Outputs) {
         let outputs = Outputs::ReleasedWithin(view.details.rate.unwrap_or_default() * WATCHDOG);
-        let error = view.trouble.unwrap_or(Error::Outdated);
+        let error = view.last_error.unwrap_or(Error::Outdated);
         (Cause { advice: advice(&error), ..Cause::new(error) }, outputs)
     }
 
@@ -85,42 +85,42 @@ pub struct Listened {
     size: usize,
     /// Time without an image after which the last images are out of date.
     patience: Duration,
-    seen: u64,
+    received_generation: u64,
 }
 
 impl Listened {
     /// Listens for at most `longest`. Returns `None` if no image of the slave was received.
     pub async fn open(network: Network, slave: Mac, longest: Duration, patience: Duration) -> Option<Self> {
         let input = network.listen(slave, longest).await.input?;
-        Some(Self { network, slave, size: input.image.len(), patience, seen: 0 })
+        Some(Self { network, slave, size: input.image.len(), patience, received_generation: 0 })
     }
 
-    async fn wait(&mut self, known: Known<'_>) -> Event {
+    async fn wait(&mut self, reported: ReportedState<'_>) -> Event {
         loop {
-            let input = self.network.sight(self.slave).input.filter(|input| input.image.len() == self.size);
+            let input = self.network.last_traffic(self.slave).input.filter(|input| input.image.len() == self.size);
             let left = input.as_ref().map(|input| (input.at + self.patience).saturating_sub(self.network.now()));
             match (input, left) {
                 (Some(input), Some(left)) if !left.is_zero() => {
-                    if !known.is_up {
+                    if !reported.is_up {
                         return Event::Reopened;
                     }
-                    if known.is_new(&input.image) {
+                    if reported.is_new(&input.image) {
                         return Event::Image(input.image.into());
                     }
                     tokio::select! {
-                        () = self.network.changed(&mut self.seen) => {}
+                        () = self.network.changed(&mut self.received_generation) => {}
                         () = sleep_until(Instant::now() + left) => {}
                     }
                 }
-                _ if known.is_up => {
+                _ if reported.is_up => {
                     let mac = self.slave;
-                    let text = self.network.trouble().map_or_else(
+                    let text = self.network.last_error().map_or_else(
                         || format!("no answer from MAC {mac} to its master for {} ms", self.patience.as_millis()),
-                        |trouble| trouble.to_string(),
+                        |last_error| last_error.to_string(),
                     );
                     return Event::Lost(LinkError::Lost { cause: Cause::new(text), outputs: Outputs::Never });
                 }
-                _ => self.network.changed(&mut self.seen).await,
+                _ => self.network.changed(&mut self.received_generation).await,
             }
         }
     }
@@ -131,8 +131,8 @@ impl ImageConnection for Listened {
         Sizes { output: 0, input: self.size }
     }
 
-    fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
-        self.wait(known).boxed_local()
+    fn next<'a>(&'a mut self, reported: ReportedState<'a>) -> LocalBoxFuture<'a, Event> {
+        self.wait(reported).boxed_local()
     }
 }
 
@@ -153,7 +153,7 @@ impl Reading {
     pub async fn open(network: &Network, slave: Mac, timeout: Duration, pause: Duration) -> Result<Self, Error> {
         let purpose = Purpose::Messages { with_poll: true };
         let connection = network.connect(Settings { slave, purpose, timeout }).await?;
-        let request = produced(&connection, slave).await?;
+        let request = produced_size(&connection, slave).await?;
         let image = read(&connection, slave, &request).await?.into();
         Ok(Self { connection, slave, request, image, pause, due: Instant::now() + pause })
     }
@@ -163,21 +163,21 @@ impl Reading {
         &self.image
     }
 
-    async fn wait(&mut self, known: Known<'_>) -> Event {
+    async fn wait(&mut self, reported: ReportedState<'_>) -> Event {
         loop {
             let view = self.connection.view();
-            if known.is_up && view.state != State::Open {
-                let error = view.trouble.unwrap_or(Error::Outdated);
+            if reported.is_up && view.state != State::Open {
+                let error = view.last_error.unwrap_or(Error::Outdated);
                 return Event::Lost(LinkError::Lost { cause: Cause::new(error), outputs: Outputs::Never });
             }
-            if !known.is_up {
+            if !reported.is_up {
                 if view.state == State::Open {
                     return Event::Reopened;
                 }
                 self.connection.views.changed().await;
                 continue;
             }
-            if known.is_new(&self.image) {
+            if reported.is_new(&self.image) {
                 return Event::Image(Arc::clone(&self.image));
             }
             sleep_until(self.due).await;
@@ -199,8 +199,8 @@ impl ImageConnection for Reading {
         Sizes { output: 0, input: self.image.len() }
     }
 
-    fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
-        self.wait(known).boxed_local()
+    fn next<'a>(&'a mut self, reported: ReportedState<'a>) -> LocalBoxFuture<'a, Event> {
+        self.wait(reported).boxed_local()
     }
 
     fn close(self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {
@@ -214,7 +214,7 @@ const PRODUCED_PATH: u8 = 14;
 
 /// Returns the request that reads the image that the slave produces. The poll connection object of the slave contains
 /// the path of this image.
-pub async fn produced(connection: &Connection, mac: Mac) -> Result<Request, Error> {
+pub async fn produced_size(connection: &Connection, mac: Mac) -> Result<Request, Error> {
     let instance = u16::from(connection::POLL_INSTANCE);
     let path = read(connection, mac, &Request::get(class::CONNECTION, instance, PRODUCED_PATH)).await?;
     match path.as_slice() {

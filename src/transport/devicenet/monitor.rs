@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::Now;
 use super::can::Frame;
-use super::wire::{Assembler, Fragment, Id, Kind, Mac, Piece};
+use super::wire::{Assembler, AssemblyResult, Fragment, Id, Kind, Mac};
 
 /// Size in bytes of an image that is sent in fragments. Images of any other size are sent in a single frame.
 const WHOLE: usize = 48;
@@ -13,7 +13,7 @@ const BARE: usize = 4;
 
 /// An image seen on the bus.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Seen {
+pub struct ObservedImage {
     /// Time of the last frame of the image.
     pub at: Now,
     /// Bytes of the image.
@@ -22,18 +22,18 @@ pub struct Seen {
 
 /// Traffic of a slave and its master, as seen on the bus.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Sight {
+pub struct LastTraffic {
     /// The newest image to the slave.
-    pub output: Option<Seen>,
+    pub output: Option<ObservedImage>,
     /// The newest image from the slave.
-    pub input: Option<Seen>,
+    pub input: Option<ObservedImage>,
     /// Time of the last frame from the slave.
-    pub heard: Option<Now>,
+    pub slave_seen_at: Option<Now>,
     /// Time of the last frame from the master of the slave.
-    pub asked: Option<Now>,
+    pub master_seen_at: Option<Now>,
 }
 
-impl Sight {
+impl LastTraffic {
     /// Whether images were seen in both directions.
     pub const fn is_whole(&self) -> bool {
         self.output.is_some() && self.input.is_some()
@@ -50,52 +50,53 @@ pub struct Monitor {
 struct Slave {
     output: Assembler,
     input: Assembler,
-    sight: Sight,
+    last_traffic: LastTraffic,
 }
 
 impl Default for Slave {
     fn default() -> Self {
-        Self { output: Assembler::new(WHOLE), input: Assembler::new(WHOLE), sight: Sight::default() }
+        Self { output: Assembler::new(WHOLE), input: Assembler::new(WHOLE), last_traffic: LastTraffic::default() }
     }
 }
 
 impl Monitor {
     /// Handles a frame. If the frame completes an image, returns the slave, whether the image comes from the slave, and
     /// the image.
-    pub fn hear(&mut self, now: Now, frame: &Frame) -> Option<(Mac, bool, Vec<u8>)> {
+    pub fn handle_frame(&mut self, now: Now, frame: &Frame) -> Option<(Mac, bool, Vec<u8>)> {
         let (mac, is_input) = match Id::parse(frame.id())? {
             Id::Poll(mac) => (mac, false),
             Id::PollAnswer(mac) => (mac, true),
             Id::Answer(mac) => {
-                self.slaves.entry(mac).or_default().sight.heard = Some(now);
+                self.slaves.entry(mac).or_default().last_traffic.slave_seen_at = Some(now);
                 return None;
             }
             Id::Request(mac) | Id::Unconnected(mac) => {
-                self.slaves.entry(mac).or_default().sight.asked = Some(now);
+                self.slaves.entry(mac).or_default().last_traffic.master_seen_at = Some(now);
                 return None;
             }
             _ => return None,
         };
         let slave = self.slaves.entry(mac).or_default();
-        *(if is_input { &mut slave.sight.heard } else { &mut slave.sight.asked }) = Some(now);
+        *(if is_input { &mut slave.last_traffic.slave_seen_at } else { &mut slave.last_traffic.master_seen_at }) =
+            Some(now);
         let assembler = if is_input { &mut slave.input } else { &mut slave.output };
         let image = match frame.data() {
             // As a fragment, a frame of this length would be the last fragment of a 45-byte image. No image has 45
             // bytes, so the frame is a 4-byte image.
             data @ [_, _, _, _] if data.len() == BARE && !assembler.is_partial() => data.to_vec(),
             data => match assembler.take(data) {
-                Piece::Whole(image) => image,
-                Piece::Part | Piece::Idle | Piece::Wrong => return None,
+                AssemblyResult::Whole(image) => image,
+                AssemblyResult::Part | AssemblyResult::Idle | AssemblyResult::Wrong => return None,
             },
         };
-        let seen = Some(Seen { at: now, image: image.clone() });
-        *(if is_input { &mut slave.sight.input } else { &mut slave.sight.output }) = seen;
+        let seen = Some(ObservedImage { at: now, image: image.clone() });
+        *(if is_input { &mut slave.last_traffic.input } else { &mut slave.last_traffic.output }) = seen;
         Some((mac, is_input, image))
     }
 
     /// Returns the last traffic of a slave and its master.
-    pub fn sight(&self, slave: Mac) -> Sight {
-        self.slaves.get(&slave).map(|slave| slave.sight.clone()).unwrap_or_default()
+    pub fn last_traffic(&self, slave: Mac) -> LastTraffic {
+        self.slaves.get(&slave).map(|slave| slave.last_traffic.clone()).unwrap_or_default()
     }
 
     /// Slaves whose traffic was seen.
@@ -133,20 +134,20 @@ mod tests {
     }
 
     #[test]
-    fn both_images_are_put_together() {
+    fn assembles_both_images() {
         let mac = Mac::new(5).unwrap();
         for size in [48u8, 4] {
             let mut monitor = Monitor::default();
             let (out, back): (Vec<u8>, Vec<u8>) = ((0..size).collect(), (0..size).rev().collect());
             for frame in frames(0x42D, &out).iter().chain(&frames(0x3C5, &back)) {
-                monitor.hear(Now::ZERO, frame);
+                monitor.handle_frame(Now::ZERO, frame);
             }
-            let sight = monitor.sight(mac);
-            assert!(sight.is_whole());
-            assert_eq!((sight.output.unwrap().image, sight.input.unwrap().image), (out, back));
+            let last_traffic = monitor.last_traffic(mac);
+            assert!(last_traffic.is_whole());
+            assert_eq!((last_traffic.output.unwrap().image, last_traffic.input.unwrap().image), (out, back));
             assert_eq!(monitor.slaves(), [mac]);
         }
-        assert_eq!(Monitor::default().sight(mac), Sight::default());
+        assert_eq!(Monitor::default().last_traffic(mac), LastTraffic::default());
     }
 
     proptest! {
@@ -155,7 +156,7 @@ mod tests {
             let mut monitor = Monitor::default();
             for (id, data) in frames {
                 let frame = Frame::new(id, &data).unwrap();
-                let _ = (monitor.hear(Now::ZERO, &frame), describe(&frame));
+                let _ = (monitor.handle_frame(Now::ZERO, &frame), describe(&frame));
             }
         }
     }

@@ -16,28 +16,28 @@ use tokio::time::{Instant, sleep, sleep_until, timeout};
 
 use super::Now;
 use super::can::pipe::Pipe;
-use super::can::{Bitrate, CanPort, Frame, Health, Heard, PortError, SlcanPort};
+use super::can::{Bitrate, CanPort, Frame, Health, PortError, PortEvent, SlcanPort};
 use super::error::Error;
-use super::monitor::{Monitor, Sight};
-use super::scanner::{Found, Identity, Reply, Scanner, Token, View, Views};
+use super::monitor::{LastTraffic, Monitor};
+use super::scanner::{DiscoveredNode, Identity, Reply, Scanner, Token, View, Views};
 use super::settings::Settings;
 use super::wire::{Answer, Mac, Request};
-use crate::image::tap::Passage;
 pub use crate::image::tap::Tap;
+use crate::image::tap::TrafficRecord;
 use crate::serial::{self, Line};
 
 /// Pause between attempts to reopen an adapter.
-const REOPEN: Duration = Duration::from_secs(1);
+const REOPEN_INTERVAL: Duration = Duration::from_secs(1);
 /// Time limit for a connection to an SLCAN server.
 const CONNECT: Duration = Duration::from_secs(5);
 /// Time for the adapter to process the last command before the port is closed.
-const FAREWELL: Duration = Duration::from_millis(20);
+const CLOSE_DELAY: Duration = Duration::from_millis(20);
 /// Interval of the checks for traffic in [`Network::listen`].
-const LISTENED: Duration = Duration::from_millis(50);
+const LISTEN_TIME: Duration = Duration::from_millis(50);
 
 /// Location of an adapter.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub enum Place {
+pub enum AdapterLocation {
     /// SLCAN on a serial port. USB adapters ignore the baud rate.
     Serial {
         /// Name of the port, for example `/dev/ttyACM0` or `COM3`.
@@ -59,7 +59,7 @@ pub enum Place {
     },
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for AdapterLocation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Serial { path, .. } => f.write_str(path),
@@ -73,7 +73,7 @@ impl fmt::Display for Place {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Adapter {
     /// Location of the adapter.
-    pub place: Place,
+    pub place: AdapterLocation,
     /// The bit rate of the bus.
     pub bitrate: Bitrate,
     /// Identity of the master. `None` means listen-only: this node sends nothing, not even acknowledgements.
@@ -99,24 +99,24 @@ struct Inner {
     start: Instant,
     wake: Notify,
     last: AtomicU64,
-    state: Mutex<Inside>,
+    state: Mutex<SharedState>,
     /// Counter of bus events. A change wakes the waiting tasks.
     news: watch::Sender<u64>,
 }
 
 /// State shared by the thread and its callers.
 #[derive(Debug)]
-struct Inside {
+struct SharedState {
     /// The master; `None` in listen-only mode.
     scanner: Option<Scanner>,
     monitor: Monitor,
     health: Health,
     views: BTreeMap<u64, watch::Sender<View>>,
-    asked: HashMap<Token, oneshot::Sender<Result<Answer, Error>>>,
-    found: Option<oneshot::Sender<Vec<Found>>>,
+    pending_requests: HashMap<Token, oneshot::Sender<Result<Answer, Error>>>,
+    found: Option<oneshot::Sender<Vec<DiscoveredNode>>>,
     taps: Vec<Tap>,
     /// Current failure of the adapter; `None` while the adapter works.
-    trouble: Option<Error>,
+    last_error: Option<Error>,
     frames: u64,
     is_over: bool,
 }
@@ -158,15 +158,15 @@ impl Network {
 
     /// Opens an adapter without sharing it.
     async fn start(adapter: Adapter, tap: Tap) -> Result<Self, Error> {
-        let inside = Inside {
+        let inside = SharedState {
             scanner: adapter.identity.map(Scanner::new),
             monitor: Monitor::default(),
             health: Health::default(),
             views: BTreeMap::new(),
-            asked: HashMap::new(),
+            pending_requests: HashMap::new(),
             found: None,
             taps: vec![tap],
-            trouble: None,
+            last_error: None,
             frames: 0,
             is_over: false,
         };
@@ -200,8 +200,8 @@ impl Network {
         let number = inner.last.fetch_add(1, Ordering::Relaxed);
         let views = {
             let mut state = inner.lock();
-            if let Some(trouble) = &state.trouble {
-                return Err(trouble.clone());
+            if let Some(last_error) = &state.last_error {
+                return Err(last_error.clone());
             }
             let scanner = state.scanner.as_mut().ok_or_else(|| Error::Settings(ONLY_LISTENS.to_owned()))?;
             scanner.open(number, settings)?;
@@ -220,7 +220,7 @@ impl Network {
     ///
     /// # Errors
     /// Another node has this MAC, or the adapter fails.
-    pub async fn find(&self) -> Result<Vec<Found>, Error> {
+    pub async fn find(&self) -> Result<Vec<DiscoveredNode>, Error> {
         let inner = &self.owner.inner;
         let (sender, found) = oneshot::channel();
         {
@@ -232,28 +232,28 @@ impl Network {
         }
         inner.wake.notify_one();
         let found = found.await;
-        let trouble = inner.lock().trouble.clone();
-        found.map_err(|_| trouble.unwrap_or(Error::Ended))
+        let last_error = inner.lock().last_error.clone();
+        found.map_err(|_| last_error.unwrap_or(Error::Ended))
     }
 
     /// Listens to the traffic of a slave and its master for at most `longest`.
-    pub async fn listen(&self, slave: Mac, longest: Duration) -> Sight {
+    pub async fn listen(&self, slave: Mac, longest: Duration) -> LastTraffic {
         let until = Instant::now() + longest;
         loop {
-            let sight = self.owner.inner.lock().monitor.sight(slave);
-            if sight.is_whole() || Instant::now() >= until {
-                return sight;
+            let last_traffic = self.owner.inner.lock().monitor.last_traffic(slave);
+            if last_traffic.is_whole() || Instant::now() >= until {
+                return last_traffic;
             }
-            sleep(LISTENED).await;
+            sleep(LISTEN_TIME).await;
         }
     }
 
     /// Last traffic of a slave and its master.
-    pub fn sight(&self, slave: Mac) -> Sight {
-        self.owner.inner.lock().monitor.sight(slave)
+    pub fn last_traffic(&self, slave: Mac) -> LastTraffic {
+        self.owner.inner.lock().monitor.last_traffic(slave)
     }
 
-    /// Current time on the clock of [`Sight`].
+    /// Current time on the clock of [`LastTraffic`].
     pub fn now(&self) -> Now {
         self.owner.inner.now()
     }
@@ -268,8 +268,8 @@ impl Network {
     }
 
     /// Current failure of the adapter.
-    pub fn trouble(&self) -> Option<Error> {
-        self.owner.inner.lock().trouble.clone()
+    pub fn last_error(&self) -> Option<Error> {
+        self.owner.inner.lock().last_error.clone()
     }
 
     /// Health of the adapter, and the number of frames received.
@@ -314,7 +314,7 @@ impl Connection {
         let inner = &self.network.owner.inner;
         let token = Token(inner.last.fetch_add(1, Ordering::Relaxed));
         let (sender, answer) = oneshot::channel();
-        inner.lock().asked.insert(token, sender);
+        inner.lock().pending_requests.insert(token, sender);
         self.with(|scanner, _| scanner.ask(self.number, token, request));
         answer.await.unwrap_or(Err(Error::Ended))
     }
@@ -324,7 +324,7 @@ impl Connection {
     /// # Errors
     /// The slave did not confirm the release.
     pub async fn close(mut self) -> Result<(), Error> {
-        let before = self.view().trouble;
+        let before = self.view().last_error;
         self.with(|scanner, now| scanner.close(now, self.number));
         self.views.closed(before.as_ref()).await
     }
@@ -366,12 +366,12 @@ impl Inner {
         self.start.elapsed()
     }
 
-    fn lock(&self) -> MutexGuard<'_, Inside> {
+    fn lock(&self) -> MutexGuard<'_, SharedState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Inside {
+impl SharedState {
     /// Publishes changed views and delivers answers.
     fn publish(&mut self) {
         let Some(scanner) = &mut self.scanner else { return };
@@ -381,7 +381,7 @@ impl Inside {
             }
         }
         while let Some(Reply { token, result, .. }) = scanner.reply() {
-            if let Some(answer) = self.asked.remove(&token) {
+            if let Some(answer) = self.pending_requests.remove(&token) {
                 // An error means that the caller no longer waits for the answer.
                 let _ = answer.send(result);
             }
@@ -392,7 +392,7 @@ impl Inside {
             let _ = sender.send(found);
         }
         if scanner.failure().is_some() {
-            self.trouble = scanner.failure().cloned();
+            self.last_error = scanner.failure().cloned();
             self.found = None;
         }
         for number in scanner.clear() {
@@ -408,7 +408,7 @@ impl Inside {
 /// Passes a frame to all taps.
 fn pass(taps: &[Tap], frame: &Frame) {
     for tap in taps {
-        tap.pass(|| Passage::Frame(frame.to_capture()));
+        tap.pass(|| TrafficRecord::Frame(frame.to_capture()));
     }
 }
 
@@ -427,13 +427,13 @@ async fn run(inner: Arc<Inner>, opened: oneshot::Sender<Result<(), Error>>) {
     loop {
         let Err(error) = exchange(&inner, port.as_mut()).await else {
             drop(port);
-            sleep(FAREWELL).await;
+            sleep(CLOSE_DELAY).await;
             return;
         };
         {
             let now = inner.now();
             let mut state = inner.lock();
-            state.trouble = Some(Error::Port(error.clone()));
+            state.last_error = Some(Error::Port(error.clone()));
             state.monitor = Monitor::default();
             if let Some(scanner) = &mut state.scanner {
                 scanner.fail(now, &Error::Port(error));
@@ -446,15 +446,15 @@ async fn run(inner: Arc<Inner>, opened: oneshot::Sender<Result<(), Error>>) {
             if inner.lock().is_over {
                 return;
             }
-            let _ = timeout(REOPEN, inner.wake.notified()).await;
-            sleep(REOPEN / 4).await;
+            let _ = timeout(REOPEN_INTERVAL, inner.wake.notified()).await;
+            sleep(REOPEN_INTERVAL / 4).await;
             inner.lock().publish();
             if let Ok(port) = open(&inner.adapter, Tap::default()).await {
                 break port;
             }
         };
         let mut state = inner.lock();
-        state.trouble = None;
+        state.last_error = None;
         if let Some(scanner) = &mut state.scanner {
             scanner.restart();
         }
@@ -468,7 +468,7 @@ async fn exchange(inner: &Inner, port: &mut dyn CanPort) -> Result<(), PortError
             let now = inner.now();
             let mut state = inner.lock();
             state.health = port.health();
-            let Inside { scanner, taps, .. } = &mut *state;
+            let SharedState { scanner, taps, .. } = &mut *state;
             if let Some(scanner) = scanner {
                 scanner.handle_health(now, port.health());
                 while let Some(frame) = scanner.poll(now) {
@@ -499,18 +499,18 @@ async fn exchange(inner: &Inner, port: &mut dyn CanPort) -> Result<(), PortError
         let now = inner.now();
         {
             let mut state = inner.lock();
-            let Inside { scanner, monitor, taps, frames, .. } = &mut *state;
+            let SharedState { scanner, monitor, taps, frames, .. } = &mut *state;
             match heard {
-                Heard::Frame(frame) => {
+                PortEvent::Frame(frame) => {
                     *frames += 1;
                     pass(taps, &frame);
-                    monitor.hear(now, &frame);
+                    monitor.handle_frame(now, &frame);
                     if let Some(scanner) = scanner {
                         scanner.handle(now, &frame);
                     }
                 }
                 // Nothing to do here: the loop reads the health again in every pass.
-                Heard::Health(_) => {}
+                PortEvent::Health(_) => {}
             }
         }
         inner.news.send_modify(|count| *count += 1);
@@ -523,7 +523,7 @@ async fn open(adapter: &Adapter, tap: Tap) -> Result<Box<dyn CanPort>, PortError
     let name = adapter.place.to_string();
     let failed = |why: String, advice: &'static str| PortError::Open { path: name.clone(), why, advice: advice.into() };
     let pipe = match &adapter.place {
-        Place::Serial { path, baud } => {
+        AdapterLocation::Serial { path, baud } => {
             let line = Line {
                 path: path.clone(),
                 baud: *baud,
@@ -531,11 +531,11 @@ async fn open(adapter: &Adapter, tap: Tap) -> Result<Box<dyn CanPort>, PortError
                 parity: Parity::None,
                 stop_bits: StopBits::One,
             };
-            let port = serial::open(&line, serial::MOST_OFF)
+            let port = serial::open(&line, serial::MAX_BAUD_DEVIATION)
                 .map_err(|error| failed(error.to_string(), serial_advice(&error)))?;
             Pipe::serial(port).map_err(|error| failed(error.to_string(), "plug the adapter in again"))?
         }
-        Place::Tcp { host, port } => {
+        AdapterLocation::Tcp { host, port } => {
             let advice = "check host and port, and that the SLCAN server runs";
             let connected = timeout(CONNECT, TcpStream::connect((host.as_str(), *port))).await;
             let stream = connected.map_err(|_| failed("no answer".to_owned(), advice))?;
@@ -545,7 +545,7 @@ async fn open(adapter: &Adapter, tap: Tap) -> Result<Box<dyn CanPort>, PortError
             })?;
             Pipe::tcp(stream).map_err(|error| failed(error.to_string(), advice))?
         }
-        Place::SocketCan { interface } => return socket_can(interface),
+        AdapterLocation::SocketCan { interface } => return socket_can(interface),
     };
     Ok(Box::new(SlcanPort::start(name, pipe, adapter.bitrate, listens, tap).await?))
 }

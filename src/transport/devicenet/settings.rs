@@ -13,7 +13,7 @@ pub const CYCLES: std::ops::RangeInclusive<Duration> = Duration::from_millis(1).
 pub const RATES: std::ops::RangeInclusive<Duration> = Duration::from_millis(1)..=Duration::from_millis(65_535);
 /// Minimum of the default packet rate. With a shorter rate, the robot could stop if this computer is busy for a short
 /// time.
-const LEAST_RATE: Duration = Duration::from_millis(100);
+const MIN_RATE: Duration = Duration::from_millis(100);
 
 /// Settings of a connection to a slave.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -67,7 +67,7 @@ impl Images {
 
     /// Default packet rate for a poll interval.
     pub fn rate_of(cycle: Duration) -> Duration {
-        (cycle * 5).clamp(LEAST_RATE, *RATES.end())
+        (cycle * 5).clamp(MIN_RATE, *RATES.end())
     }
 }
 

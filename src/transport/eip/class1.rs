@@ -46,7 +46,7 @@ impl Producer {
 
 /// Result of a received datagram.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verdict<'a> {
+pub(super) enum DatagramResult<'a> {
     /// A new image.
     Image {
         /// Run bit. If the stream has no run/idle header, it is always `true`.
@@ -80,7 +80,7 @@ pub(super) struct Consumer {
     /// Number of old and duplicate datagrams.
     pub(super) stale: u64,
     /// Number of datagrams with a wrong size.
-    pub(super) misfit: u64,
+    pub(super) size_error: u64,
 }
 
 impl Consumer {
@@ -100,7 +100,7 @@ impl Consumer {
             lost: 0,
             late: 0,
             stale: 0,
-            misfit: 0,
+            size_error: 0,
         }
     }
 
@@ -118,21 +118,21 @@ impl Consumer {
         if self.last.is_some() { self.timeout } else { self.timeout.max(FIRST_PACKET) }
     }
 
-    pub(super) fn take<'a>(&mut self, now: Now, datagram: &Cyclic<'a>) -> Verdict<'a> {
+    pub(super) fn take<'a>(&mut self, now: Now, datagram: &Cyclic<'a>) -> DatagramResult<'a> {
         if let Some((last, _)) = self.last
-            && !is_after(datagram.sequence, last)
+            && !is_newer(datagram.sequence, last)
         {
             self.stale += 1;
-            return Verdict::Stale;
+            return DatagramResult::Stale;
         }
         let body = datagram.body;
         let (run, image) = match body.split_first_chunk::<4>() {
             _ if !self.header || body.is_empty() => (true, body),
             Some((header, image)) => (header[0] & 1 == 1, image),
-            None => return self.misfits(),
+            None => return self.size_errors(),
         };
         if image.len() != self.size && !body.is_empty() {
-            return self.misfits();
+            return self.size_errors();
         }
         if let Some((last, at)) = self.last {
             self.lost += u64::from(datagram.sequence.wrapping_sub(last).saturating_sub(1));
@@ -141,17 +141,17 @@ impl Consumer {
         self.received += 1;
         self.last = Some((datagram.sequence, now));
         self.until = now.saturating_add(self.timeout);
-        if image.is_empty() { Verdict::Alive } else { Verdict::Image { run, image } }
+        if image.is_empty() { DatagramResult::Alive } else { DatagramResult::Image { run, image } }
     }
 
-    const fn misfits(&mut self) -> Verdict<'static> {
-        self.misfit += 1;
-        Verdict::WrongSize
+    const fn size_errors(&mut self) -> DatagramResult<'static> {
+        self.size_error += 1;
+        DatagramResult::WrongSize
     }
 }
 
 /// Whether `one` comes after `other`. Sequence numbers wrap around, so the comparison uses serial number arithmetic.
-const fn is_after(one: u32, other: u32) -> bool {
+const fn is_newer(one: u32, other: u32) -> bool {
     let ahead = one.wrapping_sub(other);
     ahead != 0 && ahead < 1 << 31
 }
@@ -179,12 +179,12 @@ mod tests {
     }
 
     #[test]
-    fn numbers_go_around() {
+    fn sequence_numbers_wrap() {
         let mut producer = Producer::new(1, 10 * MS, Now::ZERO);
         (producer.sequence, producer.count) = (u32::MAX, u16::MAX);
         assert_eq!(number(&producer.produce(Now::ZERO, None, &[])), (0, 0));
-        assert!(is_after(0, u32::MAX) && is_after(5, 4) && !is_after(4, 4) && !is_after(4, 5));
-        assert!(!is_after(1 << 31, 0));
+        assert!(is_newer(0, u32::MAX) && is_newer(5, 4) && !is_newer(4, 4) && !is_newer(4, 5));
+        assert!(!is_newer(1 << 31, 0));
     }
 
     fn consumer() -> Consumer {
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_datagram_has_ten_seconds_and_the_next_the_time_out() {
+    fn first_datagram_has_a_timeout_of_ten_seconds() {
         let mut consumer = consumer();
         assert_eq!((consumer.until(), consumer.patience()), (10_000 * MS, 10_000 * MS));
         consumer.take(50 * MS, &datagram(9, &[1, 0, 0, 0, 5, 6]));
@@ -206,21 +206,21 @@ mod tests {
     }
 
     #[test]
-    fn old_doubled_and_odd_datagrams_feed_no_watchdog() {
+    fn old_repeated_and_invalid_datagrams_do_not_reset_the_watchdog() {
         let mut consumer = consumer();
         let image = [1, 0, 0, 0, 5, 6];
-        assert_eq!(consumer.take(10 * MS, &datagram(9, &image)), Verdict::Image { run: true, image: &[5, 6] });
-        assert_eq!(consumer.take(20 * MS, &datagram(9, &image)), Verdict::Stale);
-        assert_eq!(consumer.take(20 * MS, &datagram(8, &image)), Verdict::Stale);
-        assert_eq!(consumer.take(20 * MS, &datagram(10, &image[..5])), Verdict::WrongSize);
-        assert_eq!(consumer.take(20 * MS, &datagram(10, &[0; 7])), Verdict::WrongSize);
-        assert_eq!(consumer.take(20 * MS, &datagram(10, &[5, 6])), Verdict::WrongSize, "no header");
+        assert_eq!(consumer.take(10 * MS, &datagram(9, &image)), DatagramResult::Image { run: true, image: &[5, 6] });
+        assert_eq!(consumer.take(20 * MS, &datagram(9, &image)), DatagramResult::Stale);
+        assert_eq!(consumer.take(20 * MS, &datagram(8, &image)), DatagramResult::Stale);
+        assert_eq!(consumer.take(20 * MS, &datagram(10, &image[..5])), DatagramResult::WrongSize);
+        assert_eq!(consumer.take(20 * MS, &datagram(10, &[0; 7])), DatagramResult::WrongSize);
+        assert_eq!(consumer.take(20 * MS, &datagram(10, &[5, 6])), DatagramResult::WrongSize, "no header");
         assert_eq!(consumer.until(), 170 * MS);
         let idle = [0, 0, 0, 0, 5, 6];
-        assert_eq!(consumer.take(30 * MS, &datagram(13, &idle)), Verdict::Image { run: false, image: &[5, 6] });
-        assert_eq!(consumer.take(40 * MS, &datagram(14, &[])), Verdict::Alive);
+        assert_eq!(consumer.take(30 * MS, &datagram(13, &idle)), DatagramResult::Image { run: false, image: &[5, 6] });
+        assert_eq!(consumer.take(40 * MS, &datagram(14, &[])), DatagramResult::Alive);
         assert_eq!(consumer.until(), 200 * MS);
         assert_eq!((consumer.received, consumer.lost, consumer.late), (3, 3, 1));
-        assert_eq!((consumer.stale, consumer.misfit), (2, 3));
+        assert_eq!((consumer.stale, consumer.size_error), (2, 3));
     }
 }

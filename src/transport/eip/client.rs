@@ -15,7 +15,7 @@ use super::wire::{Command, Identity, Services};
 /// Token of the request in progress. There is only one request at a time.
 const TOKEN: Token = Token(0);
 /// Time for which the client waits until a busy device has a free session, in multiples of the timeout.
-pub const PATIENCE: u32 = 4;
+pub const SESSION_WAIT_TIMEOUTS: u32 = 4;
 /// Bytes per read.
 const BUFFER: usize = 4096;
 
@@ -32,9 +32,9 @@ pub struct Client {
 
 impl Client {
     /// Creates a client for the device at this TCP address. `timeout` is the time limit of the TCP connection and of
-    /// each answer. If the device has no free session, the client retries for [`PATIENCE`] times the timeout.
+    /// each answer. If the device has no free session, the client retries for [`SESSION_WAIT_TIMEOUTS`] times the timeout.
     pub fn new(target: SocketAddrV4, timeout: Duration, tap: Tap) -> Self {
-        let session = Session::new(timeout).patient(timeout.saturating_mul(PATIENCE));
+        let session = Session::new(timeout).is_waiting_for_session(timeout.saturating_mul(SESSION_WAIT_TIMEOUTS));
         Self { target, session, stream: None, start: Instant::now(), timeout, tap }
     }
 
@@ -115,8 +115,8 @@ impl Client {
 
     async fn write(&mut self, bytes: &[u8]) -> std::io::Result<()> {
         let Some(stream) = &mut self.stream else { return Err(std::io::ErrorKind::NotConnected.into()) };
-        if let Ok(SocketAddr::V4(here)) = stream.local_addr() {
-            self.tap.pass(true, here, self.target, bytes);
+        if let Ok(SocketAddr::V4(local_address)) = stream.local_addr() {
+            self.tap.pass(true, local_address, self.target, bytes);
         }
         stream.write_all(bytes).await
     }
@@ -128,8 +128,8 @@ impl Client {
         let mut buffer = [0; BUFFER];
         match timeout_at(until, stream.read(&mut buffer)).await {
             Ok(Ok(len @ 1..)) => {
-                if let Ok(SocketAddr::V4(here)) = stream.local_addr() {
-                    self.tap.pass(true, self.target, here, &buffer[..len]);
+                if let Ok(SocketAddr::V4(local_address)) = stream.local_addr() {
+                    self.tap.pass(true, self.target, local_address, &buffer[..len]);
                 }
                 self.session.received(self.start.elapsed(), &buffer[..len]);
             }

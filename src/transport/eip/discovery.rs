@@ -11,14 +11,14 @@ use super::tap::Tap;
 use super::wire::{Command, Frame, Identity};
 
 /// Time within which devices answer a broadcast. Each device waits for its own delay (volume 2, 2-4.2.2).
-const SPREAD: Duration = Duration::from_millis(500);
+const RESPONSE_WINDOW: Duration = Duration::from_millis(500);
 const BUFFER: usize = 2048;
 /// Maximum number of reported devices.
-const MOST: usize = 1024;
+const MAX_DEVICES: usize = 1024;
 
 /// A device that answered.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Found {
+pub struct DiscoveredDevice {
     /// Address from which the answer came.
     pub address: SocketAddrV4,
     /// Identity of the device.
@@ -32,19 +32,19 @@ pub struct Found {
 /// # Errors
 /// No socket can be opened, or nothing can be sent to any target.
 pub async fn list_identity(
-    own: Ipv4Addr,
+    own_address: Ipv4Addr,
     targets: &[SocketAddrV4],
     wait: Duration,
     tap: &Tap,
-) -> io::Result<Vec<Found>> {
-    let socket = UdpSocket::bind((own, 0)).await?;
+) -> io::Result<Vec<DiscoveredDevice>> {
+    let socket = UdpSocket::bind((own_address, 0)).await?;
     socket.set_broadcast(true)?;
-    let SocketAddr::V4(here) = socket.local_addr()? else { return Err(io::ErrorKind::Unsupported.into()) };
-    let spread = u16::try_from(SPREAD.as_millis()).unwrap_or(u16::MAX).to_le_bytes();
+    let SocketAddr::V4(local_address) = socket.local_addr()? else { return Err(io::ErrorKind::Unsupported.into()) };
+    let spread = u16::try_from(RESPONSE_WINDOW.as_millis()).unwrap_or(u16::MAX).to_le_bytes();
     let request = Frame { context: [spread[0], spread[1], 0, 0, 0, 0, 0, 0], ..Frame::new(Command::LIST_IDENTITY) };
     let request = request.emit();
     let start = Instant::now();
-    let mut found: Vec<Found> = Vec::new();
+    let mut found: Vec<DiscoveredDevice> = Vec::new();
     // Datagrams can be lost. Therefore, after half of the time, the request is sent again to the targets that have not
     // answered.
     for until in [start + wait / 2, start + wait] {
@@ -53,7 +53,7 @@ pub async fn list_identity(
         for target in targets.iter().filter(|target| !found.iter().any(|found| found.address == **target)) {
             match socket.send_to(&request, SocketAddr::V4(*target)).await {
                 Ok(_) => {
-                    tap.pass(false, here, *target, &request);
+                    tap.pass(false, local_address, *target, &request);
                     sent = true;
                 }
                 Err(error) => failure = Some(error),
@@ -62,7 +62,7 @@ pub async fn list_identity(
         if let (false, Some(error)) = (sent, failure) {
             return Err(error);
         }
-        gather(&socket, here, until, targets, &mut found, tap).await;
+        collect_answers(&socket, local_address, until, targets, &mut found, tap).await;
     }
     Ok(found)
 }
@@ -84,28 +84,29 @@ pub fn broadcasts() -> io::Result<Vec<Ipv4Addr>> {
     Ok(Vec::new())
 }
 
-async fn gather(
+async fn collect_answers(
     socket: &UdpSocket,
-    here: SocketAddrV4,
+    local_address: SocketAddrV4,
     until: Instant,
     targets: &[SocketAddrV4],
-    found: &mut Vec<Found>,
+    found: &mut Vec<DiscoveredDevice>,
     tap: &Tap,
 ) {
     let mut buffer = [0; BUFFER];
-    while found.len() < MOST && !targets.iter().all(|target| found.iter().any(|found| found.address == *target)) {
+    while found.len() < MAX_DEVICES && !targets.iter().all(|target| found.iter().any(|found| found.address == *target))
+    {
         let (len, address) = match timeout_at(until, socket.recv_from(&mut buffer)).await {
             Ok(Ok((len, SocketAddr::V4(address)))) => (len, address),
             // On Windows, the error "port unreachable" comes from one device. Other devices may still answer.
             Ok(_) => continue,
             Err(_) => return,
         };
-        tap.pass(false, address, here, &buffer[..len]);
+        tap.pass(false, address, local_address, &buffer[..len]);
         let Ok(frame) = Frame::parse(&buffer[..len]) else { continue };
         let is_new = !found.iter().any(|found| found.address == address);
         if let (Command::LIST_IDENTITY, true, Ok(Some(identity))) = (frame.command, is_new, Identity::parse(frame.data))
         {
-            found.push(Found { address, identity });
+            found.push(DiscoveredDevice { address, identity });
         }
     }
 }

@@ -8,7 +8,7 @@ use thiserror::Error;
 use super::status;
 use super::wire::{Status, WireError};
 use crate::image::view::BusError;
-use crate::local::LocalError;
+use crate::local_error::LocalError;
 use crate::plain;
 
 /// An error of a request or connection.

@@ -4,9 +4,9 @@ use super::error::EipError;
 use super::wire::{Path, Reply, Request, RrData, Status, service};
 
 /// Maximum length of the request data in bytes, so that the message fits into a frame. Most devices accept less.
-const MOST_DATA: usize = 60_000;
+const MAX_REQUEST_DATA: usize = 60_000;
 /// Maximum length of a path in bytes: the length field of a path is one byte and counts words.
-const MOST_PATH: usize = 510;
+const MAX_PATH_LEN: usize = 510;
 
 /// A request to an object.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -39,8 +39,9 @@ impl Message {
 
     /// Encodes the message as the data of a frame.
     pub fn emit(&self) -> Result<Vec<u8>, EipError> {
-        if self.data.len() > MOST_DATA || self.path.emit().len() > MOST_PATH {
-            let text = format!("a message can have at most {MOST_DATA} bytes of data and {MOST_PATH} bytes of path");
+        if self.data.len() > MAX_REQUEST_DATA || self.path.emit().len() > MAX_PATH_LEN {
+            let text =
+                format!("a message can have at most {MAX_REQUEST_DATA} bytes of data and {MAX_PATH_LEN} bytes of path");
             return Err(EipError::Impossible(text));
         }
         Ok(RrData::new(&self.request()).emit())

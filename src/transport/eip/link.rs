@@ -10,13 +10,13 @@ use futures_util::future::LocalBoxFuture;
 
 use super::client::Client;
 use super::error::EipError;
+use super::image_reader::{Assembly, Reader};
 use super::originator::{Details, Statistics, View, Views};
-use super::reader::{Assembly, Reader};
 use super::scanner::{Connection, Scanner};
 use super::settings::{Role, Settings};
 use super::tap::Tap;
 use crate::image::cyclic::{Bus, Cyclic};
-use crate::image::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
+use crate::image::{Cause, Event, ImageConnection, LinkError, Outputs, ReportedState, Sizes, Traffic};
 
 /// A class 1 connection.
 pub type Class1 = Cyclic<Device>;
@@ -62,7 +62,7 @@ impl Bus for Device {
     }
 
     fn loss(&self, view: View) -> (Cause, Outputs) {
-        (Cause::of_loss(view.trouble), self.outputs)
+        (Cause::of_loss(view.last_error), self.outputs)
     }
 
     fn traffic(&self) -> Traffic {
@@ -72,7 +72,7 @@ impl Bus for Device {
             (counted.lost, "lost"),
             (counted.late, "late"),
             (counted.stale, "stale"),
-            (counted.misfit, "with a wrong size"),
+            (counted.size_error, "with a wrong size"),
             (counted.skipped, "not sent in time"),
         ];
         Traffic { sent: counted.sent, received: counted.received, intervals: view.details.intervals, irregular }
@@ -97,12 +97,12 @@ impl Reading {
         Ok(Self { reader, size: assembly.size.into() })
     }
 
-    async fn wait(&mut self, known: Known<'_>) -> Event {
+    async fn wait(&mut self, reported: ReportedState<'_>) -> Event {
         loop {
             match self.reader.reading() {
-                Ok(_) if !known.is_up => return Event::Reopened,
-                Ok(image) if known.is_new(&image) => return Event::Image(Arc::clone(&image)),
-                Err(error) if known.is_up => {
+                Ok(_) if !reported.is_up => return Event::Reopened,
+                Ok(image) if reported.is_new(&image) => return Event::Image(Arc::clone(&image)),
+                Err(error) if reported.is_up => {
                     return Event::Lost(LinkError::Lost { cause: Cause::new(error), outputs: Outputs::Never });
                 }
                 Ok(_) | Err(_) => {}
@@ -117,8 +117,8 @@ impl ImageConnection for Reading {
         Sizes { output: 0, input: self.size }
     }
 
-    fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
-        self.wait(known).boxed_local()
+    fn next<'a>(&'a mut self, reported: ReportedState<'a>) -> LocalBoxFuture<'a, Event> {
+        self.wait(reported).boxed_local()
     }
 
     fn close(self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {
@@ -148,8 +148,8 @@ const CONNECTION: &[&str] = &["in", "out", "config", "in_size", "out_size"];
 
 impl From<EipError> for LinkError {
     fn from(error: EipError) -> Self {
-        let known = error.code();
-        let cause = Cause { code: known.map(|code| format!("{:#06x}", code.code)), ..Cause::new(&error) };
+        let reported = error.code();
+        let cause = Cause { code: reported.map(|code| format!("{:#06x}", code.code)), ..Cause::new(&error) };
         match error {
             EipError::NotFound { .. } => {
                 Self::Silent(cause.advice("check the name, or use the address of the controller"))
@@ -161,9 +161,9 @@ impl From<EipError> for LinkError {
             | EipError::Silent { .. } => Self::Silent(cause.advice(
                 "check the address; check that the controller is on, and that its EtherNet/IP board is enabled",
             )),
-            EipError::Encapsulation { .. } | EipError::Refused { .. } => match known {
+            EipError::Encapsulation { .. } | EipError::Refused { .. } => match reported {
                 Some(code) if code.code == OWNED => Self::Owned(cause),
-                Some(code) => Self::Refused(cause.advice(as_advice(code.remedy))),
+                Some(code) => Self::Refused(cause.advice(with_advice(code.remedy))),
                 None => Self::Refused(cause.options(CONNECTION)),
             },
             EipError::Malformed { .. } | EipError::Senseless { .. } => {
@@ -179,7 +179,7 @@ impl From<EipError> for LinkError {
 }
 
 /// Converts a remedy to the format of an advice, which starts with a lower-case letter and has no period at its end.
-pub fn as_advice(remedy: &str) -> String {
+pub fn with_advice(remedy: &str) -> String {
     let mut chars = remedy.trim_end_matches('.').chars();
     chars.next().map(|first| first.to_lowercase().chain(chars).collect()).unwrap_or_default()
 }

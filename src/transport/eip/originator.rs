@@ -10,7 +10,7 @@ use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::class1::{Consumer, Producer, Verdict};
+use super::class1::{Consumer, DatagramResult, Producer};
 use super::error::EipError;
 use super::explicit::Answer;
 use super::session::{Ask, Session, Step, Token};
@@ -18,10 +18,10 @@ use super::settings::{Role, Settings};
 use super::wire::{Close, Command, Cyclic, Net, Open, Opened, RUN, RrData, Triad};
 use super::{IO_PORT, Now};
 
-mod numbers;
+mod identifiers;
 mod view;
 
-pub use numbers::Numbers;
+pub use identifiers::Identifiers;
 pub use view::{Details, Input, State, Statistics, View, Views};
 
 const OPEN: Token = Token(0);
@@ -44,7 +44,7 @@ const BACKOFF: [Duration; 5] = [
 /// An action that the driver must execute.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Action {
-    /// Open the TCP connection; then call [`Originator::connected`] or [`Originator::hung_up`].
+    /// Open the TCP connection; then call [`Originator::connected`] or [`Originator::disconnected`].
     Connect,
     /// Send these bytes on the TCP connection.
     Send(Vec<u8>),
@@ -81,7 +81,7 @@ enum Phase {
     Parting(u64),
     /// ForwardClose was sent. After its answer, the connection ends. If `again` is `true`, it opens again.
     Closing {
-        again: bool,
+        is_reopening: bool,
     },
     /// The originator waits until the next attempt to open the connection.
     Waiting(Now),
@@ -92,7 +92,7 @@ enum Phase {
 #[derive(Debug)]
 pub struct Originator {
     settings: Settings,
-    numbers: Arc<Numbers>,
+    identifiers: Arc<Identifiers>,
     target: SocketAddrV4,
     port: u16,
     session: Session,
@@ -114,15 +114,20 @@ pub struct Originator {
 
 impl Originator {
     /// Creates a connection to the device at this TCP address. `port` is the UDP port on which images arrive.
-    pub fn new(target: SocketAddrV4, port: u16, settings: Settings, numbers: Arc<Numbers>) -> Result<Self, EipError> {
+    pub fn new(
+        target: SocketAddrV4,
+        port: u16,
+        settings: Settings,
+        identifiers: Arc<Identifiers>,
+    ) -> Result<Self, EipError> {
         settings.check()?;
         Ok(Self {
             session: Session::new(settings.timeout),
             image: settings.resting.clone(),
-            triad: numbers.triad(),
-            id: numbers.id(),
+            triad: identifiers.triad(),
+            id: identifiers.id(),
             settings,
-            numbers,
+            identifiers,
             target,
             port,
             phase: Phase::New,
@@ -223,7 +228,7 @@ impl Originator {
     }
 
     /// Handles the failure or the end of the TCP connection. The image exchange continues without the TCP connection.
-    pub fn hung_up(&mut self, why: &EipError) {
+    pub fn disconnected(&mut self, why: &EipError) {
         self.session.lost(why);
     }
 
@@ -233,8 +238,8 @@ impl Originator {
     }
 
     /// Handles an action that failed on a local socket. The connection continues until it times out.
-    pub fn failed(&mut self, trouble: EipError) {
-        self.view.trouble = Some(trouble);
+    pub fn failed(&mut self, last_error: EipError) {
+        self.view.last_error = Some(last_error);
         self.has_changed = true;
     }
 
@@ -245,10 +250,10 @@ impl Originator {
     }
 
     /// Handles a datagram of this connection.
-    pub fn hear(&mut self, now: Now, datagram: &Cyclic<'_>) {
+    pub fn receive_datagram(&mut self, now: Now, datagram: &Cyclic<'_>) {
         let Some(io) = &mut self.io else { return };
         match io.consumer.take(now, datagram) {
-            Verdict::Image { image, .. } => {
+            DatagramResult::Image { image, .. } => {
                 self.tries = 0;
                 let before = self.view.input.as_ref().filter(|input| *input.image == *image);
                 self.view.input = Some(Input {
@@ -258,8 +263,8 @@ impl Originator {
                 });
                 self.has_changed = true;
             }
-            Verdict::Alive => self.tries = 0,
-            Verdict::Stale | Verdict::WrongSize => {}
+            DatagramResult::Alive => self.tries = 0,
+            DatagramResult::Stale | DatagramResult::WrongSize => {}
         }
     }
 
@@ -299,7 +304,7 @@ impl Originator {
             Phase::New => self.open(),
             Phase::Waiting(until) if now >= until => self.open(),
             Phase::Parting(before) if self.io.as_ref().is_none_or(|io| io.producer.sent > before) => {
-                self.ask_close(false);
+                self.request_close(false);
             }
             _ => return self.exchange(now),
         }
@@ -311,7 +316,7 @@ impl Originator {
         let Some(io) = &mut self.io else { return false };
         if now >= io.consumer.until() {
             let after = io.consumer.patience();
-            self.lose(EipError::Silent { after });
+            self.handle_timeout(EipError::Silent { after });
             return true;
         }
         if now < io.producer.due() {
@@ -328,8 +333,8 @@ impl Originator {
 
     fn open(&mut self) {
         self.phase = Phase::Opening;
-        self.triad = self.numbers.triad();
-        self.id = self.numbers.id();
+        self.triad = self.identifiers.triad();
+        self.id = self.identifiers.id();
         let open = Open {
             o_t_id: 0,
             t_o_id: self.id,
@@ -349,18 +354,18 @@ impl Originator {
 
     /// Handles the outcome of ForwardOpen. `sent` says whether the request was sent.
     fn answered(&mut self, now: Now, sent: bool, result: Result<Vec<u8>, EipError>) {
-        let trouble = match result.and_then(|data| self.opened(now, &data)) {
-            Ok(()) if self.is_over => return self.ask_close(false),
+        let last_error = match result.and_then(|data| self.opened(now, &data)) {
+            Ok(()) if self.is_over => return self.request_close(false),
             Ok(()) => return,
-            Err(trouble) => trouble,
+            Err(last_error) => last_error,
         };
         // Without a refusal, the device may have opened the connection.
-        let is_refusal = matches!(trouble, EipError::Refused { .. } | EipError::Encapsulation { .. });
-        let again = self.view.generation > 0 && !self.is_over;
-        self.view.trouble = Some(trouble);
+        let is_refusal = matches!(last_error, EipError::Refused { .. } | EipError::Encapsulation { .. });
+        let is_reopening = self.view.generation > 0 && !self.is_over;
+        self.view.last_error = Some(last_error);
         if sent && !is_refusal {
-            self.ask_close(again);
-        } else if again {
+            self.request_close(is_reopening);
+        } else if is_reopening {
             self.wait(now);
         } else {
             self.finish(None);
@@ -381,7 +386,7 @@ impl Originator {
         }
         let interval = |us: u32| {
             let interval = Duration::from_micros(us.into());
-            if interval < super::settings::SHORTEST {
+            if interval < super::settings::MIN_INTERVAL {
                 Err(senseless("its interval is too short"))
             } else {
                 Ok(interval)
@@ -411,15 +416,15 @@ impl Originator {
         self.phase = Phase::Open;
         self.view.generation += 1;
         self.view.details.intervals = Some((to, from));
-        self.view.trouble = None;
+        self.view.last_error = None;
         self.show(State::Open);
         Ok(())
     }
 
     /// Handles a timeout of the device.
-    fn lose(&mut self, trouble: EipError) {
+    fn handle_timeout(&mut self, last_error: EipError) {
         self.stop();
-        self.view.trouble = Some(trouble);
+        self.view.last_error = Some(last_error);
         match self.phase {
             Phase::Open => {
                 self.image.clone_from(&self.settings.resting);
@@ -427,15 +432,15 @@ impl Originator {
                 self.show(State::Lost);
                 // Perhaps only the path from the device to this program is broken. ForwardClose closes the old
                 // connection in the device, so that the next opening succeeds.
-                self.ask_close(true);
+                self.request_close(true);
             }
-            Phase::Parting(_) => self.ask_close(false),
+            Phase::Parting(_) => self.request_close(false),
             _ => {}
         }
     }
 
-    fn ask_close(&mut self, again: bool) {
-        self.phase = Phase::Closing { again };
+    fn request_close(&mut self, is_reopening: bool) {
+        self.phase = Phase::Closing { is_reopening };
         let message = Close { triad: self.triad, path: self.settings.path() }.emit();
         let data = RrData::new(&message).emit();
         self.session.ask(Ask { token: CLOSE, what: FORWARD_CLOSE, command: Command::SEND_RR_DATA, data });
@@ -444,8 +449,8 @@ impl Originator {
     /// Handles the outcome of ForwardClose.
     fn closed(&mut self, now: Now, result: Result<Vec<u8>, EipError>) {
         self.stop();
-        let Phase::Closing { again } = self.phase else { return };
-        if again && !self.is_over {
+        let Phase::Closing { is_reopening } = self.phase else { return };
+        if is_reopening && !self.is_over {
             return self.wait(now);
         }
         let outcome = result.and_then(|data| Answer::parse(FORWARD_CLOSE, &data)).and_then(|answer| {
@@ -462,12 +467,12 @@ impl Originator {
         self.show(State::Lost);
     }
 
-    fn finish(&mut self, trouble: Option<EipError>) {
+    fn finish(&mut self, last_error: Option<EipError>) {
         self.stop();
         self.session.end();
         self.phase = Phase::Ended;
-        if self.view.trouble.is_none() {
-            self.view.trouble = trouble;
+        if self.view.last_error.is_none() {
+            self.view.last_error = last_error;
         }
         self.show(State::Closed);
     }

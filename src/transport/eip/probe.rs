@@ -35,7 +35,7 @@ const RPI: Duration = Duration::from_millis(100);
 const O_T_EXTRA: u16 = 6;
 const T_O_EXTRA: u16 = 2;
 /// A size that no assembly has.
-const NEVER: u16 = 499;
+const IMPOSSIBLE_SIZE: u16 = 499;
 
 /// A readable assembly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,7 +115,7 @@ pub async fn survey(client: &mut Client, thought: &[Instances]) -> Result<Findin
     };
     let mut assemblies = Vec::new();
     for instance in INSTANCES {
-        if let Presence::Readable(assembly) = assembly(client, instance).await? {
+        if let AssemblyPresence::Readable(assembly) = assembly(client, instance).await? {
             assemblies.push(assembly);
         }
     }
@@ -145,7 +145,7 @@ pub async fn probe(client: &mut Client, thought: Instances) -> Result<Findings, 
 
 /// Result of reading one assembly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Presence {
+pub enum AssemblyPresence {
     /// The instance does not exist.
     Absent,
     /// The instance may exist, but the device reports neither its data nor its size.
@@ -158,20 +158,21 @@ pub enum Presence {
 ///
 /// # Errors
 /// The errors of [`survey`].
-pub async fn assembly(client: &mut Client, instance: u32) -> Result<Presence, EipError> {
+pub async fn assembly(client: &mut Client, instance: u32) -> Result<AssemblyPresence, EipError> {
     let what = "Get_Attribute_Single of an assembly";
     let answer = client.ask(what, &Message::get(ASSEMBLY, instance, DATA)).await?;
     if answer.status.is_ok() {
-        return Ok(Presence::Readable(Assembly { instance, size: u16::try_from(answer.data.len()).ok() }));
+        return Ok(AssemblyPresence::Readable(Assembly { instance, size: u16::try_from(answer.data.len()).ok() }));
     }
     if NO_SUCH_OBJECT.contains(&answer.status.general) {
-        return Ok(Presence::Absent);
+        return Ok(AssemblyPresence::Absent);
     }
     // The assembly exists, but its data cannot be read. The device may still report its size.
     let answer = client.ask(what, &Message::get(ASSEMBLY, instance, SIZE)).await?;
     let size = answer.data.first_chunk().filter(|_| answer.status.is_ok()).map(|bytes| u16::from_le_bytes(*bytes));
     // If the device refuses both requests, nothing is known about the assembly.
-    Ok(size.map_or(Presence::Unknown, |size| Presence::Readable(Assembly { instance, size: Some(size) })))
+    Ok(size
+        .map_or(AssemblyPresence::Unknown, |size| AssemblyPresence::Readable(Assembly { instance, size: Some(size) })))
 }
 
 /// Returns the combinations to try: the instances `thought`, the same instances with input and output exchanged, then
@@ -180,7 +181,7 @@ fn likely(thought: Instances, assemblies: &[Assembly]) -> Vec<Instances> {
     let exchanged = (thought.input, thought.output);
     let mut pairs = vec![(thought.output, thought.input), exchanged];
     let found = assemblies.iter().filter(|assembly| assembly.size != Some(0)).map(|assembly| assembly.instance);
-    let found: Vec<u32> = found.take(MOST_PAIRED).collect();
+    let found: Vec<u32> = found.take(MAX_PAIRED_INSTANCES).collect();
     pairs.extend(found.iter().flat_map(|output| found.iter().map(|input| (*output, *input))));
     let mut configurations = vec![thought.configuration];
     configurations.extend(CONFIGURATIONS.into_iter().filter(|other| *other != thought.configuration));
@@ -197,7 +198,7 @@ fn likely(thought: Instances, assemblies: &[Assembly]) -> Vec<Instances> {
 }
 
 /// Maximum number of assemblies of which pairs are formed.
-const MOST_PAIRED: usize = 6;
+const MAX_PAIRED_INSTANCES: usize = 6;
 
 /// Requests connections of these instances until the sizes are known, or the device reports that the instances are
 /// wrong.
@@ -207,12 +208,12 @@ async fn attempt(
     assemblies: &[Assembly],
     attempts: &mut Vec<Attempt>,
 ) -> Result<Option<Connectable>, EipError> {
-    let mut guess = Guess::default();
+    let mut sizes_guess = AssemblySizes::default();
     loop {
-        let sizes = guess.next();
+        let sizes = sizes_guess.next();
         let status = open(client, instances, sizes).await?;
         attempts.push(Attempt { instances, sizes, status: status.clone() });
-        match guess.take(&status) {
+        match sizes_guess.take(&status) {
             Progress::Again => {}
             Progress::Wrong => return Ok(None),
             Progress::Known => break,
@@ -221,23 +222,23 @@ async fn attempt(
     let read = |instance| assemblies.iter().find(|assembly| assembly.instance == instance).and_then(|found| found.size);
     Ok(Some(Connectable {
         instances,
-        output_size: guess.output.or_else(|| read(instances.output)),
-        input_size: guess.input.or_else(|| read(instances.input)),
+        output_size: sizes_guess.output.or_else(|| read(instances.output)),
+        input_size: sizes_guess.input.or_else(|| read(instances.input)),
     }))
 }
 
 /// Known sizes of the two assemblies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-struct Guess {
+struct AssemblySizes {
     output: Option<u16>,
     input: Option<u16>,
     /// A size that the device reported without a direction, and the direction for which this size is tried first.
-    unclear: Option<(u16, Way)>,
+    unclear: Option<(u16, ProbedDirection)>,
     tries: u8,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Way {
+enum ProbedDirection {
     Out,
     In,
 }
@@ -252,17 +253,18 @@ enum Progress {
     Known,
 }
 
-impl Guess {
-    /// Returns the sizes of the next request. At least one of them is [`NEVER`], so that the device refuses the
+impl AssemblySizes {
+    /// Returns the sizes of the next request. At least one of them is [`IMPOSSIBLE_SIZE`], so that the device refuses the
     /// connection.
     fn next(&mut self) -> (u16, u16) {
         self.tries += 1;
         match self.unclear {
-            Some((size, Way::Out)) => (size.saturating_sub(O_T_EXTRA), NEVER),
-            Some((size, Way::In)) => (NEVER, size.saturating_sub(T_O_EXTRA)),
-            None => {
-                (self.output.unwrap_or(NEVER), if self.output.is_some() { NEVER } else { self.input.unwrap_or(NEVER) })
-            }
+            Some((size, ProbedDirection::Out)) => (size.saturating_sub(O_T_EXTRA), IMPOSSIBLE_SIZE),
+            Some((size, ProbedDirection::In)) => (IMPOSSIBLE_SIZE, size.saturating_sub(T_O_EXTRA)),
+            None => (
+                self.output.unwrap_or(IMPOSSIBLE_SIZE),
+                if self.output.is_some() { IMPOSSIBLE_SIZE } else { self.input.unwrap_or(IMPOSSIBLE_SIZE) },
+            ),
         }
     }
 
@@ -281,32 +283,32 @@ impl Guess {
         match (code, self.unclear) {
             (O_T_SIZE, _) => self.output = Some(right.saturating_sub(O_T_EXTRA)),
             (T_O_SIZE, _) => self.input = Some(right.saturating_sub(T_O_EXTRA)),
-            (_, None) => self.unclear = Some((right, Way::Out)),
+            (_, None) => self.unclear = Some((right, ProbedDirection::Out)),
             // The size was correct for the direction to the device. So the device now reports the size of the other
             // direction.
-            (_, Some((size, Way::Out))) if size != right => {
+            (_, Some((size, ProbedDirection::Out))) if size != right => {
                 self.output = Some(size.saturating_sub(O_T_EXTRA));
                 self.input = Some(right.saturating_sub(T_O_EXTRA));
             }
             // The device reported the same size again. So this size belongs to the direction from the device.
-            (_, Some((size, Way::Out))) => self.unclear = Some((size, Way::In)),
-            (_, Some((size, Way::In))) if size != right => {
+            (_, Some((size, ProbedDirection::Out))) => self.unclear = Some((size, ProbedDirection::In)),
+            (_, Some((size, ProbedDirection::In))) if size != right => {
                 self.input = Some(size.saturating_sub(T_O_EXTRA));
                 self.output = Some(right.saturating_sub(O_T_EXTRA));
             }
             // Both directions have the same size on the wire.
-            (_, Some((size, Way::In))) => {
+            (_, Some((size, ProbedDirection::In))) => {
                 self.output = Some(size.saturating_sub(O_T_EXTRA));
                 self.input = Some(size.saturating_sub(T_O_EXTRA));
             }
         }
         let is_known = self.output.is_some() && self.input.is_some();
-        if is_known || self.tries >= MOST_TRIES { Progress::Known } else { Progress::Again }
+        if is_known || self.tries >= MAX_TRIES_PER_PAIR { Progress::Known } else { Progress::Again }
     }
 }
 
 /// Maximum number of requests per pair of instances.
-const MOST_TRIES: u8 = 5;
+const MAX_TRIES_PER_PAIR: u8 = 5;
 
 /// Requests a connection. If the device accepts the connection, closes it.
 async fn open(
@@ -352,28 +354,28 @@ mod tests {
 
     /// Simulates a device with 48 bytes of output and `input` bytes of input. The device checks the size of the
     /// direction `first` before the size of the other direction.
-    fn sizes(first: Way, input: u16, codes: (u16, u16)) -> (Guess, u8) {
-        let mut guess = Guess::default();
+    fn sizes(first: ProbedDirection, input: u16, codes: (u16, u16)) -> (AssemblySizes, u8) {
+        let mut sizes_guess = AssemblySizes::default();
         loop {
-            let asked = guess.next();
-            let out = (asked.0 != 48).then(|| Status::connection(codes.0, &[48 + O_T_EXTRA]));
-            let back = (asked.1 != input).then(|| Status::connection(codes.1, &[input + T_O_EXTRA]));
-            let status = if first == Way::Out { out.or(back) } else { back.or(out) };
+            let handle_discovery = sizes_guess.next();
+            let out = (handle_discovery.0 != 48).then(|| Status::connection(codes.0, &[48 + O_T_EXTRA]));
+            let back = (handle_discovery.1 != input).then(|| Status::connection(codes.1, &[input + T_O_EXTRA]));
+            let status = if first == ProbedDirection::Out { out.or(back) } else { back.or(out) };
             let status = status.expect("a size is wrong, so that nothing is opened");
-            if guess.take(&status) == Progress::Known {
-                return (guess, guess.tries);
+            if sizes_guess.take(&status) == Progress::Known {
+                return (sizes_guess, sizes_guess.tries);
             }
         }
     }
 
     #[test]
-    fn sizes_are_found_whichever_way_a_device_looks_at_first() {
-        for first in [Way::Out, Way::In] {
+    fn finds_sizes_for_both_orders_of_checks() {
+        for first in [ProbedDirection::Out, ProbedDirection::In] {
             for codes in [(SIZES, SIZES), (O_T_SIZE, T_O_SIZE)] {
                 // 52 bytes of input and 48 bytes of output have the same size on the wire.
                 for input in [48, 52, 2, 400] {
-                    let (guess, tries) = sizes(first, input, codes);
-                    assert_eq!((guess.output, guess.input), (Some(48), Some(input)), "{first:?} {codes:?}");
+                    let (sizes_guess, tries) = sizes(first, input, codes);
+                    assert_eq!((sizes_guess.output, sizes_guess.input), (Some(48), Some(input)), "{first:?} {codes:?}");
                     assert!(tries <= 3);
                 }
             }
@@ -381,29 +383,29 @@ mod tests {
     }
 
     #[test]
-    fn a_device_that_names_no_size_is_taken_at_its_word() {
-        let mut guess = Guess::default();
-        guess.next();
-        assert_eq!(guess.take(&Status::connection(SIZES, &[])), Progress::Known);
-        assert_eq!(guess.take(&Status::connection(OWNED, &[])), Progress::Known);
-        assert_eq!(guess.take(&Status::connection(0x0117, &[])), Progress::Wrong);
-        assert_eq!(guess.take(&Status::general(0x08)), Progress::Wrong);
+    fn accepts_a_device_that_reports_no_size() {
+        let mut sizes_guess = AssemblySizes::default();
+        sizes_guess.next();
+        assert_eq!(sizes_guess.take(&Status::connection(SIZES, &[])), Progress::Known);
+        assert_eq!(sizes_guess.take(&Status::connection(OWNED, &[])), Progress::Known);
+        assert_eq!(sizes_guess.take(&Status::connection(0x0117, &[])), Progress::Wrong);
+        assert_eq!(sizes_guess.take(&Status::general(0x08)), Progress::Wrong);
     }
 
     #[test]
-    fn a_device_that_never_has_enough_is_asked_a_few_times_only() {
-        let mut guess = Guess::default();
+    fn limits_the_attempts_for_an_endless_error() {
+        let mut sizes_guess = AssemblySizes::default();
         for size in 100.. {
-            guess.next();
-            if guess.take(&Status::connection(O_T_SIZE, &[size])) == Progress::Known {
+            sizes_guess.next();
+            if sizes_guess.take(&Status::connection(O_T_SIZE, &[size])) == Progress::Known {
                 break;
             }
         }
-        assert_eq!(guess.tries, MOST_TRIES);
+        assert_eq!(sizes_guess.tries, MAX_TRIES_PER_PAIR);
     }
 
     #[test]
-    fn what_was_thought_is_tried_first_and_the_exchange_next() {
+    fn tries_the_known_instances_first() {
         let thought = Instances { output: 150, input: 100, configuration: Some(7) };
         let found = [Assembly { instance: 20, size: Some(4) }, Assembly { instance: 30, size: None }];
         let all = likely(thought, &found);

@@ -13,13 +13,13 @@ use tokio::sync::{mpsc, oneshot, watch};
 use super::engine::{Alarm, Engine, Prepared, spawn};
 use super::error::EipError;
 use super::explicit::{Answer, Message};
-use super::originator::{Action, Numbers, Originator, View, Views};
+use super::originator::{Action, Identifiers, Originator, View, Views};
 use super::session::{Ask, Token};
 use super::settings::Settings;
 use super::tap::Tap;
 use super::wire::{Command, Cyclic};
 use super::{IO_PORT, Now};
-use crate::local::LocalError;
+use crate::local_error::LocalError;
 
 mod tcp;
 
@@ -28,7 +28,7 @@ use tcp::Line;
 /// First token for messages of callers. The originator itself uses the lower tokens.
 const FIRST_TOKEN: u64 = 2;
 /// Maximum number of datagrams that are handled before other tasks can run.
-const AT_ONCE: usize = 64;
+const MAX_PER_WAKEUP: usize = 64;
 /// Size of the receive buffer: the size of the largest datagram.
 const BUFFER: usize = 65_536;
 
@@ -41,20 +41,20 @@ pub struct Scanner {
 
 #[derive(Debug)]
 struct Owner {
-    inner: Arc<Inner>,
+    inner: Arc<SharedState>,
     /// Dropping this value stops the threads. `inner` alone cannot do this, because the threads also hold a reference
     /// to it.
     _engine: Engine,
 }
 
 #[derive(Debug)]
-struct Inner {
+struct SharedState {
     start: Instant,
     alarm: Arc<Alarm>,
     handle: Handle,
     socket: UdpSocket,
     local: SocketAddrV4,
-    numbers: Arc<Numbers>,
+    identifiers: Arc<Identifiers>,
     slots: Mutex<BTreeMap<u64, Slot>>,
     last: AtomicU64,
     /// Memberships in multicast groups: number of connections for each group and interface.
@@ -68,7 +68,7 @@ struct Slot {
     tap: Tap,
     line: Option<Line>,
     /// Local address from which the device is reached. Unspecified until it is known.
-    here: Ipv4Addr,
+    local_address: Ipv4Addr,
     view: watch::Sender<View>,
     answers: HashMap<Token, oneshot::Sender<Result<Vec<u8>, EipError>>>,
 }
@@ -100,26 +100,26 @@ impl Scanner {
         socket.set_nonblocking(true)?;
         let SocketAddr::V4(local) = socket.local_addr()? else { return Err(io::ErrorKind::Unsupported.into()) };
         let engine = Prepared::new()?;
-        let heard = {
+        let handle_datagram = {
             let _guard = engine.handle().enter();
             tokio::net::UdpSocket::from_std(socket.try_clone()?)?
         };
         let alarm = Arc::new(Alarm::default());
         let start = Instant::now();
-        let inner = Arc::new(Inner {
+        let inner = Arc::new(SharedState {
             start,
             alarm: Arc::clone(&alarm),
             handle: engine.handle().clone(),
             socket,
             local,
-            numbers: Arc::new(Numbers::random()),
+            identifiers: Arc::new(Identifiers::random()),
             slots: Mutex::default(),
             last: AtomicU64::new(0),
             groups: Mutex::default(),
         });
-        spawn(engine.handle(), hear(Arc::clone(&inner), heard));
+        spawn(engine.handle(), receive_datagram(Arc::clone(&inner), handle_datagram));
         let for_engine = Arc::clone(&inner);
-        let engine = engine.start("eip", start, alarm, move || for_engine.turn())?;
+        let engine = engine.start("eip", start, alarm, move || for_engine.run_due())?;
         Ok(Self { owner: Arc::new(Owner { inner, _engine: engine }) })
     }
 
@@ -139,9 +139,9 @@ impl Scanner {
             let text = format!("multicast images use UDP port {IO_PORT}, but another program on this computer uses it");
             return Err(EipError::Impossible(text));
         }
-        let core = Originator::new(target, self.port(), settings, Arc::clone(&inner.numbers))?;
+        let core = Originator::new(target, self.port(), settings, Arc::clone(&inner.identifiers))?;
         let (view, views) = Views::new(core.view());
-        let slot = Slot { core, tap, line: None, here: *inner.local.ip(), view, answers: HashMap::new() };
+        let slot = Slot { core, tap, line: None, local_address: *inner.local.ip(), view, answers: HashMap::new() };
         let id = inner.last.fetch_add(1, Ordering::Relaxed);
         inner.slots().insert(id, slot);
         inner.with(id, |_, _| ());
@@ -204,12 +204,12 @@ impl Connection {
     /// Closes the connection: sends one image in idle mode, then ForwardClose. Fails if the device did not confirm the
     /// close.
     pub async fn close(mut self) -> Result<(), EipError> {
-        let before = self.view().trouble;
+        let before = self.view().last_error;
         self.with(|core| {
             core.close();
             Ok(())
         })
-        .or_else(|trouble| if trouble == EipError::Ended { Ok(()) } else { Err(trouble) })?;
+        .or_else(|last_error| if last_error == EipError::Ended { Ok(()) } else { Err(last_error) })?;
         self.views.closed(before.as_ref()).await
     }
 
@@ -224,7 +224,7 @@ impl Drop for Connection {
     }
 }
 
-impl Inner {
+impl SharedState {
     fn now(&self) -> Now {
         self.start.elapsed()
     }
@@ -240,7 +240,7 @@ impl Inner {
         let slot = slots.get_mut(&id)?;
         let now = self.now();
         let result = change(slot, now);
-        self.follow(id, slot, now);
+        self.execute_actions(id, slot, now);
         self.alarm.set(slot.core.wake());
         if slot.core.is_finished() {
             slots.remove(&id);
@@ -249,12 +249,12 @@ impl Inner {
     }
 
     /// Executes the work that is due. Returns the time at which it must be called again.
-    fn turn(self: &Arc<Self>) -> Option<Now> {
+    fn run_due(self: &Arc<Self>) -> Option<Now> {
         let mut slots = self.slots();
         let now = self.now();
         for (id, slot) in slots.iter_mut() {
             if slot.core.wake().is_some_and(|wake| wake <= now) {
-                self.follow(*id, slot, now);
+                self.execute_actions(*id, slot, now);
             }
         }
         slots.retain(|_, slot| !slot.core.is_finished());
@@ -262,7 +262,7 @@ impl Inner {
     }
 
     /// Executes the actions of a connection, and publishes its view.
-    fn follow(self: &Arc<Self>, id: u64, slot: &mut Slot, now: Now) {
+    fn execute_actions(self: &Arc<Self>, id: u64, slot: &mut Slot, now: Now) {
         while let Some(action) = slot.core.poll(now) {
             match action {
                 Action::Connect => {
@@ -282,17 +282,17 @@ impl Inner {
                 Action::Datagram(to, bytes) => {
                     // The datagram is recorded before it is sent. Otherwise, a trace could show the answer before the
                     // request.
-                    slot.tap.pass(false, SocketAddrV4::new(slot.here, self.local.port()), to, &bytes);
+                    slot.tap.pass(false, SocketAddrV4::new(slot.local_address, self.local.port()), to, &bytes);
                     if let Err(error) = self.socket.send_to(&bytes, to) {
                         slot.core.failed(LocalError::new("cannot send an image", &error).into());
                     }
                 }
                 Action::Join(group) => {
-                    if let Err(error) = self.join(group, slot.here) {
+                    if let Err(error) = self.join_group(group, slot.local_address) {
                         slot.core.failed(LocalError::new("cannot join the multicast group", &error).into());
                     }
                 }
-                Action::Leave(group) => self.leave(group, slot.here),
+                Action::Leave(group) => self.leave_group(group, slot.local_address),
                 Action::Answer(token, result) => {
                     if let Some(answer) = slot.answers.remove(&token) {
                         // An error means that the caller no longer waits for the answer.
@@ -306,14 +306,14 @@ impl Inner {
         }
     }
 
-    fn heard(&self, from: SocketAddrV4, bytes: &[u8]) {
+    fn handle_datagram(&self, from: SocketAddrV4, bytes: &[u8]) {
         let Ok(datagram) = Cyclic::parse(bytes) else { return };
         let now = self.now();
         let mut slots = self.slots();
         // Several connections to one device can share a multicast group.
         for slot in slots.values_mut().filter(|slot| slot.core.expects(*from.ip(), datagram.id)) {
-            slot.tap.pass(false, from, SocketAddrV4::new(slot.here, self.local.port()), bytes);
-            slot.core.hear(now, &datagram);
+            slot.tap.pass(false, from, SocketAddrV4::new(slot.local_address, self.local.port()), bytes);
+            slot.core.receive_datagram(now, &datagram);
             if slot.core.take_changed() {
                 slot.view.send_replace(slot.core.view());
             }
@@ -324,37 +324,37 @@ impl Inner {
         self.groups.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn join(&self, group: Ipv4Addr, here: Ipv4Addr) -> io::Result<()> {
+    fn join_group(&self, group: Ipv4Addr, local_address: Ipv4Addr) -> io::Result<()> {
         let mut groups = self.groups();
-        let members = groups.entry((group, here)).or_default();
+        let members = groups.entry((group, local_address)).or_default();
         if *members == 0 {
-            self.socket.join_multicast_v4(&group, &here)?;
+            self.socket.join_multicast_v4(&group, &local_address)?;
         }
         *members += 1;
         Ok(())
     }
 
-    fn leave(&self, group: Ipv4Addr, here: Ipv4Addr) {
+    fn leave_group(&self, group: Ipv4Addr, local_address: Ipv4Addr) {
         let mut groups = self.groups();
-        let Some(members) = groups.get_mut(&(group, here)).filter(|members| **members > 0) else { return };
+        let Some(members) = groups.get_mut(&(group, local_address)).filter(|members| **members > 0) else { return };
         *members -= 1;
         if *members == 0 {
             // An error is ignored: if the interface is gone, its membership has ended too.
-            let _ = self.socket.leave_multicast_v4(&group, &here);
+            let _ = self.socket.leave_multicast_v4(&group, &local_address);
         }
     }
 }
 
 /// Receives datagrams until the runtime ends.
-async fn hear(inner: Arc<Inner>, socket: tokio::net::UdpSocket) {
+async fn receive_datagram(inner: Arc<SharedState>, socket: tokio::net::UdpSocket) {
     let mut buffer = vec![0; BUFFER];
     loop {
         if socket.readable().await.is_err() {
             return;
         }
-        for _ in 0..AT_ONCE {
+        for _ in 0..MAX_PER_WAKEUP {
             match socket.try_recv_from(&mut buffer) {
-                Ok((len, SocketAddr::V4(from))) => inner.heard(from, &buffer[..len]),
+                Ok((len, SocketAddr::V4(from))) => inner.handle_datagram(from, &buffer[..len]),
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => break,
                 // An error concerns only one device (Windows: port unreachable). The other devices are not affected.
                 Ok(_) | Err(_) => {}

@@ -10,12 +10,12 @@ use super::error::EipError;
 use super::wire::{Command, Frame, Frames};
 
 /// Maximum number of queued requests.
-const MOST_WAITING: usize = 64;
+const MAX_QUEUED: usize = 64;
 /// Status of a refused RegisterSession: the device has no free session.
-const NO_ROOM: u32 = 0x02;
+const NO_FREE_SESSION: u32 = 0x02;
 /// Longest pause before another attempt to register. The first pause is a sixteenth of this time. A random factor
 /// shortens every pause: clients that were refused at the same time then retry at different times.
-const MOST_PAUSE: Duration = Duration::from_millis(800);
+const MAX_RETRY_PAUSE: Duration = Duration::from_millis(800);
 
 /// Number that identifies the request to which an answer belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -89,7 +89,7 @@ pub struct Session {
     patience: Duration,
     /// Time at which the device first refused because it has no free session, and the number of attempts after this
     /// time.
-    full: Option<(Now, u32)>,
+    refused_since: Option<(Now, u32)>,
     steps: VecDeque<Step>,
 }
 
@@ -105,7 +105,7 @@ impl Session {
             number: 0,
             timeout,
             patience: Duration::ZERO,
-            full: None,
+            refused_since: None,
             steps: VecDeque::new(),
         }
     }
@@ -113,13 +113,13 @@ impl Session {
     /// Sets the time for which the session retries if the device has no free session. A retry is safe, because the
     /// device has not executed any request.
     #[must_use]
-    pub fn patient(self, patience: Duration) -> Self {
+    pub fn is_waiting_for_session(self, patience: Duration) -> Self {
         Self { patience, ..self }
     }
 
     /// Queues a request.
     pub fn ask(&mut self, ask: Ask) {
-        if self.waiting.len() >= MOST_WAITING {
+        if self.waiting.len() >= MAX_QUEUED {
             let why = "too many waiting requests";
             self.answer(ask.token, false, Err(EipError::Impossible(why.to_owned())));
         } else {
@@ -176,7 +176,7 @@ impl Session {
         // If no session was open, queued requests fail at once. If an open session ended, the queued requests use a new
         // TCP connection.
         if !was_up {
-            self.fail_waiting(why);
+            self.fail_queued(why);
         }
     }
 
@@ -189,7 +189,7 @@ impl Session {
         if let Some((ask, _)) = self.pending.take() {
             self.answer(ask.token, true, Err(EipError::Ended));
         }
-        self.fail_waiting(&EipError::Ended);
+        self.fail_queued(&EipError::Ended);
     }
 
     fn advance(&mut self, now: Now) {
@@ -221,15 +221,15 @@ impl Session {
     /// Handles the refusal of RegisterSession: waits for a free session, or gives up.
     fn refused(&mut self, now: Now, status: u32) {
         self.disconnect();
-        let (since, tries) = self.full.unwrap_or((now, 0));
-        let longest = MOST_PAUSE / 16 * 2_u32.pow(tries.min(4));
+        let (since, tries) = self.refused_since.unwrap_or((now, 0));
+        let longest = MAX_RETRY_PAUSE / 16 * 2_u32.pow(tries.min(4));
         let pause = longest.mul_f64(0.5 + fastrand::f64() / 2.0);
-        if status == NO_ROOM && now.saturating_add(pause) < since.saturating_add(self.patience) {
-            self.full = Some((since, tries + 1));
+        if status == NO_FREE_SESSION && now.saturating_add(pause) < since.saturating_add(self.patience) {
+            self.refused_since = Some((since, tries + 1));
             self.phase = Phase::Full { until: now.saturating_add(pause) };
         } else {
-            self.full = None;
-            self.fail_waiting(&EipError::Encapsulation { what: "RegisterSession", status });
+            self.refused_since = None;
+            self.fail_queued(&EipError::Encapsulation { what: "RegisterSession", status });
         }
     }
 
@@ -250,7 +250,7 @@ impl Session {
             Phase::Registering { .. } if frame.command == Command::REGISTER_SESSION => {
                 if frame.status == 0 {
                     self.handle = frame.session;
-                    self.full = None;
+                    self.refused_since = None;
                     self.phase = Phase::Up;
                     self.advance(now);
                 } else {
@@ -274,7 +274,7 @@ impl Session {
 
     fn give_up(&mut self, what: &'static str) {
         self.disconnect();
-        self.fail_waiting(&EipError::NoAnswer { what, after: self.timeout });
+        self.fail_queued(&EipError::NoAnswer { what, after: self.timeout });
     }
 
     fn disconnect(&mut self) {
@@ -286,7 +286,7 @@ impl Session {
         }
     }
 
-    fn fail_waiting(&mut self, why: &EipError) {
+    fn fail_queued(&mut self, why: &EipError) {
         for ask in std::mem::take(&mut self.waiting) {
             self.answer(ask.token, false, Err(why.clone()));
         }
@@ -321,7 +321,7 @@ mod tests {
     }
 
     /// Returns a session with a request in progress, and the bytes of the request.
-    fn asking() -> (Session, Vec<u8>) {
+    fn current_request() -> (Session, Vec<u8>) {
         let mut session = Session::new(TIMEOUT);
         session.ask(ask(1));
         assert_eq!(session.poll(NOW), Some(Step::Connect));
@@ -335,8 +335,8 @@ mod tests {
     }
 
     #[test]
-    fn a_request_opens_what_it_needs() {
-        let (mut session, request) = asking();
+    fn request_opens_connection_and_session() {
+        let (mut session, request) = current_request();
         let frame = Frame::parse(&request).unwrap();
         assert_eq!((frame.command, frame.session, frame.data), (Command::SEND_RR_DATA, 7, &[1, 2][..]));
         let reply = answer(&request, 0, &[9]);
@@ -352,8 +352,8 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_to_something_else_is_passed_over() {
-        let (mut session, request) = asking();
+    fn ignores_answers_to_other_requests() {
+        let (mut session, request) = current_request();
         let mut other = answer(&request, 0, &[9]);
         other[12] ^= 1;
         session.received(NOW, &other);
@@ -361,8 +361,8 @@ mod tests {
     }
 
     #[test]
-    fn a_lost_answer_ends_the_connection_and_is_not_asked_again() {
-        let (mut session, request) = asking();
+    fn lost_answer_closes_the_connection_without_a_repeat() {
+        let (mut session, request) = current_request();
         session.ask(ask(2));
         let late = NOW + TIMEOUT;
         assert_eq!(session.wake(), Some(late));
@@ -374,23 +374,23 @@ mod tests {
     }
 
     #[test]
-    fn nobody_waits_where_nobody_answers() {
+    fn fails_queued_requests_if_the_device_is_silent() {
         let mut session = Session::new(TIMEOUT);
         session.ask(ask(1));
         session.ask(ask(2));
         assert_eq!(session.poll(NOW), Some(Step::Connect));
-        let trouble = EipError::NoAnswer { what: "the TCP connection", after: TIMEOUT };
-        session.lost(&trouble);
+        let last_error = EipError::NoAnswer { what: "the TCP connection", after: TIMEOUT };
+        session.lost(&last_error);
         for token in [1, 2] {
-            let result = Err(trouble.clone());
+            let result = Err(last_error.clone());
             assert_eq!(session.poll(NOW), Some(Step::Answer { token: Token(token), sent: false, result }));
         }
         assert_eq!(session.poll(NOW), None);
     }
 
     #[test]
-    fn a_device_without_room_is_asked_again_for_a_while() {
-        let mut session = Session::new(TIMEOUT).patient(TIMEOUT);
+    fn retries_while_the_device_has_no_free_session() {
+        let mut session = Session::new(TIMEOUT).is_waiting_for_session(TIMEOUT);
         session.ask(ask(1));
         let mut now = NOW;
         let mut tries = 0;
@@ -399,7 +399,7 @@ mod tests {
                 Some(Step::Connect) => session.connected(now),
                 Some(Step::Send(register)) => {
                     tries += 1;
-                    session.received(now, &answer(&register, NO_ROOM, &[1, 0, 0, 0]));
+                    session.received(now, &answer(&register, NO_FREE_SESSION, &[1, 0, 0, 0]));
                 }
                 Some(Step::Disconnect) => {}
                 Some(Step::Answer { sent, result, .. }) => break (sent, result),
@@ -408,12 +408,12 @@ mod tests {
         };
         assert!((4..30).contains(&tries), "{tries}");
         assert!(now < NOW + TIMEOUT, "not longer than its timeout");
-        let trouble = EipError::Encapsulation { what: "RegisterSession", status: NO_ROOM };
-        assert_eq!(result, (false, Err(trouble)));
+        let last_error = EipError::Encapsulation { what: "RegisterSession", status: NO_FREE_SESSION };
+        assert_eq!(result, (false, Err(last_error)));
         // A refusal with another status is reported at once. Without time for retries, every refusal is reported at
         // once.
-        for (patience, status) in [(TIMEOUT, 0x69), (Duration::ZERO, NO_ROOM)] {
-            let mut session = Session::new(TIMEOUT).patient(patience);
+        for (patience, status) in [(TIMEOUT, 0x69), (Duration::ZERO, NO_FREE_SESSION)] {
+            let mut session = Session::new(TIMEOUT).is_waiting_for_session(patience);
             session.ask(ask(1));
             assert_eq!(session.poll(NOW), Some(Step::Connect));
             session.connected(NOW);
@@ -425,8 +425,8 @@ mod tests {
     }
 
     #[test]
-    fn a_forgotten_session_is_begun_again() {
-        let (mut session, request) = asking();
+    fn opens_a_new_session_if_the_device_lost_it() {
+        let (mut session, request) = current_request();
         session.received(NOW, &answer(&request, 0x64, &[]));
         assert_eq!(session.poll(NOW), Some(Step::Disconnect));
         let result = Err(EipError::Encapsulation { what: "the test", status: 0x64 });
@@ -436,8 +436,8 @@ mod tests {
     }
 
     #[test]
-    fn a_hangup_loses_what_was_sent_and_keeps_what_was_not() {
-        let (mut session, _) = asking();
+    fn disconnect_fails_sent_requests_and_keeps_queued_requests() {
+        let (mut session, _) = current_request();
         session.ask(ask(2));
         session.lost(&EipError::Ended);
         let result = Err(EipError::Hangup { what: "the test" });

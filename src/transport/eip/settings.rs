@@ -10,13 +10,13 @@ const COUNT: u16 = 2;
 /// Size in bytes of the run/idle header, which comes before the data to the target.
 const HEADER: u16 = 4;
 /// Maximum size of an image in bytes, so that the image fits into a datagram.
-pub const MOST_IMAGE: u16 = 65_000;
+pub const MAX_IMAGE_SIZE: u16 = 65_000;
 /// Maximum length of the configuration data in bytes, so that the path fits into 255 words.
-const MOST_CONFIGURATION: usize = 400;
+const MAX_CONFIGURATION_LEN: usize = 400;
 /// Shortest interval.
-pub const SHORTEST: Duration = Duration::from_millis(1);
+pub const MIN_INTERVAL: Duration = Duration::from_millis(1);
 /// Longest interval.
-pub const LONGEST: Duration = Duration::from_secs(10);
+pub const MAX_INTERVAL: Duration = Duration::from_secs(10);
 /// Minimum timeout before the first packet (volume 1, 3-4.6).
 pub const FIRST_PACKET: Duration = Duration::from_secs(10);
 /// Priority "scheduled" for cyclic data.
@@ -117,8 +117,8 @@ impl Settings {
     /// Checks the settings.
     pub fn check(&self) -> Result<(), EipError> {
         let wrong = |text: String| Err(EipError::Impossible(text));
-        if self.output_size.max(self.input_size) > MOST_IMAGE {
-            return wrong(format!("an image can have at most {MOST_IMAGE} bytes"));
+        if self.output_size.max(self.input_size) > MAX_IMAGE_SIZE {
+            return wrong(format!("an image can have at most {MAX_IMAGE_SIZE} bytes"));
         }
         if self.role != Role::ExclusiveOwner && self.output_size != 0 {
             return wrong("a listen-only connection has no output image".to_owned());
@@ -127,12 +127,12 @@ impl Settings {
             let (len, size) = (self.resting.len(), self.output_size);
             return wrong(format!("the resting image has {len} bytes, but the output image has {size}"));
         }
-        if !(SHORTEST..=LONGEST).contains(&self.rpi) {
-            return wrong(format!("the rpi must be {SHORTEST:?} to {LONGEST:?}, not {:?}", self.rpi));
+        if !(MIN_INTERVAL..=MAX_INTERVAL).contains(&self.rpi) {
+            return wrong(format!("the rpi must be {MIN_INTERVAL:?} to {MAX_INTERVAL:?}, not {:?}", self.rpi));
         }
-        if self.configuration_data.len() > MOST_CONFIGURATION || self.configuration_data.len() % 2 == 1 {
+        if self.configuration_data.len() > MAX_CONFIGURATION_LEN || self.configuration_data.len() % 2 == 1 {
             return wrong(format!(
-                "configuration data must have an even number of bytes, at most {MOST_CONFIGURATION}"
+                "configuration data must have an even number of bytes, at most {MAX_CONFIGURATION_LEN}"
             ));
         }
         Ok(())
@@ -160,19 +160,19 @@ impl Settings {
     /// includes the run/idle header and the image.
     pub fn o_t(&self) -> Flow {
         let size = match self.role {
-            Role::ExclusiveOwner => COUNT + HEADER + self.output_size.min(MOST_IMAGE),
+            Role::ExclusiveOwner => COUNT + HEADER + self.output_size.min(MAX_IMAGE_SIZE),
             Role::InputOnly | Role::ListenOnly => COUNT,
         };
-        self.flow(Net::PointToPoint, size)
+        self.connection_flow(Net::PointToPoint, size)
     }
 
     /// Parameters of the direction from the device. The size includes the sequence count and the image.
     pub fn t_o(&self) -> Flow {
         let net = if self.multicast { Net::Multicast } else { Net::PointToPoint };
-        self.flow(net, COUNT + self.input_size.min(MOST_IMAGE))
+        self.connection_flow(net, COUNT + self.input_size.min(MAX_IMAGE_SIZE))
     }
 
-    fn flow(&self, net: Net, size: u16) -> Flow {
+    fn connection_flow(&self, net: Net, size: u16) -> Flow {
         let rpi_us = u32::try_from(self.rpi.as_micros()).unwrap_or(u32::MAX);
         Flow { rpi_us, net, size, variable: false, priority: SCHEDULED, redundant: false }
     }
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_refused() {
+    fn rejects_invalid_settings() {
         let cases = [
             Settings { output_size: 48, ..Settings::default() },
             Settings { rpi: Duration::from_micros(500), ..Settings::default() },

@@ -347,7 +347,7 @@ mod tests {
     }
 
     #[test]
-    fn statuses_are_told_in_a_line() {
+    fn describes_statuses_in_one_line() {
         let size = Status::connection(0x0109, &[54]);
         assert_eq!(describe(&size), "invalid connection size (0x01/0x0109), the correct size is 54 bytes");
         assert_eq!(describe(&Status::general(0x16)), "object does not exist (0x16)");

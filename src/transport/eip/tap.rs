@@ -8,7 +8,7 @@ use crate::image::tap;
 
 /// A datagram, or a piece of a TCP stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Passed<'a> {
+pub struct TappedPacket<'a> {
     /// Whether these bytes are a piece of a TCP stream.
     pub is_tcp: bool,
     /// Sender.
@@ -19,21 +19,21 @@ pub struct Passed<'a> {
     pub bytes: &'a [u8],
 }
 
-type Look = dyn Fn(&Passed<'_>) + Send + Sync;
+type TapFunction = dyn Fn(&TappedPacket<'_>) + Send + Sync;
 
 /// Function that is called with all traffic, on the threads that send and receive. The function must not block.
 #[derive(Clone, Default)]
-pub struct Tap(Option<Arc<Look>>);
+pub struct Tap(Option<Arc<TapFunction>>);
 
 impl Tap {
     /// Creates a tap that calls this function.
-    pub fn new(tap: impl Fn(&Passed<'_>) + Send + Sync + 'static) -> Self {
+    pub fn new(tap: impl Fn(&TappedPacket<'_>) + Send + Sync + 'static) -> Self {
         Self(Some(Arc::new(tap)))
     }
 
     pub(super) fn pass(&self, is_tcp: bool, from: SocketAddrV4, to: SocketAddrV4, bytes: &[u8]) {
         if let Some(tap) = &self.0 {
-            tap(&Passed { is_tcp, from, to, bytes });
+            tap(&TappedPacket { is_tcp, from, to, bytes });
         }
     }
 }
@@ -47,9 +47,9 @@ impl From<tap::Tap> for Tap {
             tap.pass(|| {
                 let (from, to, bytes) = (passed.from.into(), passed.to.into(), passed.bytes.to_vec());
                 if passed.is_tcp {
-                    tap::Passage::Segment { from, to, bytes }
+                    tap::TrafficRecord::Segment { from, to, bytes }
                 } else {
-                    tap::Passage::Datagram { from, to, bytes }
+                    tap::TrafficRecord::Datagram { from, to, bytes }
                 }
             });
         })

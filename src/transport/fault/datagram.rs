@@ -18,14 +18,14 @@ use super::{
 };
 
 /// Maximum number of noise bytes that replace a datagram.
-const MOST_NOISE: usize = 600;
+const MAX_NOISE: usize = 600;
 /// Maximum number of bytes added to a datagram.
-const MOST_EXTRA: usize = 32;
+const MAX_EXTRA: usize = 32;
 /// Number of bytes at the start of a datagram that may be changed.
 const HEAD: usize = 8;
 /// Extra delay of a reordered datagram. The delay is longer than a fast answer takes, and may be longer than the usual
 /// retry time. Therefore the datagram arrives during the next exchange, or after its own retransmission.
-const HOLD: RangeInclusive<Duration> = Duration::from_millis(20)..=Duration::from_millis(400);
+const HOLD_TIME: RangeInclusive<Duration> = Duration::from_millis(20)..=Duration::from_millis(400);
 
 /// Fault rates. The text form is, for example, `drop=5%,dup=2%,delay=0..50ms,reorder=3%,corrupt=1%,busy=4%,seed=7`.
 /// Every part is optional.
@@ -119,31 +119,31 @@ impl Faults {
     /// Applies the faults to a datagram that is sent at `now`. Returns the arrival time and the bytes of each copy, in
     /// any order. Arrival times count from the same origin as `now`.
     pub fn pass(&mut self, now: Duration, bytes: &[u8]) -> Vec<(Duration, Vec<u8>)> {
-        if self.spec.drop.hits(&mut self.rng) {
+        if self.spec.drop.occurs(&mut self.rng) {
             return Vec::new();
         }
         let mut copies = Vec::with_capacity(2);
-        let at = now.saturating_add(self.travel());
-        if self.spec.reorder.hits(&mut self.rng) {
-            let hold = between(&mut self.rng, &HOLD);
+        let at = now.saturating_add(self.apply_all());
+        if self.spec.reorder.occurs(&mut self.rng) {
+            let hold = between(&mut self.rng, &HOLD_TIME);
             copies.push((at.saturating_add(hold), self.content(bytes)));
         } else {
             self.last = self.last.max(at);
             copies.push((self.last, self.content(bytes)));
         }
-        if self.spec.dup.hits(&mut self.rng) {
-            let at = at.saturating_add(self.travel());
+        if self.spec.dup.occurs(&mut self.rng) {
+            let at = at.saturating_add(self.apply_all());
             copies.push((at, self.content(bytes)));
         }
         copies
     }
 
-    fn travel(&mut self) -> Duration {
+    fn apply_all(&mut self) -> Duration {
         between(&mut self.rng, &self.spec.delay)
     }
 
     fn content(&mut self, bytes: &[u8]) -> Vec<u8> {
-        if self.spec.corrupt.hits(&mut self.rng) { damaged(&mut self.rng, bytes) } else { bytes.to_vec() }
+        if self.spec.corrupt.occurs(&mut self.rng) { damaged(&mut self.rng, bytes) } else { bytes.to_vec() }
     }
 }
 
@@ -156,7 +156,7 @@ const DAMAGES: [Damage; 5] = [
         bytes
     },
     |rng, mut bytes| {
-        let extra = rng.usize(1..=MOST_EXTRA);
+        let extra = rng.usize(1..=MAX_EXTRA);
         bytes.extend(noise(rng, extra));
         bytes
     },
@@ -169,7 +169,7 @@ const DAMAGES: [Damage; 5] = [
         bytes
     },
     |rng, _| {
-        let length = rng.usize(..=MOST_NOISE);
+        let length = rng.usize(..=MAX_NOISE);
         noise(rng, length)
     },
 ];
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn every_key_is_read_and_shown_again() {
+    fn every_key_round_trips() {
         let text = "drop=5%,dup=2%,delay=0ms..50ms,reorder=3%,corrupt=1%,busy=4%,seed=7";
         let expected = FaultSpec {
             drop: Share(500),
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn shares_are_met() {
+    fn fault_rates_are_met() {
         let (mut lost, mut doubled) = (0, 0);
         let mut faults = Faults::new(spec("drop=10%,dup=10%,seed=5"));
         for _ in 0..10_000 {
@@ -305,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn damage_never_leaves_a_whole_datagram_with_another_payload() {
+    fn damage_never_yields_a_valid_datagram_with_another_payload() {
         let mut rng = Rng::with_seed(9);
         let whole: Vec<u8> = (1..=48).collect();
         for _ in 0..10_000 {

@@ -96,7 +96,7 @@ pub struct LineFaults {
 
 /// Characters of one write, as they arrive after the faults.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Passed {
+pub struct FaultedCharacters {
     /// Delay of the write.
     pub delay: Duration,
     /// Characters that arrive.
@@ -121,14 +121,14 @@ impl LineFaults {
     }
 
     /// Applies the faults to the characters of one write.
-    pub fn pass(&mut self, bytes: &[u8]) -> Passed {
+    pub fn pass(&mut self, bytes: &[u8]) -> FaultedCharacters {
         let delay = between(&mut self.rng, &self.spec.delay);
-        let mut passed = Passed { delay, bytes: Vec::with_capacity(bytes.len()), damaged: VecDeque::new() };
+        let mut passed = FaultedCharacters { delay, bytes: Vec::with_capacity(bytes.len()), damaged: VecDeque::new() };
         for &byte in bytes {
-            if self.hits(self.spec.drop) {
+            if self.occurs(self.spec.drop) {
                 continue;
             }
-            let copies = if self.hits(self.spec.dup) { 2 } else { 1 };
+            let copies = if self.occurs(self.spec.dup) { 2 } else { 1 };
             for _ in 0..copies {
                 self.arrive(byte, &mut passed);
             }
@@ -136,8 +136,8 @@ impl LineFaults {
         passed
     }
 
-    fn arrive(&mut self, byte: u8, passed: &mut Passed) {
-        let is_noisy = self.hits(self.spec.noise);
+    fn arrive(&mut self, byte: u8, passed: &mut FaultedCharacters) {
+        let is_noisy = self.occurs(self.spec.noise);
         if is_noisy {
             passed.bytes.push(self.rng.u8(..));
         }
@@ -146,7 +146,7 @@ impl LineFaults {
         if is_noisy && self.rng.bool() {
             return;
         }
-        if self.hits(self.spec.parity) {
+        if self.occurs(self.spec.parity) {
             passed.damaged.push_back(passed.bytes.len());
         }
         passed.bytes.push(byte);
@@ -154,8 +154,8 @@ impl LineFaults {
 
     /// Whether a fault with this rate occurs now. For a rate of 0, no random number is drawn, so a line without faults
     /// costs nothing.
-    fn hits(&mut self, share: Share) -> bool {
-        share != Share::NONE && share.hits(&mut self.rng)
+    fn occurs(&mut self, share: Share) -> bool {
+        share != Share::NONE && share.occurs(&mut self.rng)
     }
 }
 
@@ -167,12 +167,12 @@ mod tests {
         text.parse().unwrap_or_else(|error| panic!("{text}: {error}"))
     }
 
-    fn pass(text: &str, bytes: &[u8]) -> Passed {
+    fn pass(text: &str, bytes: &[u8]) -> FaultedCharacters {
         LineFaults::new(spec(text)).pass(bytes)
     }
 
     #[test]
-    fn every_key_is_read_and_shown_again() {
+    fn every_key_round_trips() {
         let text = "noise=1%,parity=2%,drop=3%,dup=4%,delay=0ms..50ms,busy=5%,echo,seed=7";
         let expected = LineFaultSpec {
             noise: Share(100),
@@ -205,11 +205,11 @@ mod tests {
     #[test]
     fn without_faults_everything_arrives_at_once() {
         let passed = pass("seed=3", b"@STAS\r\n");
-        assert_eq!(passed, Passed { bytes: b"@STAS\r\n".to_vec(), ..Passed::default() });
+        assert_eq!(passed, FaultedCharacters { bytes: b"@STAS\r\n".to_vec(), ..FaultedCharacters::default() });
     }
 
     #[test]
-    fn each_fault_does_what_its_name_says() {
+    fn each_fault_has_its_effect() {
         assert_eq!(pass("drop=100%", b"abc").bytes, b"");
         assert_eq!(pass("dup=100%", b"abc").bytes, b"aabbcc");
         let damaged = pass("parity=100%", b"abc");
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn shares_are_met() {
+    fn fault_rates_are_met() {
         let bytes = vec![0; 100_000];
         let length = |text: &str| pass(text, &bytes).bytes.len();
         assert!((89_000..91_000).contains(&length("drop=10%,seed=5")));

@@ -32,10 +32,10 @@ macro_rules! device_faults {
 
 pub use datagram::{FaultSpec, Faults};
 pub(crate) use device_faults;
-pub use line::{LineFaultSpec, LineFaults, Passed};
+pub use line::{FaultedCharacters, LineFaultSpec, LineFaults};
 
 /// Longest delay that a specification can contain.
-const LONGEST_DELAY: Duration = Duration::from_secs(60);
+const MAX_DELAY: Duration = Duration::from_secs(60);
 
 /// A rate in steps of 0.01 %.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
@@ -57,7 +57,7 @@ impl Share {
         f64::from(self.0) / f64::from(Self::ALL.0)
     }
 
-    fn hits(self, rng: &mut Rng) -> bool {
+    fn occurs(self, rng: &mut Rng) -> bool {
         rng.u16(0..Self::ALL.0) < self.0
     }
 
@@ -263,15 +263,15 @@ fn write_delay(f: &mut fmt::Formatter<'_>, delay: &RangeInclusive<Duration>) -> 
     let (least, most) = (delay.start(), delay.end());
     match least == most {
         true if most.is_zero() => Ok(()),
-        true => write!(f, "delay={},", Time(*most)),
-        false => write!(f, "delay={}..{},", Time(*least), Time(*most)),
+        true => write!(f, "delay={},", DelayText(*most)),
+        false => write!(f, "delay={}..{},", DelayText(*least), DelayText(*most)),
     }
 }
 
 /// A time, shown in the largest unit that represents it exactly. The resolution is 1 µs.
-struct Time(Duration);
+struct DelayText(Duration);
 
-impl fmt::Display for Time {
+impl fmt::Display for DelayText {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let micros = self.0.as_micros();
         match UNITS.iter().rev().find(|(_, unit)| micros.is_multiple_of(u128::from(*unit))) {
@@ -305,7 +305,7 @@ fn number_and_unit(text: &str) -> (&str, &str) {
 fn time(number: &str, unit: &str) -> Option<Duration> {
     let (_, micros) = UNITS.iter().find(|(name, _)| *name == unit)?;
     let time = Duration::from_micros(number.parse::<u64>().ok()?.checked_mul(*micros)?);
-    (time <= LONGEST_DELAY).then_some(time)
+    (time <= MAX_DELAY).then_some(time)
 }
 
 fn between(rng: &mut Rng, range: &RangeInclusive<Duration>) -> Duration {

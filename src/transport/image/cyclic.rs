@@ -7,7 +7,7 @@ use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
 use super::view::{BusError, State, View, Views};
-use super::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
+use super::{Cause, Event, ImageConnection, LinkError, Outputs, ReportedState, Sizes, Traffic};
 
 /// An open connection of a fieldbus.
 pub trait Bus: fmt::Debug + 'static {
@@ -60,26 +60,26 @@ impl<B: Bus> Cyclic<B> {
         Self { bus, sizes, generation, pending: None }
     }
 
-    async fn wait(&mut self, known: Known<'_>) -> Event {
+    async fn wait(&mut self, reported: ReportedState<'_>) -> Event {
         loop {
             let view = self.bus.views().now();
             let is_open = view.state == State::Open;
-            if known.is_up && !(is_open && view.generation == self.generation) {
+            if reported.is_up && !(is_open && view.generation == self.generation) {
                 self.pending = None;
                 let (cause, outputs) = self.bus.loss(view);
                 return Event::Lost(LinkError::Lost { cause, outputs });
             }
-            if !known.is_up && is_open {
+            if !reported.is_up && is_open {
                 self.generation = view.generation;
                 return Event::Reopened;
             }
-            if known.is_up && self.pending.is_some_and(|change| view.sent >= change) {
+            if reported.is_up && self.pending.is_some_and(|change| view.sent >= change) {
                 self.pending = None;
                 return Event::Sent;
             }
             if let Some(input) = view.input.filter(|input| input.generation == self.generation) {
                 let image = self.bus.native_order(input.image);
-                if known.is_new(&image) {
+                if reported.is_new(&image) {
                     return Event::Image(image);
                 }
             }
@@ -107,8 +107,8 @@ impl<B: Bus> ImageConnection for Cyclic<B> {
         }
     }
 
-    fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
-        self.wait(known).boxed_local()
+    fn next<'a>(&'a mut self, reported: ReportedState<'a>) -> LocalBoxFuture<'a, Event> {
+        self.wait(reported).boxed_local()
     }
 
     fn traffic(&self) -> Option<Traffic> {

@@ -72,8 +72,8 @@ impl Cause {
     }
 
     /// Creates the cause of a loss. `trouble` is `None` if the connection is open again.
-    pub fn of_loss(trouble: Option<impl fmt::Display>) -> Self {
-        trouble.map_or_else(|| Self::new("armctl opened the connection again"), Self::new)
+    pub fn of_loss(last_error: Option<impl fmt::Display>) -> Self {
+        last_error.map_or_else(|| Self::new("armctl opened the connection again"), Self::new)
     }
 
     /// Adds advice.

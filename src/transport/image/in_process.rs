@@ -7,7 +7,7 @@ use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 use tokio::time::{Instant, sleep_until};
 
-use super::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes};
+use super::{Cause, Event, ImageConnection, LinkError, Outputs, ReportedState, Sizes};
 
 /// Peer of an in-process connection, for example a simulated controller.
 pub trait ImagePeer: fmt::Debug {
@@ -43,11 +43,11 @@ impl InProcess {
         Self { peer, start: Instant::now(), size, pending: None, due: Duration::ZERO }
     }
 
-    async fn wait(&mut self, known: Known<'_>) -> Event {
+    async fn wait(&mut self, reported: ReportedState<'_>) -> Event {
         loop {
             let now = self.start.elapsed();
             let last_output = self.peer.output(now);
-            match (&last_output, known.is_up) {
+            match (&last_output, reported.is_up) {
                 (None, true) => {
                     self.pending = None;
                     let cause = Cause::new("the other side of the connection has ended");
@@ -56,7 +56,7 @@ impl InProcess {
                 (Some(_), false) => return Event::Reopened,
                 _ => {}
             }
-            if known.is_up
+            if reported.is_up
                 && now >= self.due
                 && let Some(image) = self.pending.take()
             {
@@ -64,12 +64,12 @@ impl InProcess {
                 self.due = now + CYCLE;
                 return Event::Sent;
             }
-            if let Some(image) = last_output.filter(|image| known.is_new(image)) {
+            if let Some(image) = last_output.filter(|image| reported.is_new(image)) {
                 return Event::Image(image.into());
             }
             // A peer whose time is never in the future is polled once per cycle.
             let wake = self.peer.wake().map(|wake| if wake > now { wake } else { now + CYCLE });
-            let leave = self.pending.as_ref().filter(|_| known.is_up).map(|_| self.due);
+            let leave = self.pending.as_ref().filter(|_| reported.is_up).map(|_| self.due);
             match wake.into_iter().chain(leave).min() {
                 Some(due) => sleep_until(self.start + due).await,
                 None => std::future::pending().await,
@@ -88,8 +88,8 @@ impl ImageConnection for InProcess {
         Ok(())
     }
 
-    fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
-        self.wait(known).boxed_local()
+    fn next<'a>(&'a mut self, reported: ReportedState<'a>) -> LocalBoxFuture<'a, Event> {
+        self.wait(reported).boxed_local()
     }
 
     fn close(mut self: Box<Self>) -> LocalBoxFuture<'static, Result<(), LinkError>> {

@@ -69,7 +69,7 @@ pub trait ImageConnection: fmt::Debug {
 
     /// Waits for an event that the caller does not know yet: [`Event::Sent`], [`Event::Image`], [`Event::Lost`] or
     /// [`Event::Reopened`]. The future is cancel safe.
-    fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event>;
+    fn next<'a>(&'a mut self, reported: ReportedState<'a>) -> LocalBoxFuture<'a, Event>;
 
     /// Counters of the connection; `None` for a connection without a cycle.
     fn traffic(&self) -> Option<Traffic> {
@@ -93,17 +93,17 @@ pub struct Sizes {
 
 /// State that the caller of [`ImageConnection::next`] already knows.
 #[derive(Debug, Clone, Copy)]
-pub struct Known<'a> {
+pub struct ReportedState<'a> {
     /// Whether the link is up.
     pub is_up: bool,
     /// Last image from the device since the link opened.
     pub image: Option<&'a Arc<[u8]>>,
 }
 
-impl Known<'_> {
+impl ReportedState<'_> {
     /// Whether this image differs from the last image.
     pub fn is_new(&self, image: &[u8]) -> bool {
-        self.is_up && self.image.is_none_or(|known| **known != *image)
+        self.is_up && self.image.is_none_or(|reported| **reported != *image)
     }
 }
 
@@ -241,7 +241,7 @@ impl ImageLink {
     pub async fn next(&mut self, until: Instant) -> Event {
         let event = match &mut self.end {
             End::Local(connection) => {
-                let next = connection.next(Known { is_up: self.is_up, image: self.last_input.as_ref() });
+                let next = connection.next(ReportedState { is_up: self.is_up, image: self.last_input.as_ref() });
                 if Instant::now() < until {
                     timeout_at(until, next).await.unwrap_or(Event::Timeout)
                 } else {

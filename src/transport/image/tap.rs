@@ -8,7 +8,7 @@ use crate::tap::Direction;
 
 /// A recorded item.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Passage {
+pub enum TrafficRecord {
     /// A datagram.
     Datagram {
         /// Sender.
@@ -38,15 +38,15 @@ pub enum Passage {
     Frame(Vec<u8>),
 }
 
-type Look = dyn Fn(Passage) + Send + Sync;
+type TapFunction = dyn Fn(TrafficRecord) + Send + Sync;
 
 /// Function that is called with all traffic, on the threads that send and receive. The function must not block.
 #[derive(Clone, Default)]
-pub struct Tap(Option<Arc<Look>>);
+pub struct Tap(Option<Arc<TapFunction>>);
 
 impl Tap {
     /// Creates a tap that calls this function.
-    pub fn new(tap: impl Fn(Passage) + Send + Sync + 'static) -> Self {
+    pub fn new(tap: impl Fn(TrafficRecord) + Send + Sync + 'static) -> Self {
         Self(Some(Arc::new(tap)))
     }
 
@@ -56,7 +56,7 @@ impl Tap {
     }
 
     /// Records an item. Calls `passed` only if the tap is open.
-    pub fn pass(&self, passed: impl FnOnce() -> Passage) {
+    pub fn pass(&self, passed: impl FnOnce() -> TrafficRecord) {
         if let Some(tap) = &self.0 {
             tap(passed());
         }

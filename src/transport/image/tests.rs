@@ -6,25 +6,25 @@ use std::sync::Mutex;
 use super::*;
 
 /// Received images with their times; `None` means that the connection to the master has ended.
-type Heard = Vec<(Duration, Option<Vec<u8>>)>;
+type ReceivedImages = Vec<(Duration, Option<Vec<u8>>)>;
 
 /// Echo peer: returns each image 3 ms later. The peer is not reachable between the two times in `gone`.
 #[derive(Debug, Default)]
 struct Echo {
-    coming: VecDeque<(Duration, Vec<u8>)>,
+    pending_images: VecDeque<(Duration, Vec<u8>)>,
     shown: Vec<u8>,
     gone: Option<(Duration, Duration)>,
-    heard: Arc<Mutex<Heard>>,
+    received: Arc<Mutex<ReceivedImages>>,
 }
 
 impl ImagePeer for Echo {
     fn input(&mut self, now: Duration, image: Option<&[u8]>) {
-        self.heard.lock().unwrap().push((now, image.map(<[u8]>::to_vec)));
-        self.coming.extend(image.map(|image| (now + Duration::from_millis(3), image.to_vec())));
+        self.received.lock().unwrap().push((now, image.map(<[u8]>::to_vec)));
+        self.pending_images.extend(image.map(|image| (now + Duration::from_millis(3), image.to_vec())));
     }
 
     fn output(&mut self, now: Duration) -> Option<Vec<u8>> {
-        while let Some((_, image)) = self.coming.pop_front_if(|(at, _)| *at <= now) {
+        while let Some((_, image)) = self.pending_images.pop_front_if(|(at, _)| *at <= now) {
             self.shown = image;
         }
         let is_gone = self.gone.is_some_and(|(from, to)| (from..to).contains(&now));
@@ -33,7 +33,7 @@ impl ImagePeer for Echo {
 
     fn wake(&self) -> Option<Duration> {
         let gone = self.gone.into_iter().flat_map(|(from, to)| [from, to]);
-        self.coming.iter().map(|(at, _)| *at).chain(gone).min()
+        self.pending_images.iter().map(|(at, _)| *at).chain(gone).min()
     }
 }
 
@@ -50,9 +50,9 @@ fn image(bytes: &[u8]) -> Event {
 }
 
 #[tokio::test(start_paused = true)]
-async fn images_leave_in_the_rhythm_of_the_link_and_only_news_are_told() {
+async fn sends_images_at_the_interval_and_reports_changes_only() {
     let echo = Echo::default();
-    let heard = Arc::clone(&echo.heard);
+    let received = Arc::clone(&echo.received);
     let mut link = ImageLink::in_process(Box::new(echo));
     assert_eq!(later(&mut link, 10).await, image(&[]));
     link.set_output(b"a").unwrap();
@@ -64,19 +64,19 @@ async fn images_leave_in_the_rhythm_of_the_link_and_only_news_are_told() {
     assert_eq!(later(&mut link, 10).await, image(b"c"));
     assert_eq!(later(&mut link, 10).await, Event::Timeout);
     link.close().await.unwrap();
-    let heard: Vec<(u64, Option<Vec<u8>>)> = heard
+    let received: Vec<(u64, Option<Vec<u8>>)> = received
         .lock()
         .unwrap()
         .iter()
         .map(|(at, image)| (u64::try_from(at.as_millis()).unwrap(), image.clone()))
         .collect();
-    assert_eq!(heard, [(0, Some(b"a".to_vec())), (5, Some(b"c".to_vec())), (18, None)], "b never left");
+    assert_eq!(received, [(0, Some(b"a".to_vec())), (5, Some(b"c".to_vec())), (18, None)], "b never left");
 }
 
 #[tokio::test(start_paused = true)]
-async fn what_was_to_be_sent_before_a_loss_is_not_sent_after_it() {
+async fn drops_unsent_images_at_a_loss() {
     let echo = Echo { gone: Some((at(4), at(20))), ..Echo::default() };
-    let heard = Arc::clone(&echo.heard);
+    let received = Arc::clone(&echo.received);
     let mut link = ImageLink::in_process(Box::new(echo));
     assert_eq!(later(&mut link, 1).await, image(&[]));
     link.set_output(b"a").unwrap();
@@ -90,5 +90,5 @@ async fn what_was_to_be_sent_before_a_loss_is_not_sent_after_it() {
     assert_eq!(later(&mut link, 100).await, Event::Reopened);
     assert_eq!(later(&mut link, 100).await, image(b"a"), "shown again after every opening");
     assert_eq!(later(&mut link, 100).await, Event::Timeout);
-    assert_eq!(heard.lock().unwrap().len(), 1);
+    assert_eq!(received.lock().unwrap().len(), 1);
 }

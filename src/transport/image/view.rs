@@ -54,7 +54,7 @@ pub struct View<E, S, D> {
     /// change.
     pub sent: u64,
     /// Cause of the last loss or of the failed opening. While the connection is open, the last local error.
-    pub trouble: Option<E>,
+    pub last_error: Option<E>,
     /// Counters over all generations.
     pub statistics: S,
     /// Bus-specific details.
@@ -69,7 +69,7 @@ impl<E: BusError, S: Default, D> View<E, S, D> {
             generation: 0,
             input: None,
             sent: 0,
-            trouble: None,
+            last_error: None,
             statistics: S::default(),
             details,
         }
@@ -132,7 +132,7 @@ impl<E: BusError, S: Clone, D: Clone> Views<E, S, D> {
     pub async fn opened(&mut self) -> Result<(), E> {
         let view = self.until(|view| !matches!(view.state, State::Opening | State::Closing)).await;
         match view.state {
-            State::Closed => Err(view.trouble.unwrap_or(E::ENDED)),
+            State::Closed => Err(view.last_error.unwrap_or(E::ENDED)),
             _ => Ok(()),
         }
     }
@@ -143,6 +143,6 @@ impl<E: BusError, S: Clone, D: Clone> Views<E, S, D> {
     /// A new error during the close.
     pub async fn closed(&mut self, before: Option<&E>) -> Result<(), E> {
         let view = self.until(|view| view.state == State::Closed).await;
-        view.trouble.filter(|trouble| before != Some(trouble)).map_or(Ok(()), Err)
+        view.last_error.filter(|last_error| before != Some(last_error)).map_or(Ok(()), Err)
     }
 }

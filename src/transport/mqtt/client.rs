@@ -184,7 +184,7 @@ mod tests {
     use super::*;
 
     #[tokio::test(start_paused = true)]
-    async fn a_broker_that_answers_and_does_not_read_is_left() {
+    async fn leaves_a_broker_that_does_not_read() {
         let hello = Hello {
             version: Version::V3,
             client_id: "cell7".to_owned(),

@@ -17,7 +17,7 @@ use thiserror::Error;
 
 pub use self::client::{Client, Endpoint};
 pub use self::message::{Event, Hello, Message, Refusal, SendError, Version, Will};
-pub use self::session::{LARGEST, Session};
+pub use self::session::{MAX_PACKET_SIZE, Session};
 pub use self::tls::{Identity, Tls, TlsError, Trust};
 use super::tcp::ConnectError;
 
@@ -64,7 +64,7 @@ pub enum Loss {
     #[error("the broker does not read the sent data")]
     Unread,
     /// The broker sent a packet that is larger than the limit.
-    #[error("the broker sends a packet that is longer than {LARGEST} bytes")]
+    #[error("the broker sends a packet that is longer than {MAX_PACKET_SIZE} bytes")]
     TooLarge,
     /// Error of the connection.
     #[error("{0}")]

@@ -15,11 +15,11 @@ use super::message::{Event, Hello, Message, Refusal, SendError, Version};
 use super::{FLOOD, Loss};
 
 /// Maximum size of a packet from a broker, in bytes. Commands and states need a few hundred bytes.
-pub const LARGEST: u32 = 256 * 1024;
+pub const MAX_PACKET_SIZE: u32 = 256 * 1024;
 /// Receive maximum: number of messages that a broker may send before this client has acknowledged them.
 const RECEIVE_MAXIMUM: u16 = 16;
 /// Time limit for the answer to a ping.
-const PONG_WITHIN: Duration = Duration::from_secs(10);
+const PONG_TIMEOUT: Duration = Duration::from_secs(10);
 /// First byte that a broker sends, in version 3.1.1 (section 3.2.1) and also in version 5.
 const CONNACK: u8 = 0x20;
 /// Size limit of a usual answer of a broker. An answer up to this size does not count as flood.
@@ -27,7 +27,7 @@ const ANSWER: u32 = 256;
 /// Maximum number of bytes of acknowledgements that wait to be sent to a broker.
 const REPLIES: usize = 64 * 1024;
 /// Maximum number of characters that a report contains of a text from a broker.
-const LONGEST_TEXT: usize = 200;
+const MAX_TEXT_LEN: usize = 200;
 
 /// A session, from CONNECT to its end. A session cannot be used again.
 pub struct Session {
@@ -94,10 +94,11 @@ impl Session {
             Version::V3 => Spoken::V3_1_1,
             Version::V5 => Spoken::V5_0,
         };
-        let options = ConnectionOptions::new().maximum_packet_size_recv(LARGEST).receive_maximum(RECEIVE_MAXIMUM);
+        let options =
+            ConnectionOptions::new().maximum_packet_size_recv(MAX_PACKET_SIZE).receive_maximum(RECEIVE_MAXIMUM);
         let mut inner = Connection::with_options(spoken, options);
         inner.set_auto_pub_response(true);
-        inner.set_pingresp_recv_timeout(u64::try_from(PONG_WITHIN.as_millis()).unwrap_or(u64::MAX));
+        inner.set_pingresp_recv_timeout(u64::try_from(PONG_TIMEOUT.as_millis()).unwrap_or(u64::MAX));
         let mut session = Self {
             inner,
             version: hello.version,
@@ -411,16 +412,16 @@ fn texts(properties: &Properties) -> (Option<String>, Option<String>) {
     let mut found = (None, None);
     for property in properties {
         match property {
-            Property::ReasonString(reason) => found.0 = Some(cut(reason.val())),
-            Property::ServerReference(server) => found.1 = Some(cut(server.val())),
+            Property::ReasonString(reason) => found.0 = Some(shorten(reason.val())),
+            Property::ServerReference(server) => found.1 = Some(shorten(server.val())),
             _ => {}
         }
     }
     found
 }
 
-fn cut(text: &str) -> String {
-    text.chars().take(LONGEST_TEXT).collect()
+fn shorten(text: &str) -> String {
+    text.chars().take(MAX_TEXT_LEN).collect()
 }
 
 #[cfg(test)]
@@ -463,7 +464,7 @@ mod tests {
     }
 
     #[test]
-    fn hello_is_as_the_standard_has_it() {
+    fn connect_packet_matches_the_standard() {
         // The expected bytes follow MQTT 3.1.1, sections 3.1.1 to 3.1.3: clean session, will with QoS 1 and retain,
         // user name and password.
         let (mut session, _) = started(Version::V3);
@@ -510,7 +511,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_has_its_code_and_its_words() {
+    fn refusal_has_code_and_text() {
         let (mut session, now) = started(Version::V3);
         session.handle(now, &[0x20, 2, 0, 5]);
         assert!(matches!(session.next_event(), Some(Event::Refused(Refusal { code: 5, .. }))));
@@ -531,12 +532,12 @@ mod tests {
         assert!(ping <= now + Duration::from_secs(30));
         session.poll(ping);
         assert!(session.outgoing().ends_with(&[0xc0, 0]), "{:?}", session.outgoing());
-        session.poll(ping + PONG_WITHIN);
+        session.poll(ping + PONG_TIMEOUT);
         assert!(matches!(session.next_event(), Some(Event::Lost(Loss::Silent))));
     }
 
     #[test]
-    fn what_is_too_large_or_makes_no_sense_ends_it() {
+    fn oversized_or_invalid_packet_ends_the_session() {
         let (mut session, now) = connected(Version::V3);
         // A PUBLISH that states a length of 256 MB.
         session.handle(now, &[0x30, 0xff, 0xff, 0xff, 0x7f, 1, 2, 3]);
@@ -551,7 +552,7 @@ mod tests {
     }
 
     #[test]
-    fn a_second_connack_breaks_the_protocol() {
+    fn second_connack_is_a_protocol_error() {
         for (version, connack) in [(Version::V3, &[0x20, 2, 0, 0][..]), (Version::V5, &[0x20, 3, 0, 0, 0])] {
             let (mut session, now) = connected(version);
             session.handle(now, &connack.repeat(4096));
@@ -563,7 +564,7 @@ mod tests {
 
     /// Handles the same packet again and again, with the pause `apart`. Returns the number of packets that the session
     /// accepted, and the reason for which it ended.
-    fn taken(packet: &[u8], apart: Duration, most: usize) -> (usize, Option<String>) {
+    fn accepted_packets(packet: &[u8], apart: Duration, most: usize) -> (usize, Option<String>) {
         let (mut session, now) = connected(Version::V3);
         let mut at = now;
         for number in 0..most {
@@ -580,18 +581,18 @@ mod tests {
     }
 
     #[test]
-    fn a_broker_sends_so_much_in_a_time_and_no_more() {
+    fn limits_the_rate_of_a_broker() {
         let large = [&[0x30, 0xff, 0xff, 0x07, 0, 1, b'a'][..], &vec![b'x'; 131_068]].concat();
         for (packet, most) in [(&[0x30, 3, 0, 1, b'a'][..], 1000), (&[0xd0, 0], 1000), (&large, 31)] {
-            let (count, why) = taken(packet, Duration::ZERO, 5000);
+            let (count, why) = accepted_packets(packet, Duration::ZERO, 5000);
             assert_eq!(count, most);
             assert!(why.unwrap().contains("it sends too much"));
-            assert_eq!(taken(packet, Duration::from_secs(1), 5000), (5000, None), "what is slow goes on");
+            assert_eq!(accepted_packets(packet, Duration::from_secs(1), 5000), (5000, None), "what is slow goes on");
         }
     }
 
     #[test]
-    fn answers_are_no_flood() {
+    fn expected_answers_do_not_count_as_a_flood() {
         let (mut session, now) = connected(Version::V5);
         // Each acknowledgement contains a reason of 100 letters.
         let mut puback = vec![0x40, 107, 0, 0, 0, 103, 0x1f, 0, 100];
@@ -609,7 +610,7 @@ mod tests {
     }
 
     #[test]
-    fn replies_that_are_not_read_are_bounded() {
+    fn limits_unread_replies() {
         let (mut session, now) = connected(Version::V3);
         session.outgoing().clear();
         // One packet every 100 ms does not count as flood. The test sends no output, so the replies wait.
@@ -623,7 +624,7 @@ mod tests {
     }
 
     #[test]
-    fn topics_that_are_none_do_not_leave() {
+    fn rejects_invalid_topics() {
         let (mut session, now) = connected(Version::V5);
         session.outgoing().clear();
         for topic in ["", "a/+/b", "a/#", "a\0b"] {

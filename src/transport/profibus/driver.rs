@@ -12,14 +12,14 @@ use super::error::ProfibusError;
 use super::master::{Master, State, View, Views};
 use super::port::Port;
 use super::settings::Settings;
-use super::survey::{Found, Survey};
+use super::survey::{StationResult, Survey};
 use super::wire::{Piece, Stream};
 use crate::plain;
 
 /// Longest wait at the port. After each wait, the thread checks whether the link was closed.
-const SLICE: Duration = Duration::from_millis(10);
+const READ_TIMEOUT: Duration = Duration::from_millis(10);
 /// Pause before the port is reopened after a loss.
-const AGAIN: Duration = Duration::from_secs(1);
+const REOPEN_PAUSE: Duration = Duration::from_secs(1);
 
 /// Function that opens the port, for the first time and after a loss.
 pub type Opener = Box<dyn FnMut() -> Result<Box<dyn Port>, ProfibusError> + Send>;
@@ -151,7 +151,7 @@ impl Driver {
             self.record(&bytes, true);
             return port.send(&bytes);
         }
-        let wait = due.map_or(SLICE, |due| due.saturating_sub(self.shared.start.elapsed()).min(SLICE));
+        let wait = due.map_or(READ_TIMEOUT, |due| due.saturating_sub(self.shared.start.elapsed()).min(READ_TIMEOUT));
         let mut buffer = [0; 512];
         let len = port.receive(&mut buffer, wait)?;
         if len > 0 {
@@ -163,12 +163,12 @@ impl Driver {
 
     /// Reopens the port after a pause.
     fn reopen(&mut self) {
-        let until = Instant::now() + AGAIN;
+        let until = Instant::now() + REOPEN_PAUSE;
         while Instant::now() < until {
             if self.shared.is_over.load(Ordering::SeqCst) || self.shared.master().view().state != State::Lost {
                 break;
             }
-            thread::sleep(SLICE);
+            thread::sleep(READ_TIMEOUT);
         }
         let now = self.shared.start.elapsed();
         if self.shared.master().view().state != State::Lost {
@@ -216,14 +216,14 @@ impl Record {
 }
 
 /// Runs a survey. The call blocks the thread.
-pub fn survey(survey: &mut Survey, port: &mut dyn Port, tap: Option<Tap>) -> Result<Vec<Found>, ProfibusError> {
+pub fn survey(survey: &mut Survey, port: &mut dyn Port, tap: Option<Tap>) -> Result<Vec<StationResult>, ProfibusError> {
     let start = Instant::now();
     let mut record = tap.map(Record::new);
     let gone = |error: io::Error| ProfibusError::Gone { text: plain(&error) };
     let mut buffer = [0; 512];
     loop {
         if let Some(result) = survey.result() {
-            return result.map(<[Found]>::to_vec);
+            return result.map(<[StationResult]>::to_vec);
         }
         if let Some(bytes) = survey.poll(start.elapsed()) {
             if let Some(record) = &mut record {
@@ -232,7 +232,7 @@ pub fn survey(survey: &mut Survey, port: &mut dyn Port, tap: Option<Tap>) -> Res
             port.send(&bytes).map_err(gone)?;
             continue;
         }
-        let wait = survey.due().saturating_sub(start.elapsed()).min(SLICE);
+        let wait = survey.due().saturating_sub(start.elapsed()).min(READ_TIMEOUT);
         let len = port.receive(&mut buffer, wait).map_err(gone)?;
         if let Some(record) = record.as_mut().filter(|_| len > 0) {
             record.pass(&buffer[..len], false);

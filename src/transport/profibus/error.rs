@@ -45,18 +45,18 @@ pub enum ProfibusError {
         bytes: usize,
     },
     /// The station did not answer.
-    #[error("no answer from station {station} to {asked} ({attempts} attempts, {} ms each{heard})", slot.as_millis())]
+    #[error("no answer from station {station} to {request_name} ({attempts} attempts, {} ms each{heard})", slot.as_millis())]
     NoAnswer {
         /// Address of the station.
         station: u8,
         /// Name of the request.
-        asked: &'static str,
+        request_name: &'static str,
         /// Number of attempts.
         attempts: u8,
         /// Time limit per attempt.
         slot: Duration,
         /// What was received instead.
-        heard: Heard,
+        heard: UnexpectedBytes,
     },
     /// The station is a master.
     #[error("station {station} is a master, not a slave")]
@@ -65,22 +65,22 @@ pub enum ProfibusError {
         station: u8,
     },
     /// The station refused.
-    #[error("station {station} refused {asked}: {}", status.text())]
+    #[error("station {station} refused {request_name}: {}", status.text())]
     Refused {
         /// Address of the station.
         station: u8,
         /// Name of the request.
-        asked: &'static str,
+        request_name: &'static str,
         /// Status of the answer.
         status: Status,
     },
     /// The answer cannot be decoded.
-    #[error("cannot decode the answer of station {station} to {asked}: {why}")]
+    #[error("cannot decode the answer of station {station} to {request_name}: {why}")]
     Malformed {
         /// Address of the station.
         station: u8,
         /// Name of the request.
-        asked: &'static str,
+        request_name: &'static str,
         /// What is wrong with the answer.
         why: String,
     },
@@ -133,14 +133,14 @@ pub enum ProfibusError {
         sent: Vec<u8>,
     },
     /// The slave reports a configuration fault.
-    #[error("station {station} refuses the configuration {}; {}", hex(sent), wants(wanted.as_deref()))]
+    #[error("station {station} refuses the configuration {}; {}", hex(sent), wants(reported_configuration.as_deref()))]
     ConfigurationFault {
         /// Address of the station.
         station: u8,
         /// Configuration sent.
         sent: Vec<u8>,
         /// Configuration that the slave reports (Get_Cfg).
-        wanted: Option<Vec<u8>>,
+        reported_configuration: Option<Vec<u8>>,
     },
     /// Another master has locked the slave.
     #[error("master {} owns station {station}", master.map_or_else(|| "?".to_owned(), |master| master.to_string()))]
@@ -197,14 +197,14 @@ impl BusError for ProfibusError {
 
 /// What was received instead of an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Heard {
+pub struct UnexpectedBytes {
     /// Whether noise or a damaged telegram was received.
     pub noise: bool,
     /// Whether the adapter echoed the bytes that were sent.
     pub echo: bool,
 }
 
-impl std::fmt::Display for Heard {
+impl std::fmt::Display for UnexpectedBytes {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match (self.noise, self.echo) {
             (false, false) => "; no bytes received",
@@ -220,9 +220,9 @@ pub fn hex(bytes: &[u8]) -> String {
     if bytes.is_empty() { "(empty)".to_owned() } else { bytes.iter().map(|byte| format!("{byte:02X}")).collect() }
 }
 
-fn wants(wanted: Option<&[u8]>) -> String {
-    wanted.map_or_else(
+fn wants(reported_configuration: Option<&[u8]>) -> String {
+    reported_configuration.map_or_else(
         || "it does not report the configuration that it needs".to_owned(),
-        |wanted| format!("it needs {}", hex(wanted)),
+        |reported_configuration| format!("it needs {}", hex(reported_configuration)),
     )
 }

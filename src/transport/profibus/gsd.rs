@@ -327,7 +327,7 @@ EndModule
 "#;
 
     #[test]
-    fn a_file_says_what_a_master_must_know() {
+    fn parses_all_values_for_a_master() {
         let gsd = Gsd::parse(FILE.as_bytes()).unwrap();
         assert_eq!((gsd.vendor.as_str(), gsd.model.as_str()), ("Somebody; else", "Robot"));
         assert_eq!((gsd.ident, gsd.family, gsd.is_modular), (0x1234, Some(3), true));
@@ -342,7 +342,7 @@ EndModule
     }
 
     #[test]
-    fn what_is_wrong_is_named_with_line_and_keyword() {
+    fn errors_have_line_and_keyword() {
         for (from, to, message) in [
             ("0x1234", "0x12345", "line 6: Ident_Number: it must have two bytes"),
             ("Ident_Number = 0x1234", "", "line 1: Ident_Number: it is missing"),

@@ -9,21 +9,21 @@ use futures_util::future::LocalBoxFuture;
 
 use super::driver::{Connection, Opener};
 use super::error::ProfibusError;
-use super::hearing::Hearing;
+use super::listener_driver::ListenerDriver;
 use super::master::{Details, Statistics, View, Views};
 use super::settings::Settings;
 use crate::image::cyclic::{Bus, Cyclic};
-use crate::image::tap::{Passage, Tap};
-use crate::image::{Cause, Event, ImageConnection, Known, LinkError, Outputs, Sizes, Traffic};
+use crate::image::tap::{Tap, TrafficRecord};
+use crate::image::{Cause, Event, ImageConnection, LinkError, Outputs, ReportedState, Sizes, Traffic};
 
 /// Byte order of an image. Some boards send the two bytes of a word in exchanged order, in a part of the image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Swapped {
+pub struct ByteSwap {
     /// Number of bytes at the start of the image whose pairs are exchanged.
     pub bytes: usize,
 }
 
-impl Swapped {
+impl ByteSwap {
     fn turn(self, image: &mut [u8]) {
         let (pairs, _) = image.split_at_mut(self.bytes.min(image.len()));
         for pair in pairs.chunks_exact_mut(2) {
@@ -45,21 +45,21 @@ pub type Master = Cyclic<Slave>;
 #[derive(Debug)]
 pub struct Slave {
     connection: Connection,
-    swapped: Swapped,
+    byte_swap: ByteSwap,
 }
 
 impl Master {
     /// Opens the port and the link. The resting image in the settings has the byte order of the controller.
     pub async fn open(
         mut settings: Settings,
-        swapped: Swapped,
+        byte_swap: ByteSwap,
         opener: Opener,
         tap: Tap,
     ) -> Result<Self, ProfibusError> {
-        swapped.turn(&mut settings.resting);
+        byte_swap.turn(&mut settings.resting);
         let sizes = Sizes { output: settings.output_size, input: settings.input_size };
         let connection = Connection::open(settings, opener, record(tap)).await?;
-        Ok(Self::over(Slave { connection, swapped }, sizes))
+        Ok(Self::over(Slave { connection, byte_swap }, sizes))
     }
 }
 
@@ -73,15 +73,15 @@ impl Bus for Slave {
     }
 
     fn set_image(&mut self, generation: u32, image: &[u8]) -> Result<u64, ProfibusError> {
-        self.connection.set_image(generation, &self.swapped.native_order(image))
+        self.connection.set_image(generation, &self.byte_swap.native_order(image))
     }
 
     fn native_order(&self, image: Arc<[u8]>) -> Arc<[u8]> {
-        self.swapped.native_order(&image).into()
+        self.byte_swap.native_order(&image).into()
     }
 
     fn loss(&self, view: View) -> (Cause, Outputs) {
-        let error = view.trouble.unwrap_or(ProfibusError::Outdated);
+        let error = view.last_error.unwrap_or(ProfibusError::Outdated);
         let outputs = match error {
             ProfibusError::Left { .. } => Outputs::Released,
             _ => Outputs::ReleasedWithin(view.details.watchdog),
@@ -91,15 +91,15 @@ impl Bus for Slave {
 
     fn traffic(&self) -> Traffic {
         let view = self.connection.view();
-        let counted = view.statistics;
+        let counters = view.statistics;
         let irregular = vec![
-            (counted.repeated, "repeated"),
-            (counted.noise, "bytes of noise"),
-            (counted.unexpected, "unexpected"),
-            (counted.skipped, "not sent in time"),
+            (counters.repeated, "repeated"),
+            (counters.noise, "bytes of noise"),
+            (counters.unexpected, "unexpected"),
+            (counters.skipped, "not sent in time"),
         ];
         let intervals = Some((view.details.cycle, view.details.cycle));
-        Traffic { sent: counted.sent, received: counted.received, intervals, irregular }
+        Traffic { sent: counters.sent, received: counters.received, intervals, irregular }
     }
 
     fn close(self) -> LocalBoxFuture<'static, Result<(), ProfibusError>> {
@@ -110,8 +110,8 @@ impl Bus for Slave {
 /// Images that a slave exchanges with another master. This link only receives, and sends nothing.
 #[derive(Debug)]
 pub struct Listening {
-    hearing: Hearing,
-    swapped: Swapped,
+    hearing: ListenerDriver,
+    byte_swap: ByteSwap,
     size: usize,
     silence: Duration,
 }
@@ -121,32 +121,32 @@ impl Listening {
     pub async fn open(
         station: u8,
         size: usize,
-        swapped: Swapped,
+        byte_swap: ByteSwap,
         opener: Opener,
         tap: Tap,
         silence: Duration,
     ) -> Result<Self, ProfibusError> {
-        let mut hearing = Hearing::start(station, opener, record(tap))?;
+        let mut hearing = ListenerDriver::start(station, opener, record(tap))?;
         let heard = hearing.until(silence, |heard| heard.input.is_some()).await?;
         let found = heard.input.map_or(0, |input| input.len());
         if found < size {
             return Err(ProfibusError::Length { station, found, expected: size });
         }
-        Ok(Self { hearing, swapped, size, silence })
+        Ok(Self { hearing, byte_swap, size, silence })
     }
 
-    async fn wait(&mut self, known: Known<'_>) -> Event {
+    async fn wait(&mut self, reported: ReportedState<'_>) -> Event {
         loop {
             let before = self.hearing.heard().exchanges;
-            if let Some(input) = self.hearing.heard().input.clone().filter(|_| known.is_up) {
-                let image: Arc<[u8]> = self.swapped.native_order(&input).into();
-                if known.is_new(&image) {
+            if let Some(input) = self.hearing.heard().input.clone().filter(|_| reported.is_up) {
+                let image: Arc<[u8]> = self.byte_swap.native_order(&input).into();
+                if reported.is_new(&image) {
                     return Event::Image(image);
                 }
             }
             match self.hearing.until(self.silence, |heard| heard.exchanges != before).await {
-                Ok(_) if !known.is_up => return Event::Reopened,
-                Err(error) if known.is_up => {
+                Ok(_) if !reported.is_up => return Event::Reopened,
+                Err(error) if reported.is_up => {
                     let cause = LinkError::from(error).cause().clone();
                     return Event::Lost(LinkError::Lost { cause, outputs: Outputs::Never });
                 }
@@ -163,14 +163,14 @@ impl ImageConnection for Listening {
         Sizes { output: 0, input: self.size }
     }
 
-    fn next<'a>(&'a mut self, known: Known<'a>) -> LocalBoxFuture<'a, Event> {
-        self.wait(known).boxed_local()
+    fn next<'a>(&'a mut self, reported: ReportedState<'a>) -> LocalBoxFuture<'a, Event> {
+        self.wait(reported).boxed_local()
     }
 }
 
 /// Converts a fieldbus tap to a tap for telegrams.
 pub fn record(tap: Tap) -> Option<super::driver::Tap> {
-    let record = move |bytes: &[u8]| tap.pass(|| Passage::Frame(bytes.to_vec()));
+    let record = move |bytes: &[u8]| tap.pass(|| TrafficRecord::Frame(bytes.to_vec()));
     Some(Box::new(record) as super::driver::Tap)
 }
 

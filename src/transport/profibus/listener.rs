@@ -7,7 +7,7 @@ use super::wire::{Control, Frame, Piece, Service, Status, Stream, Telegram};
 
 /// Traffic that was received so far.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Heard {
+pub struct BusTraffic {
     /// Last input image of the slave.
     pub input: Option<Arc<[u8]>>,
     /// Last output image of the slave.
@@ -28,18 +28,18 @@ pub struct Listener {
     station: u8,
     stream: Stream,
     /// Last request for a data exchange that has no answer yet: its master, and the output image.
-    asked: Option<(u8, Vec<u8>)>,
-    heard: Heard,
+    last_request: Option<(u8, Vec<u8>)>,
+    heard: BusTraffic,
 }
 
 impl Listener {
     /// Creates a listener for the slave with this address.
     pub fn new(station: u8) -> Self {
-        Self { station, stream: Stream::default(), asked: None, heard: Heard::default() }
+        Self { station, stream: Stream::default(), last_request: None, heard: BusTraffic::default() }
     }
 
     /// Traffic that was received so far.
-    pub const fn heard(&self) -> &Heard {
+    pub const fn heard(&self) -> &BusTraffic {
         &self.heard
     }
 
@@ -65,7 +65,7 @@ impl Listener {
             Frame { to, from, control: Control::Request(service, _), to_sap: None, from_sap: None, data }
                 if to == self.station && matches!(service, Service::SendRequestHigh | Service::SendRequestLow) =>
             {
-                self.asked = Some((from, data));
+                self.last_request = Some((from, data));
             }
             // A data exchange is complete only when the answer to the last request arrives. Until then, the slave may
             // not have accepted the image.
@@ -77,13 +77,15 @@ impl Listener {
                 from_sap: None,
                 data,
             } if from == self.station => {
-                let Some((master, output)) = self.asked.take_if(|asked| asked.0 == to) else { return };
+                let Some((master, output)) = self.last_request.take_if(|last_request| last_request.0 == to) else {
+                    return;
+                };
                 self.heard.master = Some(master);
                 self.heard.output = Some(output.into());
                 self.heard.input = Some(data.into());
                 self.heard.exchanges += 1;
             }
-            _ => self.asked = None,
+            _ => self.last_request = None,
         }
     }
 }
@@ -94,7 +96,7 @@ mod tests {
     use crate::testing::hex;
 
     #[test]
-    fn both_images_are_heard_in_the_middle_of_everything_else() {
+    fn listener_finds_both_images_in_other_traffic() {
         let line = hex(concat!(
             "DC 02 02 FF 10 05 02 49 50 16",
             "68 06 06 68 05 02 7D 01 02 03 8A 16",
@@ -114,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_to_something_else_is_no_image() {
+    fn ignores_answers_to_other_requests_of_the_bus() {
         let mut listener = Listener::new(5);
         // Either the request to this answer was not received, or another station answered. So the answer is not used.
         assert!(!listener.handle(&hex("68 05 05 68 02 05 08 AA BB 74 16")));

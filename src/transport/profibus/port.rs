@@ -12,20 +12,20 @@ use serialport::{DataBits, Parity, SerialPort, StopBits};
 use super::error::ProfibusError;
 use super::rates::Rate;
 use super::settings::Settings;
+use crate::closed_error;
 use crate::fault::LineFaultSpec;
 use crate::line::Wire;
 use crate::serial::{self, Line, OpenError};
 use crate::sim::Peer;
-use crate::vanished;
 
 /// Maximum deviation of the bit rate that the bus allows, in thousandths.
-const MOST_OFF: u32 = 3;
+const MAX_BAUD_DEVIATION: u32 = 3;
 /// Longest latency timer of a USB adapter, in ms, that is acceptable. A longer timer can delay an answer by more than
 /// the slot time.
 const LATENCY: u32 = 1;
 
 /// Size limit of the file that contains the latency timer.
-const LONGEST_TIME: u64 = 64;
+const MAX_LATENCY_MS: u64 = 64;
 
 /// A port with blocking reads.
 pub trait Port: fmt::Debug + Send {
@@ -58,7 +58,7 @@ impl Serial {
             parity: Parity::Even,
             stop_bits: StopBits::One,
         };
-        let port = serial::open(&line, MOST_OFF).map_err(|error| {
+        let port = serial::open(&line, MAX_BAUD_DEVIATION).map_err(|error| {
             let text = match error {
                 OpenError::Unsupported(what) => {
                     format!("the adapter does not support {} with even parity: {what}", rate.name)
@@ -73,14 +73,14 @@ impl Serial {
 
 impl Port for Serial {
     fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        io::Write::write_all(&mut self.port, bytes).map_err(vanished)
+        io::Write::write_all(&mut self.port, bytes).map_err(closed_error)
     }
 
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
         // A timeout of 0 is avoided, because some drivers then wait without limit.
-        self.port.set_timeout(wait.max(Duration::from_micros(50))).map_err(vanished)?;
+        self.port.set_timeout(wait.max(Duration::from_micros(50))).map_err(closed_error)?;
         match io::Read::read(&mut self.port, buffer) {
-            Ok(0) => Err(vanished("the port was closed")),
+            Ok(0) => Err(closed_error("the port was closed")),
             Ok(len) => Ok(len),
             Err(error)
                 if matches!(
@@ -90,7 +90,7 @@ impl Port for Serial {
             {
                 Ok(0)
             }
-            Err(error) => Err(vanished(error)),
+            Err(error) => Err(closed_error(error)),
         }
     }
 }
@@ -101,7 +101,7 @@ pub fn latency_timer(path: &str) -> Option<u32> {
     let path = std::fs::canonicalize(path).ok()?;
     let name = path.file_name()?;
     let file = Path::new("/sys/class/tty").join(name).join("device/latency_timer");
-    let text = files::text(&file, LONGEST_TIME).ok()?;
+    let text = files::text(&file, MAX_LATENCY_MS).ok()?;
     text.trim().parse().ok().filter(|time| *time > LATENCY)
 }
 

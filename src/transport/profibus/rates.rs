@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn speeds_have_names() {
+    fn bit_rates_have_names() {
         for rate in RATES {
             assert_eq!(Rate::from_name(rate.name), Some(rate));
             assert_eq!(Rate::from_baud(rate.baud), Some(rate));

@@ -8,14 +8,14 @@ use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
 
 use super::Now;
-use super::error::Heard;
+use super::error::UnexpectedBytes;
 use super::rates::{IDLE, Rate, SYNC};
 use super::wire::{Control, Frame, FrameCount, Piece, Service, Status, Stream, Telegram};
 
 /// Number of sent telegrams that are kept to detect the echo of an adapter.
-const REMEMBERED: usize = 4;
+const ECHO_HISTORY_LEN: usize = 4;
 /// Maximum length of an answer in characters.
-const LONGEST: usize = 255;
+const MAX_ANSWER_LEN: usize = 255;
 
 /// Outcome of a request. Also reports traffic of another master.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -27,7 +27,7 @@ pub enum Outcome {
         /// Number of attempts.
         attempts: u8,
         /// What was received instead.
-        heard: Heard,
+        heard: UnexpectedBytes,
     },
     /// Another master is active. Contains its address, and the traffic that shows this.
     Foreign(u8, &'static str),
@@ -44,7 +44,7 @@ pub enum Answer {
 
 /// Counters of the requests and answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counted {
+pub struct Counters {
     /// Number of repeated requests.
     pub repeated: u64,
     /// Number of bytes that are not part of a telegram.
@@ -56,7 +56,7 @@ pub struct Counted {
 /// Sender of requests.
 #[derive(Debug)]
 pub struct Requester {
-    here: u8,
+    own_address: u8,
     rate: Rate,
     slot: Duration,
     retries: u8,
@@ -67,12 +67,12 @@ pub struct Requester {
     sent: VecDeque<Vec<u8>>,
     echoes: bool,
     /// Whether noise was received after the last send. If so, the next bytes may be the inside of a damaged telegram.
-    is_spoilt: bool,
+    is_garbled: bool,
     /// Sender and time of the last token.
     token: Option<(u8, Now)>,
     /// Earliest time of the next request.
-    free: Now,
-    counted: Counted,
+    next_request_at: Now,
+    counters: Counters,
 }
 
 #[derive(Debug)]
@@ -83,14 +83,14 @@ struct Pending {
     deadline: Now,
     /// Latest possible deadline. Each received character extends the deadline, but not beyond this time.
     latest: Now,
-    heard: Heard,
+    heard: UnexpectedBytes,
 }
 
 impl Requester {
     /// Creates a requester for a master with this address.
-    pub fn new(here: u8, rate: Rate, slot: Duration, retries: u8) -> Self {
+    pub fn new(own_address: u8, rate: Rate, slot: Duration, retries: u8) -> Self {
         Self {
-            here,
+            own_address,
             rate,
             slot,
             retries,
@@ -99,16 +99,16 @@ impl Requester {
             pending: None,
             sent: VecDeque::new(),
             echoes: false,
-            is_spoilt: false,
+            is_garbled: false,
             token: None,
-            free: Now::ZERO,
-            counted: Counted::default(),
+            next_request_at: Now::ZERO,
+            counters: Counters::default(),
         }
     }
 
     /// Counters of the requests and answers.
-    pub const fn counted(&self) -> Counted {
-        self.counted
+    pub const fn counters(&self) -> Counters {
+        self.counters
     }
 
     /// Whether the adapter echoes the bytes that are sent.
@@ -123,14 +123,14 @@ impl Requester {
 
     /// Earliest time to send or repeat a request.
     pub fn due(&self) -> Now {
-        self.pending.as_ref().map_or(self.free, |pending| pending.deadline)
+        self.pending.as_ref().map_or(self.next_request_at, |pending| pending.deadline)
     }
 
     /// Creates a request with data. With `sap`, the request is for this service access point of the station.
     pub fn request(&self, service: Service, station: u8, sap: Option<u8>, data: Vec<u8>) -> Frame {
         Frame {
             to: station,
-            from: self.here,
+            from: self.own_address,
             control: Control::Request(service, FrameCount::None),
             to_sap: sap,
             from_sap: sap.map(|_| super::wire::sap::MASTER),
@@ -153,16 +153,16 @@ impl Requester {
         self.stream.clear();
         let bytes = frame.emit();
         let (deadline, latest) = self.deadlines(now, bytes.len());
-        let heard = Heard::default();
+        let heard = UnexpectedBytes::default();
         self.pending = Some(Pending { frame, bytes: bytes.clone(), attempts: 1, deadline, latest, heard });
         self.remember(&bytes);
         bytes
     }
 
     /// Encodes a telegram that has no answer.
-    pub fn tell(&mut self, now: Now, telegram: &Telegram) -> Vec<u8> {
+    pub fn encode_unanswered(&mut self, now: Now, telegram: &Telegram) -> Vec<u8> {
         let bytes = telegram.emit();
-        self.free = now + self.rate.pace().time(bytes.len()) + self.rate.bits(IDLE);
+        self.next_request_at = now + self.rate.pace().time(bytes.len()) + self.rate.bits(IDLE);
         self.remember(&bytes);
         bytes
     }
@@ -175,14 +175,14 @@ impl Requester {
 
     /// Delays the next request until this time.
     pub fn wait(&mut self, until: Now) {
-        self.free = self.free.max(until);
+        self.next_request_at = self.next_request_at.max(until);
     }
 
     /// Handles received bytes. The caller repeats the call without bytes until it returns `None`.
     pub fn handle(&mut self, now: Now, bytes: &[u8]) -> Option<Outcome> {
         self.stream.push(bytes);
         if !bytes.is_empty() {
-            self.free = self.free.max(now + self.rate.bits(IDLE));
+            self.next_request_at = self.next_request_at.max(now + self.rate.bits(IDLE));
         }
         let mut outcome = None;
         while outcome.is_none()
@@ -209,30 +209,30 @@ impl Requester {
             let (attempts, heard) = (pending.attempts, pending.heard);
             let station = pending.frame.to;
             self.forget(station);
-            self.free = now + self.rate.bits(SYNC);
+            self.next_request_at = now + self.rate.bits(SYNC);
             return Some(Err(Outcome::NoAnswer { attempts, heard }));
         }
         pending.attempts += 1;
         let bytes = pending.bytes.clone();
-        self.counted.repeated += 1;
+        self.counters.repeated += 1;
         let (deadline, latest) = self.deadlines(now, bytes.len());
         if let Some(pending) = &mut self.pending {
             (pending.deadline, pending.latest) = (deadline, latest);
         }
-        self.is_spoilt = false;
+        self.is_garbled = false;
         Some(Ok(bytes))
     }
 
     /// Deadline for the start of an answer, and latest deadline for its end.
     fn deadlines(&self, now: Now, len: usize) -> (Now, Now) {
         let begun = now + self.rate.pace().time(len) + self.slot;
-        (begun, begun + self.rate.pace().time(LONGEST) + self.slot)
+        (begun, begun + self.rate.pace().time(MAX_ANSWER_LEN) + self.slot)
     }
 
     fn remember(&mut self, bytes: &[u8]) {
-        self.is_spoilt = false;
+        self.is_garbled = false;
         self.sent.push_back(bytes.to_vec());
-        while self.sent.len() > REMEMBERED {
+        while self.sent.len() > ECHO_HISTORY_LEN {
             self.sent.pop_front();
         }
     }
@@ -241,8 +241,8 @@ impl Requester {
         let (telegram, bytes) = match piece {
             Piece::Telegram(telegram, bytes) => (telegram, bytes),
             Piece::Noise(..) => {
-                self.counted.noise += 1;
-                self.is_spoilt = true;
+                self.counters.noise += 1;
+                self.is_garbled = true;
                 if let Some(pending) = &mut self.pending {
                     pending.heard.noise = true;
                 }
@@ -256,7 +256,7 @@ impl Requester {
         let answer = match telegram {
             // Tokens and short acknowledgements have no checksum. After noise, they may be a part of a damaged
             // telegram.
-            Telegram::Token { .. } | Telegram::ShortAcknowledge if self.is_spoilt => return None,
+            Telegram::Token { .. } | Telegram::ShortAcknowledge if self.is_garbled => return None,
             Telegram::Token { from, .. } => return self.heard_token(now, from),
             Telegram::Frame(frame) => match frame.control {
                 Control::Request(..) => return Some(Outcome::Foreign(frame.from, "it sent a request")),
@@ -264,8 +264,8 @@ impl Requester {
             },
             Telegram::ShortAcknowledge => Answer::Short,
         };
-        let Some(pending) = self.pending.take_if(|pending| answers(&pending.frame, &answer)) else {
-            self.counted.unexpected += 1;
+        let Some(pending) = self.pending.take_if(|pending| is_answer_to(&pending.frame, &answer)) else {
+            self.counters.unexpected += 1;
             return None;
         };
         if let Control::Request(service, count) = pending.frame.control
@@ -276,34 +276,34 @@ impl Requester {
         // After a repetition, the answer to the earlier attempt may still arrive. The longer pause ensures that it is
         // not mistaken for the answer to the next request.
         let pause = if pending.attempts > 1 { self.slot } else { self.rate.bits(IDLE) };
-        self.free = now + pause;
+        self.next_request_at = now + pause;
         Some(Outcome::Answer(answer))
     }
 
     fn heard_token(&mut self, now: Now, from: u8) -> Option<Outcome> {
         let before = self.token.replace((from, now));
-        let is_sure = before.is_some_and(|(other, at)| other == from && now.saturating_sub(at) <= CHANCE);
+        let is_sure = before.is_some_and(|(other, at)| other == from && now.saturating_sub(at) <= TOKEN_WINDOW);
         is_sure.then_some(Outcome::Foreign(from, "it passed the token"))
     }
 }
 
 /// If two tokens of the same master arrive within this time, they cannot be noise.
-const CHANCE: Duration = Duration::from_secs(1);
+const TOKEN_WINDOW: Duration = Duration::from_secs(1);
 
 /// Whether this is a possible answer to the request.
-fn answers(asked: &Frame, answer: &Answer) -> bool {
+fn is_answer_to(request_name: &Frame, answer: &Answer) -> bool {
     match answer {
         // A short acknowledgement does not contain its sender. It is not a valid answer to an FDL status request.
-        Answer::Short => asked.control != Control::Request(Service::FdlStatus, FrameCount::None),
+        Answer::Short => request_name.control != Control::Request(Service::FdlStatus, FrameCount::None),
         Answer::Frame(frame) => {
-            let is_from = frame.from == asked.to && frame.to == asked.from;
+            let is_from = frame.from == request_name.to && frame.to == request_name.from;
             let refuses = matches!(
                 frame.control,
                 Control::Answer(_, Status::NoService | Status::UserError | Status::NoResource | Status::NoData)
             );
             let saps = (frame.to_sap, frame.from_sap);
             // A refusal may omit the service access points.
-            is_from && (saps == (asked.from_sap, asked.to_sap) || refuses && saps == (None, None))
+            is_from && (saps == (request_name.from_sap, request_name.to_sap) || refuses && saps == (None, None))
         }
     }
 }

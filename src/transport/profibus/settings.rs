@@ -15,7 +15,7 @@ const RETRIES: u8 = 3;
 /// Minimum watchdog time in cycles.
 const CYCLES: u32 = 5;
 /// Longest valid cycle and slot time.
-const LONGEST: Duration = Duration::from_secs(10);
+const MAX_TIME: Duration = Duration::from_secs(10);
 
 /// Settings of a link. `None` means a default value or automatic detection.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -107,27 +107,27 @@ impl Settings {
             self.fits(&configuration)?;
         }
         let slot = self.slot.unwrap_or_else(|| self.usual_slot());
-        if slot < self.rate.bits(self.rate.slot) || slot > LONGEST {
+        if slot < self.rate.bits(self.rate.slot) || slot > MAX_TIME {
             let least = self.rate.bits(self.rate.slot);
             return wrong(format!(
-                "the slot time at {} must be {least:?} to {LONGEST:?}, not {slot:?}",
+                "the slot time at {} must be {least:?} to {MAX_TIME:?}, not {slot:?}",
                 self.rate.name
             ));
         }
         let usual = Duration::from_millis(self.rate.cycle_ms);
         let cycle = self.cycle.unwrap_or(usual);
-        if cycle > LONGEST {
-            return wrong(format!("the cycle must be at most {LONGEST:?}, not {cycle:?}"));
+        if cycle > MAX_TIME {
+            return wrong(format!("the cycle must be at most {MAX_TIME:?}, not {cycle:?}"));
         }
         let exchange = self.rate.exchange(self.output_size, self.input_size);
         let attempt = exchange + slot;
         let least = (cycle.max(exchange)) * CYCLES + attempt * (u32::from(self.retries) + 1);
-        let wanted = self.watchdog.unwrap_or_else(|| least.max(WATCHDOG));
-        if wanted < least {
+        let reported_configuration = self.watchdog.unwrap_or_else(|| least.max(WATCHDOG));
+        if reported_configuration < least {
             let least = least.as_millis();
             return wrong(format!("with this cycle, slot time and bit rate the watchdog must be {least} ms or more"));
         }
-        let Some(watchdog) = Watchdog::at_least(wanted) else {
+        let Some(watchdog) = Watchdog::at_least(reported_configuration) else {
             return wrong("the watchdog must be at most 650 s".to_owned());
         };
         // The token timeout of the standard increases with the address of the master: 6 + 2 x address slot times.
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn usual_times_fit_each_other_at_every_speed() {
+    fn default_times_are_consistent_at_every_bit_rate() {
         for rate in RATES {
             let settings = Settings { rate, ..settings("500k") };
             let timing = settings.timing().unwrap();
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_refused() {
+    fn rejects_invalid_settings() {
         let usual = settings("500k");
         let ms = |ms| Some(Duration::from_millis(ms));
         for (settings, message) in [

@@ -3,31 +3,31 @@
 
 use super::Now;
 use super::error::ProfibusError;
-use super::quiet::Quiet;
+use super::line_check::LineCheck;
 use super::request::{Answer, Outcome, Requester};
 use super::settings::Timing;
 use super::wire::{Control, Diagnosis, MAX_STATION, Service, Station, Status, sap};
 
 /// Result for one station.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Found {
+pub struct StationResult {
     /// Address of the station.
     pub station: u8,
     /// Station type.
     pub kind: Station,
     /// Diagnosis of a slave.
-    pub diagnosis: Result<Diagnosis, Unknown>,
+    pub diagnosis: Result<Diagnosis, NoValueReason>,
     /// Configuration that the slave reports (identifier bytes).
-    pub configuration: Result<Vec<u8>, Unknown>,
+    pub configuration: Result<Vec<u8>, NoValueReason>,
     /// Input image, if the slave is in data exchange.
-    pub inputs: Result<Vec<u8>, Unknown>,
+    pub inputs: Result<Vec<u8>, NoValueReason>,
     /// Output image, if the slave is in data exchange.
-    pub outputs: Result<Vec<u8>, Unknown>,
+    pub outputs: Result<Vec<u8>, NoValueReason>,
 }
 
 /// Reason for a missing value.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Unknown {
+pub enum NoValueReason {
     /// The value was not requested.
     NotAsked,
     /// The station did not answer.
@@ -40,7 +40,7 @@ pub enum Unknown {
 
 /// Requests to a station, in the order in which they are sent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Question {
+enum StationRequest {
     Kind,
     Diagnosis,
     Configuration,
@@ -48,7 +48,7 @@ enum Question {
     Outputs,
 }
 
-impl Question {
+impl StationRequest {
     const fn sap(self) -> Option<u8> {
         match self {
             Self::Kind => None,
@@ -74,11 +74,11 @@ impl Question {
 #[derive(Debug)]
 pub struct Survey {
     requester: Requester,
-    quiet: Option<Quiet>,
+    quiet: Option<LineCheck>,
     /// Stations that are still to be checked, in reverse order.
     stations: Vec<u8>,
-    question: Question,
-    found: Vec<Found>,
+    question: StationRequest,
+    found: Vec<StationResult>,
     error: Option<ProfibusError>,
     timing: Timing,
 }
@@ -88,12 +88,12 @@ impl Survey {
     pub fn new(now: Now, stations: impl IntoIterator<Item = u8>, requester: Requester, timing: Timing) -> Self {
         let mut stations: Vec<u8> = stations.into_iter().filter(|station| *station <= MAX_STATION).collect();
         stations.reverse();
-        let quiet = Some(Quiet::until(now + timing.listen));
-        Self { requester, quiet, stations, question: Question::Kind, found: Vec::new(), error: None, timing }
+        let quiet = Some(LineCheck::until(now + timing.listen));
+        Self { requester, quiet, stations, question: StationRequest::Kind, found: Vec::new(), error: None, timing }
     }
 
     /// Result of the survey: the stations found, or the reason for a failure. `None` until the survey is complete.
-    pub fn result(&self) -> Option<Result<&[Found], ProfibusError>> {
+    pub fn result(&self) -> Option<Result<&[StationResult], ProfibusError>> {
         if let Some(error) = &self.error {
             return Some(Err(error.clone()));
         }
@@ -157,13 +157,13 @@ impl Survey {
                 self.error = Some(ProfibusError::OtherMaster { master, heard });
                 return;
             }
-            Outcome::NoAnswer { .. } => Err(Unknown::NoAnswer),
-            Outcome::Answer(Answer::Short) => Err(Unknown::Malformed("only an acknowledgement".to_owned())),
+            Outcome::NoAnswer { .. } => Err(NoValueReason::NoAnswer),
+            Outcome::Answer(Answer::Short) => Err(NoValueReason::Malformed("only an acknowledgement".to_owned())),
             Outcome::Answer(Answer::Frame(frame)) => {
                 let Control::Answer(kind, status) = frame.control else { return };
-                if self.question == Question::Kind {
-                    let unasked = Unknown::NotAsked;
-                    self.found.push(Found {
+                if self.question == StationRequest::Kind {
+                    let unasked = NoValueReason::NotAsked;
+                    self.found.push(StationResult {
                         station,
                         kind,
                         diagnosis: Err(unasked.clone()),
@@ -175,24 +175,25 @@ impl Survey {
                 }
                 match status {
                     Status::Data | Status::DataHigh => Ok(frame.data),
-                    status => Err(Unknown::Refused(status)),
+                    status => Err(NoValueReason::Refused(status)),
                 }
             }
         };
-        if self.question == Question::Kind {
+        if self.question == StationRequest::Kind {
             return self.next_station();
         }
         let Some(found) = self.found.last_mut() else { return };
         match self.question {
-            Question::Kind => {}
-            Question::Diagnosis => {
-                let read =
-                    |data: Vec<u8>| Diagnosis::parse(&data).map_err(|error| Unknown::Malformed(error.to_string()));
+            StationRequest::Kind => {}
+            StationRequest::Diagnosis => {
+                let read = |data: Vec<u8>| {
+                    Diagnosis::parse(&data).map_err(|error| NoValueReason::Malformed(error.to_string()))
+                };
                 found.diagnosis = said.and_then(read);
             }
-            Question::Configuration => found.configuration = said,
-            Question::Inputs => found.inputs = said,
-            Question::Outputs => found.outputs = said,
+            StationRequest::Configuration => found.configuration = said,
+            StationRequest::Inputs => found.inputs = said,
+            StationRequest::Outputs => found.outputs = said,
         }
         self.go_on();
     }
@@ -205,7 +206,7 @@ impl Survey {
     }
 
     fn next_station(&mut self) {
-        self.question = Question::Kind;
+        self.question = StationRequest::Kind;
         self.stations.pop();
     }
 }

@@ -19,25 +19,25 @@ use super::wire::rpc::{self, Datagram, operation};
 use super::wire::{Mac, Uuid, arp};
 
 /// Time within which stations answer a broadcast, in steps of 10 ms. Each station waits for its own delay.
-const SPREAD: u16 = 128;
+const RESPONSE_WINDOW: u16 = 128;
 /// Time limit per attempt to reach a single station. The constant below is the number of attempts.
-const PATIENCE: Duration = Duration::from_secs(1);
+const ATTEMPT_TIMEOUT: Duration = Duration::from_secs(1);
 const TRIES: u32 = 3;
 /// Waiting time after the first answer, in which a second station with the same name can answer.
-const TWIN: Duration = Duration::from_millis(250);
+const DUPLICATE_WINDOW: Duration = Duration::from_millis(250);
 /// Time limit of each ARP attempt.
 const ARP: Duration = Duration::from_millis(300);
 /// Interval of the checks whether a setting is active. The constant below is the time limit of these checks.
-const LOOK: Duration = Duration::from_millis(200);
-const SETTLE: Duration = Duration::from_secs(5);
+const CHECK_INTERVAL: Duration = Duration::from_millis(200);
+const SETTLE_TIMEOUT: Duration = Duration::from_secs(5);
 /// Maximum number of reported stations. A network has a few hundred.
-const MOST: usize = 4096;
+const MAX_STATIONS: usize = 4096;
 /// Size in bytes of the buffer for a record.
-const ROOM: u32 = 4000;
+const RECORD_BUFFER_SIZE: u32 = 4000;
 
 /// A station that answered. The texts from the station are untrusted.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Found {
+pub struct StationInfo {
     /// MAC address.
     pub mac: Mac,
     /// Data that the station reports.
@@ -45,14 +45,14 @@ pub struct Found {
 }
 
 /// Finds all stations of a network.
-pub fn stations(interface: &Interface, wait: Duration) -> Result<Vec<Found>, ProfinetError> {
+pub fn stations(interface: &Interface, wait: Duration) -> Result<Vec<StationInfo>, ProfinetError> {
     let frames = Frames::open(interface)?;
-    let question = Dcp::identify_all(fastrand::u32(1..), SPREAD);
+    let question = Dcp::identify_all(fastrand::u32(1..), RESPONSE_WINDOW);
     frames.send(&identify(interface.mac, &question))?;
     let until = frames.now() + wait;
-    let mut found: Vec<Found> = Vec::new();
-    while let Some(other) = identified(interface, &frames, until, &question)? {
-        if found.len() < MOST && found.iter().all(|found| found.mac != other.mac) {
+    let mut found: Vec<StationInfo> = Vec::new();
+    while let Some(other) = parse_identified(interface, &frames, until, &question)? {
+        if found.len() < MAX_STATIONS && found.iter().all(|found| found.mac != other.mac) {
             found.push(other);
         }
     }
@@ -64,14 +64,14 @@ pub fn stations(interface: &Interface, wait: Duration) -> Result<Vec<Found>, Pro
 ///
 /// # Errors
 /// The interface cannot be used, the station does not answer, or two stations have the same name.
-pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<Found, ProfinetError> {
+pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<StationInfo, ProfinetError> {
     let frames = Frames::open(interface)?;
     for _ in 0..TRIES {
-        let question = looking_for(wanted, fastrand::u32(1..));
+        let question = search_filter(wanted, fastrand::u32(1..));
         frames.send(&identify(interface.mac, &question))?;
-        let mut until = frames.now() + PATIENCE;
-        let mut first: Option<Found> = None;
-        while let Some(found) = identified(interface, &frames, until, &question)? {
+        let mut until = frames.now() + ATTEMPT_TIMEOUT;
+        let mut first: Option<StationInfo> = None;
+        while let Some(found) = parse_identified(interface, &frames, until, &question)? {
             let is_it = match wanted {
                 settings::Station::Name(name) => found.station.name == *name,
                 settings::Station::Mac(mac) => found.mac == *mac,
@@ -81,7 +81,7 @@ pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<Found, 
                 // A MAC address is unique, so the search for a second station is not needed.
                 None if matches!(wanted, settings::Station::Mac(_)) => return Ok(found),
                 None => {
-                    until = until.min(frames.now() + TWIN);
+                    until = until.min(frames.now() + DUPLICATE_WINDOW);
                     first = Some(found);
                 }
                 Some(first) if first.mac != found.mac => {
@@ -95,17 +95,21 @@ pub fn find(interface: &Interface, wanted: &settings::Station) -> Result<Found, 
             return Ok(found);
         }
     }
-    Err(ProfinetError::NotFound { station: wanted.to_string(), after: PATIENCE * TRIES })
+    Err(ProfinetError::NotFound { station: wanted.to_string(), after: ATTEMPT_TIMEOUT * TRIES })
 }
 
 /// Searches for another station with the same name as the station `than`, and returns its MAC address.
-pub fn other(interface: &Interface, named: &settings::Station, than: Mac) -> Result<Option<Mac>, ProfinetError> {
+pub fn find_duplicate(
+    interface: &Interface,
+    named: &settings::Station,
+    than: Mac,
+) -> Result<Option<Mac>, ProfinetError> {
     let frames = Frames::open(interface)?;
     for _ in 0..TRIES {
-        let question = looking_for(named, fastrand::u32(1..));
+        let question = search_filter(named, fastrand::u32(1..));
         frames.send(&identify(interface.mac, &question))?;
-        let until = frames.now() + TWIN;
-        while let Some(found) = identified(interface, &frames, until, &question)? {
+        let until = frames.now() + DUPLICATE_WINDOW;
+        while let Some(found) = parse_identified(interface, &frames, until, &question)? {
             if found.mac != than && settings::Station::Name(found.station.name) == *named {
                 return Ok(Some(found.mac));
             }
@@ -116,7 +120,7 @@ pub fn other(interface: &Interface, named: &settings::Station, than: Mac) -> Res
 
 /// Returns the DCP request that searches for a station. If the station is identified by its MAC address, the request
 /// goes to all stations, because not every station supports Get.
-pub fn looking_for(wanted: &settings::Station, xid: u32) -> Dcp {
+pub fn search_filter(wanted: &settings::Station, xid: u32) -> Dcp {
     match wanted {
         settings::Station::Name(name) => Dcp::identify(xid, name),
         settings::Station::Mac(_) => Dcp::identify_all(xid, 1),
@@ -142,7 +146,7 @@ pub fn change(interface: &Interface, mac: Mac, what: &'static str, block: &Block
     let request = set(interface.mac, mac, fastrand::u32(1..), block);
     for _ in 0..TRIES {
         frames.send(&request)?;
-        let answer = frames.hear(frames.now() + PATIENCE, |frame| {
+        let answer = frames.hear(frames.now() + ATTEMPT_TIMEOUT, |frame| {
             let is_its = frame.source == mac && frame.destination == interface.mac && frame.id == id::DCP_GET_SET;
             // The Xid (transaction id) is not checked, because some stations do not copy it into the answer.
             let dcp = Dcp::parse(frame.payload).ok().filter(|dcp| is_its && dcp.service == Service::Set)?;
@@ -160,32 +164,32 @@ pub fn change(interface: &Interface, mac: Mac, what: &'static str, block: &Block
             None => {}
         }
     }
-    Err(ProfinetError::NoAnswer { what, after: PATIENCE * TRIES })
+    Err(ProfinetError::NoAnswer { what, after: ATTEMPT_TIMEOUT * TRIES })
 }
 
 /// Waits until the station reports the new value.
 ///
 /// # Errors
 /// The station did not report the new value within some seconds, or the interface cannot be used.
-pub fn settled(
+pub fn wait_until_active(
     interface: &Interface,
     mac: Mac,
     what: &'static str,
     is_so: impl Fn(&Station) -> bool,
-) -> Result<Found, ProfinetError> {
+) -> Result<StationInfo, ProfinetError> {
     let frames = Frames::open(interface)?;
-    let end = frames.now() + SETTLE;
+    let end = frames.now() + SETTLE_TIMEOUT;
     while frames.now() < end {
-        let question = looking_for(&settings::Station::Mac(mac), fastrand::u32(1..));
+        let question = search_filter(&settings::Station::Mac(mac), fastrand::u32(1..));
         frames.send(&identify(interface.mac, &question))?;
-        let until = frames.now() + LOOK;
-        while let Some(found) = identified(interface, &frames, until, &question)? {
+        let until = frames.now() + CHECK_INTERVAL;
+        while let Some(found) = parse_identified(interface, &frames, until, &question)? {
             if found.mac == mac && is_so(&found.station) {
                 return Ok(found);
             }
         }
     }
-    Err(ProfinetError::NoAnswer { what, after: SETTLE })
+    Err(ProfinetError::NoAnswer { what, after: SETTLE_TIMEOUT })
 }
 
 /// Returns the MAC address of a station, other than `except`, that answers an ARP request for this IP address.
@@ -208,17 +212,17 @@ pub fn holder(interface: &Interface, address: Ipv4Addr, except: Mac) -> Result<O
 }
 
 /// Returns the next station that answers.
-fn identified(
+fn parse_identified(
     interface: &Interface,
     frames: &Frames,
     until: Now,
     question: &Dcp,
-) -> Result<Option<Found>, ProfinetError> {
+) -> Result<Option<StationInfo>, ProfinetError> {
     frames.hear(until, |frame| {
         let dcp = Dcp::parse(frame.payload).ok()?;
         let is_answer = dcp.service == Service::Identify && dcp.kind == Kind::Response && dcp.xid == question.xid;
         let is_one = is_answer && frame.destination == interface.mac && !frame.source.is_group();
-        dcp.station().ok().filter(|_| is_one).map(|station| Found { mac: frame.source, station })
+        dcp.station().ok().filter(|_| is_one).map(|station| StationInfo { mac: frame.source, station })
     })
 }
 
@@ -236,7 +240,7 @@ pub struct Identity {
 /// # Errors
 /// No socket can be opened. If the device refuses a record or does not answer, the field of this record contains the
 /// error.
-pub fn identity(interface: &Interface, found: &Found) -> Result<Identity, ProfinetError> {
+pub fn identity(interface: &Interface, found: &StationInfo) -> Result<Identity, ProfinetError> {
     let station = || format!("station '{}'", found.station.name);
     let address = found.station.address().ok_or_else(|| ProfinetError::NoAddress { station: station() })?;
     let calls = Calls::open(interface, found.mac, SocketAddrV4::new(address, rpc::PORT))?;
@@ -254,7 +258,7 @@ pub fn identity(interface: &Interface, found: &Found) -> Result<Identity, Profin
 }
 
 fn read(calls: &Calls, client: &mut Client, what: &'static str, index: u16) -> Result<Vec<u8>, ProfinetError> {
-    let asked = Record { sequence: 0, ar: Uuid::NIL, api: 0, slot: 0, subslot: 1, index, length: ROOM };
+    let asked = Record { sequence: 0, ar: Uuid::NIL, api: 0, slot: 0, subslot: 1, index, length: RECORD_BUFFER_SIZE };
     let blocks = asked.emit(BlockType::READ, 0, &[]);
     let blocks = exchange(calls, client, &blocks)?.blocks(what)?;
     let (_, record) = Record::parse_answer(&blocks).map_err(|error| ProfinetError::Malformed { what, error })?;

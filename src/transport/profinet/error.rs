@@ -10,7 +10,7 @@ use super::wire::dcp;
 use super::wire::status::Status;
 use super::wire::{Mac, WireError};
 use crate::image::view::BusError;
-use crate::local::LocalError;
+use crate::local_error::LocalError;
 
 /// An error of a request or connection.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -38,14 +38,14 @@ pub enum ProfinetError {
         station: String,
     },
     /// This computer and the device are in different IP networks.
-    #[error("{station} has the address {device}, but this computer has {here} in another network")]
+    #[error("{station} has the address {device}, but this computer has {local_address} in another network")]
     OtherNetwork {
         /// Name of the station.
         station: String,
         /// IP address of the device.
         device: Ipv4Addr,
         /// IP address of this computer.
-        here: Ipv4Addr,
+        local_address: Ipv4Addr,
     },
     /// Another station has the same IP address.
     #[error("{station} reports that another station has the same address {address}")]

@@ -13,17 +13,17 @@ use super::layout::{Direction, Layout, Submodule};
 use super::wire::record::Parameter;
 
 /// Maximum size of a file in bytes.
-pub const MOST_BYTES: u64 = 16 * 1024 * 1024;
+pub const MAX_FILE_SIZE: u64 = 16 * 1024 * 1024;
 /// Maximum number of elements and attributes.
-const MOST_NODES: u32 = 2_000_000;
+const MAX_XML_NODES: u32 = 2_000_000;
 /// Maximum number of modules per access point, and of submodules per module.
-const MOST_MODULES: usize = 512;
+const MAX_MODULES: usize = 512;
 /// Maximum number of access points.
-const MOST_HEADS: usize = 64;
+const MAX_ACCESS_POINTS: usize = 64;
 /// Maximum number of slots in a list.
-const MOST_SLOTS: usize = 4096;
+const MAX_SLOTS: usize = 4096;
 /// Maximum size of a parameter record in bytes.
-const LONGEST_RECORD: usize = 4096;
+const MAX_RECORD_LEN: usize = 4096;
 
 /// Error in a GSDML file.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -68,12 +68,12 @@ pub struct Head {
     /// Submodules of the access point.
     pub submodules: Vec<Item>,
     /// Modules that can be used with this access point.
-    pub modules: Vec<Fitting>,
+    pub modules: Vec<SlottedModule>,
 }
 
 /// A module with its valid slots.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Fitting {
+pub struct SlottedModule {
     /// Slots in which the module can be used.
     pub slots: Vec<u16>,
     /// Slots in which the device always has the module.
@@ -114,15 +114,15 @@ impl Gsdml {
     /// Parses a file in UTF-8 or ISO 8859-1.
     pub fn parse(bytes: &[u8]) -> Result<Self, GsdmlError> {
         let whole = |problem: String| GsdmlError { line: 1, element: "file".to_owned(), problem };
-        if u64::try_from(bytes.len()).is_ok_and(|length| length > MOST_BYTES) {
-            return Err(whole(format!("it has {} bytes; at most {MOST_BYTES} are possible", bytes.len())));
+        if u64::try_from(bytes.len()).is_ok_and(|length| length > MAX_FILE_SIZE) {
+            return Err(whole(format!("it has {} bytes; at most {MAX_FILE_SIZE} are possible", bytes.len())));
         }
         let text = match std::str::from_utf8(bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)) {
             Ok(text) => Cow::Borrowed(text),
             // In ISO 8859-1, each byte is the character with the same number.
             Err(_) => Cow::Owned(bytes.iter().copied().map(char::from).collect()),
         };
-        let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+        let options = ParsingOptions { nodes_limit: MAX_XML_NODES, ..ParsingOptions::default() };
         let document = Document::parse_with_options(&text, options).map_err(|error| {
             // The error of a truncated file has no position, so the last line is used.
             let end = u32::try_from(text.lines().count()).unwrap_or(u32::MAX);
@@ -139,14 +139,14 @@ impl Head {
     ///
     /// # Errors
     /// A module does not fit into its slot, or the data does not fit into a frame.
-    pub fn layout(&self, chosen: &[(u16, &Fitting)]) -> Result<Layout, String> {
-        Layout::new(self.placed(chosen)?.into_iter().map(|(submodule, _)| submodule).collect())
+    pub fn layout(&self, chosen: &[(u16, &SlottedModule)]) -> Result<Layout, String> {
+        Layout::new(self.assign_slots(chosen)?.into_iter().map(|(submodule, _)| submodule).collect())
     }
 
     /// Returns the parameter records for the layout of these modules.
-    pub fn parameters(&self, chosen: &[(u16, &Fitting)]) -> Result<Vec<Parameter>, String> {
-        let placed = self.placed(chosen)?;
-        let parameters = placed.iter().flat_map(|(submodule, item)| {
+    pub fn parameters(&self, chosen: &[(u16, &SlottedModule)]) -> Result<Vec<Parameter>, String> {
+        let assign_slots = self.assign_slots(chosen)?;
+        let parameters = assign_slots.iter().flat_map(|(submodule, item)| {
             let record = |(index, data): &(u16, Vec<u8>)| Parameter {
                 slot: submodule.slot,
                 subslot: submodule.subslot,
@@ -158,9 +158,9 @@ impl Head {
         Ok(parameters.collect())
     }
 
-    fn placed<'a>(&'a self, chosen: &[(u16, &'a Fitting)]) -> Result<Vec<(Submodule, &'a Item)>, String> {
+    fn assign_slots<'a>(&'a self, chosen: &[(u16, &'a SlottedModule)]) -> Result<Vec<(Submodule, &'a Item)>, String> {
         let fixed = self.modules.iter().flat_map(|fitting| fitting.fixed.iter().map(move |slot| (*slot, fitting)));
-        let mut all: Vec<(u16, &Fitting)> = fixed.collect();
+        let mut all: Vec<(u16, &SlottedModule)> = fixed.collect();
         for (slot, fitting) in chosen {
             if !fitting.slots.contains(slot) {
                 return Err(format!("module {} is not possible in slot {slot}", fitting.module.id));
@@ -187,8 +187,8 @@ impl Head {
 
     /// Selects modules for these image sizes. The selection consists of only the fixed modules, of one more module, or
     /// of one more module per direction. Returns `None` if no selection fits, or more than one.
-    pub fn choose(&self, input: usize, output: usize) -> Option<Vec<(u16, &Fitting)>> {
-        let fits = |chosen: &[(u16, &Fitting)]| {
+    pub fn choose(&self, input: usize, output: usize) -> Option<Vec<(u16, &SlottedModule)>> {
+        let fits = |chosen: &[(u16, &SlottedModule)]| {
             self.layout(chosen)
                 .is_ok_and(|layout| (layout.size(Direction::Input), layout.size(Direction::Output)) == (input, output))
         };
@@ -197,7 +197,7 @@ impl Head {
         }
         // A slot with a fixed module is not free.
         let is_taken = |slot: &u16| *slot == 0 || self.modules.iter().any(|module| module.fixed.contains(slot));
-        let first = |fitting: &Fitting, other: Option<u16>| {
+        let first = |fitting: &SlottedModule, other: Option<u16>| {
             fitting.slots.iter().copied().find(|slot| !is_taken(slot) && Some(*slot) != other)
         };
         let mut choices = Vec::new();
@@ -251,9 +251,9 @@ impl<'a, 'input> Reader<'a, 'input> {
         let identity = self.all("DeviceIdentity").next();
         let identity = identity.ok_or_else(|| self.wrong(root, "DeviceIdentity is missing"))?;
         let (vendor, device) = (self.number(identity, "VendorID")?, self.number(identity, "DeviceID")?);
-        let heads: Vec<_> = self.all("DeviceAccessPointItem").take(MOST_HEADS + 1).collect();
-        if let Some(node) = heads.get(MOST_HEADS) {
-            return Err(self.wrong(*node, format!("at most {MOST_HEADS} access points are possible")));
+        let heads: Vec<_> = self.all("DeviceAccessPointItem").take(MAX_ACCESS_POINTS + 1).collect();
+        if let Some(node) = heads.get(MAX_ACCESS_POINTS) {
+            return Err(self.wrong(*node, format!("at most {MAX_ACCESS_POINTS} access points are possible")));
         }
         let heads = heads.into_iter().map(|node| self.head(node)).collect::<Result<Vec<_>, _>>()?;
         if heads.is_empty() {
@@ -276,9 +276,9 @@ impl<'a, 'input> Reader<'a, 'input> {
         let has_mode = |wanted: &str| modes.split(';').any(|mode| mode.trim() == wanted);
         let slots = self.slots(node, "PhysicalSlots")?;
         let references: Vec<_> = node.descendants().filter(|item| item.has_tag_name_local("ModuleItemRef")).collect();
-        if references.len() > MOST_MODULES {
+        if references.len() > MAX_MODULES {
             return Err(self
-                .wrong(node, format!("it can use {} modules; at most {MOST_MODULES} are possible", references.len())));
+                .wrong(node, format!("it can use {} modules; at most {MAX_MODULES} are possible", references.len())));
         }
         let modules =
             references.into_iter().map(|reference| self.fitting(reference, &slots)).collect::<Result<_, _>>()?;
@@ -295,7 +295,7 @@ impl<'a, 'input> Reader<'a, 'input> {
         })
     }
 
-    fn fitting(&self, node: Node<'a, 'input>, slots: &[u16]) -> GsdmlResult<Fitting> {
+    fn fitting(&self, node: Node<'a, 'input>, slots: &[u16]) -> GsdmlResult<SlottedModule> {
         let target = self.text(node, "ModuleItemTarget")?;
         let module = self.all("ModuleItem").find(|module| module.attribute("ID") == Some(target));
         let module = module.ok_or_else(|| self.wrong(node, format!("ModuleItem '{target}' is missing")))?;
@@ -311,7 +311,7 @@ impl<'a, 'input> Reader<'a, 'input> {
             ident: self.number32(module, "ModuleIdentNumber")?,
             submodules: self.items(module)?,
         };
-        Ok(Fitting { slots: allowed, fixed, module })
+        Ok(SlottedModule { slots: allowed, fixed, module })
     }
 
     /// Returns the submodules of a module or access point. A referenced submodule is included only if it is always in
@@ -319,8 +319,8 @@ impl<'a, 'input> Reader<'a, 'input> {
     fn items(&self, node: Node<'a, 'input>) -> GsdmlResult<Vec<Item>> {
         let mut items = Vec::new();
         let add = |items: &mut Vec<Item>, node, subslot| {
-            if items.len() == MOST_MODULES {
-                return Err(self.wrong(node, format!("at most {MOST_MODULES} submodules are possible")));
+            if items.len() == MAX_MODULES {
+                return Err(self.wrong(node, format!("at most {MAX_MODULES} submodules are possible")));
             }
             items.push(self.item(node, subslot)?);
             Ok(())
@@ -382,8 +382,8 @@ impl<'a, 'input> Reader<'a, 'input> {
     fn record(&self, node: Node<'a, 'input>) -> GsdmlResult<(u16, Vec<u8>)> {
         let index = self.number(node, "Index")?;
         let length = usize::from(self.number(node, "Length")?);
-        if length > LONGEST_RECORD {
-            return Err(self.wrong(node, format!("a record can have at most {LONGEST_RECORD} bytes")));
+        if length > MAX_RECORD_LEN {
+            return Err(self.wrong(node, format!("a record can have at most {MAX_RECORD_LEN} bytes")));
         }
         let mut data = vec![0; length];
         for part in node.children().filter(Node::is_element) {
@@ -483,8 +483,8 @@ impl<'a, 'input> Reader<'a, 'input> {
             let wrong = || self.wrong(node, format!("{name} is not a valid list of numbers: '{part}'"));
             let (first, last) = (number(first).ok_or_else(wrong)?, number(last).ok_or_else(wrong)?);
             slots.extend(first..=last);
-            if slots.len() > MOST_SLOTS {
-                return Err(self.wrong(node, format!("{name} has more than {MOST_SLOTS} numbers")));
+            if slots.len() > MAX_SLOTS {
+                return Err(self.wrong(node, format!("{name} has more than {MAX_SLOTS} numbers")));
             }
         }
         Ok(slots)

@@ -6,7 +6,7 @@ mod raw;
 #[path = "interface/no_raw.rs"]
 mod raw;
 
-use super::controller::Here;
+use super::controller::LocalAddress;
 use super::error::ProfinetError;
 use super::simulated;
 use super::wire::Mac;
@@ -49,8 +49,8 @@ impl Interface {
         found.ok_or(ProfinetError::NoInterface { name: name.to_owned(), present })
     }
 
-    pub(super) fn simulated(name: String, here: Here, network: simulated::Network) -> Self {
-        let (mac, ip, link) = (here.mac, Some(here.ip), Link::Simulated(network));
+    pub(super) fn simulated(name: String, local_address: LocalAddress, network: simulated::Network) -> Self {
+        let (mac, ip, link) = (local_address.mac, Some(local_address.ip), Link::Simulated(network));
         Self { name, mac, ip, is_up: true, has_carrier: true, tap: Tap::default(), link }
     }
 

@@ -7,11 +7,11 @@ use super::error::ModuleMismatch;
 use super::wire::connect::{DataDescription, ExpectedModule, ExpectedSubmodule, ModuleDiff, Offset};
 
 /// Minimum data length of a frame.
-const SHORTEST: u16 = 40;
+const MIN_FRAME_DATA: u16 = 40;
 /// Maximum data length of a frame.
-const LONGEST: u16 = 1440;
+const MAX_FRAME_DATA: u16 = 1440;
 /// Maximum number of submodules. Each submodule makes the Connect call longer.
-const MOST: usize = 64;
+const MAX_SUBMODULES: usize = 64;
 
 /// A submodule and its data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -63,8 +63,8 @@ impl Layout {
     /// # Errors
     /// Two submodules have the same slot and subslot, a slot has two modules, or the data does not fit into a frame.
     pub fn new(mut submodules: Vec<Submodule>) -> Result<Self, String> {
-        if submodules.is_empty() || submodules.len() > MOST {
-            return Err(format!("a layout must have 1 to {MOST} submodules, not {}", submodules.len()));
+        if submodules.is_empty() || submodules.len() > MAX_SUBMODULES {
+            return Err(format!("a layout must have 1 to {MAX_SUBMODULES} submodules, not {}", submodules.len()));
         }
         submodules.sort_by_key(|submodule| (submodule.slot, submodule.subslot));
         for pair in submodules.windows(2) {
@@ -78,8 +78,8 @@ impl Layout {
         }
         let layout = Self(submodules);
         for direction in [Direction::Input, Direction::Output] {
-            if layout.place(direction).1 > usize::from(LONGEST) {
-                return Err(format!("the data is too long for a frame of {LONGEST} bytes"));
+            if layout.data_position(direction).1 > usize::from(MAX_FRAME_DATA) {
+                return Err(format!("the data is too long for a frame of {MAX_FRAME_DATA} bytes"));
             }
         }
         Ok(layout)
@@ -111,12 +111,12 @@ impl Layout {
     /// Returns the positions in the frames of a direction. All data objects with their provider statuses come first,
     /// then all consumer statuses.
     pub fn frame(&self, direction: Direction) -> FrameLayout {
-        let (mut frame, end) = self.place(direction);
-        frame.length = u16::try_from(end).unwrap_or(LONGEST).max(SHORTEST);
+        let (mut frame, end) = self.data_position(direction);
+        frame.length = u16::try_from(end).unwrap_or(MAX_FRAME_DATA).max(MIN_FRAME_DATA);
         frame
     }
 
-    fn place(&self, direction: Direction) -> (FrameLayout, usize) {
+    fn data_position(&self, direction: Direction) -> (FrameLayout, usize) {
         let mut frame = FrameLayout::default();
         let mut at = 0;
         // This cannot overflow, because `new` has checked the size.
@@ -125,12 +125,12 @@ impl Layout {
             subslot: submodule.subslot,
             offset: u16::try_from(at).unwrap_or(u16::MAX),
         };
-        for submodule in self.0.iter().filter(|submodule| submodule.provides(direction)) {
+        for submodule in self.0.iter().filter(|submodule| submodule.has_data(direction)) {
             let length = submodule.length(direction);
             frame.objects.push((offset(submodule, at), length));
             at += usize::from(length) + 1;
         }
-        for submodule in self.0.iter().filter(|submodule| submodule.provides(direction.other())) {
+        for submodule in self.0.iter().filter(|submodule| submodule.has_data(direction.opposite())) {
             frame.consumers.push(offset(submodule, at));
             at += 1;
         }
@@ -185,7 +185,7 @@ impl Layout {
 impl Direction {
     /// The opposite direction.
     #[must_use]
-    pub const fn other(self) -> Self {
+    pub const fn opposite(self) -> Self {
         match self {
             Self::Input => Self::Output,
             Self::Output => Self::Input,
@@ -204,7 +204,7 @@ impl Submodule {
 
     /// Whether frames of this direction contain the data of this submodule. For a submodule without data, the input
     /// frames contain its status.
-    pub const fn provides(&self, direction: Direction) -> bool {
+    pub const fn has_data(&self, direction: Direction) -> bool {
         match direction {
             Direction::Input => self.input > 0 || self.output == 0,
             Direction::Output => self.output > 0,
@@ -270,7 +270,7 @@ impl FromStr for Submodule {
         };
         let bytes = |text: Option<&str>| match text {
             None => Ok(0),
-            Some(text) => small(text).filter(|bytes| *bytes <= LONGEST).ok_or_else(wrong),
+            Some(text) => small(text).filter(|bytes| *bytes <= MAX_FRAME_DATA).ok_or_else(wrong),
         };
         Ok(Self {
             slot: small(slot).ok_or_else(wrong)?,
@@ -318,7 +318,7 @@ mod tests {
 
     /// The expected positions in both data blocks are from the worked example in the notes.
     #[test]
-    fn places_in_frames_are_those_of_the_example() {
+    fn frame_offsets_match_the_example() {
         let layout = Layout::two_modules(0x101, 0x102);
         let places = |offsets: &[Offset]| offsets.iter().map(|at| (at.slot, at.subslot, at.offset)).collect::<Vec<_>>();
         let objects = |frame: &FrameLayout| places(&frame.objects.iter().map(|(at, _)| *at).collect::<Vec<_>>());
@@ -334,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn layouts_read_as_they_print() {
+    fn layouts_round_trip() {
         let text = "0:0x1,0.0x8000:0x1/0x8000,1:0x101:i48,2:0x102/0x2:o48,3:0x103:i2o4";
         let layout: Layout = text.parse().unwrap();
         assert_eq!(layout.to_string(), text);
@@ -343,7 +343,7 @@ mod tests {
     }
 
     #[test]
-    fn layouts_that_cannot_be_are_refused() {
+    fn rejects_invalid_layouts() {
         for text in ["", "1", "1:", "x:1", "1:1:48", "1:1:i", "1:1:i48:o2", "1:1:i9999", "70000:1", "1:0x+1", "1:-1"] {
             assert!(text.parse::<Layout>().is_err(), "{text}");
         }

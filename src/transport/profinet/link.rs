@@ -46,12 +46,12 @@ impl Bus for Device {
     }
 
     fn loss(&self, view: View) -> (Cause, Outputs) {
-        let outputs = match view.trouble {
+        let outputs = match view.last_error {
             // In these cases, the device has already stopped using the last image.
             Some(ProfinetError::Unusable(_) | ProfinetError::Aborted(_)) => Outputs::Released,
             _ => Outputs::ReleasedWithin(self.settings.watchdog_time()),
         };
-        (Cause::of_loss(view.trouble), outputs)
+        (Cause::of_loss(view.last_error), outputs)
     }
 
     fn traffic(&self) -> Traffic {

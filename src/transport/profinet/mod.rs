@@ -4,12 +4,12 @@
 
 use std::time::Duration;
 
+pub mod candidate_layouts;
 pub mod commission;
 pub mod controller;
 pub mod device;
 pub mod error;
 pub mod gsdml;
-pub mod guess;
 pub mod interface;
 pub mod layout;
 pub mod link;

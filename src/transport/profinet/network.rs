@@ -14,9 +14,9 @@ use etherparse::PacketBuilder;
 use tokio::sync::watch;
 
 use super::Now;
-use super::controller::numbers::Numbers;
+use super::controller::identifiers::Identifiers;
 use super::controller::view::{Statistics, View, Views};
-use super::controller::{Action, Controller, Here};
+use super::controller::{Action, Controller, LocalAddress};
 use super::error::ProfinetError;
 use super::interface::Interface;
 use super::settings::Settings;
@@ -24,8 +24,8 @@ use super::sockets::{BUFFER, Sockets};
 use super::wire::Mac;
 use super::wire::alarm::Notification;
 use super::wire::rpc;
-use crate::image::tap::{Passage, Tap};
-use crate::local::LocalError;
+use crate::image::tap::{Tap, TrafficRecord};
+use crate::local_error::LocalError;
 
 /// Network interface with its connections. Clones are cheap and share the connections. The thread of the interface
 /// stops when the last clone and the last connection are dropped.
@@ -44,8 +44,8 @@ struct Owner {
 #[derive(Debug)]
 struct Inner {
     start: Instant,
-    here: Here,
-    numbers: Arc<Numbers>,
+    local_address: LocalAddress,
+    identifiers: Arc<Identifiers>,
     sockets: Sockets,
     slots: Mutex<BTreeMap<u64, Slot>>,
     last: AtomicU64,
@@ -78,8 +78,8 @@ impl Network {
         let (sockets, ip) = Sockets::open(interface)?;
         let inner = Arc::new(Inner {
             start: Instant::now(),
-            here: Here { mac: interface.mac, ip },
-            numbers: Arc::new(Numbers::random()),
+            local_address: LocalAddress { mac: interface.mac, ip },
+            identifiers: Arc::new(Identifiers::random()),
             sockets,
             slots: Mutex::default(),
             last: AtomicU64::new(0),
@@ -100,11 +100,11 @@ impl Network {
     /// state of the view.
     pub async fn open(&self, settings: Settings, tap: Tap) -> Result<Connection, ProfinetError> {
         let inner = &self.owner.inner;
-        let core = Controller::new(inner.here, settings, Arc::clone(&inner.numbers))?;
+        let core = Controller::new(inner.local_address, settings, Arc::clone(&inner.identifiers))?;
         let (view, views) = Views::new(core.view());
         let id = inner.last.fetch_add(1, Ordering::Relaxed);
         inner.slots().insert(id, Slot { core, tap, view });
-        inner.sockets.ring();
+        inner.sockets.wake_up();
         let mut connection = Connection { owner: Arc::clone(&self.owner), id, views };
         connection.views.opened().await?;
         Ok(connection)
@@ -114,7 +114,7 @@ impl Network {
 impl Drop for Owner {
     fn drop(&mut self) {
         self.inner.is_over.store(true, Ordering::SeqCst);
-        self.inner.sockets.ring();
+        self.inner.sockets.wake_up();
         if let Some(thread) = self.thread.take() {
             // An error means that the thread panicked. The panic was already printed.
             let _ = thread.join();
@@ -159,9 +159,9 @@ impl Connection {
     /// Closes the connection. Cyclic frames continue until the device has answered the release. Fails if the device
     /// does not answer.
     pub async fn close(mut self) -> Result<(), ProfinetError> {
-        let before = self.view().trouble;
+        let before = self.view().last_error;
         self.with(Controller::close);
-        self.owner.inner.sockets.ring();
+        self.owner.inner.sockets.wake_up();
         self.views.closed(before.as_ref()).await
     }
 
@@ -176,7 +176,7 @@ impl Connection {
 impl Drop for Connection {
     fn drop(&mut self) {
         self.with(Controller::close);
-        self.owner.inner.sockets.ring();
+        self.owner.inner.sockets.wake_up();
     }
 }
 
@@ -218,15 +218,15 @@ impl Inner {
         while let Some(action) = slot.core.poll(now) {
             match action {
                 Action::Frame(bytes) => {
-                    slot.tap.pass(|| Passage::Frame(bytes.clone()));
+                    slot.tap.pass(|| TrafficRecord::Frame(bytes.clone()));
                     if let Err(error) = self.sockets.send_frame(&bytes) {
                         slot.core.failed(LocalError::new("cannot send a frame", &error).into());
                     }
                 }
                 Action::Datagram(to, bytes) => {
-                    let from = SocketAddrV4::new(self.here.ip.address, rpc::PORT);
+                    let from = SocketAddrV4::new(self.local_address.ip.address, rpc::PORT);
                     let card = slot.core.card().unwrap_or_default();
-                    slot.tap.pass(|| Passage::Frame(in_frame(self.here.mac, card, from, to, &bytes)));
+                    slot.tap.pass(|| TrafficRecord::Frame(in_frame(self.local_address.mac, card, from, to, &bytes)));
                     if let Err(error) = self.sockets.send_datagram(to, &bytes) {
                         slot.core.failed(LocalError::new("cannot send a call", &error).into());
                     }
@@ -241,8 +241,8 @@ impl Inner {
     fn frame(&self, bytes: &[u8]) {
         let now = self.now();
         for slot in self.slots().values_mut() {
-            if slot.core.concerns(bytes) {
-                slot.tap.pass(|| Passage::Frame(bytes.to_vec()));
+            if slot.core.is_for_connection(bytes) {
+                slot.tap.pass(|| TrafficRecord::Frame(bytes.to_vec()));
             }
             slot.core.frame(now, bytes);
         }
@@ -250,11 +250,11 @@ impl Inner {
 
     fn datagram(&self, from: SocketAddrV4, bytes: &[u8]) {
         let now = self.now();
-        let to = SocketAddrV4::new(self.here.ip.address, rpc::PORT);
+        let to = SocketAddrV4::new(self.local_address.ip.address, rpc::PORT);
         for slot in self.slots().values_mut() {
             if slot.core.address() == Some(*from.ip()) {
                 let card = slot.core.card().unwrap_or_default();
-                slot.tap.pass(|| Passage::Frame(in_frame(card, self.here.mac, from, to, bytes)));
+                slot.tap.pass(|| TrafficRecord::Frame(in_frame(card, self.local_address.mac, from, to, bytes)));
             }
             slot.core.datagram(now, from, bytes);
         }
@@ -264,9 +264,9 @@ impl Inner {
 /// Puts a datagram into its Ethernet frame, for a recording. A reader of the recording needs the MAC addresses to
 /// identify the connections.
 pub(super) fn in_frame(source: Mac, destination: Mac, from: SocketAddrV4, to: SocketAddrV4, bytes: &[u8]) -> Vec<u8> {
-    const HOPS: u8 = 64;
+    const IP_TTL: u8 = 64;
     let headers = PacketBuilder::ethernet2(source.0, destination.0)
-        .ipv4(from.ip().octets(), to.ip().octets(), HOPS)
+        .ipv4(from.ip().octets(), to.ip().octets(), IP_TTL)
         .udp(from.port(), to.port());
     let mut frame = Vec::with_capacity(headers.size(bytes.len()));
     // This cannot fail, because a datagram always fits into a packet.

@@ -32,7 +32,7 @@ impl Sockets {
     }
 
     /// Same as in `sockets`.
-    pub fn ring(&self) {
+    pub fn wake_up(&self) {
         match *self {}
     }
 

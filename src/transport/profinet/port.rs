@@ -11,8 +11,8 @@ use super::simulated::Network;
 use super::wire::frame::{self, Frame};
 use super::wire::{Mac, arp, rpc};
 use super::{Now, simulated};
-use crate::image::tap::{Passage, Tap};
-use crate::local::LocalError;
+use crate::image::tap::{Tap, TrafficRecord};
+use crate::local_error::LocalError;
 
 /// Buffer for a frame or datagram.
 const BUFFER: usize = 65_536;
@@ -72,7 +72,7 @@ impl Frames {
     }
 
     pub(super) fn send(&self, frame: &[u8]) -> Result<(), ProfinetError> {
-        self.tap.pass(|| Passage::Frame(frame.to_vec()));
+        self.tap.pass(|| TrafficRecord::Frame(frame.to_vec()));
         match &self.end {
             End::Simulated(network) => network.send_frame(frame),
             End::Socket(socket, _) => {
@@ -100,14 +100,14 @@ impl Frames {
     pub(super) fn next(&self, until: Now) -> Result<Option<Vec<u8>>, ProfinetError> {
         let came = self.take(until)?;
         if let Some(bytes) = &came {
-            self.tap.pass(|| Passage::Frame(bytes.clone()));
+            self.tap.pass(|| TrafficRecord::Frame(bytes.clone()));
         }
         Ok(came)
     }
 
     fn take(&self, until: Now) -> Result<Option<Vec<u8>>, ProfinetError> {
         let (socket, start) = match &self.end {
-            End::Simulated(network) => return Ok(network.hear_frame(until)),
+            End::Simulated(network) => return Ok(network.receive_frame(until)),
             End::Socket(socket, start) => (socket, start),
         };
         let mut buffer = vec![0; BUFFER];
@@ -147,7 +147,9 @@ impl Calls {
     }
 
     pub(super) fn send(&self, bytes: &[u8]) -> Result<(), ProfinetError> {
-        self.tap.pass(|| Passage::Frame(in_frame(self.cards.0, self.cards.1, self.here(), self.target, bytes)));
+        self.tap.pass(|| {
+            TrafficRecord::Frame(in_frame(self.cards.0, self.cards.1, self.local_address(), self.target, bytes))
+        });
         match &self.end {
             End::Simulated(network) => network.send_datagram(self.target, bytes),
             End::Socket(socket, _) => {
@@ -161,7 +163,7 @@ impl Calls {
     /// Returns the next datagram of the device that arrives before `until`.
     pub(super) fn hear(&self, until: Now) -> Result<Option<Vec<u8>>, ProfinetError> {
         let (bytes, from) = match &self.end {
-            End::Simulated(network) => match network.hear_datagram(until) {
+            End::Simulated(network) => match network.receive_datagram(until) {
                 Some((from, bytes)) => (bytes, from),
                 None => return Ok(None),
             },
@@ -179,15 +181,16 @@ impl Calls {
         if from.ip() != self.target.ip() {
             return Ok(None);
         }
-        self.tap.pass(|| Passage::Frame(in_frame(self.cards.1, self.cards.0, from, self.here(), &bytes)));
+        self.tap
+            .pass(|| TrafficRecord::Frame(in_frame(self.cards.1, self.cards.0, from, self.local_address(), &bytes)));
         Ok(Some(bytes))
     }
 
-    fn here(&self) -> SocketAddrV4 {
+    fn local_address(&self) -> SocketAddrV4 {
         match &self.end {
-            End::Simulated(_) => SocketAddrV4::new(simulated::HERE.ip.address, rpc::PORT),
+            End::Simulated(_) => SocketAddrV4::new(simulated::OUR_ADDRESS.ip.address, rpc::PORT),
             End::Socket(socket, _) => match socket.local_addr() {
-                Ok(SocketAddr::V4(here)) => here,
+                Ok(SocketAddr::V4(local_address)) => local_address,
                 _ => self.target,
             },
         }

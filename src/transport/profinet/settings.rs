@@ -12,7 +12,7 @@ use super::wire::record::Parameter;
 /// Send clock of 1 ms, in units of 31.25 us. Every device supports this send clock.
 pub const SEND_CLOCK: u16 = 32;
 /// Longest watchdog time.
-pub const LONGEST_WATCHDOG: Duration = Duration::from_millis(1920);
+pub const MAX_WATCHDOG: Duration = Duration::from_millis(1920);
 /// Minimum watchdog time in cycles. The connection must survive a single lost frame.
 const FEWEST_CYCLES: u128 = 3;
 
@@ -111,8 +111,8 @@ impl Settings {
         if self.ratio().is_none() {
             return wrong(format!("the cycle must be 1, 2, 4, 8, 16 … or 512 ms, not {:?}", self.cycle));
         }
-        if self.watchdog.as_nanos() < self.cycle.as_nanos() * FEWEST_CYCLES || self.watchdog > LONGEST_WATCHDOG {
-            let most = LONGEST_WATCHDOG.as_millis();
+        if self.watchdog.as_nanos() < self.cycle.as_nanos() * FEWEST_CYCLES || self.watchdog > MAX_WATCHDOG {
+            let most = MAX_WATCHDOG.as_millis();
             return wrong(format!(
                 "the watchdog must be {FEWEST_CYCLES} cycles to {most} ms, not {:?} with a cycle of {:?}",
                 self.watchdog, self.cycle
@@ -145,7 +145,7 @@ impl Settings {
     pub fn watchdog_factor(&self) -> u16 {
         let cycle = self.cycle.as_nanos().max(1);
         let up = self.watchdog.as_nanos().div_ceil(cycle);
-        let most = LONGEST_WATCHDOG.as_nanos() / cycle;
+        let most = MAX_WATCHDOG.as_nanos() / cycle;
         u16::try_from(up.min(most)).unwrap_or(u16::MAX)
     }
 
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_refused() {
+    fn rejects_invalid_settings() {
         assert_eq!(settings().check(), Ok(()));
         let suite = |address| {
             let (mask, gateway) = (Ipv4Addr::new(255, 255, 255, 0), Ipv4Addr::UNSPECIFIED);
@@ -200,14 +200,14 @@ mod tests {
     }
 
     #[test]
-    fn times_become_factors() {
+    fn converts_times_to_factors() {
         assert_eq!((settings().ratio(), settings().watchdog_factor()), (Some(16), 20));
-        let odd = Settings { cycle: Duration::from_millis(128), watchdog: LONGEST_WATCHDOG, ..settings() };
-        assert_eq!((odd.watchdog_factor(), odd.watchdog_time()), (15, LONGEST_WATCHDOG));
+        let odd = Settings { cycle: Duration::from_millis(128), watchdog: MAX_WATCHDOG, ..settings() };
+        assert_eq!((odd.watchdog_factor(), odd.watchdog_time()), (15, MAX_WATCHDOG));
     }
 
     #[test]
-    fn only_pairs_at_the_start_are_swapped() {
+    fn swaps_only_leading_byte_pairs() {
         let mut image = [1, 2, 3, 4, 5, 6];
         swap(&mut image, 4);
         assert_eq!(image, [2, 1, 4, 3, 5, 6]);

@@ -9,9 +9,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::Duration;
 
 use super::Now;
-use super::controller::numbers::Numbers;
+use super::controller::identifiers::Identifiers;
 
-use super::controller::{Action, Controller, Here};
+use super::controller::{Action, Controller, LocalAddress};
 use super::device::{Application, Device};
 use super::error::ProfinetError;
 use super::interface::Interface;
@@ -24,11 +24,11 @@ use crate::image::ImagePeer;
 use crate::image::view::State;
 
 /// Addresses of this computer.
-pub(super) const HERE: Here = Here { mac: Mac([2, 0, 0, 0, 0, 1]), ip: suite(1) };
+pub(super) const OUR_ADDRESS: LocalAddress = LocalAddress { mac: Mac([2, 0, 0, 0, 0, 1]), ip: suite(1) };
 /// Addresses of the device.
-const THERE: (Mac, IpSuite) = (Mac([2, 0, 0, 0, 0, 2]), suite(2));
+const DEVICE_ADDRESS: (Mac, IpSuite) = (Mac([2, 0, 0, 0, 0, 2]), suite(2));
 /// Maximum virtual time for opening or closing a connection.
-const PATIENCE: Duration = Duration::from_secs(120);
+const MAX_VIRTUAL_TIME: Duration = Duration::from_secs(120);
 
 /// Returns an address from a range that is reserved for documentation (RFC 5737). No real network has such addresses.
 const fn suite(host: u8) -> IpSuite {
@@ -84,16 +84,16 @@ struct Inner {
     /// Faults to inject: first for traffic to the device, then for traffic from the device.
     faults: Option<(Faults, Faults)>,
     /// Frames and datagrams in transit, by arrival time and sequence number.
-    on_the_way: BTreeMap<(Now, u64), (Way, Vec<u8>)>,
+    in_flight: BTreeMap<(Now, u64), (Route, Vec<u8>)>,
     sent: u64,
 }
 
 /// Maximum number of frames and datagrams in transit.
-const MOST_ON_THE_WAY: usize = 10_000;
+const MAX_IN_FLIGHT: usize = 10_000;
 
 /// Type and direction of a frame or datagram.
 #[derive(Debug, Clone, Copy)]
-enum Way {
+enum Route {
     FrameThere,
     DatagramThere,
     FrameBack,
@@ -123,14 +123,14 @@ impl Network {
         static COUNT: AtomicU32 = AtomicU32::new(1);
         // The name contains a colon. No Linux interface can have such a name.
         let name = format!("sim:{}", COUNT.fetch_add(1, Ordering::Relaxed));
-        let station = Box::new(device(THERE.0, THERE.1));
+        let station = Box::new(device(DEVICE_ADDRESS.0, DEVICE_ADDRESS.1));
         let inner = Inner {
             now: Now::ZERO,
             station,
             frames: VecDeque::new(),
             datagrams: VecDeque::new(),
             faults: faults.map(Faults::pair),
-            on_the_way: BTreeMap::new(),
+            in_flight: BTreeMap::new(),
             sent: 0,
         };
         let inner = Arc::new(Mutex::new(inner));
@@ -148,16 +148,16 @@ impl Network {
 
     /// The interface of this computer to the network.
     pub fn interface(&self) -> Interface {
-        Interface::simulated(self.name.clone(), HERE, self.clone())
+        Interface::simulated(self.name.clone(), OUR_ADDRESS, self.clone())
     }
 
     /// Opens a connection.
     pub fn open(&self, settings: Settings) -> Result<Link, ProfinetError> {
-        let controller = Controller::new(HERE, settings, Arc::new(Numbers::random()))?;
+        let controller = Controller::new(OUR_ADDRESS, settings, Arc::new(Identifiers::random()))?;
         let mut link = Link { controller, network: self.clone(), start: Now::ZERO };
         link.run_until(|state| matches!(state, State::Open | State::Closed));
         let view = link.controller.view();
-        match (view.state, view.trouble) {
+        match (view.state, view.last_error) {
             (State::Open, _) => {
                 link.start = self.inner().now;
                 Ok(link)
@@ -176,60 +176,62 @@ impl Network {
     }
 
     pub(super) fn send_frame(&self, bytes: &[u8]) {
-        self.inner().send(Way::FrameThere, bytes);
+        self.inner().send(Route::FrameThere, bytes);
     }
 
     pub(super) fn send_datagram(&self, to: SocketAddrV4, bytes: &[u8]) {
-        if to == SocketAddrV4::new(THERE.1.address, PORT) {
-            self.inner().send(Way::DatagramThere, bytes);
+        if to == SocketAddrV4::new(DEVICE_ADDRESS.1.address, PORT) {
+            self.inner().send(Route::DatagramThere, bytes);
         }
     }
 
     /// Returns the next frame that arrives before `until`.
-    pub(super) fn hear_frame(&self, until: Now) -> Option<Vec<u8>> {
+    pub(super) fn receive_frame(&self, until: Now) -> Option<Vec<u8>> {
         self.inner().hear(until, |inner| inner.frames.pop_front())
     }
 
     /// Returns the next datagram that arrives before `until`.
-    pub(super) fn hear_datagram(&self, until: Now) -> Option<(SocketAddrV4, Vec<u8>)> {
+    pub(super) fn receive_datagram(&self, until: Now) -> Option<(SocketAddrV4, Vec<u8>)> {
         self.inner().hear(until, |inner| inner.datagrams.pop_front())
     }
 }
 
 impl Inner {
     /// Sends a frame or datagram, with fault injection.
-    fn send(&mut self, way: Way, bytes: &[u8]) {
+    fn send(&mut self, way: Route, bytes: &[u8]) {
         let Some((there, back)) = &mut self.faults else { return self.arrive(way, bytes) };
-        let faults = if matches!(way, Way::FrameThere | Way::DatagramThere) { there } else { back };
+        let faults = if matches!(way, Route::FrameThere | Route::DatagramThere) { there } else { back };
         for (at, bytes) in faults.pass(self.now, bytes) {
             self.sent += 1;
-            if self.on_the_way.len() < MOST_ON_THE_WAY {
-                self.on_the_way.insert((at, self.sent), (way, bytes));
+            if self.in_flight.len() < MAX_IN_FLIGHT {
+                self.in_flight.insert((at, self.sent), (way, bytes));
             }
         }
     }
 
-    fn arrive(&mut self, way: Way, bytes: &[u8]) {
+    fn arrive(&mut self, way: Route, bytes: &[u8]) {
         match way {
-            Way::FrameThere => self.station.frame(self.now, bytes),
-            Way::DatagramThere => self.station.datagram(self.now, SocketAddrV4::new(HERE.ip.address, PORT), bytes),
-            Way::FrameBack => self.frames.push_back(bytes.to_vec()),
-            Way::DatagramBack(from) => self.datagrams.push_back((from, bytes.to_vec())),
+            Route::FrameThere => self.station.frame(self.now, bytes),
+            Route::DatagramThere => {
+                self.station.datagram(self.now, SocketAddrV4::new(OUR_ADDRESS.ip.address, PORT), bytes);
+            }
+            Route::FrameBack => self.frames.push_back(bytes.to_vec()),
+            Route::DatagramBack(from) => self.datagrams.push_back((from, bytes.to_vec())),
         }
     }
 
     /// Delivers all frames and datagrams that are due, and lets the device do its work.
     fn settle(&mut self) {
         loop {
-            if let Some(first) = self.on_the_way.first_entry().filter(|first| first.key().0 <= self.now) {
+            if let Some(first) = self.in_flight.first_entry().filter(|first| first.key().0 <= self.now) {
                 let (way, bytes) = first.remove();
                 self.arrive(way, &bytes);
             } else if let Some(action) = self.station.poll(self.now) {
                 match action {
-                    Action::Frame(bytes) => self.send(Way::FrameBack, &bytes),
+                    Action::Frame(bytes) => self.send(Route::FrameBack, &bytes),
                     Action::Datagram(_, bytes) => {
-                        let from = self.station.answers_from().unwrap_or(THERE.1.address);
-                        self.send(Way::DatagramBack(SocketAddrV4::new(from, PORT)), &bytes);
+                        let from = self.station.answers_from().unwrap_or(DEVICE_ADDRESS.1.address);
+                        self.send(Route::DatagramBack(SocketAddrV4::new(from, PORT)), &bytes);
                     }
                 }
             } else {
@@ -240,7 +242,7 @@ impl Inner {
 
     /// Time of the next event.
     fn wake(&self) -> Option<Now> {
-        let arrival = self.on_the_way.first_key_value().map(|((at, _), _)| *at);
+        let arrival = self.in_flight.first_key_value().map(|((at, _), _)| *at);
         arrival.into_iter().chain(self.station.wake()).min()
     }
 
@@ -280,9 +282,9 @@ impl Link {
                 controller.datagram(inner.now, from, &bytes);
             } else if let Some(action) = controller.poll(inner.now) {
                 match action {
-                    Action::Frame(bytes) => inner.send(Way::FrameThere, &bytes),
-                    Action::Datagram(to, bytes) if *to.ip() == THERE.1.address => {
-                        inner.send(Way::DatagramThere, &bytes);
+                    Action::Frame(bytes) => inner.send(Route::FrameThere, &bytes),
+                    Action::Datagram(to, bytes) if *to.ip() == DEVICE_ADDRESS.1.address => {
+                        inner.send(Route::DatagramThere, &bytes);
                     }
                     Action::Datagram(..) => {}
                 }
@@ -310,7 +312,7 @@ impl Link {
     }
 
     fn run_until(&mut self, condition: impl Fn(State) -> bool) {
-        let until = self.network.now() + PATIENCE;
+        let until = self.network.now() + MAX_VIRTUAL_TIME;
         self.run(until, |controller| condition(controller.view().state));
     }
 }

@@ -12,10 +12,10 @@ use super::interface::{Interface, RawSocket};
 use super::wire::dcp::IpSuite;
 use super::wire::frame::ETHER_TYPE;
 use super::wire::rpc;
-use crate::local::LocalError;
+use crate::local_error::LocalError;
 
 /// Maximum number of frames or datagrams that are handled before the clock is checked.
-const AT_ONCE: usize = 64;
+const MAX_PER_WAKEUP: usize = 64;
 /// Size of the receive buffer: the size of the longest datagram.
 pub(super) const BUFFER: usize = 65_536;
 
@@ -24,8 +24,8 @@ pub(super) struct Sockets {
     raw: RawSocket,
     udp: UdpSocket,
     /// Write end of a socket pair. A byte that is written here wakes the thread.
-    bell: UnixStream,
-    heard: UnixStream,
+    wake_sender: UnixStream,
+    wake_receiver: UnixStream,
 }
 
 impl Sockets {
@@ -41,11 +41,11 @@ impl Sockets {
             _ => failed(&error),
         })?;
         udp.set_nonblocking(true).map_err(|error| failed(&error))?;
-        let (bell, heard) = UnixStream::pair().map_err(|error| failed(&error))?;
-        for end in [&bell, &heard] {
+        let (wake_sender, wake_receiver) = UnixStream::pair().map_err(|error| failed(&error))?;
+        for end in [&wake_sender, &wake_receiver] {
             end.set_nonblocking(true).map_err(|error| failed(&error))?;
         }
-        Ok((Self { raw, udp, bell, heard }, ip))
+        Ok((Self { raw, udp, wake_sender, wake_receiver }, ip))
     }
 
     pub fn send_frame(&self, bytes: &[u8]) -> io::Result<()> {
@@ -57,9 +57,9 @@ impl Sockets {
     }
 
     /// Wakes the thread.
-    pub fn ring(&self) {
+    pub fn wake_up(&self) {
         // An error means that the buffer is full. An earlier byte then already wakes the thread.
-        let _ = (&self.bell).write(&[0]);
+        let _ = (&self.wake_sender).write(&[0]);
     }
 
     /// Waits for a wake-up, a frame or a datagram, but at most for `most`.
@@ -68,23 +68,23 @@ impl Sockets {
         let mut sources = [
             PollFd::new(&self.raw, PollFlags::IN),
             PollFd::new(&self.udp, PollFlags::IN),
-            PollFd::new(&self.heard, PollFlags::IN),
+            PollFd::new(&self.wake_receiver, PollFlags::IN),
         ];
         if poll(&mut sources, most.as_ref()).is_err_and(|error| error != rustix::io::Errno::INTR) {
             // Without this pause, a permanent error would cause a busy loop.
             std::thread::park_timeout(Duration::from_millis(1));
         }
         let mut rings = [0; 64];
-        while (&self.heard).read(&mut rings).is_ok_and(|read| read > 0) {}
+        while (&self.wake_receiver).read(&mut rings).is_ok_and(|read| read > 0) {}
     }
 
     /// Reads all available frames and datagrams, up to the limit.
     pub fn hear(&self, buffer: &mut [u8], mut frame: impl FnMut(&[u8]), mut datagram: impl FnMut(SocketAddrV4, &[u8])) {
-        for _ in 0..AT_ONCE {
+        for _ in 0..MAX_PER_WAKEUP {
             let Ok(length) = self.raw.receive(buffer) else { break };
             frame(&buffer[..length]);
         }
-        for _ in 0..AT_ONCE {
+        for _ in 0..MAX_PER_WAKEUP {
             match self.udp.recv_from(buffer) {
                 Ok((length, SocketAddr::V4(from))) => datagram(from, &buffer[..length]),
                 Ok(_) => {}

@@ -19,7 +19,7 @@ use super::wire::{
 const HOST_ENDED: &str = "the process of the session has ended";
 
 /// Time limit for answers that the host can give without a request to the device.
-const ANSWERS_WITHIN: Duration = Duration::from_secs(3);
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(3);
 
 /// Reason why an existing session cannot be used.
 #[derive(Debug, Error)]
@@ -72,7 +72,7 @@ pub enum SessionBusy {
     Busy(Option<Peer>),
     /// Another client moves the robot.
     #[error("another client moves the robot; nothing was sent")]
-    Moved(Peer),
+    LocationChanged(Peer),
     /// The robot is read-only. The session passes on only reads and stop commands.
     #[error("the robot is read-only, so its session sent nothing")]
     ReadOnly,
@@ -118,7 +118,7 @@ pub async fn attach_at(
             // The session closes this socket only after it has closed the link. So after this wait, the link is free
             // for another session.
             let closed = async { while let Ok(Some(_)) = connection.reader.next().await {} };
-            timeout_at(Instant::now() + ANSWERS_WITHIN, closed).await.map_err(|_| AttachError::Silent)?;
+            timeout_at(Instant::now() + ANSWER_TIMEOUT, closed).await.map_err(|_| AttachError::Silent)?;
             Ok(AttachResult::Nothing)
         }
         _ => Err(AttachError::WrongVersion),
@@ -210,7 +210,7 @@ impl Connection {
 
     /// Waits for the answer of the host. The time limit is short, because the host answers at once.
     async fn answer(&mut self) -> Result<Control, AttachError> {
-        match timeout_at(Instant::now() + ANSWERS_WITHIN, self.next()).await {
+        match timeout_at(Instant::now() + ANSWER_TIMEOUT, self.next()).await {
             Err(_) => Err(AttachError::Silent),
             Ok(Ok(Some(Frame::Control(control)))) => Ok(control),
             Ok(Ok(None)) => Ok(Control::Ended("the session has just ended".to_owned())),
@@ -236,7 +236,7 @@ pub struct Attached {
     /// Frames that arrived while the client waited for a certain other frame.
     early_frames: VecDeque<Frame>,
     /// Bytes of the last frame that did not fit into the buffer of the caller.
-    rest: Vec<u8>,
+    unread_bytes: Vec<u8>,
     line: LineState,
     requests: u32,
     may_move: bool,
@@ -261,11 +261,11 @@ impl Attached {
     fn new(connection: Connection, mut welcome: Welcome) -> Self {
         let seen = welcome.images.as_mut().and_then(|images| images.seen.take());
         let early_frames = seen.map(Frame::Image).into_iter().collect();
-        let (line, rest) = (LineState::Free, Vec::new());
+        let (line, unread_bytes) = (LineState::Free, Vec::new());
         Self {
             connection,
             early_frames,
-            rest,
+            unread_bytes,
             line,
             requests: 0,
             may_move: false,
@@ -315,7 +315,7 @@ impl Attached {
         if self.images().is_none() {
             // Frames that arrived before the client got the line belong to earlier exchanges.
             self.early_frames.clear();
-            self.rest.clear();
+            self.unread_bytes.clear();
         }
         Ok(())
     }
@@ -334,12 +334,12 @@ impl Attached {
             return Ok(());
         }
         self.connection.send_control(Control::Motion);
-        let until = Instant::now() + ANSWERS_WITHIN;
+        let until = Instant::now() + ANSWER_TIMEOUT;
         loop {
             match self.next_from_socket(until).await? {
                 None => return Err(SessionBusy::Ended("the session does not answer".to_owned())),
                 Some(Frame::Control(Control::Granted)) => break,
-                Some(Frame::Control(Control::Held(peer))) => return Err(SessionBusy::Moved(peer)),
+                Some(Frame::Control(Control::Held(peer))) => return Err(SessionBusy::LocationChanged(peer)),
                 Some(frame) => self.early_frames.push_back(frame),
             }
         }
@@ -350,7 +350,7 @@ impl Attached {
     /// Detaches from the session.
     pub async fn leave(mut self) {
         // An error is ignored: a host that no longer exists needs no message.
-        let _ = timeout_at(Instant::now() + ANSWERS_WITHIN, self.connection.flush()).await;
+        let _ = timeout_at(Instant::now() + ANSWER_TIMEOUT, self.connection.flush()).await;
     }
 
     /// Sends a datagram or bytes of a stream. If the client does not own the line, nothing is sent, because the host
@@ -402,12 +402,12 @@ impl Attached {
 
     /// Waits until `until` for bytes of a stream. Bytes that do not fit into the buffer are returned by the next call.
     pub async fn read(&mut self, buffer: &mut [u8], until: Instant) -> io::Result<Option<usize>> {
-        if self.rest.is_empty() {
+        if self.unread_bytes.is_empty() {
             let Some((_, bytes)) = self.data(until).await? else { return Ok(None) };
-            self.rest = bytes;
+            self.unread_bytes = bytes;
         }
-        let length = copy(&self.rest, buffer);
-        self.rest.drain(..length);
+        let length = copy(&self.unread_bytes, buffer);
+        self.unread_bytes.drain(..length);
         Ok(Some(length))
     }
 

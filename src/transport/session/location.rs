@@ -137,8 +137,8 @@ impl SessionPath {
     }
 
     /// Locks the location. If another process has locked it, waits a short time until that process releases it.
-    pub async fn lock_soon(&self, info: &Info) -> Result<LockResult, LocationError> {
-        let until = Instant::now() + LOCK_WITHIN;
+    pub async fn lock_or_attach(&self, info: &Info) -> Result<LockResult, LocationError> {
+        let until = Instant::now() + LOCK_TIMEOUT;
         loop {
             if let Some(claim) = self.claim(info)? {
                 return Ok(LockResult::Locked(claim));
@@ -150,7 +150,7 @@ impl SessionPath {
             if Instant::now() >= until {
                 return Ok(LockResult::Busy);
             }
-            sleep(LOCK_EVERY).await;
+            sleep(LOCK_INTERVAL).await;
         }
     }
 
@@ -188,8 +188,8 @@ impl SessionPath {
 }
 
 /// Time limit for locking a location. The constant below is the interval of the attempts.
-const LOCK_WITHIN: Duration = Duration::from_secs(3);
-const LOCK_EVERY: Duration = Duration::from_millis(10);
+const LOCK_TIMEOUT: Duration = Duration::from_secs(3);
+const LOCK_INTERVAL: Duration = Duration::from_millis(10);
 
 /// Result of an attempt to lock a location.
 #[derive(Debug)]
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn one_process_has_a_spot() {
+    fn one_process_owns_a_location() {
         let folder = tempfile::tempdir().unwrap();
         let location = location(folder.path());
         assert!(location.owner().is_none());
@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn what_lives_is_not_cleared() {
+    async fn does_not_clear_a_live_session() {
         let folder = tempfile::tempdir().unwrap();
         let location = location(folder.path());
         let claim = location.claim(&info()).unwrap().unwrap();
@@ -278,7 +278,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn what_others_could_be_behind_is_not_trusted() {
+    fn does_not_trust_files_of_other_users() {
         use std::os::unix::fs::{PermissionsExt as _, symlink};
 
         let folder = tempfile::tempdir().unwrap();

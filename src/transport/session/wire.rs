@@ -434,7 +434,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_lead_back() {
+    fn control_frames_round_trip() {
         let mut bytes = Vec::new();
         for frame in frames() {
             frame.emit(&mut bytes);
@@ -450,7 +450,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_long_or_senseless_is_refused() {
+    fn rejects_too_long_and_invalid_frames() {
         assert!(matches!(Frame::parse(&[0, 0, 2, 1]), Err(WireError::TooLong(_))));
         assert!(matches!(Frame::parse(&[0, 0, 0, 0]), Err(WireError::Invalid)));
         assert!(matches!(Frame::parse(&[2, 0, 0, 0, b'c', b'{']), Err(WireError::Invalid)));
@@ -465,7 +465,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_keep_their_kind() {
+    fn errors_round_trip_with_their_kind() {
         let error = io::Error::new(io::ErrorKind::ConnectionRefused, "no");
         let passed = io::Error::from(Broken::from(&error));
         assert_eq!((passed.kind(), passed.to_string()), (io::ErrorKind::ConnectionRefused, "no".to_owned()));

@@ -18,7 +18,7 @@ impl AlarmState for WithTexts {}
 
 /// Family-specific fields of an alarm.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Own {
+pub struct YercAlarmFields {
     /// Type of the sub-code.
     #[serde(rename = "type")]
     kind: u32,
@@ -56,10 +56,10 @@ impl SubCode {
 }
 
 /// Alarm for a report, from an answer of the controller.
-pub(super) fn entry(alarm: &payload::Alarm, encoding: Encoding, model: Model) -> AlarmEntry<Own> {
+pub(super) fn entry(alarm: &payload::Alarm, encoding: Encoding, model: Model) -> AlarmEntry<YercAlarmFields> {
     let rendered = alarm.sub_code(model);
     let texts = alarm.texts.as_ref();
-    let own = Own {
+    let own = YercAlarmFields {
         kind: alarm.kind.0,
         type_name: rendered.type_name,
         sub_code: SubCode {
@@ -84,10 +84,10 @@ pub(super) fn entry(alarm: &payload::Alarm, encoding: Encoding, model: Model) ->
 
 /// Adds the user's texts from `alarms.toml` to alarms.
 pub(super) async fn explain(
-    entry: AlarmEntry<Own>,
+    entry: AlarmEntry<YercAlarmFields>,
     robot: &Robot,
     link: &mut Link,
-) -> Result<AlarmEntry<Own>, Failure> {
+) -> Result<AlarmEntry<YercAlarmFields>, Failure> {
     let code = entry.alarm.code.clone().unwrap_or_default();
     let find =
         |model| robot.alarms.find(Origin { family: Family::Yerc, robot: Some(&robot.name), model: Some(model) }, &code);
@@ -96,13 +96,13 @@ pub(super) async fn explain(
 }
 
 /// Short form for one line. The sub-code is a part of the text.
-pub(super) fn short(AlarmEntry { alarm, own }: AlarmEntry<Own>) -> Alarm {
+pub(super) fn short(AlarmEntry { alarm, own }: AlarmEntry<YercAlarmFields>) -> Alarm {
     let parts = [alarm.text.as_deref(), own.sub_code.describe()].into_iter().flatten();
     let text = parts.collect::<Vec<_>>().join(" ");
     Alarm { text: Some(text), ..alarm }
 }
 
-impl ExtraColumns for Own {
+impl ExtraColumns for YercAlarmFields {
     // The type has no column, because the column would leave no space for the text. It is only in JSON.
     fn cells(&self) -> Vec<(&'static str, Option<String>)> {
         let board = self.board.as_deref().map(str::trim).filter(|board| !board.is_empty());
@@ -125,7 +125,7 @@ mod tests {
     use armctl_frame::output::render;
     use armctl_frame::robot::alarm::{Alarms, Row};
 
-    fn collision(kind: u32, data: u32, texts: Option<AlarmTexts>) -> AlarmEntry<Own> {
+    fn collision(kind: u32, data: u32, texts: Option<AlarmTexts>) -> AlarmEntry<YercAlarmFields> {
         let alarm = payload::Alarm {
             code: 4315,
             data,
@@ -137,7 +137,7 @@ mod tests {
         entry(&alarm, Encoding::ShiftJis, Model::Dx200)
     }
 
-    fn of(alarms: Vec<Row<Own>>) -> Alarms<Own, WithTexts> {
+    fn of(alarms: Vec<Row<YercAlarmFields>>) -> Alarms<YercAlarmFields, WithTexts> {
         Alarms { alarms, standing: WithTexts { with_texts: true }, asked: 4 }
     }
 

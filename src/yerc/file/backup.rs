@@ -1,7 +1,7 @@
 //! `yerc backup`: saves all files of the controller in a folder, with a manifest.
 
 use super::manifest::Controller;
-use super::name::{self, Shown, type_word};
+use super::name::{self, ReportedName, type_word};
 use super::transfer::{self, Download};
 use crate::link::Link;
 use crate::link::Yerc;
@@ -11,20 +11,20 @@ use armctl_controller::yerc::files;
 use armctl_controller::yerc::query::Query as _;
 use armctl_frame::backup::manifest::Entry;
 use armctl_frame::backup::save::{Content, SavedPart, Task, interrupted_failure};
-use armctl_frame::backup::{BackedUp, Only, SaveOptions};
+use armctl_frame::backup::{BackupReport, Only, SaveOptions};
 use armctl_frame::local_names::{LocalNames, Target};
 use armctl_frame::robot::file::FileItem;
 
 /// Makes a backup.
-pub async fn back_up(context: Context<'_, Yerc>, making: SaveOptions) -> Result<BackedUp, Failure> {
+pub async fn back_up(context: Context<'_, Yerc>, making: SaveOptions) -> Result<BackupReport, Failure> {
     let Context { link, screen, robot, several, .. } = context;
     let task = Task::new(making, robot, several)?;
-    if link.is_dry() {
+    if link.is_dry_run() {
         let question = Controller::question()?.request();
         link.plan_next(&question)?;
         transfer::plan_all(link, transfer::LISTS, FileType::ALL.iter().map(|kind| files::list(*kind)))?;
         link.then("armctl downloads every listed file (service 0x16) and acknowledges each block");
-        return Ok(BackedUp::new(&task.folder, task.scope, false, Vec::new()));
+        return Ok(BackupReport::new(&task.folder, task.scope, false, Vec::new()));
     }
     interrupted_failure(&task.folder, Box::pin(save(link, (screen, robot), &task))).await
 }
@@ -40,7 +40,7 @@ async fn save(
     link: &mut Link,
     (screen, robot): (&Screen, &Robot),
     task: &Task<Controller>,
-) -> Result<BackedUp, Failure> {
+) -> Result<BackupReport, Failure> {
     let only = Only::of_scope(&task.scope);
     let controller = Controller::ask(link).await?;
     let (mut work, mut refused) = (Vec::new(), Vec::new());
@@ -95,7 +95,7 @@ async fn save(
     let attempted = files.len();
     files.extend(work[attempted..].iter().map(|listed| FileItem::pending(encoding.decode(&listed.name))));
     for (file, listed) in files.iter_mut().zip(&work) {
-        file.more.name_hex = Shown::new(encoding, &listed.name).name_hex;
+        file.more.name_hex = ReportedName::new(encoding, &listed.name).name_hex;
     }
     saving.end(refused)
 }

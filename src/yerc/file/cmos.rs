@@ -57,7 +57,7 @@ impl Command for Cmos {
         let folder = private_folder(&folder_of(file), &robot.name, several);
         let path = if several { folder.join(name) } else { file.to_owned() };
         let target = Target::new(path, self.force)?;
-        if link.is_dry() {
+        if link.is_dry_run() {
             link.plan_download(&files::batch_backup(), Reason::default())?;
             if !self.download_only {
                 let reason = Reason::about("after the controller has created the backup");

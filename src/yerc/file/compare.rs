@@ -1,6 +1,6 @@
 //! Compares a transfer with a local file, block by block. Neither file is completely in memory.
 
-use super::content::Pieces;
+use super::content::ContentReader;
 use armctl_frame::backup::job_date::DateFilter;
 use armctl_frame::backup::manifest::Hash;
 use armctl_frame::failure::Failure;
@@ -21,7 +21,7 @@ pub struct Comparison {
 /// Comparison in progress.
 #[derive(Debug)]
 pub struct Comparer<'a> {
-    pieces: Pieces<'a>,
+    pieces: ContentReader<'a>,
     /// Bytes of the local file that are not compared yet. They start at offset `at`.
     buffered: Vec<u8>,
     offset: usize,
@@ -33,7 +33,7 @@ pub struct Comparer<'a> {
 
 impl<'a> Comparer<'a> {
     /// Starts a comparison with a local file. With `ignore_header`, lines that controllers rewrite are ignored.
-    pub fn new(pieces: Pieces<'a>, ignore_header: bool) -> Self {
+    pub fn new(pieces: ContentReader<'a>, ignore_header: bool) -> Self {
         let comparison =
             Comparison { controller_bytes: 0, local_bytes: 0, first_difference: None, dates_differ: false };
         Self {

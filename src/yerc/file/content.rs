@@ -12,7 +12,7 @@ use armctl_frame::backup::manifest::Hash;
 use armctl_frame::failure::Failure;
 
 /// Size of a piece. It contains a few blocks.
-const PIECE: usize = 1 << 13;
+const READ_SIZE: usize = 1 << 13;
 
 /// A local file to send.
 #[derive(Debug)]
@@ -111,16 +111,16 @@ impl Content {
     }
 
     /// Reader for the pieces of the file, from its beginning.
-    pub fn pieces(&mut self) -> Result<Pieces<'_>, Failure> {
+    pub fn pieces(&mut self) -> Result<ContentReader<'_>, Failure> {
         self.file.rewind().with_context(|| self.path.display().to_string())?;
         let fixer = self.fixes.then(Fixer::default);
-        Ok(Pieces { file: &self.file, path: &self.path, fixer, hash: Hash::default() })
+        Ok(ContentReader { file: &self.file, path: &self.path, fixer, hash: Hash::default() })
     }
 }
 
 /// Reader that returns a [`Content`] in pieces.
 #[derive(Debug)]
-pub struct Pieces<'a> {
+pub struct ContentReader<'a> {
     file: &'a File,
     path: &'a Path,
     fixer: Option<Fixer>,
@@ -128,11 +128,11 @@ pub struct Pieces<'a> {
     pub hash: Hash,
 }
 
-impl Pieces<'_> {
+impl ContentReader<'_> {
     /// Returns the next piece, which is empty at the end.
     pub fn next_piece(&mut self) -> Result<Vec<u8>, Failure> {
-        let mut piece = Vec::with_capacity(PIECE);
-        let read = self.file.take(PIECE as u64).read_to_end(&mut piece);
+        let mut piece = Vec::with_capacity(READ_SIZE);
+        let read = self.file.take(READ_SIZE as u64).read_to_end(&mut piece);
         read.with_context(|| self.path.display().to_string())?;
         if let Some(fixer) = &mut self.fixer {
             piece = fixer.fix_line_endings_of(&piece);

@@ -1,7 +1,7 @@
 //! `yerc file delete` (FS and DX 3.4.1).
 
-use super::lists::{Existence, Lists};
-use super::name::{self, Shown};
+use super::existence::{Existence, Lists};
+use super::name::{self, ReportedName};
 use super::transfer;
 use crate::complete;
 use crate::link::Yerc;
@@ -30,12 +30,12 @@ impl Command for Delete {
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Files, Failure> {
-        let Context { link, authority, .. } = context;
+        let Context { link, confirmer, .. } = context;
         let files = name::parse_names(link.encoding, &self.names)?;
-        let pending = |file: &FileName| Shown::new(link.encoding, file.as_bytes()).pending();
+        let pending = |file: &FileName| ReportedName::new(link.encoding, file.as_bytes()).pending();
         let mut results: Vec<FileItem> = files.iter().map(pending).collect();
         let lists = Lists::ask(link, &files).await?;
-        authority.confirm(&change(link.encoding, lists.as_ref(), &files)).await?;
+        confirmer.confirm(&change(link.encoding, lists.as_ref(), &files)).await?;
         let Some(lists) = lists else {
             for file in &files {
                 let reason = Reason::about("if the file is listed").depending_on("whether the file is listed");

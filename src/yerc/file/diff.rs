@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::compare::{Comparer, Comparison};
 use super::content::Content;
-use super::name::{self, Shown};
+use super::name::{self, ReportedName};
 use super::transfer;
 use crate::complete;
 use crate::link::Yerc;
@@ -50,7 +50,7 @@ impl Command for Diff {
             private_folder("".as_ref(), &robot.name, several).join(local_name(link.encoding, file.as_bytes()))
         });
         let mut source = Content::open_file(&local)?;
-        let shown = Shown::new(link.encoding, file.as_bytes());
+        let shown = ReportedName::new(link.encoding, file.as_bytes());
         let mut controller_bytes = Vec::new();
         let mut progress = screen.bytes_progress(&shown.name, None);
         let without_date = !self.exact && (self.ignore_header || file.file_type() == Some(FileType::Jbi));
@@ -110,7 +110,12 @@ struct Sides {
 }
 
 impl Difference {
-    fn new(name: Shown, local: &Path, (comparison, hash): (Comparison, Hash), text: Option<TextDifference>) -> Self {
+    fn new(
+        name: ReportedName,
+        local: &Path,
+        (comparison, hash): (Comparison, Hash),
+        text: Option<TextDifference>,
+    ) -> Self {
         let Comparison { controller_bytes, first_difference, dates_differ, .. } = comparison;
         let mut compared = match first_difference {
             Some(_) => Compared::texts(text),
@@ -118,7 +123,7 @@ impl Difference {
             None => Compared::new(State::Same),
         };
         compared.ignored.extend(dates_differ.then_some(DATE_LINE));
-        let Shown { name, name_hex } = name;
+        let ReportedName { name, name_hex } = name;
         let more = Sides { name_hex, compared, controller_bytes, first_difference_offset: first_difference };
         let file = FileItem::new(name, more, Ok(())).with_path(local).with_content(hash);
         Self { equal: first_difference.is_none(), files: [file] }
@@ -200,7 +205,7 @@ mod tests {
             dates_differ: false,
         };
         let text = TextDifference::of(Encoding::ShiftJis, theirs, ours);
-        let name = Shown::new(Encoding::ShiftJis, b"A.JBI");
+        let name = ReportedName::new(Encoding::ShiftJis, b"A.JBI");
         Difference::new(name, Path::new("a.jbi"), (comparison, Hash::of(ours)), text)
     }
 

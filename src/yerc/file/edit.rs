@@ -1,7 +1,7 @@
 //! `yerc job edit`: edits a job of the controller in the user's editor.
 
 use super::content::{Content, JobRules};
-use super::name::{self, Shown};
+use super::name::{self, ReportedName};
 use super::transfer;
 use super::upload::{Delivery, UploadOptions, upload};
 use crate::complete;
@@ -50,7 +50,7 @@ impl Command for Edit {
             && self.name[self.name.len() - EXTENSION.len()..].eq_ignore_ascii_case(EXTENSION);
         let full = if is_whole { self.name.clone() } else { format!("{}{EXTENSION}", self.name) };
         let file = name::name_to_send(name::parse_name(encoding, &full)?)?;
-        if context.link.is_dry() {
+        if context.link.is_dry_run() {
             return plan(context.link, &file);
         }
         let old = fetch(context.link, context.screen, &file).await?;
@@ -80,7 +80,7 @@ impl Edit {
         edited: &EditedText,
     ) -> Result<EditedJob, Failure> {
         let (link, screen) = (&mut *context.link, context.screen);
-        let shown = Shown::new(link.encoding, file.as_bytes());
+        let shown = ReportedName::new(link.encoding, file.as_bytes());
         if !edited.is_changed()? {
             return Ok(EditedJob { name: shown, changed: false, bytes: old.len() as u64, hunks: Vec::new() });
         }
@@ -119,7 +119,7 @@ impl Edit {
         };
         let (less, more) = (count(LineChange::Removed), count(LineChange::Added));
         let change = Change::new(format!("overwrite the job {}: -{less} +{more} lines", shown.name));
-        context.authority.confirm(&change).await?;
+        context.confirmer.confirm(&change).await?;
         let manner = UploadOptions { verify: true, ignore_header: true, replace: true };
         let sent = upload(context.link, screen, &mut delivery, manner, &mut Vec::new()).await?;
         Ok(EditedJob { name: shown, changed: true, bytes: sent.bytes, hunks })
@@ -221,7 +221,7 @@ fn plan(link: &mut Link, file: &FileName) -> Result<EditedJob, Failure> {
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct EditedJob {
     #[serde(flatten)]
-    name: Shown,
+    name: ReportedName,
     /// Whether the job was written and read back.
     changed: bool,
     bytes: u64,
@@ -231,7 +231,7 @@ pub struct EditedJob {
 
 impl Report for EditedJob {
     fn view(&self) -> View {
-        let Self { name: Shown { name, .. }, bytes, .. } = self;
+        let Self { name: ReportedName { name, .. }, bytes, .. } = self;
         let text = if self.changed {
             format!("{name} written and read back, {bytes} bytes")
         } else {

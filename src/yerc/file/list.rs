@@ -1,6 +1,6 @@
 //! `yerc file list` (FS and DX 3.4.4).
 
-use super::name::{Shown, TypeArg, name_of_type, type_word};
+use super::name::{ReportedName, TypeArg, name_of_type, type_word};
 use super::transfer;
 use crate::link::Yerc;
 use crate::prelude::*;
@@ -39,7 +39,7 @@ impl Command for List {
         let requests: Vec<_> = requests.collect::<Result<_, _>>().map_err(|error| {
             Failure::usage(error.to_string()).hint("type a filter such as *.JBI, or remove --filter to list jobs")
         })?;
-        if link.is_dry() {
+        if link.is_dry_run() {
             transfer::plan_all(link, transfer::LISTS, requests)?;
             return Ok(Files::new(Vec::new(), table));
         }
@@ -49,7 +49,7 @@ impl Command for List {
         for ((filter, kind), request) in filters.iter().zip(&requests) {
             match transfer::list_by(link, request).await {
                 Ok(names) => listed.extend(names.iter().map(|bytes| {
-                    let Shown { name, name_hex } = Shown::new(link.encoding, bytes);
+                    let ReportedName { name, name_hex } = ReportedName::new(link.encoding, bytes);
                     let file_type = name_of_type(bytes).or(kind.map(type_word));
                     FileItem::new(name, Listed { name_hex, file_type }, Ok(()))
                 })),

@@ -8,7 +8,7 @@ use armctl_frame::robot::file::FileItem;
 
 /// Name of a file in a report.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct Shown {
+pub struct ReportedName {
     /// Name of the file on the controller.
     pub name: String,
     /// Bytes of the name, if the text cannot be converted back to these bytes. To use them as an argument, add the
@@ -17,7 +17,7 @@ pub struct Shown {
     pub name_hex: Option<String>,
 }
 
-impl Shown {
+impl ReportedName {
     /// Creates a name from the bytes of a controller.
     pub fn new(encoding: Encoding, name: &[u8]) -> Self {
         let name = encoding.name(name);

@@ -1,7 +1,7 @@
 //! Patterns of file names, such as `*.JBI`. They are matched against the lists of the controller. A pattern is never
 //! sent, because a controller might interpret it differently.
 
-use super::name::{self, Shown};
+use super::name::{self, ReportedName};
 use super::transfer;
 use crate::link::Link;
 use armctl_controller::yerc::files::{self, FileName, FileType};
@@ -13,7 +13,7 @@ use armctl_frame::settings::inventory::matches_pattern;
 #[derive(Debug)]
 pub struct FilePattern {
     /// Name of the file, or the pattern or list that has no result.
-    pub name: Shown,
+    pub name: ReportedName,
     /// Name to send to the controller.
     pub file: Result<FileName, Failure>,
 }
@@ -43,7 +43,7 @@ pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<FilePa
         return Err(Failure::usage(format!("no controller file can match '{pattern}'"))
             .hint("use a file name that ends in JBI, DAT, CND, PRM, SYS or LST"));
     }
-    if link.is_dry() {
+    if link.is_dry_run() {
         transfer::plan_all(link, transfer::LISTS, kinds.into_iter().map(files::list))?;
         transfer::plan_all(link, "downloads the file", files.iter().map(FileName::save))?;
         if !patterns.is_empty() {
@@ -52,7 +52,7 @@ pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<FilePa
         return Ok(None);
     }
     let encoding = link.encoding;
-    let shown = |bytes: &[u8]| Shown::new(encoding, bytes);
+    let shown = |bytes: &[u8]| ReportedName::new(encoding, bytes);
     let mut found: Vec<FilePattern> =
         files.into_iter().map(|file| FilePattern { name: shown(file.as_bytes()), file: Ok(file) }).collect();
     let mut matched = vec![false; patterns.len()];
@@ -88,7 +88,10 @@ pub async fn find(link: &mut Link, asked: &[String]) -> Result<Option<Vec<FilePa
         if !fitted && !types(pattern).iter().any(|kind| refused.iter().any(|list| list.name.name == kind.filter())) {
             let no_match = Failure::new(Kind::Refused, "no file on the controller matches")
                 .hint("use `yerc file list --type all` to see the names; names are case-sensitive");
-            found.push(FilePattern { name: Shown { name: pattern.clone(), name_hex: None }, file: Err(no_match) });
+            found.push(FilePattern {
+                name: ReportedName { name: pattern.clone(), name_hex: None },
+                file: Err(no_match),
+            });
         }
     }
     found.extend(refused);

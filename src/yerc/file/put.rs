@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::content::{Content, JobRules};
-use super::lists::{Existence, Lists};
-use super::name::{self, Shown};
+use super::existence::{Existence, Lists};
+use super::name::{self, ReportedName};
 use super::upload::{self, Delivery, UploadOptions, upload};
 use crate::link::Yerc;
 use crate::prelude::*;
@@ -52,12 +52,12 @@ impl Command for Put {
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Files, Failure> {
-        let Context { link, screen, authority, .. } = context;
+        let Context { link, screen, confirmer, .. } = context;
         let mut deliveries = self.deliveries(link.encoding)?;
         let mut results: Vec<FileItem> = Vec::with_capacity(deliveries.len());
         for delivery in &deliveries {
             let Delivery { file, content } = delivery;
-            let mut result = Shown::new(link.encoding, file.as_bytes()).pending().with_path(content.path());
+            let mut result = ReportedName::new(link.encoding, file.as_bytes()).pending().with_path(content.path());
             if let Some((own, sent)) = delivery.name_in_job(link.encoding) {
                 screen.note(&format!(
                     "warning: {} has //NAME {own}, but armctl sends it as {sent}: a controller may refuse the job, or \
@@ -70,7 +70,7 @@ impl Command for Put {
         }
         let manner = UploadOptions { verify: self.verify, ignore_header: self.ignore_header, replace: self.replace };
         let lists = Lists::ask(link, deliveries.iter().map(|delivery| &delivery.file)).await?;
-        upload::confirm_uploads(&authority, link.encoding, lists.as_ref(), &deliveries).await?;
+        upload::confirm_uploads(&confirmer, link.encoding, lists.as_ref(), &deliveries).await?;
         let Some(lists) = lists else {
             for delivery in &mut deliveries {
                 upload::plan(link, delivery, manner, Reason::default())?;

@@ -1,6 +1,6 @@
 //! Reads small files from the controller, for commands that need their content.
 
-use super::lists::{Existence, Lists};
+use super::existence::{Existence, Lists};
 use super::transfer;
 use crate::link::Link;
 use crate::prelude::*;

@@ -5,18 +5,18 @@ use std::path::PathBuf;
 use serde_json::Value;
 
 use super::content::Content;
-use super::lists::{Existence, Lists};
+use super::existence::{Existence, Lists};
 use super::manifest::{Manifest, controller_file};
-use super::name::Shown;
+use super::name::ReportedName;
 use super::transfer;
 use super::upload::{self, Delivery, UploadOptions, upload};
 use crate::link::Link;
 use crate::link::Yerc;
 use crate::prelude::*;
-use armctl_frame::authority::Authority;
 use armctl_frame::backup::manifest;
 use armctl_frame::backup::manifest::Entry;
-use armctl_frame::backup::{NOT_CHOSEN, Only, RestoreSelection, Restored, would_leave, would_write};
+use armctl_frame::backup::{NOT_CHOSEN, Only, RestoreReport, RestoreSelection, would_leave, would_write};
+use armctl_frame::confirmation::Confirmer;
 use armctl_frame::local_names::private_folder;
 use armctl_frame::robot::file::{FileItem, State};
 
@@ -57,13 +57,13 @@ impl Restore {
     }
 
     /// Sends the files that differ.
-    pub async fn run(&self, context: Context<'_, Yerc>) -> Result<Restored, Failure> {
-        let Context { link, screen, robot, several, authority } = context;
+    pub async fn run(&self, context: Context<'_, Yerc>) -> Result<RestoreReport, Failure> {
+        let Context { link, screen, robot, several, confirmer } = context;
         let folder = private_folder(&self.folder, &robot.name, several);
         manifest::check_origin(&manifest::open_existing::<Value>(&folder)?, robot, self.force)?;
         let manifest: Manifest = manifest::open_existing(&folder)?;
         let (taken_of, model) = (manifest.controller.description_of(), link.model().await?);
-        if taken_of != model.name() && !link.is_dry() && !self.force {
+        if taken_of != model.name() && !link.is_dry_run() && !self.force {
             let message = format!("the backup is from a {taken_of}, but {} is a {model}", robot.label());
             return Err(Failure::new(Kind::Rejected, message)
                 .hint("check the model (?model=…), or add --force to send the files anyway"));
@@ -74,22 +74,22 @@ impl Restore {
             let Some(copy) = &entry.copy else { continue };
             copy.check(&folder)?;
             if copy.bytes > 0 {
-                results.push(Shown::new(link.encoding, file.as_bytes()).pending().from_copy(&folder, copy));
+                results.push(ReportedName::new(link.encoding, file.as_bytes()).pending().from_copy(&folder, copy));
                 deliveries.push(Delivery { file, content: Content::open(&folder.join(&copy.file))? });
             } else {
                 screen.note(&format!("{} is empty and cannot be sent", entry.name));
             }
         }
-        if link.is_dry() {
+        if link.is_dry_run() {
             Self::plan_items(link, &manifest, &deliveries);
         }
         let lists = Lists::ask(link, deliveries.iter().map(|delivery| &delivery.file)).await?;
         let Some(lists) = lists else {
-            plan(link, &mut deliveries, &authority).await?;
-            return Ok(Restored::new(&folder, results));
+            plan(link, &mut deliveries, &confirmer).await?;
+            return Ok(RestoreReport::new(&folder, results));
         };
         if !compare(link, screen, &lists, &mut deliveries, &mut results).await? {
-            return Ok(Restored::new(&folder, results));
+            return Ok(RestoreReport::new(&folder, results));
         }
         // Equal files are skipped. Files that could not be compared are not sent.
         let mut open: Vec<(Delivery, &mut FileItem)> = deliveries
@@ -97,7 +97,7 @@ impl Restore {
             .zip(&mut results)
             .filter(|(_, result)| result.more.state == State::NotTried)
             .collect();
-        upload::confirm_uploads(&authority, link.encoding, Some(&lists), open.iter().map(|(delivery, _)| delivery))
+        upload::confirm_uploads(&confirmer, link.encoding, Some(&lists), open.iter().map(|(delivery, _)| delivery))
             .await?;
         let mut sent = screen.parts_progress("files sent", open.len());
         for (delivery, result) in &mut open {
@@ -111,7 +111,7 @@ impl Restore {
             sent.advance(1);
         }
         drop(open);
-        Ok(Restored::new(&folder, results))
+        Ok(RestoreReport::new(&folder, results))
     }
 }
 
@@ -181,8 +181,8 @@ async fn compare(
 }
 
 /// In a dry run, records the requests that follow the lists.
-async fn plan(link: &mut Link, deliveries: &mut [Delivery], authority: &Authority<'_>) -> Result<(), Failure> {
-    authority.confirm(&Change::none()).await?;
+async fn plan(link: &mut Link, deliveries: &mut [Delivery], confirmer: &Confirmer<'_>) -> Result<(), Failure> {
+    confirmer.confirm(&Change::none()).await?;
     for Delivery { file, .. } in &*deliveries {
         let reason =
             Reason::about("content of the file, for the comparison").depending_on("whether the file is listed");

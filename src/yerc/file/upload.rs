@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 
 use super::compare::{Comparer, Comparison};
 use super::content::Content;
-use super::lists::{Existence, Lists};
+use super::existence::{Existence, Lists};
 use super::transfer::{self, Download};
 use crate::link::Link;
 use crate::prelude::*;
-use armctl_frame::authority::Authority;
 use armctl_frame::backup::manifest::Hash;
+use armctl_frame::confirmation::Confirmer;
 use armctl_frame::local_names::{Target, folder_of, local_name};
 
 /// A file to upload.
@@ -36,7 +36,7 @@ pub struct UploadOptions {
 
 /// Asks for confirmation if files will be overwritten: files that are in a list, and files of a type without a list.
 pub async fn confirm_uploads<'a>(
-    authority: &Authority<'_>,
+    confirmer: &Confirmer<'_>,
     encoding: Encoding,
     lists: Option<&Lists>,
     deliveries: impl IntoIterator<Item = &'a Delivery>,
@@ -54,14 +54,14 @@ pub async fn confirm_uploads<'a>(
         replaced.push(format!("{name}, with the {} bytes of {path}{unlisted_count}", content.size()));
     }
     if replaced.is_empty() {
-        return authority.confirm(&Change::none()).await;
+        return confirmer.confirm(&Change::none()).await;
     }
     let plural = if replaced.len() == 1 { "" } else { "s" };
     let change = Change::new(format!("overwrite {} file{plural} on the controller", replaced.len()));
     let change = replaced.into_iter().fold(change, Change::item);
     let change =
         if has_machine_data { change.note("Parameters and system data change the controller itself.") } else { change };
-    authority.confirm(&change).await
+    confirmer.confirm(&change).await
 }
 
 /// In a dry run, records the requests of [`upload`].

@@ -3,10 +3,10 @@
 use std::collections::HashSet;
 
 use super::super::batch_split::{BatchSplit, read_in_batches};
-use super::super::switch_commands::usage;
+use super::super::control_commands::usage;
 use super::{group_item, item, signal};
 use crate::complete;
-use crate::existing_items::read_failure;
+use crate::item_requests::read_failure;
 use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::yerc::signal::Signal;

@@ -1,9 +1,9 @@
 //! `yerc io list`.
 
 use super::super::batch_split::{BatchSplit, read_in_batches};
-use super::super::switch_commands::usage;
+use super::super::control_commands::usage;
 use super::{item, kind, signal};
-use crate::existing_items::read_failure;
+use crate::item_requests::read_failure;
 use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::yerc::signal::Signal;

@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 use std::str::FromStr;
 
 use super::super::batch_split::{BatchSplit, read_in_batches};
-use super::super::switch_commands::usage;
+use super::super::control_commands::usage;
 use super::{group_item, item, signal};
 use crate::complete;
-use crate::existing_items::read_failure;
+use crate::item_requests::read_failure;
 use crate::link::Link;
 use crate::link::Yerc;
 use crate::prelude::*;
-use armctl_controller::typed;
+use armctl_controller::user_input;
 use armctl_controller::yerc::query::Query as _;
 use armctl_controller::yerc::signal::Signal;
 use armctl_controller::yerc::variables::{WriteIoStep, parse_numbers, plan_io_reads, plan_io_writes};
@@ -49,8 +49,8 @@ impl FromStr for Switch {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (signal, state) = typed::setting(text, "a signal", "a state", "27010=on")?;
-        let on = typed::state(state)?;
+        let (signal, state) = user_input::split_setting(text, "a signal", "a state", "27010=on")?;
+        let on = user_input::state(state)?;
         Ok(Self { signal: signal::parse_single(signal)?, on })
     }
 }
@@ -65,11 +65,11 @@ impl FromStr for GroupValue {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (group, value) = typed::setting(text, "a group", "a value", "2701=0xA5")?;
-        let group = typed::unsigned(group)
+        let (group, value) = user_input::split_setting(text, "a group", "a value", "2701=0xA5")?;
+        let group = user_input::unsigned(group)
             .ok_or_else(|| format!("'{group}' is not a valid group; #27010 to #27017 are group 2701"))?;
-        let value =
-            typed::unsigned(value).ok_or_else(|| format!("'{value}' is not a number from 0 to 255 (0x00 to 0xFF)"))?;
+        let value = user_input::unsigned(value)
+            .ok_or_else(|| format!("'{value}' is not a number from 0 to 255 (0x00 to 0xFF)"))?;
         Ok(Self { group, value })
     }
 }
@@ -94,13 +94,13 @@ impl Command for Set {
     const RISK: Risk = Risk::Write;
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenSignals, Failure> {
-        let Context { link, screen, robot, authority, .. } = context;
+        let Context { link, screen, robot, confirmer, .. } = context;
         let names = names::of_robot(robot, screen);
         let changes: Vec<Row<Groups>> = self.changes()?.into_iter().collect();
         let groups: Vec<u16> = changes.iter().map(|(group, _)| *group).collect();
         let model = link.model_for(|model| signal::is_readable(model, &groups, true)).await?;
         signal::is_readable(model, &groups, true)?;
-        let rows = write_rows(&Groups { model }, link, screen, authority, changes).await?;
+        let rows = write_rows(&Groups { model }, link, screen, confirmer, changes).await?;
         let row = |group: u16| rows.iter().find(move |row| row.key == group);
         let signals = self.signals.iter().filter_map(|Switch { signal, .. }| {
             let row = row(signal.group())?;
@@ -222,7 +222,7 @@ impl Writable for Groups {
     }
 
     /// Consecutive groups are written with one request.
-    fn blocks(&self, rows: &[Differing<'_, Self>]) -> Vec<Vec<usize>> {
+    fn blocks(&self, rows: &[RowDifference<'_, Self>]) -> Vec<Vec<usize>> {
         let index_of = |group: &u16| rows.iter().position(|(key, ..)| key == group);
         match self.steps(rows.iter().map(|(group, _, new)| (*group, **new))) {
             Ok(steps) => steps.iter().map(|step| step.written().iter().filter_map(index_of).collect()).collect(),
@@ -233,7 +233,7 @@ impl Writable for Groups {
     async fn plan(&self, link: &mut Link, rows: &[Row<Self>]) -> Result<(), Failure> {
         let steps = |old: u8| self.steps(rows.iter().map(|(group, change)| (*group, change.apply(old))));
         for (one, other) in steps(0)?.iter().zip(steps(u8::MAX)?) {
-            let groups = typed::runs(one.written(), "..");
+            let groups = user_input::format_ranges(one.written(), "..");
             let (one, other) = (one.request(), other.request());
             let (about, depends_on) = if one == other {
                 (format!("writes group {groups}"), IF_DIFFERENT)
@@ -246,7 +246,7 @@ impl Writable for Groups {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
         for step in self.steps(rows.iter().map(|(group, _, new)| (*group, **new)))? {
             link.ask(&step).await?;
         }

@@ -1,9 +1,9 @@
 //! Signal and group arguments.
 
-use super::super::switch_commands::usage;
+use super::super::control_commands::usage;
 use crate::prelude::*;
 use armctl_controller::names::Kind;
-use armctl_controller::typed;
+use armctl_controller::user_input;
 use armctl_controller::yerc::signal::{Signal, SignalError, io_class};
 use armctl_controller::yerc::table::{Row, Span};
 use armctl_controller::yerc::variables::{IoStep, plan_io_reads};
@@ -31,7 +31,7 @@ impl Signals {
 
     fn addresses(text: &str) -> Result<Self, String> {
         let number = |text: &str| text.parse::<Signal>().map(Signal::number).map_err(|error| error.to_string());
-        Ok(Self(typed::range(text, number)?.filter_map(|number| Signal::new(number).ok()).collect()))
+        Ok(Self(user_input::range(text, number)?.filter_map(|number| Signal::new(number).ok()).collect()))
     }
 }
 

@@ -1,6 +1,6 @@
 //! `yerc job list`.
 
-use crate::file::{LISTS, Shown, list, plan_all};
+use crate::file::{LISTS, ReportedName, list, plan_all};
 use crate::link::Yerc;
 use crate::prelude::*;
 use crate::selected_job::SelectedJob;
@@ -18,14 +18,14 @@ impl Command for List {
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Listing, Failure> {
         let Context { link, screen, .. } = context;
         let selected = SelectedJob::ask(link).await?;
-        if link.is_dry() {
+        if link.is_dry_run() {
             plan_all(link, LISTS, [files::list(FileType::Jbi)])?;
             return Ok(Listing::default());
         }
         let _looking = screen.spinner("looking for jobs");
         let jobs = list(link, FileType::Jbi).await?.into_iter().map(|file| {
             let name = super::stem(&file);
-            Listed { name: Shown::new(link.encoding, name), selected: selected.is(name) }
+            Listed { name: ReportedName::new(link.encoding, name), selected: selected.is(name) }
         });
         Ok(Listing { jobs: jobs.collect() })
     }
@@ -43,7 +43,7 @@ pub struct Listing {
 struct Listed {
     /// Job name without `.JBI`.
     #[serde(flatten)]
-    name: Shown,
+    name: ReportedName,
     /// Whether this job is selected, so that a start runs it.
     selected: bool,
 }

@@ -8,14 +8,14 @@ use super::{Select, about, without_suffix};
 use crate::complete;
 use crate::link::{Link, Yerc};
 use crate::motion::{POLL_INTERVAL, START_TIMEOUT, StandstillCause, lost_contact, plan_alarm};
-use crate::numbers::parse_in_range;
+use crate::number_arguments::parse_in_range;
 use crate::prelude::*;
 use crate::selected_job::SelectedJob;
 use armctl_controller::yerc::payload::{ControllerStatus, StatusBit};
 use armctl_controller::yerc::query::{Query as _, ReadJob, ReadStatus, SelectJob, StartJob};
-use armctl_frame::cycle::{Repeat, Runs};
 use armctl_frame::dry_run::unknown;
 use armctl_frame::gate::data_changed;
+use armctl_frame::repeated_runs::{Repeat, Runs};
 use armctl_frame::robot::program::{Program, ProgramState};
 use armctl_frame::settings::duration;
 use armctl_frame::wait_arguments::ProgramEnd;
@@ -60,7 +60,7 @@ impl Command for Start {
     }
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<Started, Failure> {
-        let Context { link, screen, authority, .. } = context;
+        let Context { link, screen, confirmer, .. } = context;
         let named = match self.name.as_deref() {
             Some(name) => Some(self.selection(link, without_suffix(name)).await?),
             None => None,
@@ -69,8 +69,8 @@ impl Command for Start {
             check_cycle(link).await?;
         }
         let mut selected = SelectedJob::ask(link).await?;
-        let is_asked = authority.asks();
-        authority.confirm(&self.change(&selected, link)).await?;
+        let is_asked = confirmer.asks_user();
+        confirmer.confirm(&self.change(&selected, link)).await?;
         if is_asked {
             selected.check_unchanged(link).await?;
         }
@@ -78,7 +78,7 @@ impl Command for Start {
             let outcome = link.for_purpose("selects it").ask(&select).await;
             outcome.map_err(|failure| about(self.name.as_deref().unwrap_or_default(), failure))?;
             if let Some(now) = SelectedJob::ask(link.for_purpose("selected job")).await.known()?
-                && !link.is_dry()
+                && !link.is_dry_run()
             {
                 check_selected(link, &name, &selected, &now)?;
                 selected = now;
@@ -101,7 +101,7 @@ impl Command for Start {
                     program: Program { program: job, state: Some(ProgramState::Running), ..Program::default() },
                 });
             };
-            if link.is_dry() {
+            if link.is_dry_run() {
                 return Err(self.plan(link).await?);
             }
             let what = runs.next().unwrap_or_else(|| "the job is running".to_owned());
@@ -197,16 +197,18 @@ async fn wait(
         let status = link.ask(&ReadStatus).await.map_err(|failure| lost_contact("the job was started", failure))?;
         let look = watch.look(began.elapsed(), status);
         // A short job may end before the first status read. In that case its line has changed.
-        if !watch.was_running && matches!(look, Look::Running | Look::NeverStarted) && has_changed(link, chosen).await?
+        if !watch.was_running
+            && matches!(look, JobProgress::Running | JobProgress::NeverStarted)
+            && has_changed(link, chosen).await?
         {
             break;
         }
         match look {
-            Look::Running => {}
-            Look::Ended => break,
-            Look::Stopped(trouble) => return Err(trouble.failure(link, "the job was started", None).await),
-            Look::NeverStarted => return Err(never_started()),
-            Look::Timeout(limit) => {
+            JobProgress::Running => {}
+            JobProgress::Ended => break,
+            JobProgress::Stopped(trouble) => return Err(trouble.failure(link, "the job was started", None).await),
+            JobProgress::NeverStarted => return Err(never_started()),
+            JobProgress::Timeout(limit) => {
                 let message = format!("the job is still running after {}", duration::display(limit));
                 return Err(Failure::new(Kind::ConditionNotMet, message)
                     .hint("see `yerc status` and `yerc job show` for the progress; the job continues"));
@@ -262,7 +264,7 @@ pub(super) struct Watch {
 
 /// State of the job, derived from a status.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Look {
+pub(super) enum JobProgress {
     /// The job is still running.
     Running,
     /// The job has ended.
@@ -280,19 +282,19 @@ impl Watch {
         Self { limit, was_running: false }
     }
 
-    pub(super) fn look(&mut self, elapsed: Duration, status: ControllerStatus) -> Look {
+    pub(super) fn look(&mut self, elapsed: Duration, status: ControllerStatus) -> JobProgress {
         self.was_running |= status.running();
         match StandstillCause::of(status) {
             // An error is a message on the pendant. The job may continue.
             Some(StandstillCause::Error) if status.running() => {}
-            Some(trouble) => return Look::Stopped(trouble),
-            None if self.was_running && !status.running() => return Look::Ended,
+            Some(trouble) => return JobProgress::Stopped(trouble),
+            None if self.was_running && !status.running() => return JobProgress::Ended,
             None => {}
         }
         match self.limit {
-            _ if !self.was_running && elapsed >= START_TIMEOUT => Look::NeverStarted,
-            Some(limit) if elapsed >= limit => Look::Timeout(limit),
-            _ => Look::Running,
+            _ if !self.was_running && elapsed >= START_TIMEOUT => JobProgress::NeverStarted,
+            Some(limit) if elapsed >= limit => JobProgress::Timeout(limit),
+            _ => JobProgress::Running,
         }
     }
 }

@@ -10,7 +10,7 @@ pub struct Stop {}
 
 impl Command for Stop {
     type Family = Yerc;
-    type Report = Done;
+    type Report = SetReport;
     const ID: &'static str = "yerc.job.stop";
 
     fn risk(&self) -> Risk {
@@ -21,7 +21,7 @@ impl Command for Stop {
         true
     }
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<SetReport, Failure> {
         hold(context).await
     }
 }
@@ -32,7 +32,7 @@ pub struct Halt {}
 
 impl Command for Halt {
     type Family = Yerc;
-    type Report = Done;
+    type Report = SetReport;
     const ID: &'static str = "yerc.stop";
 
     fn risk(&self) -> Risk {
@@ -43,12 +43,12 @@ impl Command for Halt {
         true
     }
 
-    async fn run(&self, context: Context<'_, Yerc>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Yerc>) -> Result<SetReport, Failure> {
         hold(context).await
     }
 }
 
-async fn hold(context: Context<'_, Yerc>) -> Result<Done, Failure> {
+async fn hold(context: Context<'_, Yerc>) -> Result<SetReport, Failure> {
     context.link.ask(&query::Hold(true)).await?;
     let words = "HOLD is on and the job is stopped; to continue it, use `yerc hold off` and `yerc job start`";
     // A stop must not be delayed by a read, so the old value is not read, as in `hold on`.

@@ -5,7 +5,7 @@ use std::fmt;
 use clap::ValueEnum;
 
 use crate::complete;
-use crate::numbers::parse_in_range;
+use crate::number_arguments::parse_in_range;
 use crate::position::{extended_words, form_words, in_a_line};
 use crate::prelude::*;
 use armctl_controller::names::Kind;

@@ -134,7 +134,7 @@ impl<Q: Query<Answer = ()>> Execution<Q> {
         context: Context<'_, Yerc>,
         question: &Question<'_>,
     ) -> Result<MotionReport, Failure> {
-        let Context { link, screen, authority, .. } = context;
+        let Context { link, screen, confirmer, .. } = context;
         let Self { order, group, mut goal, unnamed, no_wait } = self;
         let coordinates = goal.coordinates();
         let mut start = None;
@@ -144,7 +144,7 @@ impl<Q: Query<Answer = ()>> Execution<Q> {
         if link.known_model() == Some(Model::Dx100) {
             screen.note("warning: moves are not tested on a dx100; armctl uses the layout of a DX200");
         }
-        let is_asked = authority.asks();
+        let is_asked = confirmer.asks_user();
         if (is_asked || !no_wait)
             && let Some((position, _)) =
                 position::ask(link.for_purpose("current position"), group, coordinates).await.known()?
@@ -152,7 +152,7 @@ impl<Q: Query<Answer = ()>> Execution<Q> {
             goal = goal.from(&position);
             start = Some(position);
         }
-        authority.confirm(&question.change(group, start.as_ref(), &goal, link.pulses_per_degree(group))).await?;
+        confirmer.confirm(&question.change(group, start.as_ref(), &goal, link.pulses_per_degree(group))).await?;
         if let (Some(asked), true) = (&start, is_asked) {
             let (now, _) = position::ask(link, group, coordinates).await?;
             if !is_standing(asked, &now) {
@@ -161,7 +161,7 @@ impl<Q: Query<Answer = ()>> Execution<Q> {
         }
         let start = start.filter(|_| !no_wait);
         link.for_purpose("starts the motion").ask(&order).await?;
-        if link.is_dry() && !no_wait {
+        if link.is_dry_run() && !no_wait {
             plan_looks(link, group, coordinates).await?;
         }
         let per_degree = link.pulses_per_degree(group).to_vec();

@@ -3,13 +3,13 @@
 use super::arguments::{Destination, Speed, Values};
 use super::execution::{Execution, Goal, MotionReport, plan_looks};
 use super::question::Question;
-use super::{Target, cartesian_move, unnamed_base_axes, way};
-use crate::existing_items::ReadError;
+use super::{Target, cartesian_move, describe_path, unnamed_base_axes};
+use crate::control_commands::usage;
 use crate::failure::refusal_failure;
+use crate::item_requests::ReadError;
 use crate::link::{Link, Yerc};
 use crate::position;
 use crate::prelude::*;
-use crate::switch_commands::usage;
 use crate::var::{different_words, is_undefined, variable_name};
 use armctl_controller::units;
 use armctl_controller::yerc::payload::{Axes, ExtendedForm, ExternalPosition, Form, MAX_AXES, PulseMove};
@@ -90,7 +90,7 @@ impl Motion<'_> {
         };
         let to = name.map(|name| format!(" to {name}")).unwrap_or_default();
         Question {
-            what: format!("move {} {}{to}", self.target.mover.group, way(self.kind)),
+            what: format!("move {} {}{to}", self.target.mover.group, describe_path(self.kind)),
             preposition: "to",
             kind,
             manner: how,

@@ -5,8 +5,8 @@
 use std::collections::BTreeMap;
 
 use super::position::{self, PositionData};
+use super::position_word::different_words;
 use super::value::Data;
-use super::word::different_words;
 use crate::prelude::*;
 use armctl_controller::text::{hex, unhex};
 use armctl_controller::yerc::payload::Text;

@@ -34,8 +34,8 @@ fn plural_reads_and_writes_are_golden_frames() {
     same("R61", DX200, &["register", "set", "100=100", "102=300", "101=200"]);
     same("R63", DX200, &["var", "get", "B10..B11"]);
     same("R71", DX200, &["var", "get", "EX0..EX12"]);
-    let doubles: Vec<String> = (0..118).map(|n| format!("D{n}={}", n * 1000)).collect();
-    same_many("R65", DX200, &["var", "set"], &doubles);
+    let duplicates: Vec<String> = (0..118).map(|n| format!("D{n}={}", n * 1000)).collect();
+    same_many("R65", DX200, &["var", "set"], &duplicates);
     let strings: Vec<String> = (0..29).map(|n| format!("S{n}=STR{n:02}")).collect();
     same_many("R67", DX200, &["var", "set", "--s16"], &strings);
     let strings: Vec<String> = (0..14).map(|n| format!("S{n}=LONG STRING {n:02}")).collect();

@@ -4,17 +4,17 @@ mod cells;
 #[cfg(test)]
 mod command_tests;
 mod position;
+mod position_word;
 mod raw;
 mod set;
 mod table;
 mod value;
-mod word;
 
 pub use self::position::{PositionData, as_position, stored_position};
+pub use self::position_word::different_words;
 pub use self::raw::confirm_raw;
 use self::table::Variables;
 pub use self::table::is_undefined;
-pub use self::word::different_words;
 use crate::prelude::*;
 use armctl_controller::names::{Kind, Names};
 use armctl_controller::yerc::variables::Reference;

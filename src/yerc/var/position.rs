@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value as Json};
 
-use super::word::different_words;
+use super::position_word::different_words;
 use crate::prelude::*;
 use armctl_controller::units::{self, Quantity, Unit};
 use armctl_controller::yerc::payload::{BasePosition, ExtendedForm, ExternalPosition, Form, MAX_AXES, NamedAxis};

@@ -2,16 +2,16 @@
 
 use std::collections::HashMap;
 
+use super::position_word::with_field;
 use super::table::{Variables, is_undefined};
-use super::word::with_field;
-use crate::existing_items::ReadError;
+use crate::item_requests::ReadError;
 use crate::link::Link;
 use crate::prelude::*;
 use armctl_controller::yerc::query::ReadVariable;
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::table::service;
 use armctl_controller::yerc::variables::{Reference, Value, VariableKind};
-use armctl_frame::authority::Authority;
+use armctl_frame::confirmation::Confirmer;
 use armctl_frame::settings_report::{OLD_VALUE, nothing_written};
 use armctl_frame::store::describe_change;
 
@@ -19,11 +19,11 @@ use armctl_frame::store::describe_change;
 /// decode.
 pub async fn confirm_raw(
     link: &mut Link,
-    authority: &Authority<'_>,
+    confirmer: &Confirmer<'_>,
     request: &Request,
     intent: String,
 ) -> Result<(), Failure> {
-    let Some(references) = references(request) else { return authority.confirm(&Change::new(intent)).await };
+    let Some(references) = references(request) else { return confirmer.confirm(&Change::new(intent)).await };
     let TaughtPositions { positions, has_unread } = read_taught(link, &references).await?;
     let new: Vec<Option<(Reference, Value)>> = references
         .iter()
@@ -31,11 +31,11 @@ pub async fn confirm_raw(
         .map(|(at, reference)| Some((*reference, value_at(request, at, positions.get(reference)?)?)))
         .collect();
     let new: Vec<(Reference, Value)> = new.into_iter().flatten().collect();
-    let differing: Vec<Differing<'_, Variables>> =
+    let differing: Vec<RowDifference<'_, Variables>> =
         new.iter().map(|(reference, value)| (*reference, positions.get(reference), value)).collect();
     let is_clear = !has_unread && new.len() == positions.len();
     let table = Variables::with_encoding(link.encoding);
-    authority.confirm(&if is_clear { describe_change(&table, &differing) } else { Change::new(intent) }).await
+    confirmer.confirm(&if is_clear { describe_change(&table, &differing) } else { Change::new(intent) }).await
 }
 
 /// Content of positions before a write.

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use super::cells::LAST_TOOL;
+use super::position_word::Word;
 use super::table::{Draft, StringForm, Variables};
-use super::word::Word;
 use crate::complete;
 use crate::link::Yerc;
 use crate::prelude::*;
 use armctl_controller::names::Kind;
-use armctl_controller::typed::{self, integer};
+use armctl_controller::user_input::{self, integer};
 use armctl_controller::yerc::variables::{Reference, Value, VariableKind};
 use armctl_frame::names;
 use armctl_frame::store::{Row, TableWrite, WrittenOf, write};
@@ -58,7 +58,7 @@ impl FromStr for Assignment {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (name, value) = typed::setting(text, "a variable", "a value", "B0=255")?;
+        let (name, value) = user_input::split_setting(text, "a variable", "a value", "B0=255")?;
         let (reference, field) = reference_of(name)?;
         let Some(reference) = reference else {
             // The values that are valid depend on the variable of the name, which is not known yet.
@@ -160,12 +160,12 @@ impl Command for Set {
     }
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<WrittenOf<Variables>, Failure> {
-        let Context { link, screen, robot, authority, .. } = context;
+        let Context { link, screen, robot, confirmer, .. } = context;
         let mut table = Variables::open(link, &self.form).await?;
         let keys: Vec<Reference> = self.assignments.iter().map(|assignment| assignment.reference).collect();
         table.prepare(link, &keys).await?;
         let rows = self.rows(&table)?;
-        write(TableWrite { table, robot, link, screen, authority }, rows).await?.or_only_failure()
+        write(TableWrite { table, robot, link, screen, confirmer }, rows).await?.or_only_failure()
     }
 }
 

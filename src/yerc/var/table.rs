@@ -4,15 +4,15 @@ use std::convert::Infallible;
 use std::fmt::Debug;
 
 use super::cells::{self, Cells};
+use super::position_word::{Word, different_words};
 use super::value::Data;
-use super::word::{Word, different_words};
 use crate::batch_split::{BatchSplit, read_in_batches};
 use crate::complete;
-use crate::existing_items::ReadError;
-use crate::existing_items::read_failure;
+use crate::control_commands::usage;
+use crate::item_requests::ReadError;
+use crate::item_requests::read_failure;
 use crate::link::{Link, Yerc};
 use crate::prelude::*;
-use crate::switch_commands::usage;
 use crate::var::position::stored_position;
 use armctl_controller::names::Kind;
 use armctl_controller::yerc::payload::Axes;
@@ -65,7 +65,7 @@ pub enum Draft {
 
 /// Maximum number of variables in a range. A larger range is probably a typing error. If it is refused, the read in
 /// parts takes a long time.
-const MOST: usize = 10_000;
+const MAX_BATCH: usize = 10_000;
 
 /// Added status codes for a variable without a value. The manuals give 0xB001 a second meaning, which cannot occur when
 /// one variable is read (3.3.16; DX chapter 5).
@@ -170,8 +170,8 @@ impl Store for Variables {
             Some(kind) => standard(kind).collect(),
             None => parse_references(text).map_err(|error| error.to_string())?,
         };
-        if keys.len() > MOST {
-            return Err(format!("{text} has {} variables; the maximum is {MOST}", keys.len()));
+        if keys.len() > MAX_BATCH {
+            return Err(format!("{text} has {} variables; the maximum is {MAX_BATCH}", keys.len()));
         }
         Ok(keys.into_iter().map(|key| Reference::new(key.kind.string_form(Model::Dx200, false), key.number)).collect())
     }
@@ -339,7 +339,7 @@ impl Writable for Variables {
 
     /// Consecutive variables of a kind are written with one request. A BP or an EX of which only one axis changes has
     /// its own request.
-    fn blocks(&self, rows: &[Differing<'_, Self>]) -> Vec<Vec<usize>> {
+    fn blocks(&self, rows: &[RowDifference<'_, Self>]) -> Vec<Vec<usize>> {
         let (alone, together): (Vec<usize>, Vec<usize>) =
             (0..rows.len()).partition(|index| single_word(&rows[*index]).is_some());
         let values = together.iter().map(|index| &rows[*index]).map(|(key, _, new)| (*key, (*new).clone()));
@@ -379,7 +379,7 @@ impl Writable for Variables {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, _screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
         if let [row] = rows
             && let Some(field) = single_word(row).and_then(|word| word.field(row.0))
         {
@@ -393,6 +393,6 @@ impl Writable for Variables {
 }
 
 /// The axis of a BP or an EX that changes, if it is the only change.
-fn single_word((key, old, new): &Differing<'_, Variables>) -> Option<Word> {
+fn single_word((key, old, new): &RowDifference<'_, Variables>) -> Option<Word> {
     Word::only_difference(*key, (*old)?, new)
 }

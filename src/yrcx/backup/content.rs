@@ -6,18 +6,18 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::parts::Part;
-use super::save::{GAP, gap_after};
+use super::save::{MAX_UNDEFINED_RUN, gap_after};
+use crate::confirmed_write::read_current;
 use crate::data::{Hands, Pallets, PointSheet, Points, Shifts};
 use crate::link::{Link, Yrcx};
-use crate::numbers::runs;
-use crate::overwrite::there;
+use crate::number_arguments::runs;
+use crate::numbered_tables::Numbered;
 use crate::param::{Parameters, Setting};
 use crate::prelude::*;
+use crate::read_requests::{ask_each, is_undefined};
 use crate::refusal::BuildOrder as _;
 use crate::robot_settings::Settings;
-use crate::several::{ask_each, is_undefined};
-use crate::single::shown;
-use crate::stores::Numbered;
+use crate::single_command::format_field;
 use crate::var::Variables;
 use armctl_controller::yrcx::table::Command;
 use armctl_frame::backup::manifest::{About, Entry};
@@ -64,11 +64,12 @@ impl Controller {
     /// Reads the software version and the robots from the controller.
     pub async fn ask(link: &mut Link) -> Result<Self, Failure> {
         let versions = link.ask(&Command::Versions.order().valid_order()?).await?.values;
-        let told = |key| shown(Command::Versions, &versions, key).unwrap_or_default();
+        let told = |key| format_field(Command::Versions, &versions, key).unwrap_or_default();
         let software = format!("{} {}", told(Key::HostVersion), told(Key::HostRevision));
         let mut robots = Vec::new();
         for robot in 1..=4_u8 {
-            let Some(servos) = there(link, &of_robot(Command::ServoStatus, robot).valid_order()?, "").await? else {
+            let Some(servos) = read_current(link, &of_robot(Command::ServoStatus, robot).valid_order()?, "").await?
+            else {
                 continue;
             };
             let has = |(axis, key): (u8, Key)| servos.int(key).filter(|state| *state != NO_AXIS).map(|_| axis);
@@ -88,7 +89,7 @@ impl Controller {
         for robot in 1..=4_u8 {
             link.plan(&of_robot(Command::ServoStatus, robot).valid_order()?, &format!("axes of robot {robot}"));
             let (order, about) = (of_robot(Command::System, robot).valid_order()?, format!("type of robot {robot}"));
-            plan_if_there(link, &order, &about);
+            plan_existing(link, &order, &about);
         }
         Ok(())
     }
@@ -117,7 +118,7 @@ fn of_robot(command: Command, robot: u8) -> Draft {
 }
 
 /// Notes a request in a dry run that is sent only if its robot exists.
-fn plan_if_there(link: &mut Link, order: &Order, about: &str) {
+fn plan_existing(link: &mut Link, order: &Order, about: &str) {
     let robot = order.values().int(Key::Robot).unwrap_or_default();
     let depends_on = format!("the axes: sent only if there is a robot {robot}");
     link.plan_depending(order, order, Reason::about(about).depending_on(&depends_on));
@@ -139,7 +140,7 @@ pub async fn plan(link: &mut Link, screen: &Screen, part: Part, points: Option<&
         }
         Part::Points(_) => {
             // These points are read in any case; the search cannot end earlier.
-            let certain = || (0..).take(GAP).collect();
+            let certain = || (0..).take(MAX_UNDEFINED_RUN).collect();
             let numbers = points.map_or_else(certain, |points| points.iter().copied().collect::<Vec<_>>());
             Numbered::<Points>::default().read(link, screen, &numbers).await.known()?;
             let others = if points.is_some() {
@@ -157,7 +158,7 @@ pub async fn plan(link: &mut Link, screen: &Screen, part: Part, points: Option<&
         }
     };
     for order in orders {
-        plan_if_there(link, &order, order.row().name);
+        plan_existing(link, &order, order.row().name);
     }
     Ok(())
 }
@@ -174,12 +175,12 @@ pub async fn read(
             let text = info(link, screen, controller).await?;
             Ok(store::Text { text, left_out: Vec::new(), undefined: Vec::new() })
         }
-        Part::Settings(robot) => rows(link, screen, &Settings { robot }, &Settings::all()).await.map(all_left_out),
+        Part::Settings(robot) => rows(link, screen, &Settings { robot }, &Settings::all()).await.map(all_omitted),
         Part::Parameters(robot) => {
             let axes = controller.robots.iter().find(|one| one.robot == robot).map_or(&[][..], |one| &one.axes);
             let exists = |(_, axis): &Setting| axis.is_none_or(|axis| axes.contains(&axis));
             let keys: Vec<Setting> = Parameters::all().into_iter().filter(exists).collect();
-            rows(link, screen, &Parameters { robot }, &keys).await.map(all_left_out)
+            rows(link, screen, &Parameters { robot }, &keys).await.map(all_omitted)
         }
         Part::Variables => all_rows(link, screen, Numbered::<Variables>::default()).await,
         Part::Pallets => all_rows(link, screen, Numbered::<Pallets>::default()).await,
@@ -203,12 +204,12 @@ async fn rows<S: Writable<Family = Yrcx>>(
     table: &S,
     keys: &[S::Key],
 ) -> Result<store::Text, Failure> {
-    part_text(table, keys, certain_rows(link, screen, table, keys).await?)
+    part_text(table, keys, existing_rows(link, screen, table, keys).await?)
 }
 
 /// Returns the rows of a table, or the fact that they are not defined. Any other failure concerns all rows, so the part
 /// is not complete.
-async fn certain_rows<S: Writable<Family = Yrcx>>(
+async fn existing_rows<S: Writable<Family = Yrcx>>(
     link: &mut Link,
     screen: &Screen,
     table: &S,
@@ -224,14 +225,14 @@ async fn certain_rows<S: Writable<Family = Yrcx>>(
 
 /// Every robot has all settings and parameters. A refused row is therefore not undefined, and the report lists it as
 /// left out.
-fn all_left_out(text: store::Text) -> store::Text {
+fn all_omitted(text: store::Text) -> store::Text {
     let store::Text { text, mut left_out, undefined } = text;
     left_out.extend(undefined);
     store::Text { text, left_out, undefined: Vec::new() }
 }
 
 /// Reads points with their comments. With `gap`, the number of undefined points before them, the search ends after
-/// [`GAP`] undefined points in a row. After that, only the points in `always` are read.
+/// [`MAX_UNDEFINED_RUN`] undefined points in a row. After that, only the points in `always` are read.
 pub async fn read_points(
     link: &mut Link,
     screen: &Screen,
@@ -243,10 +244,11 @@ pub async fn read_points(
     let mut progress = screen.items_progress("reading points", numbers.len() as u64);
     let (mut asked, mut found, mut rest) = (Vec::new(), Vec::new(), numbers);
     while let Some(first) = rest.first() {
-        let is_over = gap.is_some_and(|gap| gap >= GAP);
-        let (block, others) = rest.split_at(rest.len().min(GAP - gap.filter(|_| !is_over).unwrap_or_default()));
+        let is_over = gap.is_some_and(|gap| gap >= MAX_UNDEFINED_RUN);
+        let (block, others) =
+            rest.split_at(rest.len().min(MAX_UNDEFINED_RUN - gap.filter(|_| !is_over).unwrap_or_default()));
         let block: Vec<i32> = block.iter().copied().filter(|number| !is_over || always.contains(number)).collect();
-        let rows = certain_rows(link, &screen.silenced(), &table, &block).await?;
+        let rows = existing_rows(link, &screen.silenced(), &table, &block).await?;
         let defined = block.iter().zip(&rows).filter(|(_, row)| row.is_ok()).map(|(number, _)| *number);
         let within = *first..*others.first().unwrap_or(first);
         gap = gap.map(|gap| gap_after(gap, within, &defined.collect::<Vec<_>>()));
@@ -271,7 +273,7 @@ async fn info(link: &mut Link, screen: &Screen, controller: &Controller) -> Resu
         match answer {
             Ok(values) => {
                 for (key, _) in values.iter().filter(|(key, _)| order.values().value(*key).is_none()) {
-                    add(key.name(), shown(order.command(), &values, key).unwrap_or_default());
+                    add(key.name(), format_field(order.command(), &values, key).unwrap_or_default());
                 }
             }
             Err(failure) if is_undefined(&failure) => add(order.row().id, failure.message),

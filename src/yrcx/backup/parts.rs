@@ -5,9 +5,9 @@ use std::str::FromStr;
 
 use crate::data::{Hands, Pallets, PointSheet, Shifts};
 use crate::link::Yrcx;
+use crate::numbered_tables::Numbered;
 use crate::param::Parameters;
 use crate::robot_settings::Settings;
-use crate::stores::Numbered;
 use crate::var::Variables;
 use armctl_controller::findings::Finding;
 use armctl_frame::backup::parts::Table;

@@ -5,8 +5,8 @@ use super::parts::Part;
 use crate::link::{Link, Yrcx};
 use crate::prelude::*;
 use armctl_frame::backup::manifest;
-use armctl_frame::backup::parts::{Replaced, Table, compare_all, overwriting, write_all};
-use armctl_frame::backup::{NOT_CHOSEN, NOT_MACHINE, RestoreSelection, Restored, would_leave, would_write};
+use armctl_frame::backup::parts::{ReplacedValues, Table, compare_all, overwriting, write_all};
+use armctl_frame::backup::{NOT_CHOSEN, NOT_MACHINE, RestoreReport, RestoreSelection, would_leave, would_write};
 use armctl_frame::dry_run::unknown;
 use armctl_frame::robot::file::FileItem;
 
@@ -17,10 +17,10 @@ struct Job {
 }
 
 /// Restores a backup.
-pub async fn restore(context: Context<'_, Yrcx>, restoring: &RestoreSelection) -> Result<Restored, Failure> {
-    let Context { link, screen, authority, .. } = context;
+pub async fn restore(context: Context<'_, Yrcx>, restoring: &RestoreSelection) -> Result<RestoreReport, Failure> {
+    let Context { link, screen, confirmer, .. } = context;
     let RestoreSelection { folder, only, machine, force } = restoring;
-    link.no_unit("a backup contains the whole controller")?;
+    link.reject_unit("a backup contains the whole controller")?;
     let manifest: manifest::Manifest<Controller> = manifest::open_existing(folder)?;
     let copy = |part: &Part| manifest.entry(&part.to_string()).and_then(|entry| entry.copy.as_ref());
     let saved: Vec<_> = Part::in_order_of_writing().filter_map(|part| Some((part, copy(&part)?))).collect();
@@ -40,17 +40,17 @@ pub async fn restore(context: Context<'_, Yrcx>, restoring: &RestoreSelection) -
         return Err(Failure::usage("there is nothing to write in these parts")
             .hint("add --machine to write parameters and settings; `info` is never written"));
     }
-    if link.is_dry() {
+    if link.is_dry_run() {
         plan_items(link, saved.iter().map(|(part, _)| *part), &jobs, *machine);
         return dry_run(link, screen, &mut jobs).await;
     }
     check_origin(link, &manifest.controller, *force).await?;
     compare_all(link, screen, tables(&mut jobs).zip(&mut items)).await?;
     let compared = jobs.iter().zip(&items).filter(|(_, item)| item.error.is_none());
-    let replaced: Vec<Replaced> = compared.map(|(job, _)| Replaced::of(&job.part, &job.table)).collect();
-    authority.confirm(&overwriting(folder, &replaced)).await?;
+    let replaced: Vec<ReplacedValues> = compared.map(|(job, _)| ReplacedValues::of(&job.part, &job.table)).collect();
+    confirmer.confirm(&overwriting(folder, &replaced)).await?;
     write_all(link, screen, tables(&mut jobs).zip(&mut items)).await;
-    Ok(Restored::new(folder, items))
+    Ok(RestoreReport::new(folder, items))
 }
 
 fn tables(jobs: &mut [Job]) -> impl ExactSizeIterator<Item = &mut Table<Yrcx>> {
@@ -95,7 +95,7 @@ async fn check_origin(link: &mut Link, backup: &Controller, force: bool) -> Resu
 }
 
 /// Notes the requests of all comparisons, then those of all writes.
-async fn dry_run(link: &mut Link, screen: &Screen, jobs: &mut [Job]) -> Result<Restored, Failure> {
+async fn dry_run(link: &mut Link, screen: &Screen, jobs: &mut [Job]) -> Result<RestoreReport, Failure> {
     Controller::plan(link)?;
     for table in tables(jobs) {
         table.compare(link, screen).await?;

@@ -12,7 +12,7 @@ use crate::prelude::*;
 use armctl_frame::backup::arguments::BackupOptions;
 use armctl_frame::backup::manifest::{Entry, LeftOut};
 use armctl_frame::backup::save::{self, BackupWriter, Task, interrupted_failure};
-use armctl_frame::backup::{BackedUp, Only, SaveOptions};
+use armctl_frame::backup::{BackupReport, Only, SaveOptions};
 use armctl_frame::dry_run::unknown;
 use armctl_frame::robot::file::{FileItem, State};
 use armctl_frame::store::{self, Store as _};
@@ -42,22 +42,22 @@ const OF_POINTS: &str = "points ";
 
 impl Command for Backup {
     type Family = Yrcx;
-    type Report = BackedUp;
+    type Report = BackupReport;
     const ID: &'static str = "yrcx.backup";
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<BackedUp, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<BackupReport, Failure> {
         let points = self.points.iter().map(|range| format!("{OF_POINTS}{range}"));
         back_up(context, self.options.making(points)).await
     }
 }
 
 /// Makes a backup.
-pub async fn back_up(context: Context<'_, Yrcx>, making: SaveOptions) -> Result<BackedUp, Failure> {
+pub async fn back_up(context: Context<'_, Yrcx>, making: SaveOptions) -> Result<BackupReport, Failure> {
     let Context { link, screen, robot, several, .. } = context;
-    link.no_unit("a backup contains the whole controller")?;
+    link.reject_unit("a backup contains the whole controller")?;
     let task = Task::new(making, robot, several)?;
     let selection = Selection::of(&task.scope)?;
-    if link.is_dry() {
+    if link.is_dry_run() {
         return dry_run(link, screen, &selection).await;
     }
     interrupted_failure(&task.folder, Box::pin(save(link, (screen, robot), &task, selection))).await
@@ -85,7 +85,7 @@ impl Selection {
     }
 }
 
-async fn dry_run(link: &mut Link, screen: &Screen, selection: &Selection) -> Result<BackedUp, Failure> {
+async fn dry_run(link: &mut Link, screen: &Screen, selection: &Selection) -> Result<BackupReport, Failure> {
     Controller::plan(link)?;
     let parts = Part::without_points(1..=4).chain([Part::Points(0)]);
     for part in parts.filter(|part| selection.has(*part)) {
@@ -99,7 +99,7 @@ async fn save(
     (screen, robot): (&Screen, &Robot),
     task: &Task<Controller>,
     selection: Selection,
-) -> Result<BackedUp, Failure> {
+) -> Result<BackupReport, Failure> {
     let controller = Controller::ask(link).await?;
     let robots = controller.robots.clone();
     let list = task.begin((screen, robot), controller.clone(), |earlier, _| earlier.controller.robots == robots)?;
@@ -148,7 +148,7 @@ impl Reading<'_> {
             let part = Part::Points(thousand);
             let first = i32::from(thousand * THOUSAND);
             let within = first..first + i32::from(THOUSAND);
-            let is_open = self.selection.points.is_none() && gap < GAP;
+            let is_open = self.selection.points.is_none() && gap < MAX_UNDEFINED_RUN;
             let given = self.selection.points.as_ref().map(|points| points.range(within.clone()).copied().collect());
             let given: Vec<i32> = given.unwrap_or_else(|| if is_open { within.clone().collect() } else { Vec::new() });
             let always: BTreeSet<i32> = of_pallets.range(within.clone()).copied().collect();
@@ -193,16 +193,16 @@ fn saved(part: Part, Text { table, points }: Text) -> save::SavedPart {
 }
 
 /// Number of consecutive undefined points that ends the search, if the user gives no range.
-pub const GAP: usize = 100;
+pub const MAX_UNDEFINED_RUN: usize = 100;
 
 /// Counts the consecutive undefined points at the end of a range. `gap` is the number of undefined points directly
-/// before the range. Returns at least [`GAP`] if so many undefined points were found in a row inside the range.
+/// before the range. Returns at least [`MAX_UNDEFINED_RUN`] if so many undefined points were found in a row inside the range.
 pub fn gap_after(gap: usize, within: Range<i32>, defined: &[i32]) -> usize {
     let mut next = within.start;
     let mut gap = gap;
     for number in defined {
         gap += usize::try_from(number - next).unwrap_or(0);
-        if gap >= GAP {
+        if gap >= MAX_UNDEFINED_RUN {
             return gap;
         }
         (gap, next) = (0, number + 1);
@@ -215,7 +215,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_gap_goes_on_from_range_to_range() {
+    fn gap_continues_across_ranges() {
         assert_eq!(gap_after(0, 0..1000, &[]), 1000);
         assert_eq!(gap_after(0, 0..300, &[0, 100, 200, 250]), 49);
         assert_eq!(gap_after(49, 300..400, &[351]), 100, "it ended before 351, which a pallet named");

@@ -13,14 +13,14 @@ use armctl_frame::Family as _;
 use armctl_frame::testing::{self, context, unlimited_access};
 
 /// Simulated controller for several command lines in virtual time, with a folder for backups.
-struct Desk {
+struct Workspace {
     folder: TempDir,
     runtime: tokio::runtime::Runtime,
     robot: Robot,
     link: Link,
 }
 
-impl Desk {
+impl Workspace {
     /// Controller in the built-in start state, or in this state.
     fn new(state: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
@@ -67,7 +67,7 @@ impl Desk {
     }
 
     /// Runs a command line for the time `after`, then drops it.
-    fn cut(&mut self, line: &str, after: Duration) {
+    fn run_and_drop(&mut self, line: &str, after: Duration) {
         let line = line.replace('@', self.folder.path().to_str().unwrap());
         let (_, command) = resolved("sim:", &line.split(' ').collect::<Vec<_>>()).unwrap();
         let Self { runtime, robot, link, .. } = self;
@@ -112,12 +112,12 @@ const CHANGES: [&str; 10] = [
 ];
 
 #[test]
-fn what_is_restored_is_what_was_saved() {
-    let mut desk = Desk::new("");
-    let data = desk.data("backup @/first");
+fn restores_the_saved_data() {
+    let mut workspace = Workspace::new("");
+    let data = workspace.data("backup @/first");
     let done = data["files"].as_array().unwrap().iter().filter(|file| file["ok"] == true).count();
     assert_eq!((&data["complete"], done), (&json!(true), 14));
-    let first = files(&desk.path("first"));
+    let first = files(&workspace.path("first"));
     assert_eq!(first["pallets.csv"], "name,nx,ny,nz,first_point\n1,5,5,1,110\n2,10,15,1,110\n10,10,15,1,110\n");
     let points = &first["points-00000.csv"];
     assert!(points.contains("\n0,pulse,0,0,0,0,,\n1,mm,100.000,100.000,0.000,0.000,none,\n"), "{points}");
@@ -128,10 +128,10 @@ fn what_is_restored_is_what_was_saved() {
     assert!(!first["parameters-3.csv"].contains("TOLE.3"), "robot 3 has two axes");
     assert_eq!(first["settings-1.csv"].lines().last(), Some("hand_system,right"));
     for line in CHANGES {
-        desk.data(line);
+        workspace.data(line);
     }
-    desk.data("backup @/changed");
-    let changed = files(&desk.path("changed"));
+    workspace.data("backup @/changed");
+    let changed = files(&workspace.path("changed"));
     let differing: Vec<&str> = first.keys().filter(|name| first[*name] != changed[*name]).map(String::as_str).collect();
     assert_eq!(
         differing,
@@ -145,86 +145,86 @@ fn what_is_restored_is_what_was_saved() {
             "variables.csv"
         ]
     );
-    let restored = desk.data("restore @/first");
+    let restored = workspace.data("restore @/first");
     for (name, written) in [("points-00000", 2), ("pallets", 1), ("shifts", 1), ("hands", 1), ("variables", 2)] {
         assert_eq!(item(&restored, name)["written"], written, "{name}");
     }
     assert!(restored["files"].as_array().unwrap().iter().all(|item| item["name"] != "parameters-1"));
-    let restored = desk.data("restore @/first --machine --only parameters,settings");
+    let restored = workspace.data("restore @/first --machine --only parameters,settings");
     assert_eq!(restored["files"].as_array().unwrap().len(), 8);
     let written = |name: &str| item(&restored, name)["written"].clone();
     assert_eq!((written("parameters-1"), written("settings-1")), (json!(1), json!(1)));
-    desk.data("backup @/second");
-    assert_eq!(files(&desk.path("second")), first);
+    workspace.data("backup @/second");
+    assert_eq!(files(&workspace.path("second")), first);
     // Equal values are not written again.
-    let again = desk.data("restore @/first --machine");
+    let again = workspace.data("restore @/first --machine");
     assert!(again["files"].as_array().unwrap().iter().all(|item| item["written"] == 0), "{again}");
 }
 
 #[test]
-fn a_backup_that_was_cut_off_goes_on() {
-    let mut desk = Desk::new("");
-    desk.cut("backup @/cut", Duration::from_secs(4));
-    let list = manifest(&desk.path("cut"));
+fn resumes_an_interrupted_backup() {
+    let mut workspace = Workspace::new("");
+    workspace.run_and_drop("backup @/cut", Duration::from_secs(4));
+    let list = manifest(&workspace.path("cut"));
     let saved = list["files"].as_array().unwrap().len();
     assert!(saved > 2 && saved < 14 && list["complete"] == false, "{saved}");
-    let failure = desk.failure("backup @/cut");
+    let failure = workspace.failure("backup @/cut");
     assert!(failure.message.contains("contains an incomplete backup"), "{failure}");
-    let other = desk.failure("backup @/cut --resume --points 0..9");
+    let other = workspace.failure("backup @/cut --resume --points 0..9");
     assert_eq!(other.kind, Kind::Usage, "{other}");
-    let data = desk.data("backup @/cut --resume");
+    let data = workspace.data("backup @/cut --resume");
     assert_eq!((&data["complete"], &item(&data, "info")["state"]), (&json!(true), &json!("kept")));
-    desk.data("backup @/whole");
-    assert_eq!(files(&desk.path("cut")), files(&desk.path("whole")));
+    workspace.data("backup @/whole");
+    assert_eq!(files(&workspace.path("cut")), files(&workspace.path("whole")));
     // A file that changed after the backup is read again from the controller.
-    std::fs::write(desk.path("cut/variables.csv"), "x").unwrap();
-    let data = desk.data("backup @/cut --resume");
+    std::fs::write(workspace.path("cut/variables.csv"), "x").unwrap();
+    let data = workspace.data("backup @/cut --resume");
     assert_eq!((&item(&data, "variables")["state"], &item(&data, "hands")["state"]), (&json!("done"), &json!("kept")));
 }
 
 #[test]
-fn points_end_at_a_gap_unless_they_are_named_and_those_of_pallets_come_anyway() {
+fn point_search_ends_at_a_gap_except_for_named_and_pallet_points() {
     let state = "stock = false\n[[robot]]\n[points]\n7 = { pulse = [1, 2, 3, 4] }\n300 = { pulse = [1, 2, 3, 4] }\n\
                  1100 = { pulse = [1, 2, 3, 4] }\n[pallets]\n3 = { counts = [2, 2, 1], first = 1099 }\n";
-    let mut desk = Desk::new(state);
-    let data = desk.data("backup @/usual");
+    let mut workspace = Workspace::new(state);
+    let data = workspace.data("backup @/usual");
     assert_eq!(item(&data, "points-00000")["notes"], json!(["1 defined in 0..107"]));
     assert_eq!(item(&data, "points-01000")["notes"], json!(["1 defined in 1099..1103"]));
-    let list = manifest(&desk.path("usual"));
+    let list = manifest(&workspace.path("usual"));
     assert_eq!(item(&list, "points-00000")["holds"], "points 0..107");
     assert_eq!(item(&list, "points-00000")["left_out"][0]["key"], "0..6, 8..107");
-    desk.data("backup @/named --points 299..301 --only points*");
-    assert_eq!(manifest(&desk.path("named"))["scope"], json!(["points 299..301", "only points*"]));
-    assert!(files(&desk.path("named"))["points-00000.csv"].ends_with("\n300,pulse,1,2,3,4,\n"));
+    workspace.data("backup @/named --points 299..301 --only points*");
+    assert_eq!(manifest(&workspace.path("named"))["scope"], json!(["points 299..301", "only points*"]));
+    assert!(files(&workspace.path("named"))["points-00000.csv"].ends_with("\n300,pulse,1,2,3,4,\n"));
     // `--resume` uses the selection of the earlier run.
-    std::fs::remove_file(desk.path("named/points-00000.csv")).unwrap();
-    desk.data("backup @/named --resume");
-    assert_eq!(files(&desk.path("named")).len(), 1);
+    std::fs::remove_file(workspace.path("named/points-00000.csv")).unwrap();
+    workspace.data("backup @/named --resume");
+    assert_eq!(files(&workspace.path("named")).len(), 1);
 }
 
 #[test]
-fn a_folder_that_was_tampered_with_is_not_written_back() {
-    let mut desk = Desk::new("");
-    desk.data("backup @/saved");
-    let points = desk.path("saved/points-00000.csv");
+fn does_not_restore_a_modified_folder() {
+    let mut workspace = Workspace::new("");
+    workspace.data("backup @/saved");
+    let points = workspace.path("saved/points-00000.csv");
     let text = std::fs::read_to_string(&points).unwrap();
     std::fs::write(&points, text.replace("150.000", "151.000")).unwrap();
-    let failure = desk.failure("restore @/saved");
+    let failure = workspace.failure("restore @/saved");
     assert!(failure.message.ends_with("content changed (SHA-256)"), "{failure}");
-    let dry = frames(&["restore", desk.path("saved").to_str().unwrap(), "--force"]).unwrap_err();
+    let dry = frames(&["restore", workspace.path("saved").to_str().unwrap(), "--force"]).unwrap_err();
     assert_eq!(dry.kind, Kind::Local, "a dry run says so as well");
-    desk.data("restore @/saved --only shifts");
-    assert_eq!(desk.failure("restore @/saved --only shift").kind, Kind::Usage);
-    assert_eq!(desk.failure("restore @/nowhere").kind, Kind::Local);
-    assert_eq!(desk.failure("restore @/saved --only settings").kind, Kind::Usage, "--machine is missing");
+    workspace.data("restore @/saved --only shifts");
+    assert_eq!(workspace.failure("restore @/saved --only shift").kind, Kind::Usage);
+    assert_eq!(workspace.failure("restore @/nowhere").kind, Kind::Local);
+    assert_eq!(workspace.failure("restore @/saved --only settings").kind, Kind::Usage, "--machine is missing");
 }
 
 #[test]
-fn what_a_controller_refuses_is_told_and_does_not_end_the_work() {
-    let mut desk = Desk::new("");
-    desk.data("backup @/saved");
-    let mut other = Desk::new("stock = false\n[[robot]]\nkind = \"scara\"\nmax_payload_g = 10\npayload_g = 0\n");
-    let saved = desk.path("saved");
+fn reports_refused_parts_and_continues() {
+    let mut workspace = Workspace::new("");
+    workspace.data("backup @/saved");
+    let mut other = Workspace::new("stock = false\n[[robot]]\nkind = \"scara\"\nmax_payload_g = 10\npayload_g = 0\n");
+    let saved = workspace.path("saved");
     let other_robot = other.failure(&format!("restore {}", saved.display()));
     assert_eq!(other_robot.kind, Kind::Rejected, "{other_robot}");
     let (data, failure) = other.run(&format!("restore {} --force --machine", saved.display())).unwrap();
@@ -238,22 +238,22 @@ fn what_a_controller_refuses_is_told_and_does_not_end_the_work() {
 
 #[test]
 fn nothing_is_written_while_the_program_runs() {
-    let mut desk = Desk::new("");
-    desk.data("backup @/saved --only variables");
-    desk.data("run");
-    let failure = desk.failure("restore @/saved");
+    let mut workspace = Workspace::new("");
+    workspace.data("backup @/saved --only variables");
+    workspace.data("run");
+    let failure = workspace.failure("restore @/saved");
     assert_eq!(failure.kind, Kind::Rejected);
     assert_eq!(failure.message, "the robot program is running, and may use the data that the restore writes");
 }
 
 #[test]
 fn dry_runs_show_what_would_be_read_and_written() {
-    let mut desk = Desk::new("");
-    let sent = words(&["backup", desk.path("new").to_str().unwrap()]).unwrap();
+    let mut workspace = Workspace::new("");
+    let sent = words(&["backup", workspace.path("new").to_str().unwrap()]).unwrap();
     assert_eq!((sent[0][0].as_str(), sent.last().unwrap()[0].as_str()), ("0x0501", "0x0101"));
-    assert!(!desk.path("new").exists());
-    desk.data("backup @/saved --only pallets");
-    let sent = frames(&["restore", desk.path("saved").to_str().unwrap(), "--force"]).unwrap();
+    assert!(!workspace.path("new").exists());
+    workspace.data("backup @/saved --only pallets");
+    let sent = frames(&["restore", workspace.path("saved").to_str().unwrap(), "--force"]).unwrap();
     // All reads come before the first write.
     let last: Vec<_> = sent[sent.len() - 6..].iter().map(|frame| (&frame["about"], &frame["wi"][0])).collect();
     assert_eq!(last[2], (&json!("pallet 10"), &json!("0x0109")));

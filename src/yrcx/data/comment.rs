@@ -1,7 +1,7 @@
 //! `yrcx comment` (4.3.2).
 
+use crate::numbered_tables::{Kind, Numbered};
 use crate::prelude::*;
-use crate::stores::{Kind, Numbered};
 use armctl_controller::yrcx::table::Command;
 
 table_commands! {

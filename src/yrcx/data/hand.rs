@@ -1,7 +1,7 @@
 //! `yrcx hand-data` (4.3.5).
 
+use crate::numbered_tables::{Kind, Numbered, int, mm};
 use crate::prelude::*;
-use crate::stores::{Kind, Numbered, int, mm};
 use armctl_controller::yrcx::table::Command;
 
 table_commands! {

@@ -1,7 +1,7 @@
 //! `yrcx pallet-data` (4.3.3).
 
+use crate::numbered_tables::{Kind, Numbered, all_zero, int};
 use crate::prelude::*;
-use crate::stores::{Kind, Numbered, all_zero, int};
 use armctl_controller::yrcx::table::Command;
 
 table_commands! {

@@ -6,10 +6,10 @@ use clap::ArgGroup;
 
 use super::sheet::PointSheet;
 use crate::link::Yrcx;
-use crate::numbers::single;
+use crate::number_arguments::single;
+use crate::numbered_tables::{Kind, Numbered};
 use crate::position::{Unit, mm, position, unit_of};
 use crate::prelude::*;
-use crate::stores::{Kind, Numbered};
 use armctl_frame::robot::position::FourAxes;
 use armctl_frame::store::{Copy, Dump, Get, List, Restore, TableWrite, Writable as _, WrittenOf, write};
 use armctl_frame::teach::parse_printed_position;
@@ -113,7 +113,7 @@ impl Command for Set {
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<WrittenOf<Numbered<Points>>, Failure> {
-        let Context { robot, link, screen, authority, .. } = context;
+        let Context { robot, link, screen, confirmer, .. } = context;
         let Given { unit, four, hand } = self.given()?;
         let table = Numbered::<Points>::default();
         let [one, two, three, four] = four.each_ref().map(String::as_str);
@@ -121,7 +121,7 @@ impl Command for Set {
         let draft = table
             .draft(self.point, &texts)
             .map_err(|why| Failure::usage(format!("point {}: {why}", self.point)).hint("see `yrcx point set -h`"))?;
-        write(TableWrite { table, robot, link, screen, authority }, vec![(self.point, draft)]).await?.or_only_failure()
+        write(TableWrite { table, robot, link, screen, confirmer }, vec![(self.point, draft)]).await?.or_only_failure()
     }
 }
 
@@ -178,17 +178,17 @@ mod tests {
     fn answer(point: u16) -> Reply {
         let mut words = [0; 16];
         (words[0], words[2]) = (0x0200, point);
-        Reply::Ends(0, words)
+        Reply::AddressPair(0, words)
     }
 
     fn refusal(group: u16, category: u16) -> Reply {
         let mut words = [0; 16];
         words[..3].copy_from_slice(&[0x4000, group, category]);
-        Reply::Ends(0, words)
+        Reply::AddressPair(0, words)
     }
 
     #[test]
-    fn what_is_not_defined_stands_beside_what_is() {
+    fn undefined_points_do_not_hide_others() {
         let line = ["point", "get", "3..5"];
         let (read, failure, _) = report_on(Scripted::new([refusal(2, 904), answer(4), refusal(2, 904)]), &line);
         let points = read["items"].as_array().unwrap();
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn a_controller_that_takes_no_commands_is_not_asked_again() {
+    fn stops_asking_a_controller_that_refuses_commands() {
         let line = ["point", "get", "3..29999"];
         let (read, failure, peer) = report_on(Scripted::new([answer(3), refusal(12, 76)]), &line);
         let failure = failure.unwrap();
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_for_another_point_is_no_answer() {
+    fn rejects_the_answer_for_another_point() {
         let (outcome, _) = run_on(Scripted::new([answer(4)]), &["point", "get", "3"]);
         assert_eq!(outcome.unwrap_err().kind, Kind::Malformed);
     }

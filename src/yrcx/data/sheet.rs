@@ -4,9 +4,9 @@ use std::collections::{HashMap, HashSet};
 
 use super::{Comments, Points};
 use crate::link::{Link, Yrcx};
+use crate::numbered_tables::{Draft as Texts, Kind as _, Numbered, Row};
 use crate::prelude::*;
-use crate::several::plan_each;
-use crate::stores::{Draft as Texts, Kind as _, Numbered, Row};
+use crate::read_requests::plan_each;
 use armctl_frame::robot::item::Plain;
 use armctl_frame::robot::position::FourAxes;
 use armctl_frame::store::Row as TableRow;
@@ -34,7 +34,7 @@ pub struct Draft {
 
 /// A point with its comment.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
-pub struct Commented {
+pub struct PointWithComment {
     #[serde(flatten)]
     point: Option<FourAxes>,
     comment: Option<String>,
@@ -58,7 +58,7 @@ impl PointSheet {
         (numbers, has_points): (&[i32], bool),
         commented: &[i32],
     ) -> Result<Answers<Content>, Failure> {
-        if link.is_dry() {
+        if link.is_dry_run() {
             let points = numbers.iter().filter(|_| has_points).map(|number| Numbered::<Points>::read_order(*number));
             let comments = commented.iter().map(|number| Numbered::<Comments>::read_order(*number));
             plan_each(link, &points.chain(comments).collect::<Result<Vec<_>, Failure>>()?)?;
@@ -93,7 +93,7 @@ impl Store for PointSheet {
     type Family = Yrcx;
     type Key = i32;
     type Wire = Content;
-    type Value = Commented;
+    type Value = PointWithComment;
     type More = Plain;
     type Options = Single;
 
@@ -132,9 +132,9 @@ impl Store for PointSheet {
         [old.line(), new.line()]
     }
 
-    fn value(&self, Content { point, comment }: &Content) -> Option<Commented> {
+    fn value(&self, Content { point, comment }: &Content) -> Option<PointWithComment> {
         let point = point.as_ref().and_then(|row| self.points.value(row));
-        Some(Commented { point, comment: comment.as_ref().and_then(|row| self.comments.value(row)) })
+        Some(PointWithComment { point, comment: comment.as_ref().and_then(|row| self.comments.value(row)) })
     }
 
     fn more(&self, _number: i32, _content: Option<&Content>) -> Plain {
@@ -145,7 +145,7 @@ impl Store for PointSheet {
         Numbered::<Points>::is_undefined(failure)
     }
 
-    fn consequences(&self, rows: &[Differing<'_, Self>]) -> Vec<String> {
+    fn consequences(&self, rows: &[RowDifference<'_, Self>]) -> Vec<String> {
         let added = rows.iter().filter(|(_, old, _)| old.is_none()).count();
         if added == 0 { Vec::new() } else { vec![format!("New points are added: {added}.")] }
     }
@@ -209,7 +209,7 @@ impl Writable for PointSheet {
         Ok(())
     }
 
-    async fn write(&self, link: &mut Link, screen: &Screen, rows: &[Differing<'_, Self>]) -> Result<(), Failure> {
+    async fn write(&self, link: &mut Link, screen: &Screen, rows: &[RowDifference<'_, Self>]) -> Result<(), Failure> {
         for (number, old, new) in rows {
             let (old_point, old_comment) = old.map_or((None, None), |old| (old.point.as_ref(), old.comment.as_ref()));
             let mut is_half = false;
@@ -235,21 +235,21 @@ mod tests {
     use armctl_controller::yrcx::value::Values;
 
     /// Returns point 7 as it is stored: in mm and left-handed, or in pulses.
-    fn held(texts: [&str; 6]) -> Content {
+    fn stored_point(texts: [&str; 6]) -> Content {
         let texts: Vec<Option<String>> = texts.into_iter().map(|text| Some(text.to_owned())).collect();
         let point = Numbered::<Points>::default().complete_draft(7, &texts, None).unwrap();
         Content { point: Some(point), comment: Some(Row::new::<Comments>(Values::default())) }
     }
 
     #[test]
-    fn a_point_keeps_what_has_no_column() {
+    fn point_keeps_data_without_a_column() {
         let sheet = PointSheet::default();
         let draft = sheet.draft(7, &[Some("mm"), None, Some("-2.5"), None, None, None, None]).unwrap();
-        let old = held(["mm", "1", "2", "3", "4", "right"]);
+        let old = stored_point(["mm", "1", "2", "3", "4", "right"]);
         let new = sheet.complete_draft(7, &draft, Some(&old)).unwrap();
         assert_eq!(sheet.texts(&new)[..6], ["mm", "1.000", "-2.500", "3.000", "4.000", "right"]);
         assert!(sheet.complete_draft(7, &draft, None).unwrap_err().message.contains("axis_1"));
-        let pulses = held(["pulse", "1", "2", "3", "4", ""]);
+        let pulses = stored_point(["pulse", "1", "2", "3", "4", ""]);
         assert!(sheet.complete_draft(7, &draft, Some(&pulses)).is_err(), "millimetres and pulses are not mixed");
         let comment = sheet.draft(7, &[None, None, None, None, None, None, Some("WAIT")]).unwrap();
         let new = sheet.complete_draft(7, &comment, Some(&old)).unwrap();

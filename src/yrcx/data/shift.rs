@@ -1,7 +1,7 @@
 //! `yrcx shift-data` (4.3.4).
 
+use crate::numbered_tables::{Kind, Numbered, all_zero, mm as mm_of};
 use crate::prelude::*;
-use crate::stores::{Kind, Numbered, all_zero, mm as mm_of};
 use armctl_controller::yrcx::table::Command;
 
 table_commands! {

@@ -6,16 +6,16 @@ use std::fmt;
 use crate::field_row::FieldRow;
 use armctl_controller::text::hex;
 use armctl_controller::yrcx::answer::Status;
-use armctl_controller::yrcx::changes::{Change, changes};
 use armctl_controller::yrcx::describe::{Description, FieldNote, answer, command};
 use armctl_controller::yrcx::image::{Image, Words};
+use armctl_controller::yrcx::image_changes::{Change, changes};
 use armctl_controller::yrcx::signal::Side;
 use armctl_frame::decode::capture::{DecodedCapture, DecodedMessage, cut, note};
 use armctl_transport::capture::Message;
 use armctl_transport::tap::Direction;
 
 /// Maximum number of connections and pending requests that the decoder keeps. A real plant has fewer.
-pub const MOST: usize = 1 << 16;
+pub const MAX_STORED: usize = 1 << 16;
 
 /// Decoder of one fieldbus.
 pub trait BusDecoder: fmt::Debug {
@@ -32,12 +32,12 @@ pub struct Images {
     decoded: DecodedCapture<FieldRow>,
     /// Whether to list images without new content too.
     all: bool,
-    shown: HashMap<(String, String), Shown>,
+    shown: HashMap<(String, String), LastImages>,
 }
 
 /// Last images of a connection.
 #[derive(Debug, Default)]
-struct Shown {
+struct LastImages {
     /// Last image from the client, and last image from the controller.
     images: [Option<Image>; 2],
     /// Latest command, with its packet number.
@@ -77,7 +77,7 @@ impl Images {
 
     /// Adds an image from the client or the controller, if it has new content.
     pub fn image(&mut self, message: &Message<'_>, direction: Direction, link: &(String, String), image: &Image) {
-        if self.shown.len() >= MOST {
+        if self.shown.len() >= MAX_STORED {
             self.shown.clear();
         }
         let shown = self.shown.entry(link.clone()).or_default();

@@ -4,16 +4,16 @@ use std::time::Duration;
 
 use super::check;
 use super::connect::{adapter, request_timeout};
-use crate::fieldbus::{At, BusBoard, Checked};
+use crate::fieldbus::{BusBoard, Checked, ConnectionParameters};
 use crate::link_error::not_open;
 use crate::prelude::*;
 use armctl_frame::face::layers::Layers;
 use armctl_frame::settings::target::bus::Scheme;
 use armctl_frame::settings::target::devicenet::{BUS, DeviceNet};
 use armctl_transport::devicenet::error::Error;
-use armctl_transport::devicenet::link::{produced, read};
+use armctl_transport::devicenet::link::{produced_size, read};
 use armctl_transport::devicenet::network::{Connection, Network, Tap};
-use armctl_transport::devicenet::scanner::Found;
+use armctl_transport::devicenet::scanner::DiscoveredNode;
 use armctl_transport::devicenet::settings::{Purpose, Settings};
 use armctl_transport::devicenet::wire::{Request, class, connection};
 use armctl_transport::image::LinkError;
@@ -35,7 +35,7 @@ pub struct Board {
 
 impl Board {
     /// Creates the client for the node of a URL.
-    pub(super) fn new(at: &At<'_>) -> Result<Self, LinkError> {
+    pub(super) fn new(at: &ConnectionParameters<'_>) -> Result<Self, LinkError> {
         Ok(Self {
             node: at.options::<DeviceNet>()?.clone(),
             scheme: at.bus.scheme,
@@ -125,7 +125,7 @@ impl Board {
     /// Reads the image with explicit messages; `None` if the node sends its image only in polls.
     pub async fn image(&mut self) -> Result<Option<Image>, Failure> {
         let mac = self.node.mac;
-        let request = match produced(self.connection().await?, mac).await {
+        let request = match produced_size(self.connection().await?, mac).await {
             Ok(request) => request,
             Err(Error::Refused { .. } | Error::Senseless { .. }) => return Ok(None),
             Err(error) => return Err(self.failure(error)),
@@ -169,8 +169,8 @@ impl BusBoard for Board {
     const BUS: &'static str = BUS;
     const DEVICE: &'static str = "node";
 
-    async fn look(&mut self, layers: &mut Layers) -> Checked<Option<Image>> {
-        check::look(self, layers).await
+    async fn check_layers(&mut self, layers: &mut Layers) -> Checked<Option<Image>> {
+        check::check_layers(self, layers).await
     }
 
     async fn end(mut self) {
@@ -191,8 +191,8 @@ pub struct Node {
     pub on_line: bool,
 }
 
-impl From<Found> for Node {
-    fn from(found: Found) -> Self {
+impl From<DiscoveredNode> for Node {
+    fn from(found: DiscoveredNode) -> Self {
         Self {
             mac: found.mac.number(),
             vendor: found.vendor,

@@ -1,7 +1,7 @@
 //! Layers of `armctl robots check` for a DeviceNet node: from the adapter to the image of the controller.
 
 use super::board::Board;
-use crate::fieldbus::{Checked, InLayer as _, MAKER};
+use crate::fieldbus::{Checked, InLayer as _, VENDOR_ID};
 use crate::prelude::*;
 use armctl_frame::face::layers::Layers;
 use armctl_transport::devicenet::can::BusState;
@@ -10,7 +10,7 @@ use armctl_transport::devicenet::can::BusState;
 pub(super) const LAYERS: &[&str] = &["name", "adapter", "bus", "MAC ID", "owner", "identity", "sizes", "inputs"];
 
 /// Checks the layers. Returns the image of the controller, if it can be read.
-pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
+pub(super) async fn check_layers(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
     let node = board.node().clone();
     layers.ok("name", format!("MAC {} behind {}", node.mac, node.place));
     let network = board.network().await.in_layer("adapter")?;
@@ -47,7 +47,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Opti
     let told = format!("{name}, vendor {vendor}");
     layers.judge(
         "identity",
-        identity.vendor == Some(MAKER),
+        identity.vendor == Some(VENDOR_ID),
         (&told, &told),
         "check the node: the vendor id of a YRCX is 636",
     );

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::fieldbus::{At, Purpose};
+use crate::fieldbus::{ConnectionParameters, Purpose};
 use armctl_controller::yrcx::image::Image;
 use armctl_controller::yrcx::signal::resting;
 use armctl_frame::settings::target::devicenet::DeviceNet;
@@ -15,7 +15,7 @@ use armctl_transport::image::{ImageLink, LinkError};
 /// Time to wait for images of another master, whose polls can be slow.
 const LISTEN: Duration = Duration::from_secs(1);
 /// Silence after which armctl assumes that another master has stopped its polls.
-const PATIENCE: Duration = Duration::from_secs(2);
+const POLL_TIMEOUT: Duration = Duration::from_secs(2);
 /// Minimum interval of reads by explicit messages.
 const PAUSE: Duration = Duration::from_millis(100);
 /// Vendor id of armctl. ODVA has not assigned a vendor id to armctl.
@@ -28,10 +28,10 @@ pub(super) fn profiles() -> Vec<Profile> {
         .to_vec()
 }
 
-pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
+pub(super) async fn open(at: ConnectionParameters<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
     let node: &DeviceNet = at.options()?;
     if purpose == Purpose::Look {
-        return look(&at, node).await;
+        return check_layers(&at, node).await;
     }
     let network = Network::open(&adapter(node), at.tap.clone()).await?;
     let images = Images { profiles: profiles(), cycle: node.cycle.max(at.bus.listen_before), rate: node.rate };
@@ -43,9 +43,9 @@ pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, Link
 
 /// Opens a read-only link. If another master polls the node, the link listens to these polls. Otherwise, the link reads
 /// with explicit messages, which start no polls.
-async fn look(at: &At<'_>, node: &DeviceNet) -> Result<ImageLink, LinkError> {
+async fn check_layers(at: &ConnectionParameters<'_>, node: &DeviceNet) -> Result<ImageLink, LinkError> {
     let silent = Network::open(&Adapter { identity: None, ..adapter(node) }, at.tap.clone()).await?;
-    if let Some(listened) = Listened::open(silent.clone(), node.mac, LISTEN, PATIENCE).await {
+    if let Some(listened) = Listened::open(silent.clone(), node.mac, LISTEN, POLL_TIMEOUT).await {
         return Ok(ImageLink::over(listened));
     }
     drop(silent);
@@ -54,13 +54,13 @@ async fn look(at: &At<'_>, node: &DeviceNet) -> Result<ImageLink, LinkError> {
     match reading {
         Ok(reading) => Ok(ImageLink::over(reading)),
         Err(error) => Err(match LinkError::from(error) {
-            LinkError::Refused(cause) => LinkError::Refused(cause.advice(NOT_SHOWN)),
+            LinkError::Refused(cause) => LinkError::Refused(cause.advice(NO_POLLS_ADVICE)),
             error => error,
         }),
     }
 }
 
-const NOT_SHOWN: &str = "open a session with `armctl session open`, then read through that session: no master polls \
+const NO_POLLS_ADVICE: &str = "open a session with `armctl session open`, then read through that session: no master polls \
                          the controller, and the controller sends its signals only to its master";
 
 /// Returns the adapter of the URL, with armctl as the master.
@@ -71,6 +71,6 @@ pub(super) fn adapter(node: &DeviceNet) -> Adapter {
 }
 
 /// Returns the timeout of a request: half of the robot's timeout, because a request fails only after two transmissions.
-pub(super) fn request_timeout(at: &At<'_>) -> Duration {
+pub(super) fn request_timeout(at: &ConnectionParameters<'_>) -> Duration {
     (at.robot.timeout.value / 2).clamp(Duration::from_millis(100), Duration::from_secs(1))
 }

@@ -16,7 +16,7 @@ use armctl_transport::tap::Direction;
 pub struct Decoder {
     monitor: Monitor,
     /// Last request to each node: the packet number and the master that sent it.
-    asked: HashMap<Mac, (u64, Mac)>,
+    pending_requests: HashMap<Mac, (u64, Mac)>,
 }
 
 impl Decoder {
@@ -26,7 +26,7 @@ impl Decoder {
         match id {
             Id::Poll(mac) | Id::PollAnswer(mac) => {
                 let direction = if id == Id::Poll(mac) { Direction::Sent } else { Direction::Received };
-                if let Some((_, _, image)) = self.monitor.hear(message.time, frame)
+                if let Some((_, _, image)) = self.monitor.handle_frame(message.time, frame)
                     && let Some(image) = Image::from_link(&image)
                 {
                     images.image(message, direction, &link(self.master(mac), mac), &image);
@@ -34,10 +34,10 @@ impl Decoder {
             }
             Id::Request(mac) | Id::Unconnected(mac) => {
                 let Some(header) = frame.data().first().map(|first| Header::parse(*first)) else { return };
-                self.asked.insert(mac, (message.number, header.mac));
-                self.say(message, frame, Direction::Sent, mac, images);
+                self.pending_requests.insert(mac, (message.number, header.mac));
+                self.add_message(message, frame, Direction::Sent, mac, images);
             }
-            Id::Answer(mac) => self.say(message, frame, Direction::Received, mac, images),
+            Id::Answer(mac) => self.add_message(message, frame, Direction::Received, mac, images),
             Id::Duplicate(mac) => {
                 let text = format!("{}: {}", describe(frame), if is_taken(frame) { "taken" } else { "free?" });
                 images.message(decoded(message, Direction::Sent, link(None, mac), text));
@@ -48,11 +48,11 @@ impl Decoder {
 
     /// Returns the master that sent the last request to a node.
     fn master(&self, mac: Mac) -> Option<Mac> {
-        self.asked.get(&mac).map(|(_, master)| *master)
+        self.pending_requests.get(&mac).map(|(_, master)| *master)
     }
 
     /// Handles an explicit message.
-    fn say(&self, message: &Message<'_>, frame: &Frame, direction: Direction, mac: Mac, images: &mut Images) {
+    fn add_message(&self, message: &Message<'_>, frame: &Frame, direction: Direction, mac: Mac, images: &mut Images) {
         let Some((first, body)) = frame.data().split_first() else { return };
         let text = if Header::parse(*first).is_fragment {
             format!("{}, a fragment", describe(frame))
@@ -60,7 +60,8 @@ impl Decoder {
             explicit(body).unwrap_or_else(|| describe(frame))
         };
         let link = link(self.master(mac), mac);
-        let answered = self.asked.get(&mac).map(|(number, _)| *number).filter(|_| direction == Direction::Received);
+        let answered =
+            self.pending_requests.get(&mac).map(|(number, _)| *number).filter(|_| direction == Direction::Received);
         images.message(DecodedMessage { answers: answered, ..decoded(message, direction, link, text) });
     }
 }

@@ -7,7 +7,7 @@ use futures_util::future::LocalBoxFuture;
 
 use super::board::Node;
 use super::connect::adapter;
-use crate::fieldbus::{self, Device, MAKER, Scope, bus_of, fields};
+use crate::fieldbus::{self, Device, Scope, VENDOR_ID, bus_of, fields};
 use crate::link_error::not_open;
 use crate::prelude::*;
 use armctl_frame::settings::target::Bus;
@@ -64,7 +64,7 @@ fn found_node(url: &str, node: &Node) -> Result<Device, Failure> {
     Ok(Device {
         address: format!("{url} MAC {}", node.mac),
         target: format!("{url}{sign}mac={}", node.mac),
-        is_yrcx: node.vendor == MAKER,
+        is_yrcx: node.vendor == VENDOR_ID,
         device: format!("MAC {}, vendor {}, {}", node.mac, node.vendor, node.serial),
         identity: fields(node)?,
     })

@@ -1,17 +1,17 @@
 //! `yrcx devicenet identity`.
 
 use super::board::{Board, Identity};
-use crate::messages::BoardReport;
+use crate::board_report::BoardReport;
 use crate::prelude::*;
 
 /// Identity of the node. Its connections are allocated for the request and released; no polls are sent.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Identified {
+pub struct IdentityReport {
     #[serde(flatten)]
     identity: Identity,
 }
 
-impl BoardReport for Identified {
+impl BoardReport for IdentityReport {
     type Board = Board;
     const ID: &'static str = "yrcx.devicenet.identity";
     const MESSAGES: &'static str = "messages that read the identity of the node";
@@ -21,7 +21,7 @@ impl BoardReport for Identified {
     }
 }
 
-impl Report for Identified {
+impl Report for IdentityReport {
     fn view(&self) -> View {
         View::default().append(Section::Fields(self.identity.fields()))
     }

@@ -13,17 +13,17 @@ mod scan;
 mod serve;
 pub mod simulated;
 
-use super::messages::ReadBoard;
+use super::board_report::ReadBoard;
 use armctl_frame::commands;
 
 commands! {
     /// Commands for DeviceNet.
     pub enum DeviceNet {
         /// List the nodes on the bus, without allocating a node
-        Scan(ReadBoard<scan::Scanned>),
+        Scan(ReadBoard<scan::ScanReport>),
         /// Show the identity of the controller's node
-        Identity(ReadBoard<identity::Identified>),
+        Identity(ReadBoard<identity::IdentityReport>),
         /// Show the image sizes and the owner of the node
-        Probe(ReadBoard<probe::Probed>),
+        Probe(ReadBoard<probe::ProbeReport>),
     }
 }

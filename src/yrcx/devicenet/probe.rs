@@ -2,13 +2,13 @@
 
 use super::board::{Board, Identity};
 use super::check::profile;
-use crate::messages::BoardReport;
+use crate::board_report::BoardReport;
 use crate::prelude::*;
 
 /// Image sizes of the node; they show which setting the fieldbus unit has. Its connections are allocated for the
 /// request and released; no polls are sent.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Probed {
+pub struct ProbeReport {
     /// Identity of the node. Null if another master owns the connections, because other clients then cannot read it.
     identity: Option<Identity>,
     /// Whether another master owns the connections of the node.
@@ -21,7 +21,7 @@ pub struct Probed {
     profile: Option<&'static str>,
 }
 
-impl BoardReport for Probed {
+impl BoardReport for ProbeReport {
     type Board = Board;
     const ID: &'static str = "yrcx.devicenet.probe";
     const MESSAGES: &'static str = "messages that read the identity and the image sizes of the node";
@@ -39,7 +39,7 @@ impl BoardReport for Probed {
     }
 }
 
-impl Report for Probed {
+impl Report for ProbeReport {
     fn view(&self) -> View {
         let mut fields = self.identity.as_ref().map(Identity::fields).unwrap_or_default();
         let owner = if self.owned { "another master" } else { "free" };

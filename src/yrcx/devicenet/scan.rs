@@ -1,17 +1,17 @@
 //! `yrcx devicenet scan`.
 
 use super::board::{Board, Node};
-use crate::messages::BoardReport;
+use crate::board_report::BoardReport;
 use crate::prelude::*;
 
 /// Nodes that answered a duplicate MAC ID check. No node is allocated.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Scanned {
+pub struct ScanReport {
     /// Nodes in the order of their MAC IDs.
     nodes: Vec<Node>,
 }
 
-impl BoardReport for Scanned {
+impl BoardReport for ScanReport {
     type Board = Board;
     const ID: &'static str = "yrcx.devicenet.scan";
     const MESSAGES: &'static str = "a duplicate MAC ID check for every MAC ID";
@@ -21,7 +21,7 @@ impl BoardReport for Scanned {
     }
 }
 
-impl Report for Scanned {
+impl Report for ScanReport {
     fn view(&self) -> View {
         let mut table = Table::new(&["MAC ID", "vendor", "serial", "state"], "no node answered");
         for node in &self.nodes {

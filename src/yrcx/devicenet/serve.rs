@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::simulated;
 use super::simulated::{Controller, FAULTS, size};
-use crate::fieldbus::{Operator, Serve, Served, ToServe};
+use crate::fieldbus::{Operator, RunningSimulation, Serve, ServeOptions};
 use crate::prelude::*;
 use crate::simulated::{faults, faults_of_option};
 use armctl_frame::serve::{address, bind_failure};
@@ -49,8 +49,11 @@ impl Serve for ServeArgs {
         cfg!(unix)
     }
 
-    fn serve(&self, ToServe { simulator, start, link, faults }: ToServe<'_>) -> Result<Served, Failure> {
-        let setup = Setup::stand_in(self.mac, self.bitrate, size(simulator));
+    fn serve(
+        &self,
+        ServeOptions { simulator, start, link, faults }: ServeOptions<'_>,
+    ) -> Result<RunningSimulation, Failure> {
+        let setup = Setup::sample_controller(self.mac, self.bitrate, size(simulator));
         #[cfg(unix)]
         let terminal = link.map(|_| Listen::Pty);
         #[cfg(not(unix))]
@@ -58,21 +61,21 @@ impl Serve for ServeArgs {
         let listen: Vec<Listen> = iter::once(Listen::Tcp(self.slcan_bind)).chain(terminal).collect();
         let hub = simulated::serve(start, setup, &listen, faults_of_option(faults, &FAULTS)?);
         let hub = hub.map_err(|error| bind_failure(&format!("TCP {}", self.slcan_bind), &error))?;
-        let place = hub.places().first().map(String::as_str).unwrap_or_default();
+        let place = hub.endpoint_addresses().first().map(String::as_str).unwrap_or_default();
         let address: Option<SocketAddr> = place.parse().ok();
         let mut target = format!("{}://{place}?mac={}", SLCAN.name, self.mac);
         if self.bitrate != Bitrate::K500 {
             target.push_str(&format!("&bitrate={}", self.bitrate.name()));
         }
         let link = terminal_link(link, &hub)?;
-        Ok(Served { target, address, operator: Box::new(Adapters { hub, _link: link }) })
+        Ok(RunningSimulation { target, address, operator: Box::new(Adapters { hub, _link: link }) })
     }
 }
 
 /// Creates the symbolic link to the pseudo-terminal, if requested.
 #[cfg(unix)]
 fn terminal_link(path: Option<&Path>, hub: &Hub<Controller>) -> Result<Link, Failure> {
-    let (Some(path), Some(terminal)) = (path, hub.places().get(1)) else { return Ok(None) };
+    let (Some(path), Some(terminal)) = (path, hub.endpoint_addresses().get(1)) else { return Ok(None) };
     TerminalLink::create(path, terminal).map(Some)
 }
 

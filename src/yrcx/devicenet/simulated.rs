@@ -27,7 +27,7 @@ pub(super) const MAC: u8 = 5;
 /// Starts a simulator behind an SLCAN adapter on the loopback interface, with the faults of the URL.
 pub fn on_loopback(sim: &Sim) -> Result<Hub<Controller>, Failure> {
     let faults = faults_of_url(sim, &FAULTS)?;
-    let setup = Setup::stand_in(Mac::new(MAC).unwrap_or_default(), Bitrate::K500, size(sim.bus));
+    let setup = Setup::sample_controller(Mac::new(MAC).unwrap_or_default(), Bitrate::K500, size(sim.bus));
     let listen = Listen::Tcp(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
     let served = serve(start(sim.state.as_deref())?, setup, &[listen], faults);
     Ok(served.context("the simulator on the loopback")?)
@@ -83,7 +83,7 @@ impl Application for Controller {
         }
     }
 
-    fn master_gone(&mut self, now: Duration) {
+    fn on_master_lost(&mut self, now: Duration) {
         self.0.input(now, None);
     }
 }

@@ -3,7 +3,7 @@
 use std::net::SocketAddrV4;
 
 use super::{check, connect};
-use crate::fieldbus::{At, BusBoard, Checked};
+use crate::fieldbus::{BusBoard, Checked, ConnectionParameters};
 use crate::link_error::not_open;
 use crate::prelude::*;
 use armctl_controller::text;
@@ -13,8 +13,8 @@ use armctl_transport::eip::ASSEMBLY;
 use armctl_transport::eip::client::Client;
 use armctl_transport::eip::error::EipError;
 use armctl_transport::eip::explicit::{Answer, Message};
-use armctl_transport::eip::link::as_advice;
-use armctl_transport::eip::probe::{self, Findings, Instances, Presence};
+use armctl_transport::eip::link::with_advice;
+use armctl_transport::eip::probe::{self, AssemblyPresence, Findings, Instances};
 use armctl_transport::eip::status;
 use armctl_transport::eip::wire;
 use armctl_transport::image::LinkError;
@@ -35,7 +35,7 @@ pub struct Board {
 
 impl Board {
     /// Resolves the address of the board. The first request opens the connection.
-    pub(super) async fn open(at: &At<'_>) -> Result<Self, LinkError> {
+    pub(super) async fn open(at: &ConnectionParameters<'_>) -> Result<Self, LinkError> {
         let (client, eip) = connect::client(at).await?;
         Ok(Self { client, eip, label: at.robot.label() })
     }
@@ -114,26 +114,26 @@ impl Board {
     }
 
     /// Reads assemblies to find the existing assemblies and their sizes. `identity` is the identity of the board.
-    pub async fn survey(&mut self, identity: Option<&Identity>) -> Result<Probed, Failure> {
-        let thought = self.thought();
-        let exchanged = Instances { output: thought.input, input: thought.output, ..thought };
-        let usual = Instances { output: USUAL_OUTPUT, input: USUAL_INPUT, ..thought };
-        let found = probe::survey(&mut self.client, &[thought, usual, exchanged]).await;
-        Ok(Probed::of(&found.map_err(|error| self.failure(error))?, &self.eip, identity))
+    pub async fn survey(&mut self, identity: Option<&Identity>) -> Result<ProbeResult, Failure> {
+        let url_instances = self.url_instances();
+        let exchanged = Instances { output: url_instances.input, input: url_instances.output, ..url_instances };
+        let usual = Instances { output: USUAL_OUTPUT, input: USUAL_INPUT, ..url_instances };
+        let found = probe::survey(&mut self.client, &[url_instances, usual, exchanged]).await;
+        Ok(ProbeResult::of(&found.map_err(|error| self.failure(error))?, &self.eip, identity))
     }
 
     /// Finds the connection parameters. For this, armctl also requests connections. `identity` is the identity of the
     /// board.
-    pub async fn probe(&mut self, identity: Option<&Identity>) -> Result<Probed, Failure> {
-        let thought = self.thought();
-        let found = probe::probe(&mut self.client, thought).await.map_err(|error| self.failure(error))?;
-        Ok(Probed::of(&found, &self.eip, identity))
+    pub async fn probe(&mut self, identity: Option<&Identity>) -> Result<ProbeResult, Failure> {
+        let url_instances = self.url_instances();
+        let found = probe::probe(&mut self.client, url_instances).await.map_err(|error| self.failure(error))?;
+        Ok(ProbeResult::of(&found, &self.eip, identity))
     }
 
     /// Reads whether the assemblies of the URL exist: input, output.
-    pub async fn assemblies(&mut self) -> Result<[(u32, Presence); 2], Failure> {
-        let Instances { output, input, .. } = self.thought();
-        let mut found = [(input, Presence::Unknown), (output, Presence::Unknown)];
+    pub async fn assemblies(&mut self) -> Result<[(u32, AssemblyPresence); 2], Failure> {
+        let Instances { output, input, .. } = self.url_instances();
+        let mut found = [(input, AssemblyPresence::Unknown), (output, AssemblyPresence::Unknown)];
         for (instance, presence) in &mut found {
             *presence = probe::assembly(&mut self.client, *instance).await.map_err(|error| self.failure(error))?;
         }
@@ -141,7 +141,7 @@ impl Board {
     }
 
     /// Returns the assemblies that the URL names. If the URL has no output assembly, the usual output assembly is used.
-    fn thought(&self) -> Instances {
+    fn url_instances(&self) -> Instances {
         let usual = if self.eip.role == EipRole::Owner { self.eip.output } else { USUAL_OUTPUT };
         Instances { output: usual, input: self.eip.input, configuration: self.eip.configuration }
     }
@@ -155,7 +155,7 @@ impl Board {
         let failure = Failure::new(Kind::Refused, format!("{}: {what} of {object} was refused: {text}", self.label))
             .code(format!("{:#04x}", answer.status.general));
         match status::meaning(&answer.status) {
-            Some(code) => failure.hint(as_advice(code.remedy)),
+            Some(code) => failure.hint(with_advice(code.remedy)),
             None => failure.hint("look up this status in the manual of the board"),
         }
     }
@@ -165,8 +165,8 @@ impl BusBoard for Board {
     const BUS: &'static str = SCHEME.bus;
     const DEVICE: &'static str = "board";
 
-    async fn look(&mut self, layers: &mut Layers) -> Checked<Option<Image>> {
-        check::look(self, layers).await
+    async fn check_layers(&mut self, layers: &mut Layers) -> Checked<Option<Image>> {
+        check::check_layers(self, layers).await
     }
 
     async fn end(self) {
@@ -332,7 +332,7 @@ impl Identity {
 
 /// Result of a probe: assemblies and connection parameters.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Probed {
+pub struct ProbeResult {
     /// Assemblies that can be read.
     pub assemblies: Vec<Assembly>,
     /// Connection requests with `--try`. They have invalid sizes, so that no connection opens.
@@ -399,7 +399,7 @@ pub struct Connectable {
 /// Extended status for "another originator owns the outputs".
 const OWNED: u16 = 0x0106;
 
-impl Probed {
+impl ProbeResult {
     fn of(found: &Findings, eip: &eip::Eip, identity: Option<&Identity>) -> Self {
         let refuses = found.attempts.iter().any(|attempt| attempt.status.extended.first() == Some(&OWNED));
         let owned = refuses || identity.is_some_and(|identity| identity.owned);
@@ -446,12 +446,12 @@ impl Probed {
 }
 
 /// Bytes as pairs of hexadecimal digits.
-pub fn shown(bytes: &[u8]) -> String {
+pub fn hex_pairs(bytes: &[u8]) -> String {
     let digits: Vec<String> = bytes.iter().map(|byte| text::hex(&[*byte])).collect();
     digits.join(" ")
 }
 
 /// Cell in the warning color.
-pub fn warned(text: &str) -> Cell {
+pub fn warning_cell(text: &str) -> Cell {
     Cell::from(text).tone(Tone::Warning)
 }

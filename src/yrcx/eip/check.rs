@@ -1,17 +1,17 @@
 //! Layers of `armctl robots check` for a network board: from the host name to the image of the controller.
 
 use super::board::Board;
-use crate::fieldbus::{Checked, InLayer as _, MAKER};
+use crate::fieldbus::{Checked, InLayer as _, VENDOR_ID};
 use armctl_controller::yrcx::image::Image;
 use armctl_frame::face::layers::Layers;
 use armctl_frame::settings::target::eip::Eip;
-use armctl_transport::eip::probe::Presence;
+use armctl_transport::eip::probe::AssemblyPresence;
 
 /// Layers in the order of the check.
 pub(super) const LAYERS: &[&str] = &["name", "board", "identity", "connection", "owner", "inputs"];
 
 /// Checks the layers. Returns the image of the controller, if it can be read.
-pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
+pub(super) async fn check_layers(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
     layers.ok("name", format!("{} is {}", board.settings().host, board.address()));
     match board.services().await.in_layer("board")? {
         None => layers.warn(
@@ -32,7 +32,7 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Opti
             let told = format!("{}, vendor {}, revision {}", identity.name, identity.vendor, identity.revision);
             layers.judge(
                 "identity",
-                identity.vendor == MAKER,
+                identity.vendor == VENDOR_ID,
                 (&told, &told),
                 "check the address: the vendor id of a YRCX is 636",
             );
@@ -57,15 +57,15 @@ pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Opti
 
 /// Compares the URL with the assemblies of the board. armctl requests no connection, because a connection could take
 /// control.
-fn connection(settings: &Eip, found: [(u32, Presence); 2], layers: &mut Layers) {
+fn connection(settings: &Eip, found: [(u32, AssemblyPresence); 2], layers: &mut Layers) {
     let layer = "connection";
-    if let Some((instance, _)) = found.iter().find(|(_, presence)| *presence == Presence::Absent) {
+    if let Some((instance, _)) = found.iter().find(|(_, presence)| *presence == AssemblyPresence::Absent) {
         let what = format!("the board has no assembly {instance}");
         return layers.fail_with(layer, what, "find `in=` and `out=` with `yrcx eip probe`");
     }
     let [(input, from), (output, to)] = found.map(|(instance, presence)| match presence {
-        Presence::Readable(assembly) => (instance, assembly.size),
-        Presence::Absent | Presence::Unknown => (instance, None),
+        AssemblyPresence::Readable(assembly) => (instance, assembly.size),
+        AssemblyPresence::Absent | AssemblyPresence::Unknown => (instance, None),
     });
     let differs = |size: Option<u16>, said: u16| size.is_some_and(|size| size != said);
     if differs(from, settings.input_size) || differs(to, settings.output_size) {

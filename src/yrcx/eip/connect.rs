@@ -2,28 +2,28 @@
 
 use std::time::Duration;
 
-use crate::fieldbus::{At, Purpose};
+use crate::fieldbus::{ConnectionParameters, Purpose};
 use armctl_controller::yrcx::signal::resting;
 use armctl_frame::settings::target::eip::{Eip, EipRole};
 use armctl_transport::eip::client::Client;
 use armctl_transport::eip::error::EipError;
+use armctl_transport::eip::image_reader::Assembly;
 use armctl_transport::eip::link::{Class1, Reading, resolve};
-use armctl_transport::eip::reader::Assembly;
 use armctl_transport::eip::settings::{Multiplier, Role, Settings};
 use armctl_transport::eip::wire::Key;
 use armctl_transport::image::{Cause, ImageLink, LinkError};
 
-pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
+pub(super) async fn open(at: ConnectionParameters<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
     let eip: &Eip = at.options()?;
     if purpose == Purpose::Look && eip.role == EipRole::Owner {
-        return look(&at, eip).await;
+        return check_layers(&at, eip).await;
     }
     let settings = settings(&at, eip)?;
     Ok(ImageLink::over(Class1::open(&eip.host, eip.port, settings, at.tap.into()).await?))
 }
 
 /// Creates the explicit messaging client for the board.
-pub(super) async fn client(at: &At<'_>) -> Result<(Client, Eip), LinkError> {
+pub(super) async fn client(at: &ConnectionParameters<'_>) -> Result<(Client, Eip), LinkError> {
     let eip: &Eip = at.options()?;
     let target = resolve(&eip.host, eip.port).await?;
     Ok((Client::new(target, at.robot.timeout.value, at.tap.clone().into()), eip.clone()))
@@ -38,7 +38,7 @@ const PAUSE: Duration = Duration::from_millis(20);
 
 /// Opens a read-only link. It reads with explicit messages, which have no lasting effect. If the board refuses these
 /// messages, it opens an input-only connection.
-async fn look(at: &At<'_>, eip: &Eip) -> Result<ImageLink, LinkError> {
+async fn check_layers(at: &ConnectionParameters<'_>, eip: &Eip) -> Result<ImageLink, LinkError> {
     let (client, _) = client(at).await?;
     let assembly = Assembly { instance: eip.input, size: eip.input_size };
     let refused = match Reading::open(client, assembly, eip.rpi.max(at.bus.listen_before).max(PAUSE)).await {
@@ -59,7 +59,7 @@ async fn look(at: &At<'_>, eip: &Eip) -> Result<ImageLink, LinkError> {
     )))
 }
 
-fn settings(at: &At<'_>, eip: &Eip) -> Result<Settings, LinkError> {
+fn settings(at: &ConnectionParameters<'_>, eip: &Eip) -> Result<Settings, LinkError> {
     let role = match eip.role {
         EipRole::Owner => Role::ExclusiveOwner,
         EipRole::InputOnly => Role::InputOnly,

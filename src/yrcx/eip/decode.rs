@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::net::{IpAddr, SocketAddr};
 
 use super::cip::{explain, may_be_message};
-use crate::decode::images::{BusDecoder, Images, MOST, decoded};
+use crate::decode::images::{BusDecoder, Images, MAX_STORED, decoded};
 use crate::field_row::FieldRow;
 use armctl_controller::text::hex;
 use armctl_controller::yrcx::image::Image;
@@ -20,11 +20,11 @@ pub struct Decoder {
     /// TCP streams, one entry per direction; `None` if the stream is not EtherNet/IP.
     streams: HashMap<(SocketAddr, SocketAddr), Option<Frames>>,
     /// Packet numbers of pending requests, by client, controller and sender context.
-    asked: HashMap<(SocketAddr, SocketAddr, [u8; 8]), u64>,
+    pending_requests: HashMap<(SocketAddr, SocketAddr, [u8; 8]), u64>,
     /// Connections whose ForwardOpen was seen, by controller and connection id. For ids of data from the controller,
     /// the client is stored too, because that data can go to a multicast group. Both directions can have the same id.
-    forth: HashSet<(IpAddr, u32)>,
-    back: HashMap<(IpAddr, u32), IpAddr>,
+    to_controller: HashSet<(IpAddr, u32)>,
+    from_controller: HashMap<(IpAddr, u32), IpAddr>,
     flows: HashMap<(SocketAddr, SocketAddr, u32), Flow>,
 }
 
@@ -73,8 +73,14 @@ impl Decoder {
 
     /// Clears the state if it is too large. Decoding then continues without history.
     fn forget_if_many(&mut self) {
-        let known = [self.streams.len(), self.asked.len(), self.forth.len(), self.back.len(), self.flows.len()];
-        if known.iter().any(|known| *known >= MOST) {
+        let known = [
+            self.streams.len(),
+            self.pending_requests.len(),
+            self.to_controller.len(),
+            self.from_controller.len(),
+            self.flows.len(),
+        ];
+        if known.iter().any(|known| *known >= MAX_STORED) {
             *self = Self::default();
         }
     }
@@ -92,13 +98,13 @@ impl Decoder {
             if described.is_answer { (Direction::Received, ends.1, ends.0) } else { (Direction::Sent, ends.0, ends.1) };
         let context = bytes.get(12..20).and_then(|bytes| bytes.first_chunk().copied()).unwrap_or_default();
         let key = (client, controller, context);
-        let answers = if described.is_answer { self.asked.remove(&key) } else { None };
+        let answers = if described.is_answer { self.pending_requests.remove(&key) } else { None };
         if !described.is_answer {
-            self.asked.insert(key, message.number);
+            self.pending_requests.insert(key, message.number);
         }
         if let Some((o_t, t_o)) = described.opened {
-            self.forth.insert((controller.ip(), o_t));
-            self.back.insert((controller.ip(), t_o), client.ip());
+            self.to_controller.insert((controller.ip(), o_t));
+            self.from_controller.insert((controller.ip(), t_o), client.ip());
         }
         images.message(DecodedMessage {
             number: message.number,
@@ -118,8 +124,8 @@ impl Decoder {
     fn cyclic(&mut self, message: &Message<'_>, from: SocketAddr, to: SocketAddr, images: &mut Images) {
         self.forget_if_many();
         let Ok(cyclic) = Cyclic::parse(message.bytes) else { return };
-        let client = self.back.get(&(from.ip(), cyclic.id)).copied();
-        let is_forth = self.forth.contains(&(to.ip(), cyclic.id));
+        let client = self.from_controller.get(&(from.ip(), cyclic.id)).copied();
+        let is_forth = self.to_controller.contains(&(to.ip(), cyclic.id));
         let len = cyclic.body.len();
         let known = match (is_forth, client) {
             // If client and controller are on one computer, both directions can have the same id. Then the size shows

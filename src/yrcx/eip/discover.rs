@@ -8,7 +8,7 @@ use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
 use super::board::Identity;
-use crate::fieldbus::{self, Device, MAKER, Scope, fields};
+use crate::fieldbus::{self, Device, Scope, VENDOR_ID, fields};
 use crate::prelude::*;
 use armctl_frame::failure::plain;
 use armctl_frame::settings::target::eip::SCHEME;
@@ -73,11 +73,11 @@ impl fieldbus::Search for Search {
     }
 }
 
-fn found_board(found: discovery::Found) -> Result<Device, Failure> {
+fn found_board(found: discovery::DiscoveredDevice) -> Result<Device, Failure> {
     let (host, port) = (found.address.ip(), found.address.port());
     let scheme = SCHEME.name;
     let target = if port == PORT { format!("{scheme}://{host}") } else { format!("{scheme}://{host}:{port}") };
-    let is_yrcx = found.identity.vendor == MAKER;
+    let is_yrcx = found.identity.vendor == VENDOR_ID;
     let identity = Identity::from(found.identity);
     let Identity { name, vendor, product, revision, serial, owned, .. } = &identity;
     let owner = if *owned { ", owned by a master" } else { "" };

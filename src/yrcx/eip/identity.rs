@@ -1,12 +1,12 @@
 //! `yrcx eip identity`.
 
 use super::board::{Board, Identity};
-use crate::messages::BoardReport;
+use crate::board_report::BoardReport;
 use crate::prelude::*;
 
 /// Identity and services of the board (ListIdentity, ListServices).
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Identified {
+pub struct IdentityReport {
     /// TCP address of the board.
     address: String,
     #[serde(flatten)]
@@ -15,7 +15,7 @@ pub struct Identified {
     services: Option<Vec<&'static str>>,
 }
 
-impl BoardReport for Identified {
+impl BoardReport for IdentityReport {
     type Board = Board;
     const ID: &'static str = "yrcx.eip.identity";
     const MESSAGES: &'static str = "messages that read the identity and the services of the board";
@@ -30,7 +30,7 @@ impl BoardReport for Identified {
     }
 }
 
-impl Report for Identified {
+impl Report for IdentityReport {
     fn view(&self) -> View {
         let services = self.services.as_ref().map_or_else(|| "-".to_owned(), |services| services.join(", "));
         let mut fields = vec![("address", self.address.as_str().into())];

@@ -2,11 +2,11 @@
 
 use serde_json::json;
 
-use super::board::{Board, Object, shown};
+use super::board::{Board, Object, hex_pairs};
 use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_controller::text;
-use armctl_controller::typed;
+use armctl_controller::user_input;
 use armctl_frame::settings_report::{OLD_VALUE, nothing_written};
 
 /// Reads an attribute of an object, or all its attributes (Get_Attribute_Single, Get_Attributes_All).
@@ -35,13 +35,13 @@ impl Command for Get {
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Value, Failure> {
-        context.link.no_unit_of::<Board>()?;
+        context.link.reject_unit_of::<Board>()?;
         let object = Object { class: self.class, instance: self.instance, attribute: self.attribute };
         let about = format!("{} of {object}", object.reading());
         let asked = object.get_bytes();
         context.link.plan_frame(json!({ "hex": text::hex(&asked), "about": about }))?;
         let bytes = context.link.board::<Board>()?.get(object).await?;
-        context.link.tell_message(&asked, &bytes, &about);
+        context.link.plan_message_frame(&asked, &bytes, &about);
         Ok(Value::of(object, &bytes))
     }
 }
@@ -76,7 +76,7 @@ impl Set {
 
 impl Command for Set {
     type Family = Yrcx;
-    type Report = Done;
+    type Report = SetReport;
     const ID: &'static str = "yrcx.eip.set";
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
@@ -85,11 +85,11 @@ impl Command for Set {
     }
 
     fn intent(&self) -> String {
-        format!("set {} to {}", self.object(), shown(&self.data.0))
+        format!("set {} to {}", self.object(), hex_pairs(&self.data.0))
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
-        context.link.no_unit_of::<Board>()?;
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport, Failure> {
+        context.link.reject_unit_of::<Board>()?;
         let object = self.object();
         let (asked, about) = (object.set_bytes(&self.data.0), format!("Set_Attribute_Single of {object}"));
         context.link.plan_frame(json!({ "hex": text::hex(&object.get_bytes()), "about": OLD_VALUE })).known()?;
@@ -101,8 +101,8 @@ impl Command for Set {
             Err(failure) => return Err(nothing_written(failure)),
         };
         context.link.board::<Board>()?.set(object, &self.data.0).await?;
-        context.link.tell_message(&asked, &[], &about);
-        let words = format!("set {object} to {}", shown(&self.data.0));
+        context.link.plan_message_frame(&asked, &[], &about);
+        let words = format!("set {object} to {}", hex_pairs(&self.data.0));
         let new = NewValue::of("attribute", text::hex(&self.data.0), words);
         let new = new.with("class", self.class).with("instance", self.instance).with("attribute", self.attribute);
         Ok(new.replaces(Old::read(old)))
@@ -122,7 +122,7 @@ fn bytes(text: &str) -> Result<Bytes, String> {
 
 /// Parses the number of a class, instance or attribute: 16 bits, decimal or hexadecimal with 0x.
 fn number(text: &str) -> Result<u32, String> {
-    typed::unsigned::<u16>(text)
+    user_input::unsigned::<u16>(text)
         .map(u32::from)
         .ok_or_else(|| format!("'{text}' is not a number from 0 to 65535, such as 4 or 0xF5"))
 }
@@ -161,7 +161,7 @@ impl Value {
 impl Report for Value {
     fn view(&self) -> View {
         let bytes = text::unhex(&self.hex).filter(|bytes| !bytes.is_empty());
-        let bytes = Cell::optional(bytes.map(|bytes| shown(&bytes)));
+        let bytes = Cell::optional(bytes.map(|bytes| hex_pairs(&bytes)));
         let mut fields = vec![("object", self.object.as_str().into()), ("bytes", bytes)];
         fields.extend(self.number.map(|number| ("number", format!("{number} ({number:#x})").into())));
         fields.extend(self.text.as_deref().map(|text| ("text", text.into())));

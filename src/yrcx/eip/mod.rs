@@ -14,14 +14,14 @@ mod probe;
 mod serve;
 pub mod simulated;
 
-use super::messages::ReadBoard;
+use super::board_report::ReadBoard;
 use armctl_frame::commands;
 
 commands! {
     /// Commands for the network board.
     pub enum Eip {
         /// Show the identity of the network board
-        Identity(ReadBoard<identity::Identified>),
+        Identity(ReadBoard<identity::IdentityReport>),
         /// Find the assemblies of the board, their sizes and connection parameters
         Probe(probe::Probe),
         /// Read an attribute of a board object (raw)

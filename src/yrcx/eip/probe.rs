@@ -1,6 +1,6 @@
 //! `yrcx eip probe`.
 
-use super::board::{Board, Identity, Probed, warned};
+use super::board::{Board, Identity, ProbeResult, warning_cell};
 use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_frame::output::csv::RowsOf;
@@ -34,7 +34,7 @@ impl Command for Probe {
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<ProbeReport, Failure> {
-        context.link.no_unit_of::<Board>()?;
+        context.link.reject_unit_of::<Board>()?;
         context.link.then("messages that read the identity and the assemblies of the board");
         if self.tries {
             context.link.then("requests for owner connections (ForwardOpen) with invalid sizes");
@@ -54,7 +54,7 @@ pub struct ProbeReport {
     /// Identity of the board; null if the board does not report it.
     identity: Option<Identity>,
     #[serde(flatten)]
-    probed: Probed,
+    probed: ProbeResult,
     #[serde(skip)]
     has_tried: bool,
 }
@@ -82,7 +82,7 @@ impl Report for ProbeReport {
         }
         let Some(found) = &self.probed.connectable else { return view };
         let bytes = |size: Option<u16>| Cell::optional(size.map(|size| format!("{size} bytes")));
-        let owner = if self.probed.owned { warned("another master") } else { "free".into() };
+        let owner = if self.probed.owned { warning_cell("another master") } else { "free".into() };
         view.append(Section::Fields(vec![
             ("from the controller", bytes(found.in_size)),
             ("to the controller", bytes(found.out_size)),

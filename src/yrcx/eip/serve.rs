@@ -3,12 +3,12 @@
 use std::net::SocketAddrV4;
 
 use super::simulated::{self, Controller, FAULTS};
-use crate::fieldbus::{Operator, Serve, Served, ToServe};
+use crate::fieldbus::{Operator, RunningSimulation, Serve, ServeOptions};
 use crate::prelude::*;
 use crate::simulated::{faults, faults_of_option};
 use armctl_frame::serve::{address, bind_failure};
 use armctl_frame::settings::target::eip::SCHEME;
-use armctl_transport::eip::adapter::server::{Listen, Server};
+use armctl_transport::eip::adapter::server::{AdapterAddresses, Server};
 use armctl_transport::eip::{IO_PORT, PORT};
 
 /// Addresses of the simulator.
@@ -31,15 +31,15 @@ fn listen(text: &str) -> Result<SocketAddrV4, String> {
 }
 
 impl Serve for ServeArgs {
-    fn serve(&self, ToServe { start, faults, .. }: ToServe<'_>) -> Result<Served, Failure> {
+    fn serve(&self, ServeOptions { start, faults, .. }: ServeOptions<'_>) -> Result<RunningSimulation, Failure> {
         let io_port = self.io_port.unwrap_or(if self.bind.port() == 0 { 0 } else { IO_PORT });
-        let listen = Listen { address: *self.bind.ip(), port: self.bind.port(), io_port };
+        let listen = AdapterAddresses { address: *self.bind.ip(), port: self.bind.port(), io_port };
         let server = simulated::serve(start, listen, faults_of_option(faults, &FAULTS)?).map_err(|error| {
             let on = format!("TCP and UDP {}, and UDP {}", self.bind, io_port);
             bind_failure(&on, &error).hint("stop the other simulator, or choose free ports with --bind 127.0.0.1:0")
         })?;
         let address = server.address();
-        Ok(Served {
+        Ok(RunningSimulation {
             target: format!("{}://{address}", SCHEME.name),
             address: Some(address.into()),
             operator: Box::new(server),

@@ -12,7 +12,7 @@ use crate::simulated::{Simulated, faults_of_url, start};
 use armctl_controller::yrcx::simulator::{Simulator, Start};
 use armctl_frame::settings::target::Sim;
 use armctl_transport::eip::PORT;
-use armctl_transport::eip::adapter::server::{Listen, Server};
+use armctl_transport::eip::adapter::server::{AdapterAddresses, Server};
 use armctl_transport::eip::adapter::{AdapterFault, Application, Event, Setup};
 use armctl_transport::eip::settings::Role;
 use armctl_transport::eip::wire::{Identity, Revision};
@@ -22,7 +22,7 @@ use armctl_transport::image::ImagePeer;
 /// Starts a simulator as an adapter on the loopback interface, with the faults of the URL.
 pub fn on_loopback(sim: &Sim) -> Result<Server<Controller>, Failure> {
     let faults = faults_of_url(sim, &FAULTS)?;
-    let listen = Listen::anywhere(Ipv4Addr::LOCALHOST);
+    let listen = AdapterAddresses::anywhere(Ipv4Addr::LOCALHOST);
     let server = serve(start(sim.state.as_deref())?, listen, faults);
     Ok(server.context("the simulator on the loopback")?)
 }
@@ -40,7 +40,7 @@ const OUTPUT: u32 = 150;
 const CONFIGURATION: u32 = 1;
 
 /// Serves a controller as an adapter.
-pub fn serve(start: Start, listen: Listen, faults: Faults) -> io::Result<Server<Controller>> {
+pub fn serve(start: Start, listen: AdapterAddresses, faults: Faults) -> io::Result<Server<Controller>> {
     let size = u16::try_from(Image::BYTES).map_err(io::Error::other)?;
     let setup = Setup::new(identity(), (INPUT, size), (OUTPUT, size), CONFIGURATION);
     let controller = Controller(Simulated(Simulator::new(start).with_link_alarm(BUS.link_alarm)));

@@ -1,10 +1,12 @@
 //! Command `yrcx info alarm` (4.7.17), and the conversion of alarms in answers.
 
 use crate::prelude::*;
-use crate::single::{one_row, shown};
+use crate::single_command::{format_field, one_row};
 use armctl_controller::yrcx::alarm;
 use armctl_controller::yrcx::table::Command;
-use armctl_frame::robot::alarm::{Alarm as Told, AlarmEntry, Alarms, ExtraColumns, Kind, Nothing, Row, Source};
+use armctl_frame::robot::alarm::{
+    Alarm as CommandResults, AlarmEntry, Alarms, ExtraColumns, Kind, Nothing, Row, Source,
+};
 
 one_row! {
     /// Reads the last alarm that a remote command caused.
@@ -39,7 +41,7 @@ pub fn entry(values: &Values, kind: Kind) -> Option<AlarmEntry<Part>> {
         return None;
     }
     let place = |kind, count| {
-        let kind = shown(Command::LatestAlarm, values, kind)?;
+        let kind = format_field(Command::LatestAlarm, values, kind)?;
         match values.int(count) {
             // Without a number, the source is all objects of this kind, or a task without a number.
             Some(0) | None => Some(kind),
@@ -47,20 +49,20 @@ pub fn entry(values: &Values, kind: Kind) -> Option<AlarmEntry<Part>> {
         }
     };
     let part = Part { place: place(Key::Place1, Key::Place1Number), part: place(Key::Place2, Key::Place2Number) };
-    Some(AlarmEntry { alarm: Told { kind: Some(kind), ..told(found) }, own: part })
+    Some(AlarmEntry { alarm: CommandResults { kind: Some(kind), ..describe_alarm(found) }, own: part })
 }
 
 /// Adds text, cause and remedy from the built-in table to an alarm number.
-pub fn told(alarm: alarm::Alarm) -> Told {
+pub fn describe_alarm(alarm: alarm::Alarm) -> CommandResults {
     let known = alarm.known();
     let line = |lines: &[&str]| Some(lines.join("; ")).filter(|line| !line.is_empty());
-    Told {
+    CommandResults {
         code: Some(alarm.to_string()),
         text: Some(alarm.text().to_owned()),
         kind: Some(Kind::Alarm),
         cause: known.and_then(|known| line(known.causes)),
         remedy: known.and_then(|known| line(known.remedies)),
         source: Source::Armctl,
-        ..Told::default()
+        ..CommandResults::default()
     }
 }

@@ -2,9 +2,9 @@
 
 use crate::link::Yrcx;
 use crate::prelude::*;
+use crate::read_requests::ask_each;
 use crate::refusal::BuildOrder as _;
-use crate::several::ask_each;
-use crate::single::shown;
+use crate::single_command::format_field;
 use armctl_frame::items;
 use armctl_frame::items::ItemError;
 
@@ -31,7 +31,7 @@ impl Command for Arm {
             arms.iter_mut().zip(commands).zip(["selected", "current"]).zip(answers.outcomes)
         {
             match outcome {
-                Ok(values) => *arm = shown(command, &values, Key::Arm),
+                Ok(values) => *arm = format_field(command, &values, Key::Arm),
                 Err(failure) => errors.push(ItemError::new(format!("{name} hand system"), failure)),
             }
         }
@@ -72,10 +72,10 @@ mod tests {
     use crate::testing::{Reply, Scripted, answer, report_on};
 
     #[test]
-    fn one_that_is_refused_does_not_hide_the_other() {
+    fn refused_arm_does_not_hide_the_other() {
         let mut no = [0; 16];
         no[..3].copy_from_slice(&[0x4000, 5, 1]);
-        let script = [Reply::Ends(1, no), Reply::Ends(1, answer("4.7.10-reference"))];
+        let script = [Reply::AddressPair(1, no), Reply::AddressPair(1, answer("4.7.10-reference"))];
         let (read, failure, _) = report_on(Scripted::new(script), &["info", "arm"]);
         assert_eq!((&read["selected"], &read["current"]), (&json!(null), &json!("left")));
         assert_eq!(read["errors"][0]["asked"], "selected hand system");

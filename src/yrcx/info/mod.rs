@@ -42,6 +42,6 @@ commands! {
     }
 }
 
-pub use alarm::{Part, entry, told};
-pub use position::Where;
+pub use alarm::{Part, describe_alarm, entry};
+pub use position::PositionArguments;
 pub use servo::{AxisServo, servos};

@@ -3,7 +3,7 @@
 use crate::link::Yrcx;
 use crate::prelude::*;
 use crate::refusal::invalid_words;
-use crate::single::shown;
+use crate::single_command::format_field;
 
 /// Reads the origin return status: with --unit, of each axis of that robot; without --unit, of all robots together.
 #[derive(Debug, Args)]
@@ -28,7 +28,7 @@ impl Command for Origin {
             _ => invalid_words(&error),
         })?;
         let values = link.ask(&order).await?.values;
-        let state = |key| shown(table::Command::OriginStatus, &values, key);
+        let state = |key| format_field(table::Command::OriginStatus, &values, key);
         let axes = (1..).zip(Key::AXES).filter_map(|(axis, key)| Some(AxisOrigin { axis, state: state(key)? }));
         Ok(match state(Key::System) {
             Some(system) => Origins { system: Some(system), axes: Vec::new() },
@@ -85,10 +85,10 @@ mod tests {
     use crate::testing::{Reply, Scripted, run_on, words};
 
     #[test]
-    fn without_a_robot_it_is_that_of_the_system() {
+    fn reads_the_system_origin_without_a_robot() {
         let mut end = [0; 16];
         (end[0], end[2]) = (0x0200, 1);
-        let (read, peer) = run_on(Scripted::new([Reply::Ends(1, end)]), &["info", "origin"]);
+        let (read, peer) = run_on(Scripted::new([Reply::AddressPair(1, end)]), &["info", "origin"]);
         assert_eq!(read.unwrap(), json!({"system": "complete", "axes": []}));
         assert_eq!(peer.taken[0][0], 0x050F);
         assert_eq!(words(&["info", "origin", "--unit", "2", "--motor", "absolute"]).unwrap()[0][2], "0x0002");

@@ -18,7 +18,7 @@ use armctl_frame::settings::duration;
                   remote command. A program can move the robot during this time. `-o csv` and `-o jsonl` write one \
                   line per position."
 )]
-pub struct Where {
+pub struct PositionArguments {
     /// Unit of the position
     #[arg(long, value_name = "UNIT", default_value = "mm")]
     report: Unit,
@@ -37,16 +37,16 @@ pub struct Where {
     past: SeriesHistory,
 }
 
-impl Command for Where {
+impl Command for PositionArguments {
     type Family = Yrcx;
-    type Report = Place;
+    type Report = RobotPosition;
     const ID: &'static str = "yrcx.position";
 
     fn is_endless(&self) -> bool {
         self.continuous
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Place, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<RobotPosition, Failure> {
         if self.within.is_some() && !self.continuous && self.until.is_none() {
             return Err(Failure::usage("--for needs --continuous or --until").hint("add one of them, or remove --for"));
         }
@@ -59,7 +59,7 @@ impl Command for Where {
         let done = if self.continuous { link.next_output(&order).await? } else { link.ask(&order).await? };
         let place = position(&done.values, self.report).unwrap_or_default();
         let positions = Positions::one(&group(order.values().int(Key::Robot)), place).plotted(self.plot, &self.past);
-        Ok(Place { positions, elapsed_ms: self.continuous.then(|| milliseconds(done.elapsed)) })
+        Ok(RobotPosition { positions, elapsed_ms: self.continuous.then(|| milliseconds(done.elapsed)) })
     }
 }
 
@@ -69,14 +69,14 @@ fn milliseconds(time: Duration) -> u64 {
 
 /// Position of a robot.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Place {
+pub struct RobotPosition {
     #[serde(flatten)]
     positions: Positions,
     /// Time in ms since the continuous output started; null for a single reading.
     elapsed_ms: Option<u64>,
 }
 
-impl CommonReport for Place {
+impl CommonReport for RobotPosition {
     type Core = AllPositions;
 
     fn core(&self) -> AllPositions {
@@ -84,7 +84,7 @@ impl CommonReport for Place {
     }
 }
 
-impl Place {
+impl RobotPosition {
     /// Line of continuous output.
     fn line(&self, elapsed_ms: u64) -> Table {
         let mut table = Table::new(&["elapsed (ms)", "axis 1", "axis 2", "axis 3", "axis 4", "unit"], "");
@@ -96,7 +96,7 @@ impl Place {
     }
 }
 
-impl Report for Place {
+impl Report for RobotPosition {
     fn view(&self) -> View {
         self.elapsed_ms.map_or_else(|| self.positions.view(), |elapsed_ms| View::table(self.line(elapsed_ms)))
     }
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn continuous_output_tells_each_change() {
+    fn continuous_output_reports_each_change() {
         assert_eq!(words(&CONTINUOUS).unwrap()[0][..2], ["0x0506", "0x0001"]);
         let mut bench =
             Bench::new(Scripted::new([Reply::Shows(vec![output(0), output(1000), output(1000), output(2500)])]));
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn zeros_that_stay_are_a_position() {
+    fn constant_zeros_are_a_position() {
         let mut bench = Bench::new(Scripted::new([Reply::Shows(vec![output(0)])]));
         assert_eq!(bench.run(&CONTINUOUS).unwrap()["positions"][0]["x_mm"], json!(0.0));
     }
@@ -157,7 +157,7 @@ mod tests {
     fn another_command_ends_continuous_output() {
         let mut done = output(7);
         done[0] = 0x0200;
-        let script = [Reply::Shows(vec![output(1000)]), Reply::Ends(1, done)];
+        let script = [Reply::Shows(vec![output(1000)]), Reply::AddressPair(1, done)];
         let mut bench = Bench::new(Scripted::new(script));
         bench.run(&CONTINUOUS).unwrap();
         assert_eq!(bench.run(&["position"]).unwrap()["positions"][0]["x_mm"], json!(0.007));
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lost_link_is_no_position_and_the_next_call_begins_anew() {
+    fn restarts_continuous_output_after_a_lost_link() {
         let script = [Reply::Loses(2, Duration::from_millis(50)), Reply::Shows(vec![output(1000)])];
         let mut bench = Bench::new(Scripted::new(script));
         assert_eq!(bench.run(&CONTINUOUS).unwrap_err().kind, Kind::NoAnswer);

@@ -2,7 +2,7 @@
 //! `inch` (4.7.16).
 
 use crate::prelude::*;
-use crate::single::{one_row, shown};
+use crate::single_command::{format_field, one_row};
 use armctl_controller::yrcx::table::Command;
 
 one_row! {
@@ -10,7 +10,7 @@ one_row! {
     Version(self) "yrcx.info.version" -> Versions {}
     gives Command::Versions,
     done as answer => {
-        let told = |key| shown(Command::Versions, &answer.values, key);
+        let told = |key| format_field(Command::Versions, &answer.values, key);
         Versions {
             host_version: told(Key::HostVersion),
             host_revision: told(Key::HostRevision),

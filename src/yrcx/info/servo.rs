@@ -1,7 +1,7 @@
 //! `yrcx info servo` (4.7.3).
 
 use crate::prelude::*;
-use crate::single::{one_row, shown};
+use crate::single_command::{format_field, one_row};
 use armctl_controller::yrcx::table::Command;
 
 one_row! {
@@ -29,7 +29,7 @@ pub struct AxisServo {
 
 /// Servos of the axes that exist.
 pub fn servos(values: &Values) -> Vec<AxisServo> {
-    let states = Key::AXES.into_iter().map(|key| shown(Command::ServoStatus, values, key));
+    let states = Key::AXES.into_iter().map(|key| format_field(Command::ServoStatus, values, key));
     let states = (1..).zip(states).filter_map(|(axis, state)| Some(AxisServo { axis, state: state? }));
     states.filter(|servo| servo.state != "no axis").collect()
 }

@@ -1,7 +1,7 @@
 //! `yrcx info slots` (4.7.15).
 
 use crate::prelude::*;
-use crate::single::{one_row, shown};
+use crate::single_command::{format_field, one_row};
 use armctl_controller::yrcx::table::Command;
 
 one_row! {
@@ -17,7 +17,7 @@ one_row! {
     done as answer => {
         let slots = (1..).zip(SLOTS).filter_map(|(slot, key)| {
             let code = format!("0x{:04X}", answer.values.int(key)?);
-            Some(Slot { slot, module: shown(Command::Slots, &answer.values, key)?, code })
+            Some(Slot { slot, module: format_field(Command::Slots, &answer.values, key)?, code })
         });
         Modules { slots: slots.collect() }
     };

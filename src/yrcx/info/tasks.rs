@@ -4,18 +4,19 @@ use crate::complete;
 use crate::link::Yrcx;
 use crate::prelude::*;
 use crate::program;
+use crate::read_requests::ask_each;
 use crate::refusal::BuildOrder as _;
-use crate::several::ask_each;
-use crate::single::shown;
-use armctl_controller::typed;
+use crate::single_command::format_field;
+use armctl_controller::user_input;
 use armctl_frame::robot::item::{Columns, Item, Items};
 
 /// Tasks in the answer of one remote command: half of the 16 tasks.
-const HALF: [Key; 8] = [Key::Task1, Key::Task2, Key::Task3, Key::Task4, Key::Task5, Key::Task6, Key::Task7, Key::Task8];
+const TASK_KEYS: [Key; 8] =
+    [Key::Task1, Key::Task2, Key::Task3, Key::Task4, Key::Task5, Key::Task6, Key::Task7, Key::Task8];
 
 /// Argument that selects tasks.
 #[derive(Debug, Args)]
-struct Chosen {
+struct TaskSelection {
     /// Tasks (1 to 16), for example 3, `1..8` or `1,9` [default: all existing tasks]
     #[arg(value_name = "TASK", value_delimiter = ',', value_parser = tasks, add = complete::TASK)]
     tasks: Vec<Span>,
@@ -30,11 +31,11 @@ fn tasks(text: &str) -> Result<Span, String> {
         Ok(number @ 1..=16) => Ok(number),
         _ => Err(format!("'{text}' is not a valid task (1 to 16)")),
     };
-    let tasks = typed::range(text, number)?;
+    let tasks = user_input::range(text, number)?;
     Ok(Span(*tasks.start(), *tasks.end()))
 }
 
-impl Chosen {
+impl TaskSelection {
     fn has(&self, task: usize) -> bool {
         self.tasks.is_empty() || self.tasks.iter().any(|Span(first, last)| (*first..=*last).contains(&task))
     }
@@ -49,19 +50,19 @@ impl Chosen {
     ) -> Result<Items<V>, Failure> {
         let Context { link, screen, .. } = context;
         let halves: Vec<usize> =
-            (0..2).filter(|half| (1..=HALF.len()).any(|place| self.has(half * HALF.len() + place))).collect();
+            (0..2).filter(|half| (1..=TASK_KEYS.len()).any(|place| self.has(half * TASK_KEYS.len() + place))).collect();
         let order = |half: &usize| link.draft(command)?.with(Key::TaskRange, *half == 1).valid_order();
         let orders = halves.iter().map(order).collect::<Result<Vec<Order>, Failure>>()?;
         let answers = ask_each(link, screen, "reading tasks", &orders).await?;
-        let task = |half: usize, place: usize| half * HALF.len() + place + 1;
-        let told = |half: &usize| format!("tasks {} to {}", task(*half, 0), task(*half, HALF.len() - 1));
+        let task = |half: usize, place: usize| half * TASK_KEYS.len() + place + 1;
+        let told = |half: &usize| format!("tasks {} to {}", task(*half, 0), task(*half, TASK_KEYS.len() - 1));
         if let ([half], [Err(failure)]) = (&halves[..], &answers.outcomes[..]) {
             return Err(Failure { message: format!("{}: {}", told(half), failure.message), ..failure.clone() });
         }
         // The failure or answer of a half applies to each task in it.
         let (mut items, mut asked) = (Vec::new(), 0);
         for (at, (half, outcome)) in halves.iter().zip(&answers.outcomes).enumerate() {
-            for (place, key) in HALF.into_iter().enumerate().filter(|(place, _)| self.has(task(*half, *place))) {
+            for (place, key) in TASK_KEYS.into_iter().enumerate().filter(|(place, _)| self.has(task(*half, *place))) {
                 let read = outcome.clone().map(|values| of(&values, key));
                 // If the user selected no tasks, armctl reports only the tasks that exist.
                 if self.tasks.is_empty() && matches!(read, Ok(None)) {
@@ -83,7 +84,7 @@ impl Chosen {
 #[derive(Debug, Args)]
 pub struct Tasks {
     #[command(flatten)]
-    chosen: Chosen,
+    chosen: TaskSelection,
 }
 
 impl Command for Tasks {
@@ -94,7 +95,7 @@ impl Command for Tasks {
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<Items<String>, Failure> {
         let command = table::Command::TaskStatus;
         let of = |values: &Values, key| {
-            let state = shown(command, values, key).filter(|state| state != NO_TASK)?;
+            let state = format_field(command, values, key).filter(|state| state != NO_TASK)?;
             let tone = if state == "execution" { Tone::Good } else { Tone::Plain };
             Some((state.clone(), Cell::from(state).tone(tone)))
         };
@@ -108,7 +109,7 @@ const NO_TASK: &str = "no task";
 #[derive(Debug, Args)]
 pub struct Line {
     #[command(flatten)]
-    chosen: Chosen,
+    chosen: TaskSelection,
 }
 
 impl Command for Line {

@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 
 use crate::prelude::*;
-use crate::single::one_row;
+use crate::single_command::one_row;
 use armctl_controller::yrcx::table::Command;
 
 one_row! {
@@ -84,7 +84,7 @@ mod tests {
     fn torques_have_a_sign_and_all_axes_are_read() {
         let mut end = [0; 16];
         (end[0], end[2]) = (0x0200, 0xFFEC);
-        let (read, peer) = run_on(Scripted::new([Reply::Ends(1, end)]), &["info", "torque"]);
+        let (read, peer) = run_on(Scripted::new([Reply::AddressPair(1, end)]), &["info", "torque"]);
         let read = read.unwrap();
         assert_eq!((&read["axes"][0]["torque_percent"], &read["axes"][3]["axis_number"]), (&json!(-20), &json!(4)));
         assert_eq!(peer.taken[0][2], 0);

@@ -1,9 +1,9 @@
 //! `yrcx io get`.
 
-use super::{Readable, readables, row, word_item};
+use super::{SignalOrWord, readables, row, word_item};
 use crate::complete;
 use crate::link::Yrcx;
-use crate::numbers::Series;
+use crate::number_arguments::Series;
 use crate::prelude::*;
 use armctl_frame::names;
 use armctl_frame::robot::io::{IoRow, IoValue, Signals};
@@ -16,7 +16,7 @@ pub struct Get {
     /// SID4 are words. SO20..SO37 is a range. Names from robots.toml are also valid [default: all dedicated outputs,
     /// and the general-purpose outputs that are on]
     #[arg(value_name = "SIGNAL", value_delimiter = ',', value_parser = readables, add = complete::OUTPUT)]
-    signals: Vec<Series<Readable>>,
+    signals: Vec<Series<SignalOrWord>>,
 }
 
 impl Command for Get {
@@ -44,8 +44,8 @@ impl Command for Get {
             return Signals::new(told.map(|signal| row(signal, &shown, names)).collect());
         }
         let rows = Series::all(&self.signals).map(|readable| match *readable {
-            Readable::Signal(signal) => row(signal, image(signal.side()), names),
-            Readable::Word(register) => {
+            SignalOrWord::Signal(signal) => row(signal, image(signal.side()), names),
+            SignalOrWord::Word(register) => {
                 let image = image(register.side());
                 let value = IoValue::Number(register.read(&image.command()));
                 IoRow::new(word_item(register, Some(image), names), Ok(value))

@@ -91,7 +91,7 @@ impl Report for Addresses {
 mod tests {
     use serde_json::Value;
 
-    use crate::testing::{desk, objection};
+    use crate::testing::{objection, workspace};
 
     fn find(rows: &Value, signal: &str) -> Value {
         rows["rows"].as_array().unwrap().iter().find(|row| row["signal"] == signal).unwrap().clone()
@@ -99,11 +99,11 @@ mod tests {
 
     #[test]
     fn addresses_count_from_where_the_areas_start() {
-        let rows = desk(&["io", "map", "--bus", "ethernet-ip", "--input-start", "100", "--output-start", "200"]);
+        let rows = workspace(&["io", "map", "--bus", "ethernet-ip", "--input-start", "100", "--output-start", "200"]);
         let (input, output) = (find(&rows, "SI(01)"), find(&rows, "SO(02)"));
         assert_eq!((&input["address"], &input["bits"]), (&"216".into(), &"1".into()));
         assert_eq!((&output["address"], &output["direction"]), (&"116".into(), &"from_controller".into()));
-        let rows = desk(&["io", "map", "--bus", "profinet"]);
+        let rows = workspace(&["io", "map", "--bus", "profinet"]);
         assert_eq!(find(&rows, "SI(01)")["address"], "Qn + 32");
         assert!(objection(&["io", "map", "--bus", "can"]).contains("devicenet-compact"));
     }

@@ -6,7 +6,7 @@ mod map;
 mod set;
 mod watch;
 
-use crate::numbers::Series;
+use crate::number_arguments::Series;
 use crate::prelude::*;
 use armctl_controller::names::{Kind, Names};
 use armctl_controller::yrcx::register::Register;
@@ -34,12 +34,12 @@ commands! {
 
 /// A signal or a word that the user named.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Readable {
+enum SignalOrWord {
     Signal(Signal),
     Word(Register),
 }
 
-impl Readable {
+impl SignalOrWord {
     fn side(self) -> Side {
         match self {
             Self::Signal(signal) => signal.side(),
@@ -48,7 +48,7 @@ impl Readable {
     }
 }
 
-impl std::fmt::Display for Readable {
+impl std::fmt::Display for SignalOrWord {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Signal(signal) => signal.fmt(f),
@@ -58,14 +58,14 @@ impl std::fmt::Display for Readable {
 }
 
 /// Parses a signal, a word, a range of them, or a name that the user assigned.
-fn readables(text: &str) -> Result<Series<Readable>, String> {
+fn readables(text: &str) -> Result<Series<SignalOrWord>, String> {
     names::parse_or_name(&[Kind::Signal], "SO(20)", text, Series::reader(readable))
 }
 
-fn readable(text: &str) -> Result<Readable, String> {
+fn readable(text: &str) -> Result<SignalOrWord, String> {
     match Register::parse(text) {
-        Some(register) => register.map(Readable::Word),
-        None => signal(text).map(Readable::Signal),
+        Some(register) => register.map(SignalOrWord::Word),
+        None => signal(text).map(SignalOrWord::Signal),
     }
 }
 
@@ -136,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_those_of_outputs_unless_said_otherwise() {
+    fn names_mean_outputs_by_default() {
         let read = |text| readable(text).unwrap().to_string();
         assert_eq!((read("servo-on"), read("20"), read("so157")), ("SO(02)".into(), "SO(20)".into(), "SO(157)".into()));
         assert_eq!((read("SI20"), read("si(06)")), ("SI(20)".into(), "SI(06)".into()));

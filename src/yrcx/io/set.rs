@@ -6,7 +6,7 @@ use crate::link::Link;
 use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_controller::names::{Kind, Names};
-use armctl_controller::typed;
+use armctl_controller::user_input;
 use armctl_controller::yrcx::procedure::Procedure;
 use armctl_controller::yrcx::register::Register;
 use armctl_frame::names;
@@ -55,7 +55,7 @@ fn settable(text: &str) -> Result<Settable, String> {
 }
 
 fn change(text: &str) -> Result<Change, String> {
-    let (signal, state) = typed::setting(text, "a signal", "a state", "servo-on=on")?;
+    let (signal, state) = user_input::split_setting(text, "a signal", "a state", "servo-on=on")?;
     let (found, is_open) = names::parse_or_name_marked(&[Kind::Signal], ANY_INPUT, signal, settable)?;
     let name = settable(signal).is_err().then(|| signal.to_owned());
     match found {
@@ -65,7 +65,7 @@ fn change(text: &str) -> Result<Change, String> {
         Settable::Word(register) => Ok(Change::Word { register, value: register.value(state)? }),
         // The name is not resolved yet, so armctl cannot yet check the state.
         Settable::Signal(signal) if is_open => Ok(Change::Signal { signal, name, on: false }),
-        Settable::Signal(signal) => Ok(Change::Signal { signal, name, on: typed::state(state)? }),
+        Settable::Signal(signal) => Ok(Change::Signal { signal, name, on: user_input::state(state)? }),
     }
 }
 
@@ -109,9 +109,9 @@ impl Change {
     }
 
     /// Carries out one change, or several word changes together.
-    async fn carry_out(together: &[Self], link: &mut Link) -> Result<(), Failure> {
+    async fn execute(together: &[Self], link: &mut Link) -> Result<(), Failure> {
         if let [Self::Signal { signal, on, .. }] = together {
-            return link.carry_out(switching(Procedure::set(*signal, *on))?).await.map(|_| ());
+            return link.execute(switching(Procedure::set(*signal, *on))?).await.map(|_| ());
         }
         link.set_words(&together.iter().filter_map(Self::word).collect::<Vec<_>>()).await
     }
@@ -136,7 +136,7 @@ impl Command for Set {
         let mut done = 0;
         for together in self.changes.chunk_by(|one, next| one.word().is_some() && next.word().is_some()) {
             let before = &self.changes[..done];
-            Change::carry_out(together, context.link).await.map_err(|failure| match before {
+            Change::execute(together, context.link).await.map_err(|failure| match before {
                 [] => failure,
                 _ => Failure {
                     message: format!("{}; switched before: {}", failure.message, describe(before)),
@@ -170,7 +170,7 @@ impl Pulse {
 
 impl Command for Pulse {
     type Family = Yrcx;
-    type Report = Done;
+    type Report = SetReport;
     const ID: &'static str = "yrcx.io.pulse";
 
     fn risk(&self) -> Risk {
@@ -181,9 +181,9 @@ impl Command for Pulse {
         format!("switch {} on and off again", self.called())
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport, Failure> {
         let old = context.link.output_image().map(|image| self.signal.0.is_on(image));
-        context.link.carry_out(switching(Procedure::pulse(self.signal.0))?).await?;
+        context.link.execute(switching(Procedure::pulse(self.signal.0))?).await?;
         let words = format!("switched {} on and off again", self.called());
         Ok(NewValue::of(self.signal.0.to_string(), false, words).with("pulsed", true).replaces(Old::read(old)))
     }
@@ -237,7 +237,7 @@ mod tests {
     fn words_stay_beside_remote_commands() {
         let mut place = [0; 16];
         place[0] = 0x0200;
-        let mut bench = Bench::new(Scripted::new([Reply::Ends(1, place)]));
+        let mut bench = Bench::new(Scripted::new([Reply::AddressPair(1, place)]));
         bench.run(&["io", "set", "SIW2=5"]).unwrap();
         let shown = |bench: &mut Bench| bench.run(&["io", "get", "SIW2"]).unwrap()["items"][0].clone();
         assert_eq!(shown(&mut bench)["value"], 5);

@@ -34,11 +34,11 @@ impl Command for Outputs {
         let names = names::of_robot(context.robot, context.screen);
         let link = context.link;
         // Report the image that the wait received, so that even a very short change is reported.
-        let image = match link.seen.take() {
+        let image = match link.last_received.take() {
             Some(image) => image,
             None => link.read_signals().await?,
         };
-        link.told = Some(image);
+        link.last_reported = Some(image);
         let signals = if self.signals.is_empty() { Signal::all(Side::Output).collect() } else { self.signals.clone() };
         Signals::new(signals.into_iter().map(|signal| row(signal, &image, names)).collect())
     }
@@ -51,8 +51,8 @@ impl Watchable for Outputs {
     const WATCHED: Watched = WATCHED;
 
     async fn changed(&self, link: &mut Link) -> Result<(), Failure> {
-        let told = link.told;
-        link.seen = Some(link.look_until(|image| Some(*image) != told).await?);
+        let last_reported = link.last_reported;
+        link.last_received = Some(link.wait_for_image(|image| Some(*image) != last_reported).await?);
         Ok(())
     }
 }

@@ -16,7 +16,7 @@ impl Link {
     pub fn any_board(&mut self) -> Result<&mut dyn Board, Failure> {
         match &mut self.board {
             Some((board, _)) => Ok(&mut **board),
-            None if self.client.is_dry() => Err(unknown()),
+            None if self.client.is_dry_run() => Err(unknown()),
             None => Err(Failure::local("internal error: this link carries images, not messages")),
         }
     }
@@ -32,12 +32,12 @@ impl Link {
     }
 
     /// Rejects `--unit`, because the device of the fieldbus belongs to the whole controller.
-    pub fn no_unit_of<B: BusBoard>(&self) -> Result<(), Failure> {
-        self.no_unit(&format!("the {} belongs to the whole controller", B::DEVICE))
+    pub fn reject_unit_of<B: BusBoard>(&self) -> Result<(), Failure> {
+        self.reject_unit(&format!("the {} belongs to the whole controller", B::DEVICE))
     }
 
     /// Prints a request and its answer at `-vv`.
-    pub fn tell_message(&mut self, sent: &[u8], received: &[u8], about: &str) {
+    pub fn plan_message_frame(&mut self, sent: &[u8], received: &[u8], about: &str) {
         let mut trace = lock_writer(&self.trace);
         trace.message(Direction::Sent, sent, about);
         trace.message(Direction::Received, received, "done");
@@ -46,6 +46,6 @@ impl Link {
     /// Notes a message in a dry run. In a dry run, the answer is unknown.
     pub fn plan_frame(&mut self, frame: Json) -> Result<(), Failure> {
         self.client.plan_frame(frame, Reason::default());
-        if self.client.is_dry() { Err(unknown()) } else { Ok(()) }
+        if self.client.is_dry_run() { Err(unknown()) } else { Ok(()) }
     }
 }

@@ -13,7 +13,7 @@ fn words(head: &[u16]) -> Words {
 }
 
 fn ends(scans: u32, head: &[u16]) -> Reply {
-    Reply::Ends(scans, words(head))
+    Reply::AddressPair(scans, words(head))
 }
 
 const MOVE: &[&str] = &["move", "--point", "19", "--speed", "50"];
@@ -36,7 +36,7 @@ fn a_motion_is_awaited_and_reported() {
 }
 
 #[test]
-fn a_short_command_may_never_show_that_it_runs() {
+fn accepts_a_short_command_without_run_status() {
     let (reset, peer) = run_on(Scripted::new([ends(0, &[0x0200])]), &["alarm", "reset"]);
     assert_eq!(reset.unwrap()["alarm"], false);
     assert_eq!(peer.taken, [words(&[0x0604])]);
@@ -70,7 +70,7 @@ fn a_command_left_over_by_another_master_is_reset_first() {
 }
 
 #[test]
-fn what_reads_is_repeated_after_a_loss_and_what_changes_is_not() {
+fn repeats_reads_but_not_changes_after_a_loss() {
     let gone = Duration::from_millis(300);
     let lost = || Reply::Loses(1, gone);
     let answer = ends(1, &[0x0200, 0, 1, 1, 1, 9, 9, 9]);
@@ -86,7 +86,7 @@ fn what_reads_is_repeated_after_a_loss_and_what_changes_is_not() {
 }
 
 #[test]
-fn after_a_loss_the_link_rests_and_goes_on() {
+fn link_continues_at_rest_after_a_loss() {
     let mut bench = Bench::new(Scripted::new([Reply::Loses(1, Duration::from_secs(1)), ends(0, &[0x0200])]));
     assert_eq!(bench.run(MOVE).unwrap_err().kind, Kind::OutcomeUnknown);
     bench.run(&["alarm", "reset"]).unwrap();
@@ -94,7 +94,7 @@ fn after_a_loss_the_link_rests_and_goes_on() {
 }
 
 #[test]
-fn a_controller_that_takes_nothing_is_told_as_such() {
+fn reports_a_controller_that_accepts_no_command() {
     let (servos, peer) = run_on(Scripted::new([]), &["info", "servo"]);
     let failure = servos.unwrap_err();
     assert_eq!(failure.kind, Kind::NoAnswer);
@@ -105,7 +105,7 @@ fn a_controller_that_takes_nothing_is_told_as_such() {
 }
 
 #[test]
-fn an_interrupt_stops_the_motion_and_gives_the_stop_input_back() {
+fn interrupt_stops_the_motion_and_restores_the_stop_input() {
     let mut bench = Bench::new(Scripted::new([Reply::UntilStop(words(STOPPED)), ends(0, &[0x0200])]));
     bench.interrupt(MOVE, Duration::from_secs(2));
     assert_eq!(bench.halt().unwrap(), "the robot was stopped by the stop input SI(06), which is on again");
@@ -116,7 +116,7 @@ fn an_interrupt_stops_the_motion_and_gives_the_stop_input_back() {
 }
 
 #[test]
-fn an_interrupt_tells_when_the_end_is_not_seen() {
+fn interrupt_reports_an_unobserved_end() {
     let mut bench = Bench::new(Scripted::new([ends(u32::MAX, &[0])]));
     bench.interrupt(MOVE, Duration::from_secs(2));
     let failure = bench.halt().unwrap_err();
@@ -126,7 +126,7 @@ fn an_interrupt_tells_when_the_end_is_not_seen() {
 }
 
 #[test]
-fn an_interrupt_before_anything_left_stops_nothing() {
+fn interrupt_before_the_command_sends_nothing() {
     let mut bench = Bench::new(Scripted::new([]));
     assert_eq!(bench.halt().unwrap(), "no motion command was sent");
     assert_eq!(bench.into_peer().bits, [REST]);
@@ -158,7 +158,7 @@ fn signals_are_switched_while_a_command_runs() {
 }
 
 #[test]
-fn the_end_of_a_command_is_not_taken_for_that_of_the_next() {
+fn distinguishes_the_ends_of_consecutive_commands() {
     let mut bench = Bench::new(Scripted::new([ends(10, &[0x4000, 2, 334]), ends(0, &[0x0200])]));
     bench.run(&[MOVE, &["--no-wait"]].concat()).unwrap();
     // The command ends during the pulse.
@@ -168,14 +168,14 @@ fn the_end_of_a_command_is_not_taken_for_that_of_the_next() {
 }
 
 #[test]
-fn a_procedure_switches_waits_and_confirms() {
+fn procedure_switches_and_confirms_signals() {
     let (done, peer) = run_on(Scripted::new([]), &["power-on"]);
     assert!(done.unwrap()["elapsed_ms"].as_u64().unwrap() >= 100);
     assert_eq!(peer.bits, [REST, REST | 1 << 1, REST]);
 }
 
 #[test]
-fn nothing_riskier_than_granted_leaves() {
+fn sends_only_granted_commands() {
     let mut bench = Bench::grant(Scripted::new([]), Risk::Read);
     for line in [MOVE, &["alarm", "reset"], &["run"], &["io", "set", "20=on"]] {
         let failure = bench.run(line).unwrap_err();
@@ -195,7 +195,7 @@ fn a_watch_begins_with_the_state() {
 }
 
 #[test]
-fn status_puts_signals_servos_and_position_together() {
+fn status_combines_signals_servos_and_position() {
     let servos = ends(1, &[0x0200, 0, 1, 1, 0, 9, 9, 9]);
     let position = ends(1, &[0x0200, 0, 0, 0, 0x2710, 0, 0xD8F0, 0xFFFF]);
     let (status, peer) = run_on(Scripted::new([servos, position]), &["status"]);
@@ -206,7 +206,7 @@ fn status_puts_signals_servos_and_position_together() {
 }
 
 #[test]
-fn without_words_for_commands_signals_work_and_nothing_else_leaves() {
+fn compact_image_supports_signals_only() {
     let mut bench = Bench::signals_alone(Scripted::new([]));
     for line in [&["info", "servo"][..], &["move", "--point", "19"], &["raw", "--wi", "0x604"]] {
         let failure = bench.run(line).unwrap_err();

@@ -1,9 +1,9 @@
 //! `yrcx abs-reset` (4.2.10, 4.2.11): absolute reset of an axis of the mark type.
 
-use super::{MotionReport, go};
-use crate::arguments::{Direction, Which};
+use super::{MotionReport, execute_motion};
+use crate::arguments::{Direction, UnitArgument};
+use crate::confirmed_write::confirmation;
 use crate::link::Yrcx;
-use crate::overwrite::confirmation;
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
 use armctl_frame::wait_arguments::MotionEnd;
@@ -25,7 +25,7 @@ pub struct AbsReset {
     #[command(flatten)]
     end: MotionEnd,
     #[command(flatten)]
-    which: Which,
+    which: UnitArgument,
 }
 
 impl AbsReset {
@@ -76,7 +76,8 @@ impl Command for AbsReset {
         };
         let order = draft.with(Key::Direction, direction.value()).valid_order()?;
         let way = format!("{} {} to a reset position", self.axis(), direction.describe());
-        let done = go(context.link, context.screen, &order, self.end.no_wait(), &format!("moving {way}")).await?;
+        let done =
+            execute_motion(context.link, context.screen, &order, self.end.no_wait(), &format!("moving {way}")).await?;
         let verb = if done.is_some() { "moved" } else { "moving" };
         Ok(MotionReport::new(format!("{verb} {way}"), &order, done.as_ref(), None))
     }

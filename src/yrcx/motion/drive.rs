@@ -3,7 +3,7 @@
 use clap::ArgGroup;
 
 use super::{Motion, MotionReport, Target, single_target};
-use crate::arguments::Pace;
+use crate::arguments::SpeedArguments;
 use crate::prelude::*;
 use armctl_controller::yrcx::table::Command;
 
@@ -33,7 +33,7 @@ impl Destination {
     }
 
     /// Sets the fields of the target.
-    pub fn put(&self, draft: Draft) -> Draft {
+    pub fn apply_to(&self, draft: Draft) -> Draft {
         draft
             .with_some(Key::Point, self.point.clone())
             .with_some(Key::Target, self.to.clone().or(self.to_pulse.clone()))
@@ -78,7 +78,7 @@ pub struct Drive {
     #[command(flatten)]
     destination: Destination,
     #[command(flatten)]
-    pace: Pace,
+    pace: SpeedArguments,
 }
 
 impl Motion for Drive {
@@ -90,7 +90,7 @@ impl Motion for Drive {
     }
 
     fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
-        self.pace.put(self.destination.put(draft.with(Key::Axes, self.axis.as_str())))
+        self.pace.apply_to(self.destination.apply_to(draft.with(Key::Axes, self.axis.as_str())))
     }
 
     fn axis(&self) -> Option<String> {
@@ -101,7 +101,7 @@ impl Motion for Drive {
         format!("to {}", self.destination.describe())
     }
 
-    fn manner(&self) -> String {
+    fn axes_and_speed(&self) -> String {
         self.pace.describe()
     }
 
@@ -122,7 +122,7 @@ pub struct Drivei {
     #[command(flatten)]
     distance: Distance,
     #[command(flatten)]
-    pace: Pace,
+    pace: SpeedArguments,
 }
 
 impl Motion for Drivei {
@@ -140,7 +140,7 @@ impl Motion for Drivei {
     fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
         let Distance { point, by, by_pulse } = &self.distance;
         let draft = draft.with(Key::Axes, self.axis.as_str()).with_some(Key::Point, point.clone());
-        self.pace.put(draft.with_some(Key::Distance, by.clone().or(by_pulse.clone())))
+        self.pace.apply_to(draft.with_some(Key::Distance, by.clone().or(by_pulse.clone())))
     }
 
     fn axis(&self) -> Option<String> {
@@ -152,7 +152,7 @@ impl Motion for Drivei {
         format!("by {}", describe("the distance of point", [point, by, by_pulse].map(Option::as_deref)))
     }
 
-    fn manner(&self) -> String {
+    fn axes_and_speed(&self) -> String {
         self.pace.describe()
     }
 

@@ -46,7 +46,7 @@ impl Motion for Inch {
         format!("{}{}", self.direction.describe(), self.system.describe())
     }
 
-    fn manner(&self) -> String {
+    fn axes_and_speed(&self) -> String {
         "by the inching distance, at the manual speed".to_owned()
     }
 

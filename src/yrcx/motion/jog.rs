@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::{Live, MotionReport};
-use crate::arguments::{Direction, Ending, System, Which};
+use crate::arguments::{Direction, EndOptions, System, UnitArgument};
 use crate::link::Yrcx;
 use crate::position::Unit;
 use crate::prelude::*;
@@ -31,7 +31,7 @@ pub struct Jog {
     #[arg(long, value_name = "UNIT")]
     report: Option<Unit>,
     #[command(flatten)]
-    which: Which,
+    which: UnitArgument,
 }
 
 impl Jog {
@@ -78,7 +78,8 @@ impl Command for Jog {
         let link = context.link;
         let unit = self.report.unwrap_or(self.system.unit());
         let draft = link.draft(self.command())?.with(Key::Axes, self.axis.as_str());
-        let order = Ending::put(draft.with(Key::Direction, self.direction.value()), Some(unit)).valid_order()?;
+        let order =
+            EndOptions::apply_to(draft.with(Key::Direction, self.direction.value()), Some(unit)).valid_order()?;
         let object = format!("axis {} {}", self.axis, self.describe());
         let live = Live::new(link, context.screen, &format!("jogging {object}"));
         let done = link.jog(&order, self.within).await;

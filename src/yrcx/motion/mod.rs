@@ -15,8 +15,8 @@ mod tool;
 use std::sync::mpsc::{self, Sender};
 use std::thread::{self, JoinHandle};
 
-use super::arguments::{Axes, Ending, Which};
-use super::link::{Done, Link};
+use super::arguments::{Axes, EndOptions, UnitArgument};
+use super::link::{CommandResult, Link};
 use super::position::{Unit, group, position};
 use crate::link::Yrcx;
 use crate::prelude::*;
@@ -60,7 +60,7 @@ pub trait Motion: Args {
     fn target(&self) -> String;
 
     /// Describes axes and speed, for example `all axes, at 50 %`.
-    fn manner(&self) -> String;
+    fn axes_and_speed(&self) -> String;
 
     /// Returns the axes that the user did not name and that would move. armctl sends their current position as the
     /// target, so that they stay in place (4.2.1).
@@ -97,9 +97,9 @@ pub struct Moving<M: Args> {
     #[command(flatten)]
     motion: M,
     #[command(flatten)]
-    ending: Ending,
+    ending: EndOptions,
     #[command(flatten)]
-    which: Which,
+    which: UnitArgument,
 }
 
 impl<M: Motion> Moving<M> {
@@ -126,18 +126,18 @@ impl<M: Motion> Command for Moving<M> {
     fn intent(&self) -> String {
         let axis = self.motion.axis().map(|axis| format!("{axis} of ")).unwrap_or_default();
         let [verb, ..] = M::VERB;
-        format!("{verb} {axis}{} {} ({})", self.which.name(), self.motion.target(), self.motion.manner())
+        format!("{verb} {axis}{} {} ({})", self.which.name(), self.motion.target(), self.motion.axes_and_speed())
     }
 
     async fn run(&self, context: Context<'_, Yrcx>) -> Result<M::Report, Failure> {
         let draft = context.link.draft(self.motion.command())?;
-        let draft = Ending::put(self.motion.fill(draft)?, self.unit());
+        let draft = EndOptions::apply_to(self.motion.fill(draft)?, self.unit());
         let order = staying(context.link, draft, &self.motion.stays()).await?;
-        question::confirm(context.link, &context.authority, &order, Command::intent(self)).await?;
+        question::confirm(context.link, &context.confirmer, &order, Command::intent(self)).await?;
         let [_, moving, moved] = M::VERB;
         let object = self.object();
         let doing = format!("{moving} {object}");
-        let done = go(context.link, context.screen, &order, self.ending.end.no_wait(), &doing).await?;
+        let done = execute_motion(context.link, context.screen, &order, self.ending.end.no_wait(), &doing).await?;
         let has_done = format!("{moved} {object}");
         let words = if done.is_some() { has_done } else { doing };
         let mut report = MotionReport::new(words, &order, done.as_ref(), self.unit());
@@ -154,7 +154,7 @@ async fn staying(link: &mut Link, draft: Draft, axes: &[usize]) -> Result<Order,
         return Ok(order);
     }
     let present = link.draft(table::Command::PositionMm)?.valid_order()?;
-    if link.is_dry() {
+    if link.is_dry_run() {
         let names = axes.iter().map(usize::to_string).collect::<Vec<_>>().join(" and ");
         link.plan(&present, "current position");
         let one = draft.clone();
@@ -178,13 +178,13 @@ async fn staying(link: &mut Link, draft: Draft, axes: &[usize]) -> Result<Order,
 }
 
 /// Executes a motion and waits for its end, unless `--no-wait` is set.
-async fn go(
+async fn execute_motion(
     link: &mut Link,
     screen: &Screen,
     order: &Order,
     no_wait: bool,
     doing: &str,
-) -> Result<Option<Done>, Failure> {
+) -> Result<Option<CommandResult>, Failure> {
     if no_wait {
         return link.begin(order).await;
     }
@@ -202,7 +202,7 @@ impl Live {
     /// Starts the display, except in a dry run, in which nothing moves.
     fn new(link: &Link, screen: &Screen, doing: &str) -> Self {
         let (screen, doing) = (*screen, doing.to_owned());
-        Self((!link.is_dry()).then(|| {
+        Self((!link.is_dry_run()).then(|| {
             let (end, ended) = mpsc::channel();
             let show = move || {
                 let _progress = screen.spinner(&doing);
@@ -265,7 +265,7 @@ const SPEEDS: [(Key, f64, &str); 3] =
     [(Key::SpeedPercent, 1.0, "%"), (Key::SpeedMmS, 1.0, "mm/s"), (Key::SpeedOfMax, 100.0, "%")];
 
 impl MotionReport {
-    fn new(words: String, order: &Order, answer: Option<&Done>, unit: Option<Unit>) -> Self {
+    fn new(words: String, order: &Order, answer: Option<&CommandResult>, unit: Option<Unit>) -> Self {
         let values = order.values();
         let field = |key| values.int(key);
         let axes = values.int(Key::Axes).unwrap_or_default();

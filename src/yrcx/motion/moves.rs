@@ -3,7 +3,7 @@
 use clap::ArgGroup;
 
 use super::{Motion, MotionReport, Target, targets};
-use crate::arguments::{Arch, Axes, Hand, Pace, Ramps};
+use crate::arguments::{Arch, Axes, Hand, Ramps, SpeedArguments};
 use crate::position::Unit;
 use crate::prelude::*;
 use armctl_controller::yrcx::table::Command;
@@ -41,7 +41,7 @@ pub struct Move {
     #[command(flatten)]
     axes: Axes,
     #[command(flatten)]
-    pace: Pace,
+    pace: SpeedArguments,
     #[command(flatten)]
     ramps: Ramps,
     /// Hand system of the coordinates of --to
@@ -66,8 +66,8 @@ impl Motion for Move {
 
     fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
         let draft = match (&self.point[..], self.circular) {
-            ([], _) => self.axes.put_numbers(draft, [&self.to, &self.to_pulse][usize::from(self.to.is_empty())])?,
-            ([point], false) => self.axes.put(draft).with(Key::Point, point.as_str()),
+            ([], _) => self.axes.apply_numbers(draft, [&self.to, &self.to_pulse][usize::from(self.to.is_empty())])?,
+            ([point], false) => self.axes.apply_to(draft).with(Key::Point, point.as_str()),
             ([first, second], true) => draft.with(Key::Point, first.as_str()).with(Key::Point2, second.as_str()),
             (_, true) => {
                 return Err(
@@ -80,8 +80,9 @@ impl Motion for Move {
                 );
             }
         };
-        let draft = if self.linear || self.circular { self.pace.put_linear(draft) } else { self.pace.put(draft)? };
-        let draft = self.arch.put(self.ramps.put(draft, self.command())?);
+        let draft =
+            if self.linear || self.circular { self.pace.apply_linear(draft) } else { self.pace.apply_to(draft)? };
+        let draft = self.arch.apply_to(self.ramps.apply_to(draft, self.command())?);
         Ok(draft.with_some(Key::HandSystem, self.hand.map(Hand::of_target)))
     }
 
@@ -89,8 +90,8 @@ impl Motion for Move {
         let place = match (&self.point[..], &self.to[..], &self.to_pulse[..]) {
             ([first, second], ..) => format!("over point {first} to point {second}"),
             ([point, ..], ..) => format!("to point {point}"),
-            (_, [_, ..], _) => format!("to {}", self.axes.told_numbers(&self.to, Unit::Mm)),
-            _ => format!("to {}", self.axes.told_numbers(&self.to_pulse, Unit::Pulse)),
+            (_, [_, ..], _) => format!("to {}", self.axes.describe_numbers(&self.to, Unit::Mm)),
+            _ => format!("to {}", self.axes.describe_numbers(&self.to_pulse, Unit::Pulse)),
         };
         let way = match self.command() {
             Command::MoveLinear => " in a straight line".to_owned(),
@@ -100,20 +101,20 @@ impl Motion for Move {
         format!("{place}{way}")
     }
 
-    fn manner(&self) -> String {
+    fn axes_and_speed(&self) -> String {
         let axes = self.axes.describe(if self.to.is_empty() { &self.to_pulse } else { &self.to });
-        let along = match (&self.stays()[..], self.axes.leaves_out(&self.point)) {
+        let along = match (&self.stays()[..], self.axes.omits_axis(&self.point)) {
             ([], false) => "",
             ([], true) => ", but a SCARA may also move axes 1 and 2 to the point",
-            ([1], _) => ", axis 1 stays",
-            ([2], _) => ", axis 2 stays",
-            _ => ", axes 1 and 2 stay",
+            ([1], _) => ", axis 1 does not move",
+            ([2], _) => ", axis 2 does not move",
+            _ => ", axes 1 and 2 do not move",
         };
         format!("{axes}{along}, {}", self.pace.describe())
     }
 
     fn stays(&self) -> Vec<usize> {
-        self.axes.unnamed(&self.to)
+        self.axes.unnamed_axes(&self.to)
     }
 
     fn targets(&self) -> Vec<Target> {
@@ -128,13 +129,13 @@ mod tests {
     use crate::testing::{Reply, Scripted, frames, run_on};
 
     #[test]
-    fn what_is_not_named_stays_where_it_is() {
+    fn unnamed_axes_do_not_move() {
         let line = ["move", "--to", "4=90"];
         let mut place = [0; 16];
         (place[0], place[4], place[6], place[7]) = (0x0200, 1000, 0xF830, 0xFFFF);
         let mut end = [0; 16];
         end[0] = 0x0200;
-        let (moved, peer) = run_on(Scripted::new([Reply::Ends(1, place), Reply::Ends(1, end)]), &line);
+        let (moved, peer) = run_on(Scripted::new([Reply::AddressPair(1, place), Reply::AddressPair(1, end)]), &line);
         assert_eq!(peer.taken[0][0], 0x0506, "the present position");
         assert_eq!(peer.taken[1][..11], [0x0006, 1, 8, 0, 1000, 0, 0xF830, 0xFFFF, 0, 0, 0x5F90]);
         assert_eq!(moved.unwrap()["targets"], json!([{"axis": "4", "from": null, "to": 90.0, "unit": "mm"}]));
@@ -143,7 +144,7 @@ mod tests {
         // Nothing moves if the position is unknown.
         let mut no = [0; 16];
         no[..3].copy_from_slice(&[0x4000, 5, 1]);
-        let (refused, peer) = run_on(Scripted::new([Reply::Ends(1, no)]), &line);
+        let (refused, peer) = run_on(Scripted::new([Reply::AddressPair(1, no)]), &line);
         assert!(refused.unwrap_err().message.starts_with("the robot did not move"));
         assert_eq!(peer.taken.len(), 1);
         assert_eq!(frames(&["move", "--to", "1=1,2=2"]).unwrap().len(), 1);

@@ -2,8 +2,8 @@
 
 use clap::ValueEnum;
 
-use super::{MotionReport, go};
-use crate::arguments::Which;
+use super::{MotionReport, execute_motion};
+use crate::arguments::UnitArgument;
 use crate::link::Yrcx;
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
@@ -23,7 +23,7 @@ pub struct Origin {
     #[command(flatten)]
     end: MotionEnd,
     #[command(flatten)]
-    which: Which,
+    which: UnitArgument,
 }
 
 /// Axis types.
@@ -86,7 +86,7 @@ impl Command for Origin {
         let draft = draft.with_some(Key::Axes, self.axis.clone());
         let order = draft.with_some(Key::OriginAxes, self.only.map(Kind::value)).valid_order()?;
         let doing = format!("returning {} to origin", self.describe());
-        let done = go(context.link, context.screen, &order, self.end.no_wait(), &doing).await?;
+        let done = execute_motion(context.link, context.screen, &order, self.end.no_wait(), &doing).await?;
         let has_done = format!("returned {} to origin", self.describe());
         Ok(MotionReport::new(if done.is_some() { has_done } else { doing }, &order, done.as_ref(), None))
     }

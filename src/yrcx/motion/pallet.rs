@@ -1,7 +1,7 @@
 //! `yrcx pallet` (4.2.5): move to a pallet position.
 
 use super::{Motion, MotionReport};
-use crate::arguments::{Arch, Pace, Ramps};
+use crate::arguments::{Arch, Ramps, SpeedArguments};
 use crate::prelude::*;
 use armctl_controller::yrcx::table::Command;
 
@@ -17,7 +17,7 @@ pub struct Pallet {
     #[command(flatten)]
     arch: Arch,
     #[command(flatten)]
-    pace: Pace,
+    pace: SpeedArguments,
     #[command(flatten)]
     ramps: Ramps,
 }
@@ -32,14 +32,14 @@ impl Motion for Pallet {
 
     fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
         let draft = draft.with(Key::Pallet, self.pallet.as_str()).with(Key::WorkPosition, self.position.as_str());
-        self.pace.put(self.arch.put(self.ramps.put(draft, self.command())?))
+        self.pace.apply_to(self.arch.apply_to(self.ramps.apply_to(draft, self.command())?))
     }
 
     fn target(&self) -> String {
         format!("to position {} of pallet {}{}", self.position, self.pallet, self.arch.describe())
     }
 
-    fn manner(&self) -> String {
+    fn axes_and_speed(&self) -> String {
         format!("all axes, {}", self.pace.describe())
     }
 }

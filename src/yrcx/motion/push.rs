@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::drive::Destination;
 use super::{FromMotion, Motion, MotionReport};
-use crate::arguments::Pace;
+use crate::arguments::SpeedArguments;
 use crate::prelude::*;
 use armctl_controller::yrcx::table::Command;
 use armctl_frame::settings::duration;
@@ -25,7 +25,7 @@ pub struct Push {
     #[arg(long, value_name = "TIME", value_parser = milliseconds)]
     time: Option<i32>,
     #[command(flatten)]
-    pace: Pace,
+    pace: SpeedArguments,
 }
 
 /// Parses a time in whole milliseconds.
@@ -47,8 +47,8 @@ impl Motion for Push {
     }
 
     fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
-        let draft = self.destination.put(draft.with(Key::Axes, self.axis.as_str()));
-        self.pace.put(draft.with_some(Key::PushForce, self.force.clone()).with_some(Key::PushTime, self.time))
+        let draft = self.destination.apply_to(draft.with(Key::Axes, self.axis.as_str()));
+        self.pace.apply_to(draft.with_some(Key::PushForce, self.force.clone()).with_some(Key::PushTime, self.time))
     }
 
     fn axis(&self) -> Option<String> {
@@ -59,7 +59,7 @@ impl Motion for Push {
         format!("towards {}", self.destination.describe())
     }
 
-    fn manner(&self) -> String {
+    fn axes_and_speed(&self) -> String {
         let force = self.force.as_ref().map(|force| format!(", with {force} % of the rated torque"));
         let time =
             self.time.map(|ms| format!(", for {}", duration::display(Duration::from_millis(ms.unsigned_abs().into()))));

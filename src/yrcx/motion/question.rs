@@ -1,17 +1,17 @@
 //! Confirmation of a motion. Before the question, armctl reads the current position and the target of each axis.
 
+use crate::confirmed_write::mm;
 use crate::link::Link;
-use crate::overwrite::mm;
 use crate::position::Unit;
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
 use armctl_controller::yrcx::table::Command;
-use armctl_frame::authority::Authority;
+use armctl_frame::confirmation::Confirmer;
 use armctl_frame::gate::data_changed;
 
 /// Target of a motion.
 #[derive(Debug, Clone, PartialEq)]
-struct Goal {
+struct MotionTarget {
     unit: Unit,
     /// Values of axes 1 to 4; `None` for an axis without a target.
     axes: [Option<i32>; 4],
@@ -22,19 +22,19 @@ struct Goal {
 /// Asks the user to confirm a motion. `intent` describes the motion in one line. Before an interactive question, armctl
 /// reads the current position and the target point. After the user has answered, armctl reads the point again; if it
 /// has changed, the robot does not move.
-pub async fn confirm(link: &mut Link, authority: &Authority<'_>, order: &Order, intent: String) -> Result<(), Failure> {
+pub async fn confirm(link: &mut Link, confirmer: &Confirmer<'_>, order: &Order, intent: String) -> Result<(), Failure> {
     let change = Change::new(intent);
-    if !authority.asks() {
-        return authority.confirm(&change).await;
+    if !confirmer.asks_user() {
+        return confirmer.confirm(&change).await;
     }
     let Some(goal) = goal(link, order).await? else {
         let is_point = order.values().int(Key::Point).is_some();
         let change = if is_point { change.note("The point could not be read.") } else { change };
         let here = present(link, Unit::Mm).await?;
-        return authority.confirm(&standing(change, order, here)).await;
+        return confirmer.confirm(&read_positions(change, order, here)).await;
     };
     let here = present(link, goal.unit).await?;
-    authority.confirm(&goal.clone().from(here).describe(change, here)).await?;
+    confirmer.confirm(&goal.clone().from(here).describe(change, here)).await?;
     match self::goal(link, order).await? {
         Some(now) if now == goal => Ok(()),
         _ => Err(data_changed("the point changed after the confirmation; the robot did not move")),
@@ -51,27 +51,27 @@ async fn present(link: &mut Link, unit: Unit) -> Result<Option<[i32; 4]>, Failur
 }
 
 /// Adds the current position of each selected axis, for a motion without numeric target.
-fn standing(change: Change, order: &Order, here: Option<[i32; 4]>) -> Change {
-    let is_meant = meant(order);
+fn read_positions(change: Change, order: &Order, here: Option<[i32; 4]>) -> Change {
+    let is_meant = is_axis_moved(order);
     let here = here.into_iter().flatten().enumerate().filter(|(at, _)| is_meant(*at));
     here.fold(change, |change, (at, steps)| change.item(format!("axis {}: from {} mm", at + 1, mm(steps))))
 }
 
 /// Whether a command moves an axis: either the command names the axis, or it moves all axes.
-fn meant(order: &Order) -> impl Fn(usize) -> bool + use<> {
+fn is_axis_moved(order: &Order) -> impl Fn(usize) -> bool + use<> {
     let mask = order.values().int(Key::Axes).unwrap_or_default();
     move |at| mask == 0 || mask >> at & 1 == 1
 }
 
 /// Returns the target of a command, if the target is numeric. A distance stays a distance until the start position is
 /// known. A pallet position has no numeric target: the intent describes it.
-async fn goal(link: &mut Link, order: &Order) -> Result<Option<Goal>, Failure> {
+async fn goal(link: &mut Link, order: &Order) -> Result<Option<MotionTarget>, Failure> {
     let values = order.values();
-    let is_meant = meant(order);
+    let is_meant = is_axis_moved(order);
     let by_distance = is_distance(order.command());
     let goal = |unit, of: &dyn Fn(Key) -> Option<i32>| {
         let axes = [0, 1, 2, 3].map(|at: usize| Key::AXES.get(at).filter(|_| is_meant(at)).and_then(|key| of(*key)));
-        Some(Goal { unit, axes, by_distance })
+        Some(MotionTarget { unit, axes, by_distance })
     };
     let point = match order.command() {
         Command::MoveMm | Command::MoveiMm => return Ok(goal(Unit::Mm, &|key| values.int(key))),
@@ -119,7 +119,7 @@ async fn read(link: &mut Link, command: Command, with: &[(Key, i32)]) -> Result<
     Ok(link.try_ask(&draft.valid_order()?).await?.ok().map(|done| done.values))
 }
 
-impl Goal {
+impl MotionTarget {
     /// Converts distances to positions, if the start position is known.
     fn from(self, here: Option<[i32; 4]>) -> Self {
         let Some(here) = here.filter(|_| self.by_distance) else { return self };

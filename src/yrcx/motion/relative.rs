@@ -3,7 +3,7 @@
 use clap::ArgGroup;
 
 use super::{Motion, MotionReport, Target, targets};
-use crate::arguments::{Axes, Hand, Pace, Ramps};
+use crate::arguments::{Axes, Hand, Ramps, SpeedArguments};
 use crate::position::Unit;
 use crate::prelude::*;
 use armctl_controller::yrcx::table::Command;
@@ -43,7 +43,7 @@ pub struct Movei {
     #[command(flatten)]
     axes: Axes,
     #[command(flatten)]
-    pace: Pace,
+    pace: SpeedArguments,
     #[command(flatten)]
     ramps: Ramps,
     /// Hand system at the end of --by
@@ -66,23 +66,23 @@ impl Motion for Movei {
 
     fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
         let draft = match &self.point {
-            Some(point) => self.axes.put(draft).with(Key::Point, point.as_str()),
-            None => self.axes.put_numbers(draft, if self.by.is_empty() { &self.by_pulse } else { &self.by })?,
+            Some(point) => self.axes.apply_to(draft).with(Key::Point, point.as_str()),
+            None => self.axes.apply_numbers(draft, if self.by.is_empty() { &self.by_pulse } else { &self.by })?,
         };
-        let draft = if self.linear { self.pace.put_linear(draft) } else { self.pace.put(draft)? };
-        Ok(self.ramps.put(draft, self.command())?.with_some(Key::HandSystem, self.hand.map(Hand::of_target)))
+        let draft = if self.linear { self.pace.apply_linear(draft) } else { self.pace.apply_to(draft)? };
+        Ok(self.ramps.apply_to(draft, self.command())?.with_some(Key::HandSystem, self.hand.map(Hand::of_target)))
     }
 
     fn target(&self) -> String {
         let way = if self.linear { " in a straight line" } else { "" };
         match (&self.point, &self.by[..]) {
             (Some(point), _) => format!("by the distances of point {point}{way}"),
-            (None, []) => format!("by {}", self.axes.told_numbers(&self.by_pulse, Unit::Pulse)),
-            (None, by) => format!("by {}", self.axes.told_numbers(by, Unit::Mm)),
+            (None, []) => format!("by {}", self.axes.describe_numbers(&self.by_pulse, Unit::Pulse)),
+            (None, by) => format!("by {}", self.axes.describe_numbers(by, Unit::Mm)),
         }
     }
 
-    fn manner(&self) -> String {
+    fn axes_and_speed(&self) -> String {
         let axes = self.axes.describe(if self.by.is_empty() { &self.by_pulse } else { &self.by });
         format!("{axes}, {}", self.pace.describe())
     }

@@ -66,7 +66,7 @@ fn split(line: &str) -> Vec<&str> {
 }
 
 #[test]
-fn there_is_a_line_for_each_example_of_the_section() {
+fn every_example_of_the_section_has_a_command_line() {
     let printed = entries();
     let printed: Vec<&str> = printed.iter().filter_map(|entry| entry["id"].as_str()).collect();
     let printed: Vec<&str> = printed.into_iter().filter(|id| is_one_order(id)).collect();
@@ -74,7 +74,7 @@ fn there_is_a_line_for_each_example_of_the_section() {
 }
 
 #[test]
-fn lines_become_the_words_of_the_examples() {
+fn command_lines_send_the_words_of_the_examples() {
     for (id, line) in EXAMPLES {
         assert_eq!(written(&split(line)).unwrap(), [example(id)], "{id}");
     }
@@ -97,11 +97,11 @@ fn positions(entry: &Value) -> (Value, Value) {
 }
 
 #[test]
-fn words_become_the_reports_of_the_examples() {
+fn answers_give_the_reports_of_the_examples() {
     for ((id, line), entry) in
         EXAMPLES.iter().zip(entries().iter().filter(|entry| is_one_order(entry["id"].as_str().unwrap())))
     {
-        let reply = if entry["refused"] == "12.400" { Reply::UntilStop } else { |words| Reply::Ends(1, words) };
+        let reply = if entry["refused"] == "12.400" { Reply::UntilStop } else { |words| Reply::AddressPair(1, words) };
         let mut line = split(line);
         if entry["refused"] == "12.400" {
             line.extend(["--for", "200ms"]);
@@ -169,12 +169,12 @@ fn an_interrupt_stops_every_kind_of_motion() {
 }
 
 #[test]
-fn an_interrupt_at_any_moment_leaves_nothing_that_moves() {
+fn interrupt_at_any_moment_stops_the_motion() {
     for line in ["move --point 1", "jog pulse 1 +", "jog pulse 1 + --for 50ms"] {
         let (mut stopped, mut unsent) = (0, 0);
         for ms in (0..90).step_by(3) {
             let mut bench = Bench::new(Scripted::new([Reply::UntilStop(words_of(&[0x4000, 12, 400]))]));
-            if !bench.cut(&split(line), Duration::from_millis(ms)) {
+            if !bench.run_and_drop(&split(line), Duration::from_millis(ms)) {
                 continue;
             }
             let told = bench.halt().unwrap();
@@ -192,7 +192,7 @@ fn an_interrupt_at_any_moment_leaves_nothing_that_moves() {
 }
 
 #[test]
-fn an_answer_that_is_lost_is_an_unknown_outcome_of_every_kind() {
+fn lost_answer_of_any_motion_is_an_unknown_outcome() {
     for line in KINDS {
         let lost = Reply::Loses(2, Duration::from_millis(300));
         let (outcome, peer) = run_on(Scripted::new([lost]), &split(line));
@@ -203,27 +203,28 @@ fn an_answer_that_is_lost_is_an_unknown_outcome_of_every_kind() {
 }
 
 #[test]
-fn a_motion_may_go_on_by_itself_where_the_link_stays() {
+fn no_wait_needs_a_session() {
     for line in KINDS.iter().filter(|line| !line.starts_with("jog")) {
-        let mut bench = Bench::new(Scripted::new([Reply::Ends(200, words_of(&[0x0200]))]));
+        let mut bench = Bench::new(Scripted::new([Reply::AddressPair(200, words_of(&[0x0200]))]));
         let begun = bench.run(&[&split(line)[..], &["--no-wait"]].concat()).unwrap();
         assert_eq!((&begun["reached"], &begun["elapsed_ms"]), (&Value::Null, &Value::Null), "{line}");
     }
 }
 
 #[test]
-fn a_relative_motion_that_breaks_off_tells_of_its_target() {
+fn interrupted_relative_motion_warns_about_its_target() {
     for line in ["movei --point 1", "drivei --axis 1 --by 5"] {
-        let (outcome, _) = run_on(Scripted::new([Reply::Ends(9, words_of(&[0x4000, 12, 600]))]), &split(line));
+        let (outcome, _) = run_on(Scripted::new([Reply::AddressPair(9, words_of(&[0x4000, 12, 600]))]), &split(line));
         let hint = outcome.unwrap_err().hint.unwrap();
         assert!(hint.contains("release the emergency stop") && hint.contains("moves to the old target"), "{hint}");
     }
-    let (outcome, _) = run_on(Scripted::new([Reply::Ends(9, words_of(&[0x4000, 12, 600]))]), &split("move --point 1"));
+    let (outcome, _) =
+        run_on(Scripted::new([Reply::AddressPair(9, words_of(&[0x4000, 12, 600]))]), &split("move --point 1"));
     assert!(!outcome.unwrap_err().hint.unwrap().contains("old target"));
 }
 
 #[test]
-fn every_motion_asks_with_its_robot() {
+fn every_confirmation_names_the_robot() {
     for line in KINDS {
         let robot = if line == "origin" { "all robots" } else { "robot 1" };
         assert!(intent(&split(line)).contains(robot), "{line}");

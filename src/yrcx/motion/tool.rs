@@ -1,7 +1,7 @@
 //! `yrcx movet` (4.2.21): move to a point in tool coordinates.
 
 use super::{Motion, MotionReport};
-use crate::arguments::{Axes, Pace, Ramps};
+use crate::arguments::{Axes, Ramps, SpeedArguments};
 use crate::prelude::*;
 use armctl_controller::yrcx::table::Command;
 
@@ -17,7 +17,7 @@ pub struct Movet {
     #[command(flatten)]
     axes: Axes,
     #[command(flatten)]
-    pace: Pace,
+    pace: SpeedArguments,
     #[command(flatten)]
     ramps: Ramps,
 }
@@ -31,9 +31,9 @@ impl Motion for Movet {
     }
 
     fn fill(&self, draft: Draft) -> Result<Draft, Failure> {
-        let draft = self.axes.put(draft).with(Key::Point, self.point.as_str());
-        let draft = if self.linear { self.pace.put_linear(draft) } else { self.pace.put(draft)? };
-        self.ramps.put(draft, self.command())
+        let draft = self.axes.apply_to(draft).with(Key::Point, self.point.as_str());
+        let draft = if self.linear { self.pace.apply_linear(draft) } else { self.pace.apply_to(draft)? };
+        self.ramps.apply_to(draft, self.command())
     }
 
     fn target(&self) -> String {
@@ -41,7 +41,7 @@ impl Motion for Movet {
         format!("to point {} in tool coordinates{way}", self.point)
     }
 
-    fn manner(&self) -> String {
+    fn axes_and_speed(&self) -> String {
         format!("{}, {}", self.axes.describe(&[]), self.pace.describe())
     }
 }

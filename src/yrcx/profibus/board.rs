@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::{check, connect};
-use crate::fieldbus::{At, BusBoard, Checked};
+use crate::fieldbus::{BusBoard, Checked, ConnectionParameters};
 use crate::link_error::not_open;
 use crate::prelude::*;
 use armctl_controller::text::hex;
@@ -17,7 +17,7 @@ use armctl_transport::profibus::driver::survey;
 use armctl_transport::profibus::error::ProfibusError;
 use armctl_transport::profibus::link::record;
 use armctl_transport::profibus::request::Requester;
-use armctl_transport::profibus::survey::{Found, Survey, Unknown};
+use armctl_transport::profibus::survey::{NoValueReason, StationResult, Survey};
 use armctl_transport::profibus::wire::{Configuration, Diagnosis, Flag, MAX_STATION, Station as StationKind};
 
 /// PROFIBUS line of a URL. Each request opens the port.
@@ -34,7 +34,7 @@ const RETRIES: u8 = 1;
 
 impl Board {
     /// Creates the client for the line of a URL.
-    pub fn new(at: &At<'_>) -> Result<Self, LinkError> {
+    pub fn new(at: &ConnectionParameters<'_>) -> Result<Self, LinkError> {
         let (label, timeout) = (at.robot.label(), at.robot.timeout.value);
         Ok(Self { profibus: at.options::<Profibus>()?.clone(), label, timeout, tap: at.tap.clone() })
     }
@@ -79,8 +79,8 @@ impl Board {
     pub async fn diagnosis(&self) -> Result<Diagnosis, Failure> {
         let found = self.found().await?.ok_or_else(|| self.silent())?;
         found.diagnosis.map_err(|why| match why {
-            Unknown::NoAnswer => self.silent(),
-            Unknown::NotAsked => {
+            NoValueReason::NoAnswer => self.silent(),
+            NoValueReason::NotAsked => {
                 Failure::new(Kind::Malformed, format!("{}: it is a {}", self.name(), kind(found.kind)))
                     .hint("check `station=` in the URL; use `yrcx profibus scan` to list the slaves")
             }
@@ -99,13 +99,13 @@ impl Board {
         format!("{}: station {}", self.label, self.profibus.station)
     }
 
-    async fn found(&self) -> Result<Option<Found>, Failure> {
+    async fn found(&self) -> Result<Option<StationResult>, Failure> {
         let retries = self.profibus.retries.unwrap_or(3);
         Ok(self.ask(vec![self.profibus.station], retries).await?.into_iter().next())
     }
 
     /// Returns the image of the controller, if the station exchanges data.
-    fn image(&self, found: &Found) -> Option<Image> {
+    fn image(&self, found: &StationResult) -> Option<Image> {
         let mut bytes = found.inputs.as_ref().ok().cloned()?;
         if self.profibus.is_big_endian {
             for pair in bytes.chunks_exact_mut(2).take(COMMAND_WORDS) {
@@ -115,12 +115,12 @@ impl Board {
         Image::from_link(&bytes)
     }
 
-    async fn ask(&self, stations: Vec<u8>, retries: u8) -> Result<Vec<Found>, Failure> {
+    async fn ask(&self, stations: Vec<u8>, retries: u8) -> Result<Vec<StationResult>, Failure> {
         let asked = self.survey(stations, retries).await;
         asked.map_err(|error| not_open(&self.label, &SCHEME, &error))
     }
 
-    async fn survey(&self, stations: Vec<u8>, retries: u8) -> Result<Vec<Found>, LinkError> {
+    async fn survey(&self, stations: Vec<u8>, retries: u8) -> Result<Vec<StationResult>, LinkError> {
         let settings = connect::settings(&self.profibus, Duration::ZERO)?;
         let timing = settings.timing()?;
         let requester = Requester::new(settings.master, settings.rate, timing.slot, retries);
@@ -142,8 +142,8 @@ impl BusBoard for Board {
     const BUS: &'static str = SCHEME.bus;
     const DEVICE: &'static str = "station";
 
-    async fn look(&mut self, layers: &mut Layers) -> Checked<Option<Image>> {
-        check::look(self, layers).await
+    async fn check_layers(&mut self, layers: &mut Layers) -> Checked<Option<Image>> {
+        check::check_layers(self, layers).await
     }
 }
 
@@ -170,8 +170,8 @@ pub struct Station {
     pub exchanging: bool,
 }
 
-impl From<&Found> for Station {
-    fn from(found: &Found) -> Self {
+impl From<&StationResult> for Station {
+    fn from(found: &StationResult) -> Self {
         let diagnosis = found.diagnosis.as_ref().ok();
         let configuration = found.configuration.as_ref().ok();
         let sizes = configuration.and_then(|bytes| Configuration::parse(bytes).ok());
@@ -223,11 +223,11 @@ const fn kind(station: StationKind) -> &'static str {
     }
 }
 
-fn unknown(why: &Unknown) -> String {
+fn unknown(why: &NoValueReason) -> String {
     match why {
-        Unknown::NotAsked => "not read".to_owned(),
-        Unknown::NoAnswer => "no answer".to_owned(),
-        Unknown::Refused(status) => format!("refused: {}", status.text()),
-        Unknown::Malformed(why) => format!("cannot be read: {why}"),
+        NoValueReason::NotAsked => "not read".to_owned(),
+        NoValueReason::NoAnswer => "no answer".to_owned(),
+        NoValueReason::Refused(status) => format!("refused: {}", status.text()),
+        NoValueReason::Malformed(why) => format!("cannot be read: {why}"),
     }
 }

@@ -7,7 +7,7 @@ pub use super::board::Station as Identity;
 pub use super::discover::Search;
 pub use super::serve::ServeArgs;
 use super::{check, connect, decode, simulated};
-use crate::fieldbus::{Fieldbus, Simulation, boxed};
+use crate::fieldbus::{Fieldbus, Simulation, into_board};
 use armctl_controller::yrcx::alarm::Alarm;
 use armctl_frame::settings::target::profibus::SCHEME;
 use armctl_transport::tap::LINKTYPE_PROFIBUS_DL;
@@ -21,7 +21,7 @@ pub const BUS: Fieldbus = Fieldbus {
     has_room: false,
     addresses: None,
     open: |at, purpose| connect::open(at, purpose).boxed_local(),
-    board: |at| async move { boxed(Board::new(&at)) }.boxed_local(),
+    board: |at| async move { into_board(Board::new(&at)) }.boxed_local(),
     explain: |_| None,
     decoder: || Box::<decode::Decoder>::default(),
     simulate: |sim| {

@@ -11,7 +11,7 @@ use armctl_transport::profibus::port::latency_timer;
 pub(super) const LAYERS: &[&str] = &["name", "station", "ident", "configuration", "owner", "inputs"];
 
 /// Checks the layers. Returns the image of the controller, if it can be read.
-pub(super) async fn look(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
+pub(super) async fn check_layers(board: &mut Board, layers: &mut Layers) -> Checked<Option<Image>> {
     let settings = board.settings().clone();
     if !settings.is_owner {
         return overheard(board, layers).await;

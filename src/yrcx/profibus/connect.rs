@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use crate::fieldbus::{At, Purpose, device_file};
+use crate::fieldbus::{ConnectionParameters, Purpose, device_file};
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Image};
 use armctl_controller::yrcx::signal::resting;
 use armctl_frame::settings::target::profibus::Profibus;
@@ -11,12 +11,12 @@ use armctl_transport::image::tap::Tap;
 use armctl_transport::image::{Cause, ImageLink, LinkError};
 use armctl_transport::profibus::driver::Opener;
 use armctl_transport::profibus::gsd::{Gsd, MAX_FILE, Module};
-use armctl_transport::profibus::link::{Listening, Master, Swapped};
+use armctl_transport::profibus::link::{ByteSwap, Listening, Master};
 use armctl_transport::profibus::port::{Port, Serial};
 use armctl_transport::profibus::rates::Rate;
 use armctl_transport::profibus::settings::Settings;
 
-pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
+pub(super) async fn open(at: ConnectionParameters<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
     let profibus: &Profibus = at.options()?;
     // A read-only link must not become the master that sets the outputs. A slave sends its image only to its master, so
     // the link listens.
@@ -24,18 +24,18 @@ pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, Link
         return listen(profibus, at.tap, at.robot.timeout.value).await;
     }
     let settings = settings(profibus, at.bus.listen_before)?;
-    Ok(ImageLink::over(Master::open(settings, swapped(profibus), opener(profibus)?, at.tap).await?))
+    Ok(ImageLink::over(Master::open(settings, byte_swap(profibus), opener(profibus)?, at.tap).await?))
 }
 
 /// Listens to the data exchange between the slave and another master.
 pub(super) async fn listen(profibus: &Profibus, tap: Tap, timeout: Duration) -> Result<ImageLink, LinkError> {
     let (silence, opener) = (timeout.max(LISTEN), opener(profibus)?);
-    let listening = Listening::open(profibus.station, Image::BYTES, swapped(profibus), opener, tap, silence).await;
+    let listening = Listening::open(profibus.station, Image::BYTES, byte_swap(profibus), opener, tap, silence).await;
     Ok(ImageLink::over(listening?))
 }
 
-const fn swapped(profibus: &Profibus) -> Swapped {
-    Swapped { bytes: if profibus.is_big_endian { 2 * COMMAND_WORDS } else { 0 } }
+const fn byte_swap(profibus: &Profibus) -> ByteSwap {
+    ByteSwap { bytes: if profibus.is_big_endian { 2 * COMMAND_WORDS } else { 0 } }
 }
 
 /// Minimum time to listen. It is longer than the longest cycle of a master.
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_says_what_the_url_does_not() {
+    fn gsd_file_completes_the_url() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("unit.gsd");
         let text = "#Profibus_DP\nIdent_Number=0x1234\nUser_Prm_Data=1,2\nModule=\"24 words\" 0x7F,0x77\nEndModule\n\

@@ -18,7 +18,7 @@ pub struct Decoder {
     /// Number of bytes that do not start a telegram.
     noise: usize,
     /// Pending request: packet number, master, slave.
-    asked: Option<(u64, u8, u8)>,
+    pending_requests: Option<(u64, u8, u8)>,
 }
 
 impl BusDecoder for Decoder {
@@ -31,7 +31,7 @@ impl BusDecoder for Decoder {
             Ok(Parsed::Whole(Telegram::Token { .. }, _)) => self.tokens += 1,
             Ok(Parsed::Whole(Telegram::ShortAcknowledge, _)) => {
                 let decoded = decoded(message, Direction::Received, self.link(), "acknowledged".to_owned());
-                let answers = self.asked.take().map(|(number, ..)| number);
+                let answers = self.pending_requests.take().map(|(number, ..)| number);
                 images.message(DecodedMessage { answers, raw: hex(message.bytes), ..decoded });
             }
             Ok(Parsed::Whole(Telegram::Frame(frame), _)) => self.frame(message, &frame, images),
@@ -62,8 +62,13 @@ impl Decoder {
         } else {
             (Direction::Sent, frame.from, frame.to)
         };
-        let asked = if is_answer { self.asked.take() } else { self.asked.replace((message.number, master, slave)) };
-        let asked = asked.filter(|asked| is_answer && (asked.1, asked.2) == (master, slave));
+        let pending_requests = if is_answer {
+            self.pending_requests.take()
+        } else {
+            self.pending_requests.replace((message.number, master, slave))
+        };
+        let pending_requests = pending_requests
+            .filter(|pending_requests| is_answer && (pending_requests.1, pending_requests.2) == (master, slave));
         let link = link(master, slave);
         let service = if is_answer { frame.from_sap } else { frame.to_sap };
         let is_exchange = service.is_none() && !frame.data.is_empty();
@@ -79,14 +84,14 @@ impl Decoder {
         if let Some(about) = about(frame, service) {
             text = format!("{text}: {about}");
         }
-        let answers = asked.map(|(number, ..)| number);
+        let answers = pending_requests.map(|(number, ..)| number);
         let decoded = decoded(message, direction, link, text);
         images.message(DecodedMessage { answers, raw: hex(message.bytes), ..decoded });
     }
 
     /// Handles a damaged telegram. Its sender is not certain.
     fn damaged(&mut self, message: &Message<'_>, problem: &str, images: &mut Images) {
-        let direction = if self.asked.is_some() { Direction::Received } else { Direction::Sent };
+        let direction = if self.pending_requests.is_some() { Direction::Received } else { Direction::Sent };
         let decoded = decoded(message, direction, self.link(), "a damaged telegram".to_owned());
         let problem = Some(problem.to_owned());
         images.message(DecodedMessage { problem, raw: hex(message.bytes), ..decoded });
@@ -95,7 +100,7 @@ impl Decoder {
     /// Master and slave of the pending request.
     fn link(&self) -> (String, String) {
         let unknown = || ("master".to_owned(), "slave".to_owned());
-        self.asked.map_or_else(unknown, |(_, master, slave)| link(master, slave))
+        self.pending_requests.map_or_else(unknown, |(_, master, slave)| link(master, slave))
     }
 }
 

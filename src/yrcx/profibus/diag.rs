@@ -1,12 +1,12 @@
 //! `yrcx profibus diag`.
 
 use super::board::Board;
-use crate::messages::BoardReport;
+use crate::board_report::BoardReport;
 use crate::prelude::*;
 
 /// Diagnosis of a station (Slave_Diag): its state, and the blocks of the unit, its modules and channels.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Diagnosed {
+pub struct DiagnosisReport {
     /// Address of the station.
     station: u8,
     /// Ident number, for example 0x1234.
@@ -19,7 +19,7 @@ pub struct Diagnosed {
     blocks: Vec<String>,
 }
 
-impl BoardReport for Diagnosed {
+impl BoardReport for DiagnosisReport {
     type Board = Board;
     const ID: &'static str = "yrcx.profibus.diag";
     const MESSAGES: &'static str = "telegrams that read state, diagnosis and configuration of the station";
@@ -30,13 +30,13 @@ impl BoardReport for Diagnosed {
             station: board.settings().station,
             ident: format!("{:#06x}", diagnosis.ident),
             master: diagnosis.master,
-            states: diagnosis.words().collect(),
+            states: diagnosis.flag_texts().collect(),
             blocks: diagnosis.blocks.iter().map(ToString::to_string).collect(),
         })
     }
 }
 
-impl Report for Diagnosed {
+impl Report for DiagnosisReport {
     fn view(&self) -> View {
         let mut fields = vec![
             ("station", self.station.into()),

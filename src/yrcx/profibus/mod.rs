@@ -13,7 +13,7 @@ mod scan;
 mod serve;
 pub mod simulated;
 
-use super::messages::ReadBoard;
+use super::board_report::ReadBoard;
 use armctl_frame::commands;
 
 commands! {
@@ -22,8 +22,8 @@ commands! {
         /// List the stations of the line without locking them
         Scan(ReadBoard<scan::Stations>),
         /// Show diagnosis, ident number and configuration of the station without locking it
-        Probe(ReadBoard<probe::Probed>),
+        Probe(ReadBoard<probe::ProbeReport>),
         /// Show the diagnosis of the station with its blocks decoded, without locking it
-        Diag(ReadBoard<diag::Diagnosed>),
+        Diag(ReadBoard<diag::DiagnosisReport>),
     }
 }

@@ -1,17 +1,17 @@
 //! `yrcx profibus probe`.
 
 use super::board::{Board, Station};
-use crate::messages::BoardReport;
+use crate::board_report::BoardReport;
 use crate::prelude::*;
 
 /// Identity, diagnosis and configuration of the station (Slave_Diag, Get_Cfg).
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Probed {
+pub struct ProbeReport {
     #[serde(flatten)]
     station: Station,
 }
 
-impl BoardReport for Probed {
+impl BoardReport for ProbeReport {
     type Board = Board;
     const ID: &'static str = "yrcx.profibus.probe";
     const MESSAGES: &'static str = "telegrams that read state, diagnosis and configuration of the station";
@@ -22,7 +22,7 @@ impl BoardReport for Probed {
     }
 }
 
-impl Report for Probed {
+impl Report for ProbeReport {
     fn view(&self) -> View {
         View::default().append(Section::Fields(self.station.fields()))
     }

@@ -1,7 +1,7 @@
 //! `yrcx profibus scan`.
 
 use super::board::{Board, Station};
-use crate::messages::BoardReport;
+use crate::board_report::BoardReport;
 use crate::prelude::*;
 
 /// Stations that answered a request for their state. No other master is active then.

@@ -1,7 +1,7 @@
 //! Server for a simulated controller as a PROFIBUS slave behind a pseudo-terminal.
 
 use super::simulated::{self, FAULTS, Options, Server};
-use crate::fieldbus::{Operator, Serve, Served, ToServe};
+use crate::fieldbus::{Operator, RunningSimulation, Serve, ServeOptions};
 use crate::prelude::*;
 use crate::simulated::{faults, faults_of_option};
 use armctl_frame::serve::terminal_link::TerminalLink;
@@ -36,7 +36,7 @@ impl Serve for ServeArgs {
         true
     }
 
-    fn serve(&self, ToServe { start, link, faults, .. }: ToServe<'_>) -> Result<Served, Failure> {
+    fn serve(&self, ServeOptions { start, link, faults, .. }: ServeOptions<'_>) -> Result<RunningSimulation, Failure> {
         let options = Options {
             station: self.station,
             ident: self.ident,
@@ -48,7 +48,7 @@ impl Serve for ServeArgs {
         armctl_frame::interrupt::catch_interrupts();
         let link = link.map(|link| TerminalLink::create(link, server.port())).transpose()?;
         let name = link.as_ref().map(|link| link.name().display().to_string());
-        Ok(Served {
+        Ok(RunningSimulation {
             target: server.url(name.as_deref()),
             address: None,
             operator: Box::new(Terminal { server, _link: link }),

@@ -36,7 +36,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let rate = Rate::from_name("500k").unwrap_or(RATES[0]);
-        let Setup { station, ident, .. } = Setup::stand_in(rate);
+        let Setup { station, ident, .. } = Setup::sample_controller(rate);
         Self { station, ident, rate, faults: Faults::default() }
     }
 }
@@ -69,7 +69,7 @@ pub struct Server {
 /// Serves a controller as a slave behind a pseudo-terminal.
 pub fn serve(start: Start, options: Options) -> Result<Server, Failure> {
     let failed = |error: io::Error| Failure::local(format!("cannot create a pseudo-terminal: {}", plain(&error)));
-    let setup = Setup { station: options.station, ident: options.ident, ..Setup::stand_in(options.rate) };
+    let setup = Setup { station: options.station, ident: options.ident, ..Setup::sample_controller(options.rate) };
     let mut slave = Slave::new(setup, Simulated(Simulator::new(start).with_link_alarm(BUS.link_alarm)));
     slave.set_fault(options.faults.device);
     let slave = Arc::new(Mutex::new(slave));

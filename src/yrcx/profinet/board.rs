@@ -4,14 +4,14 @@ use std::net::Ipv4Addr;
 use std::time::Duration;
 
 use super::{check, connect};
-use crate::fieldbus::{At, BusBoard, Checked};
+use crate::fieldbus::{BusBoard, Checked, ConnectionParameters};
 use crate::link_error::not_open;
 use crate::prelude::*;
 use armctl_frame::face::layers::Layers;
 use armctl_frame::settings::target::profinet::{Profinet, SCHEME};
 use armctl_transport::image::LinkError;
 use armctl_transport::image::tap::Tap;
-use armctl_transport::profinet::commission::{self, Found, Identity};
+use armctl_transport::profinet::commission::{self, Identity, StationInfo};
 use armctl_transport::profinet::error::ProfinetError;
 use armctl_transport::profinet::interface::Interface;
 use armctl_transport::profinet::layout::Layout;
@@ -28,7 +28,7 @@ pub struct Board {
 
 impl Board {
     /// Station of a URL.
-    pub fn new(at: &At<'_>) -> Result<Self, LinkError> {
+    pub fn new(at: &ConnectionParameters<'_>) -> Result<Self, LinkError> {
         Ok(Self { profinet: at.options::<Profinet>()?.clone(), label: at.robot.label(), tap: at.tap.clone() })
     }
 
@@ -57,25 +57,25 @@ impl Board {
     }
 
     /// Finds the station.
-    pub async fn station(&self) -> Result<Found, Failure> {
+    pub async fn station(&self) -> Result<StationInfo, Failure> {
         let station = self.profinet.station.clone();
         self.ask(move |interface| commission::find(interface, &station)).await
     }
 
     /// Reads the records of the station.
-    pub async fn identity(&self, found: Found) -> Result<Identity, Failure> {
+    pub async fn identity(&self, found: StationInfo) -> Result<Identity, Failure> {
         self.ask(move |interface| commission::identity(interface, &found)).await
     }
 
     /// Finds another station with this name.
-    pub async fn namesake(&self, name: &str, than: &Found) -> Result<Option<String>, Failure> {
+    pub async fn namesake(&self, name: &str, than: &StationInfo) -> Result<Option<String>, Failure> {
         let (station, mac) = (Station::Name(name.to_owned()), than.mac);
-        let other = self.ask(move |interface| commission::other(interface, &station, mac)).await?;
+        let other = self.ask(move |interface| commission::find_duplicate(interface, &station, mac)).await?;
         Ok(other.map(|mac| format!("station {mac}")))
     }
 
     /// Finds another device that has this IP address.
-    pub async fn holder(&self, address: Ipv4Addr, than: &Found) -> Result<Option<String>, Failure> {
+    pub async fn holder(&self, address: Ipv4Addr, than: &StationInfo) -> Result<Option<String>, Failure> {
         let (mac, own) = (than.mac, self.interface()?.mac);
         let other = self.ask(move |interface| commission::holder(interface, address, mac)).await?;
         Ok(other.map(|mac| if mac == own { "this machine".to_owned() } else { format!("the card {mac}") }))
@@ -84,11 +84,11 @@ impl Board {
     /// Sets a value at the station, and waits until the station reports it.
     pub async fn set(
         &self,
-        found: &Found,
+        found: &StationInfo,
         what: &'static str,
         block: Block,
         is_so: impl Fn(&dcp::Station) -> bool + Send + 'static,
-    ) -> Result<Found, Failure> {
+    ) -> Result<StationInfo, Failure> {
         let mac = found.mac;
         let set = self.ask(move |interface| {
             let answer = commission::change(interface, mac, what, &block);
@@ -99,7 +99,7 @@ impl Board {
                 Err(error) if !is_open => return Err(error),
                 _ => {}
             }
-            Ok(commission::settled(interface, mac, what, is_so))
+            Ok(commission::wait_until_active(interface, mac, what, is_so))
         });
         match set.await? {
             Ok(found) => Ok(found),
@@ -137,7 +137,7 @@ impl BusBoard for Board {
     const BUS: &'static str = SCHEME.bus;
     const DEVICE: &'static str = "station";
 
-    async fn look(&mut self, layers: &mut Layers) -> Checked<Option<Image>> {
-        check::look(self, layers).await
+    async fn check_layers(&mut self, layers: &mut Layers) -> Checked<Option<Image>> {
+        check::check_layers(self, layers).await
     }
 }

@@ -9,7 +9,7 @@ use crate::fieldbus::{Checked, InLayer as _};
 use crate::prelude::*;
 use armctl_frame::face::layers::Layers;
 use armctl_transport::image::{Event, ImageLink};
-use armctl_transport::profinet::commission::Found;
+use armctl_transport::profinet::commission::StationInfo;
 use armctl_transport::profinet::error::{ModuleMismatch, ProfinetError};
 use armctl_transport::profinet::layout::Layout;
 use armctl_transport::profinet::simulated::Network;
@@ -21,13 +21,16 @@ use armctl_transport::profinet::wire::record::RealModule;
 pub(super) const LAYERS: &[&str] = &["name", "interface", "privilege", "station", "IP", "RPC", "modules", "data"];
 
 /// Checks the layers. Returns the image of the controller, if it can be read.
-pub(super) async fn look(board: &Board, layers: &mut Layers) -> Checked<Option<Image>> {
+pub(super) async fn check_layers(board: &Board, layers: &mut Layers) -> Checked<Option<Image>> {
     let profinet = board.settings().clone();
     layers.ok("name", format!("{} through {}", profinet.station, profinet.interface));
     let interface = board.interface().in_layer("interface")?;
     let usable = interface.check().and_then(|()| interface.address());
-    let here = usable.map_err(|error| board.failure(error)).in_layer("interface")?;
-    layers.ok("interface", format!("{} is up with a carrier, {} at {}", interface.name, here.address, interface.mac));
+    let local_address = usable.map_err(|error| board.failure(error)).in_layer("interface")?;
+    layers.ok(
+        "interface",
+        format!("{} is up with a carrier, {} at {}", interface.name, local_address.address, interface.mac),
+    );
     if interface.network().is_none() {
         interface.raw_socket(ETHER_TYPE).map_err(|error| board.failure(error)).in_layer("privilege")?;
     }
@@ -53,11 +56,11 @@ pub(super) async fn look(board: &Board, layers: &mut Layers) -> Checked<Option<I
         (None, Some(wanted)) => wanted.address,
         (Some(address), _) => address,
     };
-    if !here.reaches(address) {
-        let (station, here) = (profinet.station.to_string(), here.address);
-        return Err(("IP", board.failure(ProfinetError::OtherNetwork { station, device: address, here })));
+    if !local_address.is_same_network(address) {
+        let (station, local_address) = (profinet.station.to_string(), local_address.address);
+        return Err(("IP", board.failure(ProfinetError::OtherNetwork { station, device: address, local_address })));
     }
-    layers.ok("IP", format!("{address}, in the network of {}", here.address));
+    layers.ok("IP", format!("{address}, in the network of {}", local_address.address));
     records(board, &found, layers).await?;
     if let Some(network) = Network::find(&profinet.interface) {
         return data(board, &network, layers).await.in_layer("data");
@@ -71,7 +74,7 @@ pub(super) async fn look(board: &Board, layers: &mut Layers) -> Checked<Option<I
 }
 
 /// Checks the records of the device.
-async fn records(board: &Board, found: &Found, layers: &mut Layers) -> Checked<()> {
+async fn records(board: &Board, found: &StationInfo, layers: &mut Layers) -> Checked<()> {
     let identity = board.identity(found.clone()).await.in_layer("RPC")?;
     match identity.im0 {
         Ok(im0) => layers.ok("RPC", format!("answers: order id '{}', vendor {:#06x}", im0.order_id, im0.vendor)),

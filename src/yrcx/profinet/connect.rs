@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use crate::fieldbus::{At, Purpose, device_file, options};
+use crate::fieldbus::{ConnectionParameters, Purpose, device_file, options};
 use armctl_controller::yrcx::image::{COMMAND_WORDS, Image};
 use armctl_controller::yrcx::signal::resting;
 use armctl_frame::settings::target::profinet::{Profinet, address};
@@ -12,16 +12,16 @@ use armctl_transport::image::tap::Tap;
 use armctl_transport::image::{Cause, ImageLink, LinkError};
 use armctl_transport::profinet::commission;
 use armctl_transport::profinet::error::ProfinetError;
-use armctl_transport::profinet::gsdml::{Gsdml, Head, MOST_BYTES};
+use armctl_transport::profinet::gsdml::{Gsdml, Head, MAX_FILE_SIZE};
 use armctl_transport::profinet::interface::Interface;
 use armctl_transport::profinet::layout::{Direction, Layout};
 use armctl_transport::profinet::link::Link;
 use armctl_transport::profinet::network;
-use armctl_transport::profinet::settings::{LONGEST_WATCHDOG, Settings, Startup, Station};
+use armctl_transport::profinet::settings::{MAX_WATCHDOG, Settings, Startup, Station};
 use armctl_transport::profinet::simulated::Network;
 use armctl_transport::profinet::wire::record::Parameter;
 
-pub(super) async fn open(at: At<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
+pub(super) async fn open(at: ConnectionParameters<'_>, purpose: Purpose) -> Result<ImageLink, LinkError> {
     let profinet: &Profinet = at.options()?;
     if purpose == Purpose::Look {
         // To read the signals, armctl would have to open a connection, and the end of the connection would stop the
@@ -78,7 +78,7 @@ pub(super) fn settings(profinet: &Profinet, calm: Duration) -> Result<Settings, 
         return Err(LinkError::Settings(cause.advice("set a longer `cycle=` in the URL")));
     }
     let cycle = profinet.cycle.max(whole(calm));
-    let watchdog = profinet.watchdog.max(cycle * 3).min(LONGEST_WATCHDOG);
+    let watchdog = profinet.watchdog.max(cycle * 3).min(MAX_WATCHDOG);
     let legacy = profinet.startup == Startup::Legacy;
     let resting = resting().to_link(sizes.1);
     let settings = Settings {
@@ -97,8 +97,8 @@ pub(super) fn settings(profinet: &Profinet, calm: Duration) -> Result<Settings, 
 
 /// Rounds up to a valid cycle time.
 fn whole(time: Duration) -> Duration {
-    const LONGEST: u64 = 512;
-    let millis = u64::try_from(time.as_millis()).unwrap_or(LONGEST).clamp(1, LONGEST);
+    const MAX_CYCLE_MS: u64 = 512;
+    let millis = u64::try_from(time.as_millis()).unwrap_or(MAX_CYCLE_MS).clamp(1, MAX_CYCLE_MS);
     Duration::from_millis(millis.next_power_of_two())
 }
 
@@ -154,7 +154,7 @@ fn file(path: &Path) -> Result<Modules, LinkError> {
 }
 
 pub(super) fn read(path: &Path) -> Result<Gsdml, LinkError> {
-    device_file(path, MOST_BYTES, "use the manufacturer's GSDML file: `gsdml=` in the URL, or FILE", Gsdml::parse)
+    device_file(path, MAX_FILE_SIZE, "use the manufacturer's GSDML file: `gsdml=` in the URL, or FILE", Gsdml::parse)
 }
 
 #[cfg(test)]
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_url_says_becomes_settings() {
+    fn converts_url_options_to_settings() {
         let ms = Duration::from_millis;
         let usual = of(&format!("profinet://robot@eth0?{LAYOUT}"), Duration::ZERO).unwrap();
         assert_eq!((usual.cycle, usual.watchdog, usual.swapped), (ms(16), ms(320), 0));
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn settings_that_cannot_be_say_what_to_set() {
+    fn invalid_settings_have_a_hint() {
         let error = of("profinet://robot@eth0", Duration::ZERO).unwrap_err();
         assert!(error.cause().advice.as_ref().unwrap().contains("set gsdml= to"), "{error:?}");
         let error = of("profinet://robot@eth0?layout=1:1:i48,2:2:o32", Duration::ZERO).unwrap_err();

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::decode::images::{BusDecoder, Images, MOST, decoded};
+use crate::decode::images::{BusDecoder, Images, MAX_STORED, decoded};
 use armctl_controller::text::hex;
 use armctl_controller::yrcx::image::Image;
 use armctl_frame::decode::capture::DecodedMessage;
@@ -40,9 +40,9 @@ struct Stream {
     link: (String, String),
     length: usize,
     /// Offset and length of each part of the image. A status byte follows each part.
-    places: Vec<(usize, usize)>,
+    data_ranges: Vec<(usize, usize)>,
     /// Problem of the data that was reported last.
-    trouble: Option<String>,
+    last_error: Option<String>,
 }
 
 impl BusDecoder for Decoder {
@@ -87,7 +87,7 @@ impl Decoder {
             });
             let direction = if is_device { Direction::Received } else { Direction::Sent };
             match Rta::parse(frame.payload) {
-                Ok(rta) => say(message, direction, link(direction), alarm(priority, &rta), images),
+                Ok(rta) => add_message(message, direction, link(direction), alarm(priority, &rta), images),
                 Err(_) => self.unreadable += 1,
             }
             return;
@@ -97,7 +97,7 @@ impl Decoder {
                 Ok(dcp) => {
                     let is_question = dcp.kind == dcp::Kind::Request && dcp.service != Service::Hello;
                     let direction = if is_question { Direction::Sent } else { Direction::Received };
-                    say(message, direction, link(direction), station(&dcp), images);
+                    add_message(message, direction, link(direction), station(&dcp), images);
                 }
                 Err(_) => self.unreadable += 1,
             },
@@ -118,7 +118,7 @@ impl Decoder {
             Kind::REQUEST if header.is_fragment() => (format!("{name}, a fragment"), None),
             Kind::REQUEST => {
                 let (about, requests) = request(header, datagram.body);
-                if self.calls.len() >= MOST {
+                if self.calls.len() >= MAX_STORED {
                     self.calls.clear();
                 }
                 self.calls.insert(key, (message.number, requests));
@@ -195,10 +195,10 @@ impl Decoder {
                 direction,
                 link: (ar.mac.to_string(), device.to_string()),
                 length: iocr.length.into(),
-                places: places(iocr, &modules),
-                trouble: None,
+                data_ranges: data_ranges(iocr, &modules),
+                last_error: None,
             };
-            if self.streams.len() >= MOST {
+            if self.streams.len() >= MAX_STORED {
                 self.streams.clear();
             }
             self.streams.insert((from, to, frame_id), stream);
@@ -208,14 +208,15 @@ impl Decoder {
 
 impl Stream {
     fn take(&mut self, message: &Message<'_>, payload: &[u8], images: &mut Images) {
-        let (image, trouble) = match self.image(payload) {
+        let (image, last_error) = match self.image(payload) {
             Ok(image) => (Some(image), None),
             Err(why) => (None, Some(why)),
         };
-        if trouble != self.trouble {
-            let text = trouble.as_ref().map_or("data is valid again".to_owned(), |why| format!("data ignored: {why}"));
-            say(message, self.direction, self.link.clone(), text, images);
-            self.trouble = trouble;
+        if last_error != self.last_error {
+            let text =
+                last_error.as_ref().map_or("data is valid again".to_owned(), |why| format!("data ignored: {why}"));
+            add_message(message, self.direction, self.link.clone(), text, images);
+            self.last_error = last_error;
         }
         if let Some(image) = image.and_then(|bytes| Image::from_link(&bytes)) {
             images.image(message, self.direction, &self.link, &image);
@@ -229,7 +230,7 @@ impl Stream {
             return Err(describe_status(cyclic.status, cyclic.transfer).to_owned());
         }
         let mut image = Vec::new();
-        for (at, length) in &self.places {
+        for (at, length) in &self.data_ranges {
             let end = at + length;
             if cyclic.data.get(end).is_none_or(|status| status & GOOD == 0) {
                 return Err(format!("the sender marks the data from byte {at} as bad (IOPS)"));
@@ -241,7 +242,7 @@ impl Stream {
 }
 
 /// Returns offset and length of the data of each submodule, in the order of the slots.
-fn places(iocr: &Iocr, modules: &[&ExpectedModule]) -> Vec<(usize, usize)> {
+fn data_ranges(iocr: &Iocr, modules: &[&ExpectedModule]) -> Vec<(usize, usize)> {
     let length = |slot: u16, subslot: u16| {
         let of_slot = modules.iter().filter(|module| module.slot == slot).flat_map(|module| &module.submodules);
         let data = of_slot.filter(|submodule| submodule.subslot == subslot).flat_map(|submodule| &submodule.data);
@@ -249,11 +250,11 @@ fn places(iocr: &Iocr, modules: &[&ExpectedModule]) -> Vec<(usize, usize)> {
     };
     let mut objects = iocr.objects.clone();
     objects.sort_by_key(|object| (object.slot, object.subslot));
-    let places = objects.iter().map(|object| (usize::from(object.offset), length(object.slot, object.subslot)));
-    places.filter(|(_, length)| *length > 0).collect()
+    let data_ranges = objects.iter().map(|object| (usize::from(object.offset), length(object.slot, object.subslot)));
+    data_ranges.filter(|(_, length)| *length > 0).collect()
 }
 
-fn say(message: &Message<'_>, direction: Direction, link: (String, String), text: String, images: &mut Images) {
+fn add_message(message: &Message<'_>, direction: Direction, link: (String, String), text: String, images: &mut Images) {
     images.message(DecodedMessage { raw: hex(message.bytes), ..decoded(message, direction, link, text) });
 }
 
@@ -391,12 +392,12 @@ fn station(dcp: &Dcp) -> String {
         let address = station.address().map_or_else(|| "no address".to_owned(), |address| address.to_string());
         return format!("{service} answered: '{}', {}, {address}", station.name, station.kind);
     }
-    let asked: Vec<String> = dcp.blocks.iter().map(|block| asked(dcp.service, block)).collect();
+    let asked: Vec<String> = dcp.blocks.iter().map(|block| request_block_text(dcp.service, block)).collect();
     format!("{service}: {}", asked.join(", "))
 }
 
 /// Text of a block in a request.
-fn asked(service: Service, block: &dcp::Block) -> String {
+fn request_block_text(service: Service, block: &dcp::Block) -> String {
     let name = setting_name(block.setting);
     // In a Set request, a qualifier of two bytes precedes the value.
     let value = if service == Service::Set { block.data.get(2..).unwrap_or_default() } else { &block.data[..] };

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use crate::prelude::*;
 use armctl_files as files;
 use armctl_frame::OfflineCommand;
-use armctl_transport::profinet::gsdml::{self, Fitting, Gsdml, Head};
+use armctl_transport::profinet::gsdml::{self, Gsdml, Head, SlottedModule};
 use armctl_transport::profinet::layout::Direction;
 
 /// Reads the GSDML file of a device: its modules, and the layout for a target. This needs no robot.
@@ -22,22 +22,22 @@ pub struct ReadFile {
 }
 
 impl OfflineCommand for ReadFile {
-    type Report = Described;
+    type Report = DeviceDescription;
     const ID: &'static str = "yrcx.profinet.gsdml";
 
-    fn run(&self, _screen: &Screen) -> Result<Described, Failure> {
+    fn run(&self, _screen: &Screen) -> Result<DeviceDescription, Failure> {
         let shown = self.file.display();
-        let bytes = files::read(&self.file, gsdml::MOST_BYTES).map_err(|error| Failure::io(&shown, &error))?;
+        let bytes = files::read(&self.file, gsdml::MAX_FILE_SIZE).map_err(|error| Failure::io(&shown, &error))?;
         let read = Gsdml::parse(&bytes).map_err(|error| {
             Failure::usage(format!("{shown}: {error}")).hint("check that the file is the GSDML file of the device")
         })?;
-        Ok(Described::from(&read))
+        Ok(DeviceDescription::from(&read))
     }
 }
 
 /// Device description by the manufacturer. Do not trust the names.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Described {
+pub struct DeviceDescription {
     /// Vendor id, for example `0x0123`.
     vendor: String,
     /// Device id, for example `0x0001`.
@@ -86,7 +86,7 @@ struct Module {
     out_size: usize,
 }
 
-impl From<&Gsdml> for Described {
+impl From<&Gsdml> for DeviceDescription {
     fn from(read: &Gsdml) -> Self {
         Self {
             vendor: format!("{:#06x}", read.vendor),
@@ -115,8 +115,8 @@ impl From<&Head> for AccessPoint {
     }
 }
 
-impl From<&Fitting> for Module {
-    fn from(fitting: &Fitting) -> Self {
+impl From<&SlottedModule> for Module {
+    fn from(fitting: &SlottedModule) -> Self {
         Self {
             id: fitting.module.id.clone(),
             name: fitting.module.name.clone(),
@@ -129,7 +129,7 @@ impl From<&Fitting> for Module {
     }
 }
 
-impl Report for Described {
+impl Report for DeviceDescription {
     fn view(&self) -> View {
         let device = vec![("vendor", self.vendor.as_str().into()), ("device", self.device.as_str().into())];
         let mut view = View::default().append(Section::Fields(device));
@@ -183,7 +183,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn slots_in_a_row_are_a_range() {
+    fn formats_consecutive_slots_as_a_range() {
         assert_eq!(ranges(&[1, 2, 3, 7, 9, 10]), "1 to 3, 7, 9 to 10");
         assert_eq!((ranges(&[]), ranges(&[u16::MAX])), (String::new(), "65535".to_owned()));
     }

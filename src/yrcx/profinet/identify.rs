@@ -14,26 +14,26 @@ pub struct Identify {}
 
 impl Command for Identify {
     type Family = Yrcx;
-    type Report = Identified;
+    type Report = IdentityReport;
     const ID: &'static str = "yrcx.profinet.identify";
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Identified, Failure> {
-        context.link.no_unit_of::<Board>()?;
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<IdentityReport, Failure> {
+        context.link.reject_unit_of::<Board>()?;
         plan_search(context.link, context.robot)?;
         let found = context.link.board::<Board>()?.station().await?;
-        Ok(Identified { station: Station::from(&found) })
+        Ok(IdentityReport { station: Station::from(&found) })
     }
 }
 
 /// Identity of the station.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Identified {
+pub struct IdentityReport {
     #[serde(flatten)]
     station: Station,
 }
 
-impl Report for Identified {
+impl Report for IdentityReport {
     fn view(&self) -> View {
         View::default().append(Section::Fields(self.station.fields()))
     }

@@ -45,7 +45,7 @@ fn station_of(robot: &Robot) -> Result<Station, Failure> {
 
 /// In a dry run, notes the DCP request for the station.
 fn plan_search(link: &mut Link, robot: &Robot) -> Result<(), Failure> {
-    let question = commission::looking_for(&station_of(robot)?, 0);
+    let question = commission::search_filter(&station_of(robot)?, 0);
     let hex = text::hex(&commission::identify(Mac::default(), &question));
     link.plan_frame(json!({ "hex": unknown(&hex, true), "about": "DCP Identify: MAC address of the station" }))
 }

@@ -9,9 +9,9 @@ use super::{connect, plan_search};
 use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_frame::output::csv::RowsOf;
+use armctl_transport::profinet::candidate_layouts;
 use armctl_transport::profinet::commission::Identity;
 use armctl_transport::profinet::error::ProfinetError;
-use armctl_transport::profinet::guess;
 use armctl_transport::profinet::layout::Layout;
 use armctl_transport::profinet::wire::record::{Im0, RealModule};
 
@@ -31,7 +31,7 @@ pub struct Probe {
 
 impl Command for Probe {
     type Family = Yrcx;
-    type Report = Probed;
+    type Report = ProbeReport;
     const ID: &'static str = "yrcx.profinet.probe";
     const INTENT: &'static str =
         "connect to the station with one layout after the other (the end of each connection stops the robot)";
@@ -42,9 +42,9 @@ impl Command for Probe {
         if self.tries { Risk::Motion } else { Risk::Read }
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Probed, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<ProbeReport, Failure> {
         let Context { robot, link, .. } = context;
-        link.no_unit_of::<Board>()?;
+        link.reject_unit_of::<Board>()?;
         link.then("calls that read I&M0 and the modules (ReadImplicit of 0xAFF0 and 0xF000)");
         if self.tries {
             link.then("a connection with each possible layout, until data flows");
@@ -59,7 +59,7 @@ impl Command for Probe {
         let identity = board.identity(found).await?;
         let guesses = possible(board, &identity);
         let tried = if self.tries { attempts(board, guesses.into()).await? } else { untried(&guesses) };
-        Ok(Probed::new(station, identity, tried, self.tries))
+        Ok(ProbeReport::new(station, identity, tried, self.tries))
     }
 }
 
@@ -69,7 +69,7 @@ fn possible(board: &Board, identity: &Identity) -> Vec<Layout> {
     // An error is ignored, because this command is also for targets without a layout.
     let told = connect::settings(board.settings(), Duration::ZERO).ok().map(|settings| settings.layout);
     let guessed = match &identity.modules {
-        Ok(real) => guess::layouts(real, bytes),
+        Ok(real) => candidate_layouts::layouts(real, bytes),
         // Start with any layout: the answer of the device lists its real modules.
         Err(_) => vec![Layout::two_modules(1, 2)],
     };
@@ -83,17 +83,17 @@ fn possible(board: &Board, identity: &Identity) -> Vec<Layout> {
 }
 
 /// Maximum number of connection attempts.
-const MOST: usize = 10;
+const MAX_ATTEMPTS: usize = 10;
 
 async fn attempts(board: &Board, mut left: VecDeque<Layout>) -> Result<Vec<Attempt>, Failure> {
     let mut tried: Vec<(Layout, Attempt)> = Vec::new();
-    while let Some(layout) = left.pop_front().filter(|_| tried.len() < MOST) {
+    while let Some(layout) = left.pop_front().filter(|_| tried.len() < MAX_ATTEMPTS) {
         if tried.iter().any(|(other, _)| *other == layout) {
             continue;
         }
         let answer = board.attempt(&layout).await?;
         if let Err(ProfinetError::Modules(mismatches)) = &answer {
-            left.extend(guess::adjusted(&layout, mismatches));
+            left.extend(candidate_layouts::with_reported_modules(&layout, mismatches));
         }
         let is_over = match &answer {
             Err(ProfinetError::Refused { status, .. }) => status.is_owned(),
@@ -118,7 +118,7 @@ fn untried(layouts: &[Layout]) -> Vec<Attempt> {
 
 /// Result of the probe.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Probed {
+pub struct ProbeReport {
     #[serde(flatten)]
     station: Station,
     /// Identity record I&M0; null if the station does not report it.
@@ -190,7 +190,7 @@ impl From<RealModule> for Module {
     }
 }
 
-impl Probed {
+impl ProbeReport {
     fn new(station: Station, identity: Identity, layouts: Vec<Attempt>, has_tried: bool) -> Self {
         let mut refusals = Vec::new();
         let mut refused = |error: &ProfinetError| refusals.push(error.to_string());
@@ -201,7 +201,7 @@ impl Probed {
     }
 }
 
-impl Report for Probed {
+impl Report for ProbeReport {
     const ROWS: RowsOf = RowsOf::List("modules");
 
     fn view(&self) -> View {

@@ -1,7 +1,7 @@
 //! Server for a simulated controller as an IO device on a network interface.
 
 use super::simulated::{Controller, NAME, controller, layout, setup};
-use crate::fieldbus::{Operator, Serve, Served, ToServe};
+use crate::fieldbus::{Operator, RunningSimulation, Serve, ServeOptions};
 use crate::link_error::not_open;
 use crate::prelude::*;
 use crate::simulated::{faults, faults_of_option};
@@ -33,7 +33,7 @@ pub struct ServeArgs {
 const DEVICE_FAULTS: FaultNames<Fault> = FaultNames { link: &[], device: &Fault::ALL };
 
 impl Serve for ServeArgs {
-    fn serve(&self, ToServe { start, faults, .. }: ToServe<'_>) -> Result<Served, Failure> {
+    fn serve(&self, ServeOptions { start, faults, .. }: ServeOptions<'_>) -> Result<RunningSimulation, Failure> {
         let Some(interface) = &self.interface else {
             return Err(Failure::usage("a PROFINET device needs an Ethernet interface")
                 .hint("add --interface IFACE; use `ip link` to list the interfaces"));
@@ -45,7 +45,7 @@ impl Serve for ServeArgs {
         let started = Interface::find(interface).and_then(|found| Server::start(&found, setup, controller(start)));
         let server = started.map_err(|error| not_open("simulator", &SCHEME, &LinkError::from(error)))?;
         server.with(|device, _| device.set_fault(faults.device));
-        Ok(Served { target, address: None, operator: Box::new(server) })
+        Ok(RunningSimulation { target, address: None, operator: Box::new(server) })
     }
 }
 

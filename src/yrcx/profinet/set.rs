@@ -9,7 +9,7 @@ use super::{frame_for, plan_search, station_of};
 use crate::link::Yrcx;
 use crate::prelude::*;
 use armctl_frame::settings::target::profinet;
-use armctl_transport::profinet::commission::Found;
+use armctl_transport::profinet::commission::StationInfo;
 use armctl_transport::profinet::wire::dcp::{Block, IpSuite, Station};
 
 /// Warning: what a new name or address does if a controller is connected to the station.
@@ -68,7 +68,7 @@ fn suite(text: &str) -> Result<IpSuite, String> {
 }
 
 /// A value to set at the station.
-struct Task<C: Fn(&Found) -> Change> {
+struct Task<C: Fn(&StationInfo) -> Change> {
     id: &'static str,
     risk: Risk,
     /// Name of the frame in messages.
@@ -80,13 +80,13 @@ struct Task<C: Fn(&Found) -> Change> {
 }
 
 /// Runs `check`, asks the user to confirm what is overwritten, then sets the value. A dry run notes the frames.
-async fn set<C: Fn(&Found) -> Change>(
+async fn set<C: Fn(&StationInfo) -> Change>(
     context: Context<'_, Yrcx>,
     task: Task<C>,
-    check: impl AsyncFnOnce(&Board, &Found) -> Result<(), Failure>,
-) -> Result<Found, Failure> {
-    let Context { robot, link, authority, .. } = context;
-    link.no_unit_of::<Board>()?;
+    check: impl AsyncFnOnce(&Board, &StationInfo) -> Result<(), Failure>,
+) -> Result<StationInfo, Failure> {
+    let Context { robot, link, confirmer, .. } = context;
+    link.reject_unit_of::<Board>()?;
     plan_search(link, robot).known()?;
     let hex = frame_for(&station_of(robot)?, &task.block);
     link.plan_frame(json!({ "hex": hex, "about": task.what }))?;
@@ -96,7 +96,7 @@ async fn set<C: Fn(&Found) -> Change>(
         check(board, &found).await?;
         found
     };
-    authority.confirm(&(task.change)(&found)).await?;
+    confirmer.confirm(&(task.change)(&found)).await?;
     link.authorize(task.id, task.risk)?;
     link.board::<Board>()?.set(&found, task.what, task.block, task.is_so).await
 }
@@ -106,25 +106,25 @@ const fn risk(temporary: bool) -> Risk {
     if temporary { Risk::Write } else { Risk::Destroy }
 }
 
-const fn kept(temporary: bool) -> &'static str {
+const fn persistence_text(temporary: bool) -> &'static str {
     if temporary { " until the station is switched off" } else { "" }
 }
 
 impl Command for Blink {
     type Family = Yrcx;
-    type Report = Done;
+    type Report = SetReport;
     const ID: &'static str = "yrcx.profinet.blink";
     const RISK: Risk = Risk::Write;
     const INTENT: &'static str = "make the light of the station blink";
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport, Failure> {
         let task = Task {
             id: Self::ID,
             risk: self.risk(),
             what: "DCP Set signal",
             block: Block::signal(),
-            change: |_: &Found| Change::none(),
+            change: |_: &StationInfo| Change::none(),
             is_so: Box::new(|_| true),
         };
         let found = set(context, task, async |_, _| Ok(())).await?;
@@ -135,7 +135,7 @@ impl Command for Blink {
 
 impl Command for SetName {
     type Family = Yrcx;
-    type Report = Done;
+    type Report = SetReport;
     const ID: &'static str = "yrcx.profinet.set-name";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
@@ -145,11 +145,11 @@ impl Command for SetName {
     }
 
     fn intent(&self) -> String {
-        format!("set the station name to '{}'{}", self.name, kept(self.temporary))
+        format!("set the station name to '{}'{}", self.name, persistence_text(self.temporary))
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
-        let change = |found: &Found| {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport, Failure> {
+        let change = |found: &StationInfo| {
             let old = &found.station.name;
             let change = Change::new(format!("overwrite the name of station {}", found.mac));
             if old.is_empty() { Change::none() } else { change.replaces("name", old, &self.name).note(ENDS) }
@@ -164,11 +164,11 @@ impl Command for SetName {
             is_so: Box::new(move |said| said.name == name),
         };
         let found = set(context, task, async |board, found| match board.namesake(&self.name, found).await? {
-            Some(other) => Err(taken(&format!("the name '{}'", self.name), &other)),
+            Some(other) => Err(in_use_failure(&format!("the name '{}'", self.name), &other)),
             None => Ok(()),
         });
         let found = found.await?;
-        let words = format!("station {} has the name '{}'{}", found.mac, self.name, kept(self.temporary));
+        let words = format!("station {} has the name '{}'{}", found.mac, self.name, persistence_text(self.temporary));
         let new = NewValue::of("station_name", self.name.as_str(), words).with("mac", found.mac.to_string());
         Ok(new.with("temporary", self.temporary).replaces(Old::read(Some(found.station.name.as_str()))))
     }
@@ -176,7 +176,7 @@ impl Command for SetName {
 
 impl Command for SetIp {
     type Family = Yrcx;
-    type Report = Done;
+    type Report = SetReport;
     const ID: &'static str = "yrcx.profinet.set-ip";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
@@ -186,13 +186,13 @@ impl Command for SetIp {
     }
 
     fn intent(&self) -> String {
-        format!("set the station address to {}{}", self.address.address, kept(self.temporary))
+        format!("set the station address to {}{}", self.address.address, persistence_text(self.temporary))
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport, Failure> {
         let address = self.address.address;
         let suite = IpSuite { gateway: self.gateway.unwrap_or(self.address.gateway), ..self.address };
-        let change = |found: &Found| match found.station.address() {
+        let change = |found: &StationInfo| match found.station.address() {
             None => Change::none(),
             Some(old) => Change::new(format!("overwrite the address of station {}", found.mac))
                 .replaces("address", &old.to_string(), &address.to_string())
@@ -208,16 +208,16 @@ impl Command for SetIp {
         };
         let screen = context.screen;
         let found = set(context, task, async |board, found| {
-            if let Some(own) = board.interface()?.ip.filter(|own| !own.reaches(address)) {
+            if let Some(own) = board.interface()?.ip.filter(|own| !own.is_same_network(address)) {
                 screen.note(&format!("warning: {address} is not in the network of {} of this computer", own.address));
             }
             match board.holder(address, found).await? {
-                Some(other) => Err(taken(&format!("the address {address}"), &other)),
+                Some(other) => Err(in_use_failure(&format!("the address {address}"), &other)),
                 None => Ok(()),
             }
         });
         let found = found.await?;
-        let words = format!("station {} has the address {address}{}", found.mac, kept(self.temporary));
+        let words = format!("station {} has the address {address}{}", found.mac, persistence_text(self.temporary));
         let old = found.station.address().map(|old| old.to_string());
         let new = NewValue::of("address", address.to_string(), words).with("mac", found.mac.to_string());
         Ok(new.with("temporary", self.temporary).replaces(Old::read(old)))
@@ -225,22 +225,22 @@ impl Command for SetIp {
 }
 
 /// Returns the failure for a name or address that another device has.
-fn taken(what: &str, other: &str) -> Failure {
+fn in_use_failure(what: &str, other: &str) -> Failure {
     Failure::new(Kind::ConditionNotMet, format!("{what} is in use by {other}"))
         .hint("use `armctl robots discover --interface IFACE` to list names and addresses; nothing was set")
 }
 
 impl Command for Reset {
     type Family = Yrcx;
-    type Report = Done;
+    type Report = SetReport;
     const ID: &'static str = "yrcx.profinet.reset";
     const RISK: Risk = Risk::Destroy;
     const INTENT: &'static str = "delete the name and the address of the station";
     const CONFIRMATION: Confirmation = Confirmation::WhenKnown;
     const CONNECT_MODE: ConnectMode = ConnectMode::Explicit;
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Done, Failure> {
-        let change = |found: &Found| {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<SetReport, Failure> {
+        let change = |found: &StationInfo| {
             let (name, address) = (&found.station.name, found.station.address());
             let mut change = Change::new(format!("delete the settings of station {}", found.mac));
             if name.is_empty() && address.is_none() {

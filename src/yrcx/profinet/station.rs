@@ -1,7 +1,7 @@
 //! Report of a PROFINET station.
 
 use crate::prelude::*;
-use armctl_transport::profinet::commission::Found;
+use armctl_transport::profinet::commission::StationInfo;
 use armctl_transport::profinet::wire::dcp;
 
 /// A station. Do not trust its texts.
@@ -32,8 +32,8 @@ pub struct Station {
 /// Names of the role bits.
 const ROLES: [&str; 4] = ["device", "controller", "multidevice", "supervisor"];
 
-impl From<&Found> for Station {
-    fn from(found: &Found) -> Self {
+impl From<&StationInfo> for Station {
+    fn from(found: &StationInfo) -> Self {
         let said = &found.station;
         let suite = said.ip.filter(|(suite, _)| !suite.address.is_unspecified());
         let mut remarks = Vec::new();
@@ -61,7 +61,7 @@ impl From<&Found> for Station {
 
 impl Station {
     /// Converts all stations of a network. Adds a remark if several stations have the same name or address.
-    pub fn all(found: &[Found]) -> Vec<Self> {
+    pub fn all(found: &[StationInfo]) -> Vec<Self> {
         let mut all: Vec<Self> = found.iter().map(Self::from).collect();
         for at in 0..all.len() {
             let one = all[at].clone();
@@ -110,18 +110,18 @@ impl Station {
 mod tests {
     use super::*;
     use armctl_transport::profinet::wire::Mac;
-    use armctl_transport::profinet::wire::dcp::{IpOrigin, Station as Said};
+    use armctl_transport::profinet::wire::dcp::{IpOrigin, Station as IntoReport};
 
-    fn found(last: u8, name: &str, ip: u8) -> Found {
+    fn found(last: u8, name: &str, ip: u8) -> StationInfo {
         let address = [192, 168, 0, ip].into();
         let suite = dcp::IpSuite { address, mask: [255, 255, 255, 0].into(), gateway: address };
         let ip = Some((suite, IpOrigin(1)));
-        let station = Said { name: name.to_owned(), role: 9, id: Some((0x123, 4)), ip, ..Said::default() };
-        Found { mac: Mac([2, 0, 0, 0, 0, last]), station }
+        let station = IntoReport { name: name.to_owned(), role: 9, id: Some((0x123, 4)), ip, ..IntoReport::default() };
+        StationInfo { mac: Mac([2, 0, 0, 0, 0, last]), station }
     }
 
     #[test]
-    fn what_two_stations_share_is_remarked_at_both() {
+    fn remarks_duplicates_at_both_stations() {
         let all = Station::all(&[found(1, "a", 5), found(2, "a", 6), found(3, "", 5), found(4, "", 7)]);
         let remarks: Vec<_> = all.iter().map(|station| station.remarks.join("; ")).collect();
         assert_eq!(remarks[0], "02:00:00:00:00:02 has the same name; 02:00:00:00:00:03 has the same address");
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_and_roles_are_told() {
+    fn describes_numbers_and_roles() {
         let station = Station::from(&found(1, "a", 5));
         assert_eq!(station.roles, ["device", "supervisor"]);
         let (ip, gateway) = (station.ip.as_deref(), station.gateway);

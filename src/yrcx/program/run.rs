@@ -10,8 +10,8 @@ use crate::info::Part;
 use crate::link::{Link, Yrcx};
 use crate::prelude::*;
 use crate::refusal::BuildOrder as _;
-use armctl_frame::cycle::{Cycle, Repeat, Runs};
 use armctl_frame::dry_run::unknown;
+use armctl_frame::repeated_runs::{Cycle, Repeat, Runs};
 use armctl_frame::robot::alarm::{AlarmEntry, hint_after};
 use armctl_frame::robot::program::{Program, ProgramState};
 use armctl_frame::settings::duration;
@@ -36,11 +36,11 @@ pub struct Run {
 
 /// Time in which a program must start to run. If armctl does not see the program running in this time, the program may
 /// have ended already.
-const BEGIN_WITHIN: Duration = Duration::from_secs(1);
+const START_TIMEOUT: Duration = Duration::from_secs(1);
 
 impl Command for Run {
     type Family = Yrcx;
-    type Report = Ran;
+    type Report = RunReport;
     const ID: &'static str = "yrcx.program.run";
 
     fn risk(&self) -> Risk {
@@ -51,16 +51,16 @@ impl Command for Run {
         format!("run {}{}", self.which.describe(), self.repeat.describe())
     }
 
-    async fn run(&self, context: Context<'_, Yrcx>) -> Result<Ran, Failure> {
+    async fn run(&self, context: Context<'_, Yrcx>) -> Result<RunReport, Failure> {
         let Context { link, screen, .. } = context;
-        let order = self.which.put(link.draft(table::Command::ProgramRun)?).valid_order()?;
+        let order = self.which.apply_to(link.draft(table::Command::ProgramRun)?).valid_order()?;
         let what = self.which.describe();
         let report = |state: ProgramState, elapsed_ms: Option<u64>, cycle: Cycle| {
             let program = self.which.program().or_else(|| self.which.name()).cloned();
             let task = self.which.task.as_ref().and_then(|task| task.parse().ok());
             let more = Started { task, all_programs: self.which.all_programs, words: what.clone() };
             let program = Program { program, state: Some(state), elapsed_ms, cycle, more, ..Program::default() };
-            Ran { accepted: true, program }
+            RunReport { accepted: true, program }
         };
         let limit = self.end.limit().or(self.repeat.repeat.map(|_| None));
         let mut runs = Runs::new(self.repeat);
@@ -75,7 +75,7 @@ impl Command for Run {
             let Some(limit) = limit else {
                 return Ok(report(ProgramState::Running, None, Cycle::default()));
             };
-            if link.is_dry() {
+            if link.is_dry_run() {
                 return Err(self.plan(link));
             }
             let doing = runs.next().map_or_else(|| format!("{what} runs"), |run| format!("{what}: {run}"));
@@ -88,7 +88,7 @@ impl Command for Run {
             } else if self.repeat.repeat.is_some() {
                 // The program may have ended, or may not have started. Because armctl does not know which, it does not
                 // start the program again.
-                return Err(early(not_seen(&what)));
+                return Err(early(never_observed(&what)));
             }
         }
         Ok(report(ProgramState::Ended, runs.last_ms(), runs.cycle()))
@@ -109,8 +109,8 @@ impl Run {
     }
 }
 
-fn not_seen(what: &str) -> Failure {
-    let limit = duration::display(BEGIN_WITHIN);
+fn never_observed(what: &str) -> Failure {
+    let limit = duration::display(START_TIMEOUT);
     let message = format!(
         "{what} was started, but the controller reported no running program within {limit}: the program ended at \
          once, or did not start"
@@ -128,12 +128,12 @@ async fn wait(link: &mut Link, what: &str, began: Instant, limit: Option<Duratio
         )
     };
     let is_over = |image: &_| output::ALARM.is_on(image) || output::EMERGENCY_STOP.is_on(image);
-    let begins = link.look_until(|image| output::PROGRAM_RUNNING.is_on(image) || is_over(image));
-    let seen = match timeout(BEGIN_WITHIN, begins).await {
+    let begins = link.wait_for_image(|image| output::PROGRAM_RUNNING.is_on(image) || is_over(image));
+    let seen = match timeout(START_TIMEOUT, begins).await {
         Ok(image) => output::PROGRAM_RUNNING.is_on(&image.map_err(lost)?),
         Err(_) => false,
     };
-    let ends = link.look_until(|image| !output::PROGRAM_RUNNING.is_on(image) || is_over(image));
+    let ends = link.wait_for_image(|image| !output::PROGRAM_RUNNING.is_on(image) || is_over(image));
     let rest = limit.map(|limit| limit.saturating_sub(began.elapsed()));
     let image = match rest {
         None => ends.await,
@@ -172,7 +172,7 @@ async fn alarmed(link: &mut Link, what: &str, before: Option<&AlarmEntry<Part>>)
 
 /// Result of a program start.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Ran {
+pub struct RunReport {
     /// Whether the controller accepted the start.
     accepted: bool,
     #[serde(flatten)]
@@ -191,7 +191,7 @@ struct Started {
     words: String,
 }
 
-impl Report for Ran {
+impl Report for RunReport {
     fn view(&self) -> View {
         if self.program.state == Some(ProgramState::Running) {
             return View::text(format!("started {}", self.program.more.words));

@@ -13,7 +13,7 @@ use std::fmt::Write as _;
 use armctl::command::example_lines::robot_lines;
 use armctl_controller::Risk;
 
-use super::desk::{CommandResult, Workspace, result_of};
+use super::workspace::{CommandResult, Workspace, result_of};
 use crate::support::terminal::Terminal;
 
 /// Effect of a recorded request. A later variant is more severe.

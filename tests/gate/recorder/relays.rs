@@ -121,7 +121,7 @@ fn yerc_commands_send_only_authorized_frames() {
         family: "yerc",
         url,
         sent,
-        is_harmless: yerc::passing::only_reads_or_stops,
+        is_harmless: yerc::read_only_filter::only_reads_or_stops,
         is_stop: |bytes| bytes.get(24..28) == Some(&[0x83, 0, 1, 0]) || bytes.get(24..26) == Some(&[0x86, 0]),
         _controller: controller,
     };
@@ -147,7 +147,7 @@ fn toyo_commands_send_only_authorized_lines() {
         family: "toyo",
         url,
         sent,
-        is_harmless: toyo::passing::only_reads_or_stops,
+        is_harmless: toyo::read_only_filter::only_reads_or_stops,
         // A stop of a jog needs host control, so switching the host is allowed.
         is_stop: |bytes| {
             [&b"@STOP"[..], b"@HSON", b"@HSOF", b"@JGST X=SP Y=SP Z=SP R=SP"].iter().any(|stop| bytes.starts_with(stop))

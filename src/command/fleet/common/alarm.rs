@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use clap::Subcommand;
 
-use super::Shared;
+use super::SharedVerbCommands;
 use super::line::SharedLine;
 use crate::command::fleet::status::{Fleet, Link};
 use armctl_frame::face::shared_commands::SharedVerb;
@@ -50,9 +50,9 @@ impl Alarm {
     pub fn command(&self) -> Result<Box<dyn AnyCommand>, Failure> {
         Ok(match self {
             Self::List(_) => Box::new(List {}),
-            Self::History => Box::new(Shared::new("alarm.history", SharedVerb::AlarmHistory)),
+            Self::History => Box::new(SharedVerbCommands::new("alarm.history", SharedVerb::AlarmHistory)),
             Self::Watch(_) => Box::new(SharedLine::new("alarm.watch", ["alarm", "watch"].map(Into::into).into())?),
-            Self::Reset => Box::new(Shared::new("alarm.reset", SharedVerb::AlarmReset)),
+            Self::Reset => Box::new(SharedVerbCommands::new("alarm.reset", SharedVerb::AlarmReset)),
         })
     }
 }
@@ -60,10 +60,10 @@ impl Alarm {
 /// Schemas of the reports.
 pub fn schemas() -> [SchemaEntry; 4] {
     [
-        SchemaEntry::of::<Present>("alarm.list"),
+        SchemaEntry::of::<ActiveAlarms>("alarm.list"),
         SchemaEntry::of::<AllAlarms>("alarm.history"),
         SchemaEntry::of::<Changes<bool>>("alarm.watch"),
-        SchemaEntry::of::<Done>("alarm.reset"),
+        SchemaEntry::of::<SetReport>("alarm.reset"),
     ]
 }
 
@@ -78,11 +78,11 @@ pub struct List {}
 
 impl Command for List {
     type Family = Fleet;
-    type Report = Present;
+    type Report = ActiveAlarms;
     const ID: &'static str = "alarm.list";
     const CONNECT_MODE: ConnectMode = ConnectMode::Monitor;
 
-    async fn run(&self, context: Context<'_, Fleet>) -> Result<Present, Failure> {
+    async fn run(&self, context: Context<'_, Fleet>) -> Result<ActiveAlarms, Failure> {
         let Context { robot, link, screen, several, .. } = context;
         link.open_link(screen).await?;
         let found = match link {
@@ -94,7 +94,7 @@ impl Command for List {
             let site = alarm.code.as_deref().map(|code| alarms::find(robot, code)).transpose()?.flatten();
             alarms.push(alarm.with(site));
         }
-        Ok(Present { alarms: AllAlarms::present(alarms), several })
+        Ok(ActiveAlarms { alarms: AllAlarms::present(alarms), several })
     }
 
     /// Summary line: `3 robots, 1 with an alarm`.
@@ -110,7 +110,7 @@ impl Command for List {
 
 /// The active alarms.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct Present {
+pub struct ActiveAlarms {
     #[serde(flatten)]
     alarms: AllAlarms,
     /// Whether the report has other robots too.
@@ -118,7 +118,7 @@ pub struct Present {
     several: bool,
 }
 
-impl Report for Present {
+impl Report for ActiveAlarms {
     fn view(&self) -> View {
         if self.several { self.alarms.view() } else { self.alarms.for_robot() }
     }

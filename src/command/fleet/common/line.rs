@@ -108,8 +108,8 @@ impl AnyCommand for SharedLine {
         async move {
             let parsed = self.of(context.robot);
             let command = (*parsed).as_ref().map_err(Failure::clone)?;
-            let AnyContext { robot, connection, screen, several, authority } = context;
-            let context = AnyContext { robot, connection: &mut *connection, screen, several, authority };
+            let AnyContext { robot, connection, screen, several, confirmer } = context;
+            let context = AnyContext { robot, connection: &mut *connection, screen, several, confirmer };
             let report = command.run_unsettled(context).await?;
             if self.is_reduced { Ok(Box::new(Reading::new(&*report)?) as Box<_>) } else { Ok(report) }
         }

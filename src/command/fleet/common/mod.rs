@@ -14,15 +14,15 @@ use armctl_frame::output::csv::Sheet;
 use armctl_frame::prelude::*;
 use armctl_frame::robot::position::AllPositions;
 use armctl_frame::settings::target::{Address, Family};
-use armctl_frame::{AnyCommand, Connection, Driver, Entry, Outcome, SchemaEntry};
+use armctl_frame::{AnyCommand, Connection, ConnectionEffect, Driver, Outcome, SchemaEntry};
 
 /// A verb with the command of each family.
-pub struct Shared {
+pub struct SharedVerbCommands {
     id: &'static str,
     commands: [(Family, Box<dyn AnyCommand>); FAMILIES.len()],
 }
 
-impl Shared {
+impl SharedVerbCommands {
     /// Creates a verb; `id` is its command id in envelopes and schemas.
     pub fn new(id: &'static str, verb: SharedVerb) -> Self {
         Self { id, commands: FAMILIES.map(|face| (face.family(), face.shared(verb))) }
@@ -34,7 +34,7 @@ impl Shared {
     }
 }
 
-impl AnyCommand for Shared {
+impl AnyCommand for SharedVerbCommands {
     fn id(&self) -> &'static str {
         self.id
     }
@@ -69,18 +69,18 @@ impl AnyCommand for Shared {
 }
 
 /// `armctl stop`: the stop command of each family.
-pub fn stop() -> Shared {
-    Shared::new("stop", SharedVerb::Stop)
+pub fn stop() -> SharedVerbCommands {
+    SharedVerbCommands::new("stop", SharedVerb::Stop)
 }
 
 /// `armctl position`: current position of each robot.
-pub fn position() -> Shared {
-    Shared::new("position", SharedVerb::Position)
+pub fn position() -> SharedVerbCommands {
+    SharedVerbCommands::new("position", SharedVerb::Position)
 }
 
 /// Schemas of the reports.
 pub fn schemas() -> Vec<SchemaEntry> {
-    let stop = SchemaEntry::of::<Done>("stop");
+    let stop = SchemaEntry::of::<SetReport>("stop");
     let position = SchemaEntry::of::<AllPositions>("position");
     alarm::schemas().into_iter().chain(io::schemas()).chain([position, stop]).collect()
 }
@@ -97,8 +97,8 @@ impl Driver for PerRobot {
         &[]
     }
 
-    fn entry(&self, robot: &Robot, mode: ConnectMode) -> Entry {
-        families::of(robot.family).driver().entry(robot, mode)
+    fn connection_effect(&self, robot: &Robot, mode: ConnectMode) -> ConnectionEffect {
+        families::of(robot.family).driver().connection_effect(robot, mode)
     }
 
     fn takes_one_client(&self, robot: &Robot) -> bool {

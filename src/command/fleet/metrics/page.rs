@@ -27,7 +27,7 @@ pub enum Kind {
 }
 
 /// Longest label value, in characters.
-const LONGEST: usize = 120;
+const MAX_LABEL_CHARS: usize = 120;
 
 impl Form {
     /// Selects the format for an `Accept` header; the text format by default.
@@ -162,7 +162,7 @@ pub fn labels(first: &str, more: &[(&str, &str)]) -> String {
 
 /// Escapes and shortens a label value.
 fn escape(value: &str) -> String {
-    let value: String = value.chars().take(LONGEST).collect();
+    let value: String = value.chars().take(MAX_LABEL_CHARS).collect();
     escape::line(&value).replace('\\', "\\\\").replace('"', "\\\"")
 }
 
@@ -242,6 +242,6 @@ mod tests {
         let escaped = labels("x=\"y\"", &[("text", injection)]);
         assert_eq!(escaped.lines().count(), 1);
         assert_eq!(escaped, r#"x="y",text="a\"} 1\\narmctl_robot_up{robot=\"b\\\\x1b[2J""#);
-        assert_eq!(labels("", &[("long", &"x".repeat(999))]).len(), LONGEST + "long=\"\"".len());
+        assert_eq!(labels("", &[("long", &"x".repeat(999))]).len(), MAX_LABEL_CHARS + "long=\"\"".len());
     }
 }

@@ -12,12 +12,12 @@ use super::extra_command::Read;
 use super::poll_request::MergedRequests;
 use super::{CLOSE_TIMEOUT, Event, EventSender, Extra, PollResult, RobotId, wait_for_stop};
 use crate::command::families;
-use armctl_frame::Entry;
-use armctl_frame::attach::is_held;
+use armctl_frame::ConnectionEffect;
 use armctl_frame::face::Watch;
 use armctl_frame::face::sample::Traffic;
 use armctl_frame::prelude::*;
-use armctl_frame::share::open_shared_session;
+use armctl_frame::session_client::is_held;
+use armctl_frame::shared_session::open_shared_session;
 
 /// Polling task of one robot.
 pub(super) struct RobotTask {
@@ -196,7 +196,7 @@ impl RobotTask {
             Some(Ok(command)) => &**command,
             Some(Err(failure)) => return Err(failure.clone()),
         };
-        if matches!(command.entry(&self.robot), Entry::Stops(_)) {
+        if matches!(command.connection_effect(&self.robot), ConnectionEffect::Stops(_)) {
             let message = format!(
                 "'{}' needs a command connection, and the end of that connection would stop the robot",
                 extra.text()
@@ -261,27 +261,27 @@ impl Ticks {
 mod tests {
     use super::*;
 
-    const EVERY: Duration = Duration::from_millis(100);
+    const POLL_INTERVAL: Duration = Duration::from_millis(100);
 
     #[tokio::test(start_paused = true)]
     async fn ticks_do_not_drift_or_accumulate() {
         let start = Instant::now();
-        let mut ticks = Ticks::new(start, EVERY);
-        assert_eq!(ticks.next(start + Duration::from_millis(30)), start + EVERY);
-        assert_eq!(ticks.next(start + EVERY), start + 2 * EVERY, "a moment that is now has been");
-        assert_eq!(ticks.next(start + Duration::from_millis(730)), start + 8 * EVERY);
-        assert_eq!(ticks.between(start, start + EVERY), 0);
-        assert_eq!(ticks.between(start + EVERY, start + 8 * EVERY), 6);
+        let mut ticks = Ticks::new(start, POLL_INTERVAL);
+        assert_eq!(ticks.next(start + Duration::from_millis(30)), start + POLL_INTERVAL);
+        assert_eq!(ticks.next(start + POLL_INTERVAL), start + 2 * POLL_INTERVAL, "a moment that is now has been");
+        assert_eq!(ticks.next(start + Duration::from_millis(730)), start + 8 * POLL_INTERVAL);
+        assert_eq!(ticks.between(start, start + POLL_INTERVAL), 0);
+        assert_eq!(ticks.between(start + POLL_INTERVAL, start + 8 * POLL_INTERVAL), 6);
     }
 
     #[test]
     fn backoff_doubles_up_to_a_limit_and_resets() {
         let [second, most] = [1, 10].map(Duration::from_secs);
         let mut pauses = Backoff::default();
-        let seconds: Vec<u64> = (0..6).map(|_| pauses.next(EVERY, most).as_secs()).collect();
+        let seconds: Vec<u64> = (0..6).map(|_| pauses.next(POLL_INTERVAL, most).as_secs()).collect();
         assert_eq!(seconds, [1, 2, 4, 8, 10, 10]);
         pauses.reset();
-        assert_eq!(pauses.next(EVERY, most), second);
+        assert_eq!(pauses.next(POLL_INTERVAL, most), second);
         assert_eq!(Backoff::default().next(30 * second, most), 30 * second, "never more often than when it answers");
     }
 }

@@ -7,8 +7,8 @@ use std::time::{Duration, SystemTime};
 use tokio::time::{Instant, sleep_until};
 
 use crate::command::families;
-use armctl_frame::attach::identify;
 use armctl_frame::failure::Failure;
+use armctl_frame::session_client::identify;
 use armctl_frame::settings::inventory::{Inventory, Location};
 use armctl_frame::settings::{Robot, Sources};
 

@@ -16,7 +16,7 @@ use armctl_frame::prelude::*;
 use armctl_frame::settings::inventory::{Inventory, Location};
 use armctl_frame::settings::{Selection, Sources};
 
-const EVERY: Duration = Duration::from_millis(100);
+const POLL_INTERVAL: Duration = Duration::from_millis(100);
 
 /// An inventory in a temporary folder.
 struct Plant {
@@ -100,7 +100,7 @@ async fn polls_every_family_in_each_detail() {
         let plant = fleet();
         let poll = plant.all();
         let id = whole.map(|at: usize| RobotId::for_robot(&poll.robots()[at]));
-        let request = PollRequest { detail, whole: id, ..PollRequest::every(EVERY) };
+        let request = PollRequest { detail, whole: id, ..PollRequest::every(POLL_INTERVAL) };
         let samples = subscription(poll, request, async |events: &mut Subscription| {
             let mut samples: BTreeMap<String, Vec<Sample>> = BTreeMap::new();
             while samples.len() < 3 || samples.values().any(|samples| samples.len() < 3) {
@@ -136,7 +136,7 @@ async fn unreachable_robot_does_not_delay_others() {
         ("d", "yerc", "sim:?fault=drop%3D100%25"),
     ]);
     let start = Instant::now();
-    let counts = subscription(plant.all(), PollRequest::every(EVERY), async |events: &mut Subscription| {
+    let counts = subscription(plant.all(), PollRequest::every(POLL_INTERVAL), async |events: &mut Subscription| {
         let mut counts = BTreeMap::new();
         loop {
             match events.next().await.expect("it goes on") {
@@ -157,7 +157,7 @@ async fn unreachable_robot_does_not_delay_others() {
         }
     })
     .await;
-    let polls = start.elapsed().as_millis() / EVERY.as_millis();
+    let polls = start.elapsed().as_millis() / POLL_INTERVAL.as_millis();
     assert!(polls >= 10, "it takes a timeout until one knows");
     assert_eq!(counts.len(), 3);
     assert!(counts.values().all(|count| count + 2 >= polls), "{counts:?} of {polls}");
@@ -166,7 +166,7 @@ async fn unreachable_robot_does_not_delay_others() {
 #[tokio::test(start_paused = true)]
 async fn backoff_of_a_silent_robot_grows() {
     let plant = Plant::new(&[("d", "yerc", "sim:?fault=drop%3D100%25")]);
-    let request = PollRequest { longest_pause: Duration::from_secs(5), ..PollRequest::every(EVERY) };
+    let request = PollRequest { longest_pause: Duration::from_secs(5), ..PollRequest::every(POLL_INTERVAL) };
     let events =
         subscription(plant.all(), request, async |events: &mut Subscription| received(events, 6, true).await).await;
     assert_eq!(events, ["appeared d", "failed d 1", "failed d 2", "failed d 4", "failed d 5", "failed d 5"]);
@@ -175,7 +175,7 @@ async fn backoff_of_a_silent_robot_grows() {
 #[tokio::test(start_paused = true)]
 async fn polls_a_slow_line_at_its_own_pace() {
     let plant = Plant::new(&[("slow", "yerc", "sim:?fault=delay%3D150ms"), ("fast", "yerc", "sim:")]);
-    let looks = subscription(plant.all(), PollRequest::every(EVERY), async |events: &mut Subscription| {
+    let looks = subscription(plant.all(), PollRequest::every(POLL_INTERVAL), async |events: &mut Subscription| {
         let mut looks = Vec::new();
         while looks.len() < 3 {
             if let Event::Polled(look) = events.next().await.expect("it goes on") {
@@ -190,8 +190,8 @@ async fn polls_a_slow_line_at_its_own_pace() {
     })
     .await;
     let (took, missed) = looks[2];
-    assert!(took > 2 * EVERY, "{took:?}");
-    let intervals = u64::try_from(took.as_millis() / EVERY.as_millis()).unwrap();
+    assert!(took > 2 * POLL_INTERVAL, "{took:?}");
+    let intervals = u64::try_from(took.as_millis() / POLL_INTERVAL.as_millis()).unwrap();
     assert_eq!(missed, intervals, "what a look takes of the next ones is left out: {looks:?}");
 }
 
@@ -200,7 +200,7 @@ async fn consumers_share_polls_at_the_shortest_interval() {
     let plant = fleet();
     let mut poll = plant.all();
     let mut one = poll.subscribe(PollRequest { detail: Detail::Axes, ..PollRequest::every(Duration::from_secs(10)) });
-    let mut other = poll.subscribe(PollRequest::every(EVERY));
+    let mut other = poll.subscribe(PollRequest::every(POLL_INTERVAL));
     let began = Instant::now();
     let compared = async {
         let mut looks = 0;
@@ -216,7 +216,7 @@ async fn consumers_share_polls_at_the_shortest_interval() {
             }
         }
         let ten_looks = began.elapsed();
-        assert!(ten_looks >= 9 * EVERY && ten_looks <= 11 * EVERY, "{ten_looks:?}");
+        assert!(ten_looks >= 9 * POLL_INTERVAL && ten_looks <= 11 * POLL_INTERVAL, "{ten_looks:?}");
         // One consumer is dropped, so only the other request counts.
         drop(other);
         let mut last = BTreeMap::new();
@@ -236,7 +236,7 @@ async fn runs_extra_commands_with_the_polls_of_their_family() {
     let plant = fleet();
     let extras = ["yerc var get B0..B1", "toyo counter get 1", "yerc var get B0"];
     let extras: Rc<[Rc<Extra>]> = extras.iter().map(|text| Rc::new(Extra::parse(text).unwrap())).collect();
-    let request = PollRequest { extras, ..PollRequest::every(EVERY) };
+    let request = PollRequest { extras, ..PollRequest::every(POLL_INTERVAL) };
     let extras = subscription(plant.all(), request, async |events: &mut Subscription| {
         let mut extras = BTreeMap::new();
         while extras.len() < 3 {
@@ -267,7 +267,7 @@ async fn resolves_names_of_extra_commands_per_robot() {
     let named = |address: &str| format!("[robot.names]\nparts = \"{address}\"");
     plant.write_text(&[entry("a", &named("B5")), entry("b", &named("B6")), entry("c", "")].concat());
     let extra = Rc::new(Extra::parse("yerc var get parts").unwrap());
-    let request = PollRequest { extras: Rc::from([extra]), ..PollRequest::every(EVERY) };
+    let request = PollRequest { extras: Rc::from([extra]), ..PollRequest::every(POLL_INTERVAL) };
     let told = subscription(plant.all(), request, async |events: &mut Subscription| {
         let mut told = BTreeMap::new();
         while told.len() < 3 {
@@ -287,7 +287,7 @@ async fn resolves_names_of_extra_commands_per_robot() {
 #[tokio::test(start_paused = true)]
 async fn follows_robots_of_the_inventory() {
     let plant = fleet();
-    let told = subscription(plant.all(), PollRequest::every(EVERY), async |events: &mut Subscription| {
+    let told = subscription(plant.all(), PollRequest::every(POLL_INTERVAL), async |events: &mut Subscription| {
         let mut all = received(events, 3, false).await;
         // One robot is removed, one is added, one has changed.
         plant.write(&[("a", "yerc", "sim:"), ("c", "yerc", "sim:"), ("d", "toyo", "sim:")]);
@@ -336,7 +336,7 @@ fn sorted_runs(told: &str) -> Vec<String> {
 #[tokio::test(start_paused = true)]
 async fn ignores_an_incomplete_inventory() {
     let plant = fleet();
-    let told = subscription(plant.all(), PollRequest::every(EVERY), async |events: &mut Subscription| {
+    let told = subscription(plant.all(), PollRequest::every(POLL_INTERVAL), async |events: &mut Subscription| {
         let mut all = received(events, 3, false).await;
         // The file grows between two checks, as with a slow editor.
         let mut text = String::new();
@@ -382,7 +382,7 @@ async fn follows_names_and_tags_of_the_inventory() {
         plant.write_text(&text(&["a1"]));
         let is_by_tag = !selection.tags.is_empty();
         let poll = plant.poll(selection).unwrap();
-        let told = subscription(poll, PollRequest::every(EVERY), async |events: &mut Subscription| {
+        let told = subscription(poll, PollRequest::every(POLL_INTERVAL), async |events: &mut Subscription| {
             let mut all = received(events, first.len(), false).await;
             plant.write_text(&if is_by_tag { text(&["b1"]) } else { String::new() });
             all.extend(received(events, 1 + then.len(), false).await);
@@ -400,7 +400,7 @@ async fn polls_a_fixed_robot_until_all_subscriptions_end() {
     let robot = plant.all().robots()[0].clone();
     let poll = Poll::of(robot, Screen::silent());
     std::fs::remove_file(plant.path()).unwrap();
-    let told = subscription(poll, PollRequest::every(EVERY), async |events: &mut Subscription| {
+    let told = subscription(poll, PollRequest::every(POLL_INTERVAL), async |events: &mut Subscription| {
         let told = received(events, 100, true).await;
         assert!(told[1..].iter().all(|told| told == "looked a"), "{told:?}");
         told.len()

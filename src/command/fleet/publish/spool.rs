@@ -15,7 +15,7 @@ use super::outbox::Record;
 use armctl_files as files;
 
 /// Size limit of a record in bytes.
-const LARGEST: usize = 1 << 20;
+const MAX_RECORD_SIZE: usize = 1 << 20;
 /// Size limit of a segment, unless the total limit is smaller.
 const SEGMENT: u64 = 1 << 20;
 /// Number of segments at the smallest total limit.
@@ -116,7 +116,7 @@ impl Spool {
     pub fn append(&mut self, record: &Record) -> Result<(), SpoolError> {
         let bytes = encode(record);
         let len = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
-        if bytes.len() > LARGEST || self.bytes() + len > self.limit {
+        if bytes.len() > MAX_RECORD_SIZE || self.bytes() + len > self.limit {
             return Err(SpoolError::Full);
         }
         let is_full = self.segments.back().is_some_and(|last| last.bytes + len > self.largest_segment());
@@ -168,7 +168,7 @@ impl Spool {
             }
             let number = self.segments[at].number;
             let (records, damaged) =
-                match files::read(&self.path(number), SEGMENT + u64::try_from(LARGEST).unwrap_or(0)) {
+                match files::read(&self.path(number), SEGMENT + u64::try_from(MAX_RECORD_SIZE).unwrap_or(0)) {
                     Ok(bytes) => decode_all(&bytes),
                     Err(_) => (VecDeque::new(), 1),
                 };
@@ -205,7 +205,7 @@ impl Spool {
         for record in records.iter().rev() {
             let bytes = encode(record);
             let len = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
-            if bytes.len() > LARGEST || len > room {
+            if bytes.len() > MAX_RECORD_SIZE || len > room {
                 break;
             }
             room -= len;
@@ -306,7 +306,7 @@ fn decode_all(mut bytes: &[u8]) -> (VecDeque<Record>, u64) {
 fn decode(bytes: &[u8]) -> Option<(Record, &[u8])> {
     let (len, rest) = bytes.split_first_chunk()?;
     let (sum, rest) = rest.split_first_chunk::<8>()?;
-    let len = usize::try_from(u32::from_le_bytes(*len)).ok().filter(|len| *len <= LARGEST)?;
+    let len = usize::try_from(u32::from_le_bytes(*len)).ok().filter(|len| *len <= MAX_RECORD_SIZE)?;
     let (fields, rest) = rest.split_at_checked(len)?;
     if checksum(fields) != *sum {
         return None;

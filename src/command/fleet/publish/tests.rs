@@ -60,7 +60,7 @@ pub fn silence(robot: &Arc<Robot>) -> Found {
 
 /// Behavior of the broker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Mood {
+enum BrokerBehavior {
     Works,
     Away,
     /// Accepts messages and answers pings, but does not acknowledge.
@@ -76,8 +76,8 @@ enum Mood {
 }
 
 #[derive(Debug)]
-struct Fake {
-    mood: RefCell<Mood>,
+struct FakeUplink {
+    behavior: RefCell<BrokerBehavior>,
     /// Acknowledged messages.
     taken: RefCell<Vec<Message>>,
     attempts: RefCell<Vec<Instant>>,
@@ -85,10 +85,10 @@ struct Fake {
     start: Instant,
 }
 
-impl Fake {
-    fn new(mood: Mood) -> Self {
+impl FakeUplink {
+    fn new(behavior: BrokerBehavior) -> Self {
         Self {
-            mood: RefCell::new(mood),
+            behavior: RefCell::new(behavior),
             taken: RefCell::default(),
             attempts: RefCell::default(),
             changed: Notify::new(),
@@ -96,8 +96,8 @@ impl Fake {
         }
     }
 
-    fn becomes(&self, mood: Mood) {
-        self.mood.replace(mood);
+    fn set_behavior(&self, behavior: BrokerBehavior) {
+        self.behavior.replace(behavior);
         self.changed.notify_waiters();
     }
 
@@ -118,40 +118,44 @@ impl Fake {
 }
 
 struct Connection<'a> {
-    fake: &'a Fake,
+    fake_uplink: &'a FakeUplink,
     events: VecDeque<Event>,
     next: u64,
     pings: u64,
 }
 
-impl<'a> Broker for &'a Fake {
+impl<'a> Broker for &'a FakeUplink {
     type Uplink = Connection<'a>;
 
     async fn open(&self, _: String, will: Will) -> Result<Connection<'a>, Loss> {
         assert_eq!((&will.topic[..], &will.payload[..], will.retain), ("armctl/cell7/state", &b"offline"[..], true));
         self.attempts.borrow_mut().push(Instant::now());
-        let mood = *self.mood.borrow();
-        let first = match mood {
-            Mood::Away => return Err(Loss::Closed),
-            Mood::Distrusted => return Err(Loss::Tls(TlsError::Expired)),
-            Mood::Refuses(code) => Event::Refused(Refusal { version: Version::V3, code, reason: None, server: None }),
-            Mood::Works | Mood::Hangs => Event::Connected,
-            Mood::Breaks => {
-                let events = [Event::Connected, Event::Acknowledged(1, None), Event::Lost(Loss::Protocol("noise"))];
-                return Ok(Connection { fake: self, events: events.into(), next: 1, pings: 0 });
+        let behavior = *self.behavior.borrow();
+        let first = match behavior {
+            BrokerBehavior::Away => return Err(Loss::Closed),
+            BrokerBehavior::Distrusted => return Err(Loss::Tls(TlsError::Expired)),
+            BrokerBehavior::Refuses(code) => {
+                Event::Refused(Refusal { version: Version::V3, code, reason: None, server: None })
             }
-            Mood::Mute => return Ok(Connection { fake: self, events: VecDeque::new(), next: 1, pings: 0 }),
-            Mood::Lost => pending().await,
+            BrokerBehavior::Works | BrokerBehavior::Hangs => Event::Connected,
+            BrokerBehavior::Breaks => {
+                let events = [Event::Connected, Event::Acknowledged(1, None), Event::Lost(Loss::Protocol("noise"))];
+                return Ok(Connection { fake_uplink: self, events: events.into(), next: 1, pings: 0 });
+            }
+            BrokerBehavior::Mute => {
+                return Ok(Connection { fake_uplink: self, events: VecDeque::new(), next: 1, pings: 0 });
+            }
+            BrokerBehavior::Lost => pending().await,
         };
-        Ok(Connection { fake: self, events: VecDeque::from([first]), next: 1, pings: 0 })
+        Ok(Connection { fake_uplink: self, events: VecDeque::from([first]), next: 1, pings: 0 })
     }
 }
 
 impl Uplink for Connection<'_> {
     async fn next(&mut self) -> Event {
         loop {
-            let changed = self.fake.changed.notified();
-            if *self.fake.mood.borrow() == Mood::Away {
+            let changed = self.fake_uplink.changed.notified();
+            if *self.fake_uplink.behavior.borrow() == BrokerBehavior::Away {
                 return Event::Lost(Loss::Closed);
             }
             if let Some(event) = self.events.pop_front() {
@@ -164,8 +168,8 @@ impl Uplink for Connection<'_> {
     fn publish(&mut self, message: &Message) -> Result<Option<u64>, SendError> {
         let id = self.next;
         self.next += 1;
-        if *self.fake.mood.borrow() == Mood::Works {
-            self.fake.taken.borrow_mut().push(message.clone());
+        if *self.fake_uplink.behavior.borrow() == BrokerBehavior::Works {
+            self.fake_uplink.taken.borrow_mut().push(message.clone());
             self.events.push_back(Event::Acknowledged(id, None));
         }
         Ok(Some(id))
@@ -190,7 +194,7 @@ impl Uplink for Connection<'_> {
     }
 
     async fn close(self) {
-        if *self.fake.mood.borrow() == Mood::Hangs {
+        if *self.fake_uplink.behavior.borrow() == BrokerBehavior::Hangs {
             pending::<()>().await;
         }
     }
@@ -206,15 +210,15 @@ fn plain() -> Box<dyn MessageFormat> {
 
 /// Records log messages, except those for `-v`.
 #[derive(Debug, Default)]
-struct Notes {
-    said: RefCell<Vec<String>>,
+struct LogRecorder {
+    log_lines: RefCell<Vec<String>>,
     is_reached: Cell<bool>,
 }
 
-impl Listener for Notes {
+impl Listener for LogRecorder {
     fn log(&self, level: Level, text: &str) {
         if level != Level::Detail {
-            self.said.borrow_mut().push(text.to_owned());
+            self.log_lines.borrow_mut().push(text.to_owned());
         }
     }
 
@@ -225,29 +229,29 @@ impl Listener for Notes {
 
 /// Runs the pump with events from `script`. Returns the log and the counters.
 async fn pumped(
-    fake: &Fake,
+    fake_uplink: &FakeUplink,
     outbox: Outbox,
     script: impl AsyncFnOnce(mpsc::UnboundedSender<Found>),
 ) -> (Result<Counts, Failure>, Vec<String>) {
-    let notes = Notes::default();
+    let notes = LogRecorder::default();
     let url = "mqtt://broker".parse().unwrap();
     let (tell, mut found) = mpsc::unbounded_channel();
-    let mut pump = Delivery::new((&fake, &url), plain(), outbox, (&notes, Backoff::new(7)), false);
+    let mut pump = Delivery::new((&fake_uplink, &url), plain(), outbox, (&notes, Backoff::new(7)), false);
     let pumped = async {
         let ended = pump.run(async || found.recv().await, pending()).await;
         let counts = pump.end(false).await;
         ended.map(|()| counts)
     };
     let (counts, ()) = futures_util::future::join(pumped, script(tell)).await;
-    (counts, notes.said.into_inner())
+    (counts, notes.log_lines.into_inner())
 }
 
 const MEMORY: usize = 1 << 20;
 
 #[tokio::test(start_paused = true)]
-async fn what_changes_is_told_and_what_does_not_is_told_again_in_time() {
-    let fake = Fake::new(Mood::Works);
-    let (counts, _) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
+async fn publishes_changes_at_once_and_other_values_at_an_interval() {
+    let fake_uplink = FakeUplink::new(BrokerBehavior::Works);
+    let (counts, _) = pumped(&fake_uplink, Outbox::new(MEMORY, None), async |tell| {
         let press = robot("press");
         for x_mm in [1.0, 1.0, 2.0] {
             tell.send(look(&press, x_mm, &[])).unwrap();
@@ -265,9 +269,9 @@ async fn what_changes_is_told_and_what_does_not_is_told_again_in_time() {
     expected.extend(kinds(["status", "alarms", "position"]));
     expected.extend(kinds(["alarms", "position", "status"]));
     expected.push("armctl/cell7/state".to_owned());
-    assert_eq!(fake.topics(), expected);
-    assert_eq!(fake.places("press"), [1.0, 2.0]);
-    let taken = fake.taken.borrow();
+    assert_eq!(fake_uplink.topics(), expected);
+    assert_eq!(fake_uplink.places("press"), [1.0, 2.0]);
+    let taken = fake_uplink.taken.borrow();
     assert!(taken.iter().all(|message| message.retain && message.acknowledged));
     assert_eq!((&taken[0].payload[..], &taken[11].payload[..]), (&b"online"[..], &b"offline"[..]));
     assert!(taken[8..11].iter().all(|message| message.payload.is_empty()));
@@ -280,14 +284,14 @@ async fn what_changes_is_told_and_what_does_not_is_told_again_in_time() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_broker_that_is_gone_for_a_minute_loses_nothing() {
-    let fake = Fake::new(Mood::Works);
-    let (counts, said) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
+async fn one_minute_without_broker_loses_nothing() {
+    let fake_uplink = FakeUplink::new(BrokerBehavior::Works);
+    let (counts, log_lines) = pumped(&fake_uplink, Outbox::new(MEMORY, None), async |tell| {
         let press = robot("press");
         for second in 0..90 {
             match second {
-                15 => fake.becomes(Mood::Away),
-                75 => fake.becomes(Mood::Works),
+                15 => fake_uplink.set_behavior(BrokerBehavior::Away),
+                75 => fake_uplink.set_behavior(BrokerBehavior::Works),
                 _ => {}
             }
             tell.send(look(&press, f64::from(second), &[])).unwrap();
@@ -295,73 +299,86 @@ async fn a_broker_that_is_gone_for_a_minute_loses_nothing() {
         }
     })
     .await;
-    assert_eq!(fake.places("press"), (0..90).map(f64::from).collect::<Vec<_>>());
+    assert_eq!(fake_uplink.places("press"), (0..90).map(f64::from).collect::<Vec<_>>());
     assert_eq!(counts.unwrap(), Counts { published: 92, reconnects: 1, ..Counts::default() });
-    assert!(said.iter().any(|line| line.contains("again after") && line.contains("in the buffer")), "{said:?}");
-    assert_eq!(said.iter().filter(|line| line.contains("closed the connection")).count(), 1, "{said:?}");
+    assert!(
+        log_lines.iter().any(|line| line.contains("again after") && line.contains("in the buffer")),
+        "{log_lines:?}"
+    );
+    assert_eq!(log_lines.iter().filter(|line| line.contains("closed the connection")).count(), 1, "{log_lines:?}");
 }
 
 #[tokio::test(start_paused = true)]
-async fn what_has_no_room_goes_the_oldest_first_and_is_said() {
+async fn full_buffer_drops_and_reports_the_oldest_record() {
     let folder = TempDir::new().unwrap();
     let spool = Spool::open(folder.path(), 16 << 10).unwrap();
-    let fake = Fake::new(Mood::Away);
-    let (counts, said) = pumped(&fake, Outbox::new(4096, Some(spool)), async |tell| {
+    let fake_uplink = FakeUplink::new(BrokerBehavior::Away);
+    let (counts, log_lines) = pumped(&fake_uplink, Outbox::new(4096, Some(spool)), async |tell| {
         let press = robot("press");
         for second in 0..300 {
             tell.send(look(&press, f64::from(second), &[])).unwrap();
         }
         sleep(Duration::from_secs(10)).await;
-        fake.becomes(Mood::Works);
+        fake_uplink.set_behavior(BrokerBehavior::Works);
     })
     .await;
     let counts = counts.unwrap();
     assert!(counts.dropped > 0 && counts.published > 20 && counts.published + counts.dropped == 302, "{counts:?}");
-    let places = fake.places("press");
+    let places = fake_uplink.places("press");
     let first = 300 - u32::try_from(places.len()).unwrap();
     assert_eq!(places, (first..300).map(f64::from).collect::<Vec<_>>());
-    assert!(said.iter().any(|line| line.contains(&format!("{} messages were dropped", counts.dropped))), "{said:?}");
+    assert!(
+        log_lines.iter().any(|line| line.contains(&format!("{} messages were dropped", counts.dropped))),
+        "{log_lines:?}"
+    );
 }
 
 #[tokio::test(start_paused = true)]
-async fn pauses_grow_up_to_a_minute_and_are_never_the_same() {
-    let fake = Fake::new(Mood::Away);
-    let (counts, _) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
+async fn retry_pauses_grow_to_a_minute_with_jitter() {
+    let fake_uplink = FakeUplink::new(BrokerBehavior::Away);
+    let (counts, _) = pumped(&fake_uplink, Outbox::new(MEMORY, None), async |tell| {
         sleep(Duration::from_secs(600)).await;
-        fake.becomes(Mood::Works);
+        fake_uplink.set_behavior(BrokerBehavior::Works);
         drop(tell);
     })
     .await;
     counts.unwrap();
-    let attempts = fake.attempts.borrow();
+    let attempts = fake_uplink.attempts.borrow();
     let pauses: Vec<f64> = attempts.windows(2).map(|pair| (pair[1] - pair[0]).as_secs_f64()).collect();
     assert!((0.7..1.3).contains(&pauses[0]) && (1.4..2.6).contains(&pauses[1]), "{pauses:?}");
     assert!(pauses[7..].iter().all(|pause| (44.0..76.0).contains(pause)), "{pauses:?}");
     assert!(pauses[7..].windows(2).all(|pair| (pair[0] - pair[1]).abs() > 1e-6), "{pauses:?}");
-    assert!(attempts[0] - fake.start < Duration::from_millis(10), "the first one at once");
+    assert!(attempts[0] - fake_uplink.start < Duration::from_millis(10), "the first one at once");
 }
 
 #[tokio::test(start_paused = true)]
-async fn pauses_grow_as_well_where_each_connection_begins_well() {
-    let fake = Fake::new(Mood::Breaks);
-    let (counts, said) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
+async fn retry_pauses_grow_after_short_connections() {
+    let fake_uplink = FakeUplink::new(BrokerBehavior::Breaks);
+    let (counts, log_lines) = pumped(&fake_uplink, Outbox::new(MEMORY, None), async |tell| {
         sleep(Duration::from_secs(600)).await;
-        fake.becomes(Mood::Works);
+        fake_uplink.set_behavior(BrokerBehavior::Works);
         drop(tell);
     })
     .await;
     counts.unwrap();
-    let attempts = fake.attempts.borrow();
+    let attempts = fake_uplink.attempts.borrow();
     assert!((12..22).contains(&attempts.len()), "{attempts:?}");
-    assert!(said.iter().any(|line| line.contains("it does not follow the MQTT protocol: noise")), "{said:?}");
+    assert!(log_lines.iter().any(|line| line.contains("it does not follow the MQTT protocol: noise")), "{log_lines:?}");
 }
 
 #[tokio::test(start_paused = true)]
-async fn the_end_takes_less_than_a_second_in_every_state() {
-    for mood in [Mood::Works, Mood::Away, Mood::Hangs, Mood::Breaks, Mood::Mute, Mood::Lost] {
-        let fake = Fake::new(mood);
-        let (broker, url) = (&fake, "mqtt://broker".parse().unwrap());
-        let notes = Notes::default();
+async fn ends_within_a_second_in_every_state() {
+    for behavior in [
+        BrokerBehavior::Works,
+        BrokerBehavior::Away,
+        BrokerBehavior::Hangs,
+        BrokerBehavior::Breaks,
+        BrokerBehavior::Mute,
+        BrokerBehavior::Lost,
+    ] {
+        let fake_uplink = FakeUplink::new(behavior);
+        let (broker, url) = (&fake_uplink, "mqtt://broker".parse().unwrap());
+        let notes = LogRecorder::default();
         let outbox = Outbox::new(MEMORY, None);
         let mut pump = Delivery::new((&broker, &url), plain(), outbox, (&notes, Backoff::new(7)), false);
         let mut looks = [1.0, 2.0].map(|x_mm| look(&robot("press"), x_mm, &[])).into_iter();
@@ -372,86 +389,86 @@ async fn the_end_takes_less_than_a_second_in_every_state() {
         pump.run(found, sleep(Duration::from_millis(200))).await.unwrap();
         let stopped = Instant::now();
         pump.end(false).await;
-        assert!(stopped.elapsed() <= END_TIMEOUT, "{mood:?}: {:?}", stopped.elapsed());
+        assert!(stopped.elapsed() <= END_TIMEOUT, "{behavior:?}: {:?}", stopped.elapsed());
     }
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_broker_that_acknowledges_nothing_is_left() {
-    let fake = Fake::new(Mood::Hangs);
-    let (counts, said) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
+async fn leaves_a_broker_that_acknowledges_nothing() {
+    let fake_uplink = FakeUplink::new(BrokerBehavior::Hangs);
+    let (counts, log_lines) = pumped(&fake_uplink, Outbox::new(MEMORY, None), async |tell| {
         let press = robot("press");
         for second in 0..100 {
             tell.send(look(&press, f64::from(second), &[])).unwrap();
             sleep(Duration::from_secs(1)).await;
             if second == 60 {
-                fake.becomes(Mood::Works);
+                fake_uplink.set_behavior(BrokerBehavior::Works);
             }
         }
     })
     .await;
-    assert_eq!(fake.places("press"), (0..100).map(f64::from).collect::<Vec<_>>());
+    assert_eq!(fake_uplink.places("press"), (0..100).map(f64::from).collect::<Vec<_>>());
     assert!(counts.unwrap().reconnects >= 1);
-    assert!(said.iter().any(|line| line.contains("does not answer any longer")), "{said:?}");
+    assert!(log_lines.iter().any(|line| line.contains("does not answer any longer")), "{log_lines:?}");
 }
 
-const REFUSALS: [(Mood, &str); 4] = [
-    (Mood::Refuses(4), "wrong user name or password (check --user"),
-    (Mood::Refuses(5), "not authorized to connect (check --user"),
-    (Mood::Refuses(1), "this version of MQTT (try --protocol 5"),
+const REFUSALS: [(BrokerBehavior, &str); 4] = [
+    (BrokerBehavior::Refuses(4), "wrong user name or password (check --user"),
+    (BrokerBehavior::Refuses(5), "not authorized to connect (check --user"),
+    (BrokerBehavior::Refuses(1), "this version of MQTT (try --protocol 5"),
     (
-        Mood::Distrusted,
+        BrokerBehavior::Distrusted,
         "its certificate has expired (check the clock of this computer, or give the broker a new certificate)",
     ),
 ];
 
 #[tokio::test(start_paused = true)]
 async fn a_service_outlives_every_refusal() {
-    for (mood, why) in REFUSALS {
-        for first in [mood, Mood::Works] {
-            let fake = Fake::new(first);
-            let (counts, said) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
+    for (behavior, why) in REFUSALS {
+        for first in [behavior, BrokerBehavior::Works] {
+            let fake_uplink = FakeUplink::new(first);
+            let (counts, log_lines) = pumped(&fake_uplink, Outbox::new(MEMORY, None), async |tell| {
                 sleep(Duration::from_secs(1)).await;
-                fake.becomes(Mood::Away);
+                fake_uplink.set_behavior(BrokerBehavior::Away);
                 sleep(Duration::from_millis(10)).await;
-                fake.becomes(mood);
+                fake_uplink.set_behavior(behavior);
                 tell.send(look(&robot("press"), 1.0, &[])).unwrap();
                 sleep(Duration::from_secs(1800)).await;
-                fake.becomes(Mood::Works);
+                fake_uplink.set_behavior(BrokerBehavior::Works);
             })
             .await;
-            assert_eq!((counts.unwrap().published, fake.places("press")), (3, vec![1.0]));
-            let attempts = fake.attempts.borrow().len();
+            assert_eq!((counts.unwrap().published, fake_uplink.places("press")), (3, vec![1.0]));
+            let attempts = fake_uplink.attempts.borrow().len();
             assert!((25..50).contains(&attempts), "{attempts} in half an hour");
             // Once at first, then every ten minutes.
-            let lines = said.iter().filter(|line| line.contains(why) && line.contains("next try in")).count();
-            assert!((2..=4).contains(&lines), "{said:?}");
+            let lines = log_lines.iter().filter(|line| line.contains(why) && line.contains("next try in")).count();
+            assert!((2..=4).contains(&lines), "{log_lines:?}");
         }
     }
 }
 
 #[tokio::test(start_paused = true)]
 async fn a_bounded_run_ends_with_the_refusal() {
-    for (mood, why) in REFUSALS {
-        let fake = Fake::new(mood);
-        let (broker, notes, url) = (&fake, Notes::default(), "mqtt://broker".parse().unwrap());
+    for (behavior, why) in REFUSALS {
+        let fake_uplink = FakeUplink::new(behavior);
+        let (broker, notes, url) = (&fake_uplink, LogRecorder::default(), "mqtt://broker".parse().unwrap());
         let mut pump =
             Delivery::new((&broker, &url), plain(), Outbox::new(MEMORY, None), (&notes, Backoff::new(7)), true);
         let failure = pump.run(async || pending().await, pending()).await.unwrap_err();
         let (message, hint) = why.split_once(" (").unwrap();
         assert!(failure.message.contains(message) && failure.hint.unwrap().starts_with(hint.trim_end_matches(')')));
-        assert_eq!((failure.kind, fake.attempts.borrow().len()), (failure::Kind::Usage, 1));
+        assert_eq!((failure.kind, fake_uplink.attempts.borrow().len()), (failure::Kind::Usage, 1));
     }
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_broker_that_is_not_available_is_waited_for() {
-    let fake = Fake::new(Mood::Refuses(3));
-    let (counts, _) = pumped(&fake, Outbox::new(MEMORY, None), async |tell| {
+async fn waits_for_an_unavailable_broker() {
+    let fake_uplink = FakeUplink::new(BrokerBehavior::Refuses(3));
+    let (counts, _) = pumped(&fake_uplink, Outbox::new(MEMORY, None), async |tell| {
         tell.send(look(&robot("press"), 1.0, &[])).unwrap();
         sleep(Duration::from_secs(60)).await;
-        fake.becomes(Mood::Works);
+        fake_uplink.set_behavior(BrokerBehavior::Works);
     })
     .await;
-    assert_eq!((counts.unwrap().published, fake.places("press")), (3, vec![1.0]));
+    assert_eq!((counts.unwrap().published, fake_uplink.places("press")), (3, vec![1.0]));
 }

@@ -132,7 +132,7 @@ impl Topics {
 }
 
 /// Longest level in bytes. A topic can have 65,535 bytes, but many brokers allow fewer.
-const LONGEST: usize = 200;
+const MAX_LEVEL_BYTES: usize = 200;
 
 /// Encodes a name as a level.
 pub fn level(name: &str) -> Result<String, Failure> {
@@ -145,11 +145,11 @@ pub fn level(name: &str) -> Result<String, Failure> {
             level.push(c);
         }
     }
-    if level.is_empty() || level.len() > LONGEST {
+    if level.is_empty() || level.len() > MAX_LEVEL_BYTES {
         let shown: String = name.chars().take(40).collect();
         let why = if level.is_empty() { "is empty" } else { "is too long for a topic" };
         return Err(Failure::usage(format!("the name '{shown}' {why}"))
-            .hint(format!("change the name in robots.toml: a name in a topic has 1 to {LONGEST} bytes")));
+            .hint(format!("change the name in robots.toml: a name in a topic has 1 to {MAX_LEVEL_BYTES} bytes")));
     }
     Ok(level)
 }
@@ -161,8 +161,8 @@ fn is_empty_level(c: char) -> bool {
 
 /// Checks a topic prefix: levels separated by `/`, used unchanged.
 pub fn prefix(text: &str) -> Result<String, String> {
-    if text.is_empty() || text.len() > LONGEST {
-        return Err(format!("a prefix has 1 to {LONGEST} bytes"));
+    if text.is_empty() || text.len() > MAX_LEVEL_BYTES {
+        return Err(format!("a prefix has 1 to {MAX_LEVEL_BYTES} bytes"));
     }
     if text.starts_with('$') {
         return Err("topics that begin with $ are reserved for the broker".to_owned());
@@ -178,8 +178,8 @@ pub fn prefix(text: &str) -> Result<String, String> {
 
 /// Checks a Sparkplug identifier: no `+`, `#` or `/`.
 pub fn identifier(text: &str) -> Result<String, String> {
-    if text.is_empty() || text.len() > LONGEST {
-        return Err(format!("an identifier has 1 to {LONGEST} bytes"));
+    if text.is_empty() || text.len() > MAX_LEVEL_BYTES {
+        return Err(format!("an identifier has 1 to {MAX_LEVEL_BYTES} bytes"));
     }
     if text.chars().any(|c| matches!(c, '+' | '#' | '/') || c.is_control() || is_empty_level(c)) {
         return Err("an identifier has no +, no #, no / and no control characters".to_owned());

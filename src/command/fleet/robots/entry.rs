@@ -3,7 +3,7 @@
 use toml_edit::{Array, Table, Value, value};
 
 use super::file::change;
-use armctl_controller::nearest::nearest;
+use armctl_controller::similar_word::nearest;
 use armctl_controller::text::Encoding;
 use armctl_controller::yerc::Model;
 use armctl_frame::Candidate;

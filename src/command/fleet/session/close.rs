@@ -2,11 +2,11 @@
 
 use super::list::locations;
 use crate::command::families;
-use armctl_controller::nearest::nearest;
-use armctl_frame::attach::{attach_failure, folder_failure, identify};
+use armctl_controller::similar_word::nearest;
 use armctl_frame::interrupt::catch_interrupts;
 use armctl_frame::prelude::*;
 use armctl_frame::prompt::ask;
+use armctl_frame::session_client::{attach_failure, folder_failure, identify};
 use armctl_frame::settings::target::Target;
 use armctl_transport::session::client::{AttachError, close};
 use armctl_transport::session::location::SessionPath;

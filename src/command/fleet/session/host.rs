@@ -13,10 +13,10 @@ use tokio::task::{JoinSet, LocalSet};
 
 use super::watched_entry::WatchedEntry;
 use crate::command::families;
-use armctl_frame::attach::{folder_failure, in_use, info, session_key};
 use armctl_frame::face::HeldLink;
 use armctl_frame::guardian::{self, SessionGuardian};
 use armctl_frame::prelude::*;
+use armctl_frame::session_client::{folder_failure, in_use, info, session_key};
 use armctl_frame::session_manager::{HeldBy, ManagerRequest, SessionManager};
 use armctl_transport::session::host::{EndReason, Host};
 use armctl_transport::session::location::{LockResult, SessionFolder};
@@ -55,7 +55,7 @@ impl SessionHost {
         };
         let key = session_key(robot);
         let location = place.location(&key);
-        let claim = match location.lock_soon(&info(robot, access)).await {
+        let claim = match location.lock_or_attach(&info(robot, access)).await {
             Ok(LockResult::Locked(claim)) => claim,
             Ok(LockResult::Session) => return Ok(OpenResult::InUse),
             Ok(LockResult::Busy) => return Err(in_use(robot, &location)),
@@ -63,7 +63,7 @@ impl SessionHost {
         };
         let info = info(robot, access);
         let face = families::of(robot.family);
-        let HeldLink { held, finish } = face.hold(robot, access, screen).await?;
+        let HeldLink { held, finish } = face.open_session_link(robot, access, screen).await?;
         let host =
             Host::new(claim, key, info, held, log.clone()).with_context(|| location.socket().display().to_string())?;
         let orphaned_robot = robot.clone();
@@ -149,7 +149,7 @@ async fn work(mut orders: mpsc::UnboundedReceiver<ManagerRequest>, say: Say) {
         match order {
             ManagerRequest::Hold { robot, access, screen, done } => {
                 let (held, say, ended) = (Rc::clone(&by_robot), Arc::clone(&say), ended.clone());
-                holdings.spawn_local(hold(*robot, access, screen, done, held, say, ended));
+                holdings.spawn_local(open_session_link(*robot, access, screen, done, held, say, ended));
             }
             ManagerRequest::End(done) => {
                 end.send_replace(true);
@@ -162,7 +162,7 @@ async fn work(mut orders: mpsc::UnboundedReceiver<ManagerRequest>, say: Say) {
     }
 }
 
-async fn hold(
+async fn open_session_link(
     robot: Robot,
     access: Access,
     screen: Screen,

@@ -4,8 +4,8 @@ use std::time::Duration;
 
 use jiff::Timestamp;
 
-use armctl_frame::attach::folder_failure;
 use armctl_frame::prelude::*;
+use armctl_frame::session_client::folder_failure;
 use armctl_transport::session::client::{AttachError, status};
 use armctl_transport::session::location::{SessionFolder, SessionPath};
 use armctl_transport::session::wire::{Leftover, Peer, Status, VERSION};
@@ -62,7 +62,7 @@ struct Session {
     /// Whether the controller reports a running motion (yrcx).
     under_way: bool,
     /// Process that did not wait for the end of its remote command.
-    leftover: Option<Left>,
+    leftover: Option<DetachedMotion>,
 }
 
 /// A process that uses a session.
@@ -76,7 +76,7 @@ struct Client {
 
 /// A process that did not wait for the end of its command.
 #[derive(Debug, Serialize, JsonSchema)]
-struct Left {
+struct DetachedMotion {
     #[serde(flatten)]
     client: Client,
     /// Whether the process died. If not, the process ended without a wait, because the user requested this.
@@ -115,7 +115,7 @@ impl Session {
             clients: status.clients.into_iter().map(Client::from).collect(),
             motion: status.motion.map(Client::from),
             under_way: status.under_way,
-            leftover: status.leftover.map(|Leftover { by, died }| Left { client: by.into(), died }),
+            leftover: status.leftover.map(|Leftover { by, died }| DetachedMotion { client: by.into(), died }),
         }
     }
 
@@ -131,7 +131,7 @@ impl Session {
         } else if self.under_way {
             remarks.push("a motion runs".to_owned());
         }
-        if let Some(Left { client, died }) = &self.leftover {
+        if let Some(DetachedMotion { client, died }) = &self.leftover {
             let how = if *died { "has died" } else { "did not wait for the end of its command" };
             remarks.push(format!("process {} {how}: {}", client.pid, client.command));
         }

@@ -11,12 +11,12 @@ use jiff::Timestamp;
 
 use super::host::{OpenResult, SessionHost};
 use crate::command::families;
-use armctl_frame::attach::{folder_failure, format_since, identify, session_key};
 use armctl_frame::background::{self, DETACHED, Opened, Start, report_start};
 use armctl_frame::interrupt::{catch_interrupts, interruptible};
 use armctl_frame::output::log::Level;
 use armctl_frame::prelude::*;
 use armctl_frame::repeat_limiter::{Line, RepeatLimiter};
+use armctl_frame::session_client::{folder_failure, format_since, identify, session_key};
 use armctl_frame::settings::duration;
 use armctl_frame::settings::target::Family;
 use armctl_transport::session::client::status;
@@ -165,7 +165,7 @@ impl Drop for SessionLog {
 }
 
 /// Size limit of the log file. Above it, a new file is started, and the old file is kept.
-const LONGEST: u64 = 1 << 18;
+const MAX_LOG_SIZE: u64 = 1 << 18;
 
 impl SessionLog {
     fn say(&mut self, text: &str) {
@@ -182,7 +182,7 @@ impl SessionLog {
         };
         // A full disk must not end the session, because a robot can be moving.
         let _ = (|| {
-            if path.metadata().is_ok_and(|found| found.len() > LONGEST) {
+            if path.metadata().is_ok_and(|found| found.len() > MAX_LOG_SIZE) {
                 std::fs::rename(path, path.with_extension("log.1"))?;
             }
             let mut options = OpenOptions::new();

@@ -1,7 +1,7 @@
 //! Key bindings of the teach panel.
 
 use armctl_frame::output::fullscreen::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
-use armctl_frame::output::painter::Explained;
+use armctl_frame::output::painter::KeyHelp;
 
 /// Action of a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,19 +81,19 @@ pub fn action(key: KeyEvent, is_asked: bool) -> Option<KeyAction> {
 }
 
 /// All keys in the order of the help.
-pub const KEYS: [Explained; 12] = [
-    Explained { key: "← →", short: "step", full: "move the selected axis by one step in direction - or +" },
-    Explained { key: "↑ ↓", short: "axis", full: "select the axis" },
-    Explained { key: "Space", short: "STOP", full: "stop the robot, at any time" },
-    Explained { key: "+ -", short: "size", full: "larger steps, smaller steps" },
-    Explained { key: "< >", short: "speed", full: "slower, faster" },
-    Explained { key: "c", short: "system", full: "next coordinate system; also Tab" },
-    Explained { key: "T", short: "teach", full: "teach: store the current position as a point" },
-    Explained { key: "G", short: "go", full: "move to a point in one motion" },
-    Explained { key: "r", short: "", full: "release the hold after a stop" },
-    Explained { key: "?", short: "help", full: "this list; also h" },
-    Explained { key: "q", short: "quit", full: "end, after the motion" },
-    Explained { key: "Ctrl-C", short: "", full: "stop, and end with exit code 130" },
+pub const KEYS: [KeyHelp; 12] = [
+    KeyHelp { key: "← →", short: "step", full: "move the selected axis by one step in direction - or +" },
+    KeyHelp { key: "↑ ↓", short: "axis", full: "select the axis" },
+    KeyHelp { key: "Space", short: "STOP", full: "stop the robot, at any time" },
+    KeyHelp { key: "+ -", short: "size", full: "larger steps, smaller steps" },
+    KeyHelp { key: "< >", short: "speed", full: "slower, faster" },
+    KeyHelp { key: "c", short: "system", full: "next coordinate system; also Tab" },
+    KeyHelp { key: "T", short: "teach", full: "teach: store the current position as a point" },
+    KeyHelp { key: "G", short: "go", full: "move to a point in one motion" },
+    KeyHelp { key: "r", short: "", full: "release the hold after a stop" },
+    KeyHelp { key: "?", short: "help", full: "this list; also h" },
+    KeyHelp { key: "q", short: "quit", full: "end, after the motion" },
+    KeyHelp { key: "Ctrl-C", short: "", full: "stop, and end with exit code 130" },
 ];
 
 #[cfg(test)]

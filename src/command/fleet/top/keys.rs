@@ -1,7 +1,7 @@
 //! Key bindings of `top`. No key sends anything to a robot.
 
 use armctl_frame::output::fullscreen::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
-use armctl_frame::output::painter::Explained;
+use armctl_frame::output::painter::KeyHelp;
 
 /// Action of a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -97,31 +97,31 @@ pub fn action(key: KeyEvent, is_typing: bool) -> Option<KeyAction> {
 }
 
 /// All keys in the order of the help, with their validity in the list and on the robot screen.
-pub const KEYS: [((bool, bool), Explained); 15] = [
-    explained((true, false), "↑ ↓", "choose", "select a robot; also j k, PgUp PgDn, Home End"),
-    explained((true, false), "Enter", "open", "open the selected robot"),
-    explained((false, true), "Esc", "list", "back to the list; also Backspace"),
-    explained((false, true), "↑ ↓", "axis", "select the axis of the charts"),
-    explained((false, true), "← →", "robot", "previous robot, next robot; also p n"),
-    explained((true, false), "/", "filter", "filter by text in name, family, address or tag"),
-    explained((true, false), "Esc", "", "show all robots again"),
-    explained((true, false), "s", "sort", "sort: inventory, alarms first, name, slowest first"),
-    explained((true, true), "Space", "pause", "pause the display; polling continues"),
-    explained((true, true), "+ -", "pace", "poll more often, less often"),
-    explained((true, true), "?", "help", "this list; also h"),
-    explained((true, true), "q", "quit", "end"),
-    explained((true, true), "Ctrl-C", "", "end with exit code 130"),
-    explained((true, true), "Ctrl-Z", "", "suspend; `fg` continues"),
-    explained((true, true), "Ctrl-L", "", "redraw the screen"),
+pub const KEYS: [((bool, bool), KeyHelp); 15] = [
+    with_help((true, false), "↑ ↓", "choose", "select a robot; also j k, PgUp PgDn, Home End"),
+    with_help((true, false), "Enter", "open", "open the selected robot"),
+    with_help((false, true), "Esc", "list", "back to the list; also Backspace"),
+    with_help((false, true), "↑ ↓", "axis", "select the axis of the charts"),
+    with_help((false, true), "← →", "robot", "previous robot, next robot; also p n"),
+    with_help((true, false), "/", "filter", "filter by text in name, family, address or tag"),
+    with_help((true, false), "Esc", "", "show all robots again"),
+    with_help((true, false), "s", "sort", "sort: inventory, alarms first, name, slowest first"),
+    with_help((true, true), "Space", "pause", "pause the display; polling continues"),
+    with_help((true, true), "+ -", "pace", "poll more often, less often"),
+    with_help((true, true), "?", "help", "this list; also h"),
+    with_help((true, true), "q", "quit", "end"),
+    with_help((true, true), "Ctrl-C", "", "end with exit code 130"),
+    with_help((true, true), "Ctrl-Z", "", "suspend; `fg` continues"),
+    with_help((true, true), "Ctrl-L", "", "redraw the screen"),
 ];
 
-const fn explained(
+const fn with_help(
     is_relevant: (bool, bool),
     key: &'static str,
     short: &'static str,
     full: &'static str,
-) -> ((bool, bool), Explained) {
-    (is_relevant, Explained { key, short, full })
+) -> ((bool, bool), KeyHelp) {
+    (is_relevant, KeyHelp { key, short, full })
 }
 
 #[cfg(test)]

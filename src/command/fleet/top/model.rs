@@ -439,7 +439,7 @@ mod tests {
     use armctl_frame::robot::state::Fault;
 
     const NOW: Moment = Duration::from_secs(10);
-    const EVERY: Duration = Duration::from_millis(500);
+    const POLL_INTERVAL: Duration = Duration::from_millis(500);
 
     fn names(model: &Model) -> Vec<&str> {
         model.visible_robots().into_iter().map(|robot| model.robots()[robot].name.as_str()).collect()
@@ -447,7 +447,7 @@ mod tests {
 
     #[test]
     fn sorts_by_severity() {
-        let mut model = Model::new(&fleet(4), EVERY);
+        let mut model = Model::new(&fleet(4), POLL_INTERVAL);
         model.take(NOW, 0, Ok(sample(0.0)));
         model.take(NOW, 1, Err(fail()));
         let mut alarmed = sample(0.0);
@@ -461,7 +461,7 @@ mod tests {
 
     #[test]
     fn filter_keeps_the_cursor_in_the_list() {
-        let mut model = Model::new(&fleet(12), EVERY);
+        let mut model = Model::new(&fleet(12), POLL_INTERVAL);
         model.handle_key(NOW, KeyAction::Filter);
         "L1".chars().for_each(|character| model.handle_key(NOW, KeyAction::Type(character)));
         assert_eq!(names(&model), ["cell1", "cell10", "cell11", "cell12"]);
@@ -478,10 +478,10 @@ mod tests {
 
     #[test]
     fn pause_freezes_the_display_without_losing_data() {
-        let mut model = Model::new(&fleet(1), EVERY);
+        let mut model = Model::new(&fleet(1), POLL_INTERVAL);
         model.take(NOW, 0, Ok(sample(1.0)));
         model.handle_key(NOW, KeyAction::Pause);
-        let later = NOW + EVERY;
+        let later = NOW + POLL_INTERVAL;
         model.take(later, 0, Ok(sample(2.0)));
         assert_eq!(model.robots()[0].tracks[0].positions.len(), 1);
         assert_eq!(model.displayed_time(later), NOW);
@@ -492,7 +492,7 @@ mod tests {
 
     #[test]
     fn polls_full_detail_of_the_open_robot_only() {
-        let mut model = Model::new(&fleet(2), EVERY);
+        let mut model = Model::new(&fleet(2), POLL_INTERVAL);
         assert_eq!(model.open(), None);
         model.handle_key(NOW, KeyAction::Open);
         let id = |model: &Model, at: usize| Some(model.robots[at].id());
@@ -501,7 +501,7 @@ mod tests {
         assert_eq!(model.open(), id(&model, 1));
         model.handle_key(NOW, KeyAction::Back);
         assert_eq!(model.open(), None);
-        let single = Model::new(&fleet(1), EVERY);
+        let single = Model::new(&fleet(1), POLL_INTERVAL);
         assert_eq!(single.open(), id(&single, 0), "a single one needs no list");
     }
 
@@ -518,21 +518,21 @@ mod tests {
 
     #[test]
     fn hides_outdated_data_of_a_silent_robot() {
-        let mut model = Model::new(&fleet(1), EVERY);
+        let mut model = Model::new(&fleet(1), POLL_INTERVAL);
         model.take(NOW, 0, Ok(sample(1.0)));
-        model.take(NOW + EVERY, 0, Err(fail()));
+        model.take(NOW + POLL_INTERVAL, 0, Err(fail()));
         let seen = &model.robots()[0];
         assert_eq!(seen.sample(), None);
-        assert_eq!(seen.age(NOW + EVERY), Some(EVERY));
-        assert!(seen.is_stale(NOW + Duration::from_secs(3), EVERY));
-        model.take(NOW + 2 * EVERY, 0, Ok(sample(2.0)));
+        assert_eq!(seen.age(NOW + POLL_INTERVAL), Some(POLL_INTERVAL));
+        assert!(seen.is_stale(NOW + Duration::from_secs(3), POLL_INTERVAL));
+        model.take(NOW + 2 * POLL_INTERVAL, 0, Ok(sample(2.0)));
         assert!(model.robots()[0].sample().is_some());
     }
 
     #[test]
     fn cursor_stays_at_its_robot() {
         let robots = fleet(4);
-        let mut model = Model::new(&robots[..3], EVERY);
+        let mut model = Model::new(&robots[..3], POLL_INTERVAL);
         model.handle_key(NOW, KeyAction::Down(2));
         model.handle_key(NOW, KeyAction::Open);
         model.add_robot(&robots[0]);
@@ -555,7 +555,7 @@ mod tests {
 
     #[test]
     fn cursor_stays_in_range() {
-        let mut model = Model::new(&fleet(3), EVERY);
+        let mut model = Model::new(&fleet(3), POLL_INTERVAL);
         model.handle_key(NOW, KeyAction::Down(99));
         assert_eq!(model.cursor, 2);
         model.handle_key(NOW, KeyAction::Up(99));
@@ -566,7 +566,7 @@ mod tests {
         assert_eq!(model.axis, model.robots()[0].tracks.len() - 1);
         model.handle_key(NOW, KeyAction::Next);
         assert_eq!((model.cursor, model.axis), (1, 0));
-        let mut empty = Model::new(&[], EVERY);
+        let mut empty = Model::new(&[], POLL_INTERVAL);
         for order in [
             KeyAction::Down(1),
             KeyAction::Up(1),

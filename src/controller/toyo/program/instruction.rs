@@ -1,8 +1,8 @@
 //! Parser of one instruction in user notation: short numbers, any case, labels instead of tag numbers.
 
 use crate::findings::{Findings, SourceLocation};
-use crate::names::{Found, Names};
-use crate::nearest::nearest;
+use crate::names::{NameMatch, Names};
+use crate::similar_word::nearest;
 use crate::toyo::field::{Field, FieldError, Form, Value};
 use crate::toyo::names;
 use crate::toyo::table::instructions::INSTRUCTIONS;
@@ -182,12 +182,12 @@ fn unknown_short(row: &Instruction, text: &str, known: &Names) -> Option<(String
 fn by_name(field: &Field, text: &str, known: &Names) -> Result<Option<i32>, String> {
     let Some((kind, _)) = names::of_field(field.name) else { return Ok(None) };
     match known.find(&[kind], text) {
-        Found::One(name) => Ok(names::number(&name.address)),
-        Found::Several(several) => {
+        NameMatch::One(name) => Ok(names::number(&name.address)),
+        NameMatch::Several(several) => {
             let addresses: Vec<&str> = several.iter().map(|name| name.address.as_str()).collect();
             Err(format!("'{}' is the name of {}; write the number", excerpt(text), addresses.join(" and of ")))
         }
-        Found::None => Ok(None),
+        NameMatch::None => Ok(None),
     }
 }
 

@@ -29,7 +29,7 @@ pub use listing::{
     Listing, NOT_IN_MANUAL, NOT_READ, Rows, Style, Unread, listing, listing_named, listing_with, not_read, tags, used,
     uses,
 };
-pub use paths::Known;
+pub use paths::ControllerData;
 
 use super::layout::Record;
 use super::table::Instruction;
@@ -38,7 +38,7 @@ use crate::findings::{Findings, SourceLocation};
 use crate::names::Names;
 
 /// Maximum total of steps of all tasks (TO 2-4, E22).
-pub const MOST_STEPS: usize = 5000;
+pub const MAX_STEPS: usize = 5000;
 
 /// A valid program.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -156,11 +156,11 @@ pub fn check_part(text: &[u8], room: usize, part: &Part) -> Checked {
 
 /// Parses a program or a part of a program, with these names.
 pub fn check_named(text: &[u8], room: usize, part: Option<&Part>, names: &Names) -> Checked {
-    check_known(text, room, part, names, &Known::default())
+    check_known(text, room, part, names, &ControllerData::default())
 }
 
 /// Parses a program or a part of a program, and compares it with known data of the controller.
-pub fn check_known(text: &[u8], room: usize, part: Option<&Part>, names: &Names, known: &Known) -> Checked {
+pub fn check_known(text: &[u8], room: usize, part: Option<&Part>, names: &Names, known: &ControllerData) -> Checked {
     let mut findings = Findings::default();
     if let Some((what, hint)) = foreign(text) {
         findings.error(SourceLocation { line: 1, column: 1 }, what, Some(hint.to_owned()));

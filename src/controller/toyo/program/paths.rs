@@ -14,7 +14,7 @@ use crate::toyo::table::Op;
 
 /// Known data of a controller.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Known {
+pub struct ControllerData {
     /// Existing points; `None` if unknown.
     pub points: Option<BTreeSet<i32>>,
 }
@@ -25,7 +25,7 @@ const DEPTH: usize = 16;
 const INTERNAL_PORTS: i32 = 4;
 
 /// Reports problems on any path. If the text is a part of a program, the steps outside the part are unknown.
-pub(super) fn check(resolved: &Resolved, is_part: bool, known: &Known, findings: &mut Findings) {
+pub(super) fn check(resolved: &Resolved, is_part: bool, known: &ControllerData, findings: &mut Findings) {
     let steps = &resolved.program.steps;
     let mut finder = Finder { steps, places: &resolved.places, findings };
     finder.points(known);
@@ -63,7 +63,7 @@ impl Finder<'_> {
     }
 
     /// Reports points that do not exist, and row 0 without a counter.
-    fn points(&mut self, known: &Known) {
+    fn points(&mut self, known: &ControllerData) {
         for (index, record) in self.steps.iter().map(|step| &step.record).enumerate() {
             let (Some(point), Some(counter)) = (record.number("point"), record.number("counter")) else { continue };
             if counter == 0 && point == 0 {

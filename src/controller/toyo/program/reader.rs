@@ -2,7 +2,7 @@
 
 use super::instruction::{Cursor, Draft, TagUse, Target, excerpt, is_label, read as read_instruction};
 use super::listing::NOT_READ;
-use super::{MOST_STEPS, Part};
+use super::{MAX_STEPS, Part};
 use crate::findings::{Findings, SourceLocation};
 use crate::names::Names;
 use crate::source;
@@ -34,7 +34,7 @@ pub(super) fn read(
     names: &Names,
     findings: &mut Findings,
 ) -> ParsedLines {
-    let room = room.min(MOST_STEPS);
+    let room = room.min(MAX_STEPS);
     let lines = source::lines(text, findings);
     let start = part.map_or(1, |part| part.first);
     let mut reader = Reader { read: ParsedLines::default(), start, first: None, names, findings };
@@ -56,7 +56,7 @@ pub(super) fn read(
             );
         }
         // The parser stops here, because not even a task with all steps has this step.
-        if after > MOST_STEPS {
+        if after > MAX_STEPS {
             break;
         }
     }
@@ -96,7 +96,7 @@ impl Reader<'_> {
             self.findings.error(cursor.place(), "this step was not read from the controller", Some(hint.to_owned()));
             return self.read.steps.push(Draft::empty(cursor.place()));
         }
-        while self.read.steps.len() <= MOST_STEPS && !self.findings.is_full() {
+        while self.read.steps.len() <= MAX_STEPS && !self.findings.is_full() {
             let at = cursor.place();
             let Some(text) = cursor.before_colon() else { break };
             self.label(text, at);

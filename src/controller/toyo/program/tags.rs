@@ -7,7 +7,7 @@ use super::instruction::{Draft, Target};
 use super::reader::{LabelDefinition, ParsedLines};
 use super::{Label, Part, Program, Step};
 use crate::findings::{Findings, SourceLocation};
-use crate::nearest::nearest;
+use crate::similar_word::nearest;
 use crate::toyo::field::Value;
 use crate::toyo::table::Op;
 
@@ -17,7 +17,7 @@ pub(super) struct Resolved {
     pub places: Vec<SourceLocation>,
 }
 
-const MOST: usize = 999;
+const MAX_TAG: usize = 999;
 
 /// Assigns tags to labels, and to the steps that use the labels. The result is a valid program only if there are no
 /// errors.
@@ -89,7 +89,7 @@ impl Tags<'_> {
     /// Assigns a tag number to each label that has no number. The assigned numbers begin at 1, without the numbers that
     /// occur in the file.
     fn assign_tags(&mut self, read: &ParsedLines, findings: &mut Findings) {
-        let mut taken = vec![false; MOST + 1];
+        let mut taken = vec![false; MAX_TAG + 1];
         let uses = read.steps.iter().flat_map(|draft| &draft.tags);
         let named = uses.filter_map(|used| if let Target::Number(tag) = used.target { Some(tag) } else { None });
         let explicit_tags = self.list.iter().filter(|label| label.has_explicit_tag).map(|label| label.tag);
@@ -103,7 +103,7 @@ impl Tags<'_> {
             if let Some(tag) = free.next() {
                 label.tag = tag;
             } else {
-                let message = format!("no free tag for label {}; all {MOST} are in use", label.name);
+                let message = format!("no free tag for label {}; all {MAX_TAG} are in use", label.name);
                 findings.error(label.at, message, None);
                 return;
             }
@@ -112,7 +112,7 @@ impl Tags<'_> {
 
     /// Collects the positions of the tags. Each tag must be unique.
     fn collect_positions(&mut self, steps: &[Draft], findings: &mut Findings) {
-        self.defined = vec![None; MOST + 1];
+        self.defined = vec![None; MAX_TAG + 1];
         for draft in steps.iter().filter(|draft| draft.instruction.op == Op::Tag) {
             let Some(used) = draft.tags.first() else { continue };
             let Some(tag) = self.tag_of(&used.target) else { continue };

@@ -3,13 +3,13 @@ use crate::toyo::request;
 use crate::toyo::table::instructions::INSTRUCTIONS;
 
 fn texts(text: &str) -> Vec<String> {
-    let checked = check(text.as_bytes(), MOST_STEPS);
+    let checked = check(text.as_bytes(), MAX_STEPS);
     let program = checked.program.unwrap_or_else(|| panic!("{text}: {:?}", checked.findings));
     program.steps.iter().map(Step::text).collect()
 }
 
 fn findings(text: impl AsRef<[u8]>) -> Vec<String> {
-    check(text.as_ref(), MOST_STEPS).findings.iter().map(ToString::to_string).collect()
+    check(text.as_ref(), MAX_STEPS).findings.iter().map(ToString::to_string).collect()
 }
 
 /// The only finding for a program of this line and END.
@@ -275,7 +275,7 @@ fn a_listing_reads_back() {
     for numbered in [false, true] {
         let listing = listing(&steps, whole(numbered), &Rows::new());
         assert_eq!(listing.left_out, 2);
-        let program = check(listing.text.as_bytes(), MOST_STEPS).program.unwrap();
+        let program = check(listing.text.as_bytes(), MAX_STEPS).program.unwrap();
         assert_eq!(program.steps.len(), steps.len() - 2);
         let same = program.steps.iter().zip(&steps).filter(|(step, record)| step.record == **record).count();
         // All steps are equal except RSMV, whose arrival mode is always PASS.

@@ -1,6 +1,6 @@
 //! Framer: splits received characters into blocks.
 
-use crate::toyo::request::MOST;
+use crate::toyo::request::MAX_BLOCK_LEN;
 
 /// Framer: finds the blocks in a stream of characters.
 #[derive(Debug, Default)]
@@ -42,7 +42,7 @@ impl Framer {
                 self.stray = self.stray.saturating_add(1);
                 return (None, 1);
             }
-            b' '..=b'~' if self.text.len() + 2 < MOST => self.text.push(char::from(byte)),
+            b' '..=b'~' if self.text.len() + 2 < MAX_BLOCK_LEN => self.text.push(char::from(byte)),
             b' '..=b'~' => self.broken = Some("it is too long for a block"),
             _ => self.broken = Some("it contains characters that are not possible in a block"),
         }

@@ -17,7 +17,7 @@ const SAME: f64 = 1e-6;
 
 /// An axis that pushes against an obstacle.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Press {
+pub(super) struct WallContact {
     /// Time at which the simulator decides whether the axis is locked.
     pub(super) due: Option<Now>,
     /// Whether the simulator decided that the axis is locked.

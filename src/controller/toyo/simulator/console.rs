@@ -39,7 +39,7 @@ pub(super) enum ConsoleLine {
     Input(Port, Mask),
     /// Sets bits of the system port SY01.
     System(u8, bool),
-    Press(Button),
+    WallContact(Button),
     StartAt(usize),
     Clear,
     Servo(bool),
@@ -74,11 +74,11 @@ impl ConsoleLine {
             ["robot" | "state"] => Self::State,
             ["why"] => Self::Why,
             ["input", place, value] => input(place, value)?,
-            ["start"] => Self::Press(Button::Start),
+            ["start"] => Self::WallContact(Button::Start),
             ["start", step] => Self::StartAt(number(step, 1..=5000)?),
-            ["stop"] => Self::Press(Button::Stop),
-            ["reset"] => Self::Press(Button::Reset),
-            ["home"] => Self::Press(Button::Home),
+            ["stop"] => Self::WallContact(Button::Stop),
+            ["reset"] => Self::WallContact(Button::Reset),
+            ["home"] => Self::WallContact(Button::Home),
             ["clear"] => Self::Clear,
             ["servo", state] => Self::Servo(on_off(state)?),
             ["pendant", state] => Self::Pendant(on_off(state)?),
@@ -110,7 +110,7 @@ impl ConsoleLine {
             }
             Self::Input(port, mask) => set_input(world, port, mask)?,
             Self::System(mask, on) => set_system(world, mask, on),
-            Self::Press(button) => press(world, button)?,
+            Self::WallContact(button) => press(world, button)?,
             Self::StartAt(step) => {
                 host_off(world)?;
                 world.start_sequential(step)?;

@@ -3,9 +3,9 @@
 use super::arm::{HOST, Homing};
 use super::errors::code;
 use super::motion::{AXES, Coordinates, Drive, Path, Segment};
+use super::position_effects::NEAR;
 use super::task::Wait;
 use super::trace::What;
-use super::watch::NEAR;
 use super::world::{Jog, World};
 use crate::Now;
 

@@ -7,9 +7,9 @@ use crate::toyo::layout::Record;
 /// Number of stations: the controller itself and four more.
 pub(super) const STATIONS: usize = 5;
 /// Number of input ports and of output ports of the controller itself (TO 2-8).
-const OWN: (usize, usize) = (23, 18);
+const OWN_PORT_COUNTS: (usize, usize) = (23, 18);
 /// Number of input ports and of output ports of each other station.
-const OTHER: (usize, usize) = (3, 2);
+const STATION_PORT_COUNTS: (usize, usize) = (3, 2);
 /// Number of internal ports. An instruction has one digit for the port. MNIN reports only the first four ports.
 const INTERNAL: usize = 9;
 
@@ -51,7 +51,12 @@ pub(super) struct Ports {
 impl Default for Ports {
     fn default() -> Self {
         let ports = |own, other| std::array::from_fn(|station| vec![0; if station == 0 { own } else { other }]);
-        Self { inputs: ports(OWN.0, OTHER.0), outputs: ports(OWN.1, OTHER.1), internal: [0; INTERNAL], system: 0 }
+        Self {
+            inputs: ports(OWN_PORT_COUNTS.0, STATION_PORT_COUNTS.0),
+            outputs: ports(OWN_PORT_COUNTS.1, STATION_PORT_COUNTS.1),
+            internal: [0; INTERNAL],
+            system: 0,
+        }
     }
 }
 

@@ -15,7 +15,7 @@ pub(super) const TASKS: usize = 4;
 /// Number of rows in the coordinate table of each task.
 pub(super) const POINTS: usize = 999;
 /// Maximum total of steps of all tasks (TO 2-4, E22).
-pub(super) const MOST_STEPS: usize = 5000;
+pub(super) const MAX_STEPS: usize = 5000;
 /// Highest total of steps that leaves room for easy programs (TO 2-4, E22).
 pub(super) const STEPS_WITH_EASY: usize = 2000;
 const PALLETS: usize = 16;
@@ -326,7 +326,7 @@ impl Memory {
         };
         if parameter.id == "E22" {
             let total: i32 = record.pairs().map(|(field, _)| record.number(field.name).unwrap_or_default()).sum();
-            refuse_if(index(total) > MOST_STEPS, NoRoom)?;
+            refuse_if(index(total) > MAX_STEPS, NoRoom)?;
         }
         if !self.wear.write(cell) {
             return Ok(());

@@ -76,6 +76,7 @@ mod monitor;
 mod motion;
 mod moves;
 mod operate;
+mod position_effects;
 mod reply;
 mod routine;
 mod run;
@@ -83,7 +84,6 @@ mod settings;
 mod start;
 mod task;
 mod trace;
-mod watch;
 mod world;
 
 #[cfg(test)]
@@ -97,9 +97,9 @@ use self::console::ConsoleLine;
 use self::io::Port;
 use self::world::World;
 use super::layout::Record;
-use super::request::MOST;
+use super::request::MAX_BLOCK_LEN;
 use crate::Now;
-use crate::simulator::answers::{Answers, Busy};
+use crate::simulator::answers::{Busy, DelayedAnswers};
 
 /// Maximum number of answers that wait to be sent.
 const MAX_WAITING: usize = 64;
@@ -110,7 +110,7 @@ pub struct Simulator {
     world: World,
     busy: Busy,
     incoming: IncomingBlock,
-    answers: Answers<Vec<u8>>,
+    answers: DelayedAnswers<Vec<u8>>,
 }
 
 /// A partly received block.
@@ -151,7 +151,7 @@ impl Simulator {
             world: start.world,
             busy: Busy::new(start.busy, start.seed),
             incoming: IncomingBlock::default(),
-            answers: Answers::new(start.answer_delay, MAX_WAITING),
+            answers: DelayedAnswers::new(start.answer_delay, MAX_WAITING),
         }
     }
 
@@ -165,7 +165,7 @@ impl Simulator {
                 b'\n' if self.incoming.bytes.is_empty() => {}
                 // Characters before a block are noise. Of a block that is too long, only the first characters are kept:
                 // enough for a refusal.
-                _ if self.incoming.bytes.is_empty() || self.incoming.bytes.len() > MOST => {}
+                _ if self.incoming.bytes.is_empty() || self.incoming.bytes.len() > MAX_BLOCK_LEN => {}
                 _ => self.incoming.bytes.push(byte),
             }
         }

@@ -3,15 +3,15 @@
 use super::action::{Move, Target, Torque};
 use super::errors::code;
 use super::motion::{AXES, Arc, Coordinates, Drive, Path, Segment, minus, plus};
+use super::position_effects::NEAR;
 use super::task::{Flow, Wait};
-use super::watch::NEAR;
 use super::world::World;
 use crate::simulator::refuse_if;
 
 /// Number of rows in the coordinate table.
 const LAST_POINT: i32 = 999;
 /// Maximum radius of a circle in mm. The manual has no value.
-const MOST_RADIUS: f64 = 8000.0;
+const MAX_RADIUS: f64 = 8000.0;
 
 impl World {
     /// Begins a move. After the move, the task continues with step `next`.
@@ -52,7 +52,7 @@ impl World {
         let (to_base, to) = self.resolve_target(index, &second, &via)?;
         let round = &axes.axes[..axes.space];
         let arc = |via: Coordinates, to: Coordinates| {
-            Arc::through_points(from, via, to, round).filter(|arc| arc.radius() <= MOST_RADIUS).map(Path::Arc)
+            Arc::through_points(from, via, to, round).filter(|arc| arc.radius() <= MAX_RADIUS).map(Path::Arc)
         };
         if let Some(base) = arc(via_base, to_base) {
             self.within(&axes.axes, &base, code::target)?;

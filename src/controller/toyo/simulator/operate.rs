@@ -4,7 +4,7 @@
 
 use super::arm::HOST;
 use super::errors::code;
-use super::memory::{MOST_STEPS, TASKS};
+use super::memory::{MAX_STEPS, TASKS};
 use super::routine::Routine;
 use super::settings::Special;
 use super::world::{Kind, Mode, World};
@@ -277,7 +277,7 @@ impl World {
     pub(super) fn apply_memory_changes(&mut self) {
         self.settings = super::settings::Settings::from_content(&self.memory.content);
         for index in 0..TASKS {
-            debug_assert!(self.memory.size(index) <= MOST_STEPS);
+            debug_assert!(self.memory.size(index) <= MAX_STEPS);
             if self.tasks[index].step > self.memory.size(index).max(1) {
                 self.arm.discard_interrupted(index);
                 self.tasks[index].reset();

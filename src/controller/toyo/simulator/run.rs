@@ -13,7 +13,7 @@ use crate::toyo::field::Mask;
 /// Maximum nesting of subroutines. The manual gives no limit.
 pub(super) const DEPTH: usize = 16;
 /// Maximum value of a counter.
-const MOST_COUNT: i32 = 9999;
+const MAX_COUNTER: i32 = 9999;
 
 impl World {
     /// Executes all steps that are due.
@@ -285,7 +285,7 @@ impl World {
             Change::Set(count) => count,
             Change::Add(add) => {
                 let sum = i32::from(*count) + add;
-                u16::try_from(sum).ok().filter(|_| sum <= MOST_COUNT).ok_or(code::CALCULATION)?
+                u16::try_from(sum).ok().filter(|_| sum <= MAX_COUNTER).ok_or(code::CALCULATION)?
             }
         };
         Ok(())

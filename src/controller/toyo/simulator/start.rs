@@ -15,7 +15,7 @@ use super::console::ConsoleLine;
 use super::edit;
 use super::errors::{Entry, Errors};
 use super::io::{Port, Ports};
-use super::memory::{Content, MOST_STEPS, Memory, POINTS, STEPS_WITH_EASY, TASKS, Wear};
+use super::memory::{Content, MAX_STEPS, Memory, POINTS, STEPS_WITH_EASY, TASKS, Wear};
 use super::motion::AXES;
 use super::settings::{Machine, Settings};
 use super::task::Task;
@@ -373,8 +373,8 @@ fn program(world: &mut World, task: usize, steps: Vec<Record>) -> Result<(), Str
     if task == 1 {
         sizes[0] = sizes[0].max(steps.len());
     }
-    if sizes.iter().sum::<usize>() > MOST_STEPS {
-        return Err(format!("all tasks together have at most {MOST_STEPS} steps"));
+    if sizes.iter().sum::<usize>() > MAX_STEPS {
+        return Err(format!("all tasks together have at most {MAX_STEPS} steps"));
     }
     let sizes = sizes.map(|size| format!("{size:04}"));
     let [one, two, three, four] = &sizes;

@@ -7,7 +7,7 @@ use super::motion::Coordinates;
 use crate::Now;
 
 /// Maximum number of stored events. The oldest events are dropped.
-const MOST: usize = 1 << 16;
+const MAX_EVENTS: usize = 1 << 16;
 
 /// A timed event.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,7 +69,7 @@ impl Trace {
 
     pub(super) fn record(&mut self, at: Now, position: Coordinates, what: What) {
         let Some(events) = &mut self.events else { return };
-        if events.len() >= MOST {
+        if events.len() >= MAX_EVENTS {
             events.pop_front();
         }
         events.push_back(Event { at, position, what });

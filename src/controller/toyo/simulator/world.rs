@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::arm::{Arm, HOST, Press};
+use super::arm::{Arm, HOST, WallContact};
 use super::card::Card;
 use super::console;
 use super::errors::{Errors, code};
@@ -21,7 +21,7 @@ use crate::toyo::table::{FROM_3_36, Models};
 pub(super) const COUNTERS: usize = 100;
 pub(super) const TIMERS: usize = 10;
 /// Maximum value of a timer, in 0.1 s.
-const MOST_TENTHS: u32 = 9999;
+const MAX_TIMER_TENTHS: u32 = 9999;
 /// Version 3.36, in hundredths.
 const VERSION_3_36: i32 = 336;
 
@@ -111,7 +111,7 @@ pub(super) struct World {
     pub(super) pulses: Vec<(Now, Port, Mask)>,
     pub(super) outputs_at: Vec<OutputAt>,
     /// Axes that push against an obstacle.
-    pub(super) presses: [Option<Press>; AXES],
+    pub(super) presses: [Option<WallContact>; AXES],
     /// Time of the next position event. The field below is the number of changes of the arm for which this time was
     /// computed.
     pub(super) crossing: Option<Now>,
@@ -369,8 +369,8 @@ impl World {
     /// Value of a timer in 0.1 s.
     pub(super) fn timer(&self, number: usize) -> u32 {
         let Some(Some((since, from))) = self.timers.get(number) else { return 0 };
-        let tenths = u32::try_from(self.now.saturating_sub(*since).as_millis() / 100).unwrap_or(MOST_TENTHS);
-        from.saturating_add(tenths).min(MOST_TENTHS)
+        let tenths = u32::try_from(self.now.saturating_sub(*since).as_millis() / 100).unwrap_or(MAX_TIMER_TENTHS);
+        from.saturating_add(tenths).min(MAX_TIMER_TENTHS)
     }
 
     /// Current offset of each axis.

@@ -5,7 +5,7 @@ use super::fields::{
     word, words,
 };
 use super::palletizing::MODE;
-use super::{EVERY, KCA, KCA20, Models};
+use super::{ALL_MODELS, KCA, KCA20, Models};
 use crate::Risk;
 use crate::toyo::field::{Field, Form, Word};
 use crate::toyo::layout::Layout;
@@ -58,7 +58,7 @@ impl Row {
             writes_eeprom: false,
             requests: &[],
             answers: &[],
-            only_on: EVERY,
+            only_on: ALL_MODELS,
             section,
         }
     }

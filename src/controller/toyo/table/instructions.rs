@@ -4,7 +4,7 @@ use super::fields::{
     AIM, ARRIVAL, AXIS, COMPARE, COUNT, COUNTER, COUNTER_OR_NONE, COURSE, GROUP, MASK, POINT_OR_COUNTER, PORT, R, SIDE,
     SPEED, STATION, SWITCH, TAG, TASK, TIME, TIMER, X, Y, Z, digits, fixed, place, plain, word, words,
 };
-use super::{EVERY, KCA25, Models};
+use super::{ALL_MODELS, KCA25, Models};
 use crate::toyo::field::{Field, Form};
 use crate::toyo::layout::Layout;
 
@@ -83,7 +83,7 @@ macro_rules! instructions {
                 layout: Layout::new($text, $fields),
                 about: $about,
                 example: $example,
-                only_on: { let models = EVERY; $(let models = { let _ = models; $only_on };)? models },
+                only_on: { let models = ALL_MODELS; $(let models = { let _ = models; $only_on };)? models },
             },)*
         ];
     };

@@ -17,7 +17,7 @@ pub use parameters::{Group, Parameter};
 pub type Models = &'static [&'static str];
 
 /// All controllers support the row.
-pub const EVERY: Models = &[];
+pub const ALL_MODELS: Models = &[];
 /// The newer two-axis synchronous series.
 pub const KCA20: Models = &["KCA-20-M00", "KCA-20-M01"];
 /// The series with torque limits.

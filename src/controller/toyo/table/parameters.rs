@@ -7,7 +7,7 @@ use super::fields::{
     AIM, AXIS, BIT, COUNTER, GROUP, POINT, PORT, R, SIDE, STATION, VALID, X, Y, Z, axes, digits, fixed, place, plain,
     word, words,
 };
-use super::{EVERY, FROM_3_36, KCA, KCA20, KCA25, Models};
+use super::{ALL_MODELS, FROM_3_36, KCA, KCA20, KCA25, Models};
 use crate::toyo::field::{Field, Form, Number, Word};
 use crate::toyo::layout::Layout;
 
@@ -112,11 +112,11 @@ const fn single(
     fields: &'static [Field],
     about: &'static str,
 ) -> Parameter {
-    Parameter { id, name, about, layout: Layout::new(text, fields), key: Layout::words(id), only_on: EVERY }
+    Parameter { id, name, about, layout: Layout::new(text, fields), key: Layout::words(id), only_on: ALL_MODELS }
 }
 
 const fn table(id: &'static str, name: &'static str, key: Layout, layout: Layout, about: &'static str) -> Parameter {
-    Parameter { id, name, about, layout, key, only_on: EVERY }
+    Parameter { id, name, about, layout, key, only_on: ALL_MODELS }
 }
 
 impl Parameter {

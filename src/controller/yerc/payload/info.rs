@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn elapsed_time_in_every_known_form() {
+    fn parses_every_known_form_of_elapsed_time() {
         assert_eq!(elapsed_seconds(b"000123:45'06"), Some(123 * 3600 + 45 * 60 + 6));
         assert_eq!(elapsed_seconds(b"18:19'02"), Some(18 * 3600 + 19 * 60 + 2));
         assert_eq!(elapsed_seconds(b" 1:00"), Some(3600));

@@ -9,8 +9,8 @@ use thiserror::Error;
 
 use super::axes::{Axes, MAX_AXES};
 use super::position::{BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind};
-use crate::typed::unsigned;
 use crate::units::{self, Unit, UnitError};
+use crate::user_input::unsigned;
 use crate::yerc::table::{Bit, EXTENDED_FORM_BITS, FORM_BITS};
 
 const PULSE_AXES: [&str; MAX_AXES] = ["s", "l", "u", "r", "b", "t", "e", "8"];
@@ -371,7 +371,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn base_position_reads_and_shows_exactly() {
+    fn base_positions_round_trip() {
         let text =
             "base:x=100.000,y=-0.001,z=0.000,rx=180.0000,ry=0.0000,rz=-90.0000,tool=1,user=0,form=back+upper+flip";
         let position: Position = text.parse().unwrap();
@@ -381,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn pulses_by_letter_or_number() {
+    fn parses_pulses_by_letter_or_number() {
         let position: Position = "pulse:s=1,l=2,3=3,r=4,b=5,t=6".parse().unwrap();
         assert_eq!(position.axes.padded(), [1, 2, 3, 4, 5, 6, 0, 0]);
         assert_eq!(position.to_string(), "pulse:s=1,l=2,u=3,r=4,b=5,t=6,tool=0,user=0");
@@ -390,7 +390,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_guessed() {
+    fn rejects_ambiguous_positions() {
         let error = |text: &str| text.parse::<Position>().unwrap_err();
         assert_eq!(error("base:x=1,y=2"), PositionTextError::Missing { axis: "z" });
         assert_eq!(error("x=1"), PositionTextError::NoKind);
@@ -407,7 +407,7 @@ mod tests {
     }
 
     #[test]
-    fn bases_and_external_axes() {
+    fn parses_bases_and_external_axes() {
         let base: BasePosition = "base:x=1.500,y=-2.500,z=3.500".parse().unwrap();
         assert_eq!(base.axes.padded(), [1500, -2500, 3500, 0, 0, 0, 0, 0]);
         assert_eq!(base.to_string(), "base:x=1.500,y=-2.500,z=3.500");

@@ -180,7 +180,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_stand_at_their_bit() {
+    fn status_rows_are_in_bit_order() {
         for (index, bit) in StatusBit::all().enumerate() {
             assert_eq!(bit as usize, index);
             assert!(ControllerStatus::default().with(bit, true).has(bit));

@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cuts_at_the_first_nul_and_fills_with_zeros() {
+    fn text_ends_at_the_first_nul_and_is_padded() {
         assert_eq!(Text::<8>::cut(b"AB\0CD\0\0\0").as_bytes(), b"AB");
         assert_eq!(Text::<4>::cut(b"ABCD").as_bytes(), b"ABCD");
         assert_eq!(Text::<4>::new(b"AB").unwrap().emit(), *b"AB\0\0");

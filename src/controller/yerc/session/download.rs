@@ -5,11 +5,11 @@ use std::time::Duration;
 use thiserror::Error;
 
 use super::super::wire::{AnswerFrame, LAST_BLOCK, RequestFrame, Status};
-use super::{Counters, Due, Ids, Inbox, Pace, Policy, count, is_busy};
+use super::{Counters, Due, Ids, Inbox, Policy, RepeatTiming, count, is_busy};
 use crate::{Now, Session, Step};
 
 /// Maximum number of times that the session repeats the final ACK.
-const MOST_LINGERS: u32 = 8;
+const MAX_ACK_REPEATS: u32 = 8;
 
 /// A protocol violation in a transfer. The session ends, because it would have to guess the content to continue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
@@ -81,7 +81,7 @@ pub enum DownloadEnd {
 #[derive(Debug, Clone)]
 pub struct Download {
     inbox: Inbox,
-    pace: Pace,
+    pace: RepeatTiming,
     first_wait: Option<Duration>,
     limit: u64,
     started: bool,
@@ -114,7 +114,7 @@ impl Download {
     pub fn new(request: &RequestFrame<'_>, limit: u64, policy: Policy, ids: &Ids) -> Self {
         Self {
             inbox: Inbox::new(request, ids),
-            pace: Pace::new(policy),
+            pace: RepeatTiming::new(policy),
             first_wait: None,
             limit,
             started: false,
@@ -158,7 +158,7 @@ impl Download {
         let Some(DownloadEnd::Complete { .. }) = self.ended else { return None };
         let answer = self.inbox.current(bytes)?;
         count(&mut self.inbox.counters.duplicated);
-        if !answer.status.is_ok() || answer.block != self.acknowledged || self.lingered == MOST_LINGERS {
+        if !answer.status.is_ok() || answer.block != self.acknowledged || self.lingered == MAX_ACK_REPEATS {
             return None;
         }
         self.lingered += 1;
@@ -410,7 +410,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_to_list_is_told_from_an_empty_success() {
+    fn empty_list_differs_from_a_missing_file() {
         let mut session = start(&LIST, 1);
         sent(&mut session, ms(0));
         session.handle(ms(9), &hex("594552432000000003020101000000803939393939393939b2000100a7e20000"));
@@ -424,7 +424,7 @@ mod tests {
     }
 
     #[test]
-    fn one_block_may_be_number_0_and_the_last_may_be_empty() {
+    fn accepts_block_number_0_and_an_empty_last_block() {
         let mut session = start(&SAVE, 1);
         sent(&mut session, ms(0));
         let (ack, data) = exchange(&mut session, ms(9), &block(1, LAST_BLOCK, b"all"));
@@ -440,7 +440,7 @@ mod tests {
     }
 
     #[test]
-    fn only_silence_makes_the_last_ack_leave_again() {
+    fn repeats_the_last_ack_after_silence_only() {
         let mut session = start(&SAVE, 1);
         sent(&mut session, ms(0));
         let first = block(1, 1, &[1; 479]);
@@ -458,7 +458,7 @@ mod tests {
     }
 
     #[test]
-    fn after_the_end_only_the_last_block_is_acknowledged_again() {
+    fn acknowledges_only_the_last_block_again_after_the_end() {
         let mut session = start(&SAVE, 1);
         sent(&mut session, ms(0));
         assert_eq!(session.linger(&block(1, 1, &[1; 9])), None);
@@ -476,7 +476,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_or_an_endless_row_of_empty_blocks_ends_clearly() {
+    fn gap_or_endless_empty_blocks_end_with_an_error() {
         let cases = [
             (block(1, 3, &[1; 9]), Violation::Gap { expected: 2, found: 3 }),
             (block(1, LAST_BLOCK | 3, &[1; 9]), Violation::Gap { expected: 2, found: 3 }),
@@ -492,7 +492,7 @@ mod tests {
     }
 
     #[test]
-    fn refusals_end_it_at_first_or_on_the_way() {
+    fn refusal_ends_the_download_at_any_block() {
         let status = Status::refused(0xE28B);
         let mut session = start(&SAVE, 1);
         sent(&mut session, ms(0));
@@ -507,7 +507,7 @@ mod tests {
     }
 
     #[test]
-    fn the_limit_is_the_last_size_taken() {
+    fn size_limit_is_inclusive() {
         for (limit, fits) in [(488, true), (487, false)] {
             let mut session = Download::new(&SAVE, limit, Policy::default(), &Ids::starting_at(1));
             sent(&mut session, ms(0));
@@ -523,7 +523,7 @@ mod tests {
     }
 
     #[test]
-    fn patience_counts_from_the_last_progress() {
+    fn timeout_starts_at_the_last_progress() {
         let mut session = start(&SAVE, 1);
         sent(&mut session, ms(0));
         exchange(&mut session, ms(2000), &block(1, 1, &[1; 479]));
@@ -536,7 +536,7 @@ mod tests {
     }
 
     #[test]
-    fn a_long_first_wait_asks_once_and_does_not_stretch_the_rest() {
+    fn long_first_timeout_applies_to_the_first_block_only() {
         let mut session = start(&SAVE, 1).with_first_wait(Duration::from_secs(900));
         sent(&mut session, ms(0));
         assert_eq!(session.poll(ms(1)), Step::Wait(ms(900_000)));
@@ -546,7 +546,7 @@ mod tests {
     }
 
     #[test]
-    fn a_busy_controller_is_asked_again_under_a_new_id() {
+    fn repeats_a_busy_request_with_a_new_id() {
         let mut session = start(&SAVE, 1);
         sent(&mut session, ms(0));
         let busy = answer(1, LAST_BLOCK, Status::refused(0xD8FA), &[]);
@@ -560,7 +560,7 @@ mod tests {
     }
 
     #[test]
-    fn busy_on_the_way_repeats_the_ack_under_its_id() {
+    fn busy_during_the_download_repeats_the_ack() {
         let mut session = start(&SAVE, 1);
         sent(&mut session, ms(0));
         let (ack, _) = exchange(&mut session, ms(10), &block(1, 1, &[1; 479]));

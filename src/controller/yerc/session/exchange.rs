@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::super::wire::{AnswerFrame, RequestFrame, Status};
-use super::{Counters, Due, Ids, Inbox, Pace, Policy, count, is_busy, is_damaged};
+use super::{Counters, Due, Ids, Inbox, Policy, RepeatTiming, count, is_busy, is_damaged};
 use crate::{Now, Session, Step};
 
 /// Answer of a controller. A refusal is also an answer.
@@ -34,7 +34,7 @@ pub enum Ended {
 #[derive(Debug, Clone)]
 pub struct Exchange {
     inbox: Inbox,
-    pace: Pace,
+    pace: RepeatTiming,
     repeatable: bool,
     started: Option<Now>,
     attempts: u32,
@@ -54,7 +54,7 @@ impl Exchange {
     pub fn new(request: &RequestFrame<'_>, repeatable: bool, policy: Policy, ids: &Ids) -> Self {
         Self {
             inbox: Inbox::new(request, ids),
-            pace: Pace::new(policy),
+            pace: RepeatTiming::new(policy),
             repeatable,
             started: None,
             attempts: 0,
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn a_read_asks_again_under_the_same_id_and_takes_the_answer_to_any_copy() {
+    fn read_repeats_with_the_same_id_and_accepts_any_answer() {
         let mut session = start(&READ, true);
         let first = sent(&mut session, ms(0));
         assert_eq!(session.poll(ms(1)), Step::Wait(ms(300)));
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn a_read_without_an_answer_ends_at_its_deadline() {
+    fn unanswered_read_ends_at_its_deadline() {
         let mut session = start(&READ, true);
         for at in [0, 300, 900, 2100] {
             sent(&mut session, ms(at));
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn a_change_leaves_once_and_its_lost_answer_leaves_the_outcome_unknown() {
+    fn change_is_sent_once_and_a_lost_answer_is_an_unknown_outcome() {
         let mut session = start(&START, false);
         sent(&mut session, ms(0));
         for at in (0..3000).step_by(100) {
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn busy_is_waited_out_under_a_new_id_that_old_copies_cannot_touch() {
+    fn repeats_after_busy_with_a_new_id() {
         let mut session = start(&START, false);
         let first = sent(&mut session, ms(0));
         let busy = answer(&START, 0, Status::refused(0xD8FA), &[]);
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn a_read_that_was_damaged_on_its_way_is_asked_again_and_a_change_is_not() {
+    fn repeats_a_damaged_read_but_not_a_damaged_change() {
         for added in [0xE4A5, 0xE4A6, 0xE4A7] {
             let status = Status::refused(added);
             let mut session = start(&READ, true);
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn a_controller_that_stays_busy_is_quoted() {
+    fn error_quotes_a_controller_that_stays_busy() {
         for repeatable in [true, false] {
             let ids = Ids::default();
             let mut session = Exchange::new(&START, repeatable, Policy::default(), &ids);
@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn a_change_that_is_sent_again_after_busy_and_then_lost_is_unknown() {
+    fn change_lost_after_busy_has_an_unknown_outcome() {
         let mut session = start(&START, false);
         sent(&mut session, ms(0));
         session.handle(ms(10), &answer(&START, 0, Status::refused(0xFFF6), &[]));
@@ -325,7 +325,7 @@ mod tests {
     }
 
     #[test]
-    fn the_other_copy_of_a_doubled_request_ends_the_pause() {
+    fn answer_to_a_duplicated_request_ends_the_pause() {
         let mut session = start(&START, false);
         sent(&mut session, ms(0));
         session.handle(ms(10), &answer(&START, 0, Status::refused(0xD8F1), &[]));
@@ -335,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_else_is_counted_by_class() {
+    fn counts_other_traffic_by_class() {
         let ids = Ids::starting_at(40);
         let mut session = Exchange::new(&READ, true, Policy::default(), &ids);
         sent(&mut session, ms(0));

@@ -27,19 +27,19 @@ use super::status;
 use super::wire::{ANSWER_BIT, AnswerFrame, RequestFrame, Status, WireError};
 use crate::Now;
 
-mod abandon;
+mod abort;
 mod download;
 mod exchange;
 mod upload;
 
-pub use abandon::Abandon;
+pub use abort::Abort;
 pub use download::{Download, DownloadEnd, Violation};
 pub use exchange::{Ended, Exchange, Reply};
 pub use upload::{Upload, UploadEnd};
 
-/// Pause after the first busy refusal. The pause doubles with each further refusal, up to [`LONGEST_PAUSE`].
+/// Pause after the first busy refusal. The pause doubles with each further refusal, up to [`MAX_PAUSE`].
 const FIRST_PAUSE: Duration = Duration::from_millis(100);
-const LONGEST_PAUSE: Duration = Duration::from_secs(1);
+const MAX_PAUSE: Duration = Duration::from_secs(1);
 
 /// If the id of a frame is at most this far behind the id of a session, the frame belongs to an earlier session and is
 /// late.
@@ -63,7 +63,7 @@ pub struct Policy {
     /// Time until the first repeat, if it is shorter than `timeout`.
     pub attempt: Duration,
     /// Whether the time until a repeat doubles with each repeat, up to `timeout`.
-    pub doubles: bool,
+    pub duplicates: bool,
     /// Maximum number of repeats after a timeout.
     pub retries: u32,
 }
@@ -72,7 +72,7 @@ impl Default for Policy {
     /// A controller answers within 20 ms. With these values, a frame is sent after 0, 0.3, 0.9 and 2.1 s, and the
     /// session ends after 5.1 s.
     fn default() -> Self {
-        Self { timeout: Duration::from_secs(3), attempt: Duration::from_millis(300), doubles: true, retries: 3 }
+        Self { timeout: Duration::from_secs(3), attempt: Duration::from_millis(300), duplicates: true, retries: 3 }
     }
 }
 
@@ -94,7 +94,7 @@ impl Policy {
 
     /// Time until the next repeat, after `tries` repeats.
     fn silence(&self, tries: u32) -> Duration {
-        let doubled = if self.doubles { 1_u32.checked_shl(tries).unwrap_or(u32::MAX) } else { 1 };
+        let doubled = if self.duplicates { 1_u32.checked_shl(tries).unwrap_or(u32::MAX) } else { 1 };
         self.attempt.saturating_mul(doubled).min(self.timeout)
     }
 }
@@ -201,7 +201,7 @@ struct Inbox {
     ids: Ids,
     id: u8,
     /// Earlier ids of this session, in the order of use.
-    former: Vec<u8>,
+    previous_ids: Vec<u8>,
     counters: Counters,
 }
 
@@ -213,7 +213,7 @@ impl Inbox {
     fn new(request: &RequestFrame<'_>, ids: &Ids) -> Self {
         let id = ids.next_id();
         let request = RequestFrame { id, ..*request }.emit();
-        Self { request, ids: ids.clone(), id, former: Vec::new(), counters: Counters::default() }
+        Self { request, ids: ids.clone(), id, previous_ids: Vec::new(), counters: Counters::default() }
     }
 
     fn request(&self) -> RequestFrame<'_> {
@@ -222,10 +222,10 @@ impl Inbox {
 
     /// Assigns a new id. After this call, an answer to the old id is late.
     fn renew(&mut self) {
-        if self.former.len() == FORMER_IDS {
-            self.former.remove(0);
+        if self.previous_ids.len() == FORMER_IDS {
+            self.previous_ids.remove(0);
         }
-        self.former.push(self.id);
+        self.previous_ids.push(self.id);
         self.id = self.ids.next_id();
         self.request = with_id(&self.request, self.id);
     }
@@ -247,7 +247,7 @@ impl Inbox {
         };
         let request = RequestFrame::parse(&self.request).expect("the inbox built this frame with emit");
         let fits = answer.division == request.division && answer.ack && answer.service == request.service | ANSWER_BIT;
-        let own = answer.id == self.id || self.former.contains(&answer.id);
+        let own = answer.id == self.id || self.previous_ids.contains(&answer.id);
         if fits && own {
             return Some(answer);
         }
@@ -270,7 +270,7 @@ impl Inbox {
 
 /// Timing of repeats.
 #[derive(Debug, Clone)]
-struct Pace {
+struct RepeatTiming {
     policy: Policy,
     /// Deadline of a frame, including all its repeats.
     patience: Now,
@@ -290,7 +290,7 @@ enum Due {
     Expired,
 }
 
-impl Pace {
+impl RepeatTiming {
     fn new(policy: Policy) -> Self {
         Self { policy, patience: Now::ZERO, deadline: Now::ZERO, repeat_at: None, repeats: 0, pause: FIRST_PAUSE }
     }
@@ -328,7 +328,7 @@ impl Pace {
             return false;
         }
         self.deadline = self.patience;
-        self.pause = self.pause.saturating_mul(2).min(LONGEST_PAUSE);
+        self.pause = self.pause.saturating_mul(2).min(MAX_PAUSE);
         self.repeat_at = Some(resume);
         self.repeats = 0;
         true
@@ -390,7 +390,7 @@ mod tests {
     }
 
     #[test]
-    fn counters_name_only_what_was_seen() {
+    fn counters_list_only_observed_classes() {
         assert_eq!(Counters::default().to_string(), "nothing");
         let counters = Counters { foreign: 2, truncated: 1, ..Counters::default() };
         assert_eq!(counters.to_string(), "2 foreign, 1 truncated");
@@ -399,8 +399,8 @@ mod tests {
     }
 
     #[test]
-    fn silence_doubles_and_ends_with_the_deadline() {
-        let mut pace = Pace::new(Policy::default());
+    fn repeat_interval_doubles_until_the_deadline() {
+        let mut pace = RepeatTiming::new(Policy::default());
         pace.restart(ms(0));
         let mut sends = Vec::new();
         let mut now = ms(0);
@@ -421,7 +421,7 @@ mod tests {
     }
 
     #[test]
-    fn the_timeout_is_that_of_a_try_and_the_last_try_has_all_of_it() {
+    fn each_try_has_the_full_timeout() {
         let patience = |timeout, retries| Policy::default().with(ms(timeout), retries).patience();
         assert_eq!(patience(300, 4), ms(5 * 300));
         assert_eq!(patience(100, 9), ms(10 * 100));
@@ -435,8 +435,8 @@ mod tests {
 
     #[test]
     fn extreme_policies_neither_overflow_nor_hang() {
-        let policy = Policy { timeout: Duration::MAX, attempt: Duration::MAX, doubles: true, retries: u32::MAX };
-        let mut pace = Pace::new(policy);
+        let policy = Policy { timeout: Duration::MAX, attempt: Duration::MAX, duplicates: true, retries: u32::MAX };
+        let mut pace = RepeatTiming::new(policy);
         pace.restart(Duration::MAX);
         pace.repeats = 40;
         pace.sent(Duration::MAX, true);
@@ -445,7 +445,7 @@ mod tests {
     }
 
     #[test]
-    fn only_the_four_codes_beside_a_refusal_are_busy() {
+    fn only_four_added_codes_mean_busy() {
         for added in [0xD8F1, 0xD8FA, 0xE444, 0xFFF6] {
             assert!(is_busy(Status::refused(added)));
         }

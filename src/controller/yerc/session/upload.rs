@@ -1,7 +1,7 @@
 //! Upload of a file (load 0x15; DX 3.2.4).
 
 use super::super::wire::{LAST_BLOCK, MAX_DATA, RequestFrame, Status};
-use super::{Counters, Due, Ids, Inbox, Pace, Policy, count, is_busy};
+use super::{Counters, Due, Ids, Inbox, Policy, RepeatTiming, count, is_busy};
 use crate::{Now, Session, Step};
 
 /// Outcome of an upload. `sent` counts the bytes in the sent blocks, `taken` the bytes in the acknowledged blocks.
@@ -71,7 +71,7 @@ enum Stage {
 #[derive(Debug, Clone)]
 pub struct Upload {
     inbox: Inbox,
-    pace: Pace,
+    pace: RepeatTiming,
     block_size: usize,
     /// Content that was not sent yet.
     buffer: Vec<u8>,
@@ -99,7 +99,7 @@ impl Upload {
     pub fn new(request: &RequestFrame<'_>, policy: Policy, ids: &Ids) -> Self {
         Self {
             inbox: Inbox::new(request, ids),
-            pace: Pace::new(policy),
+            pace: RepeatTiming::new(policy),
             block_size: MAX_DATA,
             buffer: Vec::new(),
             source_ended: false,
@@ -374,7 +374,7 @@ mod tests {
     }
 
     #[test]
-    fn blocks_are_full_and_the_last_one_is_marked_however_the_file_is_fed() {
+    fn sends_full_blocks_and_marks_the_last_for_any_input_pieces() {
         for piece in [1, 100, 479, 480, 8192] {
             for end_apart in [true, false] {
                 assert_eq!(blocks(478, piece, 479, end_apart), [(0x8000_0001, 478)]);
@@ -393,7 +393,7 @@ mod tests {
     }
 
     #[test]
-    fn silence_repeats_the_same_block_and_other_acks_change_nothing() {
+    fn silence_repeats_the_block_and_other_acks_are_ignored() {
         let mut session = start(&[1; 1000]);
         sent(&mut session, ms(0));
         session.handle(ms(310), &ack(0));
@@ -411,7 +411,7 @@ mod tests {
     }
 
     #[test]
-    fn the_request_leaves_once_and_silence_leaves_the_outcome_unknown() {
+    fn request_is_sent_once_and_silence_is_an_unknown_outcome() {
         let mut session = start(&[1; 1000]);
         sent(&mut session, ms(0));
         assert_eq!(session.poll(ms(0)), Step::Wait(ms(3000)));
@@ -427,7 +427,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_says_how_far_it_went_and_whether_a_copy_is_out() {
+    fn refusal_reports_progress_and_pending_copies() {
         let status = Status::refused(0xE4A1);
         for repeated in [false, true] {
             let mut session = start(&[1; 958]);
@@ -445,7 +445,7 @@ mod tests {
     }
 
     #[test]
-    fn a_last_block_acknowledged_without_its_number_is_an_end_of_its_own() {
+    fn unnumbered_last_ack_is_a_separate_result() {
         let to_last_block = |first_ack| {
             let mut session = start(&[1; 958]);
             sent(&mut session, ms(0));
@@ -474,7 +474,7 @@ mod tests {
     }
 
     #[test]
-    fn success_with_an_added_status_is_no_acknowledgement() {
+    fn success_with_an_added_status_is_not_an_ack() {
         let status = Status { code: 0, added_size: 1, added: 0xE29C };
         let mut session = start(&[1; 9]);
         sent(&mut session, ms(0));
@@ -483,7 +483,7 @@ mod tests {
     }
 
     #[test]
-    fn busy_is_waited_out_with_a_new_id_for_the_request_alone() {
+    fn repeats_only_the_request_after_busy() {
         let busy = Status::refused(0xFFF6);
         let mut session = start(&[1; 9]);
         sent(&mut session, ms(0));

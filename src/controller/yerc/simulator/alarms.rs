@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn sub_codes_read_by_type() {
+    fn decodes_sub_codes_by_alarm_type() {
         assert_eq!(texts(1, 3).0, "[3]");
         assert_eq!(texts(3, 0b10), ("[SLURBT]".into(), "00100000".into()));
         assert_eq!(texts(5, 0b1000).1, "00001100000");

@@ -342,7 +342,7 @@ mod tests {
     }
 
     #[test]
-    fn refuses_what_is_no_job() {
+    fn rejects_invalid_jobs() {
         let bare: Vec<u8> = JOB.iter().copied().filter(|&byte| byte != b'\r').collect();
         assert_eq!(Program::parse(b"A", &bare), Err(NOP_OR_END_MISSING));
         assert_eq!(Program::parse(b"B", JOB), Err(JOB_RECORD));

@@ -18,20 +18,20 @@
 
 mod alarms;
 mod console;
+mod control_commands;
 mod defaults;
 mod job;
-mod lists;
 mod memory;
 mod motion;
 mod moves;
-mod operate;
+mod name_lists;
 mod playback;
-mod reads;
+mod read_commands;
 mod robot;
 mod start;
 mod storage;
 mod transfer;
-mod variables;
+mod variable_file;
 mod world;
 
 #[cfg(test)]
@@ -43,7 +43,7 @@ use self::transfer::FileServer;
 use self::world::{Refusal, World, code};
 use super::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, RequestFrame, Status, WireError};
 use crate::Now;
-use crate::simulator::answers::{Answers, Busy};
+use crate::simulator::answers::{Busy, DelayedAnswers};
 
 /// Maximum number of pending answers.
 const MAX_WAITING: usize = 4096;
@@ -74,7 +74,7 @@ pub struct Simulator {
     world: World,
     files: FileServer,
     busy: Busy,
-    answers: Answers<Outgoing>,
+    answers: DelayedAnswers<Outgoing>,
 }
 
 impl Simulator {
@@ -83,7 +83,7 @@ impl Simulator {
         Self {
             files: FileServer::new(start.backup_time, start.backup_size, start.idle_limit),
             busy: Busy::new(start.busy, start.seed),
-            answers: Answers::new(start.answer_delay, MAX_WAITING),
+            answers: DelayedAnswers::new(start.answer_delay, MAX_WAITING),
             world: start.world,
         }
     }

@@ -439,12 +439,12 @@ mod tests {
     }
 
     #[test]
-    fn zero_pulses_are_a_round_pose() {
+    fn zero_pulses_are_a_known_pose() {
         assert_eq!(forward(&[0.0; AXES]).map(whole), [1000, 0, 1200, 180, 0, 0, 0]);
     }
 
     #[test]
-    fn a_pose_survives_the_way_through_pulses() {
+    fn pose_round_trips_through_pulses() {
         let pose = [185.123, -410.007, 125.5, -179.9999, 12.3456, -90.0001, 0.0];
         let back = forward(&inverse(&pose, &[0.0; AXES]));
         for (sent, read) in pose.iter().zip(back) {
@@ -476,7 +476,7 @@ mod tests {
     }
 
     #[test]
-    fn braking_covers_half_the_way_of_full_speed() {
+    fn braking_distance_is_half_of_full_speed() {
         let mut arm = arm();
         let mut to = [0.0; AXES];
         to[0] = 100.0 * S_PULSES_PER_DEG;

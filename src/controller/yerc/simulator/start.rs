@@ -15,7 +15,7 @@ use super::memory::{Kind, Memory};
 use super::motion::{AXES, Arm, Family, Group};
 use super::playback::Player;
 use super::storage::{Content, Storage, check_stored_name};
-use super::variables;
+use super::variable_file;
 use super::world::{Holds, Meters, Mode, Switches, World};
 use crate::Now;
 use crate::simulator::start::{self, Event, Source, Table, default_entry, default_text, numbered};
@@ -530,9 +530,9 @@ fn file(
         (None, None, Some(size)) => Content::Generated { seed: size ^ name.len() as u64, size },
         _ => return Err("a file must have exactly one of text, path and size".to_owned()),
     };
-    if name == variables::NAME {
+    if name == variable_file::NAME {
         let bytes = content.piece(0, usize::try_from(content.size()).unwrap_or(usize::MAX));
-        if !variables::load(&mut world.memory, &bytes) {
+        if !variable_file::load(&mut world.memory, &bytes) {
             return Err(format!("'{}' is not a file of variables", entry.name));
         }
     }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::job::Program;
-use super::lists;
-use super::variables;
+use super::name_lists;
+use super::variable_file;
 use super::world::{Refusal, World, code};
 use crate::simulator::refuse_if;
 use crate::yerc::Model;
@@ -15,7 +15,7 @@ use crate::yerc::table::BATCH_BACKUP_PATH;
 const EXTENSIONS: [&[u8]; 6] = [JOB, b".DAT", b".CND", b".PRM", b".SYS", b".LST"];
 const JOB: &[u8] = b".JBI";
 /// Extensions of files that only the controller writes.
-const OWN: [&[u8]; 2] = [b".SYS", b".LST"];
+const READ_ONLY_EXTENSIONS: [&[u8]; 2] = [b".SYS", b".LST"];
 /// Maximum length of a job name in bytes. The constant below is the maximum length of a path.
 const NAME_LEN: usize = 32;
 const PATH_LEN: usize = 64;
@@ -150,11 +150,11 @@ impl World {
     /// Reads a file (service 0x16), except the batch backup.
     pub(super) fn read_file(&self, name: &[u8]) -> Result<FileContent, Refusal> {
         check_stored_name(name)?;
-        if name == variables::NAME && self.files.get(name).is_some() {
-            return Ok(FileContent::Content(variables::written(&self.memory).into()));
+        if name == variable_file::NAME && self.files.get(name).is_some() {
+            return Ok(FileContent::Content(variable_file::written(&self.memory).into()));
         }
         if self.files.get(name).is_some()
-            && let Some(list) = lists::written(&self.files, name)
+            && let Some(list) = name_lists::written(&self.files, name)
         {
             return Ok(FileContent::Content(list.into()));
         }
@@ -194,7 +194,7 @@ impl World {
         if name.ends_with(JOB) && !self.files.replace_jobs && self.files.get(name).is_some() {
             return Err(Refusal::Added(code::JOB_EXISTS));
         }
-        if OWN.iter().any(|extension| name.ends_with(extension)) {
+        if READ_ONLY_EXTENSIONS.iter().any(|extension| name.ends_with(extension)) {
             let code = match self.model {
                 Model::Fs100 => code::NOT_LOADED,
                 _ => code::NO_OVERWRITE,
@@ -211,7 +211,7 @@ impl World {
             Program::parse(stem, &bytes).map_err(Refusal::Added)?;
             self.player.forget(stem);
         }
-        if name == variables::NAME && !variables::load(&mut self.memory, &bytes) {
+        if name == variable_file::NAME && !variable_file::load(&mut self.memory, &bytes) {
             return Err(Refusal::Added(code::NOT_LOADED));
         }
         let protected = self.files.files.get(name).is_some_and(|file| file.protected);
@@ -276,7 +276,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn generated_content_is_the_same_however_it_is_cut() {
+    fn generated_content_does_not_depend_on_the_piece_size() {
         let content = Content::Generated { seed: 7, size: 1000 };
         let whole = content.piece(0, 5000);
         assert_eq!(whole.len(), 1000);
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn names_that_are_none() {
+    fn rejects_invalid_file_names() {
         let code = |name: &[u8]| check_name(name).err();
         assert_eq!(code(b"A.JBI"), None);
         assert_eq!(code(b"\x83e\x83X\x83g.JBI"), None);

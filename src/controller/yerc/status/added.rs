@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn every_row_says_something_short_in_plain_ascii() {
+    fn every_row_has_a_short_ascii_text() {
         for row in all_added() {
             for text in [row.name, row.cause, row.remedy] {
                 assert!(text.len() >= 4 && text.len() <= 260, "{:#06X}: {} bytes: {text}", row.code, text.len());

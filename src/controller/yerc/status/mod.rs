@@ -6,7 +6,7 @@ use std::borrow::Cow;
 
 use thiserror::Error;
 
-use crate::typed;
+use crate::user_input;
 
 use super::Model;
 use super::wire::Status;
@@ -134,7 +134,7 @@ pub struct NoCode {
 /// or without prefix. The result is never empty. It has two entries only if a short code is in both tables.
 pub fn lookup(text: &str) -> Result<Vec<Explanation>, NoCode> {
     let trimmed = text.trim();
-    let code: u32 = typed::code(trimmed).ok_or_else(|| NoCode { text: text.to_owned() })?;
+    let code: u32 = user_input::code(trimmed).ok_or_else(|| NoCode { text: text.to_owned() })?;
 
     let short = u8::try_from(code).ok();
     let mut found: Vec<Explanation> = short.and_then(status).map(of_status).into_iter().collect();
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn the_added_status_speaks_for_a_refusal() {
+    fn added_status_describes_a_refusal() {
         let found = explain(Status::refused(0x2060));
         assert_eq!((found.code_text.as_str(), found.class), ("0x2060", Some(Class::State)));
         assert!(found.remedy.contains("alarm reset"), "{}", found.remedy);
@@ -248,21 +248,21 @@ mod tests {
     }
 
     #[test]
-    fn an_added_status_counts_beside_success() {
+    fn added_status_is_used_with_success() {
         let result = Status { code: 0, added_size: 1, added: 0xE29C };
         assert_eq!(explain(result).code_text, "0xE29C");
         assert_eq!(explain(Status::OK).code_text, "0x00");
     }
 
     #[test]
-    fn a_two_word_code_is_found_by_its_lower_word_and_shown_whole() {
+    fn finds_a_two_word_code_by_its_lower_word() {
         let found = explain(Status { code: 0x1F, added_size: 2, added: 0x0001_2070 });
         assert!(found.known);
         assert_eq!((found.code_text.as_str(), found.name.as_ref()), ("0x12070", "servo power is off"));
     }
 
     #[test]
-    fn what_nobody_lists_is_named_as_unknown() {
+    fn unlisted_codes_are_unknown() {
         for result in [Status { code: 0x77, added_size: 0, added: 0 }, Status::refused(0x1234)] {
             let found = explain(result);
             assert!(!found.known && found.name.starts_with("unknown"), "{found:?}");
@@ -286,13 +286,13 @@ mod tests {
     }
 
     #[test]
-    fn a_decimal_code_is_recognised_as_a_slip() {
+    fn recognizes_a_decimal_code_by_mistake() {
         let found = lookup("8288").unwrap();
         assert!(found[0].remedy.contains("0x2060"), "{}", found[0].remedy);
     }
 
     #[test]
-    fn no_codes() {
+    fn rejects_texts_without_a_code() {
         for text in ["", "0x", "hello", "+2060", "-1", "123456789", "20 60", "０ｘ２"] {
             assert_eq!(lookup(text), Err(NoCode { text: text.to_owned() }), "{text}");
         }

@@ -374,7 +374,7 @@ mod tests {
     }
 
     #[test]
-    fn an_odd_run_of_bytes_borrows_a_neighbour() {
+    fn odd_number_of_bytes_includes_a_neighbour() {
         let shape = |texts: &[&str]| shape(plan_reads(&references(texts)).iter().map(Query::request));
         assert_eq!(shape(&["B0..B2"]), [(0x302, 0, 4)]);
         assert_eq!(shape(&["B97..B99"]), [(0x302, 96, 4)]);
@@ -389,7 +389,7 @@ mod tests {
     }
 
     #[test]
-    fn answers_find_their_references() {
+    fn assigns_answers_to_references() {
         let step = &plan_reads(&references(&["B3", "B5", "B3"]))[0];
         assert_eq!(step.request().data, [4, 0, 0, 0]);
         let answer = step.decode(&[4, 0, 0, 0, 30, 40, 50, 60]).unwrap();
@@ -400,7 +400,7 @@ mod tests {
     }
 
     #[test]
-    fn writes_touch_only_what_was_named() {
+    fn writes_only_named_items() {
         let values = |numbers: &[u16]| numbers.iter().map(|&n| (n, Value::Byte(1))).collect::<Vec<_>>();
         let shape = |numbers: &[u16]| shape(plan_writes(&values(numbers)).unwrap().iter().map(Query::request));
         assert_eq!(shape(&[0, 1, 2]), [(0x302, 0, 2), (0x7A, 2, 1)]);
@@ -409,7 +409,7 @@ mod tests {
     }
 
     #[test]
-    fn signals_stay_inside_their_class() {
+    fn signal_plans_stay_within_their_class() {
         let io = |groups: &[u16]| shape(plan_io_reads(Model::Fs100, groups).unwrap().iter().map(Query::request));
         assert_eq!(io(&[1, 128]), [(0x300, 1, 128)]);
         assert_eq!(io(&[126, 128]), [(0x300, 125, 4)]);

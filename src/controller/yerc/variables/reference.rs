@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-use crate::typed::{self, RangeError, unsigned};
+use crate::user_input::{self, RangeError, unsigned};
 use crate::yerc::Model;
 use crate::yerc::table::{Plural, Row};
 
@@ -172,7 +172,7 @@ impl FromStr for Reference {
 /// Parses `B0`, `B0..B99` or `B0..99`. A range includes both ends.
 pub fn parse_references(text: &str) -> Result<Vec<Reference>, ReferenceError> {
     let first: Reference = text.split(['.', '-']).next().unwrap_or_default().parse()?;
-    let numbers = typed::range(text, |end| {
+    let numbers = user_input::range(text, |end| {
         let end: Reference = end.parse()?;
         let same_kind = Some(end.number).filter(|_| end.kind == first.kind);
         same_kind.ok_or_else(|| ReferenceError::Range { found: text.to_owned() })
@@ -182,7 +182,7 @@ pub fn parse_references(text: &str) -> Result<Vec<Reference>, ReferenceError> {
 
 /// Parses `5` or `5..20`, for registers and I/O groups. A range includes both ends.
 pub fn parse_numbers(text: &str) -> Result<Vec<u16>, ReferenceError> {
-    typed::range(text, |end| parse_number(end, text)).map(Iterator::collect)
+    user_input::range(text, |end| parse_number(end, text)).map(Iterator::collect)
 }
 
 fn parse_number(digits: &str, whole: &str) -> Result<u16, ReferenceError> {
@@ -194,7 +194,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn kinds_stand_at_their_row() {
+    fn kinds_are_in_row_order() {
         for (index, kind) in VariableKind::all().enumerate() {
             assert_eq!(kind as usize, index);
             assert_eq!(kind.row().size(), Row::from_number(kind.plural_command()).unwrap().size());

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::reference::VariableKind;
-use crate::typed::integer;
+use crate::user_input::integer;
 use crate::yerc::payload::{
     BasePosition, ExternalPosition, PayloadError, Position, PositionTextError, Reader, Text, TextError,
 };

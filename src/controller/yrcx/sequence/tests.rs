@@ -48,7 +48,7 @@ impl World {
             let now = ms(self.now);
             if self.cut == Some(self.now) {
                 self.output.unlinked();
-                sequence.lost(now);
+                sequence.handle_link_loss(now);
             }
             if self.now.is_multiple_of(RPI) {
                 let word = self.output.next.0[DEDICATED_WORD];
@@ -140,7 +140,7 @@ fn servos_go_on_after_power_on() {
 }
 
 #[test]
-fn into_emergency_stop_and_out_again() {
+fn enters_and_leaves_the_emergency_stop() {
     let mut world = World::new(&[output::SERVO_ON]);
     assert_eq!(world.run(Procedure::emergency_stop()), Outcome::Done);
     assert!(!output::SERVO_ON.is_on(&world.shown) && output::ALARM.is_on(&world.shown));
@@ -173,7 +173,7 @@ fn reset_run_stop_and_run_again() {
 }
 
 #[test]
-fn what_is_not_confirmed_is_told_and_not_left_on() {
+fn unconfirmed_input_fails_and_is_switched_off() {
     let mut world = World::new(&[]);
     world.deaf = true;
     assert_eq!(world.run(Procedure::power_on()), Outcome::TimedOut { signal: output::SERVO_ON, on: true });
@@ -182,7 +182,7 @@ fn what_is_not_confirmed_is_told_and_not_left_on() {
 }
 
 #[test]
-fn an_alarm_ends_it_at_once() {
+fn alarm_ends_the_procedure() {
     let mut world = World::new(&[output::AUTO_MODE]);
     world.deaf = true;
     world.pending.push((700, output::ALARM, true));
@@ -204,7 +204,7 @@ fn an_input_left_on_falls_before_it_rises() {
 }
 
 #[test]
-fn a_lost_link_tells_whether_something_was_switched() {
+fn lost_link_reports_switched_signals() {
     let mut world = World::new(&[]);
     world.cut = Some(500);
     assert_eq!(world.run(Procedure::power_on()), Outcome::LinkLost { begun: false });

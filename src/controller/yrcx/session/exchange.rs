@@ -8,7 +8,7 @@ use crate::yrcx::answer::{Answer, Status};
 use crate::yrcx::image::{COMMAND_WORDS, Image, Output, Words};
 use crate::yrcx::order::Order;
 use crate::yrcx::signal::input;
-use crate::yrcx::table::{Pace, Row, STATUS_RESET};
+use crate::yrcx::table::{DurationClass, Row, STATUS_RESET};
 use crate::yrcx::value::Values;
 use crate::{Now, Risk};
 
@@ -309,7 +309,7 @@ impl Exchange {
 
     /// Ends the exchange. After this, the session sends only the status reset.
     fn finish(&mut self, now: Now, output: &mut Output, ended: Ended) {
-        let is_jog_at_large = self.order.row().pace == Pace::Jog && matches!(ended, Ended::OutcomeUnknown(_));
+        let is_jog_at_large = self.order.row().pace == DurationClass::Jog && matches!(ended, Ended::OutcomeUnknown(_));
         if (self.stopping && !matches!(ended, Ended::Answered(_))) || is_jog_at_large {
             // The robot may still move, for example in a jog without an end. For this reason the stop input stays off.
             input::STOP.set(&mut output.next, false);
@@ -357,7 +357,7 @@ impl Exchange {
     }
 
     fn moves(&self) -> bool {
-        matches!(self.order.row().pace, Pace::Motion | Pace::Jog)
+        matches!(self.order.row().pace, DurationClass::Motion | DurationClass::Jog)
     }
 
     fn unanswered(&self, silence: Silence) -> Ended {
@@ -441,7 +441,7 @@ impl ImageSession for Exchange {
         self.input = Some(*input);
     }
 
-    fn lost(&mut self, _now: Now) {
+    fn handle_link_loss(&mut self, _now: Now) {
         self.linked = false;
     }
 }

@@ -3,14 +3,14 @@
 use super::alarms::{AlarmSource, Fault, NOT_ENABLED, UNKNOWN_COMMAND};
 use super::request::Request;
 use super::world::{Action, World};
-use super::{motions, operate, reads, records};
+use super::{data_commands, motion_commands, operation_commands, read_commands};
 use crate::Now;
-use crate::yrcx::table::Pace;
+use crate::yrcx::table::DurationClass;
 use crate::yrcx::value::{Key, Values};
 
 /// Progress of a command.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Work {
+pub(super) enum CommandProgress {
     /// The command has ended, with these values in its answer.
     Done(Values),
     /// The command waits until the motion of these robots ends.
@@ -28,19 +28,19 @@ const UNDER_THE_BOX: [u16; 27] = [
 ];
 
 /// Starts or refuses a command.
-pub(super) fn begin(world: &mut World, request: &Request) -> Result<Work, Fault> {
+pub(super) fn begin(world: &mut World, request: &Request) -> Result<CommandProgress, Fault> {
     enabled(world, request)?;
     match (request.row.pace, request.row.category()) {
-        (Pace::Motion | Pace::Jog, _) => motions::begin(world, request),
-        (Pace::Power, _) => operate::power(world, request),
-        (Pace::Quick, 1) => operate::change(world, request).map(done),
-        (Pace::Quick, 5) => operate::program(world, request).map(Work::Done),
-        (Pace::Quick, 2..=4) => records::carry_out(world, request).map(Work::Done),
-        (Pace::Quick, 7) => operate::utility(world, request).map(done),
-        (Pace::Quick, _) if request.int(Key::Continuous) == 1 => {
-            reads::answer(world, request).map(|_| Work::Continuous)
+        (DurationClass::Motion | DurationClass::Jog, _) => motion_commands::begin(world, request),
+        (DurationClass::Power, _) => operation_commands::power(world, request),
+        (DurationClass::Quick, 1) => operation_commands::change(world, request).map(done),
+        (DurationClass::Quick, 5) => operation_commands::program(world, request).map(CommandProgress::Done),
+        (DurationClass::Quick, 2..=4) => data_commands::carry_out(world, request).map(CommandProgress::Done),
+        (DurationClass::Quick, 7) => operation_commands::utility(world, request).map(done),
+        (DurationClass::Quick, _) if request.int(Key::Continuous) == 1 => {
+            read_commands::answer(world, request).map(|_| CommandProgress::Continuous)
         }
-        (Pace::Quick, _) => reads::answer(world, request).map(Work::Done),
+        (DurationClass::Quick, _) => read_commands::answer(world, request).map(CommandProgress::Done),
     }
 }
 
@@ -49,8 +49,8 @@ pub(super) fn not_here(request: &Request) -> Fault {
     Fault::new(UNKNOWN_COMMAND, AlarmSource::Slot, format!("the simulator does not support {}", request.row.id))
 }
 
-fn done((): ()) -> Work {
-    Work::Done(Values::default())
+fn done((): ()) -> CommandProgress {
+    CommandProgress::Done(Values::default())
 }
 
 /// Checks that the controller accepts commands at all (chapter 2, 3).

@@ -2,7 +2,7 @@
 //! commanded.
 
 /// Values of four axes or coordinates: pulses, axis positions, or X, Y, Z in mm with R in degrees.
-pub(super) type Four = [f64; 4];
+pub(super) type FourValues = [f64; 4];
 
 /// Protocol steps per mm or degree.
 pub(super) const STEPS: f64 = 1000.0;
@@ -58,24 +58,24 @@ impl Arm {
 pub(super) struct Geometry {
     pub(super) kind: Kind,
     /// Pulses per mm or degree, for each axis.
-    pub(super) per_unit: Four,
+    pub(super) per_unit: FourValues,
     /// Data of the selected hand (4.3.5); `None` without a hand.
     pub(super) hand: Option<[i32; 4]>,
 }
 
 impl Geometry {
     /// Converts pulses to mm or degrees.
-    pub(super) fn units(&self, pulses: &Four) -> Four {
+    pub(super) fn units(&self, pulses: &FourValues) -> FourValues {
         std::array::from_fn(|axis| pulses[axis] / self.per_unit[axis])
     }
 
     /// Converts mm or degrees to pulses.
-    pub(super) fn of_units(&self, units: &Four) -> Four {
+    pub(super) fn of_units(&self, units: &FourValues) -> FourValues {
         std::array::from_fn(|axis| units[axis] * self.per_unit[axis])
     }
 
     /// Tool position.
-    pub(super) fn pose(&self, pulses: &Four) -> Four {
+    pub(super) fn pose(&self, pulses: &FourValues) -> FourValues {
         let [one, two, height, last] = self.units(pulses);
         match self.kind {
             Kind::Cartesian => {
@@ -93,7 +93,7 @@ impl Geometry {
     }
 
     /// Pulses for a tool position; `None` if the robot cannot reach it.
-    pub(super) fn pulses(&self, pose: &Four, arm: Arm) -> Option<Four> {
+    pub(super) fn pulses(&self, pose: &FourValues, arm: Arm) -> Option<FourValues> {
         let turn = pose[3];
         let tool = self.tool(turn);
         let [x, y, height] = [pose[0] - tool[0], pose[1] - tool[1], pose[2] - tool[2]];
@@ -110,7 +110,7 @@ impl Geometry {
     }
 
     /// Arm side at a position; `None` for a Cartesian robot.
-    pub(super) fn arm(&self, pulses: &Four) -> Option<Arm> {
+    pub(super) fn arm(&self, pulses: &FourValues) -> Option<Arm> {
         match self.kind {
             Kind::Cartesian => None,
             Kind::Scara { .. } => {
@@ -165,21 +165,21 @@ fn rotated(x: f64, y: f64, degrees: f64) -> (f64, f64) {
 
 /// Converts coordinates in a shift to coordinates of the robot. A shift is a coordinate system that is moved and
 /// rotated by R.
-pub(super) fn from_shift(shift: &[i32; 4], pose: &Four) -> Four {
+pub(super) fn from_shift(shift: &[i32; 4], pose: &FourValues) -> FourValues {
     let [x, y, z, r] = shift.map(|step| f64::from(step) / STEPS);
     let (turned_x, turned_y) = rotated(pose[0], pose[1], r);
     [turned_x + x, turned_y + y, pose[2] + z, pose[3] + r]
 }
 
 /// Converts coordinates of the robot to coordinates in a shift.
-pub(super) fn to_shift(shift: &[i32; 4], pose: &Four) -> Four {
+pub(super) fn to_shift(shift: &[i32; 4], pose: &FourValues) -> FourValues {
     let [x, y, z, r] = shift.map(|step| f64::from(step) / STEPS);
     let (turned_x, turned_y) = rotated(pose[0] - x, pose[1] - y, -r);
     [turned_x, turned_y, pose[2] - z, pose[3] - r]
 }
 
 /// Moves a pose by `by` in tool coordinates. Tool coordinates rotate with R.
-pub(super) fn along_tool(pose: &Four, by: &Four) -> Four {
+pub(super) fn along_tool(pose: &FourValues, by: &FourValues) -> FourValues {
     let (x, y) = rotated(by[0], by[1], pose[3]);
     [pose[0] + x, pose[1] + y, pose[2] + by[2], pose[3] + by[3]]
 }
@@ -200,12 +200,12 @@ mod tests {
         hand: None,
     };
 
-    fn near(found: &Four, wanted: &Four) -> bool {
+    fn near(found: &FourValues, wanted: &FourValues) -> bool {
         found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-6)
     }
 
     #[test]
-    fn there_and_back_with_every_hand() {
+    fn kinematics_round_trip_with_every_hand() {
         for hand in [None, Some([1000, 20_000, -5000, 0]), Some([500, 30_000, 7000, 1])] {
             let geometry = Geometry { hand, ..SCARA };
             for pulses in [[2000.0, 9000.0, 4000.0, 300.0], [-4000.0, -12_000.0, 0.0, -900.0]] {
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn both_arms_reach_the_same_place() {
+    fn both_hand_systems_reach_the_same_position() {
         let pose = [100.0, 50.0, 0.0, 30.0];
         let [right, left] = [Arm::Right, Arm::Left].map(|arm| SCARA.pulses(&pose, arm).unwrap());
         assert!(near(&SCARA.pose(&right), &pose) && near(&SCARA.pose(&left), &pose));

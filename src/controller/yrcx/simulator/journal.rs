@@ -3,7 +3,7 @@
 use crate::yrcx::image::{COMMAND_WORDS, Image};
 
 /// Maximum number of entries.
-const MOST: usize = 10_000;
+const MAX_ENTRIES: usize = 10_000;
 
 /// Entries that were recorded after the journal was last read.
 #[derive(Debug, Clone, Default)]
@@ -15,7 +15,7 @@ pub(super) struct Journal {
 impl Journal {
     /// Records a changed image, or the loss of the link.
     pub(super) fn note(&mut self, image: Option<&Image>) {
-        if self.entries.len() >= MOST {
+        if self.entries.len() >= MAX_ENTRIES {
             self.omitted += 1;
             return;
         }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::alarms::{ARITHMETIC, AlarmSource, Fault, NO_AXIS, NO_PALLET, NO_POINT, POINT_UNIT};
-use super::geometry::{Four, STEPS, whole};
+use super::geometry::{FourValues, STEPS, whole};
 use super::robot::AXES;
 use crate::simulator::refuse_if;
 
@@ -51,7 +51,7 @@ pub(super) struct Point {
 
 impl Point {
     /// Converts the values to pulses, or to mm and degrees.
-    pub(super) fn numbers(&self) -> Four {
+    pub(super) fn numbers(&self) -> FourValues {
         match self.unit {
             PointUnit::Pulse => self.values.map(f64::from),
             PointUnit::Mm => self.values.map(|value| f64::from(value) / STEPS),

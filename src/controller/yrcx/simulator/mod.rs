@@ -54,17 +54,17 @@
 mod alarms;
 mod commands;
 mod console;
+mod data_commands;
 mod defaults;
 mod geometry;
 mod journal;
 mod memory;
 mod motion;
-mod motions;
+mod motion_commands;
 mod moves;
-mod operate;
+mod operation_commands;
 mod program;
-mod reads;
-mod records;
+mod read_commands;
 mod remote;
 mod request;
 mod robot;
@@ -193,7 +193,7 @@ impl Simulator {
         self.world.move_on(at);
         match self.incoming.take() {
             Some(Master::Shows(image)) => self.world.master_shows(image),
-            Some(Master::Gone) => self.world.master_gone(),
+            Some(Master::Gone) => self.world.on_master_lost(),
             None => {}
         }
         self.dedicated.scan(&mut self.world);

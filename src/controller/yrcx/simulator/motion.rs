@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use super::alarms::Fault;
-use super::geometry::{Arm, Four, Geometry};
+use super::geometry::{Arm, FourValues, Geometry};
 use crate::Now;
 
 /// Seconds to full speed with an acceleration coefficient of 100 %.
@@ -66,17 +66,18 @@ impl Profile {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Path {
     /// Joint interpolation: all axes start and end at the same time.
-    Joint { from: Four, to: Four },
+    Joint { from: FourValues, to: FourValues },
     /// A straight line of the tool.
-    Line { from: Four, to: Four, arm: Arm },
+    Line { from: FourValues, to: FourValues, arm: Arm },
     /// An arc of the tool about `centre`, from `first` toward `second`.
-    Arc { from: Four, to: Four, centre: [f64; 3], first: [f64; 3], second: [f64; 3], angle: f64, arm: Arm },
+    Arc { from: FourValues, to: FourValues, centre: [f64; 3], first: [f64; 3], second: [f64; 3], angle: f64, arm: Arm },
 }
 
 impl Path {
     /// Pulses after a share of the path; `None` if the robot cannot reach the position.
-    pub(super) fn at(&self, share: f64, geometry: &Geometry) -> Option<Four> {
-        let between = |from: &Four, to: &Four| std::array::from_fn(|at| from[at] + (to[at] - from[at]) * share);
+    pub(super) fn at(&self, share: f64, geometry: &Geometry) -> Option<FourValues> {
+        let between =
+            |from: &FourValues, to: &FourValues| std::array::from_fn(|at| from[at] + (to[at] - from[at]) * share);
         match self {
             Self::Joint { from, to } => Some(between(from, to)),
             Self::Line { from, to, arm } => geometry.pulses(&between(from, to), *arm),
@@ -90,13 +91,13 @@ impl Path {
     }
 
     /// An arc through `via`; `None` if the three points are on a line.
-    pub(super) fn arc(from: &Four, via: &Four, to: &Four, arm: Arm) -> Option<(Self, f64)> {
+    pub(super) fn arc(from: &FourValues, via: &FourValues, to: &FourValues, arm: Arm) -> Option<(Self, f64)> {
         let minus = |a: &[f64; 3], b: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|at| a[at] - b[at]) };
         let dot = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let cross = |a: &[f64; 3], b: &[f64; 3]| -> [f64; 3] {
             [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
         };
-        let place = |pose: &Four| [pose[0], pose[1], pose[2]];
+        let place = |pose: &FourValues| [pose[0], pose[1], pose[2]];
         let (a, b) = (minus(&place(via), &place(from)), minus(&place(to), &place(from)));
         let normal = cross(&a, &b);
         let square = dot(&normal, &normal);
@@ -153,7 +154,7 @@ impl Leg {
     }
 
     /// A pause at a position.
-    pub(super) fn rest(at: Four, time: Duration) -> Self {
+    pub(super) fn rest(at: FourValues, time: Duration) -> Self {
         Self { path: Path::Joint { from: at, to: at }, profile: Profile::Rest { seconds: time.as_secs_f64() } }
     }
 
@@ -210,7 +211,7 @@ impl Motion {
     }
 
     /// Advances to a time. Returns the position, and how the motion ended if it has ended.
-    pub(super) fn advance(&mut self, now: Now) -> (Option<Four>, Option<End>) {
+    pub(super) fn advance(&mut self, now: Now) -> (Option<FourValues>, Option<End>) {
         let mut place = None;
         loop {
             let due = self.due();
@@ -235,7 +236,7 @@ impl Motion {
     }
 
     /// Direction of each axis in the current segment. The sign is also the sign of the torque.
-    pub(super) fn direction(&self) -> Four {
+    pub(super) fn direction(&self) -> FourValues {
         let ends = self
             .legs
             .front()
@@ -289,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn arcs_go_over_their_middle() {
+    fn arcs_go_through_their_middle_point() {
         let (from, via, to) = ([10.0, 0.0, 0.0, 0.0], [0.0, 10.0, 0.0, 0.0], [0.0, -10.0, 0.0, 90.0]);
         let (arc, length) = Path::arc(&from, &via, &to, Arm::Right).unwrap();
         assert!((length - 15.0 * std::f64::consts::PI).abs() < 1e-9);

@@ -1,7 +1,7 @@
 //! Targets, paths and speeds of commands and programs.
 
 use super::alarms::{AlarmSource, Fault, NO_ABSOLUTE_RESET, NO_PATH, OUT_OF_REACH, POINT_UNIT};
-use super::geometry::{Arm, Four, Geometry, STEPS, along_tool, from_shift, to_shift};
+use super::geometry::{Arm, FourValues, Geometry, STEPS, along_tool, from_shift, to_shift};
 use super::memory::{Point, PointUnit};
 use super::motion::{End, Leg, Motion, Owner, Path};
 use super::robot::{Axis, Method, Motor, Robot, over_limit};
@@ -84,7 +84,7 @@ impl World {
     }
 
     /// Tool position of a robot, in the coordinates of the selected shift.
-    pub(super) fn pose(&self, number: usize) -> Result<Four, Fault> {
+    pub(super) fn pose(&self, number: usize) -> Result<FourValues, Fault> {
         let robot = self.robot(number)?;
         Ok(to_shift(&self.shift(robot), &self.geometry(number)?.pose(&robot.pulses())))
     }
@@ -94,7 +94,7 @@ impl World {
     }
 
     /// Target in pulses of a move of these axes to a point. The other axes stay in place.
-    pub(super) fn point_target(&self, number: usize, axes: u8, point: &Point) -> Result<Four, Fault> {
+    pub(super) fn point_target(&self, number: usize, axes: u8, point: &Point) -> Result<FourValues, Fault> {
         match point.unit {
             PointUnit::Pulse => self.pulse_target(number, axes, &point.numbers()),
             PointUnit::Mm => self.pose_target(number, axes, &point.numbers(), Arm::of_hand_system(point.hand_system)),
@@ -102,19 +102,25 @@ impl World {
     }
 
     /// Target in pulses of a move of these axes to positions in pulses.
-    pub(super) fn pulse_target(&self, number: usize, axes: u8, pulses: &Four) -> Result<Four, Fault> {
+    pub(super) fn pulse_target(&self, number: usize, axes: u8, pulses: &FourValues) -> Result<FourValues, Fault> {
         Ok(chosen(self.robot(number)?, axes, pulses))
     }
 
     /// Target in pulses of a move of these coordinates to positions in the shift. The other coordinates stay the same.
-    pub(super) fn pose_target(&self, number: usize, axes: u8, pose: &Four, arm: Option<Arm>) -> Result<Four, Fault> {
+    pub(super) fn pose_target(
+        &self,
+        number: usize,
+        axes: u8,
+        pose: &FourValues,
+        arm: Option<Arm>,
+    ) -> Result<FourValues, Fault> {
         let now = self.pose(number)?;
         let wanted = std::array::from_fn(|axis| if axes >> axis & 1 == 1 { pose[axis] } else { now[axis] });
         self.reach(number, &wanted, arm.unwrap_or(self.robot(number)?.arm))
     }
 
     /// Target in pulses of a move of these axes by the distances in a point.
-    pub(super) fn relative_target(&self, number: usize, axes: u8, point: &Point) -> Result<Four, Fault> {
+    pub(super) fn relative_target(&self, number: usize, axes: u8, point: &Point) -> Result<FourValues, Fault> {
         match point.unit {
             PointUnit::Pulse => self.relative_pulses(number, axes, &point.numbers()),
             PointUnit::Mm => self.relative_pose(number, axes, &point.numbers()),
@@ -122,32 +128,32 @@ impl World {
     }
 
     /// Target of a move by distances in pulses.
-    pub(super) fn relative_pulses(&self, number: usize, axes: u8, way: &Four) -> Result<Four, Fault> {
+    pub(super) fn relative_pulses(&self, number: usize, axes: u8, way: &FourValues) -> Result<FourValues, Fault> {
         let now = self.robot(number)?.pulses();
         self.pulse_target(number, axes, &sum(&now, way))
     }
 
     /// Target of a move by distances in mm.
-    pub(super) fn relative_pose(&self, number: usize, axes: u8, way: &Four) -> Result<Four, Fault> {
+    pub(super) fn relative_pose(&self, number: usize, axes: u8, way: &FourValues) -> Result<FourValues, Fault> {
         let arm = self.current_arm(number)?;
         self.pose_target(number, axes, &sum(&self.pose(number)?, way), Some(arm))
     }
 
     /// Target of a move by distances in tool coordinates.
-    pub(super) fn tool_target(&self, number: usize, axes: u8, way: &Four) -> Result<Four, Fault> {
+    pub(super) fn tool_target(&self, number: usize, axes: u8, way: &FourValues) -> Result<FourValues, Fault> {
         let way = std::array::from_fn(|axis| if axes >> axis & 1 == 1 { way[axis] } else { 0.0 });
         self.reach(number, &along_tool(&self.pose(number)?, &way), self.current_arm(number)?)
     }
 
     /// Target of a move of one axis to a position in mm or degrees.
-    pub(super) fn axis_target(&self, number: usize, axis: usize, units: f64) -> Result<Four, Fault> {
+    pub(super) fn axis_target(&self, number: usize, axis: usize, units: f64) -> Result<FourValues, Fault> {
         self.has_axes(number, 1 << axis)?;
         let per_unit = self.geometry(number)?.per_unit[axis];
         self.pulse_target(number, 1 << axis, &[units * per_unit; 4])
     }
 
     /// Distances of a point for a move in tool coordinates. Only a point in mm is valid.
-    pub(super) fn tool_way(point: &Point) -> Result<Four, Fault> {
+    pub(super) fn tool_way(point: &Point) -> Result<FourValues, Fault> {
         match point.unit {
             PointUnit::Mm => Ok(point.numbers()),
             PointUnit::Pulse => {
@@ -161,7 +167,7 @@ impl World {
         Ok(self.geometry(number)?.arm(&robot.pulses()).unwrap_or(robot.arm))
     }
 
-    fn reach(&self, number: usize, pose: &Four, arm: Arm) -> Result<Four, Fault> {
+    fn reach(&self, number: usize, pose: &FourValues, arm: Arm) -> Result<FourValues, Fault> {
         let robot = self.robot(number)?;
         let world = from_shift(&self.shift(robot), pose);
         let pulses = self.geometry(number)?.pulses(&world, arm).ok_or_else(|| out_of_reach(number))?;
@@ -173,7 +179,7 @@ impl World {
         &mut self,
         number: usize,
         owner: Owner,
-        target: &Four,
+        target: &FourValues,
         linear: bool,
         speed: Speed,
     ) -> Result<(), Fault> {
@@ -189,7 +195,13 @@ impl World {
     }
 
     /// Path segment with joint interpolation.
-    pub(super) fn joint_leg(&self, number: usize, from: &Four, to: &Four, speed: Speed) -> Result<Leg, Fault> {
+    pub(super) fn joint_leg(
+        &self,
+        number: usize,
+        from: &FourValues,
+        to: &FourValues,
+        speed: Speed,
+    ) -> Result<Leg, Fault> {
         let robot = self.robot(number)?;
         if robot.is_at_home() {
             robot.check_limits(number, to)?;
@@ -201,7 +213,7 @@ impl World {
     }
 
     /// Path segment along a straight line of the tool.
-    pub(super) fn line_leg(&self, number: usize, to: &Four, speed: Speed) -> Result<Leg, Fault> {
+    pub(super) fn line_leg(&self, number: usize, to: &FourValues, speed: Speed) -> Result<Leg, Fault> {
         let (robot, geometry) = (self.robot(number)?, self.geometry(number)?);
         let from = robot.pulses();
         robot.check_limits(number, to)?;
@@ -255,7 +267,7 @@ impl World {
         number: usize,
         axis: usize,
         height: f64,
-        to: &Four,
+        to: &FourValues,
         speed: Speed,
     ) -> Result<Vec<Leg>, Fault> {
         self.has_axes(number, 1 << axis)?;
@@ -395,7 +407,7 @@ impl World {
 }
 
 /// Acceleration and deceleration as shares of the maximum. Each of them is the minimum over the moving axes.
-fn ramps(robot: &Robot, from: &Four, to: &Four, speed: Speed) -> (f64, f64) {
+fn ramps(robot: &Robot, from: &FourValues, to: &FourValues, speed: Speed) -> (f64, f64) {
     let least = |parameter| {
         let moving = robot.axes.iter().enumerate().filter(|(at, _)| (from[*at] - to[*at]).abs() > 0.0);
         moving.map(|(_, axis)| axis.parameter(parameter)).min().unwrap_or(100)
@@ -407,7 +419,7 @@ fn ramps(robot: &Robot, from: &Four, to: &Four, speed: Speed) -> (f64, f64) {
 
 /// Returns the current position with the values of these axes replaced by `numbers`. The value is 0 for an axis that
 /// the robot does not have.
-fn chosen(robot: &Robot, axes: u8, numbers: &Four) -> Four {
+fn chosen(robot: &Robot, axes: u8, numbers: &FourValues) -> FourValues {
     let now = robot.pulses();
     std::array::from_fn(|axis| {
         if axis >= robot.axes.len() {
@@ -420,7 +432,7 @@ fn chosen(robot: &Robot, axes: u8, numbers: &Four) -> Four {
     })
 }
 
-fn sum(a: &Four, b: &Four) -> Four {
+fn sum(a: &FourValues, b: &FourValues) -> FourValues {
     std::array::from_fn(|at| a[at] + b[at])
 }
 

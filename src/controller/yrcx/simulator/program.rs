@@ -172,7 +172,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_are_understood() {
+    fn parses_program_lines() {
         let text = "*START:\nMOVE P,P19 'there\nMOVEI[2] L,P3\nDELAY 500\nDO(127)=1\nMO3()=255\nWAIT SI(20)=0\n\
                     SGI1=SGI1+1\nSGR0=SGI2/2.5\nSGI3=-5\nGOSUB *SUB\nGOTO *START\nRETURN\nHALT\n";
         let program = Program::parse("PG1", text).unwrap();
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_understood_is_named() {
+    fn error_names_an_unsupported_statement() {
         for line in ["MOVE X,P1", "MOVE P,P30000", "MOVE[5] P,P1", "SI(20)=1", "DO(28)=1", "DO(20)=2", "SGI32=1", "X"] {
             let error = Program::parse("A", &format!("HALT\n{line}")).unwrap_err();
             assert!(error.starts_with("line 2 of A"), "{error}");

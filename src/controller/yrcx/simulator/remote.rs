@@ -1,16 +1,16 @@
 //! Handshake of remote commands, scan by scan (chapter 2, sections 1 and 2).
 
 use super::alarms::{Fault, STOP_INPUT};
-use super::commands::{self, Work};
+use super::commands::{self, CommandProgress};
 use super::motion::{End, Owner};
-use super::motions;
-use super::reads;
+use super::motion_commands;
+use super::read_commands;
 use super::request::Request;
 use super::world::{Link, SCAN, World};
 use crate::Now;
 use crate::yrcx::answer::Status;
 use crate::yrcx::image::{COMMAND_WORDS, Words};
-use crate::yrcx::table::Pace;
+use crate::yrcx::table::DurationClass;
 use crate::yrcx::value::{Key, Values};
 
 const NO_WORDS: Words = [0; COMMAND_WORDS];
@@ -24,7 +24,7 @@ const RUN_STATUS: Words = {
 #[derive(Debug, Clone)]
 struct Running {
     request: Request,
-    work: Work,
+    work: CommandProgress,
     /// Earliest time at which the running status ends.
     not_before: Now,
     /// Whether the master still sends the command. If not, the end of the command is not reported.
@@ -65,15 +65,15 @@ impl Remote {
     pub(super) fn due(&self, world: &World) -> Option<Now> {
         let State::Running(running) = &self.state else { return None };
         match &running.work {
-            Work::Power(at, _) => Some(*at),
-            Work::Done(_) => Some(running.not_before),
+            CommandProgress::Power(at, _) => Some(*at),
+            CommandProgress::Done(_) => Some(running.not_before),
             // The values change only during a motion.
-            Work::Continuous => {
+            CommandProgress::Continuous => {
                 let robot = world.robots.get(running.request.robot())?;
                 robot.motion.is_some().then(|| world.now.saturating_add(SCAN))
             }
             // The end of a motion causes a scan anyway, so no time is needed here.
-            Work::Motion(_) => None,
+            CommandProgress::Motion(_) => None,
         }
     }
 
@@ -99,7 +99,8 @@ impl Remote {
         };
         match commands::begin(world, &request) {
             Ok(work) => {
-                let scans = if matches!(work, Work::Done(_)) { self.random.u32(0..=self.run_scans) } else { 0 };
+                let scans =
+                    if matches!(work, CommandProgress::Done(_)) { self.random.u32(0..=self.run_scans) } else { 0 };
                 let not_before = world.now.saturating_add(SCAN.saturating_mul(scans));
                 let running = Running { request, work, not_before, held: true, ends: Vec::new() };
                 self.shown = RUN_STATUS;
@@ -112,7 +113,7 @@ impl Remote {
     fn carry_on(&mut self, world: &mut World) {
         let State::Running(running) = &mut self.state else { return };
         let Some(result) = progress(world, running) else {
-            if running.work == Work::Continuous {
+            if running.work == CommandProgress::Continuous {
                 self.shown = output(world, &running.request);
             }
             return;
@@ -144,14 +145,14 @@ impl Remote {
 /// Result of the command, if it has ended.
 fn progress(world: &mut World, running: &mut Running) -> Option<Result<Values, Fault>> {
     match &running.work {
-        Work::Done(values) => (world.now >= running.not_before).then(|| Ok(values.clone())),
-        Work::Power(at, action) => {
+        CommandProgress::Done(values) => (world.now >= running.not_before).then(|| Ok(values.clone())),
+        CommandProgress::Power(at, action) => {
             let action = *action;
             (world.now >= *at).then(|| world.act(action).map(|()| Values::default()))
         }
-        Work::Continuous if world.link == Link::Down => Some(Err(world.link_fault())),
-        Work::Continuous => (!running.held).then(|| Ok(Values::default())),
-        Work::Motion(robots) => {
+        CommandProgress::Continuous if world.link == Link::Down => Some(Err(world.link_fault())),
+        CommandProgress::Continuous => (!running.held).then(|| Ok(Values::default())),
+        CommandProgress::Motion(robots) => {
             for robot in robots {
                 let end = world.robots.get_mut(*robot).and_then(|robot| robot.take_end(Owner::Remote));
                 running.ends.extend(end);
@@ -165,7 +166,7 @@ fn progress(world: &mut World, running: &mut Running) -> Option<Result<Values, F
             });
             Some(match stopped {
                 Some(fault) => Err(fault),
-                None => motions::positions(world, &running.request).map(|mut values| {
+                None => motion_commands::positions(world, &running.request).map(|mut values| {
                     values.set(Key::PushResult, i32::from(running.ends.contains(&End::Pushed)));
                     values
                 }),
@@ -176,7 +177,7 @@ fn progress(world: &mut World, running: &mut Running) -> Option<Result<Values, F
 
 /// Words of the running status. For continuous output, they contain the data.
 fn output(world: &World, request: &Request) -> Words {
-    match reads::answer(world, request) {
+    match read_commands::answer(world, request) {
         Ok(values) => request.reply(Status::Running, &values),
         Err(_) => RUN_STATUS,
     }
@@ -184,9 +185,9 @@ fn output(world: &World, request: &Request) -> Words {
 
 /// Words of an abnormal end. If the command is a jog that was stopped, they contain the position (4.2.6).
 fn abnormal_end(world: &mut World, request: &Request, fault: Fault) -> Words {
-    let told = request.row.pace == Pace::Jog && fault.alarm == STOP_INPUT;
+    let told = request.row.pace == DurationClass::Jog && fault.alarm == STOP_INPUT;
     let alarm = refusal(world, fault);
-    match motions::positions(world, request) {
+    match motion_commands::positions(world, request) {
         Ok(positions) if told => {
             let mut words = request.reply(Status::AbnormalEnd, &positions);
             words[..3].copy_from_slice(&alarm[..3]);

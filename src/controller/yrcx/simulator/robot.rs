@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::alarms::{AlarmSource, Fault, SOFT_LIMIT};
-use super::geometry::{Arm, Four, Geometry, Kind};
+use super::geometry::{Arm, FourValues, Geometry, Kind};
 use super::motion::{End, Motion, Owner};
 use crate::Now;
 use crate::yrcx::image::Words;
@@ -96,7 +96,7 @@ impl Axis {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ResumableMotion {
     pub(super) words: Words,
-    pub(super) target: Four,
+    pub(super) target: FourValues,
 }
 
 #[derive(Debug, Clone)]
@@ -126,7 +126,7 @@ pub(super) struct Robot {
 
 impl Robot {
     /// Axis positions in pulses; 0 for missing axes.
-    pub(super) fn pulses(&self) -> Four {
+    pub(super) fn pulses(&self) -> FourValues {
         std::array::from_fn(|axis| self.axes.get(axis).map_or(0.0, |axis| axis.pulses))
     }
 
@@ -142,12 +142,12 @@ impl Robot {
     }
 
     /// Index of the first axis outside its soft limits.
-    pub(super) fn beyond(&self, pulses: &Four) -> Option<usize> {
+    pub(super) fn beyond(&self, pulses: &FourValues) -> Option<usize> {
         self.axes.iter().zip(pulses).position(|(axis, pulses)| !axis.is_within(*pulses))
     }
 
     /// Refuses a position outside of the soft limits. `robot` is the index of this robot.
-    pub(super) fn check_limits(&self, robot: usize, pulses: &Four) -> Result<(), Fault> {
+    pub(super) fn check_limits(&self, robot: usize, pulses: &FourValues) -> Result<(), Fault> {
         match self.beyond(pulses) {
             Some(axis) => Err(over_limit(robot, axis)),
             None => Ok(()),
@@ -155,7 +155,7 @@ impl Robot {
     }
 
     /// Time in seconds that the slowest axis needs at full speed.
-    pub(super) fn seconds(&self, from: &Four, to: &Four) -> f64 {
+    pub(super) fn seconds(&self, from: &FourValues, to: &FourValues) -> f64 {
         let ways = self.axes.iter().zip(from.iter().zip(to));
         ways.map(|(axis, (from, to))| (to - from).abs() / (axis.per_unit * axis.speed)).fold(0.0, f64::max)
     }

@@ -6,7 +6,7 @@ use super::alarms::{AlarmSource, Fault, NOT_ENABLED};
 use super::memory::{SI, SO};
 use super::motion::Owner;
 use super::moves::Homing;
-use super::operate::MOTOR_TIME;
+use super::operation_commands::MOTOR_TIME;
 use super::robot::Robot;
 use super::world::{Action, Link, Mode, World};
 use crate::Now;

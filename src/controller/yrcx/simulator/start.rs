@@ -3,7 +3,7 @@
 //! All keys have defaults: an empty file is a controller with four robots and servo power. The file adds to the content
 //! of a new controller. Its robots replace the default robots. An error message gives the line.
 
-mod fill;
+mod initial_state;
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -400,15 +400,15 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
     let (stock, stock_source): (Entries, _) = (start::parse(STOCK)?, Source { text: STOCK });
     let mut world = bare_world(entries, source)?;
     if entries.robots.is_empty() {
-        fill::robots(&mut world, &stock.robots, entries.servo, stock_source)?;
+        initial_state::robots(&mut world, &stock.robots, entries.servo, stock_source)?;
     } else {
-        fill::robots(&mut world, &entries.robots, entries.servo, source)?;
+        initial_state::robots(&mut world, &entries.robots, entries.servo, source)?;
     }
     if entries.stock {
-        fill::memory(&mut world, &stock, stock_source)?;
+        initial_state::memory(&mut world, &stock, stock_source)?;
     }
-    fill::memory(&mut world, entries, source)?;
-    fill::check(&world, entries, source)?;
+    initial_state::memory(&mut world, entries, source)?;
+    initial_state::check(&world, entries, source)?;
     // The check uses a copy, so that the world keeps its start state.
     let mut copy = world.clone();
     world.events = source.timeline(&entries.events, |line| console::execute(&mut copy, line))?;

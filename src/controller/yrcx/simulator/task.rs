@@ -1,7 +1,7 @@
 //! Tasks that run programs, one line per scan.
 
 use super::alarms::{AlarmSource, CALLS, Fault, NO_TASK, RUNNING};
-use super::geometry::Four;
+use super::geometry::FourValues;
 use super::memory::PortRef;
 use super::memory::calculate;
 use super::motion::{End, Owner};
@@ -24,7 +24,7 @@ pub(super) enum State {
 
 /// Where a task stops.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Until {
+enum StopPoint {
     End,
     /// The task stops after one line.
     Line,
@@ -35,7 +35,7 @@ enum Until {
 
 /// What the current line waits for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Doing {
+enum LineWait {
     Nothing,
     Delay(Now),
     Moving(usize),
@@ -43,7 +43,7 @@ enum Doing {
 }
 
 /// A program line: number of the program, and index of the line from 0.
-type Spot = (u8, usize);
+type LinePosition = (u8, usize);
 
 #[derive(Debug, Clone)]
 pub(super) struct Task {
@@ -52,12 +52,12 @@ pub(super) struct Task {
     pub(super) program: u8,
     pub(super) priority: u8,
     pub(super) state: State,
-    at: Spot,
-    calls: Vec<Spot>,
-    doing: Doing,
-    until: Until,
+    at: LinePosition,
+    calls: Vec<LinePosition>,
+    doing: LineWait,
+    until: StopPoint,
     /// Line and target of an interrupted relative motion.
-    kept: Option<(Spot, Four)>,
+    kept: Option<(LinePosition, FourValues)>,
 }
 
 impl Task {
@@ -70,8 +70,8 @@ impl Task {
             state: State::Stopped,
             at: (program, 0),
             calls: Vec::new(),
-            doing: Doing::Nothing,
-            until: Until::End,
+            doing: LineWait::Nothing,
+            until: StopPoint::End,
             kept: None,
         }
     }
@@ -84,8 +84,8 @@ impl Task {
     /// Time of the next action.
     pub(super) fn due(&self, now: Now) -> Option<Now> {
         match (self.state, self.doing) {
-            (State::Running, Doing::Nothing) => Some(now),
-            (State::Running, Doing::Delay(until)) => Some(until),
+            (State::Running, LineWait::Nothing) => Some(now),
+            (State::Running, LineWait::Delay(until)) => Some(until),
             // The end of a motion or the change of a signal causes a scan anyway.
             _ => None,
         }
@@ -95,7 +95,7 @@ impl Task {
     pub(super) fn status(&self) -> i32 {
         match (self.state, self.doing) {
             (State::Stopped, _) => 0,
-            (State::Running, Doing::Waiting) => 3,
+            (State::Running, LineWait::Waiting) => 3,
             (State::Running, _) => 1,
             (State::Suspended, _) => 2,
         }
@@ -109,7 +109,7 @@ impl Task {
         if self.state != State::Suspended {
             self.state = State::Stopped;
         }
-        self.doing = Doing::Nothing;
+        self.doing = LineWait::Nothing;
     }
 }
 
@@ -117,7 +117,7 @@ impl Task {
 enum Flow {
     Next,
     Stay,
-    To(Spot),
+    To(LinePosition),
     Over,
 }
 
@@ -164,14 +164,14 @@ impl World {
         if self.tasks.is_empty() {
             return Err(no_task());
         }
-        (0..self.tasks.len()).for_each(|at| self.start(at, Until::End));
+        (0..self.tasks.len()).for_each(|at| self.start(at, StopPoint::End));
         Ok(())
     }
 
     pub(super) fn start_task(&mut self, at: usize) -> Result<(), Fault> {
         self.may_run()?;
         self.tasks.get(at).ok_or_else(no_task)?;
-        self.start(at, Until::End);
+        self.start(at, StopPoint::End);
         Ok(())
     }
 
@@ -180,7 +180,7 @@ impl World {
         self.may_run()?;
         self.none_runs()?;
         let task = self.tasks.get(at).ok_or_else(no_task)?;
-        let until = if over { Until::Call(task.calls.len()) } else { Until::Line };
+        let until = if over { StopPoint::Call(task.calls.len()) } else { StopPoint::Line };
         self.start(at, until);
         Ok(())
     }
@@ -213,11 +213,11 @@ impl World {
         }
     }
 
-    fn start(&mut self, at: usize, until: Until) {
+    fn start(&mut self, at: usize, until: StopPoint) {
         self.reset_done = false;
         let Some(task) = self.tasks.get_mut(at).filter(|task| task.state != State::Running) else { return };
         task.state = State::Running;
-        task.doing = Doing::Nothing;
+        task.doing = LineWait::Nothing;
         task.until = until;
         let owner = Owner::Task(task.number);
         for robot in &mut self.robots {
@@ -229,14 +229,14 @@ impl World {
         let Some(task) = self.tasks.get(at) else { return };
         let (number, spot, doing) = (task.number, task.at, task.doing);
         let flow = match doing {
-            Doing::Delay(until) if self.now < until => Ok(Flow::Stay),
-            Doing::Delay(_) => Ok(Flow::Next),
-            Doing::Moving(robot) => match self.robot_mut(robot).map(|robot| robot.take_end(Owner::Task(number))) {
+            LineWait::Delay(until) if self.now < until => Ok(Flow::Stay),
+            LineWait::Delay(_) => Ok(Flow::Next),
+            LineWait::Moving(robot) => match self.robot_mut(robot).map(|robot| robot.take_end(Owner::Task(number))) {
                 Ok(None) => Ok(Flow::Stay),
                 Ok(Some(End::Stopped(fault))) | Err(fault) => Err(fault),
                 Ok(Some(End::Arrived | End::Pushed)) => Ok(Flow::Next),
             },
-            Doing::Nothing | Doing::Waiting => self.execute(at, spot),
+            LineWait::Nothing | LineWait::Waiting => self.execute(at, spot),
         };
         match flow {
             Ok(flow) => self.follow(at, &flow),
@@ -258,14 +258,14 @@ impl World {
             Flow::Over => None,
         };
         task.kept = None;
-        task.doing = Doing::Nothing;
+        task.doing = LineWait::Nothing;
         match to.filter(|(program, line)| programs.get(program).is_some_and(|program| *line < program.lines.len())) {
             Some(spot) => {
                 task.at = spot;
                 let over = match task.until {
-                    Until::End => false,
-                    Until::Line => true,
-                    Until::Call(depth) => task.calls.len() <= depth,
+                    StopPoint::End => false,
+                    StopPoint::Line => true,
+                    StopPoint::Call(depth) => task.calls.len() <= depth,
                 };
                 if over {
                     task.state = State::Stopped;
@@ -278,14 +278,14 @@ impl World {
         self.restless = true;
     }
 
-    fn execute(&mut self, at: usize, (program, line): Spot) -> Result<Flow, Fault> {
+    fn execute(&mut self, at: usize, (program, line): LinePosition) -> Result<Flow, Fault> {
         let code = self.programs.get(&program).and_then(|program| program.lines.get(line)).cloned();
         let Some(code) = code else { return Ok(Flow::Over) };
         match code {
             Statement::Nothing => {}
             Statement::Halt => return Ok(Flow::Over),
             Statement::Delay(time) => {
-                self.set_doing(at, Doing::Delay(self.now.saturating_add(time)));
+                self.set_doing(at, LineWait::Delay(self.now.saturating_add(time)));
                 return Ok(Flow::Stay);
             }
             Statement::Move { robot, linear, relative, point } => {
@@ -294,7 +294,7 @@ impl World {
             Statement::Output(port, value) => self.memory.set_output(port, value),
             Statement::Wait(port, value) => {
                 if self.signal(port) != value {
-                    self.set_doing(at, Doing::Waiting);
+                    self.set_doing(at, LineWait::Waiting);
                     return Ok(Flow::Stay);
                 }
             }
@@ -356,17 +356,17 @@ impl World {
         if let Some(task) = self.tasks.get_mut(at) {
             task.kept = relative.then_some((spot, target));
         }
-        self.set_doing(at, Doing::Moving(robot));
+        self.set_doing(at, LineWait::Moving(robot));
         Ok(Flow::Stay)
     }
 
-    fn set_doing(&mut self, at: usize, doing: Doing) {
+    fn set_doing(&mut self, at: usize, doing: LineWait) {
         if let Some(task) = self.tasks.get_mut(at) {
             task.doing = doing;
         }
     }
 
-    fn label(&self, program: u8, label: &str) -> Result<Spot, Fault> {
+    fn label(&self, program: u8, label: &str) -> Result<LinePosition, Fault> {
         let own = self.programs.get(&program).and_then(|found| found.labels.get(label)).map(|line| (program, *line));
         let common = || {
             let (number, found) = self.programs.iter().find(|(_, program)| program.name == COMMON)?;

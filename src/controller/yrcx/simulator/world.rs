@@ -243,7 +243,7 @@ impl World {
     }
 
     /// Handles the loss of the link.
-    pub(super) fn master_gone(&mut self) {
+    pub(super) fn on_master_lost(&mut self) {
         if self.link != Link::Down {
             self.link = Link::Down;
             self.inputs = Image::default();

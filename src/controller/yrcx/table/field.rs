@@ -1,7 +1,7 @@
 //! Fields of command and answer words: position, format, condition.
 
-use crate::typed;
 use crate::units::{self, Unit, UnitError};
+use crate::user_input;
 use crate::yrcx::value::{Key, Value};
 
 /// A field of a command or an answer.
@@ -322,7 +322,7 @@ impl Field {
                     }
                     Form::Bits { width, show: Show::Set { least, most }, .. } => match number.count_ones() {
                         _ if number >> width != 0 => Err(format!("{}: must be from 1 to {width}", self.show(value))),
-                        count if count < least || count > most => Err(format!("{count} named; {}", self.allowed())),
+                        count if count < least || count > most => Err(format!("{count} selected; {}", self.allowed())),
                         _ => Ok(()),
                     },
                     Form::Bits { show: Show::Fixed(fixed), .. } if i32::from(fixed) != *number => {
@@ -523,7 +523,7 @@ fn set_of(text: &str) -> Result<Value, String> {
             Ok(number @ 1..=16) => Ok(number),
             _ => Err(wrong()),
         };
-        set = typed::range(item, number)?.fold(set, |set, number| set | 1 << (number - 1));
+        set = user_input::range(item, number)?.fold(set, |set, number| set | 1 << (number - 1));
     }
     Ok(Value::Int(set))
 }

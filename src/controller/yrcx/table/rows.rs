@@ -1,6 +1,6 @@
 //! Rows of the command table, in the order of the codes.
 
-use super::{Pace, Row, Rule, layouts};
+use super::{DurationClass, Row, Rule, layouts};
 use crate::Risk;
 
 /// Declares the commands and their rows.
@@ -29,16 +29,16 @@ macro_rules! commands {
     };
 }
 
-const READ: (Risk, Pace) = (Risk::Read, Pace::Quick);
-const WRITE: (Risk, Pace) = (Risk::Write, Pace::Quick);
+const READ: (Risk, DurationClass) = (Risk::Read, DurationClass::Quick);
+const WRITE: (Risk, DurationClass) = (Risk::Write, DurationClass::Quick);
 /// Risk and pace of a command that overwrites data made by a person.
-const DESTROY: (Risk, Pace) = (Risk::Destroy, Pace::Quick);
+const DESTROY: (Risk, DurationClass) = (Risk::Destroy, DurationClass::Quick);
 /// Risk and pace of power on, power off and brake release: an axis may drop.
-const POWER: (Risk, Pace) = (Risk::Motion, Pace::Power);
-const MOTION: (Risk, Pace) = (Risk::Motion, Pace::Motion);
-const JOG: (Risk, Pace) = (Risk::Motion, Pace::Jog);
+const POWER: (Risk, DurationClass) = (Risk::Motion, DurationClass::Power);
+const MOTION: (Risk, DurationClass) = (Risk::Motion, DurationClass::Motion);
+const JOG: (Risk, DurationClass) = (Risk::Motion, DurationClass::Jog);
 /// Risk and pace of a program start. The command ends when the controller accepts the start.
-const START: (Risk, Pace) = (Risk::Motion, Pace::Quick);
+const START: (Risk, DurationClass) = (Risk::Motion, DurationClass::Quick);
 
 commands! {
     StatusReset 0x000 "status-reset" "4.1" "reset the status" READ [] [];

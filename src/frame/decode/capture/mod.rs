@@ -15,7 +15,7 @@ use anyhow::Context as _;
 use jiff::Timestamp;
 
 pub use self::report::Capture;
-use self::report::{FULL, Links, Problems, count_text};
+use self::report::{Links, Problems, TOO_MANY_MESSAGES, count_text};
 use super::Field;
 use crate::Report as _;
 use crate::output::Format;
@@ -131,11 +131,11 @@ impl<F> Default for DecodedCapture<F> {
 
 /// Adds a note, up to a reasonable number.
 pub fn note(notes: &mut Vec<String>, text: String) {
-    const MOST: usize = 1000;
+    const MAX_NOTES: usize = 1000;
 
     match notes.len() {
-        MOST => notes.push("further notes are omitted".to_owned()),
-        len if len < MOST => notes.push(text),
+        MAX_NOTES => notes.push("further notes are omitted".to_owned()),
+        len if len < MAX_NOTES => notes.push(text),
         _ => {}
     }
 }
@@ -182,7 +182,7 @@ struct MessageBuffer<F> {
 /// Memory limit for messages if they can be streamed instead.
 const NOTES_LIMIT: usize = 16 << 20;
 /// Memory limit if all messages are needed as one value, for a filter.
-const ROOM: usize = 256 << 20;
+const MEMORY_LIMIT: usize = 256 << 20;
 
 impl<F> MessageBuffer<F> {
     fn new(room: usize, frame: Option<u64>, without_fields: bool) -> Self {
@@ -234,7 +234,7 @@ pub fn print<D: CaptureDecoder>(
     let name = input.name();
     let source = Source { name: &name, open: || input.open(), selection };
     let (is_streamed, without_fields) = (run.filter.is_none() && run.line.is_none(), run.is_for_people());
-    let room = if is_streamed { NOTES_LIMIT } else { ROOM };
+    let room = if is_streamed { NOTES_LIMIT } else { MEMORY_LIMIT };
     let (capture, decoder) = {
         let _busy = register();
         source.capture(decoder, room, without_fields)?
@@ -302,10 +302,10 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
             if frame.is_some() {
                 links.count(&message.link);
             }
-            kept.push(message) || room >= ROOM
+            kept.push(message) || room >= MEMORY_LIMIT
         })?;
         links.are_counted = frame.is_some();
-        if kept.is_full && room < ROOM {
+        if kept.is_full && room < MEMORY_LIMIT {
             return Ok((None, decoder.restart()));
         }
         let DecodedCapture { packets, notes, .. } = std::mem::take(decoder.decoded());
@@ -322,7 +322,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
         }
         let mut capture = Capture { messages, problems, links: links.list, ..self.about(&summary, packets, notes) };
         if kept.is_full {
-            capture.damage = Some(FULL.to_owned());
+            capture.damage = Some(TOO_MANY_MESSAGES.to_owned());
         }
         Ok((Some(capture), decoder.restart()))
     }

@@ -144,8 +144,8 @@ impl<F: Field> Report for Capture<F> {
     }
 
     fn failure(&self) -> Option<Failure> {
-        if self.damage.as_deref() == Some(FULL) {
-            let failure = Failure::local(format!("{}: {FULL}", self.file));
+        if self.damage.as_deref() == Some(TOO_MANY_MESSAGES) {
+            let failure = Failure::local(format!("{}: {TOO_MANY_MESSAGES}", self.file));
             return Some(
                 failure.hint("select messages with --host, --port or --frame, or split the file with `editcap -c`"),
             );
@@ -170,7 +170,7 @@ impl<F: Field> Report for Capture<F> {
 }
 
 /// Reason why not all messages are shown.
-pub const FULL: &str = "the capture has too many messages; only the first messages are shown";
+pub const TOO_MANY_MESSAGES: &str = "the capture has too many messages; only the first messages are shown";
 
 /// Links of a file, in the order of their first message.
 #[derive(Debug, Default)]

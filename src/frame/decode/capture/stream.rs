@@ -20,7 +20,7 @@ use crate::schema_of;
 use armctl_transport::capture::Summary;
 
 /// Number of rows per layout batch.
-const PIECE: usize = 1000;
+const ROWS_PER_BATCH: usize = 1000;
 
 /// Prints a file while it is read.
 pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
@@ -110,7 +110,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
         let mut written = Ok(());
         self.rows(decoder, |row| {
             table.row(row.cells());
-            if table.rows.len() >= PIECE {
+            if table.rows.len() >= ROWS_PER_BATCH {
                 written = write(&mut table);
             }
             written.is_ok()
@@ -134,7 +134,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
             written = as_value(&row).and_then(|row| {
                 sheet.rows(&[], &json!({ "messages": [row] }), None, &mut text);
                 count += 1;
-                if count.is_multiple_of(PIECE) { run.screen.data(&std::mem::take(&mut text)) } else { Ok(()) }
+                if count.is_multiple_of(ROWS_PER_BATCH) { run.screen.data(&std::mem::take(&mut text)) } else { Ok(()) }
             });
             written.is_ok()
         })?;

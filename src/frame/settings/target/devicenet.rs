@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::bus::{Place, Scheme};
-use super::{Address, Query, authority, baud, choice, host_and_port, port};
+use super::{Address, Query, baud, choice, confirmer, host_and_port, port};
 use crate::settings::duration;
 use armctl_transport::devicenet::can::Bitrate;
 use armctl_transport::devicenet::network;
@@ -35,13 +35,13 @@ pub const CAN: Scheme = Scheme {
     form: "can://can0?mac=5[&master=0&cycle=20ms]",
     about: "yrcx on DeviceNet: CAN interface of Linux",
     parse: |place, query| {
-        let interface = authority("can", place)?;
+        let interface = confirmer("can", place)?;
         let is_name =
             (1..16).contains(&interface.len()) && !interface.contains(|c: char| c.is_whitespace() || "/:".contains(c));
         if !is_name {
             return Err(format!("'{interface}' is not the name of an interface such as can0"));
         }
-        node(network::Place::SocketCan { interface: interface.to_owned() }, query)
+        node(network::AdapterLocation::SocketCan { interface: interface.to_owned() }, query)
     },
 };
 
@@ -49,7 +49,7 @@ pub const CAN: Scheme = Scheme {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DeviceNet {
     /// Adapter.
-    pub place: network::Place,
+    pub place: network::AdapterLocation,
     /// MAC ID of the controller.
     pub mac: Mac,
     /// MAC ID of this master.
@@ -65,20 +65,20 @@ pub struct DeviceNet {
 /// Baud rate of a real serial line to an adapter; USB adapters ignore it.
 const BAUD: u32 = 115_200;
 
-fn slcan(place: &str, query: &mut Query) -> Result<network::Place, String> {
-    let rest = authority("slcan", place)?;
+fn slcan(place: &str, query: &mut Query) -> Result<network::AdapterLocation, String> {
+    let rest = confirmer("slcan", place)?;
     if rest.starts_with('/') || rest.to_ascii_uppercase().starts_with("COM") && !rest.contains(':') {
         let baud = baud(query)?.unwrap_or(BAUD);
-        return Ok(network::Place::Serial { path: rest.to_owned(), baud });
+        return Ok(network::AdapterLocation::Serial { path: rest.to_owned(), baud });
     }
     let (host, own_port) = host_and_port(rest)?;
     let own_port =
         own_port.ok_or("the port is missing, for example slcan://HOST:PORT?mac=5; a serial port has three slashes")?;
-    Ok(network::Place::Tcp { host, port: port("port", own_port)? })
+    Ok(network::AdapterLocation::Tcp { host, port: port("port", own_port)? })
 }
 
 /// Parses the options that both schemes have.
-fn node(place: network::Place, query: &mut Query) -> Result<Place, String> {
+fn node(place: network::AdapterLocation, query: &mut Query) -> Result<Place, String> {
     let mac = query.take("mac").ok_or("mac is missing: add the controller's MAC ID, for example mac=5")?;
     let mac: Mac = mac.parse().map_err(|error| format!("mac: {error}"))?;
     let master = query.take("master").map_or(Ok(Mac::default()), |text| text.parse());
@@ -87,7 +87,7 @@ fn node(place: network::Place, query: &mut Query) -> Result<Place, String> {
         return Err(format!("mac and master are both {mac}: this master needs a MAC ID that no other node has"));
     }
     let bitrate = match place {
-        network::Place::SocketCan { .. } => Bitrate::K500,
+        network::AdapterLocation::SocketCan { .. } => Bitrate::K500,
         _ => choice(query, "bitrate", [("500k", Bitrate::K500), ("250k", Bitrate::K250), ("125k", Bitrate::K125)])?,
     };
     let usual = Images::usual(Vec::new(), Some(bitrate));
@@ -97,9 +97,9 @@ fn node(place: network::Place, query: &mut Query) -> Result<Place, String> {
         return Err("rate is shorter than cycle: the controller would time out between two polls".to_owned());
     }
     let address = match &place {
-        network::Place::Serial { path, .. } => Address::device(path),
-        network::Place::Tcp { host, port } => Address::network("slcan", host, *port),
-        network::Place::SocketCan { interface } => Address::Device(format!("can {interface}")),
+        network::AdapterLocation::Serial { path, .. } => Address::device(path),
+        network::AdapterLocation::Tcp { host, port } => Address::network("slcan", host, *port),
+        network::AdapterLocation::SocketCan { interface } => Address::Device(format!("can {interface}")),
     };
     Ok(Place {
         address: address.station(mac.number()),
@@ -128,7 +128,7 @@ mod tests {
     #[test]
     fn parses_urls_of_adapters() {
         let usual = DeviceNet {
-            place: network::Place::Serial { path: "/dev/ttyACM0".to_owned(), baud: 115_200 },
+            place: network::AdapterLocation::Serial { path: "/dev/ttyACM0".to_owned(), baud: 115_200 },
             mac: Mac::new(5).unwrap(),
             master: Mac::new(0).unwrap(),
             bitrate: Bitrate::K500,
@@ -138,9 +138,9 @@ mod tests {
         assert_eq!(options::<DeviceNet>("slcan:///dev/ttyACM0?mac=5"), usual.clone());
         let all = "slcan:///dev/ttyACM0?mac=5&bitrate=500k&baud=115200&master=0&cycle=20ms&rate=100ms";
         assert_eq!(options::<DeviceNet>(all), usual.clone());
-        let place = network::Place::Serial { path: "COM3".to_owned(), baud: 115_200 };
+        let place = network::AdapterLocation::Serial { path: "COM3".to_owned(), baud: 115_200 };
         assert_eq!(options::<DeviceNet>("slcan://COM3?mac=5"), DeviceNet { place, ..usual.clone() });
-        let place = network::Place::Tcp { host: "10.0.0.1".to_owned(), port: 4001 };
+        let place = network::AdapterLocation::Tcp { host: "10.0.0.1".to_owned(), port: 4001 };
         assert_eq!(
             options::<DeviceNet>("slcan://10.0.0.1:4001?mac=5"),
             DeviceNet { place: place.clone(), ..usual.clone() }
@@ -153,7 +153,7 @@ mod tests {
             ..usual.clone()
         };
         assert_eq!(options::<DeviceNet>("slcan://10.0.0.1:4001?mac=5&bitrate=125k"), slow);
-        let place = network::Place::SocketCan { interface: "can0".to_owned() };
+        let place = network::AdapterLocation::SocketCan { interface: "can0".to_owned() };
         assert_eq!(options::<DeviceNet>("can://can0?mac=5"), DeviceNet { place, ..usual });
     }
 

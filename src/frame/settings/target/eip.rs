@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::bus::{Place, Scheme};
-use super::{Address, Query, authority, choice, host_and_port, port};
+use super::{Address, Query, choice, confirmer, host_and_port, port};
 use crate::settings::duration;
 
 /// The scheme.
@@ -92,7 +92,7 @@ const RPI: Duration = Duration::from_millis(20);
 
 /// Parses the part after `eip:`.
 fn parse(place: &str, query: &mut Query) -> Result<Eip, String> {
-    let (host, own_port) = host_and_port(authority("eip", place)?)?;
+    let (host, own_port) = host_and_port(confirmer("eip", place)?)?;
     if host.contains(':') {
         return Err(format!("'{host}' is an IPv6 address; EtherNet/IP needs IPv4"));
     }

@@ -7,10 +7,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::bus::{Place, Scheme};
-use super::{Address, Query, authority, choice};
+use super::{Address, Query, choice, confirmer};
 use crate::settings::duration;
 use armctl_transport::profinet::layout::Layout;
-use armctl_transport::profinet::settings::{LONGEST_WATCHDOG, Settings, Startup, Station};
+use armctl_transport::profinet::settings::{MAX_WATCHDOG, Settings, Startup, Station};
 use armctl_transport::profinet::wire::Mac;
 use armctl_transport::profinet::wire::dcp::{IpSuite, check_name};
 
@@ -80,7 +80,7 @@ const PREFIX: u32 = 24;
 
 /// Parses the part after `profinet:`.
 fn parse(place: &str, query: &mut Query) -> Result<Profinet, String> {
-    let place = authority("profinet", place)?;
+    let place = confirmer("profinet", place)?;
     let (station, interface) = place
         .rsplit_once('@')
         .ok_or("the interface is missing, for example profinet://STATION@eth0; `ip link` lists the interfaces")?;
@@ -89,7 +89,7 @@ fn parse(place: &str, query: &mut Query) -> Result<Profinet, String> {
         return Err(format!("'{interface}' is not the name of an interface such as eth0"));
     }
     let cycle = query.take("cycle").map_or(Ok(CYCLE), |text| cycle(&text))?;
-    let usual = (cycle * CYCLES).clamp(CYCLE * CYCLES, LONGEST_WATCHDOG);
+    let usual = (cycle * CYCLES).clamp(CYCLE * CYCLES, MAX_WATCHDOG);
     let watchdog = query.take("watchdog").map_or(Ok(usual), |text| watchdog(&text, cycle))?;
     let layout = query.take("layout").map(|text| text.parse()).transpose();
     let layout = layout.map_err(|error: String| format!("layout: {error}"))?;
@@ -158,10 +158,10 @@ fn ratio(cycle: Duration) -> Option<u16> {
 fn watchdog(text: &str, cycle: Duration) -> Result<Duration, String> {
     let watchdog = duration::parse(text).map_err(|error| format!("watchdog: {error}"))?;
     let least = cycle * 3;
-    if (least..=LONGEST_WATCHDOG).contains(&watchdog) {
+    if (least..=MAX_WATCHDOG).contains(&watchdog) {
         return Ok(watchdog);
     }
-    let (least, most) = (least.as_millis(), LONGEST_WATCHDOG.as_millis());
+    let (least, most) = (least.as_millis(), MAX_WATCHDOG.as_millis());
     Err(format!("watchdog must be a time from {least}ms (three cycles) to {most}ms, not '{text}'"))
 }
 

@@ -4,14 +4,14 @@ use std::fmt;
 use std::net::Ipv6Addr;
 use std::ops::RangeInclusive;
 
-use armctl_controller::nearest::nearest;
+use armctl_controller::similar_word::nearest;
 
 const BAUDS: RangeInclusive<u32> = 50..=4_000_000;
 
 /// Part between the slashes and the query.
-pub fn authority<'a>(scheme: &str, place: &'a str) -> Result<&'a str, String> {
-    let authority = place.strip_prefix("//").ok_or_else(|| format!("two slashes are missing after {scheme}:"))?;
-    Ok(authority.strip_suffix('/').unwrap_or(authority))
+pub fn confirmer<'a>(scheme: &str, place: &'a str) -> Result<&'a str, String> {
+    let confirmer = place.strip_prefix("//").ok_or_else(|| format!("two slashes are missing after {scheme}:"))?;
+    Ok(confirmer.strip_suffix('/').unwrap_or(confirmer))
 }
 
 /// Takes an option with fixed values; the first is the default.
@@ -34,8 +34,8 @@ pub fn baud(query: &mut Query) -> Result<Option<u32>, String> {
 }
 
 /// Splits `host:port`, `[v6]:port`, or either without a port.
-pub fn host_and_port(authority: &str) -> Result<(String, Option<&str>), String> {
-    let (host, port) = if let Some(rest) = authority.strip_prefix('[') {
+pub fn host_and_port(confirmer: &str) -> Result<(String, Option<&str>), String> {
+    let (host, port) = if let Some(rest) = confirmer.strip_prefix('[') {
         let (host, rest) = rest.split_once(']').ok_or("the bracket of the IPv6 address is not closed")?;
         match rest.strip_prefix(':') {
             Some(port) => (host, Some(port)),
@@ -43,9 +43,9 @@ pub fn host_and_port(authority: &str) -> Result<(String, Option<&str>), String> 
             None => return Err(format!("'{rest}' after the address is not a port")),
         }
     } else {
-        match authority.split_once(':') {
+        match confirmer.split_once(':') {
             Some((host, port)) => (host, Some(port)),
-            None => (authority, None),
+            None => (confirmer, None),
         }
     };
     if host.is_empty() {

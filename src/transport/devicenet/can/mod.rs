@@ -16,7 +16,7 @@ pub mod socketcan;
 pub use self::slcan_port::SlcanPort;
 
 /// Maximum number of data bytes of a frame.
-pub const MOST_DATA: usize = 8;
+pub const MAX_DATA: usize = 8;
 /// Highest 11-bit identifier.
 pub const HIGHEST_ID: u16 = 0x7FF;
 
@@ -25,16 +25,16 @@ pub const HIGHEST_ID: u16 = 0x7FF;
 pub struct Frame {
     id: u16,
     len: u8,
-    data: [u8; MOST_DATA],
+    data: [u8; MAX_DATA],
 }
 
 impl Frame {
     /// Creates a frame; `None` if the identifier has more than 11 bits or the data more than 8 bytes.
     pub fn new(id: u16, data: &[u8]) -> Option<Self> {
-        if id > HIGHEST_ID || data.len() > MOST_DATA {
+        if id > HIGHEST_ID || data.len() > MAX_DATA {
             return None;
         }
-        let mut frame = Self { id, len: u8::try_from(data.len()).ok()?, data: [0; MOST_DATA] };
+        let mut frame = Self { id, len: u8::try_from(data.len()).ok()?, data: [0; MAX_DATA] };
         frame.data[..data.len()].copy_from_slice(data);
         Some(frame)
     }
@@ -54,7 +54,7 @@ impl Frame {
         // Number of bits without stuffing: CRC delimiter, acknowledge slot and its delimiter, end of frame, interframe
         // space.
         const UNSTUFFED: u32 = 1 + 2 + 7 + 3;
-        let mut stream = Stuffed::default();
+        let mut stream = BitStuffing::default();
         // Bits with stuffing: start of frame, identifier, RTR, IDE, reserved bit, length.
         stream.push(u32::from(self.id), 12);
         stream.push(u32::from(self.len), 3 + 4);
@@ -100,7 +100,7 @@ impl Frame {
             (id, data.to_owned())
         } else {
             let len: usize = words.next()?.strip_prefix('[')?.strip_suffix(']')?.parse().ok()?;
-            (word, words.take(len.min(MOST_DATA)).collect())
+            (word, words.take(len.min(MAX_DATA)).collect())
         };
         if id.len() != 3 || data.len() % 2 == 1 {
             return None;
@@ -128,14 +128,14 @@ impl fmt::Debug for Frame {
 
 /// Bit counter with stuffing. After five equal bits, a node inserts one opposite bit.
 #[derive(Debug, Default)]
-struct Stuffed {
+struct BitStuffing {
     bits: u32,
     /// Value of the last bit, and the number of equal bits in a row.
     run: (bool, u8),
     checksum: u16,
 }
 
-impl Stuffed {
+impl BitStuffing {
     fn push(&mut self, value: u32, count: u32) {
         /// Polynomial of the 15-bit CRC of a frame.
         const POLYNOMIAL: u16 = 0x4599;
@@ -223,7 +223,7 @@ pub struct Health {
 
 /// Event of an adapter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Heard {
+pub enum PortEvent {
     /// A frame from the bus.
     Frame(Frame),
     /// The health changed.
@@ -280,7 +280,7 @@ pub enum PortError {
 }
 
 /// A boxed future.
-pub type Waiting<'a, T> = Pin<Box<dyn Future<Output = T> + Send + 'a>>;
+pub type BoxedFuture<'a, T> = Pin<Box<dyn Future<Output = T> + Send + 'a>>;
 
 /// An adapter on a bus: in-process, SLCAN or SocketCAN.
 pub trait CanPort: fmt::Debug + Send {
@@ -291,7 +291,7 @@ pub trait CanPort: fmt::Debug + Send {
     fn send(&mut self, frame: &Frame) -> Result<(), PortError>;
 
     /// Waits for the next event. The future is cancel safe.
-    fn next(&mut self) -> Waiting<'_, Result<Heard, PortError>>;
+    fn next(&mut self) -> BoxedFuture<'_, Result<PortEvent, PortError>>;
 
     /// Last known health.
     fn health(&self) -> Health;
@@ -306,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_fits_is_a_frame() {
+    fn rejects_frames_out_of_range() {
         assert_eq!(Frame::new(0x800, &[]), None);
         assert_eq!(Frame::new(0, &[0; 9]), None);
         assert_eq!(frame(0x42F, &[0, 0x7C, 2, 0xEE, 0xFF, 0xC0, 0]).to_string(), "42F#007C02EEFFC000");
@@ -315,7 +315,7 @@ mod tests {
     /// A frame has 47 + 8n bits without stuffing, where n is the number of data bytes. It has at most (34 + 8n - 1) / 4
     /// stuff bits.
     #[test]
-    fn bits_lie_between_none_and_all_stuffed() {
+    fn frame_length_is_within_the_stuffing_limits() {
         for len in 0..=8usize {
             let least = 47 + 8 * u32::try_from(len).unwrap();
             let most = least + (34 + 8 * u32::try_from(len).unwrap() - 1) / 4;
@@ -331,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn captures_and_logs_hold_frames() {
+    fn frames_round_trip_through_captures_and_logs() {
         let frame = frame(0x42D, &[0, 1, 2]);
         let bytes = frame.to_capture();
         assert_eq!(bytes, [0, 0, 4, 0x2D, 3, 0, 0, 0, 0, 1, 2]);

@@ -12,21 +12,21 @@ use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::TcpStream;
 use tokio::sync::mpsc::{Receiver, Sender, UnboundedReceiver, UnboundedSender, channel, unbounded_channel};
 
-use crate::vanished;
+use crate::closed_error;
 
 /// Maximum number of bytes per read. The constant below is the maximum number of pieces that wait for the reader.
-const PIECE: usize = 4096;
-const PIECES: usize = 64;
+const READ_SIZE: usize = 4096;
+const MAX_PIECES: usize = 64;
 /// Timeout of a read. After each timeout, the thread checks whether the pipe still exists.
-const SLICE: Duration = Duration::from_millis(20);
+const READ_TIMEOUT: Duration = Duration::from_millis(20);
 /// Write timeout of a port.
-const STUCK: Duration = Duration::from_secs(2);
+const WRITE_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// A byte stream.
 #[derive(Debug)]
 pub struct Pipe {
     writer: Writer,
-    arriving: Receiver<io::Result<Vec<u8>>>,
+    incoming: Receiver<io::Result<Vec<u8>>>,
 }
 
 /// Write half of a [`Pipe`].
@@ -38,17 +38,17 @@ pub struct Writer {
 
 /// The ends of the queues that the port or connection uses.
 struct End {
-    leaving: UnboundedReceiver<Vec<u8>>,
+    outgoing: UnboundedReceiver<Vec<u8>>,
     waiting: Arc<AtomicUsize>,
-    arrived: Sender<io::Result<Vec<u8>>>,
+    read_bytes: Sender<io::Result<Vec<u8>>>,
 }
 
 fn pair() -> (Pipe, End) {
-    let (out, leaving) = unbounded_channel();
-    let (arrived, arriving) = channel(PIECES);
+    let (out, outgoing) = unbounded_channel();
+    let (read_bytes, incoming) = channel(MAX_PIECES);
     let waiting = Arc::new(AtomicUsize::new(0));
     let writer = Writer { out, waiting: Arc::clone(&waiting) };
-    (Pipe { writer, arriving }, End { leaving, waiting, arrived })
+    (Pipe { writer, incoming }, End { outgoing, waiting, read_bytes })
 }
 
 impl Pipe {
@@ -57,30 +57,30 @@ impl Pipe {
         stream.set_nodelay(true)?;
         let (pipe, mut end) = pair();
         let (mut reader, mut writer) = stream.into_split();
-        let arrived = end.arrived.clone();
+        let read_bytes = end.read_bytes.clone();
         tokio::spawn(async move {
             loop {
-                let mut bytes = vec![0; PIECE];
+                let mut bytes = vec![0; READ_SIZE];
                 let read = tokio::select! {
                     read = reader.read(&mut bytes) => read,
-                    () = arrived.closed() => return,
+                    () = read_bytes.closed() => return,
                 };
                 let read = match read {
-                    Ok(0) => Err(vanished("the other end closed the connection")),
+                    Ok(0) => Err(closed_error("the other end closed the connection")),
                     Ok(len) => {
                         bytes.truncate(len);
                         Ok(bytes)
                     }
-                    Err(error) => Err(vanished(error)),
+                    Err(error) => Err(closed_error(error)),
                 };
                 let is_end = read.is_err();
-                if arrived.send(read).await.is_err() || is_end {
+                if read_bytes.send(read).await.is_err() || is_end {
                     return;
                 }
             }
         });
         tokio::spawn(async move {
-            while let Some(bytes) = end.leaving.recv().await {
+            while let Some(bytes) = end.outgoing.recv().await {
                 // After an error, this task ends. The reader reports that the connection is closed.
                 if writer.write_all(&bytes).await.is_err() {
                     return;
@@ -94,15 +94,15 @@ impl Pipe {
     /// Opens a pipe over a serial port.
     pub fn serial(mut writer: Box<dyn SerialPort>) -> io::Result<Self> {
         let mut reader = writer.try_clone()?;
-        reader.set_timeout(SLICE)?;
-        writer.set_timeout(STUCK)?;
+        reader.set_timeout(READ_TIMEOUT)?;
+        writer.set_timeout(WRITE_TIMEOUT)?;
         let (pipe, mut end) = pair();
-        let arrived = end.arrived.clone();
+        let read_bytes = end.read_bytes.clone();
         thread::Builder::new().name("slcan-read".to_owned()).spawn(move || {
-            while !arrived.is_closed() {
-                let mut bytes = vec![0; PIECE];
+            while !read_bytes.is_closed() {
+                let mut bytes = vec![0; READ_SIZE];
                 let read = match reader.read(&mut bytes) {
-                    Ok(0) => Err(vanished("the port was closed")),
+                    Ok(0) => Err(closed_error("the port was closed")),
                     Ok(len) => {
                         bytes.truncate(len);
                         Ok(bytes)
@@ -110,19 +110,19 @@ impl Pipe {
                     Err(error) if matches!(error.kind(), io::ErrorKind::TimedOut | io::ErrorKind::Interrupted) => {
                         continue;
                     }
-                    Err(error) => Err(vanished(error)),
+                    Err(error) => Err(closed_error(error)),
                 };
                 let is_end = read.is_err();
-                if arrived.blocking_send(read).is_err() || is_end {
+                if read_bytes.blocking_send(read).is_err() || is_end {
                     return;
                 }
             }
         })?;
         thread::Builder::new().name("slcan-write".to_owned()).spawn(move || {
-            while let Some(bytes) = end.leaving.blocking_recv() {
+            while let Some(bytes) = end.outgoing.blocking_recv() {
                 if let Err(error) = writer.write_all(&bytes) {
                     // An error means that the receiver was dropped.
-                    let _ = end.arrived.blocking_send(Err(vanished(error)));
+                    let _ = end.read_bytes.blocking_send(Err(closed_error(error)));
                     return;
                 }
                 end.waiting.fetch_sub(bytes.len(), Ordering::Relaxed);
@@ -141,7 +141,7 @@ impl Pipe {
     /// # Errors
     /// The other end has closed the stream.
     pub async fn read(&mut self) -> io::Result<Vec<u8>> {
-        self.arriving.recv().await.unwrap_or_else(|| Err(vanished("the connection was closed")))
+        self.incoming.recv().await.unwrap_or_else(|| Err(closed_error("the connection was closed")))
     }
 }
 
@@ -149,8 +149,8 @@ impl Writer {
     /// Creates a writer with a queue. The caller must empty the queue and report its progress with
     /// [`written`](Self::written).
     pub fn queue() -> (Self, UnboundedReceiver<Vec<u8>>) {
-        let (out, leaving) = unbounded_channel();
-        (Self { out, waiting: Arc::default() }, leaving)
+        let (out, outgoing) = unbounded_channel();
+        (Self { out, waiting: Arc::default() }, outgoing)
     }
 
     /// Reports that `len` bytes were written.

@@ -1,6 +1,6 @@
 //! SLCAN, the ASCII protocol of Lawicel CAN adapters. Lines end with CR. This module has both sides of the protocol.
 
-use super::{Bitrate, Frame, MOST_DATA};
+use super::{Bitrate, Frame, MAX_DATA};
 
 /// End of a line. A line that consists only of a CR is a positive answer.
 pub const CR: u8 = 0x0D;
@@ -8,7 +8,7 @@ pub const CR: u8 = 0x0D;
 pub const BELL: u8 = 0x07;
 /// Maximum length of a line in characters. The longest valid line is an extended frame with a timestamp, and is
 /// shorter.
-const MOST_LINE: usize = 32;
+const MAX_LINE_LEN: usize = 32;
 
 /// Status flags of an adapter (answer to `F`).
 pub mod flag {
@@ -47,7 +47,7 @@ pub fn emit(frame: &Frame) -> Vec<u8> {
 
 /// A line from an adapter.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Said {
+pub enum AdapterMessage {
     /// A frame from the bus.
     Frame(Frame),
     /// A frame of a type that DeviceNet does not use (extended or remote).
@@ -122,7 +122,7 @@ impl Lines {
                 Some(Line { is_bell: byte == BELL, text: if is_long { "?".to_owned() } else { text } })
             }
             b'\n' => None,
-            _ if self.line.len() >= MOST_LINE => {
+            _ if self.line.len() >= MAX_LINE_LEN => {
                 self.is_long = true;
                 None
             }
@@ -136,18 +136,18 @@ impl Lines {
 
 impl Line {
     /// Decodes a line from an adapter; `None` if it is not valid.
-    pub fn said(&self) -> Option<Said> {
+    pub fn adapter_messages(&self) -> Option<AdapterMessage> {
         if self.is_bell {
-            return Some(Said::No);
+            return Some(AdapterMessage::No);
         }
         let text = self.text.as_str();
         match text.as_bytes().first() {
-            None | Some(b'z' | b'Z') if text.len() <= 1 => Some(Said::Done),
-            Some(b'F') if text.len() == 3 => u8::from_str_radix(text.get(1..)?, 16).ok().map(Said::Flags),
-            Some(b'V' | b'N') => Some(Said::About(text.to_owned())),
-            Some(b'T' | b'r' | b'R') => Some(Said::Other),
+            None | Some(b'z' | b'Z') if text.len() <= 1 => Some(AdapterMessage::Done),
+            Some(b'F') if text.len() == 3 => u8::from_str_radix(text.get(1..)?, 16).ok().map(AdapterMessage::Flags),
+            Some(b'V' | b'N') => Some(AdapterMessage::About(text.to_owned())),
+            Some(b'T' | b'r' | b'R') => Some(AdapterMessage::Other),
             // If there is text before a frame, it is the rest of a damaged line. It is skipped.
-            _ => text.match_indices('t').find_map(|(at, _)| frame(text.get(at..)?, true)).map(Said::Frame),
+            _ => text.match_indices('t').find_map(|(at, _)| frame(text.get(at..)?, true)).map(AdapterMessage::Frame),
         }
     }
 
@@ -183,7 +183,7 @@ fn frame(text: &str, with_time: bool) -> Option<Frame> {
     let id = u16::from_str_radix(text.get(1..4)?, 16).ok()?;
     let len: usize = text.get(4..5)?.parse().ok()?;
     let rest = text.get(5..)?;
-    if len > MOST_DATA || !(rest.len() == 2 * len || with_time && rest.len() == 2 * len + 4) {
+    if len > MAX_DATA || !(rest.len() == 2 * len || with_time && rest.len() == 2 * len + 4) {
         return None;
     }
     let byte = |at: usize| u8::from_str_radix(rest.get(2 * at..2 * at + 2)?, 16).ok();
@@ -202,38 +202,38 @@ mod tests {
         bytes.iter().filter_map(|byte| lines.push(*byte)).collect()
     }
 
-    fn said(bytes: &[u8]) -> Vec<Option<Said>> {
-        lines(bytes).iter().map(Line::said).collect()
+    fn adapter_messages(bytes: &[u8]) -> Vec<Option<AdapterMessage>> {
+        lines(bytes).iter().map(Line::adapter_messages).collect()
     }
 
     #[test]
-    fn an_adapter_is_understood() {
+    fn parses_lines_of_an_adapter() {
         let frame = Frame::new(0x42D, &[0, 1, 0xFF]).unwrap();
         assert_eq!(emit(&frame), b"t42D30001FF\r");
         let empty = Frame::new(0x42D, &[]).unwrap();
         let all =
             b"t42D30001FF\rt42D30001FF1A2B\rt42D0\r\r\x07z\rZ\rF2C\rV1013\rNA123\rT000004200\rxxt42D0\rt42D9\rtt\r";
         let expected = [
-            Some(Said::Frame(frame)),
-            Some(Said::Frame(frame)),
-            Some(Said::Frame(empty)),
-            Some(Said::Done),
-            Some(Said::No),
-            Some(Said::Done),
-            Some(Said::Done),
-            Some(Said::Flags(0x2C)),
-            Some(Said::About("V1013".to_owned())),
-            Some(Said::About("NA123".to_owned())),
-            Some(Said::Other),
-            Some(Said::Frame(empty)),
+            Some(AdapterMessage::Frame(frame)),
+            Some(AdapterMessage::Frame(frame)),
+            Some(AdapterMessage::Frame(empty)),
+            Some(AdapterMessage::Done),
+            Some(AdapterMessage::No),
+            Some(AdapterMessage::Done),
+            Some(AdapterMessage::Done),
+            Some(AdapterMessage::Flags(0x2C)),
+            Some(AdapterMessage::About("V1013".to_owned())),
+            Some(AdapterMessage::About("NA123".to_owned())),
+            Some(AdapterMessage::Other),
+            Some(AdapterMessage::Frame(empty)),
             None,
             None,
         ];
-        assert_eq!(said(all), expected);
+        assert_eq!(adapter_messages(all), expected);
     }
 
     #[test]
-    fn an_adapter_is_told() {
+    fn formats_commands_for_an_adapter() {
         let frame = Frame::new(0x42F, &[0]).unwrap();
         let commands: Vec<Command> =
             lines(b"C\rS6\r\rO\rO\rL\rt42F100\rt42F1001A2B\rr42F0\rT0000042F0\rV\rN\rF\rZ1\rM00000000\rS9\rq\r")
@@ -264,24 +264,24 @@ mod tests {
     }
 
     #[test]
-    fn a_line_without_end_takes_no_room() {
+    fn endless_line_uses_limited_memory() {
         let mut noise = vec![b't'; 10_000];
         noise.extend(b"\rt42D0\r");
-        assert_eq!(said(&noise), [None, Some(Said::Frame(Frame::new(0x42D, &[]).unwrap()))]);
+        assert_eq!(adapter_messages(&noise), [None, Some(AdapterMessage::Frame(Frame::new(0x42D, &[]).unwrap()))]);
     }
 
     proptest! {
         #[test]
-        fn frames_come_back(id in 0u16..=0x7FF, data in proptest::collection::vec(any::<u8>(), 0..=8)) {
+        fn frames_round_trip(id in 0u16..=0x7FF, data in proptest::collection::vec(any::<u8>(), 0..=8)) {
             let frame = Frame::new(id, &data).unwrap();
-            prop_assert_eq!(said(&emit(&frame)), [Some(Said::Frame(frame))]);
+            prop_assert_eq!(adapter_messages(&emit(&frame)), [Some(AdapterMessage::Frame(frame))]);
             prop_assert_eq!(lines(&emit(&frame))[0].command(), Command::Send(frame));
         }
 
         #[test]
         fn no_bytes_panic(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
             for line in lines(&bytes) {
-                let _ = (line.said(), line.command());
+                let _ = (line.adapter_messages(), line.command());
             }
         }
     }

@@ -7,9 +7,9 @@ use std::time::Duration;
 use tokio::time::{Instant, sleep_until, timeout_at};
 
 use super::pipe::Pipe;
-use super::slcan::{Lines, Said, bitrate_command, emit, flag};
-use super::{Bitrate, BusState, CanPort, Frame, Health, Heard, PortError, Waiting};
-use crate::image::tap::{Passage, Tap};
+use super::slcan::{AdapterMessage, Lines, bitrate_command, emit, flag};
+use super::{Bitrate, BoxedFuture, BusState, CanPort, Frame, Health, PortError, PortEvent};
+use crate::image::tap::{Tap, TrafficRecord};
 use crate::tap::Direction;
 
 /// If nothing arrives for this time, all bytes of an earlier use have been read.
@@ -19,16 +19,16 @@ const QUIET: Duration = Duration::from_millis(50);
 const LEFTOVERS: Duration = Duration::from_millis(400);
 /// Maximum number of bytes per [`WINDOW`]. A full bus of 500 kbit/s produces 250 kB of text per second. After this
 /// computer was suspended, the text of some seconds can arrive at once.
-const MOST_RECEIVED: usize = 8 * 1024 * 1024;
+const MAX_UNREAD_BYTES: usize = 8 * 1024 * 1024;
 const WINDOW: Duration = Duration::from_secs(1);
 /// Maximum number of lines that arrive while a command waits for its answer.
-const MOST_SAID: usize = 4096;
+const MAX_PENDING_LINES: usize = 4096;
 /// Time limit for the answer to a command.
 const ANSWER: Duration = Duration::from_millis(300);
 /// Interval of the requests for status flags.
 const FLAGS: Duration = Duration::from_secs(1);
 /// Maximum number of unwritten bytes. With more bytes, the adapter counts as blocked.
-const MOST_WAITING: usize = 16 * 1024;
+const MAX_UNWRITTEN_BYTES: usize = 16 * 1024;
 
 /// An SLCAN adapter.
 #[derive(Debug)]
@@ -36,14 +36,14 @@ pub struct SlcanPort {
     path: String,
     pipe: Pipe,
     lines: Lines,
-    said: VecDeque<Said>,
+    adapter_messages: VecDeque<AdapterMessage>,
     health: Health,
     /// Time of the next request for status flags; `None` if the adapter does not support the request.
     flags_due: Option<Instant>,
     /// Start of the current window, and the number of bytes received in it.
     received: (Instant, usize),
     /// Whether the adapter has sent anything since its setup.
-    hears: bool,
+    has_received: bool,
     /// Records the bytes during the setup of the adapter.
     tap: Tap,
 }
@@ -56,11 +56,11 @@ impl SlcanPort {
             path,
             pipe,
             lines: Lines::default(),
-            said: VecDeque::new(),
+            adapter_messages: VecDeque::new(),
             health: Health::default(),
             flags_due: None,
             received: (Instant::now(), 0),
-            hears: false,
+            has_received: false,
             tap,
         };
         // The CRs end a line that an earlier use left incomplete.
@@ -68,32 +68,35 @@ impl SlcanPort {
         port.write(b"C\r")?;
         let begun = Instant::now();
         while port.read(Instant::now() + QUIET).await? {
-            port.said.clear();
+            port.adapter_messages.clear();
             if begun.elapsed() > LEFTOVERS {
                 return Err(PortError::Flooded { path: port.path.clone() });
             }
         }
-        port.hears = false;
-        let about = port.ask(b"V\r", |said| matches!(said, Said::About(_))).await?;
-        let rate = port.ask(bitrate_command(bitrate), |said| *said == Said::Done).await?;
-        if rate == Some(Said::No) {
+        port.has_received = false;
+        let about = port.ask(b"V\r", |adapter_messages| matches!(adapter_messages, AdapterMessage::About(_))).await?;
+        let rate =
+            port.ask(bitrate_command(bitrate), |adapter_messages| *adapter_messages == AdapterMessage::Done).await?;
+        if rate == Some(AdapterMessage::No) {
             return Err(port.wrong(&format!("the adapter refuses the bit rate {bitrate}")));
         }
         let open = if listens { b"L\r" } else { b"O\r" };
-        let opened = port.ask(open, |said| *said == Said::Done).await?;
+        let opened = port.ask(open, |adapter_messages| *adapter_messages == AdapterMessage::Done).await?;
         match (about, rate, opened) {
-            (_, _, Some(Said::No)) => {
+            (_, _, Some(AdapterMessage::No)) => {
                 let what = if listens { "listen only" } else { "connect to the bus" };
                 return Err(port.wrong(&format!("the adapter refuses to {what}")));
             }
-            (None, None, None) if port.hears => {
+            (None, None, None) if port.has_received => {
                 return Err(port.wrong("it does not answer as an SLCAN adapter"));
             }
             (None, None, None) => return Err(PortError::Mute { path: port.path.clone() }),
             _ => {}
         }
-        if let Some(Said::Flags(flags)) = port.ask(b"F\r", |said| matches!(said, Said::Flags(_))).await? {
-            port.flagged(flags);
+        if let Some(AdapterMessage::Flags(flags)) =
+            port.ask(b"F\r", |adapter_messages| matches!(adapter_messages, AdapterMessage::Flags(_))).await?
+        {
+            port.read_flags(flags);
             port.flags_due = Some(Instant::now() + FLAGS);
         }
         port.tap = Tap::default();
@@ -101,17 +104,24 @@ impl SlcanPort {
     }
 
     /// Sends a command and waits for its answer, positive or negative. Frames that arrive before the answer are kept.
-    async fn ask(&mut self, command: &[u8], wanted: impl Fn(&Said) -> bool) -> Result<Option<Said>, PortError> {
-        let mut before = self.said.len();
+    async fn ask(
+        &mut self,
+        command: &[u8],
+        wanted: impl Fn(&AdapterMessage) -> bool,
+    ) -> Result<Option<AdapterMessage>, PortError> {
+        let mut before = self.adapter_messages.len();
         self.write(command)?;
         let until = Instant::now() + ANSWER;
         loop {
-            let is_answer = |said: &Said| wanted(said) || *said == Said::No;
-            if let Some(at) = (before..self.said.len()).find(|at| self.said.get(*at).is_some_and(is_answer)) {
-                return Ok(self.said.remove(at));
+            let is_answer =
+                |adapter_messages: &AdapterMessage| wanted(adapter_messages) || *adapter_messages == AdapterMessage::No;
+            if let Some(at) =
+                (before..self.adapter_messages.len()).find(|at| self.adapter_messages.get(*at).is_some_and(is_answer))
+            {
+                return Ok(self.adapter_messages.remove(at));
             }
-            if self.said.len() > MOST_SAID {
-                self.said.clear();
+            if self.adapter_messages.len() > MAX_PENDING_LINES {
+                self.adapter_messages.clear();
                 before = 0;
                 self.health.overruns += 1;
             }
@@ -126,10 +136,10 @@ impl SlcanPort {
     }
 
     fn write(&mut self, bytes: &[u8]) -> Result<(), PortError> {
-        if self.pipe.writer().waiting() > MOST_WAITING {
+        if self.pipe.writer().waiting() > MAX_UNWRITTEN_BYTES {
             return Err(PortError::Stuck { path: self.path.clone() });
         }
-        self.tap.pass(|| Passage::Adapter { direction: Direction::Sent, bytes: bytes.to_vec() });
+        self.tap.pass(|| TrafficRecord::Adapter { direction: Direction::Sent, bytes: bytes.to_vec() });
         // If the stream is closed, the next read reports the error.
         self.pipe.writer().write(bytes);
         Ok(())
@@ -147,25 +157,26 @@ impl SlcanPort {
 
     fn take(&mut self, read: io::Result<Vec<u8>>) -> Result<(), PortError> {
         let bytes = read.map_err(|error| PortError::Gone { path: self.path.clone(), why: error.to_string() })?;
-        self.tap.pass(|| Passage::Adapter { direction: Direction::Received, bytes: bytes.clone() });
+        self.tap.pass(|| TrafficRecord::Adapter { direction: Direction::Received, bytes: bytes.clone() });
         if self.received.0.elapsed() > WINDOW {
             self.received = (Instant::now(), 0);
         }
         self.received.1 += bytes.len();
-        self.hears |= !bytes.is_empty();
-        if self.received.1 > MOST_RECEIVED {
+        self.has_received |= !bytes.is_empty();
+        if self.received.1 > MAX_UNREAD_BYTES {
             return Err(PortError::Flooded { path: self.path.clone() });
         }
-        let Self { lines, said, .. } = self;
-        said.extend(bytes.iter().filter_map(|byte| lines.push(*byte)).filter_map(|line| line.said()));
+        let Self { lines, adapter_messages, .. } = self;
+        adapter_messages
+            .extend(bytes.iter().filter_map(|byte| lines.push(*byte)).filter_map(|line| line.adapter_messages()));
         Ok(())
     }
 
-    fn flagged(&mut self, flags: u8) {
+    fn read_flags(&mut self, flags: u8) {
         // SLCAN has no flag for bus-off. An adapter in this state sets all three of these flags.
-        const OFF: u8 = flag::BUS_ERROR | flag::PASSIVE | flag::WARNING;
+        const BUS_OFF_FLAGS: u8 = flag::BUS_ERROR | flag::PASSIVE | flag::WARNING;
         self.health.state = match flags {
-            _ if flags & OFF == OFF => BusState::Off,
+            _ if flags & BUS_OFF_FLAGS == BUS_OFF_FLAGS => BusState::Off,
             _ if flags & flag::PASSIVE != 0 => BusState::Passive,
             _ if flags & flag::WARNING != 0 => BusState::Warning,
             _ => BusState::Active,
@@ -174,18 +185,18 @@ impl SlcanPort {
         self.health.rejected += u64::from(flags & flag::SEND_FULL != 0);
     }
 
-    async fn wait(&mut self) -> Result<Heard, PortError> {
+    async fn wait(&mut self) -> Result<PortEvent, PortError> {
         loop {
-            while let Some(said) = self.said.pop_front() {
+            while let Some(adapter_messages) = self.adapter_messages.pop_front() {
                 let before = self.health;
-                match said {
-                    Said::Frame(frame) => return Ok(Heard::Frame(frame)),
-                    Said::Flags(flags) => self.flagged(flags),
-                    Said::No => self.health.rejected += 1,
-                    Said::Other | Said::About(_) | Said::Done => {}
+                match adapter_messages {
+                    AdapterMessage::Frame(frame) => return Ok(PortEvent::Frame(frame)),
+                    AdapterMessage::Flags(flags) => self.read_flags(flags),
+                    AdapterMessage::No => self.health.rejected += 1,
+                    AdapterMessage::Other | AdapterMessage::About(_) | AdapterMessage::Done => {}
                 }
                 if self.health != before {
-                    return Ok(Heard::Health(self.health));
+                    return Ok(PortEvent::Health(self.health));
                 }
             }
             let due = self.flags_due;
@@ -205,7 +216,7 @@ impl CanPort for SlcanPort {
         self.write(&emit(frame))
     }
 
-    fn next(&mut self) -> Waiting<'_, Result<Heard, PortError>> {
+    fn next(&mut self) -> BoxedFuture<'_, Result<PortEvent, PortError>> {
         Box::pin(self.wait())
     }
 

@@ -9,10 +9,10 @@ use socketcan::errors::{ControllerProblems as Problems, ErrorCause};
 use socketcan::tokio::CanSocket;
 use socketcan::{CanError, CanFrame, EmbeddedFrame as _, Id, SocketOptions as _, StandardId};
 
-use super::{BusState, CanPort, Frame, Health, Heard, PortError, Waiting};
+use super::{BoxedFuture, BusState, CanPort, Frame, Health, PortError, PortEvent};
 
 /// Maximum number of frames that wait to be sent. With more frames, the interface counts as blocked.
-const MOST_WAITING: usize = 256;
+const MAX_QUEUED_FRAMES: usize = 256;
 fn advice(interface: &str) -> Cow<'static, str> {
     format!(
         "set up the interface as root, with the bit rate of the bus: `ip link set {interface} up type can bitrate \
@@ -30,7 +30,7 @@ const NO_BUFFER: i32 = 105;
 pub struct SocketCan {
     interface: String,
     socket: CanSocket,
-    leaving: VecDeque<CanFrame>,
+    outgoing: VecDeque<CanFrame>,
     health: Health,
 }
 
@@ -56,7 +56,7 @@ impl SocketCan {
         };
         let socket = CanSocket::open(interface).map_err(|error| failed(&error))?;
         socket.set_error_filter_accept_all().map_err(|error| failed(&error))?;
-        Ok(Self { interface: interface.to_owned(), socket, leaving: VecDeque::new(), health: Health::default() })
+        Ok(Self { interface: interface.to_owned(), socket, outgoing: VecDeque::new(), health: Health::default() })
     }
 
     fn gone(&self, error: &io::Error) -> PortError {
@@ -67,9 +67,9 @@ impl SocketCan {
         PortError::Gone { path: self.interface.clone(), why }
     }
 
-    async fn wait(&mut self) -> Result<Heard, PortError> {
+    async fn wait(&mut self) -> Result<PortEvent, PortError> {
         loop {
-            let first = self.leaving.front().copied();
+            let first = self.outgoing.front().copied();
             let read = tokio::select! {
                 written = async {
                     match first {
@@ -82,7 +82,7 @@ impl SocketCan {
                         Err(error) if error.raw_os_error() == Some(NO_BUFFER) => self.health.rejected += 1,
                         written => written.map_err(|error| self.gone(&error))?,
                     }
-                    self.leaving.pop_front();
+                    self.outgoing.pop_front();
                     continue;
                 }
                 read = self.socket.read_frame() => read,
@@ -92,7 +92,7 @@ impl SocketCan {
                     if let Id::Standard(id) = data.id()
                         && let Some(frame) = Frame::new(id.as_raw(), data.data())
                     {
-                        return Ok(Heard::Frame(frame));
+                        return Ok(PortEvent::Frame(frame));
                     }
                 }
                 CanFrame::Remote(_) => {}
@@ -100,7 +100,7 @@ impl SocketCan {
                     let before = self.health;
                     learn(&mut self.health, &CanError::from(error));
                     if self.health != before {
-                        return Ok(Heard::Health(self.health));
+                        return Ok(PortEvent::Health(self.health));
                     }
                 }
             }
@@ -110,15 +110,15 @@ impl SocketCan {
 
 impl CanPort for SocketCan {
     fn send(&mut self, frame: &Frame) -> Result<(), PortError> {
-        if self.leaving.len() >= MOST_WAITING {
+        if self.outgoing.len() >= MAX_QUEUED_FRAMES {
             return Err(PortError::Stuck { path: self.interface.clone() });
         }
         let id = StandardId::new(frame.id());
-        self.leaving.extend(id.and_then(|id| CanFrame::new(id, frame.data())));
+        self.outgoing.extend(id.and_then(|id| CanFrame::new(id, frame.data())));
         Ok(())
     }
 
-    fn next(&mut self) -> Waiting<'_, Result<Heard, PortError>> {
+    fn next(&mut self) -> BoxedFuture<'_, Result<PortEvent, PortError>> {
         Box::pin(self.wait())
     }
 
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn an_interface_that_is_not_there_is_told_with_what_to_do() {
+    async fn missing_interface_has_an_advice() {
         let error = SocketCan::open("there-is-none0").unwrap_err();
         let PortError::Open { path, why, advice } = error else { panic!("{error:?}") };
         assert_eq!(path, "there-is-none0");

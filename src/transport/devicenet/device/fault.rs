@@ -1,6 +1,6 @@
 //! Deliberate faults of a simulated slave, for tests of masters.
 
-use super::super::can::MOST_DATA;
+use super::super::can::MAX_DATA;
 use super::super::wire::Fragment;
 use crate::fault::device_faults;
 
@@ -19,7 +19,7 @@ device_faults! {
 }
 
 /// Applies a fault to the frames of an image.
-pub(super) fn spoil(fault: Option<DeviceFault>, mut frames: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
+pub(super) fn inject_fault(fault: Option<DeviceFault>, mut frames: Vec<Vec<u8>>) -> Vec<Vec<u8>> {
     match fault {
         Some(DeviceFault::LostFragment) if frames.len() > 2 => drop(frames.remove(2)),
         // A single frame has no fragments. Instead, one byte is removed, which also makes the image incomplete.
@@ -38,7 +38,7 @@ pub(super) fn spoil(fault: Option<DeviceFault>, mut frames: Vec<Vec<u8>>) -> Vec
         }
         Some(DeviceFault::WrongCount) => {
             for frame in &mut frames {
-                frame.resize(MOST_DATA, 0);
+                frame.resize(MAX_DATA, 0);
             }
         }
         _ => {}

@@ -6,13 +6,13 @@ use super::super::Now;
 use super::super::can::Frame;
 use super::super::wire::{Fragment, Header, Id, Kind, Mac};
 
-const PATIENCE: Duration = Duration::from_secs(1);
+const FRAGMENT_TIMEOUT: Duration = Duration::from_secs(1);
 /// Maximum length of a reassembled request in bytes.
-const ROOM: usize = 64;
+const MAX_REQUEST_LEN: usize = 64;
 
 /// A complete request.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Whole {
+pub(super) struct CompleteRequest {
     pub(super) header: Header,
     pub(super) body: Vec<u8>,
 }
@@ -21,19 +21,19 @@ pub(super) struct Whole {
 #[derive(Debug)]
 pub(super) struct Messages {
     mac: Mac,
-    arriving: Option<Arriving>,
-    leaving: Option<Leaving>,
+    incoming: Option<IncomingMessage>,
+    outgoing: Option<OutgoingMessage>,
 }
 
 #[derive(Debug)]
-struct Arriving {
+struct IncomingMessage {
     header: Header,
     body: Vec<u8>,
     count: u8,
 }
 
 #[derive(Debug)]
-struct Leaving {
+struct OutgoingMessage {
     header: Header,
     pieces: Vec<Vec<u8>>,
     at: usize,
@@ -44,24 +44,30 @@ struct Leaving {
 
 impl Messages {
     pub(super) const fn new(mac: Mac) -> Self {
-        Self { mac, arriving: None, leaving: None }
+        Self { mac, incoming: None, outgoing: None }
     }
 
     pub(super) fn reset(&mut self) {
-        (self.arriving, self.leaving) = (None, None);
+        (self.incoming, self.outgoing) = (None, None);
     }
 
     pub(super) fn wake(&self) -> Option<Now> {
-        self.leaving.as_ref().map(|leaving| if leaving.is_due { Now::ZERO } else { leaving.deadline })
+        self.outgoing.as_ref().map(|outgoing| if outgoing.is_due { Now::ZERO } else { outgoing.deadline })
     }
 
     /// Handles a frame. Returns the request if the frame completes one. Acknowledgements are added to `out`.
-    pub(super) fn take(&mut self, now: Now, bytes: &[u8], out: &mut Vec<Frame>, acknowledges: bool) -> Option<Whole> {
+    pub(super) fn take(
+        &mut self,
+        now: Now,
+        bytes: &[u8],
+        out: &mut Vec<Frame>,
+        acknowledges: bool,
+    ) -> Option<CompleteRequest> {
         let (first, body) = bytes.split_first()?;
         let header = Header::parse(*first);
         if !header.is_fragment {
-            self.arriving = None;
-            return Some(Whole { header, body: body.to_vec() });
+            self.incoming = None;
+            return Some(CompleteRequest { header, body: body.to_vec() });
         }
         let (second, part) = body.split_first()?;
         let Fragment { kind, count } = Fragment::parse(*second);
@@ -73,24 +79,24 @@ impl Messages {
         }
         // A fragment has six bytes of data. Only the last fragment can have fewer.
         if part.is_empty() || kind != Kind::Last && part.len() != 6 {
-            self.arriving = None;
+            self.incoming = None;
             return None;
         }
-        let is_next = |arriving: &Arriving| arriving.header == header && arriving.count == count;
-        let is_again = |arriving: &Arriving| arriving.header == header && (arriving.count + 63) % 64 == count;
+        let is_next = |incoming: &IncomingMessage| incoming.header == header && incoming.count == count;
+        let is_again = |incoming: &IncomingMessage| incoming.header == header && (incoming.count + 63) % 64 == count;
         let mut status = 0;
-        match &mut self.arriving {
-            Some(arriving) if kind != Kind::First && is_next(arriving) => {
-                arriving.body.extend(part);
-                arriving.count = (count + 1) % 64;
-                status = u8::from(arriving.body.len() > ROOM);
+        match &mut self.incoming {
+            Some(incoming) if kind != Kind::First && is_next(incoming) => {
+                incoming.body.extend(part);
+                incoming.count = (count + 1) % 64;
+                status = u8::from(incoming.body.len() > MAX_REQUEST_LEN);
             }
-            Some(arriving) if is_again(arriving) => {}
+            Some(incoming) if is_again(incoming) => {}
             _ if kind == Kind::First && count == 0 => {
-                self.arriving = Some(Arriving { header, body: part.to_vec(), count: 1 });
+                self.incoming = Some(IncomingMessage { header, body: part.to_vec(), count: 1 });
             }
             _ => {
-                self.arriving = None;
+                self.incoming = None;
                 return None;
             }
         }
@@ -99,18 +105,18 @@ impl Messages {
             out.extend(self.frame(header, &[acknowledge.emit(), status]));
         }
         if status != 0 {
-            self.arriving = None;
+            self.incoming = None;
         }
         let is_whole =
-            kind == Kind::Last && self.arriving.as_ref().is_some_and(|arriving| (count + 1) % 64 == arriving.count);
-        let arriving = self.arriving.take_if(|_| is_whole)?;
-        Some(Whole { header: Header { is_fragment: false, ..header }, body: arriving.body })
+            kind == Kind::Last && self.incoming.as_ref().is_some_and(|incoming| (count + 1) % 64 == incoming.count);
+        let incoming = self.incoming.take_if(|_| is_whole)?;
+        Some(CompleteRequest { header: Header { is_fragment: false, ..header }, body: incoming.body })
     }
 
     /// Sends an answer.
     pub(super) fn give(&mut self, now: Now, header: Header, body: &[u8], out: &mut Vec<Frame>) {
         if body.len() < 8 {
-            self.leaving = None;
+            self.outgoing = None;
             out.extend(self.frame(Header { is_fragment: false, ..header }, body));
             return;
         }
@@ -127,38 +133,39 @@ impl Messages {
         };
         let pieces = pieces.iter().enumerate().map(piece).collect();
         let header = Header { is_fragment: true, ..header };
-        self.leaving = Some(Leaving { header, pieces, at: 0, deadline: now, is_repeated: false, is_due: true });
+        self.outgoing =
+            Some(OutgoingMessage { header, pieces, at: 0, deadline: now, is_repeated: false, is_due: true });
     }
 
     /// Returns the next fragment to send.
     pub(super) fn poll(&mut self, now: Now) -> Option<Frame> {
-        let leaving = self.leaving.as_mut()?;
-        if leaving.is_due {
-            leaving.is_due = false;
-        } else if now < leaving.deadline {
+        let outgoing = self.outgoing.as_mut()?;
+        if outgoing.is_due {
+            outgoing.is_due = false;
+        } else if now < outgoing.deadline {
             return None;
-        } else if leaving.is_repeated {
-            self.leaving = None;
+        } else if outgoing.is_repeated {
+            self.outgoing = None;
             return None;
         } else {
-            leaving.is_repeated = true;
+            outgoing.is_repeated = true;
         }
-        leaving.deadline = now + PATIENCE;
-        let (header, piece) = (leaving.header, leaving.pieces.get(leaving.at)?.clone());
+        outgoing.deadline = now + FRAGMENT_TIMEOUT;
+        let (header, piece) = (outgoing.header, outgoing.pieces.get(outgoing.at)?.clone());
         self.frame(header, &piece)
     }
 
     fn acknowledged(&mut self, now: Now, header: Header, count: u8, status: &[u8]) {
-        let Some(leaving) = &mut self.leaving else { return };
-        if leaving.is_due || header != leaving.header || usize::from(count) != leaving.at % 64 || status.len() != 1 {
+        let Some(outgoing) = &mut self.outgoing else { return };
+        if outgoing.is_due || header != outgoing.header || usize::from(count) != outgoing.at % 64 || status.len() != 1 {
             return;
         }
-        leaving.at += 1;
-        if status != [0] || leaving.at == leaving.pieces.len() {
-            self.leaving = None;
+        outgoing.at += 1;
+        if status != [0] || outgoing.at == outgoing.pieces.len() {
+            self.outgoing = None;
             return;
         }
-        (leaving.is_due, leaving.is_repeated, leaving.deadline) = (true, false, now + PATIENCE);
+        (outgoing.is_due, outgoing.is_repeated, outgoing.deadline) = (true, false, now + FRAGMENT_TIMEOUT);
     }
 
     fn frame(&self, header: Header, rest: &[u8]) -> Option<Frame> {

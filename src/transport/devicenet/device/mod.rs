@@ -50,7 +50,7 @@ pub struct Setup {
 impl Setup {
     /// Returns the configuration of a slave with the identity of an older YAMAHA controller. The identity is from the
     /// EDS file of that controller.
-    pub fn stand_in(mac: Mac, bitrate: Bitrate, size: u16) -> Self {
+    pub fn sample_controller(mac: Mac, bitrate: Bitrate, size: u16) -> Self {
         Self {
             mac,
             bitrate,
@@ -72,7 +72,7 @@ pub trait Application: Send {
     /// Updates the image to the master. The buffer contains the previous image.
     fn image_in(&mut self, now: Now, image: &mut [u8]);
     /// Handles the end of the poll connection. Either the master released the connection, or it timed out.
-    fn master_gone(&mut self, now: Now);
+    fn on_master_lost(&mut self, now: Now);
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -225,7 +225,7 @@ impl<A: Application> Device<A> {
         if let Some(polled) = &mut self.polled
             && polled.expire(now)
         {
-            self.application.master_gone(now);
+            self.application.on_master_lost(now);
         }
         if self.explicit_until().is_some_and(|until| now >= until) {
             self.allocation.clear();
@@ -244,7 +244,7 @@ impl<A: Application> Device<A> {
     /// Closes the poll connection.
     fn forget_poll(&mut self, now: Now) {
         if self.polled.take().is_some_and(|polled| polled.is_established()) {
-            self.application.master_gone(now);
+            self.application.on_master_lost(now);
         }
     }
 }

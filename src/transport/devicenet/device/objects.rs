@@ -5,7 +5,7 @@ use super::super::can::Bitrate;
 use super::super::wire::{Answer, Format, Header, Id, Mac, Request, class, connection, general, owner, service};
 use super::allocation::Refusal;
 use super::fault::DeviceFault;
-use super::messages::Whole;
+use super::messages::CompleteRequest;
 use super::polled::Polled;
 use super::{Application, Device};
 use crate::refuse_if;
@@ -42,7 +42,7 @@ impl<A: Application> Device<A> {
         self.outbox.extend(out);
     }
 
-    fn answer(&mut self, now: Now, whole: &Whole, is_explicit: bool) -> Option<Answer> {
+    fn answer(&mut self, now: Now, whole: &CompleteRequest, is_explicit: bool) -> Option<Answer> {
         // This message is an answer and not a request, so the slave ignores it.
         if whole.body.first().is_none_or(|service| service & service::ANSWER != 0) {
             return None;

@@ -3,9 +3,9 @@
 use std::time::Duration;
 
 use super::super::Now;
-use super::super::can::{Frame, MOST_DATA};
+use super::super::can::{Frame, MAX_DATA};
 use super::super::wire::{Id, split};
-use super::fault::spoil;
+use super::fault::inject_fault;
 use super::{Application, Device};
 
 /// Minimum time of the watchdog until the first poll.
@@ -82,7 +82,7 @@ impl Polled {
             self.count = 0;
             return Some(Poll::Idle);
         };
-        if size <= MOST_DATA {
+        if size <= MAX_DATA {
             return (bytes.len() == size).then(|| Poll::Image(bytes.to_vec()));
         }
         let (kind, count) = (first >> 6, first & 0x3F);
@@ -117,7 +117,7 @@ impl<A: Application> Device<A> {
         self.application.image_in(now, &mut self.image_in);
         self.answers += 1;
         let id = Id::PollAnswer(self.setup.mac).emit();
-        let frames = spoil(self.fault, split(&self.image_in));
+        let frames = inject_fault(self.fault, split(&self.image_in));
         self.outbox.extend(frames.iter().filter_map(|bytes| Frame::new(id, bytes)));
     }
 }

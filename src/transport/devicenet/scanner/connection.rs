@@ -8,8 +8,8 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::polling::{Heard, Polling};
-use super::transaction::{Outcome, Requester};
+use super::polling::{PollResult, Polling};
+use super::transaction::{Outcome, RequestSender};
 use super::view::{Details, Input, State, View};
 use super::{Bus, Token};
 use crate::devicenet::Now;
@@ -35,7 +35,7 @@ enum Phase {
     New,
     /// The master allocates the connections. `again` is `true` for the second attempt, after the owner was read.
     Allocating {
-        again: bool,
+        is_retry: bool,
     },
     /// The master reads which connections its own MAC owns.
     AskingOwner,
@@ -50,10 +50,10 @@ enum Phase {
     Open,
     /// The master releases the connections. Then the connection ends. If `again` is `true`, it opens again.
     Releasing {
-        again: bool,
+        is_retry: bool,
     },
     /// The master waits until the next attempt to open the connection.
-    Waiting(Now),
+    BoxedFuture(Now),
     Ended,
 }
 
@@ -64,18 +64,18 @@ pub(super) type Reply = (Token, Result<Answer, Error>);
 #[derive(Debug)]
 pub(super) struct Connection {
     settings: Settings,
-    own: Mac,
+    own_mac: Mac,
     phase: Phase,
-    requester: Requester,
+    requester: RequestSender,
     polling: Option<Polling>,
     image: Vec<u8>,
     revision: u64,
     is_over: bool,
     tries: usize,
     /// Waiting requests of callers.
-    asks: VecDeque<(Token, Request)>,
+    requests: VecDeque<(Token, Request)>,
     /// Token of the request in progress; `None` for an internal request.
-    asking: Option<Token>,
+    current_request: Option<Token>,
     replies: VecDeque<Reply>,
     keep_alive: Now,
     view: View,
@@ -83,19 +83,19 @@ pub(super) struct Connection {
 }
 
 impl Connection {
-    pub(super) fn new(own: Mac, settings: Settings) -> Self {
+    pub(super) fn new(own_mac: Mac, settings: Settings) -> Self {
         Self {
-            requester: Requester::new(own, settings.slave, settings.timeout),
+            requester: RequestSender::new(own_mac, settings.slave, settings.timeout),
             settings,
-            own,
+            own_mac,
             phase: Phase::New,
             polling: None,
             image: Vec::new(),
             revision: 0,
             is_over: false,
             tries: 0,
-            asks: VecDeque::new(),
-            asking: None,
+            requests: VecDeque::new(),
+            current_request: None,
             replies: VecDeque::new(),
             keep_alive: Now::ZERO,
             view: View::new(Details::default()),
@@ -136,7 +136,7 @@ impl Connection {
         if self.phase == Phase::Ended || self.is_over {
             self.replies.push_back((token, Err(Error::Ended)));
         } else {
-            self.asks.push_back((token, request));
+            self.requests.push_back((token, request));
         }
     }
 
@@ -150,7 +150,7 @@ impl Connection {
             return;
         }
         match self.phase {
-            Phase::New | Phase::Waiting(_) => self.finish(None),
+            Phase::New | Phase::BoxedFuture(_) => self.finish(None),
             Phase::Releasing { .. } | Phase::Ended => {}
             Phase::Open => {
                 self.polling = None;
@@ -169,8 +169,8 @@ impl Connection {
             Phase::Ended => {}
             _ if self.is_over => self.finish(Some(error)),
             _ if self.view.generation == 0 => self.finish(Some(error)),
-            Phase::Waiting(_) => self.set_error(error),
-            _ => self.retreat(now, error),
+            Phase::BoxedFuture(_) => self.set_error(error),
+            _ => self.handle_connection_loss(now, error),
         }
     }
 
@@ -184,7 +184,10 @@ impl Connection {
             }
             Id::PollAnswer(_) => {
                 let Some(polling) = &mut self.polling else { return };
-                let Heard::Image(image, change) = polling.hear(now, bytes, &mut self.view.statistics) else { return };
+                let PollResult::Image(image, change) = polling.handle_frame(now, bytes, &mut self.view.statistics)
+                else {
+                    return;
+                };
                 self.tries = 0;
                 if let Some(change) = change {
                     self.view.sent = change;
@@ -205,7 +208,7 @@ impl Connection {
         }
         match self.phase {
             Phase::New => self.allocate(now, false),
-            Phase::Waiting(until) if now >= until => self.allocate(now, false),
+            Phase::BoxedFuture(until) if now >= until => self.allocate(now, false),
             Phase::Open => self.serve(now, bus, out),
             _ => {}
         }
@@ -213,16 +216,16 @@ impl Connection {
     }
 
     pub(super) fn wake(&self) -> Option<Now> {
-        let own = match self.phase {
+        let own_mac = match self.phase {
             Phase::New => Some(Now::ZERO),
-            Phase::Waiting(until) => Some(until),
+            Phase::BoxedFuture(until) => Some(until),
             Phase::Open if !self.requester.is_busy() => {
-                Some(if self.asks.is_empty() { self.keep_alive } else { Now::ZERO })
+                Some(if self.requests.is_empty() { self.keep_alive } else { Now::ZERO })
             }
             _ => None,
         };
         let polling = self.polling.as_ref().map(|polling| polling.next().min(polling.until()));
-        [own, polling, self.requester.wake()].into_iter().flatten().min()
+        [own_mac, polling, self.requester.wake()].into_iter().flatten().min()
     }
 
     /// Sends polls, keepalives of the explicit connection, and requests of callers.
@@ -235,15 +238,15 @@ impl Connection {
                 // in the second half count.
                 let is_heard = bus.is_heard(mac, now.saturating_sub(after / 2));
                 let state = bus.health.state;
-                return self.retreat(now, Error::Lost { mac, after, is_heard, is_bus_alive, state });
+                return self.handle_connection_loss(now, Error::Lost { mac, after, is_heard, is_bus_alive, state });
             }
             out.extend(polling.poll(now, &self.image, self.revision, &mut self.view.statistics));
         }
         if self.requester.is_busy() {
             return;
         }
-        if let Some((token, request)) = self.asks.pop_front() {
-            self.asking = Some(token);
+        if let Some((token, request)) = self.requests.pop_front() {
+            self.current_request = Some(token);
             self.requester.ask(now, &request, true);
         } else if now >= self.keep_alive {
             self.requester.ask(now, &Request::get(class::DEVICENET, 1, ALLOCATION_ATTRIBUTE), true);
@@ -266,25 +269,25 @@ impl Connection {
             Outcome::Senseless(why) => Err(Error::Senseless { mac, what, why }),
         };
         match self.phase {
-            Phase::Allocating { again } => self.allocated(now, again, answer(ALLOCATION)),
-            Phase::AskingOwner => self.owned(now, &answer(OWNER)),
+            Phase::Allocating { is_retry } => self.handle_allocation(now, is_retry, answer(ALLOCATION)),
+            Phase::AskingOwner => self.handle_owner(now, &answer(OWNER)),
             Phase::Freeing => match answer(RELEASE) {
                 Ok(_) => self.allocate(now, true),
                 Err(error) => self.give_up(now, error, false),
             },
             Phase::AskingProduced => match answer(PRODUCED).and_then(|data| word(&data, mac, PRODUCED)) {
-                Ok(produced) => {
+                Ok(produced_size) => {
                     self.request(
                         now,
-                        Phase::AskingConsumed(produced),
+                        Phase::AskingConsumed(produced_size),
                         &Request::get(class::CONNECTION, 2, CONSUMED_SIZE),
                     );
                 }
                 Err(error) => self.give_up(now, error, true),
             },
-            Phase::AskingConsumed(produced) => {
-                let sized = answer(CONSUMED).and_then(|data| word(&data, mac, CONSUMED));
-                match sized.and_then(|consumed| self.sized(produced, consumed)) {
+            Phase::AskingConsumed(produced_size) => {
+                let select_profile = answer(CONSUMED).and_then(|data| word(&data, mac, CONSUMED));
+                match select_profile.and_then(|consumed_size| self.select_profile(produced_size, consumed_size)) {
                     Ok(rate) => {
                         let request = Request::set(class::CONNECTION, 2, PACKET_RATE, &rate.to_le_bytes());
                         self.request(now, Phase::SettingRate, &request);
@@ -298,7 +301,7 @@ impl Connection {
                 Err(error) => self.give_up(now, error, true),
             },
             Phase::Open => {
-                if let Some(token) = self.asking.take() {
+                if let Some(token) = self.current_request.take() {
                     let reply = match outcome {
                         Outcome::Answer(answer) => Ok(answer),
                         _ => answer("a request").map(|data| Answer::Done { service: 0, data }),
@@ -306,27 +309,27 @@ impl Connection {
                     self.replies.push_back((token, reply));
                 }
             }
-            Phase::Releasing { again: true } => self.pause(now),
-            Phase::Releasing { again: false } => {
+            Phase::Releasing { is_retry: true } => self.pause(now),
+            Phase::Releasing { is_retry: false } => {
                 // A silent slave releases the connections after its own timeout. In this case, the error is shown as a
                 // warning, and not as an error of the link.
                 let error = answer(RELEASE).err().filter(|error| !matches!(error, Error::Refused { .. }));
                 self.finish(error);
             }
-            Phase::New | Phase::Waiting(_) | Phase::Ended => {}
+            Phase::New | Phase::BoxedFuture(_) | Phase::Ended => {}
         }
     }
 
-    fn allocate(&mut self, now: Now, again: bool) {
+    fn allocate(&mut self, now: Now, is_retry: bool) {
         if self.is_over {
             return self.finish(None);
         }
-        let request = Request::allocate(self.choice(), self.own);
-        self.phase = Phase::Allocating { again };
+        let request = Request::allocate(self.choice(), self.own_mac);
+        self.phase = Phase::Allocating { is_retry };
         self.requester.ask(now, &request, false);
     }
 
-    fn allocated(&mut self, now: Now, again: bool, answer: Result<Vec<u8>, Error>) {
+    fn handle_allocation(&mut self, now: Now, is_retry: bool, answer: Result<Vec<u8>, Error>) {
         match answer {
             Ok(_) if self.is_over => self.release(now, false),
             Ok(_) => match &self.settings.purpose {
@@ -340,7 +343,7 @@ impl Connection {
             }
             // The connections are already allocated. Either an earlier process with this MAC ended without a release,
             // or the answer to the first attempt was lost.
-            Err(Error::Refused { general: general::ALREADY, .. }) if !again => {
+            Err(Error::Refused { general: general::ALREADY, .. }) if !is_retry => {
                 let request = Request::get(class::DEVICENET, 1, ALLOCATION_ATTRIBUTE);
                 self.request(now, Phase::AskingOwner, &request);
             }
@@ -349,10 +352,10 @@ impl Connection {
     }
 
     /// Handles the allocation attribute of the slave, which contains the allocation choice and the MAC of the master.
-    fn owned(&mut self, now: Now, answer: &Result<Vec<u8>, Error>) {
+    fn handle_owner(&mut self, now: Now, answer: &Result<Vec<u8>, Error>) {
         let mac = self.settings.slave;
         match answer.as_deref() {
-            Ok([choice, master, ..]) if *master == self.own.number() && *choice != 0 => {
+            Ok([choice, master, ..]) if *master == self.own_mac.number() && *choice != 0 => {
                 self.request(now, Phase::Freeing, &Request::release(*choice));
             }
             Ok([_, master, ..]) if Mac::new(*master).is_some() => self.give_up(now, Error::Owned { mac }, false),
@@ -368,18 +371,18 @@ impl Connection {
     }
 
     /// Selects the profile with these sizes. Returns the packet rate to set.
-    fn sized(&mut self, produced: u16, consumed: u16) -> Result<u16, Error> {
+    fn select_profile(&mut self, produced_size: u16, consumed_size: u16) -> Result<u16, Error> {
         let mac = self.settings.slave;
         let Purpose::Images(images) = &self.settings.purpose else { return Err(Error::Ended) };
-        let fits = |len: usize| len == usize::from(produced) && len == usize::from(consumed);
+        let fits = |len: usize| len == usize::from(produced_size) && len == usize::from(consumed_size);
         let Some(profile) = images.profiles.iter().find(|profile| fits(profile.resting.len())) else {
             let sizes = images.profiles.iter().map(|profile| format!("{} of {}", profile.name, profile.resting.len()));
             let known = sizes.collect::<Vec<_>>().join(", ");
-            return Err(Error::Size { mac, produced, consumed, known });
+            return Err(Error::Size { mac, produced_size, consumed_size, known });
         };
         if self.view.details.size.is_some_and(|size| size != profile.resting.len()) {
             let known = format!("the earlier {}", self.view.details.size.unwrap_or_default());
-            return Err(Error::Size { mac, produced, consumed, known });
+            return Err(Error::Size { mac, produced_size, consumed_size, known });
         }
         self.image.clone_from(&profile.resting);
         self.view.details.size = Some(profile.resting.len());
@@ -405,11 +408,11 @@ impl Connection {
 
     /// Handles a failed opening. Releases the connections that were allocated.
     fn give_up(&mut self, now: Now, error: Error, is_allocated: bool) {
-        let again = self.view.generation > 0 && !self.is_over;
+        let is_retry = self.view.generation > 0 && !self.is_over;
         self.set_error(error);
         if is_allocated {
-            self.release(now, again);
-        } else if again {
+            self.release(now, is_retry);
+        } else if is_retry {
             self.pause(now);
         } else {
             self.finish(None);
@@ -417,10 +420,10 @@ impl Connection {
     }
 
     /// Handles a lost connection. Releases the connection if possible, and tries to open it again.
-    fn retreat(&mut self, now: Now, error: Error) {
+    fn handle_connection_loss(&mut self, now: Now, error: Error) {
         self.polling = None;
         self.requester.cancel();
-        self.drop_asks(&error);
+        self.drop_requests(&error);
         let can_hear = matches!(error, Error::Lost { .. });
         self.set_error(error);
         self.show(State::Lost);
@@ -431,12 +434,12 @@ impl Connection {
         }
     }
 
-    fn release(&mut self, now: Now, again: bool) {
-        if !again {
+    fn release(&mut self, now: Now, is_retry: bool) {
+        if !is_retry {
             self.show(State::Closing);
         }
         let request = Request::release(self.choice());
-        self.request(now, Phase::Releasing { again }, &request);
+        self.request(now, Phase::Releasing { is_retry }, &request);
     }
 
     fn pause(&mut self, now: Now) {
@@ -445,7 +448,7 @@ impl Connection {
         }
         let wait = BACKOFF.get(self.tries).or(BACKOFF.last()).copied().unwrap_or_default();
         self.tries += 1;
-        self.phase = Phase::Waiting(now + wait);
+        self.phase = Phase::BoxedFuture(now + wait);
         self.show(State::Lost);
     }
 
@@ -455,13 +458,13 @@ impl Connection {
         }
         self.polling = None;
         self.requester.cancel();
-        self.drop_asks(&Error::Ended);
+        self.drop_requests(&Error::Ended);
         self.phase = Phase::Ended;
         self.show(State::Closed);
     }
 
-    fn drop_asks(&mut self, error: &Error) {
-        let asked = self.asking.take().into_iter().chain(self.asks.drain(..).map(|(token, _)| token));
+    fn drop_requests(&mut self, error: &Error) {
+        let asked = self.current_request.take().into_iter().chain(self.requests.drain(..).map(|(token, _)| token));
         self.replies.extend(asked.map(|token| (token, Err(error.clone()))));
     }
 
@@ -478,7 +481,7 @@ impl Connection {
     }
 
     fn set_error(&mut self, error: Error) {
-        self.view.trouble = Some(error);
+        self.view.last_error = Some(error);
         self.has_changed = true;
     }
 

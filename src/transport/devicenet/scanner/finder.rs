@@ -19,13 +19,13 @@ const GOING_ON_LINE: Duration = Duration::from_millis(2200);
 /// Pause between checks, so that a slow adapter can keep up.
 const PAUSE: Duration = Duration::from_millis(10);
 /// Time limit for the answer to the last check.
-const LINGER: Duration = Duration::from_millis(300);
+const LAST_ANSWER_TIMEOUT: Duration = Duration::from_millis(300);
 /// Number of checks per MAC.
 const ROUNDS: u8 = 2;
 
 /// A node that was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Found {
+pub struct DiscoveredNode {
     /// MAC of the node.
     pub mac: Mac,
     /// Vendor id.
@@ -38,23 +38,30 @@ pub struct Found {
 
 #[derive(Debug)]
 pub(super) struct Finder {
-    own: Identity,
+    own_identity: Identity,
     due: Now,
     /// Time of the last check.
-    asked: Now,
+    last_check_at: Now,
     /// MACs that are still to be checked, in reverse order.
-    left: Vec<Mac>,
+    remaining: Vec<Mac>,
     /// Starting nodes, each with the time at which the node is on line.
     booting: BTreeMap<Mac, Now>,
-    found: BTreeMap<Mac, Found>,
+    found: BTreeMap<Mac, DiscoveredNode>,
 }
 
 impl Finder {
-    pub(super) fn new(now: Now, own: Identity) -> Self {
-        let round = || Mac::all().filter(|mac| *mac != own.mac);
-        let mut left: Vec<Mac> = (0..ROUNDS).flat_map(|_| round()).collect();
-        left.reverse();
-        Self { own, due: now + LISTEN, asked: now, left, booting: BTreeMap::new(), found: BTreeMap::new() }
+    pub(super) fn new(now: Now, own_identity: Identity) -> Self {
+        let round = || Mac::all().filter(|mac| *mac != own_identity.mac);
+        let mut remaining: Vec<Mac> = (0..ROUNDS).flat_map(|_| round()).collect();
+        remaining.reverse();
+        Self {
+            own_identity,
+            due: now + LISTEN,
+            last_check_at: now,
+            remaining,
+            booting: BTreeMap::new(),
+            found: BTreeMap::new(),
+        }
     }
 
     pub(super) const fn wake(&self) -> Now {
@@ -62,10 +69,10 @@ impl Finder {
     }
 
     pub(super) fn is_over(&self, now: Now) -> bool {
-        self.left.is_empty() && now >= self.due
+        self.remaining.is_empty() && now >= self.due
     }
 
-    pub(super) fn found(self) -> Vec<Found> {
+    pub(super) fn found(self) -> Vec<DiscoveredNode> {
         self.found.into_values().collect()
     }
 
@@ -74,30 +81,35 @@ impl Finder {
         if now < self.due {
             return None;
         }
-        while let Some(mac) = self.left.pop() {
+        while let Some(mac) = self.remaining.pop() {
             let is_booting = self.booting.get(&mac).is_some_and(|until| now < *until);
             let is_known = self.found.get(&mac).is_some_and(|found| found.is_on_line);
             if is_booting || is_known {
                 continue;
             }
             self.due = now + PAUSE;
-            self.asked = now;
-            let check = DuplicateCheck { is_answer: false, port: 0, vendor: self.own.vendor, serial: self.own.serial };
+            self.last_check_at = now;
+            let check = DuplicateCheck {
+                is_answer: false,
+                port: 0,
+                vendor: self.own_identity.vendor,
+                serial: self.own_identity.serial,
+            };
             return Frame::new(Id::Duplicate(mac).emit(), &check.emit());
         }
-        self.due = self.due.max(self.asked + LINGER);
+        self.due = self.due.max(self.last_check_at + LAST_ANSWER_TIMEOUT);
         None
     }
 
     /// Handles a duplicate MAC check of another node.
-    pub(super) fn heard(&mut self, now: Now, mac: Mac, check: DuplicateCheck) {
+    pub(super) fn handle_check(&mut self, now: Now, mac: Mac, check: DuplicateCheck) {
         let DuplicateCheck { is_answer, vendor, serial, .. } = check;
         if !is_answer {
             self.booting.insert(mac, now + GOING_ON_LINE);
         }
         let is_on_line = is_answer || self.found.get(&mac).is_some_and(|found| found.is_on_line);
-        if mac != self.own.mac {
-            self.found.insert(mac, Found { mac, vendor, serial, is_on_line });
+        if mac != self.own_identity.mac {
+            self.found.insert(mac, DiscoveredNode { mac, vendor, serial, is_on_line });
         }
     }
 }
@@ -109,25 +121,25 @@ mod tests {
     const MS: Duration = Duration::from_millis(1);
 
     #[test]
-    fn a_node_that_goes_on_line_is_left_alone() {
+    fn does_not_ask_a_node_that_goes_on_line() {
         let mac = |number| Mac::new(number).unwrap();
-        let own = Identity { mac: mac(0), vendor: 0xFFFF, serial: 1 };
-        let mut finder = Finder::new(Now::ZERO, own);
+        let own_identity = Identity { mac: mac(0), vendor: 0xFFFF, serial: 1 };
+        let mut finder = Finder::new(Now::ZERO, own_identity);
         let check = |is_answer| DuplicateCheck { is_answer, port: 0, vendor: 636, serial: 9 };
-        finder.heard(MS * 100, mac(5), check(false));
-        let (mut now, mut asked) = (Now::ZERO, Vec::new());
+        finder.handle_check(MS * 100, mac(5), check(false));
+        let (mut now, mut last_check_at) = (Now::ZERO, Vec::new());
         while !finder.is_over(now) {
             now = now.max(finder.wake());
             if let Some(frame) = finder.poll(now) {
                 assert!(now >= LISTEN, "listens first");
-                asked.push(frame.id());
+                last_check_at.push(frame.id());
                 if frame.id() == Id::Duplicate(mac(7)).emit() {
-                    finder.heard(now, mac(7), check(true));
+                    finder.handle_check(now, mac(7), check(true));
                 }
             }
             assert!(now < MS * 5000);
         }
-        let times = |number| asked.iter().filter(|id| **id == Id::Duplicate(mac(number)).emit()).count();
+        let times = |number| last_check_at.iter().filter(|id| **id == Id::Duplicate(mac(number)).emit()).count();
         // The finder does not check MAC 7, which has already answered, MAC 5, which was starting, and MAC 0, which is
         // its own MAC.
         assert_eq!((times(0), times(5), times(7), times(8)), (0, 0, 1, 2));

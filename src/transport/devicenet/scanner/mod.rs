@@ -17,8 +17,8 @@ mod transaction;
 mod view;
 
 use self::connection::Connection;
+pub use self::finder::DiscoveredNode;
 use self::finder::Finder;
-pub use self::finder::Found;
 pub use self::view::{Details, Input, State, Statistics, View, Views};
 
 /// Interval of the duplicate MAC checks. After the last check, the master waits for the same time.
@@ -60,18 +60,18 @@ pub struct Identity {
 pub(crate) struct Bus {
     pub(crate) health: Health,
     /// Time of the last frame from each MAC; the index is the MAC.
-    heard: [Option<Now>; 64],
+    last_frame_at: [Option<Now>; 64],
 }
 
 impl Bus {
     /// Whether the node `mac` has sent a frame after `since`.
     pub(crate) fn is_heard(&self, mac: Mac, since: Now) -> bool {
-        self.heard[usize::from(mac.number())].is_some_and(|heard| heard >= since)
+        self.last_frame_at[usize::from(mac.number())].is_some_and(|heard| heard >= since)
     }
 
     /// Whether a node other than `mac` has sent a frame after `since`.
     pub(crate) fn is_alive_without(&self, mac: Mac, since: Now) -> bool {
-        let others = self.heard.iter().enumerate().filter(|(number, _)| *number != usize::from(mac.number()));
+        let others = self.last_frame_at.iter().enumerate().filter(|(number, _)| *number != usize::from(mac.number()));
         others.filter_map(|(_, heard)| *heard).any(|heard| heard >= since)
     }
 }
@@ -95,7 +95,7 @@ pub struct Scanner {
     bus: Bus,
     connections: BTreeMap<u64, Connection>,
     finder: Option<Finder>,
-    found: Option<Vec<Found>>,
+    found: Option<Vec<DiscoveredNode>>,
     outbox: VecDeque<Frame>,
     replies: VecDeque<Reply>,
 }
@@ -107,7 +107,7 @@ impl Scanner {
         Self {
             identity,
             phase: Phase::New,
-            bus: Bus { health, heard: [None; 64] },
+            bus: Bus { health, last_frame_at: [None; 64] },
             connections: BTreeMap::new(),
             finder: None,
             found: None,
@@ -205,7 +205,7 @@ impl Scanner {
     }
 
     /// Returns the result of the last discovery; `None` until the discovery is complete.
-    pub fn found(&mut self) -> Option<Vec<Found>> {
+    pub fn found(&mut self) -> Option<Vec<DiscoveredNode>> {
         self.found.take()
     }
 
@@ -231,7 +231,7 @@ impl Scanner {
         }
         (self.finder, self.phase) = (None, Phase::Failed(error.clone()));
         self.outbox.clear();
-        self.gather();
+        self.collect_results();
     }
 
     /// Handles a health report of the adapter.
@@ -242,14 +242,14 @@ impl Scanner {
                 connection.fail(now, Error::BusOff);
             }
             self.give_up_search();
-            self.gather();
+            self.collect_results();
         }
     }
 
     /// Handles a frame from the bus.
     pub fn handle(&mut self, now: Now, frame: &Frame) {
         let Some(id) = Id::parse(frame.id()) else { return };
-        if let Some(heard) = id.sender().and_then(|mac| self.bus.heard.get_mut(usize::from(mac.number()))) {
+        if let Some(heard) = id.sender().and_then(|mac| self.bus.last_frame_at.get_mut(usize::from(mac.number()))) {
             *heard = Some(now);
         }
         match id {
@@ -263,7 +263,7 @@ impl Scanner {
                 if let Some(connection) = connections.values_mut().find(|connection| connection.slave() == mac) {
                     connection.take(now, id, frame.data(), bus);
                 }
-                self.gather();
+                self.collect_results();
             }
             _ => {}
         }
@@ -329,7 +329,7 @@ impl Scanner {
                 self.found = self.finder.take().map(Finder::found);
             }
         }
-        self.gather();
+        self.collect_results();
     }
 
     fn ask_for_mac(&mut self, now: Now, asked: u8) {
@@ -346,7 +346,7 @@ impl Scanner {
     /// Handles a duplicate MAC check: a request or an answer.
     fn checked(&mut self, now: Now, mac: Mac, check: DuplicateCheck) {
         if let Some(finder) = &mut self.finder {
-            finder.heard(now, mac, check);
+            finder.handle_check(now, mac, check);
         }
         if mac != self.identity.mac {
             return;
@@ -362,7 +362,7 @@ impl Scanner {
         }
     }
 
-    fn gather(&mut self) {
+    fn collect_results(&mut self) {
         for (number, connection) in &mut self.connections {
             while let Some((token, result)) = connection.reply() {
                 self.replies.push_back(Reply { connection: *number, token, result });

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use crate::devicenet::Now;
 use crate::devicenet::can::Frame;
-use crate::devicenet::wire::{Assembler, Id, Mac, Piece, split};
+use crate::devicenet::wire::{Assembler, AssemblyResult, Id, Mac, split};
 
 use super::view::Statistics;
 
@@ -12,7 +12,7 @@ use super::view::Statistics;
 /// poll, the slave closes the connection.
 pub(super) const WATCHDOG: u32 = 4;
 /// Maximum number of abandoned polls whose answers may still arrive.
-const MOST_OWED: u8 = 2;
+const MAX_ABANDONED_POLLS: u8 = 2;
 
 /// Poll cycle of one generation.
 #[derive(Debug)]
@@ -22,21 +22,21 @@ pub(super) struct Polling {
     rate: Duration,
     due: Now,
     /// Time at which the last poll was sent, if it has no answer yet.
-    asked: Option<Now>,
+    poll_sent_at: Option<Now>,
     /// Duration of the last exchange, from the poll to the last frame of the answer.
     round_trip: Duration,
     /// Number of abandoned polls whose answers may still arrive. The answer to an abandoned poll does not confirm a
     /// later poll.
-    owed: u8,
+    abandoned_polls: u8,
     /// Number of the change that the last poll contained.
-    carried: u64,
+    sent_change: u64,
     assembler: Assembler,
-    heard: Now,
+    last_answer_at: Now,
 }
 
 /// Effect of a frame of the slave.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Heard {
+pub(super) enum PollResult {
     /// The frame completes no image.
     Nothing,
     /// The frame completes an image. The number is that of the change that the slave has accepted. It is present only
@@ -51,12 +51,12 @@ impl Polling {
             cycle,
             rate,
             due: now,
-            asked: None,
+            poll_sent_at: None,
             round_trip: rate / 4,
-            owed: 0,
-            carried: 0,
+            abandoned_polls: 0,
+            sent_change: 0,
             assembler: Assembler::new(size),
-            heard: now,
+            last_answer_at: now,
         }
     }
 
@@ -67,14 +67,15 @@ impl Polling {
 
     /// Time when the slave counts as lost.
     pub(super) fn until(&self) -> Now {
-        self.heard + self.patience()
+        self.last_answer_at + self.patience()
     }
 
     /// Time of the next poll.
     pub(super) fn next(&self) -> Now {
         // If a poll was not answered, the next poll waits for two round trips, but not longer than the packet rate.
         // Otherwise a slow adapter would get polls faster than it can send them.
-        let given_up = self.asked.map(|asked| asked + self.cycle.max(self.round_trip * 2).min(self.rate));
+        let given_up =
+            self.poll_sent_at.map(|poll_sent_at| poll_sent_at + self.cycle.max(self.round_trip * 2).min(self.rate));
         given_up.map_or(self.due, |given_up| self.due.max(given_up))
     }
 
@@ -83,15 +84,15 @@ impl Polling {
         if now < self.next() {
             return Vec::new();
         }
-        if self.asked.is_some() {
+        if self.poll_sent_at.is_some() {
             counted.missed += 1;
-            self.owed = (self.owed + 1).min(MOST_OWED);
+            self.abandoned_polls = (self.abandoned_polls + 1).min(MAX_ABANDONED_POLLS);
         }
         // A new assembler starts here, so that fragments of an older answer are not combined with fragments of the next
         // answer.
         self.assembler = Assembler::new(image.len());
-        self.asked = Some(now);
-        self.carried = change;
+        self.poll_sent_at = Some(now);
+        self.sent_change = change;
         counted.sent += 1;
         self.due += self.cycle;
         while self.due <= now {
@@ -103,26 +104,26 @@ impl Polling {
     }
 
     /// Handles a frame of an answer of the slave.
-    pub(super) fn hear(&mut self, now: Now, bytes: &[u8], counted: &mut Statistics) -> Heard {
+    pub(super) fn handle_frame(&mut self, now: Now, bytes: &[u8], counted: &mut Statistics) -> PollResult {
         match self.assembler.take(bytes) {
-            Piece::Part => Heard::Nothing,
-            Piece::Idle | Piece::Wrong => {
+            AssemblyResult::Part => PollResult::Nothing,
+            AssemblyResult::Idle | AssemblyResult::Wrong => {
                 counted.wrong += 1;
-                Heard::Nothing
+                PollResult::Nothing
             }
-            Piece::Whole(image) => {
+            AssemblyResult::Whole(image) => {
                 // No poll is waiting for an answer. So the image is a duplicate, or the answer to an abandoned poll,
                 // and may be older than the last image.
-                let Some(asked) = self.asked.take() else {
+                let Some(poll_sent_at) = self.poll_sent_at.take() else {
                     counted.late += 1;
-                    return Heard::Nothing;
+                    return PollResult::Nothing;
                 };
                 counted.received += 1;
-                self.heard = now;
-                self.round_trip = now.saturating_sub(asked);
-                let is_sure = self.owed == 0;
-                self.owed = self.owed.saturating_sub(1);
-                Heard::Image(image, is_sure.then_some(self.carried))
+                self.last_answer_at = now;
+                self.round_trip = now.saturating_sub(poll_sent_at);
+                let is_sure = self.abandoned_polls == 0;
+                self.abandoned_polls = self.abandoned_polls.saturating_sub(1);
+                PollResult::Image(image, is_sure.then_some(self.sent_change))
             }
         }
     }
@@ -139,13 +140,13 @@ mod tests {
     }
 
     #[test]
-    fn polls_keep_their_rhythm() {
+    fn polls_keep_their_interval() {
         let (mut polling, mut counted) = polling();
         for at in [0, 20, 41, 60, 85, 100] {
             let now = MS * at;
             assert_eq!(polling.poll(now, &[0; 4], 1, &mut counted).len(), 1, "{at}");
             assert!(polling.poll(now, &[0; 4], 1, &mut counted).is_empty());
-            assert!(matches!(polling.hear(now + MS, &[0; 4], &mut counted), Heard::Image(..)));
+            assert!(matches!(polling.handle_frame(now + MS, &[0; 4], &mut counted), PollResult::Image(..)));
         }
         assert_eq!((counted.sent, counted.received, counted.skipped), (6, 6, 0));
         // After a pause, the polls continue in their old schedule. Polls that were missed are not sent later.
@@ -155,26 +156,26 @@ mod tests {
 
     /// An answer that may belong to an older poll does not confirm the newest poll.
     #[test]
-    fn a_late_answer_confirms_nothing() {
+    fn late_answer_does_not_confirm_a_poll() {
         let (mut polling, mut counted) = polling();
         polling.poll(Now::ZERO, &[0; 4], 1, &mut counted);
         let again = polling.next();
         assert!(again >= MS * 20);
         polling.poll(again, &[1; 4], 2, &mut counted);
-        assert_eq!(polling.hear(again + MS, &[7; 4], &mut counted), Heard::Image(vec![7; 4], None));
+        assert_eq!(polling.handle_frame(again + MS, &[7; 4], &mut counted), PollResult::Image(vec![7; 4], None));
         // The answer to the newest poll looks like a duplicate of the late answer, so it is ignored.
-        assert_eq!(polling.hear(again + MS, &[8; 4], &mut counted), Heard::Nothing);
+        assert_eq!(polling.handle_frame(again + MS, &[8; 4], &mut counted), PollResult::Nothing);
         let next = polling.next();
         polling.poll(next, &[1; 4], 2, &mut counted);
-        assert_eq!(polling.hear(next + MS, &[8; 4], &mut counted), Heard::Image(vec![8; 4], Some(2)));
+        assert_eq!(polling.handle_frame(next + MS, &[8; 4], &mut counted), PollResult::Image(vec![8; 4], Some(2)));
         assert_eq!((counted.missed, counted.late), (1, 1));
     }
 
     #[test]
-    fn a_slow_adapter_sets_the_pace() {
+    fn slow_adapter_delays_polls() {
         let (mut polling, mut counted) = polling();
         polling.poll(Now::ZERO, &[0; 4], 1, &mut counted);
-        polling.hear(MS * 30, &[0; 4], &mut counted);
+        polling.handle_frame(MS * 30, &[0; 4], &mut counted);
         assert_eq!(polling.next(), MS * 20, "overdue");
         polling.poll(MS * 30, &[0; 4], 1, &mut counted);
         assert_eq!(polling.next(), MS * 90, "twice the round trip of 30 ms");

@@ -4,15 +4,15 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use crate::devicenet::Now;
-use crate::devicenet::can::{Frame, MOST_DATA};
+use crate::devicenet::can::{Frame, MAX_DATA};
 use crate::devicenet::wire::{Answer, Format, Fragment, Header, Id, Kind, Mac, Request};
 
 /// Number of message bytes per fragment, after the header and the fragment byte.
-const PART: usize = MOST_DATA - 2;
+const FRAGMENT_DATA: usize = MAX_DATA - 2;
 /// Maximum length of a reassembled answer in bytes.
-const MOST_ANSWER: usize = 512;
+const MAX_ANSWER_LEN: usize = 512;
 /// Status in an acknowledgement that accepts the fragment.
-const TAKEN: u8 = 0;
+const FRAGMENT_ACCEPTED: u8 = 0;
 /// Number of attempts per request or fragment.
 const TRIES: u8 = 2;
 
@@ -27,15 +27,15 @@ pub(super) enum Outcome {
 }
 
 #[derive(Debug)]
-pub(super) struct Requester {
-    own: Mac,
+pub(super) struct RequestSender {
+    own_mac: Mac,
     slave: Mac,
-    patience: Duration,
+    answer_timeout: Duration,
     xid: bool,
     current: Option<Transaction>,
     /// Count of the last fragment of the previous answer. If the acknowledgement of this fragment was lost, the slave
     /// sends it again.
-    taken: Option<u8>,
+    acknowledged_count: Option<u8>,
     outbox: VecDeque<Frame>,
 }
 
@@ -53,9 +53,17 @@ struct Transaction {
     answer: Option<(Vec<u8>, u8)>,
 }
 
-impl Requester {
-    pub(super) const fn new(own: Mac, slave: Mac, patience: Duration) -> Self {
-        Self { own, slave, patience, xid: true, current: None, taken: None, outbox: VecDeque::new() }
+impl RequestSender {
+    pub(super) const fn new(own_mac: Mac, slave: Mac, answer_timeout: Duration) -> Self {
+        Self {
+            own_mac,
+            slave,
+            answer_timeout,
+            xid: true,
+            current: None,
+            acknowledged_count: None,
+            outbox: VecDeque::new(),
+        }
     }
 
     pub(super) const fn is_busy(&self) -> bool {
@@ -66,9 +74,9 @@ impl Requester {
     pub(super) fn ask(&mut self, now: Now, request: &Request, is_connected: bool) {
         let Some(body) = request.emit(Format::Byte8Byte8) else { return };
         self.xid = !self.xid;
-        self.taken = None;
+        self.acknowledged_count = None;
         let destination = if is_connected { Id::Request(self.slave) } else { Id::Unconnected(self.slave) };
-        let deadline = now + self.patience;
+        let deadline = now + self.answer_timeout;
         let service = request.service;
         self.current =
             Some(Transaction { service, body, destination, sending: None, tries: TRIES, deadline, answer: None });
@@ -98,7 +106,7 @@ impl Requester {
             self.current = None;
             return Some(Outcome::Silent);
         }
-        current.deadline = now + self.patience;
+        current.deadline = now + self.answer_timeout;
         match current.sending {
             Some(index) => self.fragment(index),
             None => self.begin(now),
@@ -111,7 +119,7 @@ impl Requester {
         let (first, body) = bytes.split_first()?;
         let header = Header::parse(*first);
         // An answer with another transaction id is a late or duplicate answer to the previous request.
-        if header.mac != self.own || header.xid != self.xid {
+        if header.mac != self.own_mac || header.xid != self.xid {
             return None;
         }
         if !header.is_fragment {
@@ -124,12 +132,12 @@ impl Requester {
             return self.acknowledged(now, count, part.first().copied()?);
         }
         let Some(current) = &mut self.current else {
-            if self.taken == Some(count) && kind == Kind::Last {
+            if self.acknowledged_count == Some(count) && kind == Kind::Last {
                 self.acknowledge(count);
             }
             return None;
         };
-        current.deadline = now + self.patience;
+        current.deadline = now + self.answer_timeout;
         match &mut current.answer {
             // This fragment arrived again, because its acknowledgement was lost.
             Some((_, last)) if *last == count => {}
@@ -144,14 +152,14 @@ impl Requester {
         self.acknowledge(count);
         let current = self.current.as_ref()?;
         let (answer, last) = current.answer.as_ref()?;
-        if answer.len() > MOST_ANSWER {
+        if answer.len() > MAX_ANSWER_LEN {
             self.current = None;
             return Some(Outcome::Senseless("it is too long"));
         }
         if kind != Kind::Last || *last != count {
             return None;
         }
-        self.taken = Some(count);
+        self.acknowledged_count = Some(count);
         if let Some(answer) = Answer::parse(answer) {
             self.answered(answer)
         } else {
@@ -174,13 +182,13 @@ impl Requester {
     fn acknowledged(&mut self, now: Now, count: u8, status: u8) -> Option<Outcome> {
         let current = self.current.as_mut()?;
         let index = current.sending.filter(|index| Fragment::of(*index, index + 2).count == count)?;
-        if status != TAKEN {
+        if status != FRAGMENT_ACCEPTED {
             self.current = None;
             return Some(Outcome::Senseless("the request is too long for this device"));
         }
-        (current.tries, current.deadline) = (TRIES, now + self.patience);
+        (current.tries, current.deadline) = (TRIES, now + self.answer_timeout);
         let next = index + 1;
-        if next * PART < current.body.len() {
+        if next * FRAGMENT_DATA < current.body.len() {
             current.sending = Some(next);
             self.fragment(next);
         } else {
@@ -190,10 +198,10 @@ impl Requester {
     }
 
     fn begin(&mut self, now: Now) {
-        let header = Header { is_fragment: false, xid: self.xid, mac: self.own };
+        let header = Header { is_fragment: false, xid: self.xid, mac: self.own_mac };
         let Some(current) = &mut self.current else { return };
-        (current.answer, current.deadline) = (None, now + self.patience);
-        if current.body.len() < MOST_DATA {
+        (current.answer, current.deadline) = (None, now + self.answer_timeout);
+        if current.body.len() < MAX_DATA {
             let bytes = [&[header.emit()], current.body.as_slice()].concat();
             self.outbox.extend(Frame::new(current.destination.emit(), &bytes));
         } else {
@@ -204,17 +212,18 @@ impl Requester {
 
     fn fragment(&mut self, index: usize) {
         let Some(current) = &self.current else { return };
-        let pieces = current.body.len().div_ceil(PART);
-        let part = current.body.chunks(PART).nth(index).unwrap_or_default();
-        let header = Header { is_fragment: true, xid: self.xid, mac: self.own };
+        let pieces = current.body.len().div_ceil(FRAGMENT_DATA);
+        let part = current.body.chunks(FRAGMENT_DATA).nth(index).unwrap_or_default();
+        let header = Header { is_fragment: true, xid: self.xid, mac: self.own_mac };
         let bytes = [&[header.emit(), Fragment::of(index, pieces).emit()], part].concat();
         self.outbox.extend(Frame::new(current.destination.emit(), &bytes));
     }
 
     fn acknowledge(&mut self, count: u8) {
-        let header = Header { is_fragment: true, xid: self.xid, mac: self.own };
+        let header = Header { is_fragment: true, xid: self.xid, mac: self.own_mac };
         let fragment = Fragment { kind: Kind::Acknowledge, count };
-        self.outbox.extend(Frame::new(Id::Request(self.slave).emit(), &[header.emit(), fragment.emit(), TAKEN]));
+        self.outbox
+            .extend(Frame::new(Id::Request(self.slave).emit(), &[header.emit(), fragment.emit(), FRAGMENT_ACCEPTED]));
     }
 }
 
@@ -226,17 +235,17 @@ mod tests {
     const NOW: Now = Now::ZERO;
     const SECOND: Duration = Duration::from_secs(1);
 
-    fn requester() -> Requester {
-        Requester::new(Mac::new(1).unwrap(), Mac::new(5).unwrap(), SECOND)
+    fn requester() -> RequestSender {
+        RequestSender::new(Mac::new(1).unwrap(), Mac::new(5).unwrap(), SECOND)
     }
 
-    fn sent(requester: &mut Requester) -> Vec<String> {
+    fn sent(requester: &mut RequestSender) -> Vec<String> {
         std::iter::from_fn(|| requester.send()).map(|frame| frame.to_string()).collect()
     }
 
     /// A name of ten characters arrives in fragments, and each fragment is acknowledged.
     #[test]
-    fn a_long_answer_is_put_together_and_acknowledged() {
+    fn assembles_and_acknowledges_a_long_answer() {
         let mut requester = requester();
         requester.ask(NOW, &Request::get(class::IDENTITY, 1, 7), true);
         assert_eq!(sent(&mut requester), ["42C#010E010107"]);
@@ -253,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fragment_that_comes_twice_counts_once() {
+    fn ignores_a_repeated_fragment() {
         let mut requester = requester();
         requester.ask(NOW, &Request::get(class::IDENTITY, 1, 7), true);
         sent(&mut requester);
@@ -271,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn a_long_request_goes_piece_by_piece() {
+    fn sends_a_long_request_in_fragments() {
         let mut requester = requester();
         requester.ask(NOW, &Request::set(class::CONNECTION, 2, 16, &[1, 2, 3, 4]), true);
         assert_eq!(sent(&mut requester), ["42C#8100100502100102"]);
@@ -286,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_the_answer_is_passed_over() {
+    fn ignores_other_messages() {
         let mut requester = requester();
         requester.ask(NOW, &Request::get(class::CONNECTION, 2, 7), true);
         for other in [
@@ -311,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn silence_is_told_after_two_tries() {
+    fn fails_after_two_unanswered_tries() {
         let mut requester = requester();
         requester.ask(NOW, &Request::allocate(3, Mac::new(1).unwrap()), false);
         assert_eq!(sent(&mut requester), ["42E#014B03010301"]);

@@ -6,11 +6,11 @@ use super::world::{LINK, Line, MS, SECOND, World, resting};
 use crate::devicenet::scanner::State;
 
 const KINDS: [Line; 5] = [
-    Line { drop: 100, double: 0, late: 0, swap: 0, reorder: 0 },
-    Line { drop: 0, double: 300, late: 0, swap: 0, reorder: 0 },
-    Line { drop: 0, double: 0, late: 200, swap: 0, reorder: 0 },
-    Line { drop: 0, double: 0, late: 0, swap: 200, reorder: 0 },
-    Line { drop: 100, double: 100, late: 100, swap: 100, reorder: 0 },
+    Line { drop: 100, duplicate: 0, late: 0, swap: 0, reorder: 0 },
+    Line { drop: 0, duplicate: 300, late: 0, swap: 0, reorder: 0 },
+    Line { drop: 0, duplicate: 0, late: 200, swap: 0, reorder: 0 },
+    Line { drop: 0, duplicate: 0, late: 0, swap: 200, reorder: 0 },
+    Line { drop: 100, duplicate: 100, late: 100, swap: 100, reorder: 0 },
 ];
 
 /// Sends numbered images for two seconds. Each image is sent only after the previous one is confirmed, as with
@@ -47,7 +47,7 @@ fn numbered(line: Line, seed: u64, size: u16, context: &str) -> World {
 /// On every bus, the slave receives the images in order. After it has received a later image, it does not receive an
 /// earlier image again.
 #[test]
-fn no_image_comes_twice_or_is_told_wrongly() {
+fn delivers_each_image_once_and_correctly() {
     for (kind, line) in KINDS.iter().enumerate() {
         for seed in 0..16 {
             for size in [48u16, 4] {
@@ -72,7 +72,7 @@ fn no_image_comes_twice_or_is_told_wrongly() {
 /// fragment of one image can replace the last fragment of the next image (six bytes of general-purpose signals).
 /// Second, an image in a single frame (4 bytes, without commands) can return for one cycle.
 #[test]
-fn frames_of_one_identifier_out_of_order_make_no_command() {
+fn reordered_frames_cause_no_command() {
     /// Offset of the last fragment in an image.
     const LAST: usize = 42;
 
@@ -118,7 +118,7 @@ fn polls_at_one_percent(size: u16, time: Duration) {
         world.run(MS * 500);
     }
     let view = world.view();
-    assert_eq!((view.state, view.generation), (State::Open, 1), "{:?}", view.trouble);
+    assert_eq!((view.state, view.generation), (State::Open, 1), "{:?}", view.last_error);
     assert_eq!(shown, taken);
     // There is one poll every 20 ms. Only a poll after a missing answer is later.
     let all = world.now.saturating_sub(start).as_millis() / 20;
@@ -131,7 +131,7 @@ fn polls_at_one_percent(size: u16, time: Duration) {
 
 /// An exchange takes only the time of its bits: 14 frames and the gap between polls.
 #[test]
-fn an_exchange_takes_hardly_more_than_its_bits() {
+fn exchange_time_is_close_to_its_bits() {
     let mut world = World::linked(48, 1);
     world.trace.clear();
     let busy = world.bus.busy();

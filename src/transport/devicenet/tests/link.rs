@@ -17,7 +17,7 @@ fn frames(world: &World) -> Vec<String> {
 /// Master 1 and slave 5 after power-on: every frame up to the first images. The first request of our master has xid 0
 /// and the next request has xid 1. Recorded masters always use xid 0.
 #[test]
-fn a_connection_begins_with_the_known_frames() {
+fn connection_starts_with_the_known_frames() {
     let mut world = World::new(vec![Device::new(setup(5, 48), Mirror::default())], 1);
     world.scanner.open(LINK, images(5)).unwrap();
     world.until(SECOND * 4, |world| world.view().sent > 0);
@@ -54,7 +54,7 @@ fn a_connection_begins_with_the_known_frames() {
 }
 
 #[test]
-fn the_profile_is_found_and_images_travel() {
+fn finds_the_profile_and_exchanges_images() {
     for size in [48u16, 4] {
         let mut world = World::linked(size, 1);
         let image: Vec<u8> = (0..size).map(|byte| u8::try_from(byte + 1).unwrap()).collect();
@@ -68,7 +68,7 @@ fn the_profile_is_found_and_images_travel() {
 }
 
 #[test]
-fn the_explicit_connection_is_kept_alive_beside_the_polls() {
+fn keeps_the_explicit_connection_alive_during_polls() {
     let mut world = World::linked(48, 1);
     world.run(SECOND * 60);
     let view = world.view();
@@ -78,7 +78,7 @@ fn the_explicit_connection_is_kept_alive_beside_the_polls() {
     let reply = world.ask(Request::get(class::IDENTITY, 1, 7));
     let Ok(Answer::Done { data, .. }) = reply.result else { panic!("{reply:?}") };
     assert_eq!(data[1..], *b"YRCX (sim)");
-    assert!(world.mirror().gone.is_empty());
+    assert!(world.mirror().losses.is_empty());
 }
 
 #[test]
@@ -88,8 +88,8 @@ fn closing_releases_both_connections() {
     world.scanner.close(now, LINK);
     world.until(SECOND * 3, |world| world.view().state == State::Closed);
     assert_eq!(world.devices[0].master(), None);
-    assert_eq!(world.mirror().gone.len(), 1);
-    assert_eq!(world.view().trouble, None);
+    assert_eq!(world.mirror().losses.len(), 1);
+    assert_eq!(world.view().last_error, None);
     let last: Vec<String> = frames(&world).into_iter().rev().take(2).collect();
     assert!(last[0].ends_with("CC") && last[1].ends_with("4C030103"), "{last:?}");
 }
@@ -100,18 +100,18 @@ fn refused(device: Device<Mirror>) -> Error {
     world.scanner.open(LINK, images(5)).unwrap();
     world.until(SECOND * 20, |world| world.view().state == State::Closed);
     assert!(world.trace.iter().all(|(_, frame)| frame.id() != 0x42D), "nothing was polled");
-    world.view().trouble.unwrap()
+    world.view().last_error.unwrap()
 }
 
 #[test]
-fn what_hinders_a_connection_is_told() {
+fn reports_why_a_connection_fails() {
     let with = |fault| {
         let mut device = Device::on_line(setup(5, 48), Mirror::default());
         device.set_fault(Some(fault));
         device
     };
     assert_eq!(refused(with(DeviceFault::ForeignOwner)), Error::Owned { mac: mac(5) });
-    assert!(matches!(refused(with(DeviceFault::OtherSize)), Error::Size { produced: 50, consumed: 50, .. }));
+    assert!(matches!(refused(with(DeviceFault::OtherSize)), Error::Size { produced_size: 50, consumed_size: 50, .. }));
     assert!(matches!(refused(with(DeviceFault::DuplicateMac)), Error::Duplicate { vendor: 636, .. }));
     let silent = Error::Silent {
         mac: mac(5),
@@ -126,7 +126,7 @@ fn what_hinders_a_connection_is_told() {
 }
 
 #[test]
-fn another_masters_slave_is_not_taken() {
+fn does_not_take_the_slave_of_another_master() {
     let mut world = World::linked(48, 1);
     let device = world.devices.remove(0);
     // The slave is still allocated to the first master, and this master has another MAC.
@@ -140,13 +140,13 @@ fn another_masters_slave_is_not_taken() {
     other.scanner.open(LINK, images(5)).unwrap();
     // The first master is silent, so its poll connection times out. Its explicit connection stays open for 10 s.
     other.until(SECOND * 5, |world| world.view().state == State::Closed);
-    assert_eq!(other.view().trouble, Some(Error::Owned { mac: mac(5) }));
+    assert_eq!(other.view().last_error, Some(Error::Owned { mac: mac(5) }));
 }
 
 /// A process with the same MAC was killed. The master releases the connections of that process, and then allocates them
 /// again.
 #[test]
-fn what_the_own_mac_left_behind_is_taken_over() {
+fn takes_over_connections_of_its_own_mac() {
     let mut world = World::linked(48, 1);
     let device = world.devices.remove(0);
     let mut again = World::new(vec![device], 2);
@@ -159,7 +159,7 @@ fn what_the_own_mac_left_behind_is_taken_over() {
 }
 
 #[test]
-fn a_lost_link_begins_again_at_rest() {
+fn reopened_link_starts_with_the_resting_image() {
     let mut world = World::linked(48, 1);
     let change = world.scanner.set_image(LINK, 1, &[9; 48]).unwrap();
     world.until(MS * 100, |world| world.view().sent >= change);
@@ -168,10 +168,10 @@ fn a_lost_link_begins_again_at_rest() {
     let lost = world.until(SECOND, |world| world.view().state == State::Lost);
     let took = lost.saturating_sub(cut);
     assert!((MS * 380..MS * 430).contains(&took), "four times the packet rate: {took:?}");
-    assert!(matches!(world.view().trouble, Some(Error::Lost { after, .. }) if after == MS * 400));
+    assert!(matches!(world.view().last_error, Some(Error::Lost { after, .. }) if after == MS * 400));
     assert_eq!(world.scanner.set_image(LINK, 1, &[9; 48]), Err(Error::Outdated));
     world.run(SECOND);
-    assert_eq!(world.mirror().gone.len(), 1, "the slave has noticed, too");
+    assert_eq!(world.mirror().losses.len(), 1, "the slave has noticed, too");
     world.is_cut = false;
     world.mirror().history.clear();
     world.mirror().image.clear();
@@ -185,7 +185,7 @@ fn a_lost_link_begins_again_at_rest() {
 }
 
 #[test]
-fn a_slave_that_was_switched_off_is_found_again() {
+fn finds_a_restarted_slave() {
     let mut world = World::linked(4, 1);
     world.devices[0].set_fault(Some(DeviceFault::Mute));
     world.until(SECOND, |world| world.view().state == State::Lost);
@@ -206,17 +206,17 @@ fn bus_off_and_an_unplugged_adapter_are_losses() {
     let mut world = World::linked(48, 1);
     let now = world.now;
     world.scanner.handle_health(now, Health { state: BusState::Off, ..Health::default() });
-    assert_eq!((world.view().state, world.view().trouble), (State::Lost, Some(Error::BusOff)));
+    assert_eq!((world.view().state, world.view().last_error), (State::Lost, Some(Error::BusOff)));
     world.run(SECOND * 3);
     assert_eq!(world.view().state, State::Lost, "nothing is sent meanwhile");
     let now = world.now;
     world.scanner.handle_health(now, Health::default());
     world.until(SECOND * 15, |world| world.view().state == State::Open);
 
-    let gone = PortError::Gone { path: "/dev/ttyACM0".to_owned(), why: "unplugged".to_owned() };
+    let losses = PortError::Gone { path: "/dev/ttyACM0".to_owned(), why: "unplugged".to_owned() };
     let now = world.now;
-    world.scanner.fail(now, &Error::Port(gone.clone()));
-    assert_eq!((world.view().state, world.view().trouble), (State::Lost, Some(Error::Port(gone))));
+    world.scanner.fail(now, &Error::Port(losses.clone()));
+    assert_eq!((world.view().state, world.view().last_error), (State::Lost, Some(Error::Port(losses))));
     world.run(SECOND * 3);
     assert_eq!(world.view().state, State::Lost);
     world.trace.clear();
@@ -227,7 +227,7 @@ fn bus_off_and_an_unplugged_adapter_are_losses() {
 }
 
 #[test]
-fn who_asks_for_the_own_mac_is_answered_at_once() {
+fn answers_duplicate_checks_of_its_own_mac() {
     let mut world = World::linked(48, 1);
     world.devices.push(Device::new(setup(1, 4), Mirror::default()));
     world.bus = crate::devicenet::can::bus::Bus::new(Bitrate::K500, 3);
@@ -239,7 +239,7 @@ fn who_asks_for_the_own_mac_is_answered_at_once() {
 
 /// A search that starts after the failure must not wait forever.
 #[test]
-fn a_search_after_the_own_mac_was_found_taken_keeps_nothing_alive() {
+fn search_with_a_duplicate_mac_ends() {
     let mut world = World::new(vec![Device::on_line(setup(1, 48), Mirror::default())], 1);
     world.until(SECOND * 3, |world| world.scanner.failure().is_some());
     let now = world.now;
@@ -248,7 +248,7 @@ fn a_search_after_the_own_mac_was_found_taken_keeps_nothing_alive() {
 }
 
 #[test]
-fn a_search_on_a_bus_that_is_off_is_over_at_once() {
+fn search_on_a_bus_that_is_off_ends() {
     let mut world = World::new(vec![Device::on_line(setup(5, 48), Mirror::default())], 1);
     world.run(SECOND * 3);
     let now = world.now;
@@ -262,7 +262,7 @@ fn a_search_on_a_bus_that_is_off_is_over_at_once() {
 }
 
 #[test]
-fn questions_alone_bring_up_no_polls() {
+fn explicit_messages_start_no_polls() {
     for with_poll in [false, true] {
         let mut world = World::new(vec![Device::on_line(setup(5, 48), Mirror::default())], 1);
         let settings = Settings { purpose: Purpose::Messages { with_poll }, ..images(5) };
@@ -277,13 +277,13 @@ fn questions_alone_bring_up_no_polls() {
         let now = world.now;
         world.scanner.close(now, LINK);
         world.until(SECOND, |world| world.view().state == State::Closed);
-        assert_eq!(world.mirror().gone.len(), 0, "nothing that the controller would miss");
+        assert_eq!(world.mirror().losses.len(), 0, "nothing that the controller would miss");
         assert!(frames(&world).iter().all(|frame| !frame.starts_with("42D")));
     }
 }
 
 #[test]
-fn everybody_on_line_is_found_and_nobody_is_owned() {
+fn search_finds_all_nodes_and_owns_none() {
     let device = |number| Device::on_line(setup(number, 48), Mirror::default());
     let mut world = World::new(vec![device(5), device(63), Device::new(setup(9, 4), Mirror::default())], 1);
     world.until(SECOND * 3, |world| world.scanner.is_on_line());
@@ -300,7 +300,7 @@ fn everybody_on_line_is_found_and_nobody_is_owned() {
 }
 
 #[test]
-fn settings_that_cannot_be_are_refused_before_a_frame_leaves() {
+fn rejects_invalid_settings_before_sending() {
     let mut world = World::new(Vec::new(), 1);
     let Purpose::Images(usual) = images(5).purpose else { panic!() };
     for (settings, part) in [

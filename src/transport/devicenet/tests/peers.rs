@@ -10,7 +10,7 @@ use super::world::{Mirror, images, mac, resting, setup};
 use crate::devicenet::can::Bitrate;
 use crate::devicenet::device::Device;
 use crate::devicenet::hub::{Hub, Listen};
-use crate::devicenet::network::{Adapter, Network, Place, Tap};
+use crate::devicenet::network::{Adapter, AdapterLocation, Network, Tap};
 use crate::devicenet::scanner::Identity;
 
 /// Returns the path of a Python with python-can, and the path of a script.
@@ -41,13 +41,17 @@ fn channel(place: &str) -> String {
 }
 
 #[test]
-fn a_scripted_master_is_served_by_our_slave() {
+fn our_slave_serves_a_scripted_master() {
     for (place, size) in channels() {
         let Some((python, script)) = script("master.py") else { return };
         let device = Device::on_line(setup(5, size), Mirror::default());
         let hub = Hub::start(Bitrate::K500, Some(device), &listen(), None).unwrap();
-        let output =
-            Command::new(python).arg(script).arg(channel(&hub.places()[place])).arg(size.to_string()).output().unwrap();
+        let output = Command::new(python)
+            .arg(script)
+            .arg(channel(&hub.endpoint_addresses()[place]))
+            .arg(size.to_string())
+            .output()
+            .unwrap();
         let told = String::from_utf8_lossy(&output.stdout);
         assert!(
             output.status.success() && told.contains("released"),
@@ -59,12 +63,12 @@ fn a_scripted_master_is_served_by_our_slave() {
 }
 
 #[test]
-fn a_master_that_others_wrote_polls_our_slave() {
+fn another_master_polls_our_slave() {
     for place in 0..listen().len() {
         let Some((python, script)) = script("others.py") else { return };
         let device = Device::on_line(setup(5, 4), Mirror::default());
         let hub = Hub::start(Bitrate::K500, Some(device), &listen(), None).unwrap();
-        let output = Command::new(python).arg(script).arg(channel(&hub.places()[place])).output().unwrap();
+        let output = Command::new(python).arg(script).arg(channel(&hub.endpoint_addresses()[place])).output().unwrap();
         let told = String::from_utf8_lossy(&output.stdout);
         let complaints = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success() && told.contains("seen its images come back"), "{told}{complaints}");
@@ -79,7 +83,7 @@ async fn our_master_satisfies_a_strict_slave() {
         let hub: Hub<Mirror> = Hub::start(Bitrate::K500, None, &listen(), None).unwrap();
         let mut slave = Command::new(python)
             .arg(script)
-            .arg(channel(&hub.places()[place]))
+            .arg(channel(&hub.endpoint_addresses()[place]))
             .arg(size.to_string())
             .stdout(Stdio::piped())
             .spawn()
@@ -87,8 +91,8 @@ async fn our_master_satisfies_a_strict_slave() {
         let mut told = BufReader::new(slave.stdout.take().unwrap());
         let mut ready = String::new();
         told.read_line(&mut ready).unwrap();
-        let address: SocketAddr = hub.places()[0].parse().unwrap();
-        let place = Place::Tcp { host: address.ip().to_string(), port: address.port() };
+        let address: SocketAddr = hub.endpoint_addresses()[0].parse().unwrap();
+        let place = AdapterLocation::Tcp { host: address.ip().to_string(), port: address.port() };
         let identity = Some(Identity { mac: mac(1), vendor: 0xFFFF, serial: 7 });
         let network =
             Network::open(&Adapter { place, bitrate: Bitrate::K500, identity }, Tap::default()).await.unwrap();

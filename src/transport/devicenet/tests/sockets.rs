@@ -10,7 +10,7 @@ use crate::devicenet::can::{Bitrate, PortError};
 use crate::devicenet::device::{Device, DeviceFault};
 use crate::devicenet::error::Error;
 use crate::devicenet::hub::{Hub, Listen};
-use crate::devicenet::network::{Adapter, Network, Place, Tap};
+use crate::devicenet::network::{Adapter, AdapterLocation, Network, Tap};
 use crate::devicenet::scanner::{Identity, State};
 use crate::devicenet::settings::{Purpose, Settings};
 use crate::devicenet::wire::{Answer, Request, class};
@@ -24,18 +24,18 @@ fn anywhere() -> Listen {
     Listen::Tcp(SocketAddr::from(([127, 0, 0, 1], 0)))
 }
 
-fn place(hub: &Hub<Mirror>) -> Place {
-    let address: SocketAddr = hub.places()[0].parse().unwrap();
-    Place::Tcp { host: address.ip().to_string(), port: address.port() }
+fn place(hub: &Hub<Mirror>) -> AdapterLocation {
+    let address: SocketAddr = hub.endpoint_addresses()[0].parse().unwrap();
+    AdapterLocation::Tcp { host: address.ip().to_string(), port: address.port() }
 }
 
-fn adapter(place: Place, master: u8) -> Adapter {
+fn adapter(place: AdapterLocation, master: u8) -> Adapter {
     let identity = Some(Identity { mac: mac(master), vendor: 0xFFFF, serial: master.into() });
     Adapter { place, bitrate: Bitrate::K500, identity }
 }
 
 #[tokio::test]
-async fn images_travel_over_tcp_and_over_a_pseudo_terminal() {
+async fn exchanges_images_over_tcp_and_a_pseudo_terminal() {
     #[cfg(unix)]
     let listen = [anywhere(), Listen::Pty];
     #[cfg(not(unix))]
@@ -44,7 +44,7 @@ async fn images_travel_over_tcp_and_over_a_pseudo_terminal() {
         let hub = hub(48, &listen);
         let place = match number {
             0 => place(&hub),
-            _ => Place::Serial { path: hub.places()[1].clone(), baud: 115_200 },
+            _ => AdapterLocation::Serial { path: hub.endpoint_addresses()[1].clone(), baud: 115_200 },
         };
         let network = Network::open(&adapter(place, 1), Tap::default()).await.unwrap();
         let mut connection = network.connect(images(5)).await.unwrap();
@@ -69,14 +69,14 @@ async fn several_adapters_share_a_hub_and_one_of_them_listens() {
     let master = Network::open(&adapter(place(&hub), 1), Tap::default()).await.unwrap();
     // Another process would have its own adapter. The test uses a second name for the same endpoint, which has the same
     // effect.
-    let Place::Tcp { port, .. } = place(&hub) else { panic!() };
-    let elsewhere = Place::Tcp { host: "localhost".to_owned(), port };
+    let AdapterLocation::Tcp { port, .. } = place(&hub) else { panic!() };
+    let elsewhere = AdapterLocation::Tcp { host: "localhost".to_owned(), port };
     let listener = Network::open(&Adapter { identity: None, ..adapter(elsewhere, 0) }, Tap::default()).await.unwrap();
     assert!(matches!(listener.connect(images(5)).await, Err(Error::Settings(_))));
     let connection = master.connect(images(5)).await.unwrap();
-    let sight = listener.listen(mac(5), SECOND * 20).await;
-    assert_eq!(sight.output.map(|seen| seen.image), Some(resting(4)));
-    assert!(sight.input.is_some());
+    let last_traffic = listener.listen(mac(5), SECOND * 20).await;
+    assert_eq!(last_traffic.output.map(|seen| seen.image), Some(resting(4)));
+    assert!(last_traffic.input.is_some());
     // An adapter has only one master.
     assert!(matches!(Network::open(&adapter(place(&hub), 2), Tap::default()).await, Err(Error::Settings(_))));
     let same = Network::open(&adapter(place(&hub), 1), Tap::default()).await.unwrap();
@@ -94,14 +94,14 @@ async fn nodes_are_found() {
 }
 
 #[tokio::test]
-async fn an_adapter_that_goes_is_a_loss_and_one_that_comes_back_is_used() {
+async fn reopens_an_adapter_after_a_loss() {
     let first = hub(48, &[anywhere()]);
-    let address: SocketAddr = first.places()[0].parse().unwrap();
+    let address: SocketAddr = first.endpoint_addresses()[0].parse().unwrap();
     let network = Network::open(&adapter(place(&first), 1), Tap::default()).await.unwrap();
     let mut connection = network.connect(images(5)).await.unwrap();
     drop(first);
     let view = connection.until(|view| view.state == State::Lost).await;
-    assert!(matches!(view.trouble, Some(Error::Port(PortError::Gone { .. }))), "{:?}", view.trouble);
+    assert!(matches!(view.last_error, Some(Error::Port(PortError::Gone { .. }))), "{:?}", view.last_error);
     let device = Device::on_line(setup(5, 48), Mirror::default());
     let second = loop {
         // The system may still use the port for a short time.
@@ -121,15 +121,15 @@ fn device_like(device: &Device<Mirror>) -> Device<Mirror> {
 }
 
 #[tokio::test]
-async fn what_is_no_adapter_is_told() {
+async fn reports_a_port_without_adapter() {
     // No program listens on this port.
     let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
     drop(listener);
     let open = |place| async { Network::open(&adapter(place, 1), Tap::default()).await.map(|_| ()).unwrap_err() };
-    let place = |port| Place::Tcp { host: "127.0.0.1".to_owned(), port };
+    let place = |port| AdapterLocation::Tcp { host: "127.0.0.1".to_owned(), port };
     assert!(matches!(open(place(port)).await, Error::Port(PortError::Open { .. })));
-    let absent = Place::Serial { path: "/dev/there-is-none".to_owned(), baud: 115_200 };
+    let absent = AdapterLocation::Serial { path: "/dev/there-is-none".to_owned(), baud: 115_200 };
     let error = open(absent).await;
     assert!(matches!(&error, Error::Port(PortError::Open { advice, .. }) if advice.contains("plug")), "{error:?}");
     // This listener accepts connections but never answers.
@@ -148,10 +148,10 @@ async fn what_is_no_adapter_is_told() {
 
 /// The peer answers no command. It sends a single byte from time to time, at different speeds.
 #[tokio::test]
-async fn what_sends_something_else_is_no_adapter() {
+async fn rejects_a_port_with_other_traffic() {
     for text in ["t4058AABBCCDDEEFF0011\r", "x", "z\r\x07"] {
         let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
-        let place = Place::Tcp { host: "127.0.0.1".to_owned(), port: listener.local_addr().unwrap().port() };
+        let place = AdapterLocation::Tcp { host: "127.0.0.1".to_owned(), port: listener.local_addr().unwrap().port() };
         let sends = async {
             let (mut stream, _) = listener.accept().await.unwrap();
             for byte in text.bytes().cycle() {
@@ -171,7 +171,7 @@ async fn what_sends_something_else_is_no_adapter() {
 }
 
 #[tokio::test]
-async fn a_wrong_bit_rate_and_bus_off_are_told() {
+async fn reports_wrong_bit_rate_and_bus_off() {
     let hub = hub(48, &[anywhere()]);
     let slow = Adapter { bitrate: Bitrate::K125, ..adapter(place(&hub), 1) };
     let network = Network::open(&slow, Tap::default()).await.unwrap();
@@ -182,14 +182,14 @@ async fn a_wrong_bit_rate_and_bus_off_are_told() {
     let mut connection = network.connect(images(5)).await.unwrap();
     hub.with(|device, _| device.set_fault(Some(DeviceFault::BusOff)));
     let view = connection.until(|view| view.state == State::Lost).await;
-    assert!(matches!(view.trouble, Some(Error::BusOff | Error::Lost { .. })), "{:?}", view.trouble);
+    assert!(matches!(view.last_error, Some(Error::BusOff | Error::Lost { .. })), "{:?}", view.last_error);
 }
 
 /// Lines that python-can sends to open an adapter: `C` on a closed channel, an empty line, and `O` twice.
 #[tokio::test]
-async fn the_lines_of_python_can_are_borne() {
+async fn accepts_the_lines_of_python_can() {
     let hub = hub(48, &[anywhere()]);
-    let mut stream = TcpStream::connect(hub.places()[0].as_str()).await.unwrap();
+    let mut stream = TcpStream::connect(hub.endpoint_addresses()[0].as_str()).await.unwrap();
     stream.write_all(b"C\rS6\r\rO\rO\rt42FZ\rt42F700FFFF07000000\r").await.unwrap();
     let mut got = Vec::new();
     // The test reads until the slave has answered the check of MAC 5.

@@ -92,7 +92,7 @@ fn every_identifier_has_the_name_that_tshark_gives_it() {
 }
 
 #[test]
-fn the_duplicate_check_is_read_as_tshark_reads_it() {
+fn parses_duplicate_checks_like_tshark() {
     let check = DuplicateCheck { is_answer: true, port: 0, vendor: 636, serial: 0x00C0_FFEE };
     let frame = Frame::new(Id::Duplicate(Mac::new(5).unwrap()).emit(), &check.emit()).unwrap();
     let names = ["devicenet.dup_mac_id.rr", "devicenet.dup_mac_id.vendor", "devicenet.dup_mac_id.serial_number"];

@@ -8,7 +8,7 @@ use std::time::Duration;
 use fastrand::Rng;
 
 use crate::devicenet::Now;
-use crate::devicenet::can::bus::{Bus, Passed};
+use crate::devicenet::can::bus::{Bus, TransmittedFrame};
 use crate::devicenet::can::{Bitrate, Frame};
 use crate::devicenet::device::{Application, Device, Setup};
 use crate::devicenet::scanner::{Identity, Reply, Scanner, State, Token, View};
@@ -31,7 +31,7 @@ pub struct Mirror {
     /// Every new image with the time of its arrival, in the order of arrival.
     pub history: Vec<(Now, Vec<u8>)>,
     pub images: u64,
-    pub gone: Vec<Now>,
+    pub losses: Vec<Now>,
 }
 
 impl Application for Mirror {
@@ -49,14 +49,14 @@ impl Application for Mirror {
         }
     }
 
-    fn master_gone(&mut self, now: Now) {
-        self.gone.push(now);
+    fn on_master_lost(&mut self, now: Now) {
+        self.losses.push(now);
     }
 }
 
 pub fn setup(number: u8, size: u16) -> Setup {
     let name = "YRCX (sim)".to_owned();
-    Setup { serial: 0x00C0_FFEE, name, ..Setup::stand_in(mac(number), Bitrate::K500, size) }
+    Setup { serial: 0x00C0_FFEE, name, ..Setup::sample_controller(mac(number), Bitrate::K500, size) }
 }
 
 /// Returns a resting image that is not all zeros.
@@ -75,7 +75,7 @@ pub fn images(number: u8) -> Settings {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Line {
     pub drop: u16,
-    pub double: u16,
+    pub duplicate: u16,
     pub late: u16,
     /// Rate of short delays. A frame with another identifier can overtake a delayed frame.
     pub swap: u16,
@@ -97,7 +97,7 @@ pub struct World {
     pub replies: Vec<Reply>,
     rng: Rng,
     /// Delayed frames: time, receiver, frame.
-    arriving: Vec<(Now, usize, Frame)>,
+    incoming: Vec<(Now, usize, Frame)>,
     /// Time at which the last frame arrived, by node and identifier.
     last: HashMap<(usize, u16), Now>,
 }
@@ -115,7 +115,7 @@ impl World {
             trace: Vec::new(),
             replies: Vec::new(),
             rng: Rng::with_seed(seed),
-            arriving: Vec::new(),
+            incoming: Vec::new(),
             last: HashMap::new(),
         }
     }
@@ -174,10 +174,10 @@ impl World {
                 self.bus.send(now, node + 1, frame);
             }
         }
-        while let Some(passed) = self.bus.pass(now) {
-            self.pass(passed);
+        while let Some(transmitted) = self.bus.pass(now) {
+            self.pass(transmitted);
         }
-        let due: Vec<(Now, usize, Frame)> = self.arriving.extract_if(.., |(at, ..)| *at <= now).collect();
+        let due: Vec<(Now, usize, Frame)> = self.incoming.extract_if(.., |(at, ..)| *at <= now).collect();
         for (_, node, frame) in &due {
             match node {
                 0 => self.scanner.handle(now, frame),
@@ -188,7 +188,7 @@ impl World {
             return;
         }
         let wakes = self.devices.iter().filter_map(Device::wake).chain(self.scanner.wake()).chain(self.bus.wake());
-        let next = wakes.chain(self.arriving.iter().map(|(at, ..)| *at)).min();
+        let next = wakes.chain(self.incoming.iter().map(|(at, ..)| *at)).min();
         self.now = next.map_or(end, |next| next.clamp(now, end));
         if self.now == now && next.is_some_and(|next| next <= now) {
             // Work that is due at once is done at the start of the next step. The time advances a little each time, so
@@ -197,8 +197,8 @@ impl World {
         }
     }
 
-    fn pass(&mut self, passed: Passed) {
-        self.trace.push((passed.at, passed.frame));
+    fn pass(&mut self, transmitted: TransmittedFrame) {
+        self.trace.push((transmitted.at, transmitted.frame));
         if self.trace.len() > 200_000 {
             self.trace.clear();
         }
@@ -206,15 +206,15 @@ impl World {
             return;
         }
         for node in 0..=self.devices.len() {
-            if node == passed.from {
+            if node == transmitted.from {
                 continue;
             }
             let mut hits = |share: u16| self.rng.u16(0..10_000) < share;
-            let (drop, double, late, swap) =
-                (hits(self.line.drop), hits(self.line.double), hits(self.line.late), hits(self.line.swap));
+            let (drop, duplicate, late, swap) =
+                (hits(self.line.drop), hits(self.line.duplicate), hits(self.line.late), hits(self.line.swap));
             if hits(self.line.reorder) {
                 let hold = Duration::from_micros(self.rng.u64(100..30_000));
-                self.arriving.push((passed.at + hold, node, passed.frame));
+                self.incoming.push((transmitted.at + hold, node, transmitted.frame));
                 continue;
             }
             if drop {
@@ -225,11 +225,11 @@ impl World {
                 (_, true) => MS * self.rng.u32(200..2000) / 1000,
                 _ => Duration::ZERO,
             };
-            let last = self.last.entry((node, passed.frame.id())).or_default();
-            let at = (passed.at + delay).max(*last);
+            let last = self.last.entry((node, transmitted.frame.id())).or_default();
+            let at = (transmitted.at + delay).max(*last);
             *last = at;
-            for _ in 0..=u8::from(double) {
-                self.arriving.push((at, node, passed.frame));
+            for _ in 0..=u8::from(duplicate) {
+                self.incoming.push((at, node, transmitted.frame));
             }
         }
     }

@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_bytes_are_those_that_tshark_reads() {
+    fn bytes_match_tshark() {
         let check = DuplicateCheck { is_answer: false, port: 0, vendor: 636, serial: 0x00C0_FFEE };
         assert_eq!(check.emit(), [0x00, 0x7C, 0x02, 0xEE, 0xFF, 0xC0, 0x00]);
         let answer = DuplicateCheck { is_answer: true, ..check };

@@ -363,7 +363,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn requests_come_back_in_every_format(
+        fn requests_round_trip_in_every_format(
             service in 0u8..0x80,
             class: u16,
             instance: u16,
@@ -392,7 +392,7 @@ mod tests {
         }
 
         #[test]
-        fn headers_come_back(byte: u8) {
+        fn headers_round_trip(byte: u8) {
             prop_assert_eq!(Header::parse(byte).emit(), byte);
         }
     }

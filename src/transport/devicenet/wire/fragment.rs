@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_byte_is_read_and_written() {
+    fn every_fragment_byte_round_trips() {
         for byte in 0..=u8::MAX {
             assert_eq!(Fragment::parse(byte).emit(), byte);
         }

@@ -217,7 +217,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_identifier_is_read_and_written() {
+    fn every_identifier_round_trips() {
         for id in 0..0x7F0 {
             assert_eq!(Id::parse(id).unwrap().emit(), id);
         }

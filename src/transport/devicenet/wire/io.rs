@@ -1,28 +1,28 @@
 //! Codec for cyclic data: a single frame if the image fits, otherwise unacknowledged fragments.
 
 use super::{Fragment, Kind};
-use crate::devicenet::can::MOST_DATA;
+use crate::devicenet::can::MAX_DATA;
 
 /// Data bytes per fragment.
-const PART: usize = MOST_DATA - 1;
+const FRAGMENT_DATA: usize = MAX_DATA - 1;
 
 /// Splits an image into frames. The length of the image must be the size of the connection.
 pub fn split(image: &[u8]) -> Vec<Vec<u8>> {
-    if image.len() <= MOST_DATA {
+    if image.len() <= MAX_DATA {
         return vec![image.to_vec()];
     }
-    let pieces = image.len().div_ceil(PART);
+    let pieces = image.len().div_ceil(FRAGMENT_DATA);
     let piece = |(index, part): (usize, &[u8])| {
         let mut bytes = vec![Fragment::of(index, pieces).emit()];
         bytes.extend(part);
         bytes
     };
-    image.chunks(PART).enumerate().map(piece).collect()
+    image.chunks(FRAGMENT_DATA).enumerate().map(piece).collect()
 }
 
 /// Effect of a frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Piece {
+pub enum AssemblyResult {
     /// The image is complete.
     Whole(Vec<u8>),
     /// More fragments follow.
@@ -55,13 +55,17 @@ impl Assembler {
     }
 
     /// Handles the data of a frame.
-    pub fn take(&mut self, bytes: &[u8]) -> Piece {
+    pub fn take(&mut self, bytes: &[u8]) -> AssemblyResult {
         let Some((first, part)) = bytes.split_first() else {
             self.next = None;
-            return Piece::Idle;
+            return AssemblyResult::Idle;
         };
-        if self.size <= MOST_DATA {
-            return if bytes.len() == self.size { Piece::Whole(bytes.to_vec()) } else { Piece::Wrong };
+        if self.size <= MAX_DATA {
+            return if bytes.len() == self.size {
+                AssemblyResult::Whole(bytes.to_vec())
+            } else {
+                AssemblyResult::Wrong
+            };
         }
         let Fragment { kind, count } = Fragment::parse(*first);
         let expected = self.next.take();
@@ -71,18 +75,18 @@ impl Assembler {
             Kind::First if count == 0 && part.len() < self.size && expected != Some(1) => {
                 self.parts = part.to_vec();
                 self.next = Some(1);
-                Piece::Part
+                AssemblyResult::Part
             }
             Kind::Middle if expected == Some(count) && self.parts.len() + part.len() < self.size => {
                 self.parts.extend(part);
                 self.next = Some((count + 1) % 64);
-                Piece::Part
+                AssemblyResult::Part
             }
             Kind::Last if expected == Some(count) && self.parts.len() + part.len() == self.size => {
                 self.parts.extend(part);
-                Piece::Whole(std::mem::take(&mut self.parts))
+                AssemblyResult::Whole(std::mem::take(&mut self.parts))
             }
-            _ => Piece::Wrong,
+            _ => AssemblyResult::Wrong,
         }
     }
 }
@@ -101,34 +105,34 @@ mod tests {
         assert_eq!(heads, [(0x00, 7), (0x41, 7), (0x42, 7), (0x43, 7), (0x44, 7), (0x45, 7), (0x86, 6)]);
         let mut assembler = Assembler::new(48);
         for frame in &frames[..6] {
-            assert_eq!(assembler.take(frame), Piece::Part);
+            assert_eq!(assembler.take(frame), AssemblyResult::Part);
         }
-        assert_eq!(assembler.take(&frames[6]), Piece::Whole(image));
+        assert_eq!(assembler.take(&frames[6]), AssemblyResult::Whole(image));
     }
 
     /// A faulty adapter may change the order of frames. The rest of an image could then follow an older first fragment.
     #[test]
-    fn of_two_beginnings_in_a_row_neither_is_taken() {
+    fn two_first_fragments_in_a_row_are_dropped() {
         let (older, newer) = (split(&[1; 48]), split(&[2; 48]));
         let mut assembler = Assembler::new(48);
         let mixed = [&newer[..1], &older[..1], &newer[1..]].concat();
-        assert!(mixed.iter().all(|frame| !matches!(assembler.take(frame), Piece::Whole(_))));
+        assert!(mixed.iter().all(|frame| !matches!(assembler.take(frame), AssemblyResult::Whole(_))));
         let last = newer.iter().map(|frame| assembler.take(frame)).last();
-        assert_eq!(last, Some(Piece::Whole(vec![2; 48])));
+        assert_eq!(last, Some(AssemblyResult::Whole(vec![2; 48])));
     }
 
     #[test]
-    fn an_image_of_4_bytes_is_bare() {
+    fn image_of_4_bytes_is_not_fragmented() {
         assert_eq!(split(&[1, 2, 3, 4]), [[1, 2, 3, 4]]);
         let mut assembler = Assembler::new(4);
-        assert_eq!(assembler.take(&[1, 2, 3, 4]), Piece::Whole(vec![1, 2, 3, 4]));
-        assert_eq!(assembler.take(&[1, 2, 3]), Piece::Wrong);
-        assert_eq!(assembler.take(&[]), Piece::Idle);
+        assert_eq!(assembler.take(&[1, 2, 3, 4]), AssemblyResult::Whole(vec![1, 2, 3, 4]));
+        assert_eq!(assembler.take(&[1, 2, 3]), AssemblyResult::Wrong);
+        assert_eq!(assembler.take(&[]), AssemblyResult::Idle);
     }
 
     /// A lost, doubled or exchanged frame damages only its own image.
     #[test]
-    fn what_is_damaged_is_dropped_and_the_next_is_whole() {
+    fn drops_a_damaged_image_and_accepts_the_next() {
         let image: Vec<u8> = (0..48).collect();
         let frames = split(&image);
         for at in 0..7 {
@@ -149,23 +153,23 @@ mod tests {
                 for frame in &frames_in {
                     match assembler.take(frame) {
                         // Only a doubled first or last fragment still gives a complete image.
-                        Piece::Whole(got) => assert_eq!(got, image),
-                        Piece::Part | Piece::Wrong => {}
-                        Piece::Idle => panic!("no frame was empty"),
+                        AssemblyResult::Whole(got) => assert_eq!(got, image),
+                        AssemblyResult::Part | AssemblyResult::Wrong => {}
+                        AssemblyResult::Idle => panic!("no frame was empty"),
                     }
                 }
                 let whole = frames.iter().map(|frame| assembler.take(frame)).last();
-                assert_eq!(whole, Some(Piece::Whole(image.clone())), "{at} {frames_in:?}");
+                assert_eq!(whole, Some(AssemblyResult::Whole(image.clone())), "{at} {frames_in:?}");
             }
         }
     }
 
     proptest! {
         #[test]
-        fn images_of_any_size_come_back(image in proptest::collection::vec(any::<u8>(), 1..600)) {
+        fn images_of_any_size_round_trip(image in proptest::collection::vec(any::<u8>(), 1..600)) {
             let mut assembler = Assembler::new(image.len());
             let last = split(&image).iter().map(|frame| assembler.take(frame)).last();
-            prop_assert_eq!(last, Some(Piece::Whole(image)));
+            prop_assert_eq!(last, Some(AssemblyResult::Whole(image)));
         }
 
         #[test]
@@ -175,7 +179,7 @@ mod tests {
         ) {
             let mut assembler = Assembler::new(size);
             for frame in frames {
-                if let Piece::Whole(image) = assembler.take(&frame) {
+                if let AssemblyResult::Whole(image) = assembler.take(&frame) {
                     prop_assert_eq!(image.len(), size);
                 }
             }

@@ -13,4 +13,4 @@ pub use self::duplicate::DuplicateCheck;
 pub use self::explicit::{Answer, Format, Header, Request, class, connection, general, owner, service};
 pub use self::fragment::{Fragment, Kind};
 pub use self::id::{Id, Mac};
-pub use self::io::{Assembler, Piece, split};
+pub use self::io::{Assembler, AssemblyResult, split};

@@ -6,7 +6,7 @@ use std::net::{Ipv4Addr, SocketAddrV4};
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
-use super::class1::{Consumer, Producer, Verdict};
+use super::class1::{Consumer, DatagramResult, Producer};
 use super::settings::Role;
 use super::wire::{
     Close, Closed, Command, Cyclic, Frame, Frames, Identity, Item, Refused, Reply, Request, RrData, Services, Status,
@@ -147,7 +147,7 @@ struct Client {
 
 /// An open I/O connection.
 #[derive(Debug)]
-struct Held {
+struct IoConnection {
     peer: Peer,
     triad: Triad,
     consumer: Consumer,
@@ -166,7 +166,7 @@ pub struct Adapter<A> {
     application: A,
     images: BTreeMap<u32, Vec<u8>>,
     clients: BTreeMap<u64, Client>,
-    held: Vec<Held>,
+    connections: Vec<IoConnection>,
     last_session: u32,
     last_id: u32,
     fault: Option<AdapterFault>,
@@ -182,7 +182,7 @@ impl<A: Application> Adapter<A> {
             setup,
             application,
             clients: BTreeMap::new(),
-            held: Vec::new(),
+            connections: Vec::new(),
             last_session: 0,
             last_id: fastrand::u32(..),
             fault: None,
@@ -208,7 +208,7 @@ impl<A: Application> Adapter<A> {
 
     /// Originators of the open connections.
     pub fn peers(&self) -> impl Iterator<Item = &Peer> {
-        self.held.iter().map(|held| &held.peer)
+        self.connections.iter().map(|connections| &connections.peer)
     }
 
     /// Handles a new TCP client.
@@ -217,7 +217,7 @@ impl<A: Application> Adapter<A> {
     }
 
     /// Handles the end of a TCP client. Its I/O connections stay open until they time out.
-    pub fn hung_up(&mut self, client: u64) {
+    pub fn disconnected(&mut self, client: u64) {
         self.clients.remove(&client);
     }
 
@@ -255,13 +255,15 @@ impl<A: Application> Adapter<A> {
     }
 
     /// Handles a datagram on the image port.
-    pub fn hear(&mut self, now: Now, from: SocketAddrV4, bytes: &[u8]) {
+    pub fn receive_datagram(&mut self, now: Now, from: SocketAddrV4, bytes: &[u8]) {
         let Ok(datagram) = Cyclic::parse(bytes) else { return };
-        let is_meant = |held: &&mut Held| held.consumer.id() == datagram.id && held.peer.address == *from.ip();
-        let Some(held) = self.held.iter_mut().find(is_meant) else { return };
-        let Verdict::Image { run, image } = held.consumer.take(now, &datagram) else { return };
-        held.run = run;
-        let Some(instance) = held.peer.output else { return };
+        let is_meant = |connections: &&mut IoConnection| {
+            connections.consumer.id() == datagram.id && connections.peer.address == *from.ip()
+        };
+        let Some(connections) = self.connections.iter_mut().find(is_meant) else { return };
+        let DatagramResult::Image { run, image } = connections.consumer.take(now, &datagram) else { return };
+        connections.run = run;
+        let Some(instance) = connections.peer.output else { return };
         if let Some(kept) = self.images.get_mut(&instance) {
             kept.copy_from_slice(image);
         }
@@ -282,52 +284,56 @@ impl<A: Application> Adapter<A> {
         if !self.outputs.is_empty() {
             return Some(Now::ZERO);
         }
-        let times = self.held.iter().flat_map(|held| {
-            [held.producer.as_ref().map(Producer::due), Some(held.consumer.until())].into_iter().flatten()
+        let times = self.connections.iter().flat_map(|connections| {
+            [connections.producer.as_ref().map(Producer::due), Some(connections.consumer.until())].into_iter().flatten()
         });
         times.min()
     }
 
     fn expire(&mut self, now: Now) {
-        while let Some(index) = self.held.iter().position(|held| now >= held.consumer.until()) {
+        while let Some(index) = self.connections.iter().position(|connections| now >= connections.consumer.until()) {
             let peer = self.remove(now, index);
             self.application.event(now, &Event::TimedOut(peer));
         }
     }
 
     fn produce(&mut self, now: Now) {
-        for held in &mut self.held {
-            let Some(producer) = held.producer.as_mut().filter(|producer| now >= producer.due()) else { continue };
-            let instance = held.peer.input;
+        for connections in &mut self.connections {
+            let Some(producer) = connections.producer.as_mut().filter(|producer| now >= producer.due()) else {
+                continue;
+            };
+            let instance = connections.peer.input;
             let Some(image) = self.images.get_mut(&instance) else { continue };
             if self.fault != Some(AdapterFault::Frozen) || producer.sent == 0 {
                 self.application.image_in(now, instance, image);
             }
             let datagram = producer.produce(now, None, image);
             for bytes in fault::images(self.fault, producer.sent, datagram) {
-                self.outputs.push_back(Output::Datagram(held.destination, bytes));
+                self.outputs.push_back(Output::Datagram(connections.destination, bytes));
             }
         }
     }
 
     /// Removes a connection, and the listen-only connections that depend on it.
     fn remove(&mut self, now: Now, index: usize) -> Peer {
-        let held = self.held.remove(index);
-        if held.is_multicast {
-            let mut same = self.held.iter_mut().filter(|other| other.is_multicast && other.t_o_id == held.t_o_id);
-            if let (Some(producer), Some(next)) = (held.producer, same.next()) {
+        let connections = self.connections.remove(index);
+        if connections.is_multicast {
+            let mut same =
+                self.connections.iter_mut().filter(|other| other.is_multicast && other.t_o_id == connections.t_o_id);
+            if let (Some(producer), Some(next)) = (connections.producer, same.next()) {
                 next.producer = Some(producer);
             }
-            let feeds = |other: &Held| other.t_o_id == held.t_o_id && other.peer.role != Role::ListenOnly;
-            if !self.held.iter().any(feeds) {
-                let listens = |other: &mut Held| other.is_multicast && other.t_o_id == held.t_o_id;
-                let orphans: Vec<Held> = self.held.extract_if(.., listens).collect();
+            let feeds =
+                |other: &IoConnection| other.t_o_id == connections.t_o_id && other.peer.role != Role::ListenOnly;
+            if !self.connections.iter().any(feeds) {
+                let listens = |other: &mut IoConnection| other.is_multicast && other.t_o_id == connections.t_o_id;
+                let orphans: Vec<IoConnection> = self.connections.extract_if(.., listens).collect();
                 for orphan in orphans {
                     self.application.event(now, &Event::Closed(orphan.peer));
                 }
             }
         }
-        held.peer
+        connections.peer
     }
 
     fn take(&mut self, now: Now, client: u64, frame: &Frame<'_>) {
@@ -379,9 +385,9 @@ impl<A: Application> Adapter<A> {
 
     /// Returns the identity with the current status (volume 1, 5-2.2.1.5).
     fn identity(&self) -> Identity {
-        let is_owned = self.held.iter().any(|held| held.peer.role == Role::ExclusiveOwner);
+        let is_owned = self.connections.iter().any(|connections| connections.peer.role == Role::ExclusiveOwner);
         let is_owned = is_owned && self.fault != Some(AdapterFault::Unowned);
-        let extended = match (self.held.is_empty(), self.held.iter().any(|held| held.run)) {
+        let extended = match (self.connections.is_empty(), self.connections.iter().any(|connections| connections.run)) {
             (true, _) => 3,
             (false, true) => 6,
             (false, false) => 7,
@@ -431,7 +437,7 @@ impl<A: Application> Adapter<A> {
         let Ok(close) = Close::parse(data) else {
             return Err((Status::general(NOT_ENOUGH_DATA), Vec::new()));
         };
-        let Some(index) = self.held.iter().position(|held| held.triad == close.triad) else {
+        let Some(index) = self.connections.iter().position(|connections| connections.triad == close.triad) else {
             let refused = Refused { triad: close.triad, remaining: Some(0) };
             return Err((Status::connection(NOT_FOUND, &[]), refused.emit()));
         };

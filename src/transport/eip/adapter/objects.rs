@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::super::settings::MOST_IMAGE;
+use super::super::settings::MAX_IMAGE_SIZE;
 use super::super::wire::{Request, service};
 use super::super::{ASSEMBLY, Now};
 use super::{Adapter, AdapterFault, Application, NOT_ENOUGH_DATA, Purpose, UNKNOWN_DESTINATION, UNKNOWN_SERVICE};
@@ -82,7 +82,10 @@ impl<A: Application> Adapter<A> {
     /// Sets the data of an output assembly with a message, if no connection owns the assembly.
     fn set_image(&mut self, now: Now, instance: u32, image: &[u8]) -> Result<Vec<u8>, u8> {
         refuse_if(self.setup.assembly(instance, Purpose::Output).is_none(), NOT_SETTABLE)?;
-        refuse_if(self.held.iter().any(|held| held.peer.output == Some(instance)), STATE_CONFLICT)?;
+        refuse_if(
+            self.connections.iter().any(|connections| connections.peer.output == Some(instance)),
+            STATE_CONFLICT,
+        )?;
         let kept = self.images.get_mut(&instance).ok_or(UNKNOWN_DESTINATION)?;
         match image.len().cmp(&kept.len()) {
             Ordering::Less => return Err(NOT_ENOUGH_DATA),
@@ -99,7 +102,7 @@ impl<A: Application> Adapter<A> {
         let is_input = self.setup.assembly(instance, Purpose::Input).is_some();
         let image = self.images.get_mut(&instance).ok_or(UNKNOWN_DESTINATION)?;
         match attribute {
-            DATA if image.len() > usize::from(MOST_IMAGE) => Err(TOO_LARGE),
+            DATA if image.len() > usize::from(MAX_IMAGE_SIZE) => Err(TOO_LARGE),
             DATA => {
                 if is_input {
                     self.application.image_in(now, instance, image);

@@ -7,7 +7,7 @@ use super::super::settings::{Multiplier, Role};
 use super::super::wire::{Flow, Key, Net, Open, Opened, Problem, Refused, Segment, Status};
 use super::super::{ASSEMBLY, IO_PORT, Now};
 use super::{
-    Adapter, AdapterFault, Application, Consumer, Event, Held, NOT_ENOUGH_DATA, Peer, Producer, Purpose, Setup,
+    Adapter, AdapterFault, Application, Consumer, Event, IoConnection, NOT_ENOUGH_DATA, Peer, Producer, Purpose, Setup,
 };
 use crate::refuse_if;
 
@@ -24,7 +24,7 @@ const DEVICE_TYPE: u16 = 0x0115;
 const REVISION: u16 = 0x0116;
 const POINT: u16 = 0x0117;
 const CONFIGURATION: u16 = 0x0118;
-const NOTHING_TO_HEAR: u16 = 0x0119;
+const NO_CONNECTION_TO_LISTEN: u16 = 0x0119;
 const CONFIGURATION_SIZE: u16 = 0x0126;
 const SEGMENT: u16 = 0x0315;
 /// General status for an invalid timeout multiplier.
@@ -38,7 +38,7 @@ const COUNT: u16 = 2;
 const HEADER: u16 = 4;
 
 /// An accepted connection.
-pub(super) struct Granted {
+pub(super) struct AcceptedConnection {
     /// Data of the reply.
     pub(super) data: Vec<u8>,
     /// Addresses of the images to the adapter and to the originator.
@@ -47,7 +47,7 @@ pub(super) struct Granted {
 
 /// Decoded connection path.
 #[derive(Debug)]
-struct Points<'a> {
+struct ConnectionPoints<'a> {
     key: Option<Key>,
     configuration: Option<u32>,
     output: u32,
@@ -63,40 +63,50 @@ impl<A: Application> Adapter<A> {
         to: Option<SocketAddrV4>,
         data: &[u8],
         large: bool,
-    ) -> Result<Granted, (Status, Vec<u8>)> {
+    ) -> Result<AcceptedConnection, (Status, Vec<u8>)> {
         let open = Open::parse(data, large).map_err(|error| {
             let in_path = matches!(error.problem, Problem::Value { .. });
             let status = if in_path { Status::connection(SEGMENT, &[]) } else { Status::general(NOT_ENOUGH_DATA) };
             (status, Vec::new())
         })?;
-        self.granted(now, from, to, &open)
+        self.accepted_connection(now, from, to, &open)
             .map_err(|status| (status, Refused { triad: open.triad, remaining: Some(0) }.emit()))
     }
 
-    fn granted(&mut self, now: Now, from: Ipv4Addr, to: Option<SocketAddrV4>, open: &Open) -> Result<Granted, Status> {
-        let points = points(open)?;
+    fn accepted_connection(
+        &mut self,
+        now: Now,
+        from: Ipv4Addr,
+        to: Option<SocketAddrV4>,
+        open: &Open,
+    ) -> Result<AcceptedConnection, Status> {
+        let connection_points = connection_points(open)?;
         // Some boards check whether the outputs have an owner before they check the sizes.
-        let is_owned = self.held.iter().any(|held| held.peer.output == Some(points.output));
+        let is_owned =
+            self.connections.iter().any(|connections| connections.peer.output == Some(connection_points.output));
         refuse_if(self.fault == Some(AdapterFault::Unowned) && is_owned, Status::connection(OWNED, &[]))?;
-        let role = self.setup.allows(open, &points)?;
+        let role = self.setup.allows(open, &connection_points)?;
         let intervals = Multiplier::from_code(open.multiplier).ok_or(Status::general(INVALID_PARAMETER))?.intervals();
-        refuse_if(self.held.iter().any(|held| held.triad == open.triad), Status::connection(DUPLICATE, &[]))?;
-        let output = (role == Role::ExclusiveOwner).then_some(points.output);
-        if output.is_some() && self.held.iter().any(|held| held.peer.output == output) {
+        refuse_if(
+            self.connections.iter().any(|connections| connections.triad == open.triad),
+            Status::connection(DUPLICATE, &[]),
+        )?;
+        let output = (role == Role::ExclusiveOwner).then_some(connection_points.output);
+        if output.is_some() && self.connections.iter().any(|connections| connections.peer.output == output) {
             return Err(Status::connection(OWNED, &[]));
         }
-        refuse_if(self.held.len() >= self.setup.most_connections, Status::connection(OUT_OF_CONNECTIONS, &[]))?;
+        refuse_if(self.connections.len() >= self.setup.most_connections, Status::connection(OUT_OF_CONNECTIONS, &[]))?;
         let o_t = self.setup.interval(&open.o_t);
         let mut t_o = self.setup.interval(&open.t_o);
         let is_multicast = open.t_o.net == Net::Multicast;
         // In a multicast group, one producer sends for all connections with the same interval. A listen-only connection
         // accepts any interval.
-        let shared = self.held.iter().find(|held| {
-            let fits = held.peer.t_o == t_o || role == Role::ListenOnly;
-            held.is_multicast && is_multicast && held.peer.input == points.input && fits
+        let shared = self.connections.iter().find(|connections| {
+            let fits = connections.peer.t_o == t_o || role == Role::ListenOnly;
+            connections.is_multicast && is_multicast && connections.peer.input == connection_points.input && fits
         });
-        let shared = shared.map(|held| (held.t_o_id, held.peer.t_o));
-        refuse_if(role == Role::ListenOnly && shared.is_none(), Status::connection(NOTHING_TO_HEAR, &[]))?;
+        let shared = shared.map(|connections| (connections.t_o_id, connections.peer.t_o));
+        refuse_if(role == Role::ListenOnly && shared.is_none(), Status::connection(NO_CONNECTION_TO_LISTEN, &[]))?;
         let o_t_id = self.next_id();
         let (t_o_id, producer) = if let Some((id, interval)) = shared {
             t_o = interval;
@@ -111,8 +121,8 @@ impl<A: Application> Adapter<A> {
         let own = SocketAddrV4::new(from, port.unwrap_or(IO_PORT));
         let header = open.o_t.size >= COUNT + HEADER;
         let size = output.and_then(|output| self.setup.assembly(output, Purpose::Output)).map_or(0, |found| found.size);
-        let peer = Peer { address: from, role, input: points.input, output, o_t, t_o };
-        self.held.push(Held {
+        let peer = Peer { address: from, role, input: connection_points.input, output, o_t, t_o };
+        self.connections.push(IoConnection {
             peer,
             triad: open.triad,
             consumer: Consumer::new(o_t_id, size.into(), header, o_t, intervals, now),
@@ -132,8 +142,8 @@ impl<A: Application> Adapter<A> {
             t_o_api_us: micros(t_o),
             application: Vec::new(),
         };
-        let here = SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, self.setup.io_port);
-        Ok(Granted { data: opened.emit(), addresses: (Some(here), group) })
+        let local_address = SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, self.setup.io_port);
+        Ok(AcceptedConnection { data: opened.emit(), addresses: (Some(local_address), group) })
     }
 
     fn next_id(&mut self) -> u32 {
@@ -144,28 +154,28 @@ impl<A: Application> Adapter<A> {
 
 impl Setup {
     /// Checks the conditions that do not depend on other connections.
-    fn allows(&self, open: &Open, points: &Points<'_>) -> Result<Role, Status> {
+    fn allows(&self, open: &Open, connection_points: &ConnectionPoints<'_>) -> Result<Role, Status> {
         let refuse = |code| Err(Status::connection(code, &[]));
         if open.transport != CYCLIC {
             return refuse(TRANSPORT);
         }
-        if let Some(key) = &points.key {
+        if let Some(key) = &connection_points.key {
             self.fits(key)?;
         }
-        let output = self.assembly(points.output, Purpose::Output);
-        let role = match points.output {
+        let output = self.assembly(connection_points.output, Purpose::Output);
+        let role = match connection_points.output {
             _ if output.is_some() => Role::ExclusiveOwner,
             instance if instance == self.input_only => Role::InputOnly,
             instance if instance == self.listen_only => Role::ListenOnly,
             _ => return refuse(POINT),
         };
-        let Some(input) = self.assembly(points.input, Purpose::Input) else { return refuse(POINT) };
-        if let Some(instance) = points.configuration {
+        let Some(input) = self.assembly(connection_points.input, Purpose::Input) else { return refuse(POINT) };
+        if let Some(instance) = connection_points.configuration {
             let Some(found) = self.assembly(instance, Purpose::Configuration) else { return refuse(CONFIGURATION) };
-            if !points.data.is_empty() && points.data.len() != usize::from(found.size) {
+            if !connection_points.data.is_empty() && connection_points.data.len() != usize::from(found.size) {
                 return Err(Status::connection(CONFIGURATION_SIZE, &[found.size.div_ceil(2)]));
             }
-        } else if !points.data.is_empty() {
+        } else if !connection_points.data.is_empty() {
             return refuse(CONFIGURATION);
         }
         if open.o_t.net != Net::PointToPoint || !matches!(open.t_o.net, Net::PointToPoint | Net::Multicast) {
@@ -175,11 +185,11 @@ impl Setup {
             return refuse(RPI);
         }
         match output {
-            Some(output) => sized(&open.o_t, output.size.saturating_add(COUNT + HEADER))?,
+            Some(output) => check_size(&open.o_t, output.size.saturating_add(COUNT + HEADER))?,
             None if HEARTBEATS.contains(&open.o_t.size) => {}
             None => return Err(Status::connection(SIZE, &[COUNT])),
         }
-        sized(&open.t_o, input.size.saturating_add(COUNT))?;
+        check_size(&open.t_o, input.size.saturating_add(COUNT))?;
         Ok(role)
     }
 
@@ -198,13 +208,13 @@ impl Setup {
     /// Returns the requested interval, rounded up to a multiple of the tick.
     fn interval(&self, flow: &Flow) -> Duration {
         let tick = self.tick.as_micros().max(1);
-        let asked = u128::from(flow.rpi_us).next_multiple_of(tick);
-        Duration::from_micros(u64::try_from(asked).unwrap_or(u64::MAX))
+        let handle_discovery = u128::from(flow.rpi_us).next_multiple_of(tick);
+        Duration::from_micros(u64::try_from(handle_discovery).unwrap_or(u64::MAX))
     }
 }
 
 /// Decodes the path: key, assembly class, optional configuration, output, input, configuration data.
-fn points(open: &Open) -> Result<Points<'_>, Status> {
+fn connection_points(open: &Open) -> Result<ConnectionPoints<'_>, Status> {
     let (key, rest) = match &open.path.0[..] {
         [Segment::Key(key), rest @ ..] => (Some(*key), rest),
         rest => (None, rest),
@@ -222,11 +232,11 @@ fn points(open: &Open) -> Result<Points<'_>, Status> {
         [Segment::Class(ASSEMBLY), Segment::Point(output), Segment::Point(input)] => (None, output, input),
         _ => return Err(Status::connection(POINT, &[])),
     };
-    Ok(Points { key, configuration, output, input, data })
+    Ok(ConnectionPoints { key, configuration, output, input, data })
 }
 
 /// Checks a size. The size must match exactly, even if the request declares it as variable. A refusal contains the
 /// correct size.
-fn sized(flow: &Flow, right: u16) -> Result<(), Status> {
+fn check_size(flow: &Flow, right: u16) -> Result<(), Status> {
     if flow.size == right { Ok(()) } else { Err(Status::connection(SIZE, &[right])) }
 }

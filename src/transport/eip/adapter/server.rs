@@ -19,7 +19,7 @@ use crate::fault::Faults;
 /// Size of the receive buffer: the size of the largest datagram.
 const BUFFER: usize = 65_536;
 /// Maximum number of clients. If there are more, the server closes their TCP connections at once.
-const MOST_CLIENTS: usize = 64;
+const MAX_CLIENTS: usize = 64;
 /// If the system selects the port: number of attempts to bind TCP and UDP to the same port.
 const TRIES: usize = 16;
 
@@ -28,7 +28,7 @@ const PAUSE: Duration = Duration::from_millis(50);
 
 /// Addresses of an adapter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Listen {
+pub struct AdapterAddresses {
     /// IP address.
     pub address: Ipv4Addr,
     /// TCP port for sessions, and UDP port for ListIdentity. With 0, the system selects the port.
@@ -38,7 +38,7 @@ pub struct Listen {
     pub io_port: u16,
 }
 
-impl Listen {
+impl AdapterAddresses {
     /// Returns this address with the standard ports.
     pub const fn usual(address: Ipv4Addr) -> Self {
         Self { address, port: PORT, io_port: IO_PORT }
@@ -53,14 +53,14 @@ impl Listen {
 /// A running adapter. A drop stops it, but does not close its connections: the originators must detect the loss.
 #[derive(Debug)]
 pub struct Server<A: Application + 'static> {
-    inner: Arc<Inner<A>>,
+    inner: Arc<SharedState<A>>,
     address: SocketAddrV4,
     io_port: u16,
     _engine: Engine,
 }
 
 #[derive(Debug)]
-struct Inner<A> {
+struct SharedState<A> {
     start: Instant,
     alarm: Arc<Alarm>,
     images: UdpSocket,
@@ -87,7 +87,12 @@ enum Delayed {
 
 impl<A: Application> Server<A> {
     /// Starts the server. `faults` apply to images to and from the adapter.
-    pub fn start(setup: Setup, application: A, listen: Listen, faults: Option<(Faults, Faults)>) -> io::Result<Self> {
+    pub fn start(
+        setup: Setup,
+        application: A,
+        listen: AdapterAddresses,
+        faults: Option<(Faults, Faults)>,
+    ) -> io::Result<Self> {
         let prepared = Prepared::new()?;
         let (sessions, discovery) = bind(listen)?;
         let images = UdpSocket::bind((listen.address, listen.io_port))?;
@@ -100,7 +105,7 @@ impl<A: Application> Server<A> {
         };
         let mut adapter = Adapter::new(setup, application);
         adapter.listens(address, image_address.port());
-        let (sessions, heard, asked) = {
+        let (sessions, handle_datagram, handle_discovery) = {
             let _here = prepared.handle().enter();
             let (images, discovery) = (images.try_clone()?, discovery.try_clone()?);
             let udp = tokio::net::UdpSocket::from_std;
@@ -109,12 +114,13 @@ impl<A: Application> Server<A> {
         let alarm = Arc::new(Alarm::default());
         let start = Instant::now();
         let state = State { adapter, lines: BTreeMap::new(), last: 0, faults, delayed: Vec::new() };
-        let inner = Arc::new(Inner { start, alarm: Arc::clone(&alarm), images, discovery, state: Mutex::new(state) });
+        let inner =
+            Arc::new(SharedState { start, alarm: Arc::clone(&alarm), images, discovery, state: Mutex::new(state) });
         spawn(prepared.handle(), accept(Arc::clone(&inner), sessions, prepared.handle().clone()));
-        spawn(prepared.handle(), receive(Arc::clone(&inner), heard, Inner::heard));
-        spawn(prepared.handle(), receive(Arc::clone(&inner), asked, Inner::asked));
+        spawn(prepared.handle(), receive(Arc::clone(&inner), handle_datagram, SharedState::handle_datagram));
+        spawn(prepared.handle(), receive(Arc::clone(&inner), handle_discovery, SharedState::handle_discovery));
         let for_engine = Arc::clone(&inner);
-        let engine = prepared.start("adapter", start, alarm, move || for_engine.turn())?;
+        let engine = prepared.start("adapter", start, alarm, move || for_engine.run_due())?;
         Ok(Self { inner, address, io_port: image_address.port(), _engine: engine })
     }
 
@@ -141,7 +147,7 @@ impl<A: Application> Server<A> {
     }
 }
 
-impl<A: Application> Inner<A> {
+impl<A: Application> SharedState<A> {
     fn state(&self) -> MutexGuard<'_, State<A>> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -151,12 +157,12 @@ impl<A: Application> Inner<A> {
         let mut state = self.state();
         let now = self.start.elapsed();
         change(&mut state, now);
-        let wake = self.follow(&mut state, now);
+        let wake = self.execute_actions(&mut state, now);
         self.alarm.set(wake);
     }
 
     /// Executes the work that is due. Returns the time at which it must be called again.
-    fn turn(&self) -> Option<Now> {
+    fn run_due(&self) -> Option<Now> {
         let mut state = self.state();
         let now = self.start.elapsed();
         let (due, later) = std::mem::take(&mut state.delayed).into_iter().partition(|(at, _)| *at <= now);
@@ -165,14 +171,14 @@ impl<A: Application> Inner<A> {
         due.sort_by_key(|(at, _)| *at);
         for (_, delayed) in due {
             match delayed {
-                Delayed::Arriving(from, bytes) => state.adapter.hear(now, from, &bytes),
+                Delayed::Arriving(from, bytes) => state.adapter.receive_datagram(now, from, &bytes),
                 Delayed::Leaving(to, bytes) => send(&self.images, to, &bytes),
             }
         }
-        self.follow(&mut state, now)
+        self.execute_actions(&mut state, now)
     }
 
-    fn follow(&self, state: &mut State<A>, now: Now) -> Option<Now> {
+    fn execute_actions(&self, state: &mut State<A>, now: Now) -> Option<Now> {
         while let Some(output) = state.adapter.poll(now) {
             match output {
                 Output::Send(client, bytes) => {
@@ -183,7 +189,7 @@ impl<A: Application> Inner<A> {
                 }
                 Output::HangUp(client) => {
                     state.lines.remove(&client);
-                    state.adapter.hung_up(client);
+                    state.adapter.disconnected(client);
                 }
                 Output::Datagram(to, bytes) => match &mut state.faults {
                     None => send(&self.images, to, &bytes),
@@ -198,9 +204,9 @@ impl<A: Application> Inner<A> {
         state.delayed.iter().map(|(at, _)| *at).chain(state.adapter.wake()).min()
     }
 
-    fn heard(&self, from: SocketAddrV4, bytes: &[u8]) {
+    fn handle_datagram(&self, from: SocketAddrV4, bytes: &[u8]) {
         self.with(|state, now| match &mut state.faults {
-            None => state.adapter.hear(now, from, bytes),
+            None => state.adapter.receive_datagram(now, from, bytes),
             Some((there, _)) => {
                 let copies = there.pass(now, bytes);
                 state.delayed.extend(copies.into_iter().map(|(at, bytes)| (at, Delayed::Arriving(from, bytes))));
@@ -208,7 +214,7 @@ impl<A: Application> Inner<A> {
         });
     }
 
-    fn asked(&self, from: SocketAddrV4, bytes: &[u8]) {
+    fn handle_discovery(&self, from: SocketAddrV4, bytes: &[u8]) {
         self.with(|state, _| state.adapter.discovered(from, bytes));
     }
 }
@@ -219,7 +225,7 @@ fn send(socket: &UdpSocket, to: SocketAddrV4, bytes: &[u8]) {
 }
 
 /// Binds TCP and UDP to the same port.
-fn bind(listen: Listen) -> io::Result<(std::net::TcpListener, UdpSocket)> {
+fn bind(listen: AdapterAddresses) -> io::Result<(std::net::TcpListener, UdpSocket)> {
     let mut tries = if listen.port == 0 { TRIES } else { 1 };
     loop {
         let sessions = std::net::TcpListener::bind((listen.address, listen.port))?;
@@ -230,7 +236,7 @@ fn bind(listen: Listen) -> io::Result<(std::net::TcpListener, UdpSocket)> {
     }
 }
 
-async fn accept<A: Application + 'static>(inner: Arc<Inner<A>>, sessions: TcpListener, handle: Handle) {
+async fn accept<A: Application + 'static>(inner: Arc<SharedState<A>>, sessions: TcpListener, handle: Handle) {
     loop {
         // An error means that the peer has already disconnected, or that there are too many open files. Both states are
         // temporary.
@@ -241,7 +247,7 @@ async fn accept<A: Application + 'static>(inner: Arc<Inner<A>>, sessions: TcpLis
         let (line, orders) = unbounded_channel();
         let mut client = None;
         inner.with(|state, _| {
-            if state.lines.len() < MOST_CLIENTS {
+            if state.lines.len() < MAX_CLIENTS {
                 state.last += 1;
                 state.lines.insert(state.last, line);
                 state.adapter.connected(state.last, *from.ip());
@@ -255,7 +261,7 @@ async fn accept<A: Application + 'static>(inner: Arc<Inner<A>>, sessions: TcpLis
 }
 
 async fn serve<A: Application>(
-    inner: Arc<Inner<A>>,
+    inner: Arc<SharedState<A>>,
     client: u64,
     mut stream: TcpStream,
     mut orders: UnboundedReceiver<Vec<u8>>,
@@ -280,14 +286,14 @@ async fn serve<A: Application>(
     }
     inner.with(|state, _| {
         state.lines.remove(&client);
-        state.adapter.hung_up(client);
+        state.adapter.disconnected(client);
     });
 }
 
 async fn receive<A: Application>(
-    inner: Arc<Inner<A>>,
+    inner: Arc<SharedState<A>>,
     socket: tokio::net::UdpSocket,
-    take: fn(&Inner<A>, SocketAddrV4, &[u8]),
+    take: fn(&SharedState<A>, SocketAddrV4, &[u8]),
 ) {
     let mut buffer = vec![0; BUFFER];
     loop {

@@ -28,7 +28,7 @@ pub struct Statistics {
     /// Old and duplicate datagrams, which are dropped.
     pub stale: u64,
     /// Datagrams of a wrong size, which are dropped.
-    pub misfit: u64,
+    pub size_error: u64,
 }
 
 impl Statistics {
@@ -39,7 +39,7 @@ impl Statistics {
         self.lost += consumer.lost;
         self.late += consumer.late;
         self.stale += consumer.stale;
-        self.misfit += consumer.misfit;
+        self.size_error += consumer.size_error;
     }
 }
 

@@ -9,7 +9,7 @@ use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::{TcpSocket, TcpStream};
 use tokio::sync::mpsc::UnboundedReceiver;
 
-use super::{EipError, Inner, Slot, Tap, mpsc};
+use super::{EipError, SharedState, Slot, Tap, mpsc};
 
 /// Bytes per read.
 const BUFFER: usize = 4096;
@@ -37,7 +37,7 @@ impl Line {
 
 /// Task of a TCP connection: connects, writes queued bytes, and delivers received bytes.
 pub(super) async fn run(
-    inner: Arc<Inner>,
+    inner: Arc<SharedState>,
     id: u64,
     number: u64,
     target: SocketAddrV4,
@@ -60,14 +60,14 @@ pub(super) async fn run(
     };
     let mut stream = match connected {
         Ok(stream) => stream,
-        Err(error) => return tell(&mut |slot, _| slot.core.hung_up(&EipError::unreachable(&error))),
+        Err(error) => return tell(&mut |slot, _| slot.core.disconnected(&EipError::unreachable(&error))),
     };
     // An error is ignored: the option only saves time. Without it, a request may wait for the acknowledgement of the
     // previous request.
     let _ = stream.set_nodelay(true);
-    let Ok(SocketAddr::V4(here)) = stream.local_addr() else { return };
+    let Ok(SocketAddr::V4(local_address)) = stream.local_addr() else { return };
     tell(&mut |slot, now| {
-        slot.here = *here.ip();
+        slot.local_address = *local_address.ip();
         slot.core.connected(now);
     });
     let (mut from, mut to) = stream.split();
@@ -77,7 +77,7 @@ pub(super) async fn run(
             biased;
             order = orders.recv() => {
                 let Some(bytes) = order else { return };
-                tap.pass(true, here, target, &bytes);
+                tap.pass(true, local_address, target, &bytes);
                 if to.write_all(&bytes).await.is_err() {
                     break;
                 }
@@ -85,7 +85,7 @@ pub(super) async fn run(
             read = from.read(&mut buffer) => match read {
                 Ok(len @ 1..) => {
                     let bytes = &buffer[..len];
-                    tap.pass(true, target, here, bytes);
+                    tap.pass(true, target, local_address, bytes);
                     tell(&mut |slot, now| slot.core.received(now, bytes));
                 }
                 Ok(0) | Err(_) => break,
@@ -94,15 +94,15 @@ pub(super) async fn run(
     }
     // This error is for requests that wait until the session is registered. After the registration, each pending
     // request gets its own error.
-    tell(&mut |slot, _| slot.core.hung_up(&EipError::Hangup { what: "RegisterSession" }));
+    tell(&mut |slot, _| slot.core.disconnected(&EipError::Hangup { what: "RegisterSession" }));
 }
 
 /// Connects from the local address of the image socket, because the device sends its images to the address that sent
 /// the request.
-async fn connect(here: Ipv4Addr, target: SocketAddrV4) -> io::Result<TcpStream> {
+async fn connect(local_address: Ipv4Addr, target: SocketAddrV4) -> io::Result<TcpStream> {
     let socket = TcpSocket::new_v4()?;
-    if !here.is_unspecified() {
-        socket.bind(SocketAddr::from((here, 0)))?;
+    if !local_address.is_unspecified() {
+        socket.bind(SocketAddr::from((local_address, 0)))?;
     }
     socket.connect(target.into()).await
 }

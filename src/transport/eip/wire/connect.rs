@@ -5,9 +5,9 @@ use super::{Path, Reader, Request, WireError, service, words8};
 /// Class and instance of the connection manager.
 const MANAGER: (u32, u32) = (6, 1);
 /// Time limit for routers on the path: 249 ticks of 128 ms. This is the second largest value that the field can have.
-const PATIENCE: [u8; 2] = [7, 249];
+const UNCONNECTED_SEND_TIMEOUT: [u8; 2] = [7, 249];
 /// Maximum connection size in the short ForwardOpen.
-const MOST_SHORT: u16 = 511;
+const MAX_SHORT_SIZE: u16 = 511;
 
 /// Connection triad. It identifies a connection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -77,7 +77,7 @@ impl Flow {
             (reader.u16("connection parameters")?, size)
         } else {
             let bits = reader.u16("connection parameters")?;
-            (bits, bits & MOST_SHORT)
+            (bits, bits & MAX_SHORT_SIZE)
         };
         Ok(Self {
             rpi_us,
@@ -130,7 +130,7 @@ impl Open {
     /// Encodes the request. Uses LargeForwardOpen if a size requires this.
     pub fn emit(&self) -> Vec<u8> {
         let large = self.is_large();
-        let mut data = PATIENCE.to_vec();
+        let mut data = UNCONNECTED_SEND_TIMEOUT.to_vec();
         data.extend(self.o_t_id.to_le_bytes());
         data.extend(self.t_o_id.to_le_bytes());
         data.extend(self.triad.bytes());
@@ -145,13 +145,13 @@ impl Open {
 
     /// Whether a size is too large for the short ForwardOpen.
     pub fn is_large(&self) -> bool {
-        self.o_t.size.max(self.t_o.size) > MOST_SHORT
+        self.o_t.size.max(self.t_o.size) > MAX_SHORT_SIZE
     }
 
     /// Decodes the request data.
     pub fn parse(data: &[u8], large: bool) -> Result<Self, WireError> {
         let mut reader = Reader::little(data);
-        reader.take(PATIENCE.len(), "time-out of the request")?;
+        reader.take(UNCONNECTED_SEND_TIMEOUT.len(), "time-out of the request")?;
         let o_t_id = reader.u32("O->T connection id")?;
         let t_o_id = reader.u32("T->O connection id")?;
         let triad = Triad::read(&mut reader)?;
@@ -253,7 +253,7 @@ pub struct Close {
 impl Close {
     /// Encodes the request.
     pub fn emit(&self) -> Vec<u8> {
-        let mut data = PATIENCE.to_vec();
+        let mut data = UNCONNECTED_SEND_TIMEOUT.to_vec();
         data.extend(self.triad.bytes());
         let path = self.path.emit();
         data.extend([words8(path.len()), 0]);
@@ -264,7 +264,7 @@ impl Close {
     /// Decodes the request data.
     pub fn parse(data: &[u8]) -> Result<Self, WireError> {
         let mut reader = Reader::little(data);
-        reader.take(PATIENCE.len(), "time-out of the request")?;
+        reader.take(UNCONNECTED_SEND_TIMEOUT.len(), "time-out of the request")?;
         let triad = Triad::read(&mut reader)?;
         let words = reader.u8("words of the connection path")?;
         reader.u8("reserved")?;

@@ -132,14 +132,14 @@ mod tests {
 
     /// The expected bytes are printed in volume 2, 2-4.4. The captures of cpppo contain the same bytes.
     #[test]
-    fn a_session_begins_as_printed() {
+    fn registers_a_session_with_the_printed_bytes() {
         let bytes = hex("6500 0400 00000000 00000000 0000000000000000 00000000 01000000");
         assert_eq!(Frame::register([0; 8]).emit(), bytes);
         assert_eq!(Frame::parse(&bytes), Ok(Frame::register([0; 8])));
     }
 
     #[test]
-    fn a_stream_is_cut_where_the_lengths_say() {
+    fn splits_a_stream_by_message_lengths() {
         let one = Frame::register(*b"context1").emit();
         let two = Frame::unregister(7).emit();
         let all = [one.clone(), two.clone(), one[..30.min(one.len() - 1)].to_vec()].concat();
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn many_messages_at_once_take_no_more_room_than_they_are() {
+    fn memory_of_many_messages_is_limited() {
         let mut frames = Frames::default();
         frames.push(&vec![0; HEADER_LEN * 10_000]);
         let messages: Vec<_> = std::iter::from_fn(|| frames.pop()).collect();
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_length_is_named() {
+    fn reports_a_wrong_length() {
         let mut bytes = Frame::register([0; 8]).emit();
         bytes.pop();
         let error = Frame::parse(&bytes).unwrap_err();

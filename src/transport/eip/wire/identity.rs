@@ -13,7 +13,7 @@ pub const SERVICES_ITEM: u16 = 0x0100;
 /// Version of the encapsulation protocol.
 const VERSION: u16 = 1;
 /// Maximum length of a product name (volume 1, 5-2.2).
-const LONGEST_NAME: usize = 32;
+const MAX_NAME_LEN: usize = 32;
 
 /// Revision of a product.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -115,7 +115,7 @@ impl Identity {
 
     /// Encodes the product name attribute: a length byte, then the characters.
     pub fn name_attribute(&self) -> Vec<u8> {
-        let name: Vec<u8> = self.name.bytes().take(LONGEST_NAME).collect();
+        let name: Vec<u8> = self.name.bytes().take(MAX_NAME_LEN).collect();
         [vec![u8::try_from(name.len()).unwrap_or_default()], name].concat()
     }
 }
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_cannot_steer_a_terminal() {
+    fn removes_control_characters_from_names() {
         assert_eq!(text(b"a\x1B[2Jb\0 \0"), "a\u{FFFD}[2Jb");
     }
 }

@@ -67,7 +67,7 @@ mod tests {
 
     /// With a 48-byte image, the datagram to the target has 72 bytes, and the datagram to the originator has 68 bytes.
     #[test]
-    fn a_datagram_each_way() {
+    fn parses_a_datagram_of_each_direction() {
         let image = [0xA5; 48];
         let out = Cyclic { id: 0x0403_0201, sequence: 7, count: 9, body: &image };
         let head = hex("0200 0280 0800 01020304 07000000 B100 3600 0900 01000000");
@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_cyclic_is_named() {
+    fn reports_datagrams_that_are_not_cyclic() {
         let connected = hex("0200 A100 0400 01020304 B100 0200 0100");
         let error = Cyclic::parse(&connected).unwrap_err();
         assert_eq!((error.field, error.offset), ("address item", 2));

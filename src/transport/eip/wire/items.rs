@@ -23,7 +23,7 @@ pub mod kind {
 }
 
 /// Maximum number of items in a packet. No message has more than four.
-const MOST_ITEMS: u16 = 16;
+const MAX_ITEMS: u16 = 16;
 /// Address family of IPv4 in a socket address.
 const AF_INET: u16 = 2;
 
@@ -56,7 +56,7 @@ impl<'a> Item<'a> {
     /// Decodes the item count and the items. More bytes may follow after the items.
     fn read_counted(reader: &mut Reader<'a>) -> Result<Vec<Self>, WireError> {
         let count = reader.u16("item count")?;
-        if count > MOST_ITEMS {
+        if count > MAX_ITEMS {
             return Err(reader.wrong("item count", 2, count));
         }
         let mut items = Vec::with_capacity(usize::from(count));
@@ -120,7 +120,7 @@ impl<'a> RrData<'a> {
         let mut reader = Reader::little(bytes);
         let timeout = Self::head(&mut reader)?;
         let mut items = Item::read_counted(&mut reader)?;
-        let room = usize::from(MOST_ITEMS).saturating_sub(items.len());
+        let room = usize::from(MAX_ITEMS).saturating_sub(items.len());
         items.extend(std::iter::from_fn(|| Item::read(&mut reader).ok()).take(room));
         let address = |kind| items.iter().filter(|item| item.kind == kind).find_map(|item| sockaddr(item.data).ok());
         let (o_t, t_o) = (address(kind::SOCKADDR_O_T), address(kind::SOCKADDR_T_O));
@@ -183,7 +183,7 @@ mod tests {
     use crate::testing::hex;
 
     #[test]
-    fn addresses_travel_beside_the_message() {
+    fn parses_addresses_next_to_the_message() {
         let data = RrData { t_o: Some("0.0.0.0:2222".parse().unwrap()), ..RrData::new(&[0x0E, 0]) };
         let bytes = hex("00000000 0000 0300 0000 0000 B200 0200 0E00 0180 1000 0002 08AE 00000000 0000000000000000");
         assert_eq!(data.emit(), bytes);
@@ -193,7 +193,7 @@ mod tests {
     /// First a refusal with two counted items and a socket address after them, then a refusal with bytes after the
     /// items that are not an item.
     #[test]
-    fn what_stands_behind_an_answer_is_no_fault() {
+    fn ignores_bytes_after_an_answer() {
         let counted = "00000000 0000 0200 0000 0000 B200 0600 D400 0101 0601";
         let address = "0080 1000 0002 08AE 0A000001 0000000000000000";
         let bytes = hex(&format!("{counted} {address}"));
@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn a_packet_without_a_message_is_named() {
+    fn reports_a_packet_without_a_message() {
         let error = RrData::parse(&hex("00000000 0000 0100 0000 0000")).unwrap_err();
         assert_eq!(error.field, "unconnected data item");
     }

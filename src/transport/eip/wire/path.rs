@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_segment_is_named_with_its_place() {
+    fn reports_an_unknown_segment_with_its_offset() {
         let error = Path::parse(&hex("20 04 60 00")).unwrap_err();
         assert_eq!((error.field, error.offset), ("path segment", 2));
         assert_eq!(error.to_string(), "path segment at offset 2: is 0x60");

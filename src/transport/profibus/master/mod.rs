@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use super::Now;
 use super::error::ProfibusError;
-use super::quiet::Quiet;
+use super::line_check::LineCheck;
 use super::request::{Answer, Outcome, Requester};
 use super::settings::{Settings, Timing};
 use super::wire::{
@@ -26,9 +26,9 @@ pub use view::{Details, Input, State, Statistics, View, Views};
 /// Time limit for a slave to become ready.
 const READY: Duration = Duration::from_secs(5);
 /// Interval of the diagnosis requests until the slave is ready.
-const PATIENCE: Duration = Duration::from_millis(10);
+const DIAGNOSIS_INTERVAL: Duration = Duration::from_millis(10);
 /// Pause before a link is reopened.
-const AGAIN: Duration = Duration::from_secs(1);
+const REOPEN_PAUSE: Duration = Duration::from_secs(1);
 /// Default user parameters, in the order in which they are tried. First none, then the three bytes of slaves with
 /// acyclic services (DP-V1).
 const USUAL_PARAMETERS: [&[u8]; 2] = [&[], &[0, 0, 0]];
@@ -73,24 +73,24 @@ pub struct Master {
     settings: Settings,
     timing: Timing,
     requester: Requester,
-    quiet: Quiet,
+    quiet: LineCheck,
     step: Step,
     /// Earliest time of the next request.
     not_before: Now,
     /// Time at which the master first checked whether the slave is ready.
-    asked_since: Option<Now>,
+    request_started_at: Option<Now>,
     ident: u16,
     /// Configuration that the slave reports.
-    wanted: Option<Vec<u8>>,
+    reported_configuration: Option<Vec<u8>>,
     /// Index of the default user parameters in use.
-    usual: usize,
+    parameter_index: usize,
     /// Whether this master may have locked the slave.
     locked: bool,
     jobs: VecDeque<Job>,
     is_diagnosing: bool,
     next_cycle: Now,
     /// Time at which the last Operate telegram was sent. This telegram is for all slaves.
-    told: Now,
+    last_operate_at: Now,
     image: Vec<u8>,
     changes: u64,
     /// Number of a change that was not sent yet; `None` if all changes were sent.
@@ -112,18 +112,18 @@ impl Master {
         };
         Ok(Self {
             requester: Requester::new(settings.master, settings.rate, timing.slot, settings.retries),
-            quiet: Quiet::until(now + timing.listen),
+            quiet: LineCheck::until(now + timing.listen),
             step: Step::Listen,
             not_before: now,
-            asked_since: None,
+            request_started_at: None,
             ident: settings.ident.unwrap_or_default(),
-            wanted: None,
-            usual: 0,
+            reported_configuration: None,
+            parameter_index: 0,
             locked: false,
             jobs: VecDeque::new(),
             is_diagnosing: false,
             next_cycle: now,
-            told: now,
+            last_operate_at: now,
             image: settings.resting.clone(),
             changes: 0,
             pending: None,
@@ -136,10 +136,10 @@ impl Master {
 
     /// Current state.
     pub fn view(&self) -> View {
-        let counted = self.requester.counted();
+        let counters = self.requester.counters();
         let mut view = self.view.clone();
         let Statistics { repeated, noise, unexpected, .. } = &mut view.statistics;
-        (*repeated, *noise, *unexpected) = (counted.repeated, counted.noise, counted.unexpected);
+        (*repeated, *noise, *unexpected) = (counters.repeated, counters.noise, counters.unexpected);
         view.details.echoes = self.requester.echoes();
         view
     }
@@ -172,11 +172,11 @@ impl Master {
             State::Closing | State::Closed => {}
             _ if self.locked => {
                 self.set_state(State::Closing);
-                self.view.trouble = None;
+                self.view.last_error = None;
                 self.jobs.clear();
                 self.requester.forget(self.settings.station);
                 self.requester.wait(now + self.timing.slot);
-                self.go(now, Step::Release);
+                self.enter_step(now, Step::Release);
             }
             _ => self.end(),
         }
@@ -191,7 +191,7 @@ impl Master {
                 self.listen_until(Now::MAX);
             }
             State::Opening | State::Closing => {
-                self.view.trouble = Some(error);
+                self.view.last_error = Some(error);
                 self.end();
             }
         }
@@ -224,7 +224,7 @@ impl Master {
         }
         if self.step == Step::Listen {
             match self.quiet.poll(now)? {
-                Ok(()) => self.go(now, Step::Find),
+                Ok(()) => self.enter_step(now, Step::Find),
                 Err(error) => self.failed(now, error),
             }
         }
@@ -247,7 +247,7 @@ impl Master {
                 let configuration = self.view.details.configuration.clone().unwrap_or_default();
                 request(self, sap::CHK_CFG, configuration)
             }
-            Step::Data => return self.work(now),
+            Step::Data => return self.run_job(now),
             Step::Release => request(self, sap::SET_PRM, Parameters::unlock(self.ident).emit()),
             Step::Listen | Step::Over => return None,
         };
@@ -273,7 +273,7 @@ impl Master {
     }
 
     /// Executes the next job of a cycle.
-    fn work(&mut self, now: Now) -> Option<Vec<u8>> {
+    fn run_job(&mut self, now: Now) -> Option<Vec<u8>> {
         if self.jobs.is_empty() {
             self.jobs.push_back(Job::Exchange);
             // Missed cycles are not sent later, so there is no burst.
@@ -284,7 +284,7 @@ impl Master {
                 self.view.statistics.skipped += u64::try_from(missed).unwrap_or(u64::MAX);
                 self.next_cycle = now + self.timing.cycle;
             }
-            if now.saturating_sub(self.told) >= self.timing.watchdog.time() / 3 {
+            if now.saturating_sub(self.last_operate_at) >= self.timing.watchdog.time() / 3 {
                 self.jobs.push_back(Job::Operate);
             }
             self.jobs.push_back(Job::Token);
@@ -309,16 +309,16 @@ impl Master {
                 Some(self.requester.ask(now, frame))
             }
             Job::Operate => {
-                self.told = now;
+                self.last_operate_at = now;
                 let data = GlobalControl::OPERATE.emit().to_vec();
                 let broadcast = super::wire::BROADCAST;
                 let frame = self.requester.request(Service::SendHigh, broadcast, Some(sap::GLOBAL_CONTROL), data);
-                Some(self.requester.tell(now, &Telegram::Frame(frame)))
+                Some(self.requester.encode_unanswered(now, &Telegram::Frame(frame)))
             }
             // This master is the only master of the ring, so it passes the token to itself.
             Job::Token => {
-                let here = self.settings.master;
-                Some(self.requester.tell(now, &Telegram::Token { to: here, from: here }))
+                let own_address = self.settings.master;
+                Some(self.requester.encode_unanswered(now, &Telegram::Token { to: own_address, from: own_address }))
             }
         }
     }
@@ -337,15 +337,15 @@ impl Master {
     }
 
     fn user_parameters(&self) -> Vec<u8> {
-        self.settings.parameters.clone().unwrap_or_else(|| USUAL_PARAMETERS[self.usual].to_vec())
+        self.settings.parameters.clone().unwrap_or_else(|| USUAL_PARAMETERS[self.parameter_index].to_vec())
     }
 
     fn outcome(&mut self, now: Now, outcome: Outcome) {
         match outcome {
             Outcome::Foreign(master, heard) => self.failed(now, ProfibusError::OtherMaster { master, heard }),
             Outcome::NoAnswer { attempts, heard } => {
-                let (station, asked, slot) = (self.settings.station, self.asked(), self.timing.slot);
-                self.failed(now, ProfibusError::NoAnswer { station, asked, attempts, slot, heard });
+                let (station, request_name, slot) = (self.settings.station, self.request_name(), self.timing.slot);
+                self.failed(now, ProfibusError::NoAnswer { station, request_name, attempts, slot, heard });
             }
             Outcome::Answer(answer) => {
                 if let Err(error) = self.answered(now, answer) {
@@ -356,7 +356,7 @@ impl Master {
     }
 
     /// Name of the current request.
-    fn asked(&self) -> &'static str {
+    fn request_name(&self) -> &'static str {
         match self.step {
             Step::Find => "the status request",
             Step::Diagnose | Step::Confirm => sap::name(Some(sap::SLAVE_DIAG)),
@@ -371,33 +371,33 @@ impl Master {
 
     fn answered(&mut self, now: Now, answer: Answer) -> Result<(), ProfibusError> {
         let station = self.settings.station;
-        let asked = self.asked();
+        let request_name = self.request_name();
         match self.step {
             Step::Find => {
                 let Answer::Frame(Frame { control: Control::Answer(kind, _), .. }) = answer else { return Ok(()) };
                 if kind != Station::Slave {
                     return Err(ProfibusError::IsMaster { station });
                 }
-                self.go(now, Step::Diagnose);
+                self.enter_step(now, Step::Diagnose);
             }
             Step::Diagnose => {
                 let diagnosis = self.diagnosis(answer)?;
                 self.compare(&diagnosis)?;
-                self.go(now, Step::Ask);
+                self.enter_step(now, Step::Ask);
             }
             Step::Ask => self.configure(now, answer)?,
             Step::Parameters => {
-                acknowledged(station, asked, &answer)?;
-                self.go(now, Step::Check);
+                acknowledged(station, request_name, &answer)?;
+                self.enter_step(now, Step::Check);
             }
             Step::Check => {
                 // A slave that has rejected the parameters may refuse the configuration. In this case the master
                 // continues, because the diagnosis contains the reason.
                 if !matches!(&answer, Answer::Frame(Frame { control: Control::Answer(_, Status::NoService), .. })) {
-                    acknowledged(station, asked, &answer)?;
+                    acknowledged(station, request_name, &answer)?;
                 }
-                self.asked_since = Some(now);
-                self.go(now, Step::Confirm);
+                self.request_started_at = Some(now);
+                self.enter_step(now, Step::Confirm);
             }
             Step::Confirm => self.confirm(now, answer)?,
             Step::Release => {
@@ -413,11 +413,11 @@ impl Master {
     /// Decodes the diagnosis in an answer, and stores it.
     fn diagnosis(&mut self, answer: Answer) -> Result<Diagnosis, ProfibusError> {
         let station = self.settings.station;
-        let asked = sap::name(Some(sap::SLAVE_DIAG));
-        let data = data(station, asked, answer)?.1;
+        let request_name = sap::name(Some(sap::SLAVE_DIAG));
+        let data = data(station, request_name, answer)?.1;
         let diagnosis = Diagnosis::parse(&data).map_err(|error| ProfibusError::Malformed {
             station,
-            asked,
+            request_name,
             why: error.to_string(),
         })?;
         if self.view.details.diagnosis.as_ref() != Some(&diagnosis) {
@@ -445,25 +445,26 @@ impl Master {
     /// reports.
     fn configure(&mut self, now: Now, answer: Answer) -> Result<(), ProfibusError> {
         let station = self.settings.station;
-        let asked = sap::name(Some(sap::GET_CFG));
-        let wanted = data(station, asked, answer);
-        self.wanted = wanted.as_ref().ok().map(|wanted| wanted.1.clone());
-        self.view.details.configuration = match (&self.settings.configuration, wanted) {
+        let request_name = sap::name(Some(sap::GET_CFG));
+        let reported_configuration = data(station, request_name, answer);
+        self.reported_configuration =
+            reported_configuration.as_ref().ok().map(|reported_configuration| reported_configuration.1.clone());
+        self.view.details.configuration = match (&self.settings.configuration, reported_configuration) {
             // The configuration in the settings has priority, because a slave may report a default configuration until
             // it has received its real one.
             (Some(set), _) => Some(set.clone()),
-            (None, wanted) => {
-                let bytes = wanted?.1;
+            (None, reported_configuration) => {
+                let bytes = reported_configuration?.1;
                 let configuration = Configuration::parse(&bytes).map_err(|error| ProfibusError::Malformed {
                     station,
-                    asked,
+                    request_name,
                     why: error.to_string(),
                 })?;
                 self.settings.fits(&configuration)?;
                 Some(bytes)
             }
         };
-        self.go(now, Step::Parameters);
+        self.enter_step(now, Step::Parameters);
         Ok(())
     }
 
@@ -472,26 +473,30 @@ impl Master {
         let diagnosis = self.diagnosis(answer)?;
         let station = self.settings.station;
         if diagnosis.has(Flag::ParameterFault) {
-            if self.settings.parameters.is_none() && self.usual + 1 < USUAL_PARAMETERS.len() {
-                self.usual += 1;
-                self.go(now, Step::Parameters);
+            if self.settings.parameters.is_none() && self.parameter_index + 1 < USUAL_PARAMETERS.len() {
+                self.parameter_index += 1;
+                self.enter_step(now, Step::Parameters);
                 return Ok(());
             }
             let sent = self.user_parameters();
-            self.usual = 0;
+            self.parameter_index = 0;
             return Err(ProfibusError::ParameterFault { station, sent });
         }
         if diagnosis.has(Flag::ConfigurationFault) {
             let sent = self.view.details.configuration.clone().unwrap_or_default();
-            return Err(ProfibusError::ConfigurationFault { station, sent, wanted: self.wanted.clone() });
+            return Err(ProfibusError::ConfigurationFault {
+                station,
+                sent,
+                reported_configuration: self.reported_configuration.clone(),
+            });
         }
         let is_ready = !diagnosis.has(Flag::NotReady) && !diagnosis.has(Flag::Static);
         if !is_ready || diagnosis.has(Flag::ParametersWanted) {
-            let after = now.saturating_sub(self.asked_since.unwrap_or(now));
+            let after = now.saturating_sub(self.request_started_at.unwrap_or(now));
             if after >= READY {
                 return Err(ProfibusError::NotReady { station, after, diagnosis: Box::new(diagnosis) });
             }
-            self.not_before = now + PATIENCE;
+            self.not_before = now + DIAGNOSIS_INTERVAL;
             return Ok(());
         }
         self.compare(&diagnosis)?;
@@ -499,7 +504,7 @@ impl Master {
         self.view.generation += 1;
         self.next_cycle = now;
         self.jobs = VecDeque::from([Job::Operate]);
-        self.go(now, Step::Data);
+        self.enter_step(now, Step::Data);
         Ok(())
     }
 
@@ -524,7 +529,7 @@ impl Master {
             },
         };
         if matches!(status, Status::DataNoResource | Status::DataHighNoResource) {
-            return Err(ProfibusError::Refused { station, asked: sap::name(None), status });
+            return Err(ProfibusError::Refused { station, request_name: sap::name(None), status });
         }
         if image.len() != self.settings.input_size {
             let (found, expected) = (image.len(), self.settings.input_size);
@@ -538,7 +543,7 @@ impl Master {
         self.view.input = Some(Input { image: image.into(), at: now, generation });
         self.has_changed = true;
         if self.view.state != State::Open {
-            self.view.trouble = None;
+            self.view.last_error = None;
             self.set_state(State::Open);
         }
         Ok(())
@@ -551,7 +556,7 @@ impl Master {
         self.requester.wait(now + self.settings.rate.bits(super::rates::SYNC));
         self.jobs.clear();
         self.pending = None;
-        self.asked_since = None;
+        self.request_started_at = None;
         let was_closing = self.view.state == State::Closing;
         let must_be_quiet = matches!(error, ProfibusError::OtherMaster { .. } | ProfibusError::Unreadable { .. });
         // Whether the slave has left data exchange while the link was open. The master then retries at once. If this
@@ -559,35 +564,35 @@ impl Master {
         let has_left = self.view.state == State::Open
             && matches!(error, ProfibusError::Left { .. } | ProfibusError::Length { .. });
         // The first cause of a loss is more useful than the error of a retry, so it is kept.
-        let is_known = matches!(self.view.state, State::Lost | State::Closing) && self.view.trouble.is_some();
+        let is_known = matches!(self.view.state, State::Lost | State::Closing) && self.view.last_error.is_some();
         if !is_known || must_be_quiet {
-            self.view.trouble = Some(error);
+            self.view.last_error = Some(error);
         }
         if self.view.state == State::Opening || was_closing {
             // If this master may have locked the slave, it releases the slave. It does not do this if the release
             // itself failed, or if there is other traffic on the bus.
             if self.locked && !was_closing && !must_be_quiet {
                 self.set_state(State::Closing);
-                return self.go(now, Step::Release);
+                return self.enter_step(now, Step::Release);
             }
             return self.end();
         }
         self.set_state(State::Lost);
         self.image.clone_from(&self.settings.resting);
         if must_be_quiet {
-            return self.listen_until(now + self.timing.listen.max(AGAIN));
+            return self.listen_until(now + self.timing.listen.max(REOPEN_PAUSE));
         }
         self.step = Step::Find;
-        self.not_before = if has_left { now } else { now + AGAIN };
+        self.not_before = if has_left { now } else { now + REOPEN_PAUSE };
     }
 
-    fn go(&mut self, now: Now, step: Step) {
+    fn enter_step(&mut self, now: Now, step: Step) {
         self.step = step;
         self.not_before = now;
     }
 
     fn listen_until(&mut self, until: Now) {
-        self.quiet = Quiet::until(until);
+        self.quiet = LineCheck::until(until);
         self.step = Step::Listen;
     }
 

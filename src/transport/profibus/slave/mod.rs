@@ -46,7 +46,7 @@ pub struct Setup {
 impl Setup {
     /// Returns the configuration of station 5 with 24 words in each direction. The ident number is a placeholder,
     /// because the ident number of the YRCX board is not public.
-    pub fn stand_in(rate: Rate) -> Self {
+    pub fn sample_controller(rate: Rate) -> Self {
         Self {
             station: 5,
             ident: 0x1234,
@@ -81,11 +81,11 @@ pub struct Slave<P> {
     outputs: Vec<u8>,
     is_clear: bool,
     /// Whether the slave has a new diagnosis that the master has not read yet.
-    has_news: bool,
+    has_new_image: bool,
     /// Frame count bit of the last request of each master, and the answer to this request.
     last: BTreeMap<u8, (bool, Option<Telegram>)>,
     stream: Stream,
-    heard: Now,
+    last_request_at: Now,
     answers: Vec<(Now, Vec<u8>)>,
     fault: Option<SlaveFault>,
     answered: u64,
@@ -106,10 +106,10 @@ impl<P: ImagePeer> Slave<P> {
             faults: Vec::new(),
             outputs,
             is_clear: false,
-            has_news: false,
+            has_new_image: false,
             last: BTreeMap::new(),
             stream: Stream::default(),
-            heard: Now::ZERO,
+            last_request_at: Now::ZERO,
             answers: Vec::new(),
             fault: None,
             answered: 0,
@@ -144,7 +144,7 @@ impl<P: ImagePeer> Slave<P> {
 
     /// Restarts the slave, as after a power cycle.
     pub fn restart(&mut self, now: Now) {
-        self.leave(now);
+        self.leave_data_exchange(now);
         self.last.clear();
         self.stream.clear();
         self.answers.clear();
@@ -152,7 +152,7 @@ impl<P: ImagePeer> Slave<P> {
     }
 
     /// Leaves data exchange: the slave waits for parameters again.
-    fn leave(&mut self, now: Now) {
+    fn leave_data_exchange(&mut self, now: Now) {
         if self.state == State::Exchange {
             self.peer.input(now, None);
         }
@@ -166,11 +166,11 @@ impl<P: ImagePeer> Slave<P> {
 
     fn watch(&mut self, now: Now) {
         if self.expiry.is_some_and(|expiry| now >= expiry) {
-            self.leave(now);
+            self.leave_data_exchange(now);
         }
     }
 
-    fn hear(&mut self, now: Now, frame: &Frame) {
+    fn handle_frame(&mut self, now: Now, frame: &Frame) {
         let Control::Request(service, count) = frame.control else { return };
         let is_for_all = frame.to == BROADCAST;
         if !(is_for_all || frame.to == self.setup.station) {
@@ -187,7 +187,7 @@ impl<P: ImagePeer> Slave<P> {
         }
         let answer = match (service, count) {
             (Service::FdlStatus, FrameCount::None) => Some(self.frame(frame, Status::Ok, Vec::new())),
-            (Service::SendRequestHigh | Service::SendRequestLow, FrameCount::First | FrameCount::Counted(_)) => {
+            (Service::SendRequestHigh | Service::SendRequestLow, FrameCount::First | FrameCount::Counters(_)) => {
                 let bit = count.bit();
                 let repeated = self.last.get(&frame.from).filter(|last| count != FrameCount::First && last.0 == bit);
                 if let Some((_, answer)) = repeated {
@@ -253,11 +253,11 @@ impl<P: ImagePeer> Slave<P> {
         if self.patience.is_some() {
             flags.push(Flag::Watchdog);
         }
-        self.has_news = self.fault == Some(SlaveFault::Diagnosis);
+        self.has_new_image = self.fault == Some(SlaveFault::Diagnosis);
         let mut blocks = Vec::new();
-        if self.has_news {
+        if self.has_new_image {
             flags.push(Flag::Extended);
-            let channel = Block::Channel { module: 1, channel: 2, way: 2, size: 1, error: 1 };
+            let channel = Block::Channel { module: 1, channel: 2, io_direction: 2, size: 1, error: 1 };
             blocks = vec![Block::Device(vec![0x12, 0x34]), Block::Modules(vec![1]), channel];
         }
         let is_locked = self.fault == Some(SlaveFault::Locked);
@@ -273,14 +273,14 @@ impl<P: ImagePeer> Slave<P> {
     fn set_parameters(&mut self, now: Now, frame: &Frame) {
         self.faults.clear();
         let Ok(parameters) = Parameters::parse(&frame.data) else {
-            self.leave(now);
+            self.leave_data_exchange(now);
             return self.faults.push(Flag::ParameterFault);
         };
         match parameters.lock {
             Lock::Unchanged => {}
-            Lock::Unlock => self.leave(now),
+            Lock::Unlock => self.leave_data_exchange(now),
             Lock::Lock => {
-                self.leave(now);
+                self.leave_data_exchange(now);
                 let is_other = self.fault == Some(SlaveFault::OtherIdent);
                 let takes =
                     self.setup.parameters.contains(&parameters.user) && self.fault != Some(SlaveFault::NoParameters);
@@ -302,7 +302,7 @@ impl<P: ImagePeer> Slave<P> {
             return;
         }
         if configuration != self.setup.configuration || self.fault == Some(SlaveFault::NoConfiguration) {
-            self.leave(now);
+            self.leave_data_exchange(now);
             return self.faults.push(Flag::ConfigurationFault);
         }
         self.state = State::Exchange;
@@ -312,7 +312,7 @@ impl<P: ImagePeer> Slave<P> {
     /// exchange.
     fn exchange(&mut self, now: Now, frame: &Frame) -> Option<Telegram> {
         if frame.data.len() != self.setup.output {
-            self.leave(now);
+            self.leave_data_exchange(now);
             self.faults.push(Flag::ConfigurationFault);
             return None;
         }
@@ -326,8 +326,8 @@ impl<P: ImagePeer> Slave<P> {
         if self.fault == Some(SlaveFault::WrongSize) {
             image.pop();
         }
-        let has_news = self.has_news || self.fault == Some(SlaveFault::Diagnosis);
-        Some(self.frame(frame, if has_news { Status::DataHigh } else { Status::Data }, image))
+        let has_new_image = self.has_new_image || self.fault == Some(SlaveFault::Diagnosis);
+        Some(self.frame(frame, if has_new_image { Status::DataHigh } else { Status::Data }, image))
     }
 
     fn control(&mut self, now: Now, frame: &Frame) {
@@ -378,16 +378,16 @@ impl<P: ImagePeer> Slave<P> {
 impl<P: ImagePeer> Peer for Slave<P> {
     fn receive(&mut self, now: Now, _channel: usize, bytes: &[u8]) {
         self.watch(now);
-        if now.saturating_sub(self.heard) > PAUSE {
+        if now.saturating_sub(self.last_request_at) > PAUSE {
             self.stream.clear();
         }
-        self.heard = now;
+        self.last_request_at = now;
         // New traffic cancels a pending answer.
         self.answers.retain(|answer| answer.0 <= now);
         self.stream.push(bytes);
         while let Some(piece) = self.stream.next_piece() {
             if let Piece::Telegram(Telegram::Frame(frame), _) = piece {
-                self.hear(now, &frame);
+                self.handle_frame(now, &frame);
             }
         }
     }

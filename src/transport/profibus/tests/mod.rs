@@ -84,7 +84,7 @@ impl World {
         Self {
             now: Now::ZERO,
             master: Master::new(Now::ZERO, settings).unwrap(),
-            slave: Slave::new(Setup::stand_in(rate), Echo::default()),
+            slave: Slave::new(Setup::sample_controller(rate), Echo::default()),
             wire: Wire::new(Some(rate.pace()), faults),
             sent: Vec::new(),
             heard: Vec::new(),
@@ -120,19 +120,19 @@ impl World {
 
     fn open(&mut self) -> View {
         let view = self.run(10 * SEC, |view| view.state != State::Opening);
-        assert_eq!(view.state, State::Open, "{:?}", view.trouble);
+        assert_eq!(view.state, State::Open, "{:?}", view.last_error);
         view
     }
 
     fn fails(&mut self) -> String {
         let view = self.run(30 * SEC, |view| view.state == State::Closed);
         assert_eq!(view.state, State::Closed);
-        view.trouble.expect("an error").to_string()
+        view.last_error.expect("an error").to_string()
     }
 }
 
 #[test]
-fn a_start_is_the_one_that_others_have_seen_working() {
+fn start_sequence_matches_a_recording() {
     let mut world = World::new("500k", "");
     world.slave.set_fault(None);
     world.open();
@@ -156,7 +156,7 @@ fn a_start_is_the_one_that_others_have_seen_working() {
 }
 
 #[test]
-fn nothing_but_the_resting_image_comes_first_and_images_go_both_ways() {
+fn sends_the_resting_image_first_and_exchanges_images() {
     let mut world = World::new("500k", "");
     let view = world.open();
     assert_eq!(view.input.unwrap().image[..], resting());
@@ -167,7 +167,7 @@ fn nothing_but_the_resting_image_comes_first_and_images_go_both_ways() {
     assert_eq!(world.slave.peer().history, [Some(resting()), Some(image(7))]);
     world.master.close(world.now);
     let view = world.run(SEC, |view| view.state == State::Closed);
-    assert_eq!((view.trouble, world.slave.owner()), (None, None));
+    assert_eq!((view.last_error, world.slave.owner()), (None, None));
     assert_eq!(world.slave.peer().history.last(), Some(&None));
     assert_eq!(world.sent.last().unwrap().1[7..16], hex("3D 3E 40 00 00 00 12 34 00")[..]);
 }
@@ -208,7 +208,7 @@ fn every_fault_of_a_slave_has_a_message_of_its_own() {
 }
 
 #[test]
-fn faults_that_repetitions_heal_do_no_harm() {
+fn recovers_from_single_faults_by_repetition() {
     for fault in [SlaveFault::Lose, SlaveFault::BadFcs, SlaveFault::Diagnosis] {
         let mut world = World::new("500k", "");
         world.slave.set_fault(Some(fault));
@@ -216,7 +216,7 @@ fn faults_that_repetitions_heal_do_no_harm() {
         let change = world.master.set_image(view.generation, &image(1)).unwrap();
         let view = world.run(SEC, |view| view.sent >= change);
         let view = world.run(SEC, |now| now.statistics.sent >= view.statistics.sent + 20);
-        assert_eq!(view.state, State::Open, "{fault:?}: {:?}", view.trouble);
+        assert_eq!(view.state, State::Open, "{fault:?}: {:?}", view.last_error);
         assert_eq!(view.statistics.repeated > 0, fault != SlaveFault::Diagnosis, "{fault:?}");
         // If a request is repeated, the slave repeats its answer without executing the request again.
         assert!(world.slave.exchanges().abs_diff(view.statistics.sent) <= 1, "{fault:?}");
@@ -225,14 +225,14 @@ fn faults_that_repetitions_heal_do_no_harm() {
 }
 
 #[test]
-fn a_slave_that_restarts_is_shown_the_resting_image_and_not_an_old_command() {
+fn restarted_slave_gets_the_resting_image() {
     let mut world = World::new("500k", "");
     let view = world.open();
     world.master.set_image(view.generation, &image(9)).unwrap();
     world.run(100 * MS, |_| false);
     world.slave.restart(world.now);
     let lost = world.run(SEC, |view| view.state == State::Lost);
-    assert!(matches!(lost.trouble, Some(ProfibusError::Left { .. })), "{:?}", lost.trouble);
+    assert!(matches!(lost.last_error, Some(ProfibusError::Left { .. })), "{:?}", lost.last_error);
     let outdated = world.master.set_image(view.generation, &image(9));
     assert_eq!(outdated, Err(ProfibusError::Outdated));
     let again = world.run(10 * SEC, |view| view.state == State::Open);
@@ -242,7 +242,7 @@ fn a_slave_that_restarts_is_shown_the_resting_image_and_not_an_old_command() {
 }
 
 #[test]
-fn a_slave_lets_go_when_its_master_dies() {
+fn slave_leaves_data_exchange_without_its_master() {
     let mut world = World::new("500k", "");
     world.open();
     let died = world.now;
@@ -254,12 +254,12 @@ fn a_slave_lets_go_when_its_master_dies() {
 }
 
 #[test]
-fn a_silent_slave_is_lost_and_found_again() {
+fn reconnects_a_silent_slave() {
     let mut world = World::new("500k", "");
     let view = world.open();
     world.slave.set_fault(Some(SlaveFault::Mute));
     let lost = world.run(SEC, |view| view.state == State::Lost);
-    assert!(lost.trouble.unwrap().to_string().contains("to Data_Exchange (4 attempts"));
+    assert!(lost.last_error.unwrap().to_string().contains("to Data_Exchange (4 attempts"));
     world.slave.set_fault(None);
     let again = world.run(5 * SEC, |view| view.state == State::Open);
     assert_eq!((again.state, again.generation), (State::Open, view.generation + 1));
@@ -267,7 +267,7 @@ fn a_silent_slave_is_lost_and_found_again() {
 }
 
 #[test]
-fn a_master_says_nothing_where_another_one_speaks() {
+fn master_stays_silent_next_to_another_master() {
     for (heard, message) in [
         ("DC 03 04 DC 04 03", "another master is on the bus: station 4 (it passed the token)"),
         ("10 05 04 49 52 16", "another master is on the bus: station 4 (it sent a request)"),
@@ -286,13 +286,13 @@ fn a_master_says_nothing_where_another_one_speaks() {
 }
 
 #[test]
-fn a_master_that_hears_another_one_falls_silent_until_it_is_gone() {
+fn master_pauses_while_another_master_is_active() {
     let mut world = World::new("500k", "");
     let view = world.open();
     world.run(100 * MS, |_| false);
     world.master.handle(world.now, &hex("10 07 04 49 54 16"));
     let lost = world.master.view();
-    assert_eq!(lost.trouble.unwrap().to_string(), "another master is on the bus: station 4 (it sent a request)");
+    assert_eq!(lost.last_error.unwrap().to_string(), "another master is on the bus: station 4 (it sent a request)");
     let (said, until) = (world.sent.len(), world.now + 3 * SEC);
     while world.now < until {
         world.run(500 * MS, |_| false);
@@ -304,7 +304,7 @@ fn a_master_that_hears_another_one_falls_silent_until_it_is_gone() {
 }
 
 #[test]
-fn adapters_that_hand_back_what_is_sent_do_no_harm() {
+fn ignores_the_echo_of_an_adapter() {
     let mut world = World::new("500k", "echo");
     let view = world.open();
     assert!(view.details.echoes);
@@ -332,7 +332,7 @@ fn cycles_are_kept_without_drift_and_without_bursts() {
 }
 
 #[test]
-fn a_full_line_is_within_a_tenth_of_its_bits() {
+fn full_load_is_within_ten_percent_of_the_bit_time() {
     for name in ["9.6k", "500k"] {
         let rate = Rate::from_name(name).unwrap();
         let settings = Settings { cycle: Some(Duration::ZERO), ..Settings::new(5, rate, resting()) };
@@ -340,7 +340,7 @@ fn a_full_line_is_within_a_tenth_of_its_bits() {
         let view = world.open();
         let (start, before) = (world.now, view.statistics.received);
         let view = world.run(30 * SEC, |view| view.statistics.received >= before + 100);
-        assert_eq!(view.statistics.received, before + 100, "{:?}", view.trouble);
+        assert_eq!(view.statistics.received, before + 100, "{:?}", view.last_error);
         let cycle = world.now.saturating_sub(start) / 100;
         // An exchange consists of two telegrams of 57 characters, the pause before the request, and the delay of the
         // answer.
@@ -396,7 +396,7 @@ fn commands(seed: u64, faults: &str) -> (Vec<u8>, Vec<u8>, View) {
 }
 
 #[test]
-fn ten_thousand_faulted_cycles_do_no_command_twice_and_none_wrongly() {
+fn faults_never_repeat_or_change_a_command() {
     let mut exchanges = 0;
     let mut repeated = 0;
     for seed in 0..26 {
@@ -411,7 +411,7 @@ fn ten_thousand_faulted_cycles_do_no_command_twice_and_none_wrongly() {
 }
 
 #[test]
-fn a_held_back_line_does_not_answer_the_next_request_with_the_last_answer() {
+fn delayed_answer_is_not_used_for_the_next_request() {
     // The delay can be longer than the slot time. An answer can then arrive after its request was repeated.
     let (done, executed, view) = commands(3, "delay=0..14ms");
     assert!(executed.windows(2).all(|pair| pair[0] < pair[1]), "{executed:?}");
@@ -420,7 +420,7 @@ fn a_held_back_line_does_not_answer_the_next_request_with_the_last_answer() {
 }
 
 #[test]
-fn what_the_master_sends_is_all_telegrams() {
+fn master_sends_only_valid_telegrams() {
     let mut world = World::new("500k", "parity=1%,seed=5");
     world.run(5 * SEC, |_| false);
     for (_, bytes) in &world.sent {

@@ -83,7 +83,7 @@ fn drive(time: Duration, ident: u16, fault: Option<SlaveFault>) -> (Option<Vec<u
         .build_verified(&master);
     let mut station = fdl::FdlActiveStation::new(parameters);
     let rate = rate();
-    let mut slave = Slave::new(Setup::stand_in(rate), Echo::default());
+    let mut slave = Slave::new(Setup::sample_controller(rate), Echo::default());
     slave.set_fault(fault);
     let wire = Wire::new(Some(rate.pace()), None);
     let mut phy = Phy { now: Duration::ZERO, sent_until: Duration::ZERO, wire, slave, received: Vec::new() };
@@ -103,7 +103,7 @@ fn drive(time: Duration, ident: u16, fault: Option<SlaveFault>) -> (Option<Vec<u
 }
 
 #[test]
-fn a_master_of_others_exchanges_48_bytes_both_ways_with_our_slave() {
+fn another_master_exchanges_48_bytes_with_our_slave() {
     let (shown, slave) = drive(3000 * MS, 0x1234, None);
     let mut expected = vec![0; SIZE];
     (expected[0], expected[32]) = (0x5A, 0x41);
@@ -113,13 +113,13 @@ fn a_master_of_others_exchanges_48_bytes_both_ways_with_our_slave() {
 }
 
 #[test]
-fn a_master_of_others_with_a_wrong_ident_number_gets_nowhere() {
+fn slave_rejects_another_master_with_a_wrong_ident_number() {
     let (shown, slave) = drive(1000 * MS, 0x1235, None);
     assert_eq!((shown, slave.owner(), slave.exchanges()), (None, None, 0));
 }
 
 #[test]
-fn a_master_of_others_finds_its_way_through_lost_answers() {
+fn another_master_recovers_from_lost_answers() {
     for fault in [SlaveFault::Lose, SlaveFault::BadFcs] {
         let (shown, slave) = drive(3000 * MS, 0x1234, Some(fault));
         assert!(shown.is_some() && slave.exchanges() > 20, "{fault:?}: {}", slave.exchanges());

@@ -1,19 +1,19 @@
 //! Tests of the survey and of other traffic on the line.
 
 use super::super::request::Requester;
-use super::super::survey::{Found, Survey, Unknown};
+use super::super::survey::{NoValueReason, StationResult, Survey};
 use super::super::wire::{Station, Status};
 use super::*;
 
 /// Surveys a line with one slave.
-fn survey(world: &mut World, stations: std::ops::RangeInclusive<u8>) -> Result<Vec<Found>, ProfibusError> {
+fn survey(world: &mut World, stations: std::ops::RangeInclusive<u8>) -> Result<Vec<StationResult>, ProfibusError> {
     let settings = Settings::new(5, RATES[5], resting());
     let timing = settings.timing().unwrap();
     let requester = Requester::new(settings.master, settings.rate, timing.slot, 1);
     let mut survey = Survey::new(world.now, stations, requester, timing);
     loop {
         if let Some(result) = survey.result() {
-            return result.map(<[Found]>::to_vec);
+            return result.map(<[StationResult]>::to_vec);
         }
         while let Some(bytes) = survey.poll(world.now) {
             world.wire.send(world.now, &bytes);
@@ -29,7 +29,7 @@ fn survey(world: &mut World, stations: std::ops::RangeInclusive<u8>) -> Result<V
 }
 
 #[test]
-fn a_slave_is_found_and_nothing_about_it_changes() {
+fn survey_finds_a_slave_without_changing_it() {
     let mut world = World::new("500k", "");
     let found = survey(&mut world, 0..=125).unwrap();
     let [slave] = &found[..] else { panic!("{found:?}") };
@@ -37,14 +37,14 @@ fn a_slave_is_found_and_nothing_about_it_changes() {
     let diagnosis = slave.diagnosis.as_ref().unwrap().to_string();
     assert_eq!(diagnosis, "not ready for data, needs parameters, no master, ident 0x1234");
     assert_eq!(slave.configuration.as_deref().unwrap(), [0xC0, 0xD7, 0xD7]);
-    assert_eq!(slave.inputs, Err(Unknown::Refused(Status::NoService)));
+    assert_eq!(slave.inputs, Err(NoValueReason::Refused(Status::NoService)));
     assert_eq!((world.slave.owner(), world.slave.peer().history.len()), (None, 0));
     // The survey makes two attempts for each free address, and no more.
     assert_eq!(world.sent.len(), 125 * 2 + 5);
 }
 
 #[test]
-fn a_slave_that_has_a_master_keeps_it_and_shows_its_images() {
+fn survey_reads_an_owned_slave() {
     let mut world = World::new("500k", "");
     world.open();
     world.run(50 * MS, |_| false);
@@ -55,7 +55,7 @@ fn a_slave_that_has_a_master_keeps_it_and_shows_its_images() {
 }
 
 #[test]
-fn nobody_is_asked_beside_another_master() {
+fn survey_asks_no_station_next_to_another_master() {
     let mut world = World::new("500k", "");
     world.slave.set_fault(Some(SlaveFault::Token));
     // The token of another master arrives with the first answers.
@@ -66,9 +66,9 @@ fn nobody_is_asked_beside_another_master() {
 }
 
 #[test]
-fn masters_are_found_and_not_asked_further() {
+fn survey_does_not_query_masters() {
     let mut world = World::new("500k", "");
     world.slave.set_fault(Some(SlaveFault::Master));
     let found = survey(&mut world, 4..=6).unwrap();
-    assert_eq!((found[0].kind, &found[0].diagnosis), (Station::MasterInRing, &Err(Unknown::NotAsked)));
+    assert_eq!((found[0].kind, &found[0].diagnosis), (Station::MasterInRing, &Err(NoValueReason::NotAsked)));
 }

@@ -33,7 +33,7 @@ impl Served {
         // An open port is locked, so the other end must be closed here.
         drop(far);
         near.set_timeout(MS).unwrap();
-        let slave = Arc::new(Mutex::new(Slave::new(Setup::stand_in(rate), Echo::default())));
+        let slave = Arc::new(Mutex::new(Slave::new(Setup::sample_controller(rate), Echo::default())));
         let is_over = Arc::new(AtomicBool::new(false));
         let (on_thread, over) = (Arc::clone(&slave), Arc::clone(&is_over));
         let thread = std::thread::spawn(move || {
@@ -82,7 +82,7 @@ fn opener(path: &str) -> super::super::driver::Opener {
 }
 
 #[tokio::test]
-async fn images_go_both_ways_over_a_terminal_and_the_slave_is_free_in_the_end() {
+async fn exchanges_images_over_a_terminal_and_frees_the_slave() {
     let served = Served::new(settings().rate);
     let seen = Arc::new(Mutex::new(Vec::new()));
     let tapped = Arc::clone(&seen);
@@ -103,7 +103,7 @@ async fn images_go_both_ways_over_a_terminal_and_the_slave_is_free_in_the_end() 
 }
 
 #[tokio::test]
-async fn a_connection_that_is_dropped_sets_the_slave_free() {
+async fn dropped_connection_frees_the_slave() {
     let served = Served::new(settings().rate);
     let connection = Connection::open(settings(), opener(&served.path), None).await.unwrap();
     assert_eq!(served.slave.lock().unwrap().owner(), Some(2));
@@ -112,7 +112,7 @@ async fn a_connection_that_is_dropped_sets_the_slave_free() {
 }
 
 #[tokio::test]
-async fn an_adapter_that_is_pulled_out_is_a_loss_and_is_opened_again() {
+async fn reopens_an_adapter_that_was_unplugged() {
     let first = Served::new(settings().rate);
     let second = Served::new(settings().rate);
     // After a reconnect of an adapter, the same name leads to another terminal.
@@ -129,7 +129,11 @@ async fn an_adapter_that_is_pulled_out_is_a_loss_and_is_opened_again() {
     while connection.view().state != State::Lost {
         connection.views.changed().await;
     }
-    assert!(matches!(connection.view().trouble, Some(ProfibusError::Gone { .. })), "{:?}", connection.view().trouble);
+    assert!(
+        matches!(connection.view().last_error, Some(ProfibusError::Gone { .. })),
+        "{:?}",
+        connection.view().last_error
+    );
     while connection.view().state != State::Open {
         connection.views.changed().await;
     }
@@ -138,7 +142,7 @@ async fn an_adapter_that_is_pulled_out_is_a_loss_and_is_opened_again() {
 }
 
 #[tokio::test]
-async fn what_is_no_port_is_an_error() {
+async fn missing_port_is_an_error() {
     let error = Connection::open(settings(), opener("/dev/there-is-no-such-port"), None).await.unwrap_err();
     assert_eq!(error.to_string(), "/dev/there-is-no-such-port: no such port");
     let error = Connection::open(settings(), opener("/dev/null"), None).await.unwrap_err();

@@ -77,7 +77,7 @@ fn general(identifier: u8) -> Module {
 fn special(bytes: &[u8], at: usize) -> Result<(Module, usize), WireError> {
     let identifier = bytes[at];
     let mut len = 1;
-    let mut way = |there: bool| -> Result<usize, WireError> {
+    let mut io_direction = |there: bool| -> Result<usize, WireError> {
         if !there {
             return Ok(0);
         }
@@ -85,8 +85,8 @@ fn special(bytes: &[u8], at: usize) -> Result<(Module, usize), WireError> {
         len += 1;
         Ok(units(*byte, 0x3F))
     };
-    let output = way(identifier & 0x80 != 0)?;
-    let input = way(identifier & 0x40 != 0)?;
+    let output = io_direction(identifier & 0x80 != 0)?;
+    let input = io_direction(identifier & 0x40 != 0)?;
     // The value 15 means that there are no manufacturer bytes.
     let makers = match identifier & 0x0F {
         15 => 0,

@@ -74,7 +74,7 @@ pub enum FrameCount {
     /// First request to a station after a reset of the frame count.
     First,
     /// Later request to a station. The bit changes with every new request.
-    Counted(bool),
+    Counters(bool),
 }
 
 impl FrameCount {
@@ -82,8 +82,8 @@ impl FrameCount {
     #[must_use]
     pub const fn next(self) -> Self {
         match self {
-            Self::None | Self::First => Self::Counted(false),
-            Self::Counted(bit) => Self::Counted(!bit),
+            Self::None | Self::First => Self::Counters(false),
+            Self::Counters(bit) => Self::Counters(!bit),
         }
     }
 
@@ -92,7 +92,7 @@ impl FrameCount {
         match self {
             Self::None => false,
             Self::First => true,
-            Self::Counted(bit) => bit,
+            Self::Counters(bit) => bit,
         }
     }
 }
@@ -174,7 +174,7 @@ impl Control {
         let count = match (byte & FCV != 0, byte & FCB != 0) {
             (false, false) => FrameCount::None,
             (false, true) => FrameCount::First,
-            (true, bit) => FrameCount::Counted(bit),
+            (true, bit) => FrameCount::Counters(bit),
         };
         Ok(Self::Request(service, count))
     }
@@ -184,13 +184,13 @@ impl Control {
         match self {
             Self::Request(service, count) => {
                 let code = SERVICES.iter().find(|row| row.1 == service).map_or(0, |row| row.0);
-                let counted = match count {
+                let counters = match count {
                     FrameCount::None => 0,
                     FrameCount::First => FCB,
-                    FrameCount::Counted(false) => FCV,
-                    FrameCount::Counted(true) => FCV | FCB,
+                    FrameCount::Counters(false) => FCV,
+                    FrameCount::Counters(true) => FCV | FCB,
                 };
-                REQUEST | counted | code
+                REQUEST | counters | code
             }
             Self::Answer(station, status) => {
                 let kind = STATIONS.iter().position(|other| *other == station).unwrap_or_default();

@@ -7,7 +7,7 @@ use super::WireError;
 /// Number of bytes before the blocks.
 const FIXED: usize = 6;
 /// Value of the master address in a slave that no master has locked.
-const NOBODY: u8 = 255;
+const NO_MASTER: u8 = 255;
 
 /// Diagnosis of a slave, the answer to Slave_Diag.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -77,7 +77,7 @@ const FLAGS: [(Flag, usize, u8, &str); 15] = [
 ];
 
 /// Bit of the second status byte that is always set.
-pub(super) const ALWAYS: u8 = 0x04;
+pub(super) const ALWAYS_SET: u8 = 0x04;
 
 impl Flag {
     /// Text of the flag.
@@ -100,7 +100,7 @@ pub enum Block {
         /// Channel number in the module.
         channel: u8,
         /// Direction: 1 input, 2 output, 3 both.
-        way: u8,
+        io_direction: u8,
         /// Channel type (bit, byte, word), as a number of the standard.
         size: u8,
         /// Error code.
@@ -146,7 +146,7 @@ impl Diagnosis {
             blocks.push(Block::new(block));
             at += len;
         }
-        let master = (master != NOBODY).then_some(master);
+        let master = (master != NO_MASTER).then_some(master);
         Ok(Self { flags: [first, second, third], master, ident: u16::from_be_bytes([high, low]), blocks })
     }
 
@@ -154,7 +154,7 @@ impl Diagnosis {
     pub fn emit(&self) -> Vec<u8> {
         let [high, low] = self.ident.to_be_bytes();
         let [first, second, third] = self.flags;
-        let mut data = vec![first, second, third, self.master.unwrap_or(NOBODY), high, low];
+        let mut data = vec![first, second, third, self.master.unwrap_or(NO_MASTER), high, low];
         for block in &self.blocks {
             block.emit(&mut data);
         }
@@ -167,14 +167,14 @@ impl Diagnosis {
     }
 
     /// Texts of the flags that are set, except the flag for extended diagnosis.
-    pub fn words(&self) -> impl Iterator<Item = &'static str> {
+    pub fn flag_texts(&self) -> impl Iterator<Item = &'static str> {
         let told = FLAGS.iter().filter(|row| row.0 != Flag::Extended && self.has(row.0));
         told.map(|row| row.3)
     }
 
     /// Returns the status bytes with these flags set, and with the bit that is always set.
     pub fn flags(flags: &[Flag]) -> [u8; 3] {
-        let mut bytes = [0, ALWAYS, 0];
+        let mut bytes = [0, ALWAYS_SET, 0];
         for row in FLAGS.iter().filter(|row| flags.contains(&row.0)) {
             bytes[row.1] |= row.2;
         }
@@ -185,7 +185,7 @@ impl Diagnosis {
 impl fmt::Display for Diagnosis {
     /// Formats the diagnosis, for example `not ready for data, needs parameters, no master, ident 0x1234`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for text in self.words() {
+        for text in self.flag_texts() {
             write!(f, "{text}, ")?;
         }
         match self.master {
@@ -212,7 +212,7 @@ impl Block {
             (2, &[head, channel, error]) => Self::Channel {
                 module: head & 0x3F,
                 channel: channel & 0x3F,
-                way: channel >> 6,
+                io_direction: channel >> 6,
                 size: error >> 5,
                 error: error & 0x1F,
             },
@@ -238,8 +238,8 @@ impl Block {
                 data.push(0x40 | u8::try_from(bits.len() + 1).unwrap_or_default());
                 data.extend(bits);
             }
-            Self::Channel { module, channel, way, size, error } => {
-                data.extend([0x80 | module & 0x3F, way << 6 | channel & 0x3F, size << 5 | error & 0x1F]);
+            Self::Channel { module, channel, io_direction, size, error } => {
+                data.extend([0x80 | module & 0x3F, io_direction << 6 | channel & 0x3F, size << 5 | error & 0x1F]);
             }
             Self::Revision(revision) => data.push(0xC0 | revision & 0x3F),
         }
@@ -257,9 +257,9 @@ impl fmt::Display for Block {
                 let modules: Vec<String> = modules.iter().map(ToString::to_string).collect();
                 write!(f, "modules {}", modules.join(" "))
             }
-            Self::Channel { module, channel, way, error, .. } => {
-                let way = ["", "input ", "output ", "input and output "][usize::from(way & 3)];
-                write!(f, "module {module} {way}channel {channel}: ")?;
+            Self::Channel { module, channel, io_direction, error, .. } => {
+                let io_direction = ["", "input ", "output ", "input and output "][usize::from(io_direction & 3)];
+                write!(f, "module {module} {io_direction}channel {channel}: ")?;
                 match CHANNEL_ERRORS.iter().find(|row| row.0 == *error) {
                     Some((_, text)) => f.write_str(text),
                     None => write!(f, "error {error}"),

@@ -3,7 +3,7 @@
 use super::{Parsed, Telegram, WireError};
 
 /// Size limit of the buffer. It is larger than the longest telegram.
-const MOST_KEPT: usize = 512;
+const MAX_BUFFER_LEN: usize = 512;
 
 /// A piece of the stream.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -37,7 +37,7 @@ impl Stream {
                 let rest = self.bytes.split_off(len);
                 Some(Piece::Telegram(telegram, std::mem::replace(&mut self.bytes, rest)))
             }
-            Ok(Parsed::Part(_)) if self.bytes.len() < MOST_KEPT => None,
+            Ok(Parsed::Part(_)) if self.bytes.len() < MAX_BUFFER_LEN => None,
             Ok(Parsed::Part(needed)) => Some(self.noise(WireError::short("telegram", 0, needed, self.bytes.len()))),
             Err(error) => Some(self.noise(error)),
         }

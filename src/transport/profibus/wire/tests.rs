@@ -40,7 +40,7 @@ const EXCHANGE: &str = "68 33 33 68 05 02 7D
 const ANSWER: &str = "68 33 33 68 02 05 08
     0000000000000000000000000000000000000000000000000000000000000000 41 000000000000000000000000000000 50 16";
 
-fn whole(bytes: &[u8]) -> Telegram {
+fn parse_telegram(bytes: &[u8]) -> Telegram {
     match Telegram::parse(bytes) {
         Ok(Parsed::Whole(telegram, len)) if len == bytes.len() => telegram,
         other => panic!("{bytes:02X?}: {other:?}"),
@@ -48,10 +48,10 @@ fn whole(bytes: &[u8]) -> Telegram {
 }
 
 #[test]
-fn a_start_reads_and_writes_as_others_have_seen_it() {
+fn telegrams_of_a_start_match_a_recording() {
     for (from, text, sap, data) in START {
         let bytes = hex(text);
-        let telegram = whole(&bytes);
+        let telegram = parse_telegram(&bytes);
         assert_eq!(telegram.emit(), bytes, "{text}");
         if let Telegram::Frame(frame) = telegram {
             assert_eq!((frame.from, frame.to_sap, frame.data), (from, sap, hex(data)), "{text}");
@@ -77,15 +77,15 @@ fn control_codes_are_those_of_the_standard() {
 }
 
 #[test]
-fn eight_bytes_of_data_read_in_both_forms() {
+fn parses_eight_bytes_in_both_formats() {
     let variable = hex("68 0B 0B 68 82 85 08 3E 3C 02 05 00 FF 12 34 D5 16");
     let fixed = hex("A2 82 85 08 3E 3C 02 05 00 FF 12 34 D5 16");
-    assert_eq!(whole(&variable), whole(&fixed));
-    assert_eq!(whole(&fixed).emit(), variable);
+    assert_eq!(parse_telegram(&variable), parse_telegram(&fixed));
+    assert_eq!(parse_telegram(&fixed).emit(), variable);
 }
 
 #[test]
-fn what_is_wrong_is_named() {
+fn errors_describe_the_problem() {
     for (text, message) in [
         ("10 05 02 49 51 16", "frame check sequence at offset 4: is 0x51, not 0x50"),
         ("10 05 02 49 50 17", "end delimiter at offset 5: is 0x17, not 0x16"),
@@ -106,7 +106,7 @@ fn what_is_wrong_is_named() {
 }
 
 #[test]
-fn a_diagnosis_reads_in_words() {
+fn describes_a_diagnosis() {
     let text = |data: &str| Diagnosis::parse(&hex(data)).unwrap().to_string();
     assert_eq!(text("02 05 00 FF 12 34"), "not ready for data, needs parameters, no master, ident 0x1234");
     assert_eq!(text("00 0C 00 02 12 34"), "watchdog on, master 2, ident 0x1234");
@@ -120,7 +120,7 @@ fn a_diagnosis_reads_in_words() {
 }
 
 #[test]
-fn identifiers_add_up_to_the_image_in_every_form() {
+fn identifiers_give_the_image_size_in_every_format() {
     // Examples: two modules per direction, one module with both directions, a special identifier in words, a special
     // identifier in bytes.
     for (text, modules) in [
@@ -174,7 +174,7 @@ fn noise_does_not_hide_a_telegram() {
 }
 
 fn counts() -> impl Strategy<Value = FrameCount> {
-    prop_oneof![Just(FrameCount::None), Just(FrameCount::First), any::<bool>().prop_map(FrameCount::Counted)]
+    prop_oneof![Just(FrameCount::None), Just(FrameCount::First), any::<bool>().prop_map(FrameCount::Counters)]
 }
 
 fn frames() -> impl Strategy<Value = Frame> {
@@ -189,9 +189,9 @@ fn frames() -> impl Strategy<Value = Frame> {
 
 proptest! {
     #[test]
-    fn any_frame_comes_back_and_others_read_it_so(frame in frames()) {
+    fn frames_round_trip_and_match_another_parser(frame in frames()) {
         let bytes = frame.emit();
-        prop_assert_eq!(whole(&bytes), Telegram::Frame(frame.clone()));
+        prop_assert_eq!(parse_telegram(&bytes), Telegram::Frame(frame.clone()));
         let Some(Ok((fdl::Telegram::Data(theirs), len))) = fdl::Telegram::deserialize(&bytes) else {
             return Err(TestCaseError::fail("the other codec does not read it"));
         };
@@ -203,18 +203,18 @@ proptest! {
     }
 
     #[test]
-    fn what_others_write_reads_so(frame in frames()) {
+    fn parses_telegrams_of_another_encoder(frame in frames()) {
         let fc = fdl::FunctionCode::from_byte(frame.control.byte()).unwrap();
         let header = fdl::DataTelegramHeader {
             da: frame.to, sa: frame.from, dsap: frame.to_sap, ssap: frame.from_sap, fc,
         };
         let mut buffer = [0; 300];
         let len = header.serialize(&mut buffer, frame.data.len(), |data| data.copy_from_slice(&frame.data));
-        prop_assert_eq!(whole(&buffer[..len]), Telegram::Frame(frame));
+        prop_assert_eq!(parse_telegram(&buffer[..len]), Telegram::Frame(frame));
     }
 
     #[test]
-    fn any_bytes_are_pieces_and_none_is_lost(bytes in proptest::collection::vec(
+    fn splits_any_bytes_without_loss(bytes in proptest::collection::vec(
         prop_oneof![any::<u8>(), Just(0x68), Just(0x10), Just(0xA2), Just(0xE5), Just(0xDC)], 0..200,
     )) {
         let mut stream = Stream::default();
@@ -230,7 +230,7 @@ proptest! {
     }
 
     #[test]
-    fn any_data_reads_or_is_an_error(data in proptest::collection::vec(any::<u8>(), 0..=MAX_DATA)) {
+    fn any_data_is_parsed_or_an_error(data in proptest::collection::vec(any::<u8>(), 0..=MAX_DATA)) {
         if let Ok(diagnosis) = Diagnosis::parse(&data) {
             prop_assert_eq!(Diagnosis::parse(&diagnosis.emit()).unwrap().to_string(), diagnosis.to_string());
         }
@@ -244,7 +244,7 @@ proptest! {
     }
 
     #[test]
-    fn a_changed_byte_behind_the_start_is_noticed(
+    fn detects_a_changed_byte(
         frame in frames(), at in any::<prop::sample::Index>(), bits in 1_u8..,
     ) {
         let mut bytes = frame.emit();

@@ -7,11 +7,11 @@ use super::super::Now;
 use super::super::wire::alarm::{self, Notification, Pdu, Priority, Rta};
 
 /// Time limit for an acknowledgement.
-const PATIENCE: Duration = Duration::from_millis(100);
+const ACK_TIMEOUT: Duration = Duration::from_millis(100);
 /// Number of repetitions of a frame.
 const RETRIES: u32 = 3;
 /// Maximum number of queued acknowledgements. A device may have only one unacknowledged alarm per channel.
-const MOST: usize = 8;
+const MAX_QUEUED_ACKS: usize = 8;
 
 /// One alarm channel.
 #[derive(Debug)]
@@ -36,14 +36,14 @@ struct Pending {
 /// Both alarm channels of a connection.
 #[derive(Debug)]
 pub struct Alarms {
-    ours: u16,
-    theirs: u16,
+    local_reference: u16,
+    remote_reference: u16,
     channels: [Channel; 2],
 }
 
 /// Result of a received frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Heard {
+pub enum AlarmEvent {
     /// There is nothing to report.
     Nothing,
     /// A new alarm.
@@ -54,7 +54,7 @@ pub enum Heard {
 
 impl Alarms {
     /// Creates the channels with the alarm references of both sides.
-    pub fn new(ours: u16, theirs: u16) -> Self {
+    pub fn new(local_reference: u16, remote_reference: u16) -> Self {
         let channel = |priority| Channel {
             priority,
             sent: alarm::NONE,
@@ -62,7 +62,7 @@ impl Alarms {
             pending: None,
             waiting: Vec::new(),
         };
-        Self { ours, theirs, channels: Priority::ALL.map(channel) }
+        Self { local_reference, remote_reference, channels: Priority::ALL.map(channel) }
     }
 
     /// Handles a frame. Frames to send are added to `out` with their channel.
@@ -72,21 +72,21 @@ impl Alarms {
         priority: Priority,
         payload: &[u8],
         out: &mut Vec<(Priority, Vec<u8>)>,
-    ) -> Heard {
-        let Ok(rta) = Rta::parse(payload) else { return Heard::Nothing };
-        if rta.destination != self.ours {
-            return Heard::Nothing;
+    ) -> AlarmEvent {
+        let Ok(rta) = Rta::parse(payload) else { return AlarmEvent::Nothing };
+        if rta.destination != self.local_reference {
+            return AlarmEvent::Nothing;
         }
-        let (ours, theirs) = (self.ours, self.theirs);
+        let (local_reference, remote_reference) = (self.local_reference, self.remote_reference);
         let channel = &mut self.channels[usize::from(priority == Priority::Low)];
         match rta.pdu {
-            Pdu::Error(status) => Heard::Error(status),
+            Pdu::Error(status) => AlarmEvent::Error(status),
             Pdu::Ack => {
                 channel.acknowledged(rta.acknowledged);
-                channel.next(now, ours, theirs, out);
-                Heard::Nothing
+                channel.next(now, local_reference, remote_reference, out);
+                AlarmEvent::Nothing
             }
-            Pdu::Nack => Heard::Nothing,
+            Pdu::Nack => AlarmEvent::Nothing,
             Pdu::Data(data) => {
                 channel.acknowledged(rta.acknowledged);
                 let expected = match channel.received {
@@ -95,18 +95,18 @@ impl Alarms {
                 };
                 let is_new = rta.sequence == expected;
                 if !is_new && rta.sequence != channel.received {
-                    return Heard::Nothing;
+                    return AlarmEvent::Nothing;
                 }
                 channel.received = rta.sequence;
-                out.push((priority, channel.frame(ours, theirs, Pdu::Ack)));
+                out.push((priority, channel.frame(local_reference, remote_reference, Pdu::Ack)));
                 let alarm = Notification::parse(&data).ok().filter(|_| is_new);
                 if let Some(alarm) = &alarm
-                    && channel.waiting.len() < MOST
+                    && channel.waiting.len() < MAX_QUEUED_ACKS
                 {
                     channel.waiting.push(alarm.acknowledge().emit());
                 }
-                channel.next(now, ours, theirs, out);
-                alarm.map_or(Heard::Nothing, Heard::Alarm)
+                channel.next(now, local_reference, remote_reference, out);
+                alarm.map_or(AlarmEvent::Nothing, AlarmEvent::Alarm)
             }
         }
     }
@@ -114,7 +114,7 @@ impl Alarms {
     /// Repeats frames that timed out. Returns whether the device did not accept an acknowledgement after the last
     /// repetition.
     pub fn poll(&mut self, now: Now, out: &mut Vec<(Priority, Vec<u8>)>) -> bool {
-        let (ours, theirs) = (self.ours, self.theirs);
+        let (local_reference, remote_reference) = (self.local_reference, self.remote_reference);
         let mut is_lost = false;
         for channel in &mut self.channels {
             let Some(pending) = channel.pending.as_mut().filter(|pending| pending.deadline <= now) else { continue };
@@ -124,9 +124,9 @@ impl Alarms {
                 continue;
             }
             pending.repeats += 1;
-            pending.deadline = now + PATIENCE;
+            pending.deadline = now + ACK_TIMEOUT;
             let data = pending.data.clone();
-            out.push((channel.priority, channel.frame(ours, theirs, Pdu::Data(data))));
+            out.push((channel.priority, channel.frame(local_reference, remote_reference, Pdu::Data(data))));
         }
         is_lost
     }
@@ -139,14 +139,14 @@ impl Alarms {
     /// Returns the frame that closes the connection.
     pub fn error(&self, status: u32) -> (Priority, Vec<u8>) {
         let low = &self.channels[1];
-        (low.priority, low.frame(self.ours, self.theirs, Pdu::Error(status)))
+        (low.priority, low.frame(self.local_reference, self.remote_reference, Pdu::Error(status)))
     }
 }
 
 impl Channel {
-    fn frame(&self, ours: u16, theirs: u16, pdu: Pdu) -> Vec<u8> {
+    fn frame(&self, local_reference: u16, remote_reference: u16, pdu: Pdu) -> Vec<u8> {
         let (sequence, acknowledged) = (self.sent, self.received);
-        Rta { destination: theirs, source: ours, sequence, acknowledged, pdu }.emit()
+        Rta { destination: remote_reference, source: local_reference, sequence, acknowledged, pdu }.emit()
     }
 
     fn acknowledged(&mut self, sequence: u16) {
@@ -156,7 +156,7 @@ impl Channel {
     }
 
     /// Sends the next queued frame, if no frame waits for its acknowledgement.
-    fn next(&mut self, now: Now, ours: u16, theirs: u16, out: &mut Vec<(Priority, Vec<u8>)>) {
+    fn next(&mut self, now: Now, local_reference: u16, remote_reference: u16, out: &mut Vec<(Priority, Vec<u8>)>) {
         if self.pending.is_some() || self.waiting.is_empty() {
             return;
         }
@@ -165,8 +165,8 @@ impl Channel {
             alarm::NONE => alarm::FIRST,
             last => alarm::next_sequence(last),
         };
-        out.push((self.priority, self.frame(ours, theirs, Pdu::Data(data.clone()))));
-        self.pending = Some(Pending { data, deadline: now + PATIENCE, repeats: 0 });
+        out.push((self.priority, self.frame(local_reference, remote_reference, Pdu::Data(data.clone()))));
+        self.pending = Some(Pending { data, deadline: now + ACK_TIMEOUT, repeats: 0 });
     }
 }
 
@@ -180,7 +180,7 @@ mod tests {
         "8000 0000 28000006",
     );
 
-    fn handle(alarms: &mut Alarms, payload: &[u8]) -> (Heard, Vec<Vec<u8>>) {
+    fn handle(alarms: &mut Alarms, payload: &[u8]) -> (AlarmEvent, Vec<Vec<u8>>) {
         let mut out = Vec::new();
         let heard = alarms.handle(Now::ZERO, Priority::Low, payload, &mut out);
         (heard, out.into_iter().map(|(_, bytes)| bytes).collect())
@@ -188,25 +188,25 @@ mod tests {
 
     /// Bytes that were sent to a device, from the notes on alarms.
     #[test]
-    fn an_alarm_is_acknowledged_as_seen_and_told_once() {
+    fn acknowledges_and_reports_an_alarm_once() {
         let mut alarms = Alarms::new(1, 0);
         let (heard, sent) = handle(&mut alarms, &hex(FIRST));
-        assert!(matches!(heard, Heard::Alarm(alarm) if alarm.kind == 1));
+        assert!(matches!(heard, AlarmEvent::Alarm(alarm) if alarm.kind == 1));
         let ack = hex("0000 0001 13 01 FFFE FFFF 0000");
         let noted = hex("0000 0001 11 11 FFFF FFFF 0016 8002 0012 0100 0001 00000000 0001 0001 A800 00000000");
         assert_eq!(sent, [ack, noted]);
         let (heard, sent) = handle(&mut alarms, &hex(FIRST));
-        assert_eq!((heard, sent.len()), (Heard::Nothing, 1), "acknowledged again, not reported again");
+        assert_eq!((heard, sent.len()), (AlarmEvent::Nothing, 1), "acknowledged again, not reported again");
         handle(&mut alarms, &hex("0001 0000 13 01 FFFF FFFF 0000"));
         assert_eq!(alarms.wake(), None);
         let second = FIRST.replacen("FFFF FFFE", "0000 FFFF", 1);
         let (heard, sent) = handle(&mut alarms, &hex(&second));
-        assert!(matches!(heard, Heard::Alarm(_)));
+        assert!(matches!(heard, AlarmEvent::Alarm(_)));
         assert_eq!(sent[1][6..10], hex("0000 0000")[..], "both counts go on");
     }
 
     #[test]
-    fn an_acknowledgement_is_repeated_and_given_up() {
+    fn repeats_an_acknowledgement_up_to_a_limit() {
         let mut alarms = Alarms::new(1, 0);
         let (_, sent) = handle(&mut alarms, &hex(FIRST));
         let mut now = Now::ZERO;
@@ -216,18 +216,18 @@ mod tests {
             assert!(!alarms.poll(now, &mut out));
             assert_eq!(out, [(Priority::Low, sent[1].clone())]);
         }
-        assert!(alarms.poll(now + PATIENCE, &mut Vec::new()));
+        assert!(alarms.poll(now + ACK_TIMEOUT, &mut Vec::new()));
         assert_eq!(alarms.wake(), None);
     }
 
     #[test]
-    fn what_is_not_for_this_connection_or_out_of_order_is_nothing() {
+    fn ignores_alarms_of_other_connections_or_order() {
         let mut alarms = Alarms::new(2, 0);
-        assert_eq!(handle(&mut alarms, &hex(FIRST)), (Heard::Nothing, Vec::new()));
+        assert_eq!(handle(&mut alarms, &hex(FIRST)), (AlarmEvent::Nothing, Vec::new()));
         let mut alarms = Alarms::new(1, 0);
         let ahead = FIRST.replacen("FFFF FFFE", "0005 FFFE", 1);
-        assert_eq!(handle(&mut alarms, &hex(&ahead)), (Heard::Nothing, Vec::new()));
+        assert_eq!(handle(&mut alarms, &hex(&ahead)), (AlarmEvent::Nothing, Vec::new()));
         let error = hex("0001 0000 14 01 0000 0000 0004 CF81FD05");
-        assert_eq!(handle(&mut alarms, &error), (Heard::Error(0xCF81_FD05), Vec::new()));
+        assert_eq!(handle(&mut alarms, &error), (AlarmEvent::Error(0xCF81_FD05), Vec::new()));
     }
 }

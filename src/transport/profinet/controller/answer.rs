@@ -26,14 +26,14 @@ const RELEASE: &str = "Release";
 impl Controller {
     /// Handles the outcome of a call.
     pub(super) fn answered(&mut self, now: Now, outcome: Outcome) {
-        if let Phase::Releasing(trouble) = &self.phase {
-            let trouble = trouble.clone();
+        if let Phase::Releasing(last_error) = &self.phase {
+            let last_error = last_error.clone();
             let failed = match outcome.blocks(RELEASE) {
                 // The device has already closed the connection, so nothing is left to release.
                 Err(ProfinetError::Refused { status, .. }) if status.is_unknown_ar() => None,
                 other => other.err(),
             };
-            return self.released(now, trouble.or(failed));
+            return self.released(now, last_error.or(failed));
         }
         let Some(step) = self.ar.as_ref().map(|ar| ar.step) else { return };
         let done = match step {
@@ -45,12 +45,12 @@ impl Controller {
         match done {
             Ok(()) => {}
             // If Connect fails, the device has no connection that must be released.
-            Err(trouble @ (ProfinetError::Refused { .. } | ProfinetError::Rejected { .. }))
+            Err(last_error @ (ProfinetError::Refused { .. } | ProfinetError::Rejected { .. }))
                 if step == Step::Connect =>
             {
-                self.lost(now, trouble);
+                self.handle_loss(now, last_error);
             }
-            Err(trouble) => self.release(now, Some(trouble)),
+            Err(last_error) => self.release(now, Some(last_error)),
         }
     }
 

@@ -11,9 +11,9 @@ use super::super::wire::status::Status;
 use super::super::wire::{ByteOrder, Uuid, WireError};
 
 /// Time limit for an answer.
-pub const PATIENCE: Duration = Duration::from_secs(2);
+pub const CALL_TIMEOUT: Duration = Duration::from_secs(2);
 /// Maximum number of "working" messages that a device may send during a call.
-const MOST_WORKING: u32 = 5;
+const MAX_WORKING_MESSAGES: u32 = 5;
 
 /// Outcome of a call.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -81,7 +81,7 @@ impl Client {
 
     /// Starts a call and drops an earlier call. The same bytes are sent at most `tries` times.
     pub fn call(&mut self, now: Now, operation: u16, blocks: &[u8], tries: u32) -> Vec<u8> {
-        let body = Call { room: rpc::ROOM, blocks }.emit(ByteOrder::Big);
+        let body = Call { room: rpc::ANSWER_BUFFER_SIZE, blocks }.emit(ByteOrder::Big);
         let header = Header {
             kind: Kind::REQUEST,
             flags: flag::IDEMPOTENT,
@@ -98,7 +98,7 @@ impl Client {
         let bytes = Datagram { header, body: &body }.emit();
         self.pending = Some(Pending {
             bytes: bytes.clone(),
-            deadline: now + PATIENCE,
+            deadline: now + CALL_TIMEOUT,
             begin: now,
             tries: tries.saturating_sub(1),
             working: 0,
@@ -127,7 +127,7 @@ impl Client {
             return Some(Step::Done(Outcome::Silent(waited)));
         }
         pending.tries -= 1;
-        pending.deadline = now + PATIENCE;
+        pending.deadline = now + CALL_TIMEOUT;
         Some(Step::Send(pending.bytes.clone()))
     }
 
@@ -146,18 +146,18 @@ impl Client {
                 self.pending = None;
                 Some(Step::Done(Outcome::Rejected(status)))
             }
-            Kind::WORKING if pending.working < MOST_WORKING => {
+            Kind::WORKING if pending.working < MAX_WORKING_MESSAGES => {
                 pending.working += 1;
-                pending.deadline = now + PATIENCE;
+                pending.deadline = now + CALL_TIMEOUT;
                 None
             }
             _ => None,
         };
-        step.or_else(|| self.whole())
+        step.or_else(|| self.take_answer())
     }
 
     /// Returns the answer if all fragments have arrived.
-    fn whole(&mut self) -> Option<Step> {
+    fn take_answer(&mut self) -> Option<Step> {
         let pending = self.pending.as_ref()?;
         let last = pending.last?;
         if pending.fragments.len() <= usize::from(last) {
@@ -184,7 +184,7 @@ impl Pending {
     fn collect(&mut self, now: Now, datagram: &Datagram<'_>) -> Option<Step> {
         let header = &datagram.header;
         let there: usize = self.fragments.values().map(Vec::len).sum();
-        if there + datagram.body.len() > rpc::MOST {
+        if there + datagram.body.len() > rpc::MAX_ANSWER_LEN {
             return None;
         }
         // The first byte of the stored fragment is the byte order. It is the same in all fragments of an answer.
@@ -194,7 +194,7 @@ impl Pending {
         if header.flags & flag::LAST_FRAGMENT != 0 {
             self.last = Some(header.fragment);
         }
-        self.deadline = now + PATIENCE;
+        self.deadline = now + CALL_TIMEOUT;
         let is_whole = self.last.is_some_and(|last| self.fragments.len() > usize::from(last));
         if header.flags & flag::NO_ACK != 0 || is_whole {
             return None;
@@ -219,18 +219,18 @@ mod tests {
     }
 
     #[test]
-    fn a_call_is_repeated_with_the_same_bytes_and_then_given_up() {
+    fn repeats_a_call_up_to_a_limit() {
         let mut client = client();
         let first = client.call(Now::ZERO, operation::READ, &[1; 8], 3);
-        assert_eq!(client.poll(PATIENCE / 2), None);
-        assert_eq!(client.poll(PATIENCE), Some(Step::Send(first.clone())));
-        assert_eq!(client.poll(PATIENCE * 2), Some(Step::Send(first)));
-        assert_eq!(client.poll(PATIENCE * 3), Some(Step::Done(Outcome::Silent(PATIENCE * 3))));
-        assert_eq!((client.poll(PATIENCE * 9), client.wake()), (None, None));
+        assert_eq!(client.poll(CALL_TIMEOUT / 2), None);
+        assert_eq!(client.poll(CALL_TIMEOUT), Some(Step::Send(first.clone())));
+        assert_eq!(client.poll(CALL_TIMEOUT * 2), Some(Step::Send(first)));
+        assert_eq!(client.poll(CALL_TIMEOUT * 3), Some(Step::Done(Outcome::Silent(CALL_TIMEOUT * 3))));
+        assert_eq!((client.poll(CALL_TIMEOUT * 9), client.wake()), (None, None));
     }
 
     #[test]
-    fn answers_of_earlier_calls_and_of_others_are_nothing() {
+    fn ignores_answers_to_other_calls() {
         let mut client = client();
         let body = Reply { status: 0, room: 8, blocks: &[9] }.emit(ByteOrder::Big);
         let old = client.call(Now::ZERO, operation::READ, &[], 1);
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn fragments_are_acknowledged_and_put_together_in_any_order() {
+    fn assembles_fragments_in_any_order() {
         let mut client = client();
         let call = client.call(Now::ZERO, operation::READ, &[], 1);
         let body = Reply { status: 0, room: 4096, blocks: &(0..=255).collect::<Vec<u8>>() }.emit(ByteOrder::Big);
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn fragments_without_end_are_not_kept() {
+    fn limits_the_length_of_fragmented_answers() {
         let mut client = client();
         let call = client.call(Now::ZERO, operation::READ, &[], 1);
         for at in 0..2000 {
@@ -278,24 +278,24 @@ mod tests {
             assert_eq!(client.handle(Now::ZERO, &Datagram::parse(&bytes).unwrap()), None);
         }
         let kept: usize = client.pending.unwrap().fragments.values().map(Vec::len).sum();
-        assert!(kept <= rpc::MOST, "{kept}");
+        assert!(kept <= rpc::MAX_ANSWER_LEN, "{kept}");
     }
 
     #[test]
-    fn a_device_that_works_is_waited_for_but_not_for_ever() {
+    fn waits_a_limited_time_for_a_working_device() {
         let mut client = client();
         let call = client.call(Now::ZERO, operation::CONNECT, &[], 1);
         let header = Header { kind: Kind::WORKING, ..Datagram::parse(&call).unwrap().header };
         let mut now = Now::ZERO;
         while client.poll(now).is_none() {
             client.handle(now, &Datagram { header, body: &[] });
-            now += PATIENCE / 2;
+            now += CALL_TIMEOUT / 2;
             assert!(now < Duration::from_secs(60));
         }
     }
 
     #[test]
-    fn a_rejected_call_is_told() {
+    fn reports_a_rejected_call() {
         let mut client = client();
         let call = client.call(Now::ZERO, operation::CONNECT, &[], 1);
         let header = Header { kind: Kind::REJECT, ..Datagram::parse(&call).unwrap().header };

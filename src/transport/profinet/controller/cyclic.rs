@@ -83,7 +83,7 @@ impl Producer {
 
 /// Result of a received frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Verdict {
+pub enum FrameResult {
     /// The frame is invalid, or older than the last frame.
     Stale,
     /// The device is alive, but its data is not usable.
@@ -98,11 +98,11 @@ pub struct Consumer {
     frame: FrameLayout,
     /// For each submodule, whether its consumer status must be good. Only the status of a submodule with output data
     /// must be good.
-    fed: Vec<bool>,
+    has_consumer_status: Vec<bool>,
     last: Option<u16>,
     swapped: usize,
     /// Time of the last frame.
-    pub heard: Option<Now>,
+    pub last_frame_at: Option<Now>,
     /// Number of accepted frames.
     pub received: u64,
     /// Number of rejected frames.
@@ -113,23 +113,32 @@ impl Consumer {
     /// Creates a receiver that has not received a frame yet.
     pub fn new(settings: &Settings) -> Self {
         let frame = settings.layout.frame(Direction::Input);
-        let fed = frame.consumers.iter().map(|place| is_fed(&settings.layout, place.slot, place.subslot)).collect();
-        Self { frame, fed, last: None, swapped: settings.swapped, heard: None, received: 0, stale: 0 }
+        let has_consumer_status =
+            frame.consumers.iter().map(|place| is_watchdog_fed(&settings.layout, place.slot, place.subslot)).collect();
+        Self {
+            frame,
+            has_consumer_status,
+            last: None,
+            swapped: settings.swapped,
+            last_frame_at: None,
+            received: 0,
+            stale: 0,
+        }
     }
 
     /// Handles a frame. The caller has checked the frame id.
-    pub fn handle(&mut self, now: Now, payload: &[u8]) -> Verdict {
+    pub fn handle(&mut self, now: Now, payload: &[u8]) -> FrameResult {
         let cyclic = Cyclic::parse(payload, usize::from(self.frame.length));
         let Some(cyclic) = cyclic.ok().filter(|cyclic| self.last.is_none_or(|last| cyclic.is_after(last))) else {
             self.stale += 1;
-            return Verdict::Stale;
+            return FrameResult::Stale;
         };
         self.last = Some(cyclic.counter);
-        self.heard = Some(now);
+        self.last_frame_at = Some(now);
         self.received += 1;
         match self.image(&cyclic) {
-            Ok(image) => Verdict::Image(image),
-            Err(why) => Verdict::Unusable(why),
+            Ok(image) => FrameResult::Image(image),
+            Err(why) => FrameResult::Unusable(why),
         }
     }
 
@@ -148,7 +157,13 @@ impl Consumer {
             }
             image.extend_from_slice(&cyclic.data[at..at + length]);
         }
-        for (place, _) in self.frame.consumers.iter().zip(&self.fed).filter(|(_, fed)| **fed) {
+        for (place, _) in self
+            .frame
+            .consumers
+            .iter()
+            .zip(&self.has_consumer_status)
+            .filter(|(_, has_consumer_status)| **has_consumer_status)
+        {
             refuse_if(!is_good(usize::from(place.offset)), Unusable::Consumer(place.slot, place.subslot))?;
         }
         swap(&mut image, self.swapped);
@@ -156,7 +171,7 @@ impl Consumer {
     }
 }
 
-fn is_fed(layout: &Layout, slot: u16, subslot: u16) -> bool {
+fn is_watchdog_fed(layout: &Layout, slot: u16, subslot: u16) -> bool {
     layout.find(slot, subslot).is_some_and(|submodule| submodule.output > 0)
 }
 
@@ -186,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_missed_is_left_out_and_the_rhythm_kept() {
+    fn skips_missed_frames_and_keeps_the_interval() {
         let mut producer = Producer::new(&settings(), Now::ZERO);
         producer.poll(Now::ZERO, &[0; 48]);
         let bytes = producer.poll(CYCLE * 4 + CYCLE / 2, &[0; 48]).unwrap();
@@ -195,14 +210,14 @@ mod tests {
     }
 
     #[test]
-    fn counters_go_round() {
+    fn cycle_counters_wrap() {
         let mut producer = Producer::new(&settings(), Now::ZERO);
         let mut consumer = Consumer::new(&settings());
         for index in 0..1000u32 {
             let bytes = producer.poll(CYCLE * index, &[1; 48]).unwrap();
             let counter = u16::from_be_bytes([bytes[53], bytes[54]]);
             let verdict = consumer.handle(CYCLE * index, &input(counter, 0x35));
-            assert_eq!(verdict, Verdict::Image(vec![5; 48]), "{index}");
+            assert_eq!(verdict, FrameResult::Image(vec![5; 48]), "{index}");
         }
         assert_eq!((producer.sent, consumer.received, consumer.stale), (1000, 1000, 0));
     }
@@ -215,22 +230,22 @@ mod tests {
     }
 
     #[test]
-    fn only_good_data_is_an_image() {
+    fn accepts_only_good_data() {
         let mut consumer = Consumer::new(&settings());
-        assert_eq!(consumer.handle(Now::ZERO, &input(0x200, 0x35)), Verdict::Image(vec![5; 48]));
-        assert_eq!(consumer.handle(Now::ZERO, &input(0x200, 0x35)), Verdict::Stale);
-        assert_eq!(consumer.handle(Now::ZERO, &input(0x100, 0x35)), Verdict::Stale);
-        assert_eq!(consumer.handle(Now::ZERO, &[0; 20]), Verdict::Stale);
+        assert_eq!(consumer.handle(Now::ZERO, &input(0x200, 0x35)), FrameResult::Image(vec![5; 48]));
+        assert_eq!(consumer.handle(Now::ZERO, &input(0x200, 0x35)), FrameResult::Stale);
+        assert_eq!(consumer.handle(Now::ZERO, &input(0x100, 0x35)), FrameResult::Stale);
+        assert_eq!(consumer.handle(Now::ZERO, &[0; 20]), FrameResult::Stale);
         let stop = consumer.handle(CYCLE, &input(0x400, 0x25));
-        assert_eq!((stop, consumer.heard), (Verdict::Unusable(Unusable::Status(0x25, 0)), Some(CYCLE)));
+        assert_eq!((stop, consumer.last_frame_at), (FrameResult::Unusable(Unusable::Status(0x25, 0)), Some(CYCLE)));
         let mut bad = input(0x600, 0x35);
         bad[51] = 0;
-        assert_eq!(consumer.handle(CYCLE, &bad), Verdict::Unusable(Unusable::Provider(1, 1)));
+        assert_eq!(consumer.handle(CYCLE, &bad), FrameResult::Unusable(Unusable::Provider(1, 1)));
         let mut deaf = input(0x800, 0x35);
         deaf[52] = 0x60;
-        assert_eq!(consumer.handle(CYCLE, &deaf), Verdict::Unusable(Unusable::Consumer(2, 1)));
+        assert_eq!(consumer.handle(CYCLE, &deaf), FrameResult::Unusable(Unusable::Consumer(2, 1)));
         let mut head = input(0xA00, 0x35);
         head[0] = 0;
-        assert_eq!(consumer.handle(CYCLE, &head), Verdict::Image(vec![5; 48]), "the head has no data to be bad");
+        assert_eq!(consumer.handle(CYCLE, &head), FrameResult::Image(vec![5; 48]), "the head has no data to be bad");
     }
 }

@@ -10,10 +10,10 @@ use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::Arc;
 use std::time::Duration;
 
-use self::alarms::{Alarms, Heard};
+use self::alarms::{AlarmEvent, Alarms};
 use self::client::Client;
-use self::cyclic::{Consumer, Producer, Verdict};
-use self::numbers::Numbers;
+use self::cyclic::{Consumer, FrameResult, Producer};
+use self::identifiers::Identifiers;
 use self::view::{Details, Device, Input, State, Statistics, Step, View};
 use super::Now;
 use super::error::{ProfinetError, Unusable};
@@ -29,7 +29,7 @@ mod alarms;
 mod answer;
 pub mod client;
 mod cyclic;
-pub mod numbers;
+pub mod identifiers;
 mod open;
 mod resolve;
 pub mod view;
@@ -50,7 +50,7 @@ const ABORTED: u8 = 0x0D;
 /// Reason code with which a device confirms a release.
 const RELEASED: u8 = 0x0F;
 /// Maximum number of alarms in the queue.
-const MOST_ALARMS: usize = 64;
+const MAX_ALARMS: usize = 64;
 
 /// An action that the driver must execute.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -63,7 +63,7 @@ pub enum Action {
 
 /// Local addresses of the controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Here {
+pub struct LocalAddress {
     /// MAC address.
     pub mac: Mac,
     /// IP address and network.
@@ -117,8 +117,8 @@ struct Io {
 #[derive(Debug)]
 pub struct Controller {
     settings: Settings,
-    numbers: Arc<Numbers>,
-    here: Here,
+    identifiers: Arc<Identifiers>,
+    local_address: LocalAddress,
     phase: Phase,
     ar: Option<Ar>,
     device: Option<Device>,
@@ -137,13 +137,17 @@ pub struct Controller {
 
 impl Controller {
     /// Creates a connection.
-    pub fn new(here: Here, settings: Settings, numbers: Arc<Numbers>) -> Result<Self, ProfinetError> {
+    pub fn new(
+        local_address: LocalAddress,
+        settings: Settings,
+        identifiers: Arc<Identifiers>,
+    ) -> Result<Self, ProfinetError> {
         settings.check()?;
         Ok(Self {
             image: settings.resting.clone(),
             settings,
-            numbers,
-            here,
+            identifiers,
+            local_address,
             phase: Phase::New,
             ar: None,
             device: None,
@@ -229,8 +233,8 @@ impl Controller {
     }
 
     /// Handles an action that failed on a local socket. The connection continues until it times out.
-    pub fn failed(&mut self, trouble: ProfinetError) {
-        self.view.trouble = Some(trouble);
+    pub fn failed(&mut self, last_error: ProfinetError) {
+        self.view.last_error = Some(last_error);
         self.has_changed = true;
     }
 
@@ -264,7 +268,7 @@ impl Controller {
     /// not send frames before it is ready.
     fn watchdog(&self, io: &Io) -> Option<Now> {
         let is_on = matches!(self.phase, Phase::Data | Phase::WaitingForData(_));
-        io.consumer.heard.filter(|_| is_on).map(|heard| heard + self.settings.watchdog_time())
+        io.consumer.last_frame_at.filter(|_| is_on).map(|last_frame_at| last_frame_at + self.settings.watchdog_time())
     }
 
     /// Returns the next action at `now`.
@@ -282,7 +286,7 @@ impl Controller {
             Phase::Resolve(search) if search.wake() <= now => self.search_on(now),
             Phase::Address(address) if address.wake() <= now => self.address_on(now),
             Phase::WaitingForData(until) if *until <= now => {
-                let missing = match self.view.trouble {
+                let missing = match self.view.last_error {
                     Some(ProfinetError::Unusable(why)) => why,
                     _ => Unusable::Missing,
                 };
@@ -340,7 +344,7 @@ impl Controller {
 
     fn send_frame(&mut self, tag: Option<u16>, frame_id: u16, payload: &[u8]) {
         let Some(device) = &self.device else { return };
-        let frame = Frame { destination: device.mac, source: self.here.mac, tag, id: frame_id, payload };
+        let frame = Frame { destination: device.mac, source: self.local_address.mac, tag, id: frame_id, payload };
         self.actions.push_back(Action::Frame(frame.emit()));
     }
 
@@ -353,39 +357,39 @@ impl Controller {
     pub fn frame(&mut self, now: Now, bytes: &[u8]) {
         let Ok(frame) = Frame::parse(bytes) else { return };
         match frame.id {
-            id::DCP_IDENTIFIED | id::DCP_GET_SET => self.heard_dcp(now, &frame),
+            id::DCP_IDENTIFIED | id::DCP_GET_SET => self.handle_dcp(now, &frame),
             _ if self.device.as_ref().is_none_or(|device| device.mac != frame.source) => {}
             frame_id => {
                 if let Some(priority) = Priority::from_frame_id(frame_id) {
-                    self.heard_alarm(now, priority, frame.payload);
+                    self.handle_alarm(now, priority, frame.payload);
                 } else if self.ar.as_ref().is_some_and(|ar| ar.io.is_some() && ar.input_id == frame_id) {
-                    self.heard_data(now, frame.payload);
+                    self.handle_data(now, frame.payload);
                 }
             }
         }
     }
 
     /// Whether a frame belongs to this connection.
-    pub fn concerns(&self, bytes: &[u8]) -> bool {
+    pub fn is_for_connection(&self, bytes: &[u8]) -> bool {
         let Ok(frame) = Frame::parse(bytes) else { return false };
         match &self.device {
             Some(device) => frame.source == device.mac,
-            None => frame.destination == self.here.mac,
+            None => frame.destination == self.local_address.mac,
         }
     }
 
-    fn heard_alarm(&mut self, now: Now, priority: Priority, payload: &[u8]) {
+    fn handle_alarm(&mut self, now: Now, priority: Priority, payload: &[u8]) {
         let Some(io) = self.ar.as_mut().and_then(|ar| ar.io.as_mut()) else { return };
         let mut out = Vec::new();
-        let heard = io.alarms.handle(now, priority, payload, &mut out);
+        let last_frame_at = io.alarms.handle(now, priority, payload, &mut out);
         self.send_alarms(out);
-        match heard {
-            Heard::Nothing => {}
-            Heard::Error(status) => self.aborted(now, Status(status)),
-            Heard::Alarm(alarm) => {
+        match last_frame_at {
+            AlarmEvent::Nothing => {}
+            AlarmEvent::Error(status) => self.handle_abort(now, Status(status)),
+            AlarmEvent::Alarm(alarm) => {
                 let slot = alarm.slot;
                 let is_plug = alarm::wants_parameters(alarm.kind);
-                if self.alarms.len() == MOST_ALARMS {
+                if self.alarms.len() == MAX_ALARMS {
                     self.alarms.pop_front();
                 }
                 self.alarms.push_back(alarm);
@@ -401,31 +405,31 @@ impl Controller {
     }
 
     /// Handles an abort: the device has closed the connection.
-    fn aborted(&mut self, now: Now, status: Status) {
+    fn handle_abort(&mut self, now: Now, status: Status) {
         let is_answer = status == Status::abort(RELEASED);
-        if let Phase::Releasing(trouble) = &self.phase {
+        if let Phase::Releasing(last_error) = &self.phase {
             // Some devices send the abort before they answer the release. The release is then complete.
-            let trouble = trouble.clone();
-            let trouble = if is_answer { trouble } else { trouble.or(Some(ProfinetError::Aborted(status))) };
-            self.released(now, trouble);
+            let last_error = last_error.clone();
+            let last_error = if is_answer { last_error } else { last_error.or(Some(ProfinetError::Aborted(status))) };
+            self.released(now, last_error);
         } else {
-            self.lost(now, ProfinetError::Aborted(status));
+            self.handle_loss(now, ProfinetError::Aborted(status));
         }
     }
 
-    fn heard_data(&mut self, now: Now, payload: &[u8]) {
+    fn handle_data(&mut self, now: Now, payload: &[u8]) {
         let Some(io) = self.ar.as_mut().and_then(|ar| ar.io.as_mut()) else { return };
         let verdict = io.consumer.handle(now, payload);
         match (&self.phase, verdict) {
-            (Phase::WaitingForData(_), Verdict::Image(image)) => {
+            (Phase::WaitingForData(_), FrameResult::Image(image)) => {
                 self.phase = Phase::Data;
                 self.tries = 0;
                 self.view.generation = self.view.generation.wrapping_add(1);
-                self.view.trouble = None;
+                self.view.last_error = None;
                 self.view.input = Some(Input { image: image.into(), at: now, generation: self.view.generation });
                 self.show(State::Open);
             }
-            (Phase::Data, Verdict::Image(image)) => {
+            (Phase::Data, FrameResult::Image(image)) => {
                 let image = match self.view.input.take() {
                     Some(input) if *input.image == *image => input.image,
                     _ => {
@@ -435,24 +439,24 @@ impl Controller {
                 };
                 self.view.input = Some(Input { image, at: now, generation: self.view.generation });
             }
-            (Phase::Data, Verdict::Unusable(why)) => {
+            (Phase::Data, FrameResult::Unusable(why)) => {
                 // The resting image is used from now on. When the data becomes usable again, an image from before the
                 // fault must not become active automatically.
-                self.rest();
+                self.enter_resting_image();
                 self.before.losses += 1;
                 self.phase = Phase::WaitingForData(now + START);
-                self.view.trouble = Some(ProfinetError::Unusable(why));
+                self.view.last_error = Some(ProfinetError::Unusable(why));
                 self.show(State::Lost);
             }
-            (Phase::WaitingForData(_), Verdict::Unusable(why)) => {
-                self.view.trouble = Some(ProfinetError::Unusable(why));
+            (Phase::WaitingForData(_), FrameResult::Unusable(why)) => {
+                self.view.last_error = Some(ProfinetError::Unusable(why));
             }
             _ => {}
         }
     }
 
     /// Switches to the resting image, and drops the input image.
-    fn rest(&mut self) {
+    fn enter_resting_image(&mut self) {
         self.image.clone_from(&self.settings.resting);
         self.view.input = None;
     }
@@ -474,30 +478,30 @@ impl Controller {
     }
 
     /// Closes the connection with an abort message. The device does not answer an abort message.
-    fn abort(&mut self, now: Now, reason: u8, trouble: ProfinetError) {
+    fn abort(&mut self, now: Now, reason: u8, last_error: ProfinetError) {
         if let Some(io) = self.ar.as_ref().and_then(|ar| ar.io.as_ref()) {
             let error = io.alarms.error(Status::abort(reason).0);
             self.send_alarms(vec![error]);
         }
-        self.lost(now, trouble);
+        self.handle_loss(now, last_error);
     }
 
     /// Handles the end of the connection. The controller connects again, except after a close or after a failed first
     /// opening.
-    fn lost(&mut self, now: Now, trouble: ProfinetError) {
+    fn handle_loss(&mut self, now: Now, last_error: ProfinetError) {
         self.drop_ar();
-        let is_old = matches!(&trouble, ProfinetError::Refused { status, .. } if status.is_owned());
+        let is_old = matches!(&last_error, ProfinetError::Refused { status, .. } if status.is_owned());
         let wait = match self.view.generation {
-            _ if self.is_over => return self.finish(Some(trouble)),
+            _ if self.is_over => return self.finish(Some(last_error)),
             // The device still has the connection of an earlier process that was killed. That connection ends after its
             // own timeout.
             0 if is_old && self.tries < OLD_TRIES => OLD_CONNECTION,
-            0 => return self.finish(Some(trouble)),
+            0 => return self.finish(Some(last_error)),
             _ if is_old => OLD_CONNECTION,
             _ => *BACKOFF.get(self.tries).unwrap_or(&BACKOFF[BACKOFF.len() - 1]),
         };
         self.tries += 1;
-        self.view.trouble = Some(trouble);
+        self.view.last_error = Some(last_error);
         self.phase = Phase::Waiting(now + wait);
         self.show(if self.view.generation == 0 { State::Opening } else { State::Lost });
     }
@@ -509,12 +513,12 @@ impl Controller {
         }
         self.before = self.statistics();
         self.ar = None;
-        self.rest();
+        self.enter_resting_image();
     }
 
-    fn finish(&mut self, trouble: Option<ProfinetError>) {
-        if trouble.is_some() {
-            self.view.trouble = trouble;
+    fn finish(&mut self, last_error: Option<ProfinetError>) {
+        if last_error.is_some() {
+            self.view.last_error = last_error;
         }
         self.phase = Phase::Ended;
         self.show(State::Closed);

@@ -26,16 +26,16 @@ impl Controller {
     pub(super) fn connect(&mut self, now: Now, instance: u16) {
         let Some(device) = &self.device else { return };
         let (vendor, kind) = device.id;
-        let client = Client::new(rpc::object(instance, kind, vendor), self.numbers.uuid());
-        let frame_id = self.numbers.frame_id();
+        let client = Client::new(rpc::object(instance, kind, vendor), self.identifiers.uuid());
+        let frame_id = self.identifiers.frame_id();
         let input_id = match self.settings.startup {
             Startup::Advanced => frame_id,
             Startup::Legacy => frame_id - id::RT_CLASS_1.start() + id::RT_CLASS_1_LEGACY.start(),
         };
         self.ar = Some(Ar {
-            uuid: self.numbers.uuid(),
-            session_key: self.numbers.session_key(),
-            reference: self.numbers.reference(),
+            uuid: self.identifiers.uuid(),
+            session_key: self.identifiers.session_key(),
+            reference: self.identifiers.reference(),
             input_id,
             client,
             step: Step::Connect,
@@ -72,7 +72,7 @@ impl Controller {
                 sequence: 0,
                 offset: u32::MAX,
                 watchdog: self.settings.watchdog_factor(),
-                hold: self.settings.watchdog_factor(),
+                data_hold_factor: self.settings.watchdog_factor(),
                 tag: TAG_HIGH,
                 group: Mac::default(),
                 objects,
@@ -84,7 +84,7 @@ impl Controller {
                 kind: 1,
                 uuid: ar.uuid,
                 session_key: ar.session_key,
-                mac: self.here.mac,
+                mac: self.local_address.mac,
                 object: rpc::object(1, 1, u16::MAX),
                 properties,
                 activity_timeout: ACTIVITY_TIMEOUT,
@@ -93,7 +93,7 @@ impl Controller {
             }),
             iocr(1, Direction::Input, ar.input_id),
             iocr(2, Direction::Output, ANY_FRAME_ID),
-            Request::AlarmCr(AlarmCr::usual(ar.reference)),
+            Request::AlarmCr(AlarmCr::with_defaults(ar.reference)),
         ];
         let expected = layout.expected().into_iter();
         requests.extend(expected.map(|module: ExpectedModule| Request::Expected(vec![module])));
@@ -145,31 +145,31 @@ impl Controller {
         self.phase = Phase::WaitingForData(now + START);
         // Frames that arrived before ApplicationReady do not count for the watchdog.
         if let Some(io) = self.ar.as_mut().and_then(|ar| ar.io.as_mut()) {
-            io.consumer.heard = io.consumer.heard.map(|_| now);
+            io.consumer.last_frame_at = io.consumer.last_frame_at.map(|_| now);
         }
     }
 
     /// Releases the connection. `trouble` is the error that caused the release; `None` if the caller closes the
     /// connection.
-    pub(super) fn release(&mut self, now: Now, trouble: Option<ProfinetError>) {
-        self.rest();
-        let tries = match trouble {
+    pub(super) fn release(&mut self, now: Now, last_error: Option<ProfinetError>) {
+        self.enter_resting_image();
+        let tries = match last_error {
             // The device probably does not answer, so one attempt is enough.
             Some(ProfinetError::NoAnswer { .. }) => 1,
             _ => TRIES,
         };
         if self.view.state == State::Open {
-            self.before.losses += u64::from(trouble.is_some());
+            self.before.losses += u64::from(last_error.is_some());
         }
-        if let Some(trouble) = &trouble {
-            self.view.trouble = Some(trouble.clone());
+        if let Some(last_error) = &last_error {
+            self.view.last_error = Some(last_error.clone());
         }
         let state = match (self.is_over, self.view.generation) {
             (true, _) => State::Closing,
             (false, 0) => State::Opening,
             (false, _) => State::Lost,
         };
-        self.phase = Phase::Releasing(trouble);
+        self.phase = Phase::Releasing(last_error);
         self.show(state);
         let Some(ar) = &self.ar else { return };
         let block = Control::call(BlockType::RELEASE, ar.uuid, ar.session_key);
@@ -177,11 +177,11 @@ impl Controller {
     }
 
     /// Handles the end of the release.
-    pub(super) fn released(&mut self, now: Now, trouble: Option<ProfinetError>) {
+    pub(super) fn released(&mut self, now: Now, last_error: Option<ProfinetError>) {
         self.drop_ar();
-        match trouble {
-            _ if self.is_over => self.finish(trouble),
-            Some(trouble) => self.lost(now, trouble),
+        match last_error {
+            _ if self.is_over => self.finish(last_error),
+            Some(last_error) => self.handle_loss(now, last_error),
             None => self.finish(None),
         }
     }

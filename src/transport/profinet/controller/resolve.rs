@@ -13,13 +13,13 @@ use super::view::{Device, State, Step};
 use super::{Action, Controller, Phase};
 
 /// Time limit per attempt. The constant below is the number of attempts.
-const PATIENCE: Duration = Duration::from_secs(1);
+const ATTEMPT_TIMEOUT: Duration = Duration::from_secs(1);
 const TRIES: u32 = 3;
 /// Waiting time after the first answer, in which a second device with the same name can answer.
-const TWIN: Duration = Duration::from_millis(250);
+const DUPLICATE_WINDOW: Duration = Duration::from_millis(250);
 /// Interval of the checks whether an address is active. The constant below is the time limit of these checks.
-const LOOK: Duration = Duration::from_millis(100);
-const SETTLE: Duration = Duration::from_secs(5);
+const CHECK_INTERVAL: Duration = Duration::from_millis(100);
+const SETTLE_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// State of the search for the device.
 #[derive(Debug)]
@@ -27,11 +27,11 @@ pub(super) struct Search {
     xid: u32,
     tries: u32,
     until: Now,
-    found: Option<Found>,
+    found: Option<ResolvedStation>,
 }
 
 #[derive(Debug, Clone)]
-struct Found {
+struct ResolvedStation {
     mac: Mac,
     station: dcp::Station,
 }
@@ -45,13 +45,13 @@ impl Search {
 /// State of the assignment of an IP address.
 #[derive(Debug)]
 pub(super) struct Address {
-    found: Found,
+    found: ResolvedStation,
     suite: IpSuite,
     xid: u32,
     tries: u32,
     until: Now,
     /// Time limit for the address to become active; `None` before the answer to Set.
-    settle: Option<Now>,
+    active_until: Option<Now>,
 }
 
 impl Address {
@@ -67,8 +67,8 @@ impl Controller {
             self.show(State::Opening);
         }
         self.set_step(Step::Resolve);
-        let xid = self.numbers.xid();
-        self.phase = Phase::Resolve(Search { xid, tries: TRIES - 1, until: now + PATIENCE, found: None });
+        let xid = self.identifiers.xid();
+        self.phase = Phase::Resolve(Search { xid, tries: TRIES - 1, until: now + ATTEMPT_TIMEOUT, found: None });
         self.ask_who(xid);
     }
 
@@ -82,7 +82,7 @@ impl Controller {
 
     fn send_dcp(&mut self, destination: Mac, frame_id: u16, dcp: &Dcp) {
         let payload = dcp.emit();
-        let frame = Frame { destination, source: self.here.mac, tag: None, id: frame_id, payload: &payload };
+        let frame = Frame { destination, source: self.local_address.mac, tag: None, id: frame_id, payload: &payload };
         self.actions.push_back(Action::Frame(frame.emit()));
     }
 
@@ -92,35 +92,35 @@ impl Controller {
         if let Some(found) = search.found.take() {
             self.found(now, found);
         } else if search.tries == 0 {
-            self.lost(now, ProfinetError::NotFound { station: self.station(), after: PATIENCE * TRIES });
+            self.handle_loss(now, ProfinetError::NotFound { station: self.station(), after: ATTEMPT_TIMEOUT * TRIES });
         } else {
             search.tries -= 1;
-            search.until = now + PATIENCE;
+            search.until = now + ATTEMPT_TIMEOUT;
             let xid = search.xid;
             self.ask_who(xid);
         }
     }
 
-    fn found(&mut self, now: Now, found: Found) {
+    fn found(&mut self, now: Now, found: ResolvedStation) {
         let has = found.station.address();
         match self.settings.ip {
             Some(suite) if has != Some(suite.address) => self.set_address(now, found, suite),
             _ => match has {
-                None => self.lost(now, ProfinetError::NoAddress { station: self.station() }),
-                Some(address) => self.located(now, &found, address),
+                None => self.handle_loss(now, ProfinetError::NoAddress { station: self.station() }),
+                Some(address) => self.end_search(now, &found, address),
             },
         }
     }
 
-    fn set_address(&mut self, now: Now, found: Found, suite: IpSuite) {
-        if !self.here.ip.reaches(suite.address) {
-            let (station, device, here) = (self.station(), suite.address, self.here.ip.address);
-            return self.lost(now, ProfinetError::OtherNetwork { station, device, here });
+    fn set_address(&mut self, now: Now, found: ResolvedStation, suite: IpSuite) {
+        if !self.local_address.ip.is_same_network(suite.address) {
+            let (station, device, local_address) = (self.station(), suite.address, self.local_address.ip.address);
+            return self.handle_loss(now, ProfinetError::OtherNetwork { station, device, local_address });
         }
         self.set_step(Step::Address);
-        let xid = self.numbers.xid();
+        let xid = self.identifiers.xid();
         let mac = found.mac;
-        let address = Address { found, suite, xid, tries: TRIES - 1, until: now + PATIENCE, settle: None };
+        let address = Address { found, suite, xid, tries: TRIES - 1, until: now + ATTEMPT_TIMEOUT, active_until: None };
         self.phase = Phase::Address(address);
         self.send_set(mac, xid, &suite);
     }
@@ -132,27 +132,27 @@ impl Controller {
 
     /// Continues after a time limit: repeats a Set that was not answered, or checks whether the address is active.
     pub(super) fn address_on(&mut self, now: Now) {
-        const WHAT: &str = "DCP Set IP";
+        const SERVICE_NAME: &str = "DCP Set IP";
         let Phase::Address(address) = &mut self.phase else { return };
         let (mac, suite) = (address.found.mac, address.suite);
-        match address.settle {
+        match address.active_until {
             Some(until) if until <= now => {
-                self.lost(now, ProfinetError::NoAnswer { what: WHAT, after: SETTLE });
+                self.handle_loss(now, ProfinetError::NoAnswer { what: SERVICE_NAME, after: SETTLE_TIMEOUT });
             }
             Some(_) => {
-                address.until = now + LOOK;
-                let xid = self.numbers.xid();
+                address.until = now + CHECK_INTERVAL;
+                let xid = self.identifiers.xid();
                 if let Phase::Address(address) = &mut self.phase {
                     address.xid = xid;
                 }
                 self.ask_who(xid);
             }
             None if address.tries == 0 => {
-                self.lost(now, ProfinetError::NoAnswer { what: WHAT, after: PATIENCE * TRIES });
+                self.handle_loss(now, ProfinetError::NoAnswer { what: SERVICE_NAME, after: ATTEMPT_TIMEOUT * TRIES });
             }
             None => {
                 address.tries -= 1;
-                address.until = now + PATIENCE;
+                address.until = now + ATTEMPT_TIMEOUT;
                 let xid = address.xid;
                 self.send_set(mac, xid, &suite);
             }
@@ -160,8 +160,8 @@ impl Controller {
     }
 
     /// Handles a DCP frame that may be an answer.
-    pub(super) fn heard_dcp(&mut self, now: Now, frame: &Frame<'_>) {
-        if frame.destination != self.here.mac {
+    pub(super) fn handle_dcp(&mut self, now: Now, frame: &Frame<'_>) {
+        if frame.destination != self.local_address.mac {
             return;
         }
         let Ok(dcp) = Dcp::parse(frame.payload) else { return };
@@ -188,26 +188,28 @@ impl Controller {
         match &mut self.phase {
             Phase::Resolve(search) if dcp.xid == search.xid => match &search.found {
                 // A MAC address is unique, so the search for a second device is not needed.
-                None if matches!(self.settings.station, Station::Mac(_)) => self.found(now, Found { mac, station }),
+                None if matches!(self.settings.station, Station::Mac(_)) => {
+                    self.found(now, ResolvedStation { mac, station });
+                }
                 None => {
-                    search.found = Some(Found { mac, station });
-                    search.until = now + TWIN;
+                    search.found = Some(ResolvedStation { mac, station });
+                    search.until = now + DUPLICATE_WINDOW;
                 }
                 Some(first) if first.mac != mac => {
                     let cards = (first.mac, mac);
-                    self.lost(now, ProfinetError::Duplicate { station: self.station(), cards });
+                    self.handle_loss(now, ProfinetError::Duplicate { station: self.station(), cards });
                 }
                 Some(_) => {}
             },
             Phase::Address(address)
-                if address.settle.is_some()
+                if address.active_until.is_some()
                     && dcp.xid == address.xid
                     && mac == address.found.mac
                     && station.address() == Some(address.suite.address) =>
             {
-                let found = Found { mac, station };
+                let found = ResolvedStation { mac, station };
                 let address = address.suite.address;
-                self.located(now, &found, address);
+                self.end_search(now, &found, address);
             }
             _ => {}
         }
@@ -216,30 +218,30 @@ impl Controller {
     fn was_set(&mut self, now: Now, mac: Mac, dcp: &Dcp) {
         // The Xid (transaction id) is not checked, because some devices do not copy it into this answer.
         let Phase::Address(address) = &mut self.phase else { return };
-        if mac != address.found.mac || address.settle.is_some() {
+        if mac != address.found.mac || address.active_until.is_some() {
             return;
         }
         let outcome = dcp.outcomes().into_iter().find(|(setting, _)| *setting == Setting::IP);
         let error = if dcp.kind == Kind::Unsupported { Some(1) } else { outcome.map(|(_, error)| error) };
         match error {
             Some(0) => {
-                address.settle = Some(now + SETTLE);
-                address.until = now + LOOK;
+                address.active_until = Some(now + SETTLE_TIMEOUT);
+                address.until = now + CHECK_INTERVAL;
             }
-            Some(error) => self.lost(now, ProfinetError::Dcp { what: "DCP Set IP", error }),
+            Some(error) => self.handle_loss(now, ProfinetError::Dcp { what: "DCP Set IP", error }),
             None => {}
         }
     }
 
     /// Continues with the opening, because the device was found and has its address.
-    fn located(&mut self, now: Now, found: &Found, address: Ipv4Addr) {
+    fn end_search(&mut self, now: Now, found: &ResolvedStation, address: Ipv4Addr) {
         let station = self.station();
         if found.station.ip.is_some_and(|(_, origin)| origin.is_in_conflict()) {
-            return self.lost(now, ProfinetError::AddressConflict { station, address });
+            return self.handle_loss(now, ProfinetError::AddressConflict { station, address });
         }
-        let here = self.here.ip.address;
-        if !self.here.ip.reaches(address) || address == here {
-            return self.lost(now, ProfinetError::OtherNetwork { station, device: address, here });
+        let local_address = self.local_address.ip.address;
+        if !self.local_address.ip.is_same_network(address) || address == local_address {
+            return self.handle_loss(now, ProfinetError::OtherNetwork { station, device: address, local_address });
         }
         let id = found.station.id.unwrap_or_default();
         let instance = found.station.instance.unwrap_or(1);

@@ -11,7 +11,7 @@ struct Channel {
     /// Number of DATA frames that were sent. The field below is the number of DATA frames that were accepted.
     sent: u16,
     taken: u16,
-    on_its_way: Option<(Notification, Now, u16)>,
+    is_in_flight: Option<(Notification, Now, u16)>,
     /// Whether the frame was acknowledged, but not yet the alarm in the frame.
     is_framed: bool,
     waiting: Vec<Notification>,
@@ -20,8 +20,8 @@ struct Channel {
 /// Both channels of a connection.
 #[derive(Debug)]
 pub(super) struct Alarms {
-    ours: u16,
-    theirs: u16,
+    local_reference: u16,
+    remote_reference: u16,
     timeout: Duration,
     retries: u16,
     channels: [Channel; 2],
@@ -29,7 +29,7 @@ pub(super) struct Alarms {
 
 /// Result of a received frame.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Heard {
+pub(super) enum AlarmEvent {
     Nothing,
     /// An alarm was acknowledged. Contains the frames to send, and the alarm.
     Noted(Vec<Vec<u8>>, Notification),
@@ -55,14 +55,14 @@ const fn next(count: u16) -> u16 {
 }
 
 impl Alarms {
-    pub(super) fn new(ours: u16, theirs: u16, timeout: Duration, retries: u16) -> Self {
-        Self { ours, theirs, timeout, retries, channels: Default::default() }
+    pub(super) fn new(local_reference: u16, remote_reference: u16, timeout: Duration, retries: u16) -> Self {
+        Self { local_reference, remote_reference, timeout, retries, channels: Default::default() }
     }
 
     fn frame(&self, priority: Priority, pdu: Pdu) -> Vec<u8> {
         let channel = &self.channels[usize::from(priority == Priority::Low)];
         let (sequence, acknowledged) = (number(channel.sent), number(channel.taken));
-        Rta { destination: self.theirs, source: self.ours, sequence, acknowledged, pdu }.emit()
+        Rta { destination: self.remote_reference, source: self.local_reference, sequence, acknowledged, pdu }.emit()
     }
 
     pub(super) fn error(&self, status: u32) -> Vec<u8> {
@@ -73,18 +73,18 @@ impl Alarms {
         let priority = alarm.priority;
         let timeout = self.timeout;
         let channel = &mut self.channels[usize::from(priority == Priority::Low)];
-        if channel.on_its_way.is_some() {
+        if channel.is_in_flight.is_some() {
             channel.waiting.push(alarm.clone());
             return None;
         }
         channel.sent = next(channel.sent);
         channel.is_framed = false;
-        channel.on_its_way = Some((alarm.clone(), now + timeout, 0));
+        channel.is_in_flight = Some((alarm.clone(), now + timeout, 0));
         Some(self.frame(priority, Pdu::Data(alarm.emit())))
     }
 
     pub(super) fn wake(&self) -> Option<Now> {
-        self.channels.iter().filter_map(|channel| channel.on_its_way.as_ref()).map(|(_, due, _)| *due).min()
+        self.channels.iter().filter_map(|channel| channel.is_in_flight.as_ref()).map(|(_, due, _)| *due).min()
     }
 
     /// Repeats unacknowledged frames. Returns `None` if a frame is still unacknowledged after its last repetition.
@@ -92,7 +92,7 @@ impl Alarms {
         let mut out = Vec::new();
         for (at, priority) in Priority::ALL.into_iter().enumerate() {
             let (retries, timeout) = (self.retries, self.timeout);
-            let Some((alarm, due, tries)) = &mut self.channels[at].on_its_way else { continue };
+            let Some((alarm, due, tries)) = &mut self.channels[at].is_in_flight else { continue };
             if *due > now {
                 continue;
             }
@@ -107,37 +107,37 @@ impl Alarms {
         Some(out)
     }
 
-    pub(super) fn handle(&mut self, now: Now, priority: Priority, payload: &[u8]) -> Heard {
-        let Ok(rta) = Rta::parse(payload) else { return Heard::Wrong };
-        if (rta.destination, rta.source) != (self.ours, self.theirs) {
-            return Heard::Wrong;
+    pub(super) fn handle(&mut self, now: Now, priority: Priority, payload: &[u8]) -> AlarmEvent {
+        let Ok(rta) = Rta::parse(payload) else { return AlarmEvent::Wrong };
+        if (rta.destination, rta.source) != (self.local_reference, self.remote_reference) {
+            return AlarmEvent::Wrong;
         }
         let channel = &mut self.channels[usize::from(priority == Priority::Low)];
         match rta.pdu {
-            Pdu::Error(status) => Heard::Ended(status),
-            Pdu::Nack => Heard::Nothing,
+            Pdu::Error(status) => AlarmEvent::Ended(status),
+            Pdu::Nack => AlarmEvent::Nothing,
             Pdu::Ack => {
                 channel.is_framed |= rta.acknowledged == number(channel.sent);
-                Heard::Nothing
+                AlarmEvent::Nothing
             }
             Pdu::Data(data) => {
                 if rta.sequence == number(channel.taken) && channel.taken > 0 {
-                    return Heard::Again(self.frame(priority, Pdu::Ack));
+                    return AlarmEvent::Again(self.frame(priority, Pdu::Ack));
                 }
-                let Ok(noted) = Acknowledgement::parse(&data) else { return Heard::Wrong };
+                let Ok(noted) = Acknowledgement::parse(&data) else { return AlarmEvent::Wrong };
                 let is_next = rta.sequence == number(next(channel.taken));
                 let is_framed = channel.is_framed || rta.acknowledged == number(channel.sent);
-                let Some((alarm, ..)) = channel.on_its_way.take_if(|(alarm, ..)| alarm.acknowledge() == noted) else {
-                    return Heard::Wrong;
+                let Some((alarm, ..)) = channel.is_in_flight.take_if(|(alarm, ..)| alarm.acknowledge() == noted) else {
+                    return AlarmEvent::Wrong;
                 };
                 if !is_next || !is_framed {
-                    return Heard::Wrong;
+                    return AlarmEvent::Wrong;
                 }
                 channel.taken = next(channel.taken);
                 let waiting = (!channel.waiting.is_empty()).then(|| channel.waiting.remove(0));
                 let mut out = vec![self.frame(priority, Pdu::Ack)];
                 out.extend(waiting.and_then(|alarm| self.raise(now, &alarm)));
-                Heard::Noted(out, alarm)
+                AlarmEvent::Noted(out, alarm)
             }
         }
     }

@@ -13,12 +13,12 @@ use super::super::wire::frame::TAG_HIGH;
 use super::super::wire::rpc::{self, Call, Datagram, Header, Kind, PORT, operation};
 use super::super::wire::status::Status;
 use super::super::wire::{ByteOrder, Mac, Uuid, block};
-use super::alarms::{Alarms, Heard};
+use super::alarms::{AlarmEvent, Alarms};
 use super::{Action, Application, Device, Event, Fault};
 
 /// Number of attempts of ApplicationReady. The constant below is the time limit of each attempt.
 const READY_TRIES: u32 = 3;
-const READY_PATIENCE: Duration = Duration::from_secs(2);
+const READY_TIMEOUT: Duration = Duration::from_secs(2);
 /// Unit of the cycle counter: 31.25 us.
 const UNIT: Duration = Duration::from_nanos(31_250);
 /// Reason codes of aborts by the device.
@@ -29,7 +29,7 @@ const WRONG_FRAME: u8 = 0x0C;
 const READY_UNANSWERED: u8 = 0x18;
 const ABORTED: u8 = 0x0D;
 /// Time from the start of a connection until a fault happens that occurs once per connection.
-const TROUBLE: Duration = Duration::from_secs(1);
+const FAULT_DELAY: Duration = Duration::from_secs(1);
 /// Structure identifier of a channel diagnosis. The constant below is a diagnosis "line break" for the whole submodule.
 const CHANNEL: u16 = 0x8000;
 const LINE_BREAK: [u8; 6] = [0x80, 0, 0x28, 0, 0, 6];
@@ -38,7 +38,7 @@ const APPEARS: u16 = 0xA800;
 
 /// Stage of the connection.
 #[derive(Debug)]
-pub(super) enum Stage {
+pub(super) enum ArState {
     /// The device waits for the next call of the controller until this time.
     Parameters(Now),
     /// ApplicationReady was called. `due` is the time of the next attempt, `tries` the number of attempts left, and
@@ -59,20 +59,20 @@ pub(super) struct Ar {
     pub(super) input: Iocr,
     pub(super) output: Iocr,
     pub(super) alarms: Alarms,
-    pub(super) stage: Stage,
+    pub(super) ar_state: ArState,
     pub(super) activity_timeout: Duration,
     pub(super) due: Now,
     pub(super) counter: u16,
     /// Time of a fault that happens once per connection. `None` if there is no such fault, or if it has already
     /// happened.
-    pub(super) trouble: Option<Now>,
+    pub(super) last_error: Option<Now>,
     /// Cycle counter of the last frame from the controller, and its time.
     pub(super) heard: Option<(u16, Now)>,
 }
 
 impl Ar {
     pub(super) const fn is_running(&self) -> bool {
-        matches!(self.stage, Stage::Running)
+        matches!(self.ar_state, ArState::Running)
     }
 
     fn cycle(iocr: &Iocr) -> Duration {
@@ -87,22 +87,22 @@ impl Ar {
     }
 
     pub(super) fn wake(&self) -> Now {
-        let stage = match self.stage {
-            Stage::Parameters(until) => Some(until),
-            Stage::Ready { due, .. } => Some(due),
-            Stage::Running => None,
+        let ar_state = match self.ar_state {
+            ArState::Parameters(until) => Some(until),
+            ArState::Ready { due, .. } => Some(due),
+            ArState::Running => None,
         };
-        [stage, self.alarms.wake(), self.watchdog(), self.trouble].into_iter().flatten().fold(self.due, Now::min)
+        [ar_state, self.alarms.wake(), self.watchdog(), self.last_error].into_iter().flatten().fold(self.due, Now::min)
     }
 }
 
 impl<A: Application> Device<A> {
     pub(super) fn tick_ar(&mut self, now: Now) {
         let Some(ar) = &mut self.ar else { return };
-        match &ar.stage {
-            Stage::Parameters(until) if *until <= now => return self.abort(now, ACTIVITY),
-            Stage::Ready { due, tries: 0, .. } if *due <= now => return self.abort(now, READY_UNANSWERED),
-            Stage::Ready { due, .. } if *due <= now => self.call_ready(now),
+        match &ar.ar_state {
+            ArState::Parameters(until) if *until <= now => return self.abort(now, ACTIVITY),
+            ArState::Ready { due, tries: 0, .. } if *due <= now => return self.abort(now, READY_UNANSWERED),
+            ArState::Ready { due, .. } if *due <= now => self.call_ready(now),
             _ => {}
         }
         let Some(ar) = &mut self.ar else { return };
@@ -111,7 +111,7 @@ impl<A: Application> Device<A> {
         }
         let Some(repeats) = ar.alarms.poll(now) else { return self.abort(now, ALARM_LOST) };
         let is_due = ar.due <= now;
-        let is_trouble = ar.trouble.take_if(|at| *at <= now).is_some();
+        let is_trouble = ar.last_error.take_if(|at| *at <= now).is_some();
         for (priority, payload) in repeats {
             self.send_alarm(priority, &payload);
         }
@@ -119,12 +119,12 @@ impl<A: Application> Device<A> {
             self.send_data(now);
         }
         if is_trouble {
-            self.make_trouble(now);
+            self.inject_fault(now);
         }
     }
 
     /// Executes a fault that happens once per connection.
-    fn make_trouble(&mut self, now: Now) {
+    fn inject_fault(&mut self, now: Now) {
         match self.fault {
             Some(Fault::Diagnosis) => {
                 let first = self.setup.layout.submodules().iter().find(|submodule| submodule.slot > 0).copied();
@@ -155,7 +155,7 @@ impl<A: Application> Device<A> {
         }
         let mut data = vec![0; usize::from(ar.input.length)];
         // The provider status is good from the time when the device is ready.
-        let is_good = ar.is_running() || matches!(ar.stage, Stage::Ready { .. });
+        let is_good = ar.is_running() || matches!(ar.ar_state, ArState::Ready { .. });
         let good = |is_good: bool| if is_good { GOOD } else { 0 };
         let mut rest = &self.image[..];
         for place in &ar.input.objects {
@@ -187,7 +187,7 @@ impl<A: Application> Device<A> {
         }
     }
 
-    pub(super) fn heard_data(&mut self, now: Now, frame_id: u16, payload: &[u8]) {
+    pub(super) fn handle_data(&mut self, now: Now, frame_id: u16, payload: &[u8]) {
         let Some(ar) = &mut self.ar else { return };
         if frame_id != ar.output.frame_id {
             return;
@@ -215,28 +215,28 @@ impl<A: Application> Device<A> {
         self.application.image_out(now, is_valid.then_some(&image[..]));
     }
 
-    pub(super) fn heard_alarm(&mut self, now: Now, priority: Priority, payload: &[u8]) {
+    pub(super) fn handle_alarm(&mut self, now: Now, priority: Priority, payload: &[u8]) {
         let Some(ar) = &mut self.ar else { return };
         match ar.alarms.handle(now, priority, payload) {
-            Heard::Nothing => {}
-            Heard::Noted(out, alarm) => {
+            AlarmEvent::Nothing => {}
+            AlarmEvent::Noted(out, alarm) => {
                 for payload in out {
                     self.send_alarm(priority, &payload);
                 }
                 self.application.event(now, &Event::AlarmNoted(alarm));
             }
-            Heard::Again(payload) => self.send_alarm(priority, &payload),
-            Heard::Ended(status) => self.drop_ar(now, Some(Status(status))),
-            Heard::Wrong => self.abort(now, WRONG_FRAME),
+            AlarmEvent::Again(payload) => self.send_alarm(priority, &payload),
+            AlarmEvent::Ended(status) => self.drop_ar(now, Some(Status(status))),
+            AlarmEvent::Wrong => self.abort(now, WRONG_FRAME),
         }
     }
 
     /// Calls ApplicationReady, or repeats the call with the same bytes.
     pub(super) fn call_ready(&mut self, now: Now) {
         let Some(ar) = &mut self.ar else { return };
-        let Stage::Ready { due, tries, sequence } = &mut ar.stage else { return };
+        let ArState::Ready { due, tries, sequence } = &mut ar.ar_state else { return };
         *tries = tries.saturating_sub(1);
-        *due = now + READY_PATIENCE;
+        *due = now + READY_TIMEOUT;
         let header = Header {
             kind: Kind::REQUEST,
             flags: rpc::flag::IDEMPOTENT,
@@ -261,12 +261,12 @@ impl<A: Application> Device<A> {
         if self.fault == Some(Fault::NeverReady) {
             // Because of the fault, the device never calls ApplicationReady, and its activity timeout is off.
             if let Some(ar) = &mut self.ar {
-                ar.stage = Stage::Parameters(Now::MAX);
+                ar.ar_state = ArState::Parameters(Now::MAX);
             }
             return;
         }
         if let Some(ar) = &mut self.ar {
-            ar.stage = Stage::Ready { due: now, tries: READY_TRIES, sequence: 0 };
+            ar.ar_state = ArState::Ready { due: now, tries: READY_TRIES, sequence: 0 };
         }
         self.call_ready(now);
     }
@@ -275,7 +275,7 @@ impl<A: Application> Device<A> {
     pub(super) fn ready_answered(&mut self, now: Now, datagram: &Datagram<'_>) {
         let Some(ar) = &mut self.ar else { return };
         let header = &datagram.header;
-        let Stage::Ready { sequence, .. } = ar.stage else { return };
+        let ArState::Ready { sequence, .. } = ar.ar_state else { return };
         if (header.activity, header.sequence) != (ar.activity, sequence) {
             return;
         }
@@ -284,8 +284,8 @@ impl<A: Application> Device<A> {
         let control = blocks.first().map(Control::parse);
         let done = Control::call(BlockType::APPLICATION_READY, ar.uuid, ar.session_key).answer();
         if reply.status == 0 && control == Some(Ok(done)) {
-            ar.stage = Stage::Running;
-            ar.trouble = Some(now + TROUBLE);
+            ar.ar_state = ArState::Running;
+            ar.last_error = Some(now + FAULT_DELAY);
             self.application.event(now, &Event::Ready);
         }
     }

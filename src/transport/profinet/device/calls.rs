@@ -12,8 +12,8 @@ use super::super::wire::rpc::{self, Call, Datagram, Header, Reply, operation};
 use super::super::wire::status::Status;
 use super::super::wire::{ByteOrder, Uuid};
 use super::alarms::Alarms;
-use super::ar::{Ar, Stage};
-use super::{Action, Application, Device, Event, Fault, MOST_ANSWERS, checks};
+use super::ar::{Ar, ArState};
+use super::{Action, Application, Device, Event, Fault, MAX_ANSWERS, checks};
 use crate::refuse_if;
 
 /// Alarm reference of the device.
@@ -21,7 +21,7 @@ const ALARM_REFERENCE: u16 = 0;
 /// Ident number of the module that the device has with [`Fault::WrongModule`].
 pub(super) const WRONG_MODULE: u32 = 0x40;
 /// Address from which the device answers with [`Fault::Foreign`].
-const ELSEWHERE: Ipv4Addr = Ipv4Addr::new(192, 0, 2, 1);
+const FOREIGN_ADDRESS: Ipv4Addr = Ipv4Addr::new(192, 0, 2, 1);
 
 const CONNECT: u8 = 0xDB;
 const RELEASE: u8 = 0xDC;
@@ -80,20 +80,20 @@ impl<A: Application> Device<A> {
         }
         let header = Header { order: ByteOrder::Big, ..header.answer() };
         let bytes = Datagram { header, body: &body }.emit();
-        if self.answers.len() == MOST_ANSWERS {
+        if self.answers.len() == MAX_ANSWERS {
             self.answers.pop_front();
         }
         self.answers.push_back((header, from, bytes.clone()));
         self.actions.push_back(Action::Datagram(from, bytes));
         let is_prm_end = header.operation == operation::CONTROL && answer.is_ok();
-        if is_prm_end && self.ar.as_ref().is_some_and(|ar| matches!(ar.stage, Stage::Parameters(_))) {
+        if is_prm_end && self.ar.as_ref().is_some_and(|ar| matches!(ar.ar_state, ArState::Parameters(_))) {
             self.get_ready(now);
         }
     }
 
     /// Address from which the device answers; `None` if it is the address of the device.
     pub fn answers_from(&self) -> Option<Ipv4Addr> {
-        (self.fault == Some(Fault::Foreign)).then_some(ELSEWHERE)
+        (self.fault == Some(Fault::Foreign)).then_some(FOREIGN_ADDRESS)
     }
 
     fn connect(&mut self, now: Now, from: SocketAddrV4, blocks: &[u8]) -> Answer {
@@ -112,7 +112,7 @@ impl<A: Application> Device<A> {
             Response::Ar { uuid: ar.uuid, session_key: ar.session_key, mac: self.setup.mac },
             Response::Iocr { kind: 1, reference: accepted.input.reference, frame_id: accepted.input.frame_id },
             Response::Iocr { kind: 2, reference: accepted.output.reference, frame_id: accepted.output.frame_id },
-            Response::AlarmCr { reference: ALARM_REFERENCE, most: 200 },
+            Response::AlarmCr { reference: ALARM_REFERENCE, max_len: 200 },
         ];
         responses.extend(self.difference());
         if ar.properties & 0x4000_0000 != 0 {
@@ -130,11 +130,11 @@ impl<A: Application> Device<A> {
             input: accepted.input,
             output: accepted.output,
             alarms: Alarms::new(ALARM_REFERENCE, accepted.alarm.reference, timeout, accepted.alarm.retries),
-            stage: Stage::Parameters(now + activity_timeout),
+            ar_state: ArState::Parameters(now + activity_timeout),
             activity_timeout,
             due: now,
             counter: 0,
-            trouble: None,
+            last_error: None,
             heard: None,
         });
         self.application.event(now, &Event::Connected(*from.ip()));
@@ -160,7 +160,7 @@ impl<A: Application> Device<A> {
         refuse_if(control != Control::call(control.kind, ar.uuid, ar.session_key), status(0x14, 8))?;
         match (code, control.kind) {
             (RELEASE, BlockType::RELEASE) => self.drop_ar(now, None),
-            (CONTROL, BlockType::PRM_END) if matches!(ar.stage, Stage::Parameters(_)) => {}
+            (CONTROL, BlockType::PRM_END) if matches!(ar.ar_state, ArState::Parameters(_)) => {}
             (CONTROL, BlockType::PRM_END) => return Err(status(0x3D, 0)),
             _ => return Err(status(0x14, 0)),
         }
@@ -199,7 +199,7 @@ impl<A: Application> Device<A> {
         let status = |code1, code2| Status::new(WRITE, 0x81, code1, code2);
         let (outer, parameters) = record::parse_write(blocks).map_err(|_| status(CMRPC, 0))?;
         let Some(ar) = self.ar.as_mut().filter(|ar| ar.uuid == outer.ar) else { return Err(status(CMRPC, 5)) };
-        if let Stage::Parameters(until) = &mut ar.stage {
+        if let ArState::Parameters(until) = &mut ar.ar_state {
             *until = now + ar.activity_timeout;
         }
         refuse_if(parameters.is_empty(), Status::new(WRITE, 0x80, 0xB1, 0))?;

@@ -8,7 +8,7 @@ use super::super::wire::{Uuid, dcp};
 
 /// An accepted Connect.
 #[derive(Debug)]
-pub(super) struct Accepted {
+pub(super) struct AcceptedConnect {
     pub(super) ar: Ar,
     pub(super) input: Iocr,
     pub(super) output: Iocr,
@@ -24,17 +24,17 @@ const UNKNOWN_BLOCKS: u8 = 1;
 const IOCR_MISSING: u8 = 2;
 const ALARMS_MISSING: u8 = 3;
 /// Maximum of the watchdog time and of the data hold time, in units of 31.25 us.
-const LONGEST_WATCHDOG: u64 = 61_440;
+const MAX_WATCHDOG: u64 = 61_440;
 
-fn no(block: u8, field: u8) -> Result<(), Status> {
+fn reject(block: u8, field: u8) -> Result<(), Status> {
     Err(Status::new(0xDB, 0x81, block, field))
 }
 
 fn check(is_good: bool, block: u8, field: u8) -> Result<(), Status> {
-    if is_good { Ok(()) } else { no(block, field) }
+    if is_good { Ok(()) } else { reject(block, field) }
 }
 
-pub(super) fn connect(requests: Vec<Request>, layout: &Layout, shortest: u16) -> Result<Accepted, Status> {
+pub(super) fn connect(requests: Vec<Request>, layout: &Layout, shortest: u16) -> Result<AcceptedConnect, Status> {
     let mut ar = None;
     let mut iocrs = Vec::new();
     let mut alarms = Vec::new();
@@ -61,7 +61,7 @@ pub(super) fn connect(requests: Vec<Request>, layout: &Layout, shortest: u16) ->
     check(input.frame_id != output.frame_id, IOCR, 9)?;
     alarm_cr(&alarm)?;
     expected(&modules, layout)?;
-    Ok(Accepted { ar, input, output, alarm })
+    Ok(AcceptedConnect { ar, input, output, alarm })
 }
 
 fn connection(ar: &Ar) -> Result<(), Status> {
@@ -85,7 +85,7 @@ fn data(iocr: &Iocr, kind: u16, is_legacy: bool, shortest: u16, layout: &Layout)
     let range = match iocr.properties {
         1 if is_legacy => id::RT_CLASS_1_LEGACY,
         2 => id::RT_CLASS_1,
-        _ => return no(IOCR, 7),
+        _ => return reject(IOCR, 7),
     };
     check((40..=1440).contains(&iocr.length), IOCR, 8)?;
     let is_any = kind == 2 && iocr.frame_id == ANY_FRAME_ID;
@@ -96,9 +96,9 @@ fn data(iocr: &Iocr, kind: u16, is_legacy: bool, shortest: u16, layout: &Layout)
     check(iocr.ratio.is_power_of_two() && iocr.ratio <= 512 && is_fast_enough, IOCR, 0x0B)?;
     check((1..=iocr.ratio).contains(&iocr.phase), IOCR, 0x0C)?;
     check(iocr.offset == u32::MAX, IOCR, 0x0E)?;
-    let bounded = |factor: u16| factor >= 3 && u64::from(factor) * u64::from(cycle) <= LONGEST_WATCHDOG;
+    let bounded = |factor: u16| factor >= 3 && u64::from(factor) * u64::from(cycle) <= MAX_WATCHDOG;
     check(bounded(iocr.watchdog), IOCR, 0x0F)?;
-    check(bounded(iocr.hold), IOCR, 0x10)?;
+    check(bounded(iocr.data_hold_factor), IOCR, 0x10)?;
     check(iocr.tag == TAG_HIGH, IOCR, 0x11)?;
     check(iocr.group.0 == [0; 6], IOCR, 0x12)?;
     places(iocr, layout)
@@ -117,25 +117,25 @@ fn places(iocr: &Iocr, layout: &Layout) -> Result<(), Status> {
                 bytes.fill(true);
                 Ok(())
             }
-            None => no(IOCR, field),
+            None => reject(IOCR, field),
         }
     };
     let known = |place: &Offset| layout.find(place.slot, place.subslot);
     for place in &iocr.objects {
-        let Some(submodule) = known(place).filter(|submodule| submodule.provides(direction)) else {
-            return no(IOCR, 0x16);
+        let Some(submodule) = known(place).filter(|submodule| submodule.has_data(direction)) else {
+            return reject(IOCR, 0x16);
         };
         take(place, submodule.length(direction) + 1, 0x18)?;
     }
     for place in &iocr.consumers {
-        if known(place).is_none_or(|submodule| !submodule.provides(direction.other())) {
-            return no(IOCR, 0x1A);
+        if known(place).is_none_or(|submodule| !submodule.has_data(direction.opposite())) {
+            return reject(IOCR, 0x1A);
         }
         take(place, 1, 0x1C)?;
     }
-    let count = |direction| layout.submodules().iter().filter(|submodule| submodule.provides(direction)).count();
+    let count = |direction| layout.submodules().iter().filter(|submodule| submodule.has_data(direction)).count();
     check(iocr.objects.len() == count(direction), IOCR, 0x15)?;
-    check(iocr.consumers.len() == count(direction.other()), IOCR, 0x19)
+    check(iocr.consumers.len() == count(direction.opposite()), IOCR, 0x19)
 }
 
 fn alarm_cr(alarm: &AlarmCr) -> Result<(), Status> {
@@ -144,7 +144,7 @@ fn alarm_cr(alarm: &AlarmCr) -> Result<(), Status> {
     check(alarm.properties == 0, ALARM, 6)?;
     check((1..=100).contains(&alarm.timeout), ALARM, 7)?;
     check((3..=15).contains(&alarm.retries), ALARM, 8)?;
-    check((200..=1432).contains(&alarm.most), ALARM, 0x0A)?;
+    check((200..=1432).contains(&alarm.max_len), ALARM, 0x0A)?;
     check(alarm.tags.0 == TAG_HIGH, ALARM, 0x0B)?;
     check(alarm.tags.1 == TAG_LOW, ALARM, 0x0C)
 }
@@ -155,10 +155,10 @@ fn expected(modules: &[ExpectedModule], layout: &Layout) -> Result<(), Status> {
     for module in modules {
         check(module.api == 0, EXPECTED, 5)?;
         let found = own.iter().find(|own| own.slot == module.slot);
-        let Some(found) = found.filter(|own| own.ident == module.ident) else { return no(EXPECTED, 4) };
+        let Some(found) = found.filter(|own| own.ident == module.ident) else { return reject(EXPECTED, 4) };
         for submodule in &module.submodules {
             let own = found.submodules.iter().find(|own| own.subslot == submodule.subslot);
-            let Some(own) = own.filter(|own| own.ident == submodule.ident) else { return no(EXPECTED, 6) };
+            let Some(own) = own.filter(|own| own.ident == submodule.ident) else { return reject(EXPECTED, 6) };
             check(own == submodule, EXPECTED, 7)?;
         }
         check(module.submodules.len() == found.submodules.len(), EXPECTED, 9)?;

@@ -98,18 +98,18 @@ pub struct Device<A> {
     /// The last answers. The device answers a repeated call with the same bytes.
     answers: VecDeque<(Header, SocketAddrV4, Vec<u8>)>,
     /// Frames to send later, with their times.
-    later: Vec<(Now, Vec<u8>)>,
+    delayed_frames: Vec<(Now, Vec<u8>)>,
     image: Vec<u8>,
     actions: VecDeque<Action>,
 }
 
 /// Number of answers that are kept.
-const MOST_ANSWERS: usize = 8;
+const MAX_ANSWERS: usize = 8;
 /// Maximum number of delayed Identify answers.
-const MOST_LATER: usize = 32;
+const MAX_DELAYED: usize = 32;
 /// Maximum delay of an Identify answer that a request may contain, in steps of 10 ms.
-const MOST_SPREAD: u16 = 6400;
-const SPREAD: Duration = Duration::from_millis(10);
+const MAX_RESPONSE_DELAY: u16 = 6400;
+const RESPONSE_DELAY_STEP: Duration = Duration::from_millis(10);
 
 impl<A: Application> Device<A> {
     /// Creates a device without a connection.
@@ -121,7 +121,7 @@ impl<A: Application> Device<A> {
             ar: None,
             fault: None,
             answers: VecDeque::new(),
-            later: Vec::new(),
+            delayed_frames: Vec::new(),
             image,
             actions: VecDeque::new(),
         }
@@ -155,7 +155,7 @@ impl<A: Application> Device<A> {
     /// Restarts the device, as after a power cycle.
     pub fn restart(&mut self, now: Now) {
         self.actions.clear();
-        self.later.clear();
+        self.delayed_frames.clear();
         self.answers.clear();
         self.drop_ar(now, Some(Status::abort(0x1A)));
     }
@@ -199,8 +199,8 @@ impl<A: Application> Device<A> {
         if !self.actions.is_empty() {
             return Some(Now::ZERO);
         }
-        let later = self.later.iter().map(|(at, _)| *at).min();
-        later.into_iter().chain(self.ar.as_ref().map(Ar::wake)).min()
+        let delayed_frames = self.delayed_frames.iter().map(|(at, _)| *at).min();
+        delayed_frames.into_iter().chain(self.ar.as_ref().map(Ar::wake)).min()
     }
 
     /// Returns the next action at `now`.
@@ -213,7 +213,7 @@ impl<A: Application> Device<A> {
 
     fn tick(&mut self, now: Now) {
         let mut due = Vec::new();
-        self.later.retain_mut(|(at, frame)| {
+        self.delayed_frames.retain_mut(|(at, frame)| {
             if *at <= now {
                 due.push(Action::Frame(std::mem::take(frame)));
             }
@@ -227,17 +227,17 @@ impl<A: Application> Device<A> {
     pub fn frame(&mut self, now: Now, bytes: &[u8]) {
         let Ok(frame) = Frame::parse(bytes) else { return };
         if frame.destination == Mac::DCP_IDENTIFY && frame.id == id::DCP_IDENTIFY {
-            self.heard_identify(now, &frame);
+            self.handle_identify(now, &frame);
         }
         if frame.destination != self.setup.mac || frame.source.is_group() {
             return;
         }
         match frame.id {
-            id::DCP_GET_SET => self.heard_get_set(now, &frame),
+            id::DCP_GET_SET => self.handle_get_set(now, &frame),
             frame_id if self.ar.as_ref().is_some_and(|ar| ar.mac == frame.source) => {
                 match Priority::from_frame_id(frame_id) {
-                    Some(priority) => self.heard_alarm(now, priority, frame.payload),
-                    None => self.heard_data(now, frame_id, frame.payload),
+                    Some(priority) => self.handle_alarm(now, priority, frame.payload),
+                    None => self.handle_data(now, frame_id, frame.payload),
                 }
             }
             _ => {}

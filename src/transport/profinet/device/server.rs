@@ -12,7 +12,7 @@ use super::super::error::ProfinetError;
 use super::super::interface::Interface;
 use super::super::sockets::{BUFFER, Sockets};
 use super::{Application, Device, Setup};
-use crate::local::LocalError;
+use crate::local_error::LocalError;
 
 /// A device that runs until it is dropped. On a real network card, the interface must accept the multicast address: `ip
 /// maddress add 01:0e:cf:00:00:00 dev IFACE`.
@@ -57,7 +57,7 @@ impl<A: Application + Send + 'static> Server<A> {
     /// Calls `change` with the device, then executes the actions that result.
     pub fn with<T>(&self, change: impl FnOnce(&mut Device<A>, Now) -> T) -> T {
         let result = change(&mut self.inner.device(), self.inner.start.elapsed());
-        self.inner.sockets.ring();
+        self.inner.sockets.wake_up();
         result
     }
 }
@@ -65,7 +65,7 @@ impl<A: Application + Send + 'static> Server<A> {
 impl<A> Drop for Server<A> {
     fn drop(&mut self) {
         self.inner.is_over.store(true, Ordering::SeqCst);
-        self.inner.sockets.ring();
+        self.inner.sockets.wake_up();
         if let Some(thread) = self.thread.take() {
             // An error means that the thread panicked. The panic was already printed.
             let _ = thread.join();

@@ -3,7 +3,7 @@
 use super::super::Now;
 use super::super::wire::dcp::{self, Block, Dcp, IpSuite, Kind, Service, Setting};
 use super::super::wire::frame::{Frame, id};
-use super::{Application, Device, Event, Fault, MOST_LATER, MOST_SPREAD, SPREAD};
+use super::{Application, Device, Event, Fault, MAX_DELAYED, MAX_RESPONSE_DELAY, RESPONSE_DELAY_STEP};
 
 /// DCP error codes.
 const UNKNOWN_OPTION: u8 = 1;
@@ -13,9 +13,9 @@ const LOCAL_REASONS: u8 = 5;
 const IN_OPERATION: u8 = 6;
 
 impl<A: Application> Device<A> {
-    pub(super) fn heard_identify(&mut self, now: Now, frame: &Frame<'_>) {
+    pub(super) fn handle_identify(&mut self, now: Now, frame: &Frame<'_>) {
         let Ok(dcp) = Dcp::parse(frame.payload) else { return };
-        if dcp.service != Service::Identify || dcp.kind != Kind::Request || !self.is_meant(&dcp) {
+        if dcp.service != Service::Identify || dcp.kind != Kind::Request || !self.is_addressee(&dcp) {
             return;
         }
         let settings = [
@@ -30,15 +30,15 @@ impl<A: Application> Device<A> {
         let blocks = settings.iter().filter_map(|setting| self.value(*setting)).collect();
         let payload = dcp.answer(blocks).emit();
         let answer = self.frame_to(frame.source, None, id::DCP_IDENTIFIED, &payload);
-        let spread = u32::from(self.setup.mac.0[5]) % u32::from(dcp.delay.clamp(1, MOST_SPREAD));
-        if self.later.len() < MOST_LATER {
-            self.later.push((now + SPREAD * spread, answer));
+        let spread = u32::from(self.setup.mac.0[5]) % u32::from(dcp.delay.clamp(1, MAX_RESPONSE_DELAY));
+        if self.delayed_frames.len() < MAX_DELAYED {
+            self.delayed_frames.push((now + RESPONSE_DELAY_STEP * spread, answer));
         }
     }
 
     /// Whether a request is for this device. This is so if all filters of the request match. A request with a delay of
     /// 0 is not valid.
-    fn is_meant(&self, dcp: &Dcp) -> bool {
+    fn is_addressee(&self, dcp: &Dcp) -> bool {
         let setup = &self.setup;
         let id = [setup.id.0.to_be_bytes(), setup.id.1.to_be_bytes()].concat();
         let fits = |block: &Block| match block.setting {
@@ -71,7 +71,7 @@ impl<A: Application> Device<A> {
         }
     }
 
-    pub(super) fn heard_get_set(&mut self, now: Now, frame: &Frame<'_>) {
+    pub(super) fn handle_get_set(&mut self, now: Now, frame: &Frame<'_>) {
         let Ok(dcp) = Dcp::parse(frame.payload) else { return };
         if dcp.kind != Kind::Request {
             return;

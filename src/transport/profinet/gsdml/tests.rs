@@ -23,7 +23,7 @@ fn file(inputs: usize, outputs: usize) -> String {
 
 /// The crate `pnio` writes a file for a layout. If this file is parsed, the result must be the same layout.
 #[test]
-fn a_file_that_others_wrote_is_the_layout_it_was_written_for() {
+fn layout_of_a_foreign_file_matches_its_device() {
     let gsdml = Gsdml::parse(file(24, 24).as_bytes()).unwrap();
     assert_eq!((gsdml.vendor, gsdml.device, gsdml.heads.len()), (0xFFFF, 0x1234, 1));
     let head = &gsdml.heads[0];
@@ -82,7 +82,7 @@ fn fixed_modules_parameters_and_names_are_read() {
 
 /// A module that the device always has must not be selected again.
 #[test]
-fn a_module_that_is_always_there_is_chosen_once() {
+fn selects_a_fixed_module_once() {
     let two = OWN.replace(
         "<Output><DataItem DataType=\"Unsigned16\"/><DataItem DataType=\"OctetString\" Length=\"46\"/></Output>",
         "",
@@ -99,7 +99,7 @@ fn a_module_that_is_always_there_is_chosen_once() {
 }
 
 #[test]
-fn mistakes_are_named_with_line_and_element() {
+fn errors_have_line_and_element() {
     let cases = [
         ("VendorID=\"0x0123\"", "", 3, "DeviceIdentity", "VendorID is missing"),
         ("DeviceID=\"77\"", "DeviceID=\"70000\"", 3, "DeviceIdentity", "above 65535"),

@@ -12,7 +12,7 @@ use socket2::{Domain, Protocol, Socket, Type};
 
 use super::Interface;
 use crate::image::tap::Tap;
-use crate::local::LocalError;
+use crate::local_error::LocalError;
 use crate::profinet::error::ProfinetError;
 use crate::profinet::simulated::Network;
 use crate::profinet::wire::Mac;

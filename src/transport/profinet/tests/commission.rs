@@ -1,6 +1,6 @@
 //! Tests of the services that need no connection, in virtual time.
 
-use super::super::commission::{self, Found};
+use super::super::commission::{self, StationInfo};
 use super::super::device::{Device, Setup};
 use super::super::error::ProfinetError;
 use super::super::interface::Interface;
@@ -22,14 +22,14 @@ fn named(name: &str) -> Station {
     Station::Name(name.to_owned())
 }
 
-fn only(interface: &Interface) -> Found {
+fn only(interface: &Interface) -> StationInfo {
     let all = commission::stations(interface, Duration::from_secs(2)).unwrap();
     let [found] = &all[..] else { panic!("{all:?}") };
     found.clone()
 }
 
 #[test]
-fn a_station_is_found_by_name_and_by_card() {
+fn finds_a_station_by_name_and_mac() {
     let interface = interface(true);
     let found = only(&interface);
     for wanted in [named("yrcx-sim"), Station::Mac(found.mac)] {
@@ -42,24 +42,24 @@ fn a_station_is_found_by_name_and_by_card() {
 }
 
 #[test]
-fn what_is_set_is_there_then() {
+fn setting_is_active_afterwards() {
     let interface = interface(true);
     let mac = only(&interface).mac;
     let ip = suite([192, 0, 2, 7]);
     for block in [Block::set_name("robot-7", true), Block::set_ip(&ip, false), Block::signal()] {
         commission::change(&interface, mac, "DCP Set", &block).unwrap();
     }
-    let seen = commission::settled(&interface, mac, "DCP Set", |said| said.name == "robot-7").unwrap();
+    let seen = commission::wait_until_active(&interface, mac, "DCP Set", |said| said.name == "robot-7").unwrap();
     assert_eq!(seen.station.address(), Some(ip.address));
     commission::change(&interface, mac, "DCP Reset", &Block::reset()).unwrap();
     let seen = only(&interface).station;
     assert_eq!((seen.name.as_str(), seen.address()), ("", None));
-    let never = commission::settled(&interface, mac, "DCP Set", |said| said.name == "x").unwrap_err();
+    let never = commission::wait_until_active(&interface, mac, "DCP Set", |said| said.name == "x").unwrap_err();
     assert!(matches!(never, ProfinetError::NoAnswer { .. }), "{never}");
 }
 
 #[test]
-fn what_a_station_does_not_take_is_told() {
+fn reports_a_rejected_setting() {
     let interface = interface(false);
     let there = only(&interface).mac;
     let change = |mac, block| commission::change(&interface, mac, "DCP Set", &block).unwrap_err();
@@ -70,7 +70,7 @@ fn what_a_station_does_not_take_is_told() {
 }
 
 #[test]
-fn an_address_of_this_machine_is_taken() {
+fn rejects_an_address_of_this_computer() {
     let interface = interface(true);
     let own = interface.ip.unwrap().address;
     let holder = |address| commission::holder(&interface, address, Mac([2; 6])).unwrap();

@@ -32,7 +32,7 @@ fn noted(world: &World) -> usize {
 }
 
 #[test]
-fn alarms_of_both_priorities_are_acknowledged_and_told_once() {
+fn acknowledges_and_reports_alarms_of_both_priorities_once() {
     let mut world = World::open(setup(), settings(), "");
     for round in 0..3 {
         for priority in Priority::ALL {
@@ -47,7 +47,7 @@ fn alarms_of_both_priorities_are_acknowledged_and_told_once() {
 }
 
 #[test]
-fn many_alarms_go_over_the_end_of_their_numbers() {
+fn alarm_numbers_wrap() {
     let mut world = World::open(setup(), settings(), "");
     for _ in 0..0x8010 {
         world.device.raise(world.now, &alarm(Priority::Low, 1));
@@ -66,21 +66,21 @@ fn a_plugged_module_brings_a_new_connection() {
     let mut world = World::open(setup(), settings(), "");
     world.device.raise(world.now, &alarm(Priority::Low, 4));
     world.until(1000 * MS, |world| world.view().state == State::Lost);
-    assert_eq!(world.view().trouble, Some(ProfinetError::Plugged { slot: 1 }));
+    assert_eq!(world.view().last_error, Some(ProfinetError::Plugged { slot: 1 }));
     world.until(10 * MS, |world| noted(world) == 1);
     world.until_open();
     assert_eq!(world.view().generation, 2);
 }
 
 #[test]
-fn a_device_that_goes_silent_is_lost_and_told() {
+fn reports_a_silent_device_as_lost() {
     let mut world = World::open(setup(), settings(), "");
     world.controller.set_image(1, &image(5)).unwrap();
     world.run(100 * MS);
     world.device.set_fault(Some(Fault::Stall));
     let from = world.now;
     world.until(1000 * MS, |world| world.view().state == State::Lost);
-    assert_eq!(world.view().trouble, Some(ProfinetError::Silent { after: 320 * MS }));
+    assert_eq!(world.view().last_error, Some(ProfinetError::Silent { after: 320 * MS }));
     assert!(world.now.saturating_sub(from) <= 321 * MS);
     world.run(10 * MS);
     let ended = world.device.application().events.last().cloned();
@@ -96,7 +96,7 @@ fn a_device_that_goes_silent_is_lost_and_told() {
 }
 
 #[test]
-fn data_that_turns_bad_is_a_loss_and_comes_back_at_rest() {
+fn bad_data_is_a_loss_and_the_link_restarts_at_rest() {
     for (fault, why) in [
         (Fault::Stop, Unusable::Status(0x25, 0)),
         (Fault::BadProvider, Unusable::Provider(1, 1)),
@@ -108,7 +108,7 @@ fn data_that_turns_bad_is_a_loss_and_comes_back_at_rest() {
         world.run(100 * MS);
         world.device.set_fault(Some(fault));
         world.until(100 * MS, |world| world.view().state == State::Lost);
-        assert_eq!((world.view().trouble, world.view().input), (Some(ProfinetError::Unusable(why)), None));
+        assert_eq!((world.view().last_error, world.view().input), (Some(ProfinetError::Unusable(why)), None));
         world.run(100 * MS);
         assert_eq!(world.device.application().image, Some(resting()), "{fault:?}");
         world.device.set_fault(None);
@@ -118,7 +118,7 @@ fn data_that_turns_bad_is_a_loss_and_comes_back_at_rest() {
 }
 
 #[test]
-fn old_and_doubled_frames_are_no_news() {
+fn ignores_old_and_repeated_frames() {
     let mut world = World::open(setup(), settings(), "");
     world.device.set_fault(Some(Fault::Double));
     world.run(1000 * MS);
@@ -126,7 +126,10 @@ fn old_and_doubled_frames_are_no_news() {
     assert!(view.statistics.stale >= 60 && view.generation == 1, "{view:?}");
     world.device.set_fault(Some(Fault::Stale));
     world.until(1000 * MS, |world| world.view().state == State::Lost);
-    assert!(matches!(world.view().trouble, Some(ProfinetError::Silent { .. })), "a count that stands still is silence");
+    assert!(
+        matches!(world.view().last_error, Some(ProfinetError::Silent { .. })),
+        "a count that stands still is silence"
+    );
 }
 
 #[test]
@@ -143,7 +146,7 @@ fn a_device_that_restarts_is_connected_again() {
 }
 
 #[test]
-fn a_cable_that_is_pulled_ends_it_at_both_ends() {
+fn unplugged_cable_ends_both_sides() {
     let mut world = World::open(setup(), settings(), "");
     world.cable = false;
     world.run(400 * MS);
@@ -157,7 +160,7 @@ fn a_cable_that_is_pulled_ends_it_at_both_ends() {
 }
 
 #[test]
-fn tries_after_a_loss_come_ever_later_but_not_too_late() {
+fn retry_pauses_grow_up_to_a_limit() {
     let mut world = World::open(setup(), settings(), "");
     world.device.set_fault(Some(Fault::Owned));
     world.device.abort(world.now, 5);
@@ -170,7 +173,7 @@ fn tries_after_a_loss_come_ever_later_but_not_too_late() {
 /// The network is unreliable, with many seeds. Either the connection opens, or there is a reason. Every input image is
 /// from the device and from this generation. The device receives only images that were sent.
 #[test]
-fn any_network_brings_images_or_a_reason() {
+fn bad_network_yields_images_or_an_error() {
     let mut opened = 0;
     for spec in ["drop=5%", "drop=20%,dup=10%", "dup=50%", "delay=0..40ms", "delay=0..200ms,reorder=20%,dup=20%"] {
         for seed in 0..40 {
@@ -182,7 +185,7 @@ fn any_network_brings_images_or_a_reason() {
             }
             let view = world.view();
             if view.state == State::Closed {
-                assert!(view.trouble.is_some(), "{spec}, seed {seed}");
+                assert!(view.last_error.is_some(), "{spec}, seed {seed}");
                 continue;
             }
             assert_eq!(view.state, State::Open, "{spec}, seed {seed}: {view:?}");

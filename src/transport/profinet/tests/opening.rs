@@ -13,7 +13,9 @@ use super::super::wire::frame::{Frame, TAG_HIGH};
 use super::super::wire::record::Parameter;
 use super::super::wire::rpc::{Call, Datagram, operation};
 use super::super::wire::status::Status;
-use super::world::{ADDRESS, HERE, MS, Mirror, THERE, World, native_order, resting, settings, setup, suite};
+use super::world::{
+    ADDRESS, DEVICE_ADDRESS, MS, Mirror, OUR_ADDRESS, World, native_order, resting, settings, setup, suite,
+};
 
 fn image(mark: u8) -> Vec<u8> {
     (0..48).map(|at| mark.wrapping_add(at)).collect()
@@ -30,7 +32,7 @@ fn outputs(world: &World) -> Vec<(std::time::Duration, Vec<u8>)> {
 }
 
 #[test]
-fn images_travel_both_ways() {
+fn exchanges_images_in_both_directions() {
     let mut world = World::open(setup(), settings(), "");
     let generation = world.view().generation;
     let change = world.controller.set_image(generation, &image(3)).unwrap();
@@ -38,11 +40,11 @@ fn images_travel_both_ways() {
     world.until(100 * MS, |world| world.view().input.is_some_and(|input| *input.image == *native_order(&image(3))));
     assert_eq!((world.view().sent, generation), (change, 1));
     let device = world.view().details.device.unwrap();
-    assert_eq!((device.mac, device.address, device.id), (THERE, ADDRESS, (0xFFFF, 1)));
+    assert_eq!((device.mac, device.address, device.id), (DEVICE_ADDRESS, ADDRESS, (0xFFFF, 1)));
 }
 
 #[test]
-fn the_first_frame_is_the_resting_image_and_good() {
+fn first_frame_is_the_resting_image() {
     let world = World::open(setup(), settings(), "");
     let sent = outputs(&world);
     let first = Cyclic::parse(&sent[0].1, 53).unwrap();
@@ -52,7 +54,7 @@ fn the_first_frame_is_the_resting_image_and_good() {
 }
 
 #[test]
-fn frames_keep_their_time_and_counters_go_round() {
+fn frames_keep_their_interval_and_counters_wrap() {
     let mut world = World::open(setup(), settings(), "delay=0..3ms,seed=4");
     world.run(60_000 * MS);
     let sent = outputs(&world);
@@ -68,7 +70,7 @@ fn frames_keep_their_time_and_counters_go_round() {
 }
 
 #[test]
-fn nothing_is_called_more_often_than_it_must_be() {
+fn makes_no_unnecessary_calls() {
     let world = World::open(setup(), settings(), "");
     for (operation, count) in [(operation::CONNECT, 1), (operation::WRITE, 0), (operation::CONTROL, 1)] {
         assert_eq!(world.calls(operation).len(), count, "operation {operation}");
@@ -76,21 +78,21 @@ fn nothing_is_called_more_often_than_it_must_be() {
 }
 
 #[test]
-fn connect_is_never_sent_twice_and_what_it_began_is_released() {
+fn sends_connect_once_and_releases_it() {
     let mut world = World::new(setup(), settings(), "");
     world.device.set_fault(Some(Fault::Mute));
-    let view = world.run_out();
-    assert!(matches!(view.trouble, Some(ProfinetError::NoAnswer { what: "Connect", .. })), "{view:?}");
+    let view = world.run_to_deadline();
+    assert!(matches!(view.last_error, Some(ProfinetError::NoAnswer { what: "Connect", .. })), "{view:?}");
     assert_eq!((world.calls(operation::CONNECT).len(), world.calls(operation::RELEASE).len()), (1, 1));
 }
 
 #[test]
-fn every_connection_has_numbers_of_its_own() {
+fn every_connection_has_unique_identifiers() {
     let mut world = World::open(setup(), settings(), "");
     for reason in [0x1A, 0x05, 0x20] {
         world.device.abort(world.now, reason);
         world.until(1000 * MS, |world| world.view().state != State::Open);
-        assert_eq!(world.view().trouble, Some(ProfinetError::Aborted(Status::abort(reason))));
+        assert_eq!(world.view().last_error, Some(ProfinetError::Aborted(Status::abort(reason))));
         world.until_open();
     }
     let connects = world.calls(operation::CONNECT);
@@ -134,12 +136,12 @@ fn parameters_are_written_before_the_start() {
         assert_eq!(world.calls(operation::WRITE).len(), 1);
     }
     let wrong = Parameter { slot: 9, ..parameter(1) };
-    let view = World::new(setup(), Settings { parameters: vec![wrong], ..settings() }, "").run_out();
-    assert_eq!(view.trouble, Some(ProfinetError::Refused { what: "Write", status: Status(0xDF80_B200) }));
+    let view = World::new(setup(), Settings { parameters: vec![wrong], ..settings() }, "").run_to_deadline();
+    assert_eq!(view.last_error, Some(ProfinetError::Refused { what: "Write", status: Status(0xDF80_B200) }));
 }
 
 #[test]
-fn a_legacy_start_uses_the_class_and_the_ids_of_its_time() {
+fn legacy_startup_uses_its_class_and_frame_ids() {
     let world = World::open(setup(), Settings { startup: Startup::Legacy, ..settings() }, "");
     let data: Vec<_> = world
         .frames
@@ -151,37 +153,37 @@ fn a_legacy_start_uses_the_class_and_the_ids_of_its_time() {
 }
 
 #[test]
-fn a_station_is_found_by_its_card() {
-    let by_card = Settings { station: Station::Mac(THERE), ..settings() };
+fn finds_a_station_by_its_mac() {
+    let by_card = Settings { station: Station::Mac(DEVICE_ADDRESS), ..settings() };
     World::open(setup(), by_card.clone(), "");
     let other = Settings { station: Station::Mac(Mac([2, 0, 0, 0, 0, 9])), ..by_card };
-    let view = World::new(setup(), other, "").run_out();
-    assert!(matches!(view.trouble, Some(ProfinetError::NotFound { .. })), "{view:?}");
+    let view = World::new(setup(), other, "").run_to_deadline();
+    assert!(matches!(view.last_error, Some(ProfinetError::NotFound { .. })), "{view:?}");
 }
 
 #[test]
-fn a_name_that_two_have_or_none_is_told() {
+fn reports_duplicate_and_missing_names() {
     let mut world = World::new(setup(), settings(), "");
     let mac = Mac([2, 0, 0, 0, 0, 3]);
     world.twin = Some(Device::new(super::super::device::Setup { mac, ..setup() }, Mirror::default()));
-    let view = world.run_out();
-    let Some(ProfinetError::Duplicate { cards, .. }) = view.trouble else { panic!("{view:?}") };
+    let view = world.run_to_deadline();
+    let Some(ProfinetError::Duplicate { cards, .. }) = view.last_error else { panic!("{view:?}") };
     let mut cards = [cards.0, cards.1];
     cards.sort();
-    assert_eq!(cards, [THERE, mac]);
+    assert_eq!(cards, [DEVICE_ADDRESS, mac]);
     assert!(world.calls.is_empty(), "nobody was called");
     let nobody = super::super::device::Setup { name: "other".to_owned(), ..setup() };
     let mut world = World::new(nobody, settings(), "");
-    let view = world.run_out();
-    assert!(matches!(view.trouble, Some(ProfinetError::NotFound { .. })), "{view:?}");
+    let view = world.run_to_deadline();
+    assert!(matches!(view.last_error, Some(ProfinetError::NotFound { .. })), "{view:?}");
     assert_eq!(world.frames.len(), 3, "it was looked for three times");
 }
 
 #[test]
-fn an_address_is_given_only_where_that_is_asked_for() {
+fn sets_an_address_only_if_requested() {
     let bare = super::super::device::Setup { ip: None, ..setup() };
     let mut world = World::new(bare.clone(), settings(), "");
-    assert!(matches!(world.run_out().trouble, Some(ProfinetError::NoAddress { .. })));
+    assert!(matches!(world.run_to_deadline().last_error, Some(ProfinetError::NoAddress { .. })));
     assert!(world.device.application().events.is_empty());
 
     let given = Settings { ip: Some(suite([192, 168, 78, 2])), ..settings() };
@@ -194,29 +196,29 @@ fn an_address_is_given_only_where_that_is_asked_for() {
 
     let mut world = World::new(bare.clone(), given.clone(), "");
     world.device.set_fault(Some(Fault::KeepsAddress));
-    assert_eq!(world.run_out().trouble, Some(ProfinetError::Dcp { what: "DCP Set IP", error: 5 }));
+    assert_eq!(world.run_to_deadline().last_error, Some(ProfinetError::Dcp { what: "DCP Set IP", error: 5 }));
 
     let elsewhere = Settings { ip: Some(suite([10, 0, 0, 2])), ..settings() };
     let mut world = World::new(bare, elsewhere, "");
-    assert!(matches!(world.run_out().trouble, Some(ProfinetError::OtherNetwork { .. })));
+    assert!(matches!(world.run_to_deadline().last_error, Some(ProfinetError::OtherNetwork { .. })));
     assert!(world.device.application().events.is_empty());
 
     let far = super::super::device::Setup { ip: Some(suite([10, 0, 0, 2])), ..setup() };
-    let view = World::new(far, settings(), "").run_out();
-    let Some(ProfinetError::OtherNetwork { device, here, .. }) = view.trouble else { panic!("{view:?}") };
-    assert_eq!((device.octets(), here), ([10, 0, 0, 2], HERE.ip.address));
+    let view = World::new(far, settings(), "").run_to_deadline();
+    let Some(ProfinetError::OtherNetwork { device, local_address, .. }) = view.last_error else { panic!("{view:?}") };
+    assert_eq!((device.octets(), local_address), ([10, 0, 0, 2], OUR_ADDRESS.ip.address));
 }
 
 #[test]
-fn closing_releases_while_frames_go_on() {
+fn sends_frames_until_the_release_is_complete() {
     let mut world = World::open(setup(), settings(), "delay=5ms");
     let generation = world.view().generation;
     world.controller.set_image(generation, &image(9)).unwrap();
     world.run(100 * MS);
     world.controller.close(world.now);
     let before = outputs(&world).len();
-    let view = world.run_out();
-    assert_eq!(view.trouble, None);
+    let view = world.run_to_deadline();
+    assert_eq!(view.last_error, None);
     assert!(matches!(world.device.application().events.last(), Some(Event::Ended(None))));
     assert_eq!(world.calls(operation::RELEASE).len(), 1);
     world.run(1000 * MS);
@@ -226,17 +228,17 @@ fn closing_releases_while_frames_go_on() {
 }
 
 #[test]
-fn a_release_that_nobody_answers_is_told() {
+fn reports_an_unanswered_release() {
     let mut world = World::open(setup(), settings(), "");
     world.device.set_fault(Some(Fault::Mute));
     world.controller.close(world.now);
-    let view = world.run_out();
-    assert!(matches!(view.trouble, Some(ProfinetError::NoAnswer { what: "Release", .. })), "{view:?}");
+    let view = world.run_to_deadline();
+    assert!(matches!(view.last_error, Some(ProfinetError::NoAnswer { what: "Release", .. })), "{view:?}");
     assert_eq!(world.calls(operation::RELEASE).len(), 3);
 }
 
 #[test]
-fn what_a_device_does_wrong_has_a_name() {
+fn every_device_fault_has_an_error() {
     type Check = fn(&ProfinetError) -> bool;
     let cases: [(Fault, Check); 10] = [
         (Fault::NeverReady, |why| matches!(why, ProfinetError::NeverReady { .. })),
@@ -258,8 +260,8 @@ fn what_a_device_does_wrong_has_a_name() {
     for (fault, check) in cases {
         let mut world = World::new(setup(), settings(), "");
         world.device.set_fault(Some(fault));
-        let view = world.run_out();
-        assert!(view.trouble.as_ref().is_some_and(check), "{fault:?}: {:?}", view.trouble);
+        let view = world.run_to_deadline();
+        assert!(view.last_error.as_ref().is_some_and(check), "{fault:?}: {:?}", view.last_error);
         assert_eq!((view.generation, view.input), (0, None), "{fault:?} never is an image");
         assert!(world.shown.is_empty(), "{fault:?}");
     }
@@ -268,7 +270,7 @@ fn what_a_device_does_wrong_has_a_name() {
 }
 
 #[test]
-fn the_connection_of_a_process_that_died_is_waited_for() {
+fn waits_for_the_connection_of_a_dead_process_to_expire() {
     let mut world = World::new(setup(), settings(), "");
     world.device.set_fault(Some(Fault::Owned));
     world.run(3000 * MS);
@@ -277,7 +279,7 @@ fn the_connection_of_a_process_that_died_is_waited_for() {
 }
 
 #[test]
-fn other_layouts_are_carried_too() {
+fn supports_other_layouts() {
     for text in ["0:1,1:2:i48o48", "0:1,0.0x8000:1/0x8000,1:2:i32,2:3:i16,3:4:o32,4:5:o16", "1:7:i1,2:8:o48"] {
         let layout: super::super::layout::Layout = text.parse().unwrap();
         let setup = super::super::device::Setup { layout: layout.clone(), ..setup() };
@@ -290,7 +292,7 @@ fn other_layouts_are_carried_too() {
 }
 
 #[test]
-fn words_are_swapped_on_the_wire_only() {
+fn swaps_bytes_only_on_the_wire() {
     let mut world = World::open(setup(), Settings { swapped: 32, ..settings() }, "");
     world.controller.set_image(1, &image(1)).unwrap();
     world.until(100 * MS, |world| world.view().input.is_some_and(|input| *input.image == *native_order(&image(1))));
@@ -303,7 +305,8 @@ fn a_name_is_not_set_while_a_controller_is_connected() {
     let mut world = World::open(setup(), settings(), "");
     let dcp = super::super::wire::dcp::Dcp::change(7, vec![super::super::wire::dcp::Block::set_name("other", true)]);
     let payload = dcp.emit();
-    let frame = Frame { destination: THERE, source: HERE.mac, tag: None, id: 0xFEFD, payload: &payload };
+    let frame =
+        Frame { destination: DEVICE_ADDRESS, source: OUR_ADDRESS.mac, tag: None, id: 0xFEFD, payload: &payload };
     world.device.frame(world.now, &frame.emit());
     let answers: Vec<_> = std::iter::from_fn(|| world.device.poll(world.now)).collect();
     let outcome = answers.iter().find_map(|action| match action {

@@ -28,7 +28,7 @@ fn until(link: &mut Link, is_up: bool) -> Duration {
 }
 
 #[test]
-fn what_is_shown_arrives_and_the_device_answers() {
+fn exchanges_images_with_the_simulated_device() {
     let network = network(None);
     assert!(Network::find(&network.interface().name).is_some());
     assert!(Interface::find(&network.interface().name).unwrap().network().is_some());
@@ -46,7 +46,7 @@ fn what_is_shown_arrives_and_the_device_answers() {
 }
 
 #[test]
-fn after_a_loss_the_device_is_shown_the_resting_image() {
+fn device_gets_the_resting_image_after_a_loss() {
     let mut link = network(Some(Fault::Abort)).open(settings()).unwrap();
     link.input(Duration::ZERO, Some(&[0xFF; 48]));
     let lost = until(&mut link, false);
@@ -57,7 +57,7 @@ fn after_a_loss_the_device_is_shown_the_resting_image() {
 }
 
 #[test]
-fn an_image_arrives_whatever_gets_lost_late_or_doubled_on_the_way() {
+fn image_arrives_in_spite_of_network_faults() {
     let faults = "drop=5%,dup=5%,delay=0..9ms,reorder=1%";
     let mut opened = 0;
     for seed in 0..20 {
@@ -91,7 +91,7 @@ fn an_image_arrives_whatever_gets_lost_late_or_doubled_on_the_way() {
 }
 
 #[test]
-fn a_device_that_does_not_answer_takes_no_time() {
+fn silent_device_takes_no_real_time() {
     let error = network(Some(Fault::NeverReady)).open(settings()).unwrap_err();
     assert!(matches!(error, ProfinetError::NeverReady { .. }), "{error}");
     let one = network(None);

@@ -60,7 +60,7 @@ fn life() -> Vec<(std::time::Duration, Vec<u8>)> {
     world.run(200 * MS);
     world.until_open();
     world.controller.close(world.now);
-    world.run_out();
+    world.run_to_deadline();
     assert!(world.device.application().events.contains(&Event::Ended(None)));
     let mut record = world.record.take().unwrap();
     // A second device follows. Its answer to Connect reports a different module.
@@ -68,7 +68,7 @@ fn life() -> Vec<(std::time::Duration, Vec<u8>)> {
     world.now += std::time::Duration::from_secs(1000);
     world.record = Some(Vec::new());
     world.device.set_fault(Some(Fault::WrongModule));
-    world.run_out();
+    world.run_to_deadline();
     record.extend(world.record.take().unwrap());
     record
 }
@@ -80,7 +80,7 @@ fn tshark(path: &std::path::Path, arguments: &[&str]) -> Option<String> {
 }
 
 #[test]
-fn tshark_reads_all_of_it_without_a_warning() {
+fn tshark_decodes_a_recording_without_warnings() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("life.pcap");
     fs::write(&path, capture(&life())).unwrap();
@@ -115,7 +115,7 @@ fn tshark_reads_all_of_it_without_a_warning() {
 }
 
 #[test]
-fn tshark_splits_cyclic_data_as_the_layout_says() {
+fn tshark_agrees_with_the_layout() {
     let layout: Layout = "0:1,1:2:i4,2:3:o4".parse().unwrap();
     let device = Setup { layout: layout.clone(), ..setup() };
     let settings = Settings { layout, resting: vec![1, 2, 3, 4], ..settings() };

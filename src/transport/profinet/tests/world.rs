@@ -7,9 +7,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::super::Now;
-use super::super::controller::numbers::Numbers;
+use super::super::controller::identifiers::Identifiers;
 use super::super::controller::view::{State, View};
-use super::super::controller::{Action, Controller, Here};
+use super::super::controller::{Action, Controller, LocalAddress};
 use super::super::device::{Application, Device, Event, Setup};
 use super::super::layout::Layout;
 use super::super::settings::{Settings, Station};
@@ -19,10 +19,10 @@ use super::super::wire::record::Im0;
 use super::super::wire::rpc::{Datagram, Kind, PORT};
 use crate::fault::{FaultSpec, Faults};
 
-const LONGEST_HOLD: Duration = Duration::from_millis(120);
+const MAX_HOLD_TIME: Duration = Duration::from_millis(120);
 pub const MS: Duration = Duration::from_millis(1);
-pub const HERE: Here = Here { mac: Mac([2, 0, 0, 0, 0, 1]), ip: suite([192, 168, 78, 1]) };
-pub const THERE: Mac = Mac([2, 0, 0, 0, 0, 2]);
+pub const OUR_ADDRESS: LocalAddress = LocalAddress { mac: Mac([2, 0, 0, 0, 0, 1]), ip: suite([192, 168, 78, 1]) };
+pub const DEVICE_ADDRESS: Mac = Mac([2, 0, 0, 0, 0, 2]);
 pub const ADDRESS: Ipv4Addr = Ipv4Addr::new(192, 168, 78, 2);
 
 pub const fn suite(address: [u8; 4]) -> IpSuite {
@@ -61,7 +61,7 @@ impl Application for Mirror {
 
 pub fn setup() -> Setup {
     Setup {
-        mac: THERE,
+        mac: DEVICE_ADDRESS,
         name: "yrcx-sim".to_owned(),
         kind: "YRCX like".to_owned(),
         id: (0xFFFF, 1),
@@ -126,7 +126,7 @@ impl World {
         Self {
             // The time does not start at 0, so that code that depends on 0 fails.
             now: Duration::from_secs(1000),
-            controller: Controller::new(HERE, settings, Arc::new(Numbers::random())).unwrap(),
+            controller: Controller::new(OUR_ADDRESS, settings, Arc::new(Identifiers::random())).unwrap(),
             device: Device::new(setup, Mirror::default()),
             twin: None,
             cable: true,
@@ -169,11 +169,11 @@ impl World {
     }
 
     /// Runs until the condition is true, but at most for `most`.
-    pub fn until(&mut self, most: Duration, condition: impl Fn(&Self) -> bool) {
-        let end = self.now + most;
+    pub fn until(&mut self, max_len: Duration, condition: impl Fn(&Self) -> bool) {
+        let end = self.now + max_len;
         while !condition(self) {
             let goes_on = self.step(end);
-            assert!(goes_on || condition(self), "it did not come about within {most:?}: {:?}", self.view());
+            assert!(goes_on || condition(self), "it did not come about within {max_len:?}: {:?}", self.view());
         }
     }
 
@@ -184,7 +184,7 @@ impl World {
     }
 
     /// Runs until the connection is closed.
-    pub fn run_out(&mut self) -> View {
+    pub fn run_to_deadline(&mut self) -> View {
         self.until(120_000 * MS, |world| world.view().state == State::Closed);
         self.view()
     }
@@ -210,13 +210,13 @@ impl World {
     /// Lets both sides do all the work that is due now.
     pub fn settle(&mut self) {
         loop {
-            let ours = self.controller.poll(self.now);
-            let theirs = self.device.poll(self.now);
+            let local_reference = self.controller.poll(self.now);
+            let remote_reference = self.device.poll(self.now);
             let twins = self.twin.as_mut().and_then(|twin| twin.poll(self.now));
-            if ours.is_none() && theirs.is_none() && twins.is_none() {
+            if local_reference.is_none() && remote_reference.is_none() && twins.is_none() {
                 break;
             }
-            match ours {
+            match local_reference {
                 Some(Action::Frame(bytes)) => {
                     self.frames.push((self.now, bytes.clone()));
                     self.launch(true, &bytes, Packet::FrameOut);
@@ -228,7 +228,7 @@ impl World {
                 None => {}
             }
             let from = SocketAddrV4::new(self.device.answers_from().unwrap_or(ADDRESS), PORT);
-            for action in [theirs, twins].into_iter().flatten() {
+            for action in [remote_reference, twins].into_iter().flatten() {
                 match action {
                     Action::Frame(bytes) => self.launch(false, &bytes, Packet::FrameIn),
                     Action::Datagram(_, bytes) => self.launch(false, &bytes, |bytes| Packet::CallIn(from, bytes)),
@@ -249,8 +249,8 @@ impl World {
         if let Some(record) = &mut self.record {
             let bytes = match packet(bytes.to_vec()) {
                 Packet::FrameOut(bytes) | Packet::FrameIn(bytes) => bytes,
-                Packet::CallOut(to, bytes) => ethernet(HERE.ip.address, *to.ip(), &bytes),
-                Packet::CallIn(from, bytes) => ethernet(*from.ip(), HERE.ip.address, &bytes),
+                Packet::CallOut(to, bytes) => ethernet(OUR_ADDRESS.ip.address, *to.ip(), &bytes),
+                Packet::CallIn(from, bytes) => ethernet(*from.ip(), OUR_ADDRESS.ip.address, &bytes),
             };
             record.push((self.now, bytes));
         }
@@ -260,7 +260,7 @@ impl World {
             let is_frame = matches!(packet, Packet::FrameOut(_) | Packet::FrameIn(_));
             // The cycle counter shows that a frame is old only if the frame is delayed by at most 128 ms. No switch
             // delays a frame for a longer time, so such a frame is dropped here.
-            if is_frame && at > self.now + LONGEST_HOLD {
+            if is_frame && at > self.now + MAX_HOLD_TIME {
                 continue;
             }
             self.order += 1;
@@ -270,7 +270,7 @@ impl World {
 
     fn deliver(&mut self, packet: Packet) {
         let now = self.now;
-        let here = SocketAddrV4::new(HERE.ip.address, PORT);
+        let local_address = SocketAddrV4::new(OUR_ADDRESS.ip.address, PORT);
         match packet {
             Packet::FrameOut(bytes) => {
                 self.device.frame(now, &bytes);
@@ -280,7 +280,7 @@ impl World {
             }
             Packet::FrameIn(bytes) => self.controller.frame(now, &bytes),
             Packet::CallOut(to, bytes) if to == SocketAddrV4::new(ADDRESS, PORT) => {
-                self.device.datagram(now, here, &bytes);
+                self.device.datagram(now, local_address, &bytes);
             }
             Packet::CallOut(..) => {}
             Packet::CallIn(from, bytes) => self.controller.datagram(now, from, &bytes),
@@ -290,9 +290,13 @@ impl World {
 
 /// Wraps a datagram into an Ethernet frame, without checksums.
 fn ethernet(from: Ipv4Addr, to: Ipv4Addr, bytes: &[u8]) -> Vec<u8> {
-    let (here, there) = if from == HERE.ip.address { (HERE.mac, THERE) } else { (THERE, HERE.mac) };
+    let (local_address, there) = if from == OUR_ADDRESS.ip.address {
+        (OUR_ADDRESS.mac, DEVICE_ADDRESS)
+    } else {
+        (DEVICE_ADDRESS, OUR_ADDRESS.mac)
+    };
     let length = |header: usize| u16::try_from(header + bytes.len()).unwrap().to_be_bytes();
-    let mut out = [there.0, here.0].concat();
+    let mut out = [there.0, local_address.0].concat();
     out.extend([8, 0, 0x45, 0]);
     out.extend(length(28));
     out.extend([0, 0, 0, 0, 64, 17, 0, 0]);

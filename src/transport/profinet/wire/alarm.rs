@@ -334,14 +334,14 @@ mod tests {
     }
 
     #[test]
-    fn errors_are_read_with_what_siemens_appends() {
+    fn parses_errors_with_siemens_extensions() {
         let rta = Rta::parse(&hex("0000 0000 14 01 0005 0005 0004 CF81FD0B 002A010E")).unwrap();
         assert_eq!(rta.pdu, Pdu::Error(0xCF81_FD0B));
         assert_eq!(Rta::parse(&hex("0000 0000 15 01 0005 0005 0000")).unwrap_err().offset, 4);
     }
 
     #[test]
-    fn numbers_go_on_after_the_first_and_the_last() {
+    fn sequence_numbers_skip_the_start_value() {
         assert_eq!((next_sequence(FIRST), next_sequence(0), next_sequence(0x7FFF)), (0, 1, 0));
     }
 }

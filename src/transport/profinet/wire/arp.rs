@@ -9,7 +9,7 @@ pub const ETHER_TYPE: u16 = 0x0806;
 /// Start of the ARP header: Ethernet, IPv4, and the lengths of both addresses.
 const KIND: [u8; 6] = [0, 1, 8, 0, 6, 4];
 /// Minimum frame length without the checksum.
-const SHORTEST: usize = 60;
+const MIN_LEN: usize = 60;
 
 /// Returns an ARP probe. The probe asks which station uses an IP address. It contains no sender IP address, so no host
 /// updates its ARP table because of the probe.
@@ -23,7 +23,7 @@ pub fn probe(source: Mac, address: Ipv4Addr) -> Vec<u8> {
     out.put(&source.0);
     out.zeros(4 + 6);
     out.put(&address.octets());
-    out.zeros(SHORTEST - out.bytes.len());
+    out.zeros(MIN_LEN - out.bytes.len());
     out.bytes
 }
 
@@ -46,7 +46,7 @@ mod tests {
     use super::*;
     use crate::testing::hex;
 
-    const HERE: Mac = Mac([2, 0, 0, 0, 0, 1]);
+    const OUR_ADDRESS: Mac = Mac([2, 0, 0, 0, 0, 1]);
     const ADDRESS: Ipv4Addr = Ipv4Addr::new(192, 168, 78, 2);
 
     /// RFC 5227, 2.1.1: the sender address is zero, so no host changes its ARP table because of the probe.
@@ -55,7 +55,7 @@ mod tests {
         let mut bytes = hex("FFFFFFFFFFFF 020000000001 0806 0001 0800 06 04 0001 020000000001 00000000");
         bytes.extend(hex("000000000000 C0A84E02"));
         bytes.resize(60, 0);
-        assert_eq!(probe(HERE, ADDRESS), bytes);
+        assert_eq!(probe(OUR_ADDRESS, ADDRESS), bytes);
         assert_eq!(holder(&bytes), None);
     }
 

@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn blocks_are_walked_by_their_lengths_with_and_without_padding() {
+    fn iterates_blocks_with_and_without_padding() {
         let bytes = hex("8106 0005 0100 616263 000000 0110 0005 0100 616263 0112 0002 0100 00");
         let kinds: Vec<_> = walk(&bytes).unwrap().iter().map(|block| (block.kind.0, block.body.len())).collect();
         assert_eq!(kinds, [(0x8106, 3), (0x0110, 3), (0x0112, 0)]);

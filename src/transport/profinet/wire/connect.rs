@@ -67,7 +67,7 @@ pub struct Iocr {
     /// Watchdog time in cycles.
     pub watchdog: u16,
     /// Data hold time in cycles.
-    pub hold: u16,
+    pub data_hold_factor: u16,
     /// VLAN tag.
     pub tag: u16,
     /// Multicast address of the frames.
@@ -105,7 +105,7 @@ pub struct AlarmCr {
     /// Alarm reference of the sender.
     pub reference: u16,
     /// Maximum length of an alarm in bytes.
-    pub most: u16,
+    pub max_len: u16,
     /// VLAN tags of the high and low channel.
     pub tags: (u16, u16),
 }
@@ -211,7 +211,7 @@ impl Iocr {
         let sequence = reader.u16("Sequence")?;
         let offset = reader.u32("FrameSendOffset")?;
         let watchdog = reader.u16("WatchdogFactor")?;
-        let hold = reader.u16("DataHoldFactor")?;
+        let data_hold_factor = reader.u16("DataHoldFactor")?;
         let tag = reader.u16("IOCRTagHeader")?;
         let group = reader.mac("IOCRMulticastMACAdd")?;
         let (mut objects, mut consumers) = (Vec::new(), Vec::new());
@@ -233,7 +233,7 @@ impl Iocr {
             sequence,
             offset,
             watchdog,
-            hold,
+            data_hold_factor,
             tag,
             group,
             objects,
@@ -251,7 +251,7 @@ impl Iocr {
         }
         out.u32(self.offset);
         out.u16(self.watchdog);
-        out.u16(self.hold);
+        out.u16(self.data_hold_factor);
         out.u16(self.tag);
         out.put(&self.group.0);
         out.u16(1);
@@ -280,7 +280,7 @@ fn read_offsets(reader: &mut Reader<'_>, field: &'static str) -> Result<Vec<Offs
 
 impl AlarmCr {
     /// Returns the block with the usual values: 100 ms, three repetitions, 200 bytes.
-    pub const fn usual(reference: u16) -> Self {
+    pub const fn with_defaults(reference: u16) -> Self {
         Self {
             kind: 1,
             ether_type: ETHER_TYPE,
@@ -288,7 +288,7 @@ impl AlarmCr {
             timeout: 1,
             retries: 3,
             reference,
-            most: 200,
+            max_len: 200,
             tags: (TAG_HIGH, TAG_LOW),
         }
     }
@@ -301,7 +301,7 @@ impl AlarmCr {
             timeout: reader.u16("RTATimeoutFactor")?,
             retries: reader.u16("RTARetries")?,
             reference: reader.u16("LocalAlarmReference")?,
-            most: reader.u16("MaxAlarmDataLength")?,
+            max_len: reader.u16("MaxAlarmDataLength")?,
             tags: (reader.u16("AlarmCRTagHeaderHigh")?, reader.u16("AlarmCRTagHeaderLow")?),
         })
     }
@@ -310,7 +310,7 @@ impl AlarmCr {
         out.u16(self.kind);
         out.u16(self.ether_type);
         out.u32(self.properties);
-        for number in [self.timeout, self.retries, self.reference, self.most, self.tags.0, self.tags.1] {
+        for number in [self.timeout, self.retries, self.reference, self.max_len, self.tags.0, self.tags.1] {
             out.u16(number);
         }
     }
@@ -342,7 +342,7 @@ pub enum Response {
         /// Alarm reference of the device.
         reference: u16,
         /// Maximum length of an alarm in bytes.
-        most: u16,
+        max_len: u16,
     },
     /// Differences from the expected modules.
     ModuleDiff(Vec<ModuleDiff>),
@@ -376,7 +376,10 @@ impl Response {
             },
             BlockType(0x8103) => {
                 reader.u16("AlarmCRType")?;
-                Self::AlarmCr { reference: reader.u16("LocalAlarmReference")?, most: reader.u16("MaxAlarmDataLength")? }
+                Self::AlarmCr {
+                    reference: reader.u16("LocalAlarmReference")?,
+                    max_len: reader.u16("MaxAlarmDataLength")?,
+                }
             }
             BlockType::MODULE_DIFF => Self::ModuleDiff(read_diff(reader)?),
             BlockType::AR_SERVER => {
@@ -405,10 +408,10 @@ impl Response {
                 out.u16(*frame_id);
                 BlockType::IOCR.answer()
             }
-            Self::AlarmCr { reference, most } => {
+            Self::AlarmCr { reference, max_len } => {
                 out.u16(1);
                 out.u16(*reference);
-                out.u16(*most);
+                out.u16(*max_len);
                 BlockType::ALARM_CR.answer()
             }
             Self::ModuleDiff(modules) => {

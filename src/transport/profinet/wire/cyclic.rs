@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_runs_and_is_valid_is_usable() {
+    fn data_is_usable_only_if_running_and_valid() {
         for status in 0..=u8::MAX {
             let cyclic = Cyclic { data: &[], counter: 0, status, transfer: 0 };
             let usable = status & 1 != 0 && status & 4 != 0 && status & 0x10 != 0 && status & 0x80 == 0;
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn counters_go_forward_over_their_end() {
+    fn counters_compare_across_their_wrap() {
         let after = |counter, last| Cyclic { data: &[], counter, status: 0, transfer: 0 }.is_after(last);
         assert!(after(0x200, 0) && after(0x100, 0xFF00) && after(61_440, 0));
         assert!(!after(5, 5) && !after(61_441, 0) && !after(0xFE00, 0));

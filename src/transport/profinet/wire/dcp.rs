@@ -7,7 +7,7 @@ use std::net::Ipv4Addr;
 use super::{Reader, WireError, Writer, count16, text};
 
 /// Maximum length of the blocks in a frame, in bytes.
-const MOST: usize = 1416;
+const MAX_BLOCKS_LEN: usize = 1416;
 
 /// DCP service.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -267,7 +267,7 @@ impl Dcp {
 
 fn read_blocks(reader: &mut Reader<'_>, is_list: bool) -> Result<Vec<Block>, WireError> {
     let mut blocks = Vec::new();
-    if reader.left() > MOST {
+    if reader.left() > MAX_BLOCKS_LEN {
         return Err(WireError::value("DCPDataLength", 0, u32::try_from(reader.left()).unwrap_or(u32::MAX)));
     }
     while reader.left() > 0 {
@@ -319,7 +319,7 @@ impl IpSuite {
     }
 
     /// Whether both addresses are in the same network.
-    pub fn reaches(&self, other: Ipv4Addr) -> bool {
+    pub fn is_same_network(&self, other: Ipv4Addr) -> bool {
         let mask = u32::from(self.mask);
         u32::from(self.address) & mask == u32::from(other) & mask
     }
@@ -430,8 +430,8 @@ mod tests {
     use super::*;
     use crate::testing::hex;
 
-    const HERE: Mac = Mac([2, 0, 0, 0, 0, 1]);
-    const THERE: Mac = Mac([2, 0, 0, 0, 0, 2]);
+    const OUR_ADDRESS: Mac = Mac([2, 0, 0, 0, 0, 1]);
+    const DEVICE_ADDRESS: Mac = Mac([2, 0, 0, 0, 0, 2]);
 
     fn suite() -> IpSuite {
         let address = Ipv4Addr::new(192, 168, 78, 2);
@@ -440,11 +440,16 @@ mod tests {
 
     /// The first frame of a connection is from the worked example in the notes.
     #[test]
-    fn a_station_is_looked_for_by_name() {
+    fn encodes_a_search_by_name() {
         let dcp = Dcp::identify(0x0100_0001, "yrcx-sim");
         let payload = dcp.emit();
-        let frame =
-            Frame { destination: Mac::DCP_IDENTIFY, source: HERE, tag: None, id: id::DCP_IDENTIFY, payload: &payload };
+        let frame = Frame {
+            destination: Mac::DCP_IDENTIFY,
+            source: OUR_ADDRESS,
+            tag: None,
+            id: id::DCP_IDENTIFY,
+            payload: &payload,
+        };
         let mut bytes = hex("010ECF000000 020000000001 8892 FEFE 05 00 01000001 0001 000C 02 02 0008");
         bytes.extend(b"yrcx-sim");
         bytes.resize(60, 0);
@@ -454,14 +459,14 @@ mod tests {
 
     /// The answer of the station is from the worked example in the notes.
     #[test]
-    fn a_station_says_who_it_is() {
+    fn parses_an_identify_answer() {
         let bytes = hex(concat!(
             "020000000001 020000000002 8892 FEFF 05 01 01000001 0000 0056 0202 000A 0000 797263782D73696D",
             "02 05 0008 0000 0102 0202 0203  02 01 000B 0000 59524358206C696B65 00  02 03 0006 0000 FFFF 0001",
             "02 04 0004 0000 01 00  02 07 0004 0000 0001  01 02 000E 0001 C0A84E02 FFFFFF00 C0A84E02",
         ));
         let frame = Frame::parse(&bytes).unwrap();
-        assert_eq!((frame.source, frame.id), (THERE, id::DCP_IDENTIFIED));
+        assert_eq!((frame.source, frame.id), (DEVICE_ADDRESS, id::DCP_IDENTIFIED));
         let dcp = Dcp::parse(frame.payload).unwrap();
         let station = dcp.station().unwrap();
         assert_eq!((station.name.as_str(), station.kind.as_str()), ("yrcx-sim", "YRCX like"));
@@ -473,7 +478,7 @@ mod tests {
 
     /// Set and Get are from the worked example in the notes.
     #[test]
-    fn settings_are_set_and_read_as_in_the_example() {
+    fn set_and_get_frames_match_the_example() {
         let cases = [
             (
                 Dcp::change(9, vec![Block::set_name("robot-7", false)]),
@@ -499,7 +504,7 @@ mod tests {
     }
 
     #[test]
-    fn names_that_no_station_can_have_are_refused_with_the_reason() {
+    fn rejects_invalid_station_names_with_a_reason() {
         for name in ["yrcx-sim", "a", "robot-7.cell-3", "1.2.3.x", "port-01", "port-0011", "1.2.3", &"a".repeat(63)] {
             assert_eq!(check_name(name), Ok(()), "{name}");
         }

@@ -11,7 +11,7 @@ pub const TAG_HIGH: u16 = 0xC000;
 /// VLAN tag: priority 5, VLAN 0, for low-priority alarms.
 pub const TAG_LOW: u16 = 0xA000;
 /// Minimum length of a frame in bytes, without tag and checksum.
-const SHORTEST: usize = 60;
+const MIN_LEN: usize = 60;
 
 /// Frame ids.
 pub mod id {
@@ -81,7 +81,7 @@ impl<'a> Frame<'a> {
         out.u16(ETHER_TYPE);
         out.u16(self.id);
         out.put(self.payload);
-        let shortest = if self.tag.is_some() { SHORTEST + 4 } else { SHORTEST };
+        let shortest = if self.tag.is_some() { MIN_LEN + 4 } else { MIN_LEN };
         out.zeros(shortest.saturating_sub(out.bytes.len()));
         out.bytes
     }
@@ -94,7 +94,7 @@ mod tests {
     use crate::testing::hex;
 
     #[test]
-    fn frames_are_padded_and_read_with_and_without_a_tag() {
+    fn frames_round_trip_with_and_without_a_vlan_tag() {
         let frame =
             Frame { destination: Mac([2; 6]), source: Mac([4; 6]), tag: Some(TAG_HIGH), id: 0x8001, payload: &[7; 3] };
         let bytes = frame.emit();

@@ -188,7 +188,7 @@ mod unit {
     use crate::testing::hex;
 
     #[test]
-    fn mac_addresses_read_as_they_print() {
+    fn mac_addresses_round_trip() {
         let mac = Mac([2, 0, 0xAB, 0, 0, 1]);
         assert_eq!(mac.to_string(), "02:00:ab:00:00:01");
         for text in ["02:00:ab:00:00:01", "02-00-AB-00-00-01"] {

@@ -9,9 +9,9 @@ pub const HEADER_LEN: usize = 80;
 /// Length of the five NDR numbers in bytes.
 const NDR_LEN: usize = 20;
 /// Buffer size for an answer. It is large enough for all calls.
-pub const ROOM: u32 = 4096;
+pub const ANSWER_BUFFER_SIZE: u32 = 4096;
 /// Maximum size of a reassembled answer in bytes.
-pub const MOST: usize = 65_536;
+pub const MAX_ANSWER_LEN: usize = 65_536;
 
 /// Packet type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -305,20 +305,20 @@ mod tests {
             "00100000 8A010000 00100000 00000000 8A010000",
         ));
         for (order, start) in [(ByteOrder::Big, big), (ByteOrder::Little, little)] {
-            let body = Call { room: ROOM, blocks: &BLOCKS }.emit(order);
+            let body = Call { room: ANSWER_BUFFER_SIZE, blocks: &BLOCKS }.emit(order);
             let datagram = Datagram { header: header(order), body: &body };
             let bytes = [start, BLOCKS.to_vec()].concat();
             assert_eq!(datagram.emit(), bytes);
             let read = Datagram::parse(&bytes).unwrap();
             assert_eq!(read, datagram);
-            assert_eq!(Call::parse(read.body, order), Ok(Call { room: ROOM, blocks: &BLOCKS }));
+            assert_eq!(Call::parse(read.body, order), Ok(Call { room: ANSWER_BUFFER_SIZE, blocks: &BLOCKS }));
         }
     }
 
     /// The answer is from the worked example in the notes.
     #[test]
     fn answers_begin_with_their_status() {
-        let body = Reply { status: 0, room: ROOM, blocks: &BLOCKS[..0x56] }.emit(ByteOrder::Big);
+        let body = Reply { status: 0, room: ANSWER_BUFFER_SIZE, blocks: &BLOCKS[..0x56] }.emit(ByteOrder::Big);
         assert_eq!(body[..20].to_vec(), hex("00000000 00000056 00001000 00000000 00000056"));
         let refusal = hex("DB810209");
         let read = Reply::parse(&refusal, ByteOrder::Big).unwrap();

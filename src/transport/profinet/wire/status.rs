@@ -282,7 +282,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn statuses_are_told_with_their_bytes() {
+    fn describes_statuses_with_their_bytes() {
         let cases = [
             (0xDB81_0209, "it refuses cyclic data (IOCRBlockReq): FrameID (DB 81 02 09)"),
             (0xDB81_01FF, "it refuses the connection (ARBlockReq): field 0xff (DB 81 01 FF)"),
@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn every_reason_has_words_of_its_own() {
+    fn every_reason_has_a_unique_text() {
         for (at, (code, _)) in REASONS.iter().enumerate() {
             assert_eq!(usize::from(*code), at + 1);
         }

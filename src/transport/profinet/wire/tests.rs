@@ -40,7 +40,7 @@ fn iocr(kind: u16, frame_id: u16, objects: &[(u16, u16, u16)], consumers: &[(u16
         sequence: 0,
         offset: u32::MAX,
         watchdog: 6,
-        hold: 6,
+        data_hold_factor: 6,
         tag: TAG_HIGH,
         group: Mac::default(),
         objects: places(objects),
@@ -73,7 +73,7 @@ fn example() -> (Vec<Request>, Vec<u8>) {
         }),
         iocr(1, 0x8001, &[(0, 1, 0), (0, 0x8000, 1), (0, 0x8001, 2), (1, 1, 3)], &[(2, 1, 0x34)]),
         iocr(2, 0xFFFF, &[(2, 1, 0)], &[(0, 1, 0x31), (0, 0x8000, 0x32), (0, 0x8001, 0x33), (1, 1, 0x34)]),
-        Request::AlarmCr(AlarmCr::usual(1)),
+        Request::AlarmCr(AlarmCr::with_defaults(1)),
         module(
             0,
             1,
@@ -120,7 +120,7 @@ fn the_answer_to_connect_is_as_in_the_example() {
         Response::Ar { uuid: uuid(), session_key: 1, mac: Mac([2, 0, 0, 0, 0, 2]) },
         Response::Iocr { kind: 1, reference: 1, frame_id: 0x8001 },
         Response::Iocr { kind: 2, reference: 2, frame_id: 0x8002 },
-        Response::AlarmCr { reference: 0, most: 200 },
+        Response::AlarmCr { reference: 0, max_len: 200 },
         Response::Name("yrcx-sim".to_owned()),
     ];
     assert_eq!(Response::parse_all(&bytes).unwrap(), responses);
@@ -172,7 +172,7 @@ fn records_are_as_in_the_example() {
 }
 
 #[test]
-fn the_modules_of_a_device_read_as_they_are_written() {
+fn modules_round_trip() {
     let modules = vec![
         RealModule { slot: 0, ident: 1, submodules: vec![(1, 1), (0x8000, 0x8000)] },
         RealModule { slot: 1, ident: 0x101, submodules: vec![(1, 1)] },
@@ -186,7 +186,7 @@ fn the_modules_of_a_device_read_as_they_are_written() {
 }
 
 #[test]
-fn a_module_difference_reads_as_it_is_written() {
+fn module_differences_round_trip() {
     let bytes = hex("8104 001C 0100 0001 00000000 0001 0001 00000040 0001 0001 0001 00000001 9000");
     let submodules = vec![SubmoduleDiff { subslot: 1, ident: 1, state: 0x9000 }];
     let diff = Response::ModuleDiff(vec![ModuleDiff { slot: 1, ident: 0x40, state: 1, submodules }]);
@@ -200,7 +200,7 @@ fn a_module_difference_reads_as_it_is_written() {
 }
 
 #[test]
-fn writes_of_one_and_of_several_read_as_they_are_written() {
+fn single_and_multiple_writes_round_trip() {
     let parameter = |index, data: &[u8]| Parameter { slot: 1, subslot: 1, index, data: data.to_vec() };
     for parameters in [vec![parameter(1, &[1])], vec![parameter(1, &[1]), parameter(2, &[1, 2, 3, 4, 5])]] {
         let bytes = record::write(uuid(), 3, &parameters);

@@ -17,9 +17,9 @@ pub type ClientFrame = (u64, Option<Frame>);
 /// Maximum number of frames that wait for a client. If more frames wait, the host removes the client.
 const MAX_QUEUE: usize = 1024;
 /// Time limit for the Hello frame of a new client.
-const HELLO_WITHIN: Duration = Duration::from_secs(3);
+const HELLO_TIMEOUT: Duration = Duration::from_secs(3);
 /// Time limit for the last frame to a client.
-const LAST_FRAME_WITHIN: Duration = Duration::from_millis(300);
+const LAST_FRAME_TIMEOUT: Duration = Duration::from_millis(300);
 
 /// A client of the session.
 #[derive(Debug)]
@@ -97,7 +97,7 @@ impl Client {
     pub async fn dismiss(&self, control: Control) {
         self.send_control(control);
         // The wait has a time limit, so that a client that does not read cannot delay the end of the session.
-        let _ = timeout_at(Instant::now() + LAST_FRAME_WITHIN, self.outbox.wait_until_written()).await;
+        let _ = timeout_at(Instant::now() + LAST_FRAME_TIMEOUT, self.outbox.wait_until_written()).await;
     }
 }
 
@@ -118,7 +118,7 @@ async fn read_all(id: u64, mut reader: Reader, inbox_sender: mpsc::Sender<Client
     loop {
         // A client has a time limit for its Hello, because it occupies one of the places for clients. After its Hello,
         // it may be silent.
-        let deadline = Instant::now() + HELLO_WITHIN;
+        let deadline = Instant::now() + HELLO_TIMEOUT;
         let frame =
             if is_named { reader.next().await } else { timeout_at(deadline, reader.next()).await.unwrap_or(Ok(None)) };
         // An invalid frame also ends the connection.
@@ -164,7 +164,7 @@ struct Outbox {
     queue: Mutex<Queue>,
     changed: Notify,
     /// Notified when all frames are written.
-    empty: Notify,
+    drained: Notify,
 }
 
 #[derive(Debug, Default)]
@@ -204,21 +204,21 @@ impl Outbox {
         let mut queue = self.queue();
         queue.is_writing = !queue.frames.is_empty();
         if !queue.is_writing {
-            self.empty.notify_waiters();
+            self.drained.notify_waiters();
         }
         (std::mem::take(&mut queue.frames), queue.is_closed)
     }
 
     async fn wait_until_written(&self) {
         loop {
-            let empty = self.empty.notified();
+            let drained = self.drained.notified();
             {
                 let queue = self.queue();
                 if queue.frames.is_empty() && !queue.is_writing {
                     return;
                 }
             }
-            empty.await;
+            drained.await;
         }
     }
 }
@@ -228,7 +228,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn of_images_in_a_row_the_last_one_goes() {
+    fn sends_only_the_last_of_several_images() {
         let outbox = Outbox::default();
         for frame in
             [Frame::Image(vec![1]), Frame::Image(vec![2]), Frame::Control(Control::Sent), Frame::Image(vec![3])]
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn a_client_that_never_reads_is_given_up() {
+    fn disconnects_a_client_that_never_reads() {
         let outbox = Outbox::default();
         for _ in 0..=MAX_QUEUE {
             outbox.push(Frame::Control(Control::Sent));

@@ -258,7 +258,7 @@ impl Host {
                         self.awaiting_sent.push(id);
                     }
                     if is_new {
-                        self.others(id).for_each(|other| other.send(Frame::Show(change.clone())));
+                        self.other_clients(id).for_each(|other| other.send(Frame::Show(change.clone())));
                     }
                 }
             }
@@ -316,7 +316,7 @@ impl Host {
         }
     }
 
-    fn others(&self, id: u64) -> impl Iterator<Item = &Client> {
+    fn other_clients(&self, id: u64) -> impl Iterator<Item = &Client> {
         self.clients.iter().filter(move |(other, client)| **other != id && client.is_named()).map(|(_, client)| client)
     }
 
@@ -479,7 +479,7 @@ impl Host {
             if let Some(will) = will.and_then(|will| self.link.images()?.change(will, false)) {
                 events.push("armctl sends the stop signals of the client".to_owned());
                 leaves_motion = false;
-                self.others(id).for_each(|other| other.send(Frame::Show(will.clone())));
+                self.other_clients(id).for_each(|other| other.send(Frame::Show(will.clone())));
             }
             (self.log)(&events.join("; "));
         }

@@ -148,7 +148,7 @@ impl SharedLink {
     /// A description of what was not closed properly.
     pub async fn close(self) -> Result<(), String> {
         match self {
-            Self::Images(images) => images.link.close().await.map_err(|trouble| trouble.to_string()),
+            Self::Images(images) => images.link.close().await.map_err(|last_error| last_error.to_string()),
             Self::Datagrams(_) | Self::Stream(_) => Ok(()),
         }
     }
@@ -190,7 +190,7 @@ impl Images {
     /// Creates the link. If the link can send images, the first image is the resting image.
     pub fn new(mut link: ImageLink, rules: Rules) -> Result<Self, String> {
         if rules.is_owner {
-            link.set_output(&rules.resting).map_err(|trouble| trouble.to_string())?;
+            link.set_output(&rules.resting).map_err(|last_error| last_error.to_string())?;
         }
         Ok(Self { link, shown: rules.resting.clone(), rules, seen: None, generation: 0, down: None })
     }
@@ -314,7 +314,7 @@ impl Datagrams {
         self.expecting.insert(client, channel);
         match &mut self.carrier {
             Carrier::Udp(udp) => {
-                let socket = self.sockets.entry(client).or_insert_with(|| udp.another());
+                let socket = self.sockets.entry(client).or_insert_with(|| udp.with_new_sockets());
                 socket.send(channel.into(), bytes).await
             }
             Carrier::InProcess(peer) => {

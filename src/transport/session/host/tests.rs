@@ -83,7 +83,7 @@ async fn client(location: &SessionPath, name: &str) -> Box<Attached> {
     }
 }
 
-fn soon() -> Instant {
+fn within_deadline() -> Instant {
     Instant::now() + Duration::from_secs(60)
 }
 
@@ -95,14 +95,14 @@ async fn served<T>(host: &mut Host, clients: impl Future<Output = T>) -> T {
     }
 }
 
-async fn shows(link: &mut ImageLink, image: &[u8]) {
+async fn assert_image(link: &mut ImageLink, image: &[u8]) {
     link.set_output(image).unwrap();
-    while link.next(soon()).await != Event::Sent {}
+    while link.next(within_deadline()).await != Event::Sent {}
 }
 
-async fn sees(link: &mut ImageLink, wanted: &[u8]) {
+async fn assert_received(link: &mut ImageLink, wanted: &[u8]) {
     loop {
-        if let Event::Image(image) = link.next(soon()).await
+        if let Event::Image(image) = link.next(within_deadline()).await
             && image[..] == *wanted
         {
             return;
@@ -111,21 +111,21 @@ async fn sees(link: &mut ImageLink, wanted: &[u8]) {
 }
 
 #[tokio::test]
-async fn the_exclusive_part_is_one_clients_and_bits_are_everybodys() {
+async fn exclusive_words_have_one_owner_and_bits_are_shared() {
     let folder = tempfile::tempdir().unwrap();
     let (mut host, location) = host(folder.path(), images());
     served(&mut host, async {
         let mut mover = ImageLink::in_session(client(&location, "mover").await);
         let mut other = ImageLink::in_session(client(&location, "other").await);
         assert_eq!(mover.output().unwrap(), [0, 0, 0x41]);
-        mover.acquire(soon()).await.unwrap();
-        shows(&mut mover, &[7, 8, 0x41]).await;
+        mover.acquire(within_deadline()).await.unwrap();
+        assert_image(&mut mover, &[7, 8, 0x41]).await;
         // The client does not own the line, so only the bits that all clients share are changed.
-        shows(&mut other, &[9, 9, 0x01]).await;
-        sees(&mut mover, &[7, 8, 0x01]).await;
+        assert_image(&mut other, &[9, 9, 0x01]).await;
+        assert_received(&mut mover, &[7, 8, 0x01]).await;
         assert_eq!(mover.output().unwrap(), [7, 8, 0x01], "it knows of the bit that went off");
-        shows(&mut mover, &[0, 0, 0x01]).await;
-        sees(&mut other, &[0, 0, 0x01]).await;
+        assert_image(&mut mover, &[0, 0, 0x01]).await;
+        assert_received(&mut other, &[0, 0, 0x01]).await;
     })
     .await;
 }
@@ -136,31 +136,33 @@ async fn the_line_and_motion_have_one_owner() {
     let (mut host, location) = host(folder.path(), images());
     served(&mut host, async {
         let (mut first, mut second) = (client(&location, "first").await, client(&location, "second").await);
-        first.acquire(soon()).await.unwrap();
+        first.acquire(within_deadline()).await.unwrap();
         first.claim_motion().await.unwrap();
-        assert!(matches!(second.claim_motion().await, Err(SessionBusy::Moved(peer)) if peer.command == "first"));
+        assert!(
+            matches!(second.claim_motion().await, Err(SessionBusy::LocationChanged(peer)) if peer.command == "first")
+        );
         let busy = second.acquire(Instant::now() + Duration::from_millis(20)).await;
         assert!(matches!(busy, Err(SessionBusy::Busy(Some(peer))) if peer.command == "first"));
         // The request that timed out was dropped. A new request gets the line.
         first.release();
-        first.acquire(soon()).await.unwrap();
+        first.acquire(within_deadline()).await.unwrap();
         let waiting = status(&location).await.unwrap().unwrap();
         assert_eq!((waiting.clients.len(), waiting.motion.unwrap().command), (2, "first".to_owned()));
         drop(first);
-        second.acquire(soon()).await.unwrap();
+        second.acquire(within_deadline()).await.unwrap();
         second.claim_motion().await.unwrap();
     })
     .await;
 }
 
 #[tokio::test]
-async fn what_somebody_leaves_on_the_image_stays_and_is_told() {
+async fn reports_bits_that_a_client_left_on() {
     let folder = tempfile::tempdir().unwrap();
     let (mut host, location) = host(folder.path(), images());
     served(&mut host, async {
         let mut mover = ImageLink::in_session(client(&location, "mover").await);
-        mover.acquire(soon()).await.unwrap();
-        shows(&mut mover, &[7, 0, 0x41]).await;
+        mover.acquire(within_deadline()).await.unwrap();
+        assert_image(&mut mover, &[7, 0, 0x41]).await;
         drop(mover);
         let mut next = client(&location, "next").await;
         while next.welcome.leftover.is_none() {
@@ -170,15 +172,15 @@ async fn what_somebody_leaves_on_the_image_stays_and_is_told() {
         assert_eq!((leftover.by.command.as_str(), leftover.died), ("mover", false));
         assert_eq!(next.output().unwrap(), [7, 0, 0x41]);
         let mut next = ImageLink::in_session(next);
-        next.acquire(soon()).await.unwrap();
-        shows(&mut next, &[0, 0, 0x41]).await;
+        next.acquire(within_deadline()).await.unwrap();
+        assert_image(&mut next, &[0, 0, 0x41]).await;
         assert_eq!(status(&location).await.unwrap().unwrap().leftover, None);
     })
     .await;
 }
 
 #[tokio::test]
-async fn datagrams_are_for_whoever_has_the_line() {
+async fn owner_of_the_line_gets_the_datagrams() {
     let folder = tempfile::tempdir().unwrap();
     let echo: Box<dyn sim::Peer> = Box::new(Echo::default());
     let held = SharedLink::Datagrams(Datagrams::in_process(sim::InProcess::new(echo, None)));
@@ -186,41 +188,41 @@ async fn datagrams_are_for_whoever_has_the_line() {
     served(&mut host, async {
         let (mut first, mut second) = (client(&location, "first").await, client(&location, "second").await);
         let mut buffer = [0; 16];
-        first.acquire(soon()).await.unwrap();
+        first.acquire(within_deadline()).await.unwrap();
         // The client does not own the line, so nothing is sent.
         second.send(0, b"no").await.unwrap();
         first.send(1, b"yes").await.unwrap();
-        assert_eq!(first.receive(1, &mut buffer, soon()).await.unwrap(), Some(3));
+        assert_eq!(first.receive(1, &mut buffer, within_deadline()).await.unwrap(), Some(3));
         assert_eq!(&buffer[..3], b"yes");
         first.release();
-        second.acquire(soon()).await.unwrap();
+        second.acquire(within_deadline()).await.unwrap();
         second.send(0, b"now").await.unwrap();
-        assert_eq!(second.receive(0, &mut buffer, soon()).await.unwrap(), Some(3));
+        assert_eq!(second.receive(0, &mut buffer, within_deadline()).await.unwrap(), Some(3));
         assert_eq!(&buffer[..3], b"now");
     })
     .await;
 }
 
 #[tokio::test]
-async fn the_end_is_told_to_everybody() {
+async fn notifies_all_clients_of_the_end() {
     let folder = tempfile::tempdir().unwrap();
     let (mut host, location) = host(folder.path(), images());
     let mut link = served(&mut host, async { ImageLink::in_session(client(&location, "first").await) }).await;
     host.end("the session was closed").await.unwrap();
     let lost = loop {
-        match link.next(soon()).await {
+        match link.next(within_deadline()).await {
             Event::Lost(why) => break why,
             Event::Timeout => panic!("it was never told"),
             _ => {}
         }
     };
     assert_eq!((lost.to_string().as_str(), link.ended()), ("the session was closed", Some("the session was closed")));
-    assert!(matches!(link.acquire(soon()).await, Err(SessionBusy::Ended(_))));
+    assert!(matches!(link.acquire(within_deadline()).await, Err(SessionBusy::Ended(_))));
     assert!(matches!(attach_at(&location, "key", "late", Purpose::Any).await.unwrap(), AttachResult::Nothing));
 }
 
 #[tokio::test]
-async fn a_client_for_another_device_is_sent_away() {
+async fn rejects_a_client_for_another_device() {
     let folder = tempfile::tempdir().unwrap();
     let (mut host, location) = host(folder.path(), images());
     let refused = served(&mut host, attach_at(&location, "other", "wrong", Purpose::Any)).await;
@@ -228,7 +230,7 @@ async fn a_client_for_another_device_is_sent_away() {
 }
 
 /// Sends frames to the host. Returns all frames of the host until the connection is closed.
-async fn told(location: &SessionPath, frames: &[Control]) -> Vec<Frame> {
+async fn exchange_control(location: &SessionPath, frames: &[Control]) -> Vec<Frame> {
     use tokio::io::AsyncWriteExt as _;
 
     let (read, mut write) = crate::session::socket::connect(&location.socket()).await.unwrap().unwrap();
@@ -241,20 +243,20 @@ async fn told(location: &SessionPath, frames: &[Control]) -> Vec<Frame> {
         return Vec::new();
     }
     let mut reader = crate::session::wire::Reader::new(read);
-    let mut told = Vec::new();
+    let mut exchange_control = Vec::new();
     while let Ok(Some(frame)) = reader.next().await {
-        told.push(frame);
+        exchange_control.push(frame);
     }
-    told
+    exchange_control
 }
 
 #[tokio::test(start_paused = true)]
-async fn who_does_not_say_who_he_is_takes_up_no_place() {
+async fn disconnects_clients_without_a_hello() {
     let folder = tempfile::tempdir().unwrap();
     let (mut host, location) = host(folder.path(), images());
     served(&mut host, async {
-        let silent: Vec<_> = (0..MAX_CLIENTS).map(|_| told(&location, &[])).collect();
-        let asking = told(&location, &[Control::Ask]);
+        let silent: Vec<_> = (0..MAX_CLIENTS).map(|_| exchange_control(&location, &[])).collect();
+        let asking = exchange_control(&location, &[Control::Ask]);
         // The host accepts the first clients, and later removes them because they send no Hello. After that, there is a
         // free place.
         let (all, _) = tokio::join!(join_all(silent), async {
@@ -263,7 +265,7 @@ async fn who_does_not_say_who_he_is_takes_up_no_place() {
         });
         assert!(all.iter().all(Vec::is_empty));
         client(&location, "new").await;
-        let asked = told(&location, &[Control::Ask]).await;
+        let asked = exchange_control(&location, &[Control::Ask]).await;
         assert!(matches!(asked[..], [Frame::Control(Control::Status(_))]), "{asked:?}");
     })
     .await;
@@ -271,19 +273,19 @@ async fn who_does_not_say_who_he_is_takes_up_no_place() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn who_has_said_who_he_is_may_be_silent() {
+async fn keeps_silent_clients_after_a_hello() {
     let folder = tempfile::tempdir().unwrap();
     let (mut host, location) = host(folder.path(), images());
     served(&mut host, async {
         let mut link = ImageLink::in_session(client(&location, "patient").await);
         tokio::time::sleep(Duration::from_secs(3600)).await;
-        shows(&mut link, &[0, 0, 0x01]).await;
+        assert_image(&mut link, &[0, 0, 0x01]).await;
     })
     .await;
 }
 
 #[tokio::test]
-async fn a_client_of_another_version_is_refused_with_a_word() {
+async fn refuses_a_client_of_another_version_with_a_reason() {
     let folder = tempfile::tempdir().unwrap();
     let (mut host, location) = host(folder.path(), images());
     served(&mut host, async {
@@ -294,21 +296,21 @@ async fn a_client_of_another_version_is_refused_with_a_word() {
             command: "armctl".to_owned(),
             purpose: Purpose::Any,
         };
-        let told = told(&location, &[Control::Hello(hello)]).await;
-        let [Frame::Control(Control::Refused(why))] = &told[..] else { panic!("{told:?}") };
+        let exchange_control = exchange_control(&location, &[Control::Hello(hello)]).await;
+        let [Frame::Control(Control::Refused(why))] = &exchange_control[..] else { panic!("{exchange_control:?}") };
         assert!(why.contains("another version"), "{why}");
     })
     .await;
 }
 
 #[tokio::test]
-async fn after_a_loss_in_motion_the_stop_goes_before_all_else() {
+async fn stop_precedes_other_frames_after_a_loss_in_motion() {
     let folder = tempfile::tempdir().unwrap();
     let device = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
     let port = device.local_addr().unwrap().port();
     let open = move || -> Pin<Box<dyn Future<Output = OpenResult>>> {
         Box::pin(async move {
-            let opened = Tcp::open("127.0.0.1", port, soon()).await;
+            let opened = Tcp::open("127.0.0.1", port, within_deadline()).await;
             opened.map(Stream::Tcp).map_err(|error| error.to_string())
         })
     };
@@ -320,13 +322,13 @@ async fn after_a_loss_in_motion_the_stop_goes_before_all_else() {
     served(&mut host, async {
         let (mut mover, mut reader) = (client(&location, "mover").await, client(&location, "reader").await);
         mover.claim_motion().await.unwrap();
-        mover.acquire(soon()).await.unwrap();
+        mover.acquire(within_deadline()).await.unwrap();
         mover.send(0, b"go").await.unwrap();
         line.read_exact(&mut [0; 2]).await.unwrap();
         // Another client waits for the line when the link is lost. The client that stops the robot comes to the queue
         // last.
         let read = async {
-            reader.acquire(soon()).await.unwrap();
+            reader.acquire(within_deadline()).await.unwrap();
             reader.send(0, b"read").await.unwrap();
         };
         let stop = async {
@@ -338,7 +340,7 @@ async fn after_a_loss_in_motion_the_stop_goes_before_all_else() {
             else {
                 panic!("the session is there")
             };
-            stop.acquire(soon()).await.unwrap();
+            stop.acquire(within_deadline()).await.unwrap();
             stop.send(0, b"stop").await.unwrap();
             stop.leave().await;
             let mut heard = [0; 8];

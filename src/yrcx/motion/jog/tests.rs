@@ -12,11 +12,11 @@ const TWO_SECONDS: [&str; 6] = ["jog", "pulse", "1", "-", "--for", "2s"];
 fn ends(scans: u32, head: &[u16]) -> Reply {
     let mut words: Words = [0; 16];
     words[..head.len()].copy_from_slice(head);
-    Reply::Ends(scans, words)
+    Reply::AddressPair(scans, words)
 }
 
 #[test]
-fn it_goes_on_for_its_time_and_tells_where_it_stands() {
+fn jog_runs_for_its_time_and_reports_its_position() {
     let (outcome, peer) = run_on(Scripted::new([Reply::UntilStop(answer("4.2.6-pulse"))]), &TWO_SECONDS);
     let report = outcome.unwrap();
     assert_eq!(report["position"]["text"], "--pulse 12345,-123,2000,0");
@@ -27,7 +27,7 @@ fn it_goes_on_for_its_time_and_tells_where_it_stands() {
 }
 
 #[test]
-fn an_interrupt_ends_it_and_tells_where_it_stands() {
+fn interrupt_ends_the_jog_and_reports_its_position() {
     for ms in [100, 500, 60_000] {
         let mut bench = Bench::new(Scripted::new([Reply::UntilStop(answer("4.2.6-cartesian"))]));
         bench.interrupt(&["jog", "cartesian", "1", "-"], Duration::from_millis(ms));
@@ -38,7 +38,7 @@ fn an_interrupt_ends_it_and_tells_where_it_stands() {
 }
 
 #[test]
-fn a_jog_is_stopped_even_if_an_interrupt_shall_leave_what_moves() {
+fn on_interrupt_leave_still_stops_a_jog() {
     use crate::link::Yrcx;
     use armctl_frame::Family as _;
 
@@ -52,14 +52,14 @@ fn a_jog_is_stopped_even_if_an_interrupt_shall_leave_what_moves() {
 }
 
 #[test]
-fn an_end_by_itself_is_told_as_it_is() {
+fn reports_a_jog_that_ended_by_itself() {
     // A soft limit ends the jog.
     let (outcome, peer) = run_on(Scripted::new([ends(100, &[0x4000, 2, 334])]), &TWO_SECONDS);
     let failure = outcome.unwrap_err();
     assert_eq!((failure.kind, failure.code.as_deref()), (Kind::Refused, Some("2.334")));
     assert_eq!(peer.bits, [REST]);
     // Another client ends the jog by the stop input.
-    let (outcome, _) = run_on(Scripted::new([Reply::Ends(100, answer("4.2.6-pulse"))]), &TWO_SECONDS);
+    let (outcome, _) = run_on(Scripted::new([Reply::AddressPair(100, answer("4.2.6-pulse"))]), &TWO_SECONDS);
     assert_eq!(outcome.unwrap_err().code.as_deref(), Some("12.400"));
     // The jog ends with the normal reply of the manual.
     let (outcome, _) = run_on(Scripted::new([ends(100, &[0x0200, 0, 0, 0, 5])]), &TWO_SECONDS);
@@ -67,7 +67,7 @@ fn an_end_by_itself_is_told_as_it_is() {
 }
 
 #[test]
-fn what_does_not_end_leaves_the_stop_input_off() {
+fn stop_input_stays_off_if_the_jog_does_not_end() {
     let stays = |reply: Reply, line: &[&str]| {
         let (outcome, peer) = run_on(Scripted::new([reply]), line);
         let failure = outcome.unwrap_err();
@@ -85,7 +85,7 @@ fn what_does_not_end_leaves_the_stop_input_off() {
 }
 
 #[test]
-fn a_jog_by_its_words_is_stopped_as_well() {
+fn stops_a_jog_sent_as_raw_words() {
     let (outcome, peer) = run_on(Scripted::new([ends(20, &[0])]), &["raw", "--wi", "0x20,0,0x81"]);
     assert!(outcome.unwrap_err().message.contains("the stop input SI(06) stays off"));
     assert_eq!(peer.bits, [REST, HELD]);
@@ -95,14 +95,14 @@ fn a_jog_by_its_words_is_stopped_as_well() {
 }
 
 #[test]
-fn a_jog_that_nobody_stopped_is_stopped_when_the_link_closes() {
+fn closing_the_link_stops_the_jog() {
     let mut bench = Bench::new(Scripted::new([Reply::UntilStop(answer("4.2.6-pulse"))]));
     bench.interrupt(&JOG, Duration::from_secs(1));
     assert_eq!(bench.into_peer().bits, [REST, HELD, REST]);
 }
 
 #[test]
-fn a_link_that_is_lost_rests_with_the_stop_input_off() {
+fn lost_link_restarts_with_the_stop_input_off() {
     let mut bench = Bench::new(Scripted::new([Reply::Loses(20, Duration::from_secs(1)), ends(0, &[0x0200])]));
     let failure = bench.run(&JOG).unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
@@ -114,7 +114,7 @@ fn a_link_that_is_lost_rests_with_the_stop_input_off() {
 }
 
 #[test]
-fn a_link_that_stays_down_promises_nothing_of_the_stop_input() {
+fn makes_no_statement_about_the_stop_input_without_a_link() {
     let mut bench = Bench::new(Scripted::new([Reply::Loses(20, Duration::from_secs(3600))]));
     let failure = bench.run(&JOG).unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);

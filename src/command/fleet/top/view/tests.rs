@@ -11,7 +11,7 @@ use super::super::model::{Model, Moment};
 use super::super::testing::{fail, fleet, sample, with_alarm};
 use super::{Palette, render};
 
-const EVERY: Duration = Duration::from_millis(500);
+const POLL_INTERVAL: Duration = Duration::from_millis(500);
 const UNICODE_PALETTE: Palette = Palette { has_color: true, is_unicode: true };
 const ASCII_PALETTE: Palette = Palette { has_color: false, is_unicode: false };
 
@@ -38,10 +38,10 @@ fn picture(model: &Model, now: Moment, columns: u16, lines: u16, palette: Palett
 
 /// Four robots: running, silent, with alarms, not polled yet.
 fn four_robots() -> (Model, Moment) {
-    let mut model = Model::new(&fleet(4), EVERY);
+    let mut model = Model::new(&fleet(4), POLL_INTERVAL);
     let mut now = Duration::ZERO;
     for look in 0..40_u32 {
-        now = EVERY * look;
+        now = POLL_INTERVAL * look;
         let wave = (f64::from(look) / 6.0).sin();
         let mut moving = sample(wave * 45_000.0);
         moving.answered_in = Some(Duration::from_millis(4) + Duration::from_millis(u64::from(look % 5)));

@@ -23,7 +23,7 @@ struct Bench {
 }
 
 /// Maximum run time in a test.
-const PATIENCE: Duration = Duration::from_secs(3600);
+const MAX_TEST_TIME: Duration = Duration::from_secs(3600);
 
 impl Bench {
     fn new(toml: &str) -> Self {
@@ -89,7 +89,7 @@ impl Bench {
 
     /// Advances the time until nothing runs, or no event is due.
     fn rest(&mut self) {
-        let end = self.now + PATIENCE;
+        let end = self.now + MAX_TEST_TIME;
         while self.sim.state().executing {
             let Some(wake) = self.sim.wake().filter(|wake| *wake <= end) else { break };
             self.now = self.now.max(wake);

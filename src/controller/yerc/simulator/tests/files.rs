@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn files_come_back_as_they_went() {
+fn files_round_trip() {
     let mut bench = Bench::default();
     let any: Vec<u8> = (0..5000u32).map(|i| i.to_le_bytes()[0] ^ i.to_le_bytes()[1]).collect();
     for (size, len) in [(479, 5000), (400, 5000), (1, 7), (479, 479), (479, 958)] {
@@ -59,7 +59,7 @@ fn jobs_are_checked_when_they_are_loaded() {
 }
 
 #[test]
-fn an_empty_list_is_said_by_model() {
+fn empty_list_answer_depends_on_the_model() {
     let mut bench = Bench::new("stock = false");
     assert_eq!(bench.fetch(0x32, b"*.JBI"), Err(Status { code: 0, added_size: 1, added: 0xE2A7 }));
     let mut bench = Bench::new("stock = false\nmodel = 'fs100'");
@@ -103,7 +103,7 @@ fn repeated_blocks_of_a_load_are_stored_once() {
 }
 
 #[test]
-fn one_transfer_at_a_time_and_none_for_ever() {
+fn allows_one_transfer_with_a_time_limit() {
     let mut bench = Bench::new("[[file]]\nname = 'BIG.DAT'\nsize = 1000");
     bench.file(1, 1, false, 0x16, 0, b"BIG.DAT");
     let busy = bench.file(2, 1, false, 0x32, 0, b"");
@@ -120,7 +120,7 @@ fn one_transfer_at_a_time_and_none_for_ever() {
 }
 
 #[test]
-fn a_batch_backup_takes_its_time_and_is_then_a_file() {
+fn batch_backup_takes_time_and_creates_a_file() {
     const PATH: &[u8] = b"/SPDRV/CMOSBK.BIN";
     let mut bench = Bench::new("backup_seconds = 600\nbackup_size = 2000");
     assert!(bench.file(PEER, 1, false, 0x16, 0, PATH).is_empty());
@@ -140,14 +140,14 @@ fn a_batch_backup_takes_its_time_and_is_then_a_file() {
 }
 
 #[test]
-fn a_large_file_costs_nothing_until_it_is_read() {
+fn large_file_is_generated_when_read() {
     let mut bench = Bench::new("[[file]]\nname = 'BIG.DAT'\nsize = 67108864");
     let (_, block, data) = bench.file_one(false, 0x16, 0, b"BIG.DAT");
     assert_eq!((block, data.len()), (1, 479));
 }
 
 #[test]
-fn late_copies_of_the_transfer_before_do_no_harm() {
+fn ignores_late_copies_of_the_previous_transfer() {
     let mut bench = Bench::default();
     bench.file(PEER, 1, false, 0x15, 0, b"A.DAT");
     bench.file(PEER, 1, true, 0x15, LAST_BLOCK | 1, b"old");
@@ -158,7 +158,7 @@ fn late_copies_of_the_transfer_before_do_no_harm() {
 }
 
 #[test]
-fn the_file_of_variables_is_what_the_variables_are() {
+fn variable_file_contains_the_current_variables() {
     let mut bench = Bench::new("");
     let before = bench.fetch(0x16, b"VAR.DAT").unwrap();
     let row = |file: &[u8]| String::from_utf8_lossy(file).lines().nth(3).map(ToOwned::to_owned);

@@ -34,7 +34,7 @@ fn each_state_refuses_with_its_own_code() {
 }
 
 #[test]
-fn alarms_take_the_power_and_a_reset_gives_it_back() {
+fn alarm_switches_power_off_until_a_reset() {
     let mut bench = Bench::default();
     assert_eq!(bench.read(0x70, 1), [0; 60]);
     bench.console("alarm 4315 3 1");
@@ -86,7 +86,7 @@ fn a_job_runs_line_by_line() {
 }
 
 #[test]
-fn hold_pauses_a_job_and_start_takes_it_up_again() {
+fn hold_pauses_a_job_and_start_continues_it() {
     let mut bench = Bench::default();
     bench.select(b"TESTJOB", 0);
     bench.start();
@@ -105,7 +105,7 @@ fn hold_pauses_a_job_and_start_takes_it_up_again() {
 }
 
 #[test]
-fn calls_inputs_and_the_cycle_switch() {
+fn jobs_use_calls_inputs_and_the_cycle() {
     let mut bench = Bench::default();
     bench.select(b"MAIN", 0);
     bench.start();
@@ -160,7 +160,7 @@ fn management_times_advance() {
 }
 
 #[test]
-fn a_start_state_from_text() {
+fn parses_a_start_state() {
     let mut bench = Bench::new(
         r#"
         model = "fs100"
@@ -180,7 +180,7 @@ fn a_start_state_from_text() {
         do = "servo on"
         "#,
     );
-    bench.simulator.answers = Answers::new(Duration::ZERO, MAX_WAITING);
+    bench.simulator.answers = DelayedAnswers::new(Duration::ZERO, MAX_WAITING);
     assert_eq!(bench.ask(0x7A, 0, 1, 0x0E, &[]).1, [9]);
     assert_eq!(bench.ask(0x7E, 1, 1, 0x0E, &[]).1[..6], *b"\x83e\x83X\x83g");
     assert_eq!(bench.ask(0x78, 2501, 1, 0x0E, &[]).1, [1]);
@@ -193,7 +193,7 @@ fn a_start_state_from_text() {
 }
 
 #[test]
-fn mistakes_in_a_start_state_are_told_with_their_line() {
+fn start_state_errors_have_a_line_number() {
     let cases = [
         ("\nmodel = 'dx300'", "line 2"),
         ("\n\nspeed = 5", "line 3"),
@@ -213,7 +213,7 @@ fn mistakes_in_a_start_state_are_told_with_their_line() {
 }
 
 #[test]
-fn the_console_says_what_is_wrong() {
+fn console_reports_errors() {
     let mut bench = Bench::default();
     let mut wrong = |line: &str| bench.simulator.console(Now::ZERO, line).unwrap_err();
     assert_eq!(wrong("servo maybe"), "'maybe' is not on or off");
@@ -226,7 +226,7 @@ fn the_console_says_what_is_wrong() {
 }
 
 #[test]
-fn answers_come_after_the_delay_and_busy_is_seeded() {
+fn delays_answers_and_seeds_busy() {
     let start = Start::parse("answer_delay_ms = 20", |_| Err(String::new())).unwrap();
     let mut simulator = Simulator::new(start);
     let request = hex("5945524320000000030100000000000039393939393939397200010000010000");

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn a_straight_move_arrives_in_time_and_exactly() {
+fn linear_move_ends_exactly_in_time() {
     let mut bench = Bench::default();
     assert_eq!(bench.write(0x8A, 2, 1, 0x02, &five_seconds().emit()), Status::OK);
     assert!(bench.status().running());
@@ -21,7 +21,7 @@ fn a_straight_move_arrives_in_time_and_exactly() {
 }
 
 #[test]
-fn twenty_five_words_are_those_of_an_fs100() {
+fn fs100_moves_have_25_words() {
     let mut order = cartesian((0, 10_000), 17, [700_000, -300_000, 900_000, -1_799_999, 100, -900_000]);
     order.layout = MoveLayout::Words25;
     let mut bench = Bench::default();
@@ -70,7 +70,7 @@ fn every_kind_of_move_reaches_its_target() {
 }
 
 #[test]
-fn moves_that_must_not_be_sent() {
+fn rejects_invalid_moves() {
     type Change = fn(&mut CartesianMove);
     let mut bench = Bench::default();
     let good = five_seconds();
@@ -104,7 +104,7 @@ fn moves_that_must_not_be_sent() {
 }
 
 #[test]
-fn hold_stops_on_the_way_and_the_move_is_over() {
+fn hold_ends_a_move() {
     let mut bench = Bench::default();
     bench.write(0x8A, 2, 1, 0x02, &five_seconds().emit());
     bench.wait(1000);

@@ -12,7 +12,7 @@ fn the_status_request_of_3_2_1() {
 }
 
 #[test]
-fn registers_take_both_printed_forms() {
+fn registers_accept_both_forms_of_the_manual() {
     let mut bench = Bench::default();
     let outline = hex("59455243200002000301000100000000393939393939393979000a00000200003412");
     let answer = hex("5945524320000000030101010000008039393939393939398200000000000000");
@@ -27,7 +27,7 @@ fn registers_take_both_printed_forms() {
 }
 
 #[test]
-fn malformed_datagrams_are_told_what_is_wrong() {
+fn answers_malformed_datagrams_with_an_error() {
     let good = "5945524320000000030100000000000039393939393939397200010000010000";
     let patched = |at: usize, bytes: &str| {
         let mut text = good.to_owned();
@@ -52,7 +52,7 @@ fn malformed_datagrams_are_told_what_is_wrong() {
 }
 
 #[test]
-fn addresses_that_do_not_exist() {
+fn refuses_missing_addresses() {
     let mut bench = Bench::default();
     assert_eq!(bench.ask(0x8D, 1, 1, 0x0E, &[]).0, plain(0x08));
     assert_eq!(bench.ask(0x72, 1, 1, 0x10, &[]).0, plain(0x08));
@@ -73,7 +73,7 @@ fn addresses_that_do_not_exist() {
 }
 
 #[test]
-fn axes_that_are_not_fitted_may_be_answered_all_the_same() {
+fn can_answer_for_missing_axes() {
     let asked = [(0x74, 1), (0x75, 1), (0x75, 101), (0x76, 1), (0x77, 1), (0x75, 11), (0x75, 21)];
     for (state, sizes) in [
         ("", [32, 52, 52, 32, 32, 24, 28]),
@@ -108,7 +108,7 @@ fn every_readable_command_answers_its_size() {
 }
 
 #[test]
-fn variables_keep_what_is_written() {
+fn variables_keep_written_values() {
     let mut bench = Bench::default();
     for (command, value) in [
         (0x7A, &[255][..]),
@@ -151,7 +151,7 @@ fn positions_are_undefined_until_written() {
 }
 
 #[test]
-fn plural_commands_hold_their_limits() {
+fn plural_commands_respect_their_limits() {
     let mut bench = Bench::default();
     let count = |count: u32| count.to_le_bytes();
     assert_eq!(bench.ask(0x302, 3, 0, 0x33, &count(476)).0, refused(0xA101));

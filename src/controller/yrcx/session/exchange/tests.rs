@@ -77,7 +77,7 @@ impl World {
             let now = ms(self.now);
             let mut poll = now >= wake;
             if self.cut == Some(self.now) {
-                self.exchange.lost(now);
+                self.exchange.handle_link_loss(now);
                 self.output.unlinked();
                 poll = true;
             }
@@ -195,7 +195,7 @@ fn data_goes_first_then_the_command_then_the_reset() {
 }
 
 #[test]
-fn the_command_is_sent_once_however_long_it_runs() {
+fn long_command_is_sent_once() {
     let mut world = World::new(move_to_19(), Script { runs: Some(300_000), ..Script::default() });
     let outcome = world.run();
     assert!(matches!(outcome.ended, Ended::Answered(Answer::Done(_))));
@@ -267,7 +267,7 @@ fn a_status_reset_waits_for_the_ready_status() {
 }
 
 #[test]
-fn a_running_command_of_another_master_is_left_alone() {
+fn does_not_touch_a_command_of_another_master() {
     let mut world = World::new(move_to_19(), Script { runs: None, ..Script::default() });
     world.shown.0[0] = Status::Running.word();
     world.started = Some(0);
@@ -278,7 +278,7 @@ fn a_running_command_of_another_master_is_left_alone() {
 }
 
 #[test]
-fn an_answer_that_is_not_ours_is_not_taken() {
+fn ignores_the_answer_to_another_command() {
     // The status changes after the session decided to send the command, and before the command is sent.
     let mut exchange = Exchange::new(servo_status(), Policy::default());
     let mut output = Output::new(resting());
@@ -295,7 +295,7 @@ fn an_answer_that_is_not_ours_is_not_taken() {
 }
 
 #[test]
-fn a_lost_link_is_told_by_what_was_sent() {
+fn error_of_a_lost_link_depends_on_the_sent_words() {
     let before = |cut, order: Order| {
         let mut world = World::new(order, Script { runs: None, ..Script::default() });
         world.cut = Some(cut);
@@ -307,7 +307,7 @@ fn a_lost_link_is_told_by_what_was_sent() {
 }
 
 #[test]
-fn a_link_lost_after_the_end_does_not_take_the_answer_away() {
+fn keeps_the_answer_if_the_link_is_lost_later() {
     let mut world = World::new(move_to_19(), Script { runs: Some(100), resets: false, ..Script::default() });
     world.cut = Some(200);
     let outcome = world.run();
@@ -338,7 +338,7 @@ fn silence_has_its_reason() {
 }
 
 #[test]
-fn an_interrupt_stops_a_motion_and_gives_the_stop_input_back() {
+fn interrupt_stops_a_motion_and_restores_the_stop_input() {
     let mut world = World::new(jog(), Script { runs: None, ..Script::default() });
     world.interrupt = Some(500);
     let outcome = world.run();
@@ -353,7 +353,7 @@ fn an_interrupt_stops_a_motion_and_gives_the_stop_input_back() {
 }
 
 #[test]
-fn a_jog_that_is_not_seen_to_end_is_stopped_for_good() {
+fn stops_a_jog_whose_end_is_not_observed() {
     let odd = Script { answer: [0x1234; 16], ..Script::default() };
     let vanishing = Script { answer: [0; 16], once: true, ..Script::default() };
     for script in [Script { takes: false, ..Script::default() }, odd, vanishing] {
@@ -406,7 +406,7 @@ fn continuous_output_goes_on_until_it_is_ended() {
 }
 
 #[test]
-fn bits_beside_the_command_stay_as_they_are() {
+fn keeps_bits_outside_the_command() {
     let mut world = World::new(move_to_19(), Script::default());
     let general = Signal::parse(Side::Input, "57").unwrap();
     general.set(&mut world.output.next, true);

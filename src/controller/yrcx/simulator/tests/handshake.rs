@@ -39,7 +39,7 @@ fn the_run_status_can_be_shown_for_quick_commands() {
 }
 
 #[test]
-fn nothing_is_taken_before_the_status_reset() {
+fn accepts_no_command_before_the_status_reset() {
     let mut bench = Bench::default();
     bench.begin(&words(&[0x0503]));
     bench.image.set_command(&words(&[0x0501]));
@@ -51,7 +51,7 @@ fn nothing_is_taken_before_the_status_reset() {
 }
 
 #[test]
-fn a_command_taken_back_is_carried_out_and_not_told() {
+fn executes_a_withdrawn_command_without_an_answer() {
     let mut bench = Bench::default();
     bench.begin(&to_19());
     bench.image.set_command(&[0; 16]);
@@ -63,7 +63,7 @@ fn a_command_taken_back_is_carried_out_and_not_told() {
 }
 
 #[test]
-fn a_command_changed_while_it_runs_is_not_told_and_the_other_not_taken() {
+fn ignores_a_command_that_changes_while_another_runs() {
     let mut bench = Bench::default();
     bench.begin(&to_19());
     bench.image.set_command(&words(&[0x0503]));
@@ -98,7 +98,7 @@ fn continuous_output_follows_the_robot() {
 }
 
 #[test]
-fn what_ran_when_the_link_went_is_told_to_whoever_comes() {
+fn next_master_gets_the_result_after_a_link_loss() {
     let mut bench = Bench::default();
     bench.begin(&to_19());
     bench.wait(100);
@@ -123,7 +123,7 @@ fn what_ran_when_the_link_went_is_told_to_whoever_comes() {
 }
 
 #[test]
-fn a_master_that_does_not_come_is_missed() {
+fn missing_master_raises_an_alarm() {
     let mut simulator = Simulator::new(Start::parse("link_within_ms = 1000").unwrap());
     simulator.advance(Duration::from_millis(999));
     assert!(!output::ALARM.is_on(simulator.output()));
@@ -146,7 +146,7 @@ fn the_alarm_of_a_lost_link_is_that_of_its_bus() {
 }
 
 #[test]
-fn scans_are_5_ms_apart_and_none_is_in_vain() {
+fn scans_only_when_needed_every_5_ms() {
     let mut simulator = Simulator::new(Start::default());
     assert_eq!(simulator.wake(), None);
     let mut image = resting();

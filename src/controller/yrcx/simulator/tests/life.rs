@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn under_the_programming_box_only_references_are_taken() {
+fn programming_box_allows_reads_only() {
     let mut bench = Bench::default();
     bench.console("box on");
     bench.wait(5);
@@ -57,7 +57,7 @@ fn alarms_keep_power_off_until_they_are_reset() {
 }
 
 #[test]
-fn refusals_are_remembered() {
+fn stores_refusals_in_the_history() {
     let mut bench = Bench::default();
     assert_eq!(bench.refused(Command::MovePulse.order().with(Key::Axes, "1").with(Key::Axis1, 1_000_001)), "2.334");
     assert!(bench.console("why").contains("2.334 R1A1"));
@@ -84,7 +84,7 @@ fn the_clock_goes_on() {
 }
 
 #[test]
-fn robots_that_are_not_there_have_no_axes() {
+fn missing_robots_have_no_axes() {
     let mut bench = Bench::new("[[robot]]\naxes = 2");
     let states = |bench: &mut Bench, draft: Draft| bench.done(draft).axes().unwrap();
     assert_eq!(states(&mut bench, Command::ServoStatus.order()), [1, 1, 9, 9]);
@@ -131,7 +131,7 @@ fn the_example_names_every_key() {
 }
 
 #[test]
-fn the_console_tells_what_it_does_not_know() {
+fn console_reports_unknown_commands() {
     let mut bench = Bench::default();
     assert!(bench.console("help").contains("box on|off"));
     assert!(bench.console("robot").contains("robot 2  0 9000 0 0 pulses, servos ++++"));

@@ -77,7 +77,7 @@ fn positions_are_reported_as_they_were_commanded() {
 }
 
 #[test]
-fn one_axis_of_a_scara_may_take_others_along() {
+fn scara_axis_can_move_other_axes() {
     let mut bench = Bench::new(SCARA);
     bench.go_to(["200", "100", "0", "0"]);
     let before = bench.pulses(1);
@@ -194,7 +194,7 @@ fn a_relative_move_that_was_stopped_keeps_its_target() {
 }
 
 #[test]
-fn pushes_meet_what_stands_in_their_way() {
+fn push_stops_at_an_obstacle() {
     let mut bench = Bench::new("[[robot]]\nobstacles = { 3 = 9000 }");
     let push = |target: i32, axis: &str| {
         Command::PushPulse
@@ -219,7 +219,7 @@ fn pushes_meet_what_stands_in_their_way() {
 }
 
 #[test]
-fn torque_is_limited_from_the_next_motion_on() {
+fn torque_limit_applies_to_the_next_motion() {
     let mut bench = Bench::new("[[robot]]\nload = [60, 0, 0, 0]");
     let torque = |bench: &mut Bench, command: Command| bench.done(command.order().with(Key::Axes, "1")).int(Key::Axis1);
     assert_eq!(torque(&mut bench, Command::TorqueOfMax), Some(60));
@@ -231,7 +231,7 @@ fn torque_is_limited_from_the_next_motion_on() {
 }
 
 #[test]
-fn jogs_end_at_the_limit_if_nobody_stops_them() {
+fn jog_ends_at_the_soft_limit() {
     let mut bench = Bench::new(SCARA);
     let jog = |command: Command, axis: &str, direction: &str| {
         command.order().with(Key::Axes, axis).with(Key::Direction, direction).with(Key::Report, "pulse")
@@ -271,7 +271,7 @@ fn inching_goes_its_amount() {
 }
 
 #[test]
-fn origins_make_an_axis_know_where_it_is() {
+fn origin_return_makes_the_position_known() {
     let mut bench = Bench::new(
         "[[robot]]\nmethods = [\"sensor\", \"mark\"]\norigin = [false, true]\nposition = [5000, 5000, 0, 0]\n\
          [[robot]]\naxes = 1\nmethods = [\"sensor\"]\nmotors = [\"incremental\"]\norigin = [false]\nposition = [100]\n",
@@ -360,7 +360,7 @@ fn an_emergency_stop_ends_a_motion_on_the_spot() {
 }
 
 #[test]
-fn soft_limits_hold_on_the_way_too() {
+fn soft_limits_apply_during_a_motion() {
     let mut bench = Bench::new(SCARA);
     bench.go_to(["-150", "200", "0", "0"]);
     // The line between these positions goes through the middle of the range, which the arms cannot reach.

@@ -64,7 +64,7 @@ fn a_program_is_registered_runs_and_ends() {
 }
 
 #[test]
-fn lines_one_by_one() {
+fn executes_lines_step_by_step() {
     let mut bench = Bench::new(&format!("stock = false\n{BLINK}[[task]]\nnumber = 1\nprogram = 5\n"));
     let line = |bench: &mut Bench, draft: Draft| {
         bench.done(draft);
@@ -85,7 +85,7 @@ fn lines_one_by_one() {
 }
 
 #[test]
-fn the_stop_input_stops_and_the_start_goes_on() {
+fn stop_input_stops_and_start_continues() {
     let mut bench = Bench::default();
     bench.pulse(input::PROGRAM_RESET);
     assert!(bench.is_on(output::PROGRAM_RESET));

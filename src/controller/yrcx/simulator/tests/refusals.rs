@@ -29,7 +29,7 @@ fn every_command_is_answered() {
         let row = Row::from_word(words[0]).unwrap();
         let mut bench = Bench::default();
         bench.begin(words);
-        if row.pace == crate::yrcx::table::Pace::Jog {
+        if row.pace == crate::yrcx::table::DurationClass::Jog {
             bench.set(input::STOP, false);
         }
         let answer = bench.end();
@@ -101,7 +101,7 @@ fn the_manual_names_these() {
 }
 
 #[test]
-fn no_words_do_any_harm() {
+fn survives_any_words() {
     let mut random = Rng::with_seed(7);
     let mut bench = Bench::default();
     for turn in 0..20_000 {

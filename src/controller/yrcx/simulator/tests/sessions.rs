@@ -36,7 +36,7 @@ impl MasterLink {
             self.linked = false;
             self.output.unlinked();
             self.simulator.input(now, None);
-            session.lost(now);
+            session.handle_link_loss(now);
         }
         if self.linked && self.now.is_multiple_of(RPI) {
             self.simulator.input(now, Some(&self.output.next));
@@ -109,7 +109,7 @@ fn a_motion_and_a_read() {
 fn every_answer_is_understood() {
     for (id, words, _) in examples::examples() {
         let order = Order::parse(&words).unwrap();
-        if order.row().pace == crate::yrcx::table::Pace::Jog {
+        if order.row().pace == crate::yrcx::table::DurationClass::Jog {
             continue;
         }
         let outcome =
@@ -128,7 +128,7 @@ fn a_refusal_is_an_answer() {
 }
 
 #[test]
-fn what_another_master_left_is_reset_or_waited_for() {
+fn resets_or_awaits_the_command_of_another_master() {
     let mut line = MasterLink::new("");
     let left = |line: &mut MasterLink, order: &Order| {
         line.output.next.set_command(order.words());
@@ -217,7 +217,7 @@ fn an_interrupt_at_any_moment_leaves_a_robot_at_rest() {
 }
 
 #[test]
-fn a_jog_is_stopped_and_tells_where() {
+fn stopped_jog_returns_its_position() {
     let mut line = MasterLink::new("");
     let jog = Command::JogPulse.order().with(Key::Axes, "1").with(Key::Direction, "+").with(Key::Report, "pulse");
     let mut exchange = Exchange::new(order(jog), Policy::default());
@@ -269,7 +269,7 @@ fn the_procedures_of_the_timing_charts() {
 }
 
 #[test]
-fn procedures_tell_what_keeps_them() {
+fn procedure_errors_name_the_missing_signal() {
     let mut line = MasterLink::new("mode = \"manual\"");
     let timed_out = sequence::Outcome::TimedOut { signal: output::AUTO_MODE, on: true };
     assert_eq!(line.procedure(Procedure::auto_mode()), timed_out);

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn a_fresh_controller_shows_what_it_is() {
+fn new_controller_shows_its_state() {
     let bench = Bench::default();
     let on: Vec<&str> = Signal::of_side(Side::Output)
         .filter(|dedicated| bench.is_on(dedicated.signal))
@@ -53,7 +53,7 @@ fn into_emergency_stop_and_out_of_it() {
 }
 
 #[test]
-fn the_wired_emergency_stop_is_another_one() {
+fn wired_emergency_stop_is_independent() {
     let mut bench = Bench::default();
     bench.console("estop on");
     bench.wait(20);
@@ -69,7 +69,7 @@ fn the_wired_emergency_stop_is_another_one() {
 }
 
 #[test]
-fn edges_closer_than_100_ms_are_not_seen() {
+fn ignores_edges_within_100_ms() {
     let mut bench = Bench::new("servo = false");
     input::PROGRAM_RESET.set(&mut bench.image, true);
     bench.wait(95);
