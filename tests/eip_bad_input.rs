@@ -72,7 +72,7 @@ const SIZE: &str = "set the sizes that a probe of the target finds";
 #[test]
 fn reports_wrong_instance_numbers() {
     let board = Board::start(&[]);
-    let point = "swap the instances of input and output, or probe the target to find its assemblies";
+    let point = "swap `in=` and `out=` in the URL, or probe the target to find its assemblies";
     for (query, code, message, hint) in [
         (
             "in_size=50",

@@ -134,8 +134,12 @@ fn suggest_flag_or_value(error: &mut clap::Error, typed: &TypedLine<'_>, whole: 
         return None;
     }
     let takes_value = |argument: &&Arg| argument.get_action().takes_values() && !argument.is_global_set();
+    let accepts_word = |argument: &&Arg| {
+        let values = argument.get_possible_values();
+        values.is_empty() || values.iter().any(|value| value.matches(&word, true))
+    };
     let flags = needed_flags(command).unwrap_or_else(|| {
-        let flags = command.get_arguments().filter(takes_value);
+        let flags = command.get_arguments().filter(takes_value).filter(accepts_word);
         flags.filter_map(|argument| Some(format!("--{}", argument.get_long()?))).collect()
     });
     if flags.len() > MAX_SUGGESTIONS {
@@ -196,9 +200,9 @@ fn suggest_place(error: &mut clap::Error, kind: ContextKind, typed: &TypedLine<'
             commands_by_risk.entry(risk).or_default().insert(format!("`armctl {} -h`", noun.join(" ")));
         }
     }
-    let dangerous = commands_by_risk.into_iter().map(|(risk, helps)| {
-        format!("a command that {risk}: see {}", helps.into_iter().collect::<Vec<_>>().join(", "))
-    });
+    let dangerous = commands_by_risk
+        .into_iter()
+        .map(|(risk, helps)| format!("one that {risk}: see {}", helps.into_iter().collect::<Vec<_>>().join(", ")));
     let mut lines: Vec<String> = safe.into_iter().map(|line| line.format_line()).collect();
     lines.extend(dangerous);
     if lines.is_empty() || lines.len() > MAX_SUGGESTIONS {
@@ -618,7 +622,7 @@ mod tests {
                 "armctl toyo run point 1 --speed 10",
                 "no command sets the speed of one move; the stored override scales all of them: `armctl toyo override set 10`",
             ),
-            ("armctl toyo program get 5 6 7", "name the first and the last with flags: --from 5 --to 7"),
+            ("armctl toyo program get 5 6 7", "type the first and the last number with flags: --from 5 --to 7"),
             ("armctl yerc move joint P2", "type the value after its flag: see `armctl yerc move joint -h`"),
             ("armctl alarm history --csv", "use -o csv"),
             ("armctl compare a b", "the command is `armctl diff`"),

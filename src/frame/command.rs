@@ -191,7 +191,7 @@ pub trait AnyCommand {
     fn sheet(&self) -> Option<Sheet> {
         None
     }
-    /// See [`Command::run`]. The answers are not settled yet: call [`run`](Self::run).
+    /// See [`Command::run`]. The answers are not settled yet: use `run` of the trait object.
     fn run_unsettled<'a>(&'a self, context: AnyContext<'a>) -> LocalBoxFuture<'a, Outcome>;
 }
 

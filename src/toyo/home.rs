@@ -122,7 +122,7 @@ mod tests {
         let failure = Bench::with_faults(state, |_, _| Fault::None).0.run(&["home"]).unwrap_err();
         assert_eq!(failure.kind, Kind::ConditionNotMet);
         assert!(
-            failure.message.contains("but the status shows no origin after the end; the axes are at X "),
+            failure.message.contains("but the status shows no origin after the end of the command; the axes are at X "),
             "{}",
             failure.message
         );

@@ -213,7 +213,11 @@ mod tests {
         assert!(why(fine.with(0, 0x31).with(1, 0x28), Command::Spst).unwrap().starts_with("error 28: axis 1"));
         let question = of_question(&Request::of(Command::Mcnt, [Value::Number(5)]));
         assert_eq!(question.message, "the controller refused MCNT CN=05 (@NG): the status shows no reason");
-        assert!(why(fine.with(0, 0xB0), Command::Cerr).unwrap().starts_with("parameter 2 was changed"));
+        assert!(
+            why(fine.with(0, 0xB0), Command::Cerr)
+                .unwrap()
+                .starts_with("a machine parameter (parameter 2) was changed")
+        );
         assert_eq!(why(fine.with(2, 0x83), Command::Spst).unwrap(), "the controller is in easy mode");
         assert_eq!(why(fine.with(2, 0x80), Command::Extp).unwrap(), "the controller is in sequential mode");
         assert_eq!(why(fine.with(2, 0x88), Command::Ppst).unwrap(), "the controller is in program mode");

@@ -135,6 +135,6 @@ mod tests {
     fn lost_contact_leaves_the_outcome_unknown() {
         let failure = lost_contact("the job was started", Failure::new(Kind::NoAnswer, "silence").code("0x1"));
         assert_eq!(failure.kind, Kind::OutcomeUnknown);
-        assert_eq!(failure.message, "the job was started, but armctl could not read its end: silence");
+        assert_eq!(failure.message, "the job was started, but armctl could not read the result: silence");
     }
 }

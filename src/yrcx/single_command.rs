@@ -5,7 +5,6 @@ use super::link::CommandResult;
 use super::link::Yrcx;
 use super::refusal::BuildOrder as _;
 use crate::prelude::*;
-use armctl_frame::settings_report;
 
 /// A command line that sends one row of the command table.
 pub trait SingleCommand {

@@ -50,6 +50,7 @@ const OTHER_WORDS: &[(&str, &str)] = &[
 #[rustfmt::skip]
 const EXCEPTIONS: &[(&str, &str, &str)] = &[
     ("dry-run", "values", "how many values a part of a backup has"),
+    ("robots.*", "line", "the production line of a robot"),
 ];
 
 /// Reports about frames, local programs and boards. They use the terms of their protocols.

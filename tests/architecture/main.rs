@@ -76,7 +76,7 @@ const FRAME: [(&str, &[&str]); 5] = [
 
 /// Commands that use a transport: links with their traces and faces, capture readers, sessions, simulator servers, the
 /// list of ports, the broker connection, and test peers.
-const LINKS: [&str; 45] = [
+const LINKS: [&str; 46] = [
     "frame/decode/capture/mod.rs",
     "frame/decode/capture/report.rs",
     "frame/decode/capture/stream.rs",
@@ -91,6 +91,7 @@ const LINKS: [&str; 45] = [
     "command/fleet/session/open.rs",
     "frame/session_client.rs",
     "frame/background.rs",
+    "frame/guardian.rs",
     "frame/trace.rs",
     "toyo/decode/capture.rs",
     "toyo/face.rs",
@@ -132,9 +133,10 @@ const PRINTING: [&str; 8] = ["stdout()", "stderr()", "println!", "eprintln!", "p
 const EXITING: [&str; 3] = ["process::exit", "process::abort", "ExitCode::from("];
 
 /// Ways to read a file, and the only modules that can contain them, because they check size and file type. The second
-/// module reads a lock file, and the third module is a test.
+/// and third modules read a lock file, and the last module is a test.
 const READING: [&str; 5] = ["fs::read(", "read_to_string(", "File::open(", "File::options(", ".read(true)"];
-const READERS: [&str; 3] = ["files/mod.rs", "transport/session/socket.rs", "yerc/var/command_tests.rs"];
+const READERS: [&str; 4] =
+    ["files/mod.rs", "transport/session/socket.rs", "transport/session/pipe.rs", "yerc/var/command_tests.rs"];
 
 /// Maximum lines of a source file.
 const MAX_FILE_LINES: usize = 700;

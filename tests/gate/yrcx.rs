@@ -103,7 +103,7 @@ fn restore_asks_once_with_old_and_new() {
     for restore in ["yrcx restore saved", "restore saved"] {
         desk.fails(&format!("-r cell {restore}"), 7, "this would overwrite ");
     }
-    desk.fails("-r cell yrcx restore saved", 7, "overwrite 2 values with those of saved (shifts, shift 4: ");
+    desk.fails("-r cell yrcx restore saved", 7, "overwrite 2 values with the values in saved (shifts, shift 4: ");
     let restored = desk.data("-r cell yrcx restore saved --yes");
     let written: Vec<u64> =
         restored["files"].as_array().unwrap().iter().map(|item| item["written"].as_u64().unwrap()).collect();

@@ -384,9 +384,9 @@ fn leaves_and_retries_flooding_brokers_without_blocking_the_exit() {
     const LINES: usize = 8;
 
     for (packet, why) in [
-        (&[0x20, 2, 0, 0][..], "it does not follow the MQTT protocol: a second CONNACK; next try in "),
-        (&[0x30, 3, 0, 1, b'a'], "it sends too much: "),
-        (&[0xd0, 0], "it sends too much: "),
+        (&[0x20, 2, 0, 0][..], "the broker does not follow the MQTT protocol: a second CONNACK; next try in "),
+        (&[0x30, 3, 0, 1, b'a'], "the broker sends too much: "),
+        (&[0xd0, 0], "the broker sends too much: "),
     ] {
         let workspace = fleet();
         let words = ["publish", &flooding(packet), "--protocol", "3.1.1", "--buffer-memory", "64K", "--json"];

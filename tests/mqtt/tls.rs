@@ -115,7 +115,7 @@ fn service_waits_for_the_right_certificate() {
     let url = broker.url().replace("mqtt:", "mqtts:");
     let mut publisher = Publisher::start(workspace.command(&["publish", &url, "--ca", &ca, "--json"]));
     publisher.wait_for_message(
-        "its certificate is for another name (use the name in the certificate as the host of the URL); next try",
+        "the broker's certificate is for another name (use the name in the certificate as the host of the URL); next try",
     );
     broker.kill();
     install_certificate(broker.folder(), "broker");

@@ -34,6 +34,7 @@ struct Wine {
 }
 
 /// Wine with the program. Prints the reason if there is none.
+#[expect(clippy::print_stderr, reason = "the output of a test")]
 fn wine() -> Option<&'static Wine> {
     static WINE: OnceLock<Result<Wine, String>> = OnceLock::new();
 
@@ -62,8 +63,8 @@ impl Wine {
         let mut compiler = Command::new("x86_64-w64-mingw32-gcc");
         compiler.args(["-shared", "-o"]).arg(programs.join("bcryptprimitives.dll"));
         compiler.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/wine/bcryptprimitives.c")).arg("-ladvapi32");
-        let compiled = compiler.status().map_err(|error| format!("x86_64-w64-mingw32-gcc: {error}"))?;
-        assert!(compiled.success(), "the stand-in for bcryptprimitives.dll does not compile");
+        let result = compiler.status().map_err(|error| format!("x86_64-w64-mingw32-gcc: {error}"))?;
+        assert!(result.success(), "the stand-in for bcryptprimitives.dll does not compile");
         let wine = Self { loader, prefix, program: programs.join("armctl.exe") };
         let started = wine.wine().args(["wineboot", "--init"]).status().unwrap();
         assert!(started.success(), "Wine does not start");

@@ -71,8 +71,8 @@ fn verbs(command: &Command) -> impl Iterator<Item = &Command> {
 fn render_page(root: &Command, command: &Command, path: &[&str]) -> io::Result<Vec<u8>> {
     let shared = page::global_options(root);
     // The page of `armctl` has the global options; all others refer to it.
-    let shown = if path.is_empty() { command.clone() } else { with_own_options(command, &shared) };
-    let shown = shown.name(name_of(path));
+    let left_out = if path.is_empty() { &BTreeSet::new() } else { &shared };
+    let shown = with_own_options(command, left_out).name(name_of(path));
     let (described, listed): (Vec<&Command>, Vec<&Command>) = verbs(command).partition(|verb| !has_page(path, verb));
     let mut text = Vec::new();
     // No date, so that the committed pages depend only on the text.
@@ -170,17 +170,18 @@ fn write_end(path: &[&str], listed: &[&Command], text: &mut Vec<u8>) -> io::Resu
         for (name, what) in environment::VARIABLES {
             writeln!(text, ".TP\n{name}\n{}", escape(what))?;
         }
-        return writeln!(text, ".PP\n{}", escape(environment::ORDER));
-    }
-    writeln!(
-        text,
-        ".SH \"GLOBAL OPTIONS\"\nOptions of every command, such as \\-h, \\-r, \\-t, \\-\\-sim and \\-\\-json: see \
+        writeln!(text, ".PP\n{}", escape(environment::ORDER))?;
+    } else {
+        writeln!(
+            text,
+            ".SH \"GLOBAL OPTIONS\"\nOptions of every command, such as \\-h, \\-r, \\-t, \\-\\-sim and \\-\\-json: see \
          \\fBarmctl\\fR(1)."
-    )?;
-    writeln!(
-        text,
-        ".SH \"EXIT STATUS\"\n0 for success, 2 for a wrong command line. See \\fBarmctl\\fR(1) for the others."
-    )?;
+        )?;
+        writeln!(
+            text,
+            ".SH \"EXIT STATUS\"\n0 for success, 2 for a wrong command line. See \\fBarmctl\\fR(1) for the others."
+        )?;
+    }
     let above = path.split_last().map(|(_, above)| name_of(above));
     let below = listed.iter().map(|verb| name_of(&[path, &[verb.get_name()]].concat()));
     let see = above.into_iter().chain(below).map(|name| format!("\\fB{}\\fR(1)", escape(&name)));
@@ -224,7 +225,11 @@ mod tests {
             {
                 assert!(page.contains(section), "{name}: {section}");
             }
-            assert_eq!(page.contains(".SH EXAMPLES"), !page.contains(".SH SUBCOMMANDS"), "{name}");
+            assert_eq!(
+                page.contains(".SH EXAMPLES"),
+                !page.contains(".SH COMMANDS") && !page.contains(".SH \"COMMANDS"),
+                "{name}"
+            );
             let options = page.split(".TP\n").skip(1);
             let bare = options.filter(|option| option.lines().nth(1).is_none_or(|text| text.trim().is_empty()));
             assert_eq!(bare.collect::<Vec<_>>(), Vec::<&str>::new(), "{name}");

@@ -161,16 +161,16 @@ impl Command for Overview {
             }
             for (place, envelopes) in places {
                 let label = place.map_or_else(|| format!("no {key}"), |place| format!("{key} {place}"));
-                lines.push(format!("{label}: {}", count(envelopes.into_iter())));
+                lines.push(format!("{label}: {}", count(&envelopes.into_iter())));
             }
         }
-        lines.push(count(envelopes.iter()));
+        lines.push(count(&envelopes.iter()));
         Some(lines.join("\n"))
     }
 }
 
 /// Counts robots, answers and alarms.
-fn count<'a>(envelopes: impl Iterator<Item = &'a Envelope> + Clone) -> String {
+fn count<'a>(envelopes: &(impl Iterator<Item = &'a Envelope> + Clone)) -> String {
     let count = |field: &str| {
         let is_true = |envelope: &&Envelope| envelope.data.as_ref().is_some_and(|data| data[field] == true);
         envelopes.clone().filter(is_true).count()

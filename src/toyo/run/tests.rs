@@ -22,7 +22,11 @@ fn a_program_that_never_shows_execution_has_an_unknown_outcome() {
     let state = "origin = true\nsteps = { 1 = [\"OUT STN=0 PN01=.......1\", \"END\"] }\n";
     let failure = Bench::with_faults(state, |_, _| Fault::None).0.run(&["run", "sequential", "--wait"]).unwrap_err();
     assert_eq!(failure.kind, Kind::OutcomeUnknown);
-    assert!(failure.message.contains("the status never showed that the controller executed it"), "{}", failure.message);
+    assert!(
+        failure.message.contains("the status never showed that the controller executed the command"),
+        "{}",
+        failure.message
+    );
 }
 
 #[test]

@@ -557,7 +557,7 @@ mod tests {
             let (mut session, now) = connected(version);
             session.handle(now, &connack.repeat(4096));
             let Some(Event::Lost(loss)) = session.next_event() else { panic!("it goes on") };
-            assert_eq!(loss.to_string(), "it does not follow the MQTT protocol: a second CONNACK");
+            assert_eq!(loss.to_string(), "the broker does not follow the MQTT protocol: a second CONNACK");
             assert!(session.next_event().is_none());
         }
     }
@@ -586,7 +586,7 @@ mod tests {
         for (packet, most) in [(&[0x30, 3, 0, 1, b'a'][..], 1000), (&[0xd0, 0], 1000), (&large, 31)] {
             let (count, why) = accepted_packets(packet, Duration::ZERO, 5000);
             assert_eq!(count, most);
-            assert!(why.unwrap().contains("it sends too much"));
+            assert!(why.unwrap().contains("the broker sends too much"));
             assert_eq!(accepted_packets(packet, Duration::from_secs(1), 5000), (5000, None), "what is slow goes on");
         }
     }

@@ -232,7 +232,7 @@ mod tests {
         assert_eq!(over(&[("x_mm", "7.25")], Some(&old)), Ok(new));
         assert!(over(&[("type", "base"), ("x_mm", "1")], Some(&old)).is_ok());
         assert!(over(&[("type", "base"), ("x_mm", "1")], None).is_err());
-        assert!(over(&[("x_mm", "1")], None).unwrap_err().contains("fill in type and all axes"));
+        assert!(over(&[("x_mm", "1")], None).unwrap_err().contains("fill in `type` and all axes"));
         let pulses = value("P2", "pulse:s=1,l=2,u=3,r=4,b=5,t=6").1;
         assert!(over(&[("x_mm", "1")], Some(&pulses)).is_err());
         assert!(over(&[("type", "base"), ("x_mm", "1")], Some(&pulses)).unwrap_err().contains("missing"));
@@ -243,9 +243,9 @@ mod tests {
         let cells = |column: &str, text: &str| Cells::from([(column.to_owned(), text.to_owned())]);
         let plain = |kind, column, text| plain(kind, &cells(column, text), Encoding::ShiftJis).unwrap_err();
         assert!(plain(VariableKind::B, NUMBER, "256").contains("not a number from 0 to 255"));
-        assert!(plain(VariableKind::B, TEXT, "5").contains("in column value"));
-        assert!(plain(VariableKind::B, "x_mm", "5").contains("x_mm belongs to positions"));
-        assert!(plain(VariableKind::S32, NUMBER, "5").contains("in column text"));
-        assert!(check_position(&cells(NUMBER, "1")).unwrap_err().contains("value is for numbers"));
+        assert!(plain(VariableKind::B, TEXT, "5").contains("in column `value`"));
+        assert!(plain(VariableKind::B, "x_mm", "5").contains("`x_mm` belongs to positions"));
+        assert!(plain(VariableKind::S32, NUMBER, "5").contains("in column `text`"));
+        assert!(check_position(&cells(NUMBER, "1")).unwrap_err().contains("`value` is for numbers"));
     }
 }

@@ -252,7 +252,7 @@ mod tests {
         assert!(changed("x_mm", "far").contains("far"));
         assert!(changed("x_pulses", "9").contains("twice"));
         assert!(changed("form_code", "-1").starts_with("form_code: '-1'"));
-        assert!(changed("speed", "17").starts_with("speed is not a column of a position"));
+        assert!(changed("speed", "17").starts_with("`speed` is not a column of a position"));
         let mut single_value = fields.clone();
         single_value.remove("x_mm");
         single_value.insert("x_deg".to_owned(), "1".to_owned());
@@ -262,6 +262,6 @@ mod tests {
                 .starts_with("x_deg is not an axis of this position")
         );
         single_value.remove(TYPE);
-        assert!(from_fields(VariableKind::P, &single_value).unwrap_err().starts_with("type is missing"));
+        assert!(from_fields(VariableKind::P, &single_value).unwrap_err().starts_with("`type` is missing"));
     }
 }

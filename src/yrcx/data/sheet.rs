@@ -254,6 +254,8 @@ mod tests {
         let comment = sheet.draft(7, &[None, None, None, None, None, None, Some("WAIT")]).unwrap();
         let new = sheet.complete_draft(7, &comment, Some(&old)).unwrap();
         assert_eq!((&new.point, sheet.texts(&new)[6].as_str()), (&old.point, "WAIT"));
-        assert!(sheet.draft(7, &[None, Some("1"), None, None, None, None, None]).unwrap_err().contains("column unit"));
+        assert!(
+            sheet.draft(7, &[None, Some("1"), None, None, None, None, None]).unwrap_err().contains("column `unit`")
+        );
     }
 }

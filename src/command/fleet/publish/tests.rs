@@ -363,7 +363,10 @@ async fn retry_pauses_grow_after_short_connections() {
     counts.unwrap();
     let attempts = fake_uplink.attempts.borrow();
     assert!((12..22).contains(&attempts.len()), "{attempts:?}");
-    assert!(log_lines.iter().any(|line| line.contains("it does not follow the MQTT protocol: noise")), "{log_lines:?}");
+    assert!(
+        log_lines.iter().any(|line| line.contains("the broker does not follow the MQTT protocol: noise")),
+        "{log_lines:?}"
+    );
 }
 
 #[tokio::test(start_paused = true)]
@@ -418,7 +421,7 @@ const REFUSALS: [(BrokerBehavior, &str); 4] = [
     (BrokerBehavior::Refuses(1), "this version of MQTT (try --protocol 5"),
     (
         BrokerBehavior::Distrusted,
-        "its certificate has expired (check the clock of this computer, or give the broker a new certificate)",
+        "the broker's certificate has expired (check the clock of this computer, or give the broker a new certificate)",
     ),
 ];
 

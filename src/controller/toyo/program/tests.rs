@@ -187,7 +187,7 @@ fn suspicious_text_is_a_warning() {
     assert_eq!(
         findings("a: END\n"),
         ["line 1, column 1: warning: no step jumps to label a (if another program uses the tag of this label, write \
-          the tag: a=10:)",]
+          the tag after the label, such as a=10:)",]
     );
     assert_eq!(
         findings("a=5: SPD V=1\n"),
@@ -236,9 +236,9 @@ fn bytes_that_are_not_utf8_are_reported() {
         (
             b"NOP\nE\0N\0D\0",
             "line 2, column 2: error: NUL character; the rest of the file is not read (this is not a text file, or \
-             it is UTF-16: save it as UTF-8)",
+             the file is UTF-16: save the file as UTF-8)",
         ),
-        (b"\xFF\xFEE\0", "line 1, column 1: error: the file is UTF-16 (save it as UTF-8)"),
+        (b"\xFF\xFEE\0", "line 1, column 1: error: the file is UTF-16 (save the file as UTF-8)"),
         (b"\xEF\xBB\xBFEND", "line 1, column 1: note: the file begins with a byte order mark, which is ignored"),
         (b"HOME\r\nEND\r\n", "line 1, column 5: note: lines end with CR LF; the CR is ignored"),
         (b"HOME\rEND", "line 1, column 5: error: character '\\r' is not allowed here"),
@@ -383,8 +383,8 @@ fn a_file_of_another_type_gives_one_error() {
     let points = format!("name,x_mm,y_mm,z_mm,r_mm\n{}", "1,2,3,4,5\n".repeat(50));
     assert_eq!(
         findings(points),
-        ["line 1, column 1: error: this is a CSV table, not a program (`toyo point restore FILE` or \
-          `toyo param restore FILE` writes it)"]
+        ["line 1, column 1: error: this is a CSV table, not a program (use `toyo point restore FILE` or \
+          `toyo param restore FILE` to write the table)"]
     );
     assert_eq!(findings("\u{FEFF}\"Name\";\"x_mm\"\n").len(), 1);
     assert_eq!(findings("name: NOP\nEND\n").len(), 1, "a label may be called so");

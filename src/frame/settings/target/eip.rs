@@ -232,7 +232,7 @@ mod tests {
             ("eip://h:0", "1 to 65535"),
             ("eip://h?in=0", "in must be a number from 1"),
             ("eip://h?out=x", "out must be a number from 1"),
-            ("eip://h?config=no", "or none, not 'no'"),
+            ("eip://h?config=no", "or `none`, not 'no'"),
             ("eip://h?in_size=46", "in_size must be a number from 48"),
             ("eip://h?out_size=65001", "to 65000"),
             ("eip://h?rpi=0ms", "rpi must be a time from 1ms"),

@@ -103,7 +103,7 @@ fn a_change_of_parameter_2_needs_a_power_cycle() {
     assert_eq!(bench.page(0), 0b1011_0000);
     bench.console("error 62");
     for block in ["@SPST 0001", "@HOME", "@CERR", "@SVOF", "@JGST X=-C Y=SP Z=SP R=SP", "@DOUT STN=0 PN01=.......1"] {
-        bench.ng(block, "parameter 2 was changed");
+        bench.ng(block, "(parameter 2) was changed");
     }
     assert_eq!(bench.ask("@RPAR E06"), "@RPAR E06 AX1=0050 AX2=1000 AX3=1000 AX4=1000", "it still communicates");
     bench.console("power cycle");

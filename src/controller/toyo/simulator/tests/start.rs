@@ -92,7 +92,10 @@ fn the_console_shows_the_state() {
     );
     assert!(bench.console("help").lines().count() > 10);
     bench.ng("@JGST X=+L Y=SP Z=SP R=SP", "not reset");
-    assert_eq!(bench.console("why"), "@JGST X=+L Y=SP Z=SP R=SP: JOG was not reset (RS)");
+    assert_eq!(
+        bench.console("why"),
+        "@JGST X=+L Y=SP Z=SP R=SP: the JOG action of this axis was not reset: send RS first"
+    );
     for (line, what) in [
         ("dance", "unknown command: 'dance'"),
         ("input 0/24/1 on", "no input port 0/24"),
