@@ -160,7 +160,7 @@ fn refuses_invalid_commands_before_sending() {
     let cases: [(Draft, &str); 21] = [
         (Command::MovePtp.order(), "WI4 point: missing; allowed: 0 to 29999"),
         (to_point().with(Key::Point, 30_000), "WI4 point: 30000 is out of range; allowed: 0 to 29999"),
-        (to_point().with(Key::Axes, 0), "WI2 axes: 0 named; name 1 to 4"),
+        (to_point().with(Key::Axes, 0), "WI2 axes: 0 selected; select 1 to 4"),
         (to_point().with(Key::Axes, "5"), "WI2 axes: 5: must be from 1 to 4"),
         (
             to_point().with(Key::Robot, 5),
