@@ -182,7 +182,7 @@ fn refuses_invalid_commands_before_sending() {
             Command::PushPulse.order().with(Key::Target, 1).with(Key::Axes, "1,2"),
             "WI2 axes: 2 selected; select exactly 1",
         ),
-        (Command::ServoOn.order().with(Key::Axes, "1,2"), "WI2 axes: 2 selected; name 0 to 1"),
+        (Command::ServoOn.order().with(Key::Axes, "1,2"), "WI2 axes: 2 selected; select 0 to 1"),
         (Command::AbsoluteReset.order(), "WI2 axes: missing; select exactly 1"),
         (arch().with(Key::ArchAxis, "2,3"), "WI2 arch_axis: 2 selected; select exactly 1"),
         (

@@ -13,7 +13,7 @@ commands! {
     pub enum Override {
         /// Read the override
         Get(Get),
-        /// Write the override to the EEPROM. It takes effect while no program runs
+        /// Write the override to the EEPROM. Use it while no program runs
         Set(Set),
     }
 }
@@ -25,7 +25,7 @@ pub struct Get {}
 /// Write the override, if the new value differs.
 #[derive(Debug, Args)]
 #[command(after_help = "The controller stores the value in an EEPROM cell, which wears out after about a million \
-                        writes: do not set the override in a loop. A running program keeps its override.")]
+                        writes: do not set the override in a loop. Set it while no program runs: a change has no effect on a running program.")]
 pub struct Set {
     /// Override in percent, 1 to 100
     #[arg(value_name = "PERCENT", value_parser = percent)]

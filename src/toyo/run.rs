@@ -81,7 +81,7 @@ pub struct Palletizing {
     /// Program to select first [default: the current program]
     #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(i32).range(1..=16))]
     number: Option<i32>,
-    /// Program to select first, as an option instead of an argument
+    /// Program to select before the start, the same as NUMBER
     #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(i32).range(1..=16))]
     program: Option<i32>,
     #[command(flatten)]
@@ -118,7 +118,7 @@ pub struct Easy {
     /// Program to select first [default: the current program]
     #[arg(value_name = "NUMBER", value_parser = clap::value_parser!(i32).range(1..=8))]
     number: Option<i32>,
-    /// Program to select first, as an option instead of an argument
+    /// Program to select before the start, the same as NUMBER
     #[arg(long, value_name = "N", conflicts_with = "number", value_parser = clap::value_parser!(i32).range(1..=8))]
     program: Option<i32>,
     #[command(flatten)]
@@ -150,10 +150,9 @@ impl Command for Easy {
 
 /// Move to a row of the coordinate table, and wait for the end of the move (TO 2-7).
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Parameter M10 selects external point mode: `armctl toyo param set M10 P`. The protocol has no \
-    speed of a single move: the override, which is stored, scales all speeds: `armctl toyo override set 10`."
-)]
+#[command(after_help = "Parameter M10 selects external point mode: `armctl toyo param set M10 P`. A single move \
+    cannot have its own speed. To move slowly, set the override: `armctl toyo override set 10`. It applies to all moves, \
+    and stays stored.")]
 pub struct Point {
     /// Row of the coordinate table, 1 to 999, or the name of a point
     #[arg(value_name = "N", value_parser = parse_point, add = complete::POINT)]

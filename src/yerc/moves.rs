@@ -336,7 +336,7 @@ impl Distance {
 #[derive(Debug, Args)]
 struct PulseTarget {
     /// Target in pulses, of six axes, or of seven or eight axes if the robot has them
-    #[arg(long, value_name = "S,L,U,R,B,T[,E]", allow_hyphen_values = true, value_parser = robot_pulses,
+    #[arg(long, value_name = "S,L,U,R,B,T[,7[,8]]", allow_hyphen_values = true, value_parser = robot_pulses,
         required_unless_present = "station_axes")]
     pulses: Option<Values>,
     /// Tool number

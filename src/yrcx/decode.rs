@@ -20,8 +20,8 @@ use armctl_frame::decode::{self, field_table, in_parentheses, problem_lines, std
     after_help = "Missing words are 0. An answer is explained with its command if you type both. Invalid words are \
                   explained as far as possible, and the exit code is 5.\n\nType PROFIBUS telegrams as bytes, one \
                   telegram after the other, or use a file in hexadecimal or binary. Each telegram then counts as a \
-                  packet without a time.\n\nFor a capture file, the command lists the new content of images as \
-                  --trace does, with the fieldbus messages before and after it. NUMBER and TIME are the same as in \
+                  packet without a time.\n\nFor a capture file, the command lists the images with new content, as \
+                  --trace does, and between them the other messages of the fieldbus. NUMBER and TIME are the same as in \
                   Wireshark. A file without messages is not an error. A damaged file is decoded up to the damage, and \
                   the exit code is 1."
 )]

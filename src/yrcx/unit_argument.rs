@@ -8,7 +8,7 @@ use armctl_frame::gate::Intent;
 /// Argument that selects a robot.
 #[derive(Debug, Args)]
 pub struct Unit {
-    /// For commands that apply to one robot: 1 to 4, or 0 for the first robot or for all robots
+    /// Robot of the controller, 1 to 4 [default: all robots if the command can apply to all, otherwise 1]
     #[arg(long, global = true, value_name = "N", default_value_t = 0, hide_default_value = true, help_heading = "Which \
         robot",
         value_parser = clap::value_parser!(u8).range(0..=4))]

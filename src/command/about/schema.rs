@@ -129,7 +129,8 @@ pub fn files() -> BTreeMap<String, Value> {
     files
 }
 
-/// One schema as it is, or several as definitions named after their first report.
+/// Returns a single schema unchanged. Puts several schemas into one file as definitions. The name of a definition is
+/// the id of the first report that uses it.
 fn merge_variants(mut variants: Vec<(&str, Value)>) -> Value {
     if variants.len() == 1 {
         return variants.swap_remove(0).1;

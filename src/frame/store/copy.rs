@@ -10,7 +10,6 @@ use crate::{Command, Context};
 
 /// Copies a row to one or several other rows.
 #[derive(Debug, Args)]
-#[command(after_help = S::WORDS.writing)]
 pub struct Copy<S: Writable> {
     /// Row to copy
     #[arg(value_name = "FROM", value_parser = Rows::<S>::parse)]

@@ -71,7 +71,7 @@ pub struct TableWords {
     pub range: &'static str,
     /// Additional help for commands that read.
     pub reading: Option<&'static str>,
-    /// Additional help for commands that write.
+    /// Additional help for `set`.
     pub writing: Option<&'static str>,
 }
 

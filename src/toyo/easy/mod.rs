@@ -78,7 +78,7 @@ impl eeprom_tables::Kind for Numbered {
     const WORDS: TableWords = TableWords {
         nouns: ["easy program", "easy programs"],
         placeholder: "PROGRAM",
-        range: "Programs, 1 to 8: 5, 1-3",
+        range: "Programs (1 to 8), such as 5 or 1-3",
         reading: None,
         writing: Some(WRITING),
     };

@@ -157,8 +157,8 @@ impl Store for Records {
         range: "Records by name or number, such as start source-p0 6",
         reading: None,
         writing: Some(
-            "Type all values of a record in order, or only some values by name; the other values stay: `palletizing \
-             set 1 source-p1 100 0 0`, `palletizing set 1 start mode=M-M`. `palletizing get 1` shows the names. \
+            "Type all values of a record in order, or only some values by name; the other values do \
+             not change. For example: `palletizing set 1 source-p1 100 0 0`, `palletizing set 1 start mode=M-M`. `palletizing get 1` shows the names. \
              armctl does not write equal values, because an EEPROM cell wears out after about a million writes.",
         ),
     };

@@ -206,9 +206,9 @@ impl Store for Parameters {
              the protocol text and the meaning of its value.",
         ),
         writing: Some(
-            "Type all values in order, or only some values by name; the other values stay: `param set soft-limit-plus \
-             100 200 0 0`, `param set P01 ax2=150`. A value is the word of the protocol or its meaning: `param set \
-             pendant-language english`. A bit of a port is STATION/PORT/BIT: 0/01/3.\n\narmctl does not write equal \
+            "Type all values in order, or only some values by name; the other values do not \
+             change. For example: `param set soft-limit-plus 100 200 0 0`, `param set P01 ax2=150`. A value is the \
+             word of the protocol or its meaning: `param set pendant-language english`. A bit of a port is STATION/PORT/BIT: 0/01/3.\n\narmctl does not write equal \
              values, because an EEPROM cell wears out after about a million writes. After a change of machine \
              parameters (E), the controller executes no command until a restart.",
         ),

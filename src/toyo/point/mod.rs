@@ -118,8 +118,8 @@ impl Store for Points {
         range: "Rows of the coordinate table (1 to 999), such as 1-10,20, or names",
         reading: Some("At 9600 baud, a read of 999 points takes a minute and a half."),
         writing: Some(
-            "The values are x, y, z and r in mm. Type all values in this order, or only some values by name; the \
-             other values stay: z=12.5. The names are the letters on the teach pendant (parameter E01). If the \
+            "The values are x, y, z and r in mm. Type all values in this order, or only some values by name, for \
+             example z=12.5; the other values do not change. The names are the letters on the teach pendant (parameter E01). If the \
              letters are not X, Y, Z and R in this order, names are necessary. ax1 to ax4 are axes 1 to 4 on every \
              machine. @FILE reads the output of `position --json`, @- reads it from stdin, `here` is the current \
              position. armctl does not write equal values, because an EEPROM cell wears out after about a million \

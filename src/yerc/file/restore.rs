@@ -180,7 +180,7 @@ async fn compare(
     Ok(true)
 }
 
-/// In a dry run, records the requests that follow the lists.
+/// In a dry run, records the requests that a restore sends after it has read the file lists.
 async fn plan(link: &mut Link, deliveries: &mut [Delivery], confirmer: &Confirmer<'_>) -> Result<(), Failure> {
     confirmer.confirm(&Change::none()).await?;
     for Delivery { file, .. } in &*deliveries {

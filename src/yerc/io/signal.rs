@@ -62,7 +62,7 @@ pub fn writable(model: Model, group: u16) -> Result<&'static Span, Failure> {
         return Ok(span);
     }
     let (first, meaning) = (name(group, 0), span.meaning);
-    Err(Failure::usage(format!("group {group} ({first}) is {meaning}, which a PC can only read on a {model}")).hint(
+    Err(Failure::usage(format!("group {group} ({first}) is {meaning}, which a PC cannot write on a {model}")).hint(
         format!(
             "use signals that a PC can write ({}), and transfer them with the ladder program",
             listed(model, |span| span.writable)
@@ -98,7 +98,7 @@ mod tests {
     #[test]
     fn rejects_read_only_signals_with_the_writable_ones() {
         let failure = writable(Model::Dx200, 1001).unwrap_err();
-        assert_eq!(failure.message, "group 1001 (#10010) is robot user output, which a PC can only read on a dx200");
+        assert_eq!(failure.message, "group 1001 (#10010) is robot user output, which a PC cannot write on a dx200");
         assert!(failure.hint.unwrap().contains("#27010 to #29567 (network input)"));
         assert!(writable(Model::Fs100, 2501).is_ok());
         assert!(writable(Model::Fs100, 2701).unwrap_err().message.ends_with("does not exist on a fs100"));

@@ -75,7 +75,8 @@ fn references(request: &Request) -> Option<Vec<Reference>> {
         .then(|| (request.instance..=last).map(|number| Reference::new(kind, number)).collect())
 }
 
-/// Value that a request writes to its position at this index. The position currently contains `old`.
+/// New value that a request writes to one of its position variables. `at` is the index of the variable in the request,
+/// and `old` is the current value of the variable.
 fn value_at(request: &Request, at: usize, old: &Value) -> Option<Value> {
     let kind = old.kind();
     match request.service {

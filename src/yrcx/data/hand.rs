@@ -10,9 +10,9 @@ table_commands! {
 }
 
 /// Note for the help about data 1, the only value whose unit is not clear.
-const DATA_1: &str = "Data 1 is the raw value of the protocol, because the manual is ambiguous about the unit. The \
-                      example of the manual for a Cartesian robot uses 10000 for 10.000 mm. The text of the manual \
-                      uses a whole number.";
+const DATA_1: &str = "Data 1 is the raw value of the protocol, because the manual is ambiguous about its unit. In the \
+                      example of the manual for a Cartesian robot, 10000 means 10.000 mm. The text of the manual has \
+                      no such factor of 1000.";
 
 /// The hands of the controller.
 #[derive(Debug)]

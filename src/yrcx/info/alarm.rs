@@ -43,7 +43,7 @@ pub fn entry(values: &Values, kind: Kind) -> Option<AlarmEntry<Part>> {
     let place = |kind, count| {
         let kind = format_field(Command::LatestAlarm, values, kind)?;
         match values.int(count) {
-            // Without a number, the source is all objects of this kind, or a task without a number.
+            // If the number is 0 or missing, the source is all objects of this kind, or a task that has no number.
             Some(0) | None => Some(kind),
             Some(number) => Some(format!("{kind} {number}")),
         }

@@ -301,7 +301,7 @@ commands! {
             one("DOUT {}", &[digits("direct", 1, 1, 4, "direct output F1 to F4")]),
         ])
         .host();
-    Wovr "WOVR" Write "2-7" "write the override; it takes effect while no program runs"
+    Wovr "WOVR" Write "2-7" "write the override; it has no effect on a running program"
         .asks(&[one("WOVR OV={}", &[digits("override", 3, 1, 100, "override").unit("%")])]).host().eeprom();
     Rovr "ROVR" Read "2-7" "read the override"
         .answers(&[one("ROVR OV={}", &[digits("override", 3, 1, 100, "override").unit("%")])]);

@@ -20,7 +20,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Stop the job, then repeat."),
     row(0x6020, Class::Backup, BOTH, "not enough memory on the device",
         "The memory card, USB stick or RAM disk is full.",
-        "Free space on the device, or use a larger device."),
+        "Delete files on the device that are not needed, or use a larger device."),
     row(0x6030, Class::Backup, BOTH, "device cannot be accessed",
         "The device is missing, not formatted, write-protected or broken. For the batch backup the RAM disk may be \
          missing.",
@@ -91,7 +91,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Check the address and the class of the signal, register or variable: only network inputs and registers up to \
          559 can be written. Also check S2C541 and S2C542."),
     row(0xB003, Class::Data, BOTH, "request data size error",
-        "The request has more or fewer bytes than the command needs; strings and moves differ between the models.",
+        "The request has more or fewer bytes than the command needs; strings differ between the models, and a move has 26 words (some FS100 need 25).",
         "Set the correct model for this robot. An FS100 that refuses a cartesian move may need the 25 words of its \
          manual: ?model=fs100&move_words=25. `armctl yerc raw --strict` compares lengths."),
     row(0xB004, Class::Data, BOTH, "outside the data range",

@@ -11,8 +11,7 @@ pub(super) static ROWS: &[AddedRow] = &[
         "Check that the model (fs100 or dx200) is correct and that the option is installed; `armctl yerc raw` and \
          `-vvv` show the bytes."),
     row(0x1011, Class::Operand, BOTH, "wrong number of operands",
-        "The request has more or fewer values than the command needs. The move commands differ between FS100 (25 \
-         words) and DX200 (26 words).",
+        "The request has more or fewer values than the command needs. A move has 26 words; some FS100 need 25.",
         "Set the correct model for this robot; for an FS100 that refuses a cartesian move, also try move_words=25 in \
          its target. If the error stays, record the exchange with --trace."),
     row(0x1012, Class::Operand, BOTH, "operand value out of range",
