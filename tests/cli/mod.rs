@@ -28,17 +28,18 @@ macro_rules! transcripts {
 
 transcripts! {
     alarms
-    common_commands
     backups
     batch
     captures
+    command_help
+    common_commands
+    common_terms
     conditions
     decode
     edit
     exit_codes
     explain
     files
-    command_help
     fleet_backups
     fleets
     help
@@ -50,7 +51,6 @@ transcripts! {
     models
     moves
     names
-    yerc_control
     positions
     publish
     raw
@@ -78,7 +78,7 @@ transcripts! {
     usage
     variables
     watches
-    common_terms
+    yerc_control
     yrcx
     yrcx_data
     yrcx_devicenet
