@@ -10,6 +10,7 @@ use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
 use super::dry_run::Plan;
+use super::session_manager::OwnSession;
 use crate::gate::{Grant, Intent};
 use crate::prelude::basics::*;
 use crate::settings::target;
@@ -33,13 +34,16 @@ pub struct Access {
     pub leaves_motion: bool,
     /// Whether the access is for a stop, which must not wait.
     pub is_stop: bool,
+    /// Session of this process that has the link, for a line of a prompt or command file.
+    pub session: Option<OwnSession>,
 }
 
 impl Access {
     /// Read-only access.
     pub fn reading(mode: ConnectMode) -> Self {
         let (grant, own) = (Grant::up_to(Risk::Read), FamilyArguments::default());
-        Self { grant, dry_run: false, trace: None, mode, typed: None, own, leaves_motion: false, is_stop: false }
+        let (leaves_motion, is_stop) = (false, false);
+        Self { grant, dry_run: false, trace: None, mode, typed: None, own, leaves_motion, is_stop, session: None }
     }
 }
 

@@ -448,6 +448,7 @@ impl Run {
             own: self.own.clone(),
             leaves_motion: self.leaves_motion(command),
             is_stop: command.intent(Some(robot)).is_stop,
+            session: None,
         }
     }
 

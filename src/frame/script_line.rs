@@ -12,6 +12,7 @@ use super::connection::{Access, ConnectMode};
 use super::session_manager::{HeldBy, SessionManager};
 use crate::output::envelope::Envelope;
 use crate::prelude::basics::*;
+use crate::settings::Sessions;
 
 /// Context of a line in a REPL or batch.
 #[derive(Debug, Clone)]
@@ -54,15 +55,21 @@ impl Line {
     /// the simulator exists only as long as its link. Returns the access for the command.
     pub async fn connect(&self, robot: &Robot, access: Access, screen: &Screen) -> Result<Access, Failure> {
         let access = Access { typed: Some(Arc::clone(&self.typed)), ..access };
-        if access.mode != ConnectMode::Control && !robot.target.value.is_simulated() {
+        let needs_link = access.mode == ConnectMode::Control || robot.target.value.is_simulated();
+        if !needs_link || robot.sessions == Sessions::None {
             return Ok(access);
         }
         // Some families record the trace in the process that has the link. Other families record the trace in each
         // line.
         let trace = access.trace.clone().filter(|path| path.as_os_str() != "-");
         let holding = Access { trace, mode: ConnectMode::Control, ..access.clone() };
-        let is_traced = self.manager.hold(robot, &holding, screen).await? == HeldBy::ThisProcess { records: true };
-        Ok(Access { trace: access.trace.clone().filter(|_| !is_traced), ..access })
+        Ok(match self.manager.hold(robot, &holding, screen).await? {
+            HeldBy::ThisProcess(session) => {
+                let trace = access.trace.clone().filter(|_| !session.records || holding.trace.is_none());
+                Access { trace, session: Some(session), ..access }
+            }
+            HeldBy::OtherProcess | HeldBy::None(_) => access,
+        })
     }
 
     /// Adds the source location to an envelope.

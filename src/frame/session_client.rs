@@ -86,8 +86,13 @@ async fn find_session(robot: &Robot, access: &Access, screen: &Screen) -> Result
         Access { leaves_motion: true, .. } => Purpose::LeavesMotion,
         _ => Purpose::Any,
     };
-    let (key, typed) = (session_key(robot), command_line(access));
-    let attaching = client::attach(&key, &typed, purpose);
+    let typed = command_line(access);
+    let attaching = async {
+        match access.session.as_ref().filter(|own| own.key == own_key(robot)) {
+            Some(own) => client::attach_in_process(&own.host, &typed, purpose).await,
+            None => client::attach(&session_key(robot), &typed, purpose).await,
+        }
+    };
     let attached = match timeout(limit, attaching).await.unwrap_or(Err(AttachError::Silent)) {
         Ok(AttachResult::Session(attached)) => attached,
         Ok(AttachResult::Nothing) => return Ok(None),
@@ -227,7 +232,8 @@ fn may_be_held(robot: &Robot, own: &Address) -> bool {
     })
 }
 
-fn own_key(robot: &Robot) -> String {
+/// Key of a session that is opened for the robot now.
+pub fn own_key(robot: &Robot) -> String {
     let (family, url) = (robot.family.name(), robot.target.value.url());
     if let Some(address) = robot.target.value.address().key() {
         return key(family, &address);

@@ -9,7 +9,9 @@ use thiserror::Error;
 use tokio::task::yield_now;
 use tokio::time::{Instant, sleep_until, timeout_at};
 
+use super::direct::{ClientEnds, DirectClientLine, HostHandle, Revoked, STOP_FIRST};
 use super::location::{LocationError, SessionFolder, SessionPath};
+use super::milliseconds;
 use super::socket::{self, WriteHalf};
 use super::wire::{
     Change, Control, Frame, Hello, Images, Peer, Purpose, Reader, Status, VERSION, Welcome, WireError, shorten,
@@ -79,12 +81,9 @@ pub enum SessionBusy {
 }
 
 impl SessionBusy {
-    /// Error kind with which the client marks a refusal by the host. Sockets and ports do not use this kind.
-    pub(super) const DENIED: io::ErrorKind = io::ErrorKind::ReadOnlyFilesystem;
-
-    /// Converts an I/O error of a session link. `None` if the error is not a refusal by the host.
+    /// Reason in an I/O error of a session link. `None` if the error has another cause.
     pub fn of(error: &io::Error) -> Option<Self> {
-        (error.kind() == Self::DENIED).then_some(Self::ReadOnly)
+        error.get_ref()?.downcast_ref().cloned()
     }
 }
 
@@ -106,9 +105,40 @@ pub async fn attach_at(
     let Some(mut connection) = Connection::connect(location).await? else {
         return Ok(if location.check()? { AttachResult::Dead } else { AttachResult::Nothing });
     };
+    connection.send_control(hello(key, command, purpose));
+    finish_attach(connection).await
+}
+
+/// Attaches to a session of this process.
+pub async fn attach_in_process(
+    host: &HostHandle,
+    command: &str,
+    purpose: Purpose,
+) -> Result<AttachResult, AttachError> {
+    let hello = hello(&host.key, command, purpose);
+    if host.has_state {
+        let mut connection = Connection::Channel(ClientEnds::join(&host.joins));
+        connection.send_control(hello);
+        return finish_attach(connection).await;
+    }
+    if host.has_ended() {
+        return Ok(AttachResult::Nothing);
+    }
+    let (pid, version, for_ms) = (std::process::id(), VERSION, milliseconds(host.started));
+    let welcome = Welcome { version, pid, for_ms, down: None, leftover: None, images: None };
+    let connection = Connection::Unjoined { host: host.clone(), hello: Box::new(hello) };
+    let mut attached = Attached::new(connection, welcome);
+    attached.direct = host.direct.as_ref().map(|access| DirectClientLine::new(access, command));
+    Ok(AttachResult::Session(Box::new(attached)))
+}
+
+fn hello(key: &str, command: &str, purpose: Purpose) -> Control {
     let (key, pid, command) = (key.to_owned(), std::process::id(), shorten(command));
-    let hello = Hello { version: VERSION, key, pid, command, purpose };
-    connection.send_control(Control::Hello(hello));
+    Control::Hello(Hello { version: VERSION, key, pid, command, purpose })
+}
+
+/// Waits for the answer to the Hello of a client.
+async fn finish_attach(mut connection: Connection) -> Result<AttachResult, AttachError> {
     match connection.answer().await? {
         Control::Welcome(welcome) if welcome.version == VERSION => {
             Ok(AttachResult::Session(Box::new(Attached::new(connection, *welcome))))
@@ -117,7 +147,7 @@ pub async fn attach_at(
         Control::Ended(_) => {
             // The session closes this socket only after it has closed the link. So after this wait, the link is free
             // for another session.
-            let closed = async { while let Ok(Some(_)) = connection.reader.next().await {} };
+            let closed = async { while let Ok(Some(_)) = connection.next().await {} };
             timeout_at(Instant::now() + ANSWER_TIMEOUT, closed).await.map_err(|_| AttachError::Silent)?;
             Ok(AttachResult::Nothing)
         }
@@ -150,16 +180,20 @@ pub async fn close(location: &SessionPath, force: bool) -> Result<bool, AttachEr
         _ => return Err(AttachError::WrongVersion),
     }
     // The host closes the connection when the session has ended. Frames that arrive before are ignored.
-    while let Ok(Some(_)) = connection.reader.next().await {}
+    while let Ok(Some(_)) = connection.next().await {}
     Ok(true)
 }
 
-/// Socket connection to a host.
+/// Connection to a host.
 #[derive(Debug)]
-struct Connection {
-    reader: Reader,
-    writer: WriteHalf,
-    unsent: Vec<u8>,
+enum Connection {
+    /// The host is in another process.
+    Socket { reader: Reader, writer: WriteHalf, unsent: Vec<u8> },
+    /// The host is in this process.
+    Channel(ClientEnds),
+    /// The host is in this process, and the client has sent it nothing yet. Before its first frame, the client joins
+    /// the host with this Hello.
+    Unjoined { host: HostHandle, hello: Box<Control> },
 }
 
 impl Connection {
@@ -168,33 +202,51 @@ impl Connection {
             return Ok(None);
         }
         let ends = socket::connect(&location.socket()).await?;
-        Ok(ends.map(|(read, write)| Self { reader: Reader::new(read), writer: write, unsent: Vec::new() }))
+        Ok(ends.map(|(read, write)| Self::Socket { reader: Reader::new(read), writer: write, unsent: Vec::new() }))
     }
 
     /// Queues a frame, and sends as many bytes as the socket accepts now.
     fn send_control(&mut self, control: Control) {
-        self.send_frame(&Frame::Control(control));
+        self.send_frame(Frame::Control(control));
     }
 
-    fn send_frame(&mut self, frame: &Frame) {
-        frame.emit(&mut self.unsent);
-        // An error is ignored here: the next read reports it.
-        if let Ok(sent) = self.writer.try_write(&self.unsent) {
-            self.unsent.drain(..sent);
+    /// An error is ignored here: the next read reports it.
+    fn send_frame(&mut self, frame: Frame) {
+        match self {
+            Self::Socket { writer, unsent, .. } => {
+                frame.emit(unsent);
+                if let Ok(sent) = writer.try_write(unsent) {
+                    unsent.drain(..sent);
+                }
+            }
+            Self::Channel(ends) => drop(ends.to_host.send(frame)),
+            Self::Unjoined { host, hello } => {
+                let ends = ClientEnds::join(&host.joins);
+                drop(ends.to_host.send(Frame::Control((**hello).clone())));
+                drop(ends.to_host.send(frame));
+                *self = Self::Channel(ends);
+            }
         }
     }
 
     /// Sends the last frame of this client, without a runtime.
     fn send_last(&mut self, control: Control) {
-        Frame::Control(control).emit(&mut self.unsent);
-        socket::write_last(&self.writer, &self.unsent);
+        match self {
+            Self::Socket { writer, unsent, .. } => {
+                Frame::Control(control).emit(unsent);
+                socket::write_last(writer, unsent);
+            }
+            Self::Channel(ends) => drop(ends.to_host.send(Frame::Control(control))),
+            Self::Unjoined { .. } => {}
+        }
     }
 
     async fn flush(&mut self) -> io::Result<()> {
-        while !self.unsent.is_empty() {
-            self.writer.writable().await?;
-            match self.writer.try_write(&self.unsent) {
-                Ok(sent) => drop(self.unsent.drain(..sent)),
+        let Self::Socket { writer, unsent, .. } = self else { return Ok(()) };
+        while !unsent.is_empty() {
+            writer.writable().await?;
+            match writer.try_write(unsent) {
+                Ok(sent) => drop(unsent.drain(..sent)),
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
                 Err(error) => return Err(error),
             }
@@ -205,7 +257,11 @@ impl Connection {
     /// Waits for the next frame. Returns `None` after the host has closed the connection. The future is cancel safe.
     async fn next(&mut self) -> Result<Option<Frame>, WireError> {
         self.flush().await?;
-        self.reader.next().await
+        match self {
+            Self::Socket { reader, .. } => reader.next().await,
+            Self::Channel(ends) => Ok(ends.from_host.recv().await),
+            Self::Unjoined { .. } => std::future::pending().await,
+        }
     }
 
     /// Waits for the answer of the host. The time limit is short, because the host answers at once.
@@ -233,6 +289,8 @@ fn is_gone(error: &WireError) -> bool {
 #[derive(Debug)]
 pub struct Attached {
     connection: Connection,
+    /// Use of the line without the host, for a client in the process of the host of a datagram link.
+    direct: Option<DirectClientLine>,
     /// Frames that arrived while the client waited for a certain other frame.
     early_frames: VecDeque<Frame>,
     /// Bytes of the last frame that did not fit into the buffer of the caller.
@@ -255,6 +313,9 @@ enum LineState {
     /// The client has requested the line, and waits for it.
     Requested,
     Owned,
+    /// The client has taken the line without the host. For a request that only the host may pass on, it waits until
+    /// this time for the line of the host.
+    Direct(Instant),
 }
 
 impl Attached {
@@ -264,6 +325,7 @@ impl Attached {
         let (line, unread_bytes) = (LineState::Free, Vec::new());
         Self {
             connection,
+            direct: None,
             early_frames,
             unread_bytes,
             line,
@@ -292,12 +354,32 @@ impl Attached {
 
     /// Waits until `until` for one channel of the line. Other clients may own other channels at the same time.
     pub async fn acquire_channel(&mut self, channel: u8, until: Instant) -> Result<(), SessionBusy> {
+        if let LineState::Direct(_) = self.line {
+            // An exchange was cut short, and the host may have revoked the line in the meantime.
+            self.release();
+        }
+        if let (LineState::Free, Some(direct)) = (self.line, &self.direct) {
+            if channel == 0 && direct.take() {
+                self.line = LineState::Direct(until);
+                return Ok(());
+            }
+            if let Some(why) = direct.ended() {
+                self.ended = Some(why);
+            }
+        }
+        self.acquire_from_host(channel, until).await
+    }
+
+    async fn acquire_from_host(&mut self, channel: u8, until: Instant) -> Result<(), SessionBusy> {
         if self.line == LineState::Owned {
             return Ok(());
         }
+        if let Some(why) = &self.ended {
+            return Err(SessionBusy::Ended(why.clone()));
+        }
         if self.line == LineState::Free {
             self.requests = self.requests.wrapping_add(1);
-            self.connection.send_control(Control::Take { number: self.requests, channel });
+            self.send_control(Control::Take { number: self.requests, channel });
             self.line = LineState::Requested;
         }
         let mut holder = None;
@@ -322,9 +404,19 @@ impl Attached {
 
     /// Releases the line.
     pub fn release(&mut self) {
-        if self.line != LineState::Free {
-            self.connection.send_control(Control::Over);
-            self.line = LineState::Free;
+        match (self.line, &self.direct) {
+            (LineState::Free, _) => {}
+            (LineState::Direct(_), Some(direct)) => direct.release(),
+            _ => self.connection.send_control(Control::Over),
+        }
+        self.line = LineState::Free;
+    }
+
+    /// Sends a control frame to the host. Before its first frame, a client of this process joins the host.
+    fn send_control(&mut self, control: Control) {
+        self.connection.send_control(control);
+        if let Some(direct) = &self.direct {
+            direct.has_joined();
         }
     }
 
@@ -333,7 +425,7 @@ impl Attached {
         if self.may_move {
             return Ok(());
         }
-        self.connection.send_control(Control::Motion);
+        self.send_control(Control::Motion);
         let until = Instant::now() + ANSWER_TIMEOUT;
         loop {
             match self.next_from_socket(until).await? {
@@ -359,14 +451,36 @@ impl Attached {
         if let Some(why) = &self.ended {
             return Err(io::Error::new(io::ErrorKind::NotConnected, why.clone()));
         }
+        if let (LineState::Direct(until), Some(direct)) = (self.line, &mut self.direct) {
+            if direct.may_send(bytes) {
+                let sent = direct.send(channel, bytes).await;
+                return sent.map_err(|revoked| self.revoked_error(revoked));
+            }
+            // Only the host may pass on a change, because it checks whether the robot is read-only.
+            self.release();
+            self.acquire_from_host(channel, until).await.map_err(io::Error::other)?;
+        }
         if self.has_line() {
-            self.connection.send_frame(&Frame::Data { channel, bytes: bytes.to_vec() });
+            self.connection.send_frame(Frame::Data { channel, bytes: bytes.to_vec() });
             if let Err(error) = self.connection.flush().await {
                 let why = self.end_with(Some(error.into()));
                 return Err(io::Error::new(io::ErrorKind::NotConnected, why));
             }
         }
         Ok(())
+    }
+
+    /// Error of a client that has lost the line.
+    fn revoked_error(&mut self, revoked: Revoked) -> io::Error {
+        let why = match revoked {
+            Revoked::Socket(error) => return error,
+            Revoked::Stop => STOP_FIRST.to_owned(),
+            Revoked::Ended(why) => {
+                self.ended = Some(why.clone());
+                why
+            }
+        };
+        io::Error::new(io::ErrorKind::NotConnected, why)
     }
 
     /// Marks the session as ended, because its socket was closed or failed. Returns the reason.
@@ -381,7 +495,16 @@ impl Attached {
 
     /// Requests that the host opens a new socket for a channel.
     pub fn renew(&mut self, channel: u8) {
-        self.connection.send_control(Control::Renew(channel));
+        match &mut self.direct {
+            Some(direct) => {
+                direct.renew(channel);
+                // A client that has not joined the host has no other sockets.
+                if let Connection::Channel(_) = self.connection {
+                    self.connection.send_control(Control::Renew(channel));
+                }
+            }
+            None => self.connection.send_control(Control::Renew(channel)),
+        }
     }
 
     /// Waits until `until` for a datagram of a channel. Bytes that do not fit into the buffer are dropped.
@@ -391,6 +514,10 @@ impl Attached {
         buffer: &mut [u8],
         until: Instant,
     ) -> io::Result<Option<usize>> {
+        if let (LineState::Direct(_), Some(direct)) = (self.line, &mut self.direct) {
+            let received = direct.receive(expected_channel, buffer, until).await;
+            return received.map_err(|revoked| self.revoked_error(revoked));
+        }
         loop {
             match self.data(until).await? {
                 Some((channel, bytes)) if channel == expected_channel => return Ok(Some(copy(&bytes, buffer))),
@@ -417,7 +544,7 @@ impl Attached {
                 Some(Frame::Data { channel, bytes }) => return Ok(Some((channel, bytes))),
                 Some(Frame::Control(Control::Broken(broken))) => return Err(broken.into()),
                 Some(Frame::Control(Control::Denied { .. })) => {
-                    return Err(io::Error::new(SessionBusy::DENIED, SessionBusy::ReadOnly));
+                    return Err(io::Error::other(SessionBusy::ReadOnly));
                 }
                 Some(Frame::Control(Control::Lost(why))) => {
                     return Err(io::Error::new(io::ErrorKind::NotConnected, why));
@@ -524,7 +651,7 @@ impl Attached {
         let value = image.iter().copied().take(mask.len()).collect();
         let change = Change { generation: images.generation, mask, value };
         change.apply(&mut images.shown);
-        self.connection.send_frame(&Frame::Show(change));
+        self.connection.send_frame(Frame::Show(change));
     }
 
     /// Sets the last will: bits (mask and value) that the host sends if this process is killed. `None` removes the last

@@ -1,6 +1,8 @@
 //! Sessions: a link that stays open between commands. One process, the host, owns the link. Other processes reach the
 //! device through a local socket of the host. On Windows, a named pipe takes the place of the socket.
 //!
+//! The lines of a prompt or command file are clients in the process of their host. They need no socket: see `direct`.
+//!
 //! `wire` defines the frames on the socket. They are armctl's own frames, not frames of a controller. The host passes
 //! on the bytes and images of the clients. It only decides which client may send:
 //!
@@ -19,6 +21,7 @@
 pub mod client;
 #[cfg(any(windows, test))]
 mod command_line;
+pub mod direct;
 pub mod host;
 pub mod location;
 #[cfg(unix)]
@@ -29,6 +32,11 @@ mod socket;
 pub mod wire;
 
 pub use socket::{Detached, detach, leave_terminal, start_file, terminate};
+
+/// Milliseconds that have passed after a time.
+fn milliseconds(since: tokio::time::Instant) -> u64 {
+    u64::try_from(since.elapsed().as_millis()).unwrap_or(u64::MAX)
+}
 
 /// Process id of this process.
 pub fn process() -> u32 {

@@ -1,7 +1,7 @@
 //! Session hosts in this process: for `session open`, or for the prompt and command files.
 
 use std::cell::RefCell;
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -16,8 +16,9 @@ use crate::command::families;
 use armctl_frame::face::HeldLink;
 use armctl_frame::guardian::{self, SessionGuardian};
 use armctl_frame::prelude::*;
-use armctl_frame::session_client::{folder_failure, in_use, info, session_key};
-use armctl_frame::session_manager::{HeldBy, ManagerRequest, SessionManager};
+use armctl_frame::session_client::{folder_failure, in_use, info, own_key, session_key};
+use armctl_frame::session_manager::{HeldBy, ManagerRequest, OwnSession, SessionManager};
+use armctl_transport::session::direct::HostHandle;
 use armctl_transport::session::host::{EndReason, Host};
 use armctl_transport::session::location::{LockResult, SessionFolder};
 
@@ -92,6 +93,11 @@ impl SessionHost {
         self.guardian.guard(Box::pin(self.host.serve())).await
     }
 
+    /// Access to the session for the other threads of this process.
+    fn handle(&mut self) -> HostHandle {
+        self.host.handle()
+    }
+
     /// Whether the robot moves.
     pub fn is_moving(&mut self) -> bool {
         self.host.is_moving()
@@ -142,7 +148,7 @@ impl ManagerThread {
 
 /// Body of the thread.
 async fn work(mut orders: mpsc::UnboundedReceiver<ManagerRequest>, say: Say) {
-    let by_robot = Rc::new(RefCell::new(BTreeSet::new()));
+    let by_robot = Rc::new(RefCell::new(BTreeMap::new()));
     let (end, ended) = watch::channel(false);
     let mut holdings = JoinSet::new();
     while let Some(order) = orders.recv().await {
@@ -167,7 +173,7 @@ async fn open_session_link(
     access: Access,
     screen: Screen,
     mut done: oneshot::Sender<Result<HeldBy, Failure>>,
-    held: Rc<RefCell<BTreeSet<String>>>,
+    held: Rc<RefCell<BTreeMap<String, HostHandle>>>,
     say: Say,
     mut ended: watch::Receiver<bool>,
 ) {
@@ -177,35 +183,34 @@ async fn open_session_link(
         let (say, label) = (Arc::clone(&say), label.clone());
         move |text: &str| say(&format!("{label}: {text}"))
     };
-    let is_held = held.borrow().contains(&key);
-    let records = access.trace.is_some() && families::of(robot.family).session_records();
+    let records = families::of(robot.family).session_records();
+    let own = |host| HeldBy::ThisProcess(OwnSession { key: own_key(&robot), host, records });
+    // Robots with several addresses: another line has opened the link with another address.
+    if let Some(host) = held.borrow().get(&key) {
+        let _ = done.send(Ok(own(host.clone())));
+        return;
+    }
     let access = Access { trace: access.trace.filter(|_| records), ..access };
-    let attempt = async {
-        match SessionFolder::find() {
-            _ if !is_held => SessionHost::open(&robot, &access, &screen, reply).await.map(Some),
-            Ok(Some(place)) if place.location(&key).socket().exists() => Ok(None),
-            // A line that bypasses the held link would reach another simulator, or open a second connection.
-            _ => Err(Failure::local(format!(
-                "{label}: the socket of the open connection was removed by another process"
-            ))
-            .hint("end this prompt, and start it again")),
-        }
-    };
     let attempt = tokio::select! {
-        attempt = attempt => attempt,
+        attempt = SessionHost::open(&robot, &access, &screen, reply) => attempt,
         () = done.closed() => return,
     };
-    let (by, holding) = match attempt {
-        Ok(None) => (Ok(HeldBy::ThisProcess { records }), None),
-        Ok(Some(OpenResult::SharedLink(holding))) => (Ok(HeldBy::ThisProcess { records }), Some(holding)),
-        Ok(Some(OpenResult::InUse)) => (Ok(HeldBy::OtherProcess), None),
-        Ok(Some(OpenResult::NoPlace(why))) => (Ok(HeldBy::None(why)), None),
-        Err(failure) => (Err(failure), None),
+    let mut holding = match attempt {
+        Ok(OpenResult::SharedLink(holding)) => holding,
+        other => {
+            // The caller may already be interrupted.
+            let _ = done.send(match other {
+                Ok(OpenResult::NoPlace(why)) => Ok(HeldBy::None(why)),
+                Ok(_) => Ok(HeldBy::OtherProcess),
+                Err(failure) => Err(failure),
+            });
+            return;
+        }
     };
+    let host = holding.handle();
+    held.borrow_mut().insert(key.clone(), host.clone());
     // The caller may already be interrupted. The link stays open for the next line.
-    let _ = done.send(by);
-    let Some(mut holding) = holding else { return };
-    held.borrow_mut().insert(key.clone());
+    let _ = done.send(Ok(own(host)));
     let why = tokio::select! {
         _ = holding.serve() => {
             say(&format!("{label}: another process closed the session"));

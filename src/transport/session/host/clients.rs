@@ -8,8 +8,10 @@ use tokio::sync::{Notify, mpsc};
 use tokio::task::JoinHandle;
 use tokio::time::{Instant, timeout_at};
 
+use crate::session::direct::HostEnds;
+use crate::session::milliseconds;
 use crate::session::socket::{ReadHalf, WriteHalf};
-use crate::session::wire::{Change, Control, Frame, Peer, Purpose, Reader};
+use crate::session::wire::{Change, Control, Frame, Peer, Purpose, Reader, WireError};
 
 /// Number of a client, and a frame from this client. The frame is `None` when the client has disconnected.
 pub type ClientFrame = (u64, Option<Frame>);
@@ -45,18 +47,34 @@ pub struct Client {
 }
 
 impl Client {
-    /// Creates a client and starts its tasks. Received frames are sent to `inbox_sender`.
+    /// Creates a client of another process, and starts its tasks. Received frames are sent to `inbox_sender`.
     pub fn new(
         id: u64,
         (read, write, pid): (ReadHalf, WriteHalf, Option<u32>),
         inbox_sender: mpsc::Sender<ClientFrame>,
     ) -> Self {
+        Self::over(id, (Source::Socket(Reader::new(read)), Target::Socket(write)), pid, inbox_sender)
+    }
+
+    /// Creates a client of this process.
+    pub fn in_process(id: u64, ends: HostEnds, inbox_sender: mpsc::Sender<ClientFrame>) -> Self {
+        let HostEnds { from_client, to_client } = ends;
+        let ends = (Source::Channel(from_client), Target::Channel(to_client));
+        Self::over(id, ends, Some(std::process::id()), inbox_sender)
+    }
+
+    fn over(
+        id: u64,
+        (source, target): (Source, Target),
+        pid: Option<u32>,
+        inbox_sender: mpsc::Sender<ClientFrame>,
+    ) -> Self {
         let outbox = Arc::new(Outbox::default());
         let now = Instant::now();
         // This task ends when the outbox is closed.
-        tokio::spawn(write_all(write, Arc::clone(&outbox)));
+        tokio::spawn(write_all(target, Arc::clone(&outbox)));
         Self {
-            reading: tokio::spawn(read_all(id, Reader::new(read), inbox_sender)),
+            reading: tokio::spawn(read_all(id, source, inbox_sender)),
             outbox,
             pid,
             name: None,
@@ -108,19 +126,70 @@ impl Drop for Client {
     }
 }
 
-/// Milliseconds that have passed after a time.
-pub fn milliseconds(since: Instant) -> u64 {
-    u64::try_from(since.elapsed().as_millis()).unwrap_or(u64::MAX)
+/// Where the frames of a client come from.
+enum Source {
+    Socket(Reader),
+    Channel(mpsc::UnboundedReceiver<Frame>),
 }
 
-async fn read_all(id: u64, mut reader: Reader, inbox_sender: mpsc::Sender<ClientFrame>) {
+impl Source {
+    async fn next(&mut self) -> Result<Option<Frame>, WireError> {
+        match self {
+            Self::Socket(reader) => reader.next().await,
+            Self::Channel(frames) => Ok(frames.recv().await),
+        }
+    }
+}
+
+/// Where the frames to a client go.
+enum Target {
+    Socket(WriteHalf),
+    Channel(mpsc::Sender<Frame>),
+}
+
+impl Target {
+    /// Writes the frames. Returns `false` if the client has disconnected.
+    async fn write(&mut self, frames: VecDeque<Frame>) -> bool {
+        match self {
+            Self::Socket(socket) => {
+                let mut bytes = Vec::new();
+                frames.iter().for_each(|frame| frame.emit(&mut bytes));
+                write_bytes(socket, &bytes).await
+            }
+            Self::Channel(channel) => {
+                for frame in frames {
+                    if channel.send(frame).await.is_err() {
+                        return false;
+                    }
+                }
+                true
+            }
+        }
+    }
+}
+
+async fn write_bytes(socket: &WriteHalf, mut bytes: &[u8]) -> bool {
+    while !bytes.is_empty() {
+        if socket.writable().await.is_err() {
+            return false;
+        }
+        match socket.try_write(bytes) {
+            Ok(sent) => bytes = &bytes[sent..],
+            Err(error) if error.kind() == std::io::ErrorKind::WouldBlock => {}
+            Err(_) => return false,
+        }
+    }
+    true
+}
+
+async fn read_all(id: u64, mut source: Source, inbox_sender: mpsc::Sender<ClientFrame>) {
     let mut is_named = false;
     loop {
         // A client has a time limit for its Hello, because it occupies one of the places for clients. After its Hello,
         // it may be silent.
         let deadline = Instant::now() + HELLO_TIMEOUT;
         let frame =
-            if is_named { reader.next().await } else { timeout_at(deadline, reader.next()).await.unwrap_or(Ok(None)) };
+            if is_named { source.next().await } else { timeout_at(deadline, source.next()).await.unwrap_or(Ok(None)) };
         // An invalid frame also ends the connection.
         let frame = frame.unwrap_or(None);
         let is_end = frame.is_none();
@@ -131,28 +200,15 @@ async fn read_all(id: u64, mut reader: Reader, inbox_sender: mpsc::Sender<Client
     }
 }
 
-async fn write_all(socket: WriteHalf, outbox: Arc<Outbox>) {
-    let mut bytes = Vec::new();
+async fn write_all(mut target: Target, outbox: Arc<Outbox>) {
     loop {
         let (frames, is_closed) = outbox.take();
-        for frame in &frames {
-            frame.emit(&mut bytes);
-        }
-        while !bytes.is_empty() {
-            // An error means that the client has disconnected. The reading task reports this.
-            if socket.writable().await.is_err() {
-                return;
-            }
-            match socket.try_write(&bytes) {
-                Ok(sent) => drop(bytes.drain(..sent)),
-                Err(error) if error.kind() == std::io::ErrorKind::WouldBlock => {}
-                Err(_) => return,
-            }
-        }
-        if is_closed {
+        let is_empty = frames.is_empty();
+        // If the client has disconnected, the reading task reports it.
+        if !target.write(frames).await || is_closed {
             return;
         }
-        if frames.is_empty() {
+        if is_empty {
             outbox.changed.notified().await;
         }
     }

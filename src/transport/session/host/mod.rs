@@ -5,15 +5,18 @@ pub mod shared_link;
 
 use std::collections::{BTreeMap, VecDeque};
 use std::io;
+use std::sync::Arc;
 use std::time::Duration;
 
 use futures_util::future::join_all;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, sleep_until};
 
-use self::clients::{Client, ClientFrame, milliseconds};
+use self::clients::{Client, ClientFrame};
 use self::shared_link::{LinkEvent, SharedLink};
+use super::direct::{DirectAccess, DirectLine, HostEnds, HostHandle, STOP_FIRST};
 use super::location::Claim;
+use super::milliseconds;
 use super::socket::{Listener, ReadHalf, WriteHalf};
 use super::wire::{
     Broken, Change, Control, Frame, Hello, Info, Leftover, Peer, Purpose, Status, VERSION, Welcome, shorten,
@@ -22,7 +25,7 @@ use super::wire::{
 /// Maximum number of received frames in the queue.
 const INBOX_SIZE: usize = 64;
 /// Time during which the line is reserved for a client that stops the robot.
-const STOP_FIRST: Duration = Duration::from_secs(10);
+const STOP_RESERVATION: Duration = Duration::from_secs(10);
 const MAX_CLIENTS: usize = 64;
 
 /// A session with its clients and its link.
@@ -36,6 +39,11 @@ pub struct Host {
     last: u64,
     inbox: mpsc::Receiver<ClientFrame>,
     inbox_sender: mpsc::Sender<ClientFrame>,
+    /// New clients of this process.
+    joining: mpsc::UnboundedReceiver<HostEnds>,
+    join_sender: mpsc::UnboundedSender<HostEnds>,
+    /// The line for clients of this process. The host offers it to them while no client needs the host's own line.
+    direct: Arc<DirectLine>,
     /// Client that owns the line. The field below is the queue of the clients that wait for the line.
     line: Option<u64>,
     queue: VecDeque<(u64, u32)>,
@@ -109,6 +117,7 @@ impl Host {
         log: impl FnMut(&str) + 'static,
     ) -> io::Result<Self> {
         let (inbox_sender, inbox) = mpsc::channel(INBOX_SIZE);
+        let (join_sender, joining) = mpsc::unbounded_channel();
         Ok(Self {
             listener: claim.listen()?,
             claim,
@@ -119,6 +128,9 @@ impl Host {
             last: 0,
             inbox,
             inbox_sender,
+            joining,
+            join_sender,
+            direct: Arc::default(),
             line: None,
             queue: VecDeque::new(),
             motion: None,
@@ -169,6 +181,22 @@ impl Host {
         Self { idle, ..self }
     }
 
+    /// Access to this session for other threads of this process.
+    pub fn handle(&mut self) -> HostHandle {
+        self.serve_queue();
+        let direct = self.link.datagram_peer().zip(self.lock.as_ref()).map(|(peer, lock)| {
+            let is_harmless = lock.guard.is_harmless_data;
+            DirectAccess { line: Arc::clone(&self.direct), peer: Arc::new(peer), is_harmless }
+        });
+        HostHandle {
+            key: self.key.as_str().into(),
+            started: self.started,
+            joins: self.join_sender.clone(),
+            has_state: !matches!(self.link, SharedLink::Datagrams(_)),
+            direct,
+        }
+    }
+
     /// Serves clients until one of them closes the session, or until the idle time has passed. The future is cancel
     /// safe: the caller can continue with [`Host::end`].
     pub async fn serve(&mut self) -> EndReason {
@@ -181,6 +209,8 @@ impl Host {
                     }
                 }
                 Ok(connection) = self.listener.accept() => self.accept(connection),
+                Some(ends) = self.joining.recv() => self.join(ends),
+                () = self.direct.returned() => self.serve_queue(),
                 event = self.link.next() => self.handle_link_event(event),
                 () = sleep_until(self.stop_first.unwrap_or_else(Instant::now)), if self.stop_first.is_some() => {
                     self.stop_first = None;
@@ -204,6 +234,8 @@ impl Host {
     pub async fn end(self, why: &str) -> Result<(), String> {
         self.claim.hide();
         drop(self.listener);
+        drop(self.joining);
+        self.direct.end(why);
         join_all(self.clients.values().map(|client| client.dismiss(Control::Ended(why.to_owned())))).await;
         let closed = self.link.close().await;
         // The connections are closed last: a client that closes the session waits until its connection ends.
@@ -217,6 +249,11 @@ impl Host {
             self.last += 1;
             self.clients.insert(self.last, Client::new(self.last, connection, self.inbox_sender.clone()));
         }
+    }
+
+    fn join(&mut self, ends: HostEnds) {
+        self.last += 1;
+        self.clients.insert(self.last, Client::in_process(self.last, ends, self.inbox_sender.clone()));
     }
 
     /// Handles a frame of a client. Returns whether the session must end.
@@ -359,8 +396,9 @@ impl Host {
             return;
         }
         let holder = self.line.and_then(|holder| self.clients.get(&holder));
+        let holder = holder.map(|holder| holder.peer(holder.line_since)).or_else(|| self.direct.holder());
         if let (Some(holder), Some(client)) = (holder, self.clients.get(&id)) {
-            client.send_control(Control::Queued(holder.peer(holder.line_since)));
+            client.send_control(Control::Queued(holder));
         }
         self.queue.retain(|(other, _)| *other != id);
         if self.is_stop(id) {
@@ -376,6 +414,14 @@ impl Host {
             // A client that stops the robot gets the line first, whatever its place in the queue is.
             let first = self.queue.front().map(|(id, _)| *id);
             if self.stop_first.is_some() && !first.is_some_and(|id| self.is_stop(id)) {
+                return;
+            }
+            if first.is_none() {
+                self.direct.offer();
+                return;
+            }
+            // If a client of this process has the line, `serve` continues here when the client has returned it.
+            if !self.direct.withdraw() {
                 return;
             }
             let Some((id, take)) = self.queue.pop_front() else { return };
@@ -399,9 +445,10 @@ impl Host {
     fn start_stop(&mut self, why: &str) {
         let Some(stop) = &mut self.stop else { return };
         stop(why);
-        self.stop_first = Some(Instant::now() + STOP_FIRST);
+        self.direct.revoke();
+        self.stop_first = Some(Instant::now() + STOP_RESERVATION);
         if let Some(id) = self.line.filter(|id| !self.is_stop(*id)) {
-            self.send_error(id, &io::Error::new(io::ErrorKind::NotConnected, "armctl stops the robot first"));
+            self.send_error(id, &io::Error::new(io::ErrorKind::NotConnected, STOP_FIRST));
             self.link.pause(id);
             self.line = None;
         }
@@ -526,6 +573,7 @@ impl Host {
                 .values()
                 .filter(|client| client.is_named())
                 .map(|client| client.peer(client.since))
+                .chain(self.direct.clients())
                 .collect(),
             leftover: self.leftover(),
             under_way: self.is_moving(),

@@ -95,6 +95,14 @@ impl SharedLink {
         }
     }
 
+    /// The peer of a datagram link over the network, with sockets of its own. `None` for other links.
+    pub fn datagram_peer(&self) -> Option<Udp> {
+        match self {
+            Self::Datagrams(Datagrams { carrier: Carrier::Udp(udp), .. }) => Some(udp.with_new_sockets()),
+            Self::Datagrams(_) | Self::Images(_) | Self::Stream(_) => None,
+        }
+    }
+
     /// Prepares the link for the next owner of the line. Bytes of a stream that have already arrived are dropped.
     pub fn begin(&mut self) {
         if let Self::Stream(Line { stream: Some(stream), .. }) = self {
