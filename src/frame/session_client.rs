@@ -225,7 +225,8 @@ pub fn identify(sources: &Sources, driver: &dyn Driver, robot: &mut Robot, chang
 
 /// Whether a session that was opened with another address may have the link of the robot.
 fn may_be_held(robot: &Robot, own: &Address) -> bool {
-    let place = if robot.sessions == Sessions::None { None } else { SessionFolder::find().ok().flatten() };
+    let is_possible = own.has_aliases() && robot.sessions != Sessions::None;
+    let place = if is_possible { SessionFolder::find().ok().flatten() } else { None };
     place.is_some_and(|place| {
         !place.location(&own_key(robot)).socket().exists()
             && sessions(&place, robot.family).iter().any(|(_, address)| own.may_match(address))

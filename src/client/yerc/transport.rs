@@ -71,7 +71,7 @@ impl Endpoint {
         Ok(match self {
             Self::Udp { host, ports } => Datagrams::udp(connect(host, ports).await?),
             Self::Simulator { start, faults } => {
-                let controller: Box<dyn Peer> = Box::new(Simulated(Simulator::new(*start)));
+                let controller: Box<dyn Peer + Send> = Box::new(Simulated(Simulator::new(*start)));
                 Datagrams::in_process(InProcess::new(controller, faults.map(Faults::pair)))
             }
         })

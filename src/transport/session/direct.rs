@@ -1,7 +1,7 @@
 //! Clients in the process of the host. They reach the host through channels, and need no socket.
 //!
 //! For a read on a datagram link, they do not even need the thread of the host: if the line is free, the client takes
-//! it from a [`DirectLine`], exchanges datagrams on its own socket, and returns the line. Everything else passes
+//! it from a [`DirectLine`], exchanges datagrams itself, and returns the line. Everything else passes
 //! through the host, which checks it like the frames of any client: changes, motions, and exchanges for which the line
 //! is not free.
 
@@ -11,9 +11,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::{Notify, mpsc};
 use tokio::time::Instant;
 
+use super::host::shared_link::Carrier;
 use super::milliseconds;
 use super::wire::{Frame, Peer, shorten};
-use crate::udp::Udp;
 
 /// Maximum number of frames on the way to a client. Further frames wait in the outbox of the client.
 const CHANNEL_SIZE: usize = 64;
@@ -43,7 +43,7 @@ impl HostHandle {
 #[derive(Debug, Clone)]
 pub(super) struct DirectAccess {
     pub line: Arc<DirectLine>,
-    pub peer: Arc<Udp>,
+    pub carrier: Arc<Carrier>,
     /// Whether these bytes only read, or stop the robot. The host checks all other bytes.
     pub is_harmless: fn(&[u8]) -> bool,
 }
@@ -274,7 +274,7 @@ fn peer(command: &str, since: Instant) -> Peer {
 #[derive(Debug)]
 pub(super) struct DirectClientLine {
     access: DirectAccess,
-    udp: Udp,
+    carrier: Carrier,
     id: u64,
     command: String,
 }
@@ -282,7 +282,7 @@ pub(super) struct DirectClientLine {
 impl DirectClientLine {
     pub fn new(access: &DirectAccess, command: &str) -> Self {
         let id = access.line.enter(command);
-        Self { udp: access.peer.with_new_sockets(), access: access.clone(), id, command: command.to_owned() }
+        Self { carrier: access.carrier.for_client(), access: access.clone(), id, command: command.to_owned() }
     }
 
     /// Takes the line if it is free.
@@ -310,12 +310,12 @@ impl DirectClientLine {
     }
 
     pub fn renew(&mut self, channel: u8) {
-        self.udp.renew(channel.into());
+        self.carrier.renew(channel);
     }
 
     pub async fn send(&mut self, channel: u8, bytes: &[u8]) -> Result<(), Revoked> {
         self.access.line.check(self.id)?;
-        self.udp.send(channel.into(), bytes).await.map_err(Revoked::Socket)
+        self.carrier.send(channel, bytes).await.map_err(Revoked::Socket)
     }
 
     /// Waits until `until` for a datagram. The future is cancel safe.
@@ -323,7 +323,7 @@ impl DirectClientLine {
         tokio::select! {
             biased;
             revoked = self.access.line.lost(self.id) => Err(revoked),
-            received = self.udp.receive(channel.into(), buffer, until) => received.map_err(Revoked::Socket),
+            received = self.carrier.receive(channel, buffer, until) => received.map_err(Revoked::Socket),
         }
     }
 }

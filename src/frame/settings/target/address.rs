@@ -131,6 +131,11 @@ impl Address {
         }
     }
 
+    /// Whether the controller can have a second address.
+    pub fn has_aliases(&self) -> bool {
+        matches!(self, Self::Named { .. })
+    }
+
     /// Whether both can be the same controller although they do not meet; only their network can decide.
     pub fn may_match(&self, other: &Self) -> bool {
         match (self, other) {

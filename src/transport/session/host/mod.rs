@@ -184,9 +184,9 @@ impl Host {
     /// Access to this session for other threads of this process.
     pub fn handle(&mut self) -> HostHandle {
         self.serve_queue();
-        let direct = self.link.datagram_peer().zip(self.lock.as_ref()).map(|(peer, lock)| {
+        let direct = self.link.carrier().zip(self.lock.as_ref()).map(|(carrier, lock)| {
             let is_harmless = lock.guard.is_harmless_data;
-            DirectAccess { line: Arc::clone(&self.direct), peer: Arc::new(peer), is_harmless }
+            DirectAccess { line: Arc::clone(&self.direct), carrier: Arc::new(carrier), is_harmless }
         });
         HostHandle {
             key: self.key.as_str().into(),

@@ -8,7 +8,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use futures_util::future::select_all;
-use tokio::time::{Instant, sleep_until};
+use tokio::sync::Mutex;
+use tokio::time::{Instant, sleep_until, timeout_at};
 
 use crate::image::{Event, ImageLink};
 use crate::session::wire::{self, Change};
@@ -95,11 +96,11 @@ impl SharedLink {
         }
     }
 
-    /// The peer of a datagram link over the network, with sockets of its own. `None` for other links.
-    pub fn datagram_peer(&self) -> Option<Udp> {
+    /// The carrier of a datagram link for a client of this process; `None` for other links.
+    pub(in crate::session) fn carrier(&self) -> Option<Carrier> {
         match self {
-            Self::Datagrams(Datagrams { carrier: Carrier::Udp(udp), .. }) => Some(udp.with_new_sockets()),
-            Self::Datagrams(_) | Self::Images(_) | Self::Stream(_) => None,
+            Self::Datagrams(datagrams) => Some(datagrams.carrier.for_client()),
+            Self::Images(_) | Self::Stream(_) => None,
         }
     }
 
@@ -292,9 +293,50 @@ pub struct Datagrams {
     expecting: BTreeMap<u64, u8>,
 }
 
-enum Carrier {
+/// Carrier of datagrams.
+#[derive(Debug)]
+pub(in crate::session) enum Carrier {
     Udp(Udp),
-    InProcess(Box<InProcess<Box<dyn Peer>>>),
+    /// All clients share the peer. The line decides which of them uses it.
+    InProcess(Arc<Mutex<InProcess<Box<dyn Peer + Send>>>>),
+}
+
+impl Carrier {
+    /// The same peer, over sockets of a client.
+    pub fn for_client(&self) -> Self {
+        match self {
+            Self::Udp(udp) => Self::Udp(udp.with_new_sockets()),
+            Self::InProcess(peer) => Self::InProcess(Arc::clone(peer)),
+        }
+    }
+
+    /// See [`SharedLink::renew`].
+    pub fn renew(&mut self, channel: u8) {
+        if let Self::Udp(udp) = self {
+            udp.renew(channel.into());
+        }
+    }
+
+    pub async fn send(&mut self, channel: u8, bytes: &[u8]) -> io::Result<()> {
+        match self {
+            Self::Udp(udp) => udp.send(channel.into(), bytes).await,
+            Self::InProcess(peer) => {
+                peer.lock().await.send(channel.into(), bytes);
+                Ok(())
+            }
+        }
+    }
+
+    /// Waits until `until` for a datagram. The future is cancel safe.
+    pub async fn receive(&mut self, channel: u8, buffer: &mut [u8], until: Instant) -> io::Result<Option<usize>> {
+        match self {
+            Self::Udp(udp) => udp.receive(channel.into(), buffer, until).await,
+            Self::InProcess(peer) => {
+                let received = async { peer.lock().await.receive(channel.into(), buffer).await };
+                Ok(timeout_at(until, received).await.ok())
+            }
+        }
+    }
 }
 
 /// Number of channels of a device.
@@ -307,8 +349,8 @@ impl Datagrams {
     }
 
     /// Creates a link to an in-process peer.
-    pub fn in_process(peer: InProcess<Box<dyn Peer>>) -> Self {
-        Self::over(Carrier::InProcess(Box::new(peer)))
+    pub fn in_process(peer: InProcess<Box<dyn Peer + Send>>) -> Self {
+        Self::over(Carrier::InProcess(Arc::new(Mutex::new(peer))))
     }
 
     fn over(carrier: Carrier) -> Self {
@@ -326,7 +368,7 @@ impl Datagrams {
                 socket.send(channel.into(), bytes).await
             }
             Carrier::InProcess(peer) => {
-                peer.send(channel.into(), bytes);
+                peer.lock().await.send(channel.into(), bytes);
                 Ok(())
             }
         }
@@ -351,7 +393,7 @@ impl Datagrams {
                     return std::future::pending().await;
                 };
                 let mut buffer = vec![0; BUFFER];
-                let length = peer.receive((*channel).into(), &mut buffer).await;
+                let length = peer.lock().await.receive((*channel).into(), &mut buffer).await;
                 buffer.truncate(length);
                 (*client, *channel, Ok(buffer))
             }

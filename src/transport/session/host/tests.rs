@@ -1,8 +1,10 @@
 //! Tests of host and clients on a real socket, with an in-process peer.
 
+use std::cell::Cell;
 use std::collections::VecDeque;
 use std::path::Path;
 use std::pin::Pin;
+use std::rc::Rc;
 use std::time::Duration;
 
 use tokio::io::AsyncReadExt as _;
@@ -11,7 +13,7 @@ use tokio::time::Instant;
 use super::shared_link::{Datagrams, Images, Line, OpenResult, Rules, SharedLink};
 use super::*;
 use crate::image::{Event, ImageLink, ImagePeer};
-use crate::session::client::{AttachResult, Attached, SessionBusy, attach_at, status};
+use crate::session::client::{AttachResult, Attached, SessionBusy, attach_at, attach_in_process, status};
 use crate::session::location::SessionPath;
 use crate::sim;
 use crate::stream::Stream;
@@ -182,7 +184,7 @@ async fn reports_bits_that_a_client_left_on() {
 #[tokio::test]
 async fn owner_of_the_line_gets_the_datagrams() {
     let folder = tempfile::tempdir().unwrap();
-    let echo: Box<dyn sim::Peer> = Box::new(Echo::default());
+    let echo: Box<dyn sim::Peer + Send> = Box::new(Echo::default());
     let held = SharedLink::Datagrams(Datagrams::in_process(sim::InProcess::new(echo, None)));
     let (mut host, location) = host(folder.path(), held);
     served(&mut host, async {
@@ -199,6 +201,185 @@ async fn owner_of_the_line_gets_the_datagrams() {
         second.send(0, b"now").await.unwrap();
         assert_eq!(second.receive(0, &mut buffer, within_deadline()).await.unwrap(), Some(3));
         assert_eq!(&buffer[..3], b"now");
+    })
+    .await;
+}
+
+/// A host that clients of this process can bypass for bytes that begin with "r". After a write to `read_only`, the robot
+/// is read-only.
+fn direct_host(folder: &Path, read_only: &Rc<Cell<bool>>) -> (Host, SessionPath) {
+    let echo: Box<dyn sim::Peer + Send> = Box::new(Echo::default());
+    let held = SharedLink::Datagrams(Datagrams::in_process(sim::InProcess::new(echo, None)));
+    let (host, location) = host(folder, held);
+    let guard = Guard { is_harmless_data: |bytes| bytes.starts_with(b"r"), is_harmless_image: |_, _| false };
+    let read_only = Rc::clone(read_only);
+    (host.with_read_only_check(guard, move || Ok(read_only.get())), location)
+}
+
+async fn in_process(handle: &HostHandle, name: &str) -> Box<Attached> {
+    match attach_in_process(handle, name, Purpose::Any).await.unwrap() {
+        AttachResult::Session(attached) => attached,
+        found => panic!("{found:?}"),
+    }
+}
+
+async fn assert_echo(client: &mut Attached, bytes: &[u8]) {
+    let mut buffer = [0; 16];
+    client.acquire(within_deadline()).await.unwrap();
+    client.send(0, bytes).await.unwrap();
+    let received = client.receive(0, &mut buffer, within_deadline()).await.unwrap();
+    assert_eq!(received, Some(bytes.len()));
+    assert_eq!(&buffer[..bytes.len()], bytes);
+}
+
+#[tokio::test]
+async fn reads_of_this_process_do_not_need_the_host() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut host, _) = direct_host(folder.path(), &Rc::default());
+    let handle = host.handle();
+    // The host is not served.
+    let mut reader = in_process(&handle, "reader").await;
+    assert_echo(&mut reader, b"read").await;
+    reader.release();
+    assert_echo(&mut reader, b"read again").await;
+    assert_eq!(host.status().clients[0].command, "reader");
+    drop(reader);
+    assert!(host.status().clients.is_empty() && host.clients.is_empty());
+}
+
+#[tokio::test]
+async fn this_process_takes_turns_with_other_processes() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut host, location) = direct_host(folder.path(), &Rc::default());
+    let handle = host.handle();
+    served(&mut host, async {
+        let (mut own, mut other) = (in_process(&handle, "own").await, client(&location, "other").await);
+        assert_echo(&mut own, b"read").await;
+        // The exchange of this process is not over.
+        let soon = || Instant::now() + Duration::from_millis(20);
+        let busy = other.acquire(soon()).await.unwrap_err();
+        let SessionBusy::Busy(Some(holder)) = busy else { panic!("{busy:?}") };
+        assert_eq!((holder.pid, holder.command.as_str()), (std::process::id(), "own"));
+        let (taken, ()) = tokio::join!(other.acquire(within_deadline()), async {
+            tokio::time::sleep(Duration::from_millis(20)).await;
+            own.release();
+        });
+        taken.unwrap();
+        let busy = own.acquire(soon()).await.unwrap_err();
+        let SessionBusy::Busy(Some(holder)) = busy else { panic!("{busy:?}") };
+        assert_eq!(holder.command, "other");
+        assert_echo(&mut other, b"change").await;
+        other.release();
+        assert_echo(&mut own, b"read").await;
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn host_passes_on_the_changes_and_motions_of_this_process() {
+    let folder = tempfile::tempdir().unwrap();
+    let read_only = Rc::default();
+    let (mut host, location) = direct_host(folder.path(), &read_only);
+    let handle = host.handle();
+    served(&mut host, async {
+        let (mut own, mut other) = (in_process(&handle, "own").await, client(&location, "other").await);
+        own.claim_motion().await.unwrap();
+        assert_echo(&mut own, b"go").await;
+        own.release();
+        let refused = other.claim_motion().await.unwrap_err();
+        let SessionBusy::LocationChanged(mover) = refused else { panic!("{refused:?}") };
+        assert_eq!((mover.pid, mover.command.as_str()), (std::process::id(), "own"));
+        let clients = status(&location).await.unwrap().unwrap().clients;
+        assert_eq!(clients.iter().filter(|client| client.command == "own").count(), 1, "{clients:?}");
+        // From now on, only reads pass.
+        read_only.set(true);
+        own.acquire(within_deadline()).await.unwrap();
+        own.send(0, b"write").await.unwrap();
+        let refused = own.receive(0, &mut [0; 16], within_deadline()).await.unwrap_err();
+        assert_eq!(SessionBusy::of(&refused), Some(SessionBusy::ReadOnly));
+        own.release();
+        assert_echo(&mut own, b"read").await;
+        drop(own);
+        while other.claim_motion().await.is_err() {}
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn stop_takes_the_line_from_this_process() {
+    let folder = tempfile::tempdir().unwrap();
+    let (host, location) = direct_host(folder.path(), &Rc::default());
+    let (ordered, mut orders) = mpsc::unbounded_channel();
+    let mut host = host.with_stop(move |why| ordered.send(why.to_owned()).unwrap());
+    let handle = host.handle();
+    served(&mut host, async {
+        let mut own = in_process(&handle, "own").await;
+        assert_echo(&mut own, b"read").await;
+        let hello = Hello {
+            version: VERSION,
+            key: "key".to_owned(),
+            pid: 1,
+            command: "mover".to_owned(),
+            purpose: Purpose::Any,
+        };
+        let mut buffer = [0; 16];
+        let killed = async {
+            use tokio::io::AsyncWriteExt as _;
+
+            let (read, mut write) = crate::session::socket::connect(&location.socket()).await.unwrap().unwrap();
+            let mut bytes = Vec::new();
+            Frame::Control(Control::Hello(hello)).emit(&mut bytes);
+            Frame::Control(Control::Motion).emit(&mut bytes);
+            write.write_all(&bytes).await.unwrap();
+            let mut reader = crate::session::wire::Reader::new(read);
+            while reader.next().await.unwrap() != Some(Frame::Control(Control::Granted)) {}
+        };
+        // The client of this process waits for an answer that does not come.
+        let (lost, ()) = tokio::join!(own.receive(0, &mut buffer, within_deadline()), killed);
+        assert_eq!(lost.unwrap_err().to_string(), STOP_FIRST);
+        assert!(orders.recv().await.unwrap().contains("has died"));
+        own.release();
+        let busy = own.acquire(Instant::now() + Duration::from_millis(20)).await;
+        assert!(matches!(busy, Err(SessionBusy::Busy(_))), "only the stop gets the line: {busy:?}");
+        let AttachResult::Session(mut stop) = attach_at(&location, "key", "stop", Purpose::Stop).await.unwrap() else {
+            panic!("the session is there")
+        };
+        assert_echo(&mut stop, b"read").await;
+        stop.leave().await;
+        assert_echo(&mut own, b"read").await;
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn this_process_learns_of_the_end_of_its_session() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut host, _) = direct_host(folder.path(), &Rc::default());
+    let handle = host.handle();
+    let (mut busy, mut idle) = (in_process(&handle, "busy").await, in_process(&handle, "idle").await);
+    busy.acquire(within_deadline()).await.unwrap();
+    let mut buffer = [0; 16];
+    let (lost, ended) =
+        tokio::join!(busy.receive(0, &mut buffer, within_deadline()), host.end("the session was closed"));
+    ended.unwrap();
+    assert_eq!(lost.unwrap_err().to_string(), "the session was closed");
+    let ended = SessionBusy::Ended("the session was closed".to_owned());
+    assert_eq!(idle.acquire(within_deadline()).await, Err(ended));
+    assert!(handle.has_ended());
+    assert!(matches!(attach_in_process(&handle, "late", Purpose::Any).await.unwrap(), AttachResult::Nothing));
+}
+
+#[tokio::test]
+async fn images_reach_a_client_of_this_process() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut host, _) = host(folder.path(), images());
+    let handle = host.handle();
+    served(&mut host, async {
+        let mut link = ImageLink::in_session(in_process(&handle, "own").await);
+        assert_eq!(link.output().unwrap(), [0, 0, 0x41]);
+        link.acquire(within_deadline()).await.unwrap();
+        assert_image(&mut link, &[0, 3, 0x01]).await;
+        assert_received(&mut link, &[0, 3, 0x01]).await;
     })
     .await;
 }
