@@ -44,7 +44,10 @@ pub fn run(inside: &str, variables: &[(&str, &str)]) -> Option<String> {
         return None;
     }
     let mut command = Command::new("unshare");
-    command.args(["-Urnm", "sh", "-c", SCRIPT]).env("INSIDE", format!("{FUNCTIONS}{inside}")).envs(variables.iter().copied());
+    command
+        .args(["-Urnm", "sh", "-c", SCRIPT])
+        .env("INSIDE", format!("{FUNCTIONS}{inside}"))
+        .envs(variables.iter().copied());
     let output = command.output().expect("unshare can be started");
     Some(format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr)))
 }
