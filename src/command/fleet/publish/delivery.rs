@@ -41,6 +41,10 @@ const STABLE_AFTER: Duration = Duration::from_secs(10);
 /// acknowledged. DISCONNECT gets the rest of [`END_TIMEOUT`].
 const DELIVERY_TIMEOUT: Duration = Duration::from_millis(500);
 const FINAL_TIMEOUT: Duration = Duration::from_millis(700);
+/// Time for the answers to a question: the broker sends retained messages directly after it has accepted a subscription.
+const ANSWER_TIME: Duration = Duration::from_secs(2);
+/// Time without an acknowledgement after which waiting records are written to disk.
+const STALL_TIME: Duration = Duration::from_secs(2);
 /// Interval after which an ongoing failure is reported again.
 const REMINDER_INTERVAL: Duration = Duration::from_secs(600);
 
@@ -60,6 +64,8 @@ pub trait Uplink {
     fn publish(&mut self, message: &Message) -> Result<Option<u64>, SendError>;
     /// Subscribes to topics.
     fn subscribe(&mut self, topics: &[String]) -> Result<(), SendError>;
+    /// Ends the subscription to topics.
+    fn unsubscribe(&mut self, topics: &[String]) -> Result<(), SendError>;
     /// Sends a ping, and returns its number.
     fn ping(&mut self) -> u64;
     /// How many more unacknowledged messages the broker accepts, if it has set a limit.
@@ -129,6 +135,8 @@ struct Open<U> {
     unconfirmed: VecDeque<Ticket>,
     /// Number of the current ping, and the records that it will confirm.
     pending_ping: Option<(u64, Vec<Ticket>)>,
+    /// Topics whose retained messages the broker was asked for, and the time at which the question ends.
+    question: Option<(Vec<String>, Instant)>,
     since: Instant,
     last_ping: Instant,
     /// Time of the last acknowledgement, or the last time at which no message was in transit.
@@ -144,6 +152,7 @@ impl<U> Open<U> {
             acknowledged: HashMap::new(),
             unconfirmed: VecDeque::new(),
             pending_ping: None,
+            question: None,
             since: now,
             last_ping: now,
             progress: now,
@@ -175,6 +184,7 @@ enum Step<U> {
     Event(Event),
     Stuck,
     Ping,
+    Answered,
 }
 
 /// The pump.
@@ -196,6 +206,8 @@ pub struct Delivery<'a, B: Broker> {
     ends_without_broker: bool,
     /// Number of messages that the broker rejected.
     rejected: u32,
+    /// Time of the next flush of the buffer on disk; `None` without such a buffer.
+    next_flush: Option<Instant>,
 }
 
 impl<'a, B: Broker + 'a> Delivery<'a, B> {
@@ -207,6 +219,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         (listener, backoff): (&'a dyn Listener, Backoff),
         ends_without_broker: bool,
     ) -> Self {
+        let next_flush = outbox.sync_interval().map(|interval| Instant::now() + interval);
         Self {
             broker,
             url,
@@ -221,6 +234,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
             last_failure: None,
             ends_without_broker,
             rejected: 0,
+            next_flush,
         }
     }
 
@@ -239,6 +253,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
             if !has_more && self.outbox.is_empty() && self.is_idle() {
                 return Ok(());
             }
+            let flush = self.next_flush;
             let next_event = async { if has_more { found().await } else { pending().await } };
             tokio::select! {
                 biased;
@@ -248,13 +263,45 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
                     None => has_more = false,
                     Some(event) => self.handle_event(&event),
                 },
+                () = async { match flush { Some(at) => sleep_until(at).await, None => pending().await } } => self.flush(),
             }
             self.fill();
         }
     }
 
     fn is_idle(&self) -> bool {
-        matches!(&self.connection, ConnectionState::Open(open) if open.is_accepted && open.is_idle())
+        let has_question = |open: &Open<B::Uplink>| open.question.is_some();
+        matches!(&self.connection, ConnectionState::Open(open) if open.is_accepted && open.is_idle() && !has_question(open))
+    }
+
+    /// Whether the broker acknowledges the records.
+    fn is_flowing(&self) -> bool {
+        let ConnectionState::Open(open) = &self.connection else { return false };
+        let has_progress = open.is_idle() || open.progress.elapsed() < STALL_TIME;
+        open.is_accepted && self.format.is_ready() && has_progress
+    }
+
+    /// Flushes the records on disk. If the broker does not acknowledge, all records are written there from now on.
+    fn flush(&mut self) {
+        self.next_flush = self.outbox.sync_interval().map(|interval| Instant::now() + interval);
+        if !self.is_flowing() {
+            self.outbox.set_away(true);
+        }
+        self.outbox.flush();
+        self.report_disk_error();
+    }
+
+    /// Asks the broker for retained messages that the format needs. If the broker refuses, the format gets no answer.
+    fn ask(&mut self) {
+        let ConnectionState::Open(open) = &mut self.connection else { return };
+        if !open.is_accepted || open.question.is_some() {
+            return;
+        }
+        let topics = self.format.next_question();
+        if !topics.is_empty() {
+            let _asked = open.uplink.subscribe(&topics);
+            open.question = Some((topics, Instant::now() + ANSWER_TIME));
+        }
     }
 
     /// Handles an event of the poller.
@@ -262,16 +309,24 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         for record in self.format.convert_event(event, now_ms()) {
             self.outbox.push(record);
         }
+        self.report_disk_error();
+        if let Some(note) = self.format.take_note() {
+            self.listener.log(Level::Warning, &note);
+        }
+        self.ask();
+        // Without a connection, each drop would be reported. The sum is reported with the next connection.
+        if matches!(self.connection, ConnectionState::Open(_)) {
+            self.report_dropped();
+        }
+    }
+
+    fn report_disk_error(&mut self) {
         if let Some(error) = self.outbox.take_disk_error() {
             let why = plain(&error);
             self.listener.log(
                 Level::Error,
                 &format!("cannot write messages to disk ({why}): messages that do not fit into memory are dropped"),
             );
-        }
-        // Without a connection, each drop would be reported. The sum is reported with the next connection.
-        if matches!(self.connection, ConnectionState::Open(_)) {
-            self.report_dropped();
         }
     }
 
@@ -325,8 +380,21 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
                 self.handle_pong(number);
                 Ok(())
             }
+            Step::Answered => {
+                if let ConnectionState::Open(open) = &mut self.connection
+                    && let Some((topics, _)) = open.question.take()
+                {
+                    // If this fails, the broker sends messages that the format ignores.
+                    let _ended = open.uplink.unsubscribe(&topics);
+                }
+                for record in self.format.end_question(now_ms()) {
+                    self.outbox.push(record);
+                }
+                self.ask();
+                Ok(())
+            }
             Step::Event(Event::Subscribed(is_allowed)) => {
-                if !is_allowed {
+                if !is_allowed && !self.format.topics().is_empty() {
                     self.listener.log(
                         Level::Warning,
                         "the broker refuses the subscription: rebirth commands and the state of the primary host do \
@@ -378,6 +446,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         }
         let messages = self.format.first_messages(now_ms());
         self.send(None, &messages);
+        self.ask();
     }
 
     fn react(&mut self, reaction: Reaction) {
@@ -396,6 +465,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
     fn leave(&mut self) {
         self.listener.set_connected(false);
         self.outbox.requeue();
+        self.outbox.set_away(true);
         self.format.connection_lost();
         self.lost_since = self.lost_since.or_else(|| self.was_accepted.then(Instant::now));
     }
@@ -447,7 +517,9 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         if let Some(ticket) = ticket {
             self.counts.published += u64::from(code.is_none());
             self.counts.refused += u64::from(code.is_some());
-            self.outbox.acknowledge(ticket);
+            if let (Some(record), None) = (self.outbox.acknowledge(ticket), code) {
+                self.format.handle_arrival(&record);
+            }
         }
     }
 
@@ -472,6 +544,9 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
 
     /// Sends records up to the limits.
     fn fill(&mut self) {
+        if self.is_flowing() {
+            self.outbox.set_away(false);
+        }
         loop {
             let ConnectionState::Open(open) = &mut self.connection else { return };
             let has_room = open.is_accepted
@@ -591,6 +666,7 @@ async fn step<B: Broker>(line: &mut ConnectionState<'_, B>) -> Step<B::Uplink> {
             let stuck = open.progress + ACKNOWLEDGE_TIMEOUT;
             let (wants_ping, is_idle) = (!open.unconfirmed.is_empty() && open.pending_ping.is_none(), open.is_idle());
             let ping = open.last_ping + PING_INTERVAL;
+            let answered = open.question.as_ref().map(|(_, until)| *until);
             tokio::select! {
                 biased;
                 event = async {
@@ -600,6 +676,7 @@ async fn step<B: Broker>(line: &mut ConnectionState<'_, B>) -> Step<B::Uplink> {
                 } => Step::Event(event),
                 () = sleep_until(ping), if wants_ping => Step::Ping,
                 () = sleep_until(stuck), if !is_idle => Step::Stuck,
+                () = sleep_until(answered.unwrap_or(stuck)), if answered.is_some() => Step::Answered,
             }
         }
     }
