@@ -250,7 +250,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         let mut stop = pin!(stop);
         let mut has_more = true;
         loop {
-            if !has_more && self.outbox.is_empty() && self.is_idle() {
+            if !has_more && self.outbox.is_empty() && self.is_idle() && !self.has_question() {
                 return Ok(());
             }
             let flush = self.next_flush;
@@ -270,8 +270,11 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
     }
 
     fn is_idle(&self) -> bool {
-        let has_question = |open: &Open<B::Uplink>| open.question.is_some();
-        matches!(&self.connection, ConnectionState::Open(open) if open.is_accepted && open.is_idle() && !has_question(open))
+        matches!(&self.connection, ConnectionState::Open(open) if open.is_accepted && open.is_idle())
+    }
+
+    fn has_question(&self) -> bool {
+        matches!(&self.connection, ConnectionState::Open(open) if open.question.is_some())
     }
 
     /// Whether the broker acknowledges the records.

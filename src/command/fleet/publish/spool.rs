@@ -55,11 +55,8 @@ impl FromStr for SyncPolicy {
             "always" => Ok(Self::Always),
             "never" => Ok(Self::Never),
             _ => match duration::parse_some(text) {
-                Ok(interval) if interval < MIN_SYNC_INTERVAL => {
-                    Err("the shortest time is 100ms; write always".to_owned())
-                }
-                Ok(interval) => Ok(Self::Every(interval)),
-                Err(why) => Err(format!("{why}, always or never")),
+                Ok(interval) if interval >= MIN_SYNC_INTERVAL => Ok(Self::Every(interval)),
+                _ => Err("write always, never, or a time of 100ms or more, such as 1s".to_owned()),
             },
         }
     }
@@ -400,7 +397,8 @@ fn create_folder(folder: &Path) -> io::Result<()> {
     builder.recursive(true);
     #[cfg(unix)]
     std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
-    builder.create(folder)
+    builder.create(folder)?;
+    sync_folder(&files::folder_of(folder))
 }
 
 fn checksum(bytes: &[u8]) -> [u8; 8] {
