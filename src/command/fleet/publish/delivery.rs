@@ -3,6 +3,7 @@
 
 use std::collections::{HashMap, VecDeque};
 use std::future::{Future, pending};
+use std::io;
 use std::pin::pin;
 use std::time::Duration;
 
@@ -10,6 +11,7 @@ use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 use jiff::Timestamp;
 use tokio::task::coop::consume_budget;
+use tokio::task::{JoinHandle, spawn_blocking};
 use tokio::time::{Instant, sleep_until, timeout_at};
 
 use super::broker::Url;
@@ -208,6 +210,7 @@ pub struct Delivery<'a, B: Broker> {
     rejected: u32,
     /// Time of the next flush of the buffer on disk; `None` without such a buffer.
     next_flush: Option<Instant>,
+    flushing: Option<JoinHandle<io::Result<()>>>,
 }
 
 impl<'a, B: Broker + 'a> Delivery<'a, B> {
@@ -235,6 +238,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
             ends_without_broker,
             rejected: 0,
             next_flush,
+            flushing: None,
         }
     }
 
@@ -253,17 +257,25 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
             if !has_more && self.outbox.is_empty() && self.is_idle() && !self.has_question() {
                 return Ok(());
             }
-            let flush = self.next_flush;
+            let flush_at = self.next_flush.filter(|_| self.flushing.is_none());
+            let flushing = &mut self.flushing;
             let next_event = async { if has_more { found().await } else { pending().await } };
             tokio::select! {
                 biased;
                 () = &mut stop => return Ok(()),
+                () = async { match flush_at { Some(at) => sleep_until(at).await, None => pending().await } } => self.flush(),
+                flushed = async { match flushing { Some(flush) => flush.await, None => pending().await } } => {
+                    self.flushing = None;
+                    if let Ok(Err(error)) = flushed {
+                        self.outbox.note_disk_error(error);
+                        self.report_disk_error();
+                    }
+                }
                 next = step(&mut self.connection) => self.handle_step(next)?,
                 event = next_event => match event {
                     None => has_more = false,
                     Some(event) => self.handle_event(&event),
                 },
-                () = async { match flush { Some(at) => sleep_until(at).await, None => pending().await } } => self.flush(),
             }
             self.fill();
         }
@@ -284,13 +296,13 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         open.is_accepted && self.format.is_ready() && has_progress
     }
 
-    /// Flushes the records on disk. If the broker does not acknowledge, all records are written there from now on.
+    /// Flushes the records on disk, in another thread, so that a slow disk does not delay robots. If the broker does not acknowledge, all records are written there from now on.
     fn flush(&mut self) {
         self.next_flush = self.outbox.sync_interval().map(|interval| Instant::now() + interval);
         if !self.is_flowing() {
             self.outbox.set_away(true);
         }
-        self.outbox.flush();
+        self.flushing = self.outbox.take_unflushed().map(|file| spawn_blocking(move || file.sync_data()));
         self.report_disk_error();
     }
 

@@ -8,6 +8,7 @@
 //! both are full, the oldest record that is not in transit is dropped and counted.
 
 use std::collections::VecDeque;
+use std::fs::File;
 use std::io;
 use std::time::Duration;
 
@@ -206,10 +207,19 @@ impl Outbox {
         }
     }
 
-    /// Flushes the records that were written to disk.
-    pub fn flush(&mut self) {
-        if let Some(Err(error)) = self.spool.as_mut().map(Spool::flush) {
+    /// File that must be flushed now. The caller does so in another thread, because a flush can take long on a slow disk.
+    pub fn take_unflushed(&mut self) -> Option<File> {
+        let file = self.spool.as_mut()?.take_unflushed();
+        file.unwrap_or_else(|error| {
             self.note_disk_error(error);
+            None
+        })
+    }
+
+    /// Records an error of the disk, until [`take_disk_error`](Self::take_disk_error) reports it.
+    pub fn note_disk_error(&mut self, error: io::Error) {
+        if !std::mem::replace(&mut self.has_disk_error, true) {
+            self.disk_error = Some(error);
         }
     }
 
@@ -264,7 +274,9 @@ impl Outbox {
     pub fn save_all(mut self) -> (u64, Option<io::Error>) {
         self.has_disk_error = false;
         self.save_memory();
-        self.flush();
+        if let Some(Err(error)) = self.spool.as_mut().map(Spool::flush) {
+            self.note_disk_error(error);
+        }
         (u64::try_from(self.only_in_memory()).unwrap_or(u64::MAX), self.disk_error)
     }
 
@@ -309,12 +321,6 @@ impl Outbox {
 
     fn only_in_memory(&self) -> usize {
         self.memory.iter().filter(|held| matches!(held.copy, DiskCopy::Missing(_))).count()
-    }
-
-    fn note_disk_error(&mut self, error: io::Error) {
-        if !std::mem::replace(&mut self.has_disk_error, true) {
-            self.disk_error = Some(error);
-        }
     }
 
     fn has_more_on_disk(&self) -> bool {

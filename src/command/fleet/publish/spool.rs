@@ -255,16 +255,24 @@ impl Spool {
         }
     }
 
+    /// File with records that were written since the last flush, for a flush in another thread.
+    ///
+    /// # Errors
+    /// The system has no more file handles.
+    pub fn take_unflushed(&mut self) -> io::Result<Option<File>> {
+        let Some(writer) = &self.writer else { return Ok(None) };
+        if self.sync == SyncPolicy::Never || !std::mem::take(&mut self.is_unsynced) {
+            return Ok(None);
+        }
+        writer.try_clone().map(Some)
+    }
+
     /// Flushes the records that were written since the last flush.
     ///
     /// # Errors
     /// The records can be lost at a power failure.
     pub fn flush(&mut self) -> io::Result<()> {
-        if let (Some(writer), true, false) = (&self.writer, self.is_unsynced, self.sync == SyncPolicy::Never) {
-            writer.sync_data()?;
-        }
-        self.is_unsynced = false;
-        Ok(())
+        self.take_unflushed()?.map_or(Ok(()), |file| file.sync_data())
     }
 
     /// Writes records that are in memory to segments directly before the segment `before`, a value of
