@@ -45,7 +45,8 @@ const DELIVERY_TIMEOUT: Duration = Duration::from_millis(500);
 const FINAL_TIMEOUT: Duration = Duration::from_millis(700);
 /// Time for the answers to a question: the broker sends retained messages directly after it has accepted a subscription.
 const ANSWER_TIME: Duration = Duration::from_secs(2);
-/// Time without an acknowledgement after which waiting records are written to disk.
+/// Time without a connection or an acknowledgement after which waiting records are written to disk. A lost connection
+/// is noticed at once.
 const STALL_TIME: Duration = Duration::from_secs(2);
 /// Interval after which an ongoing failure is reported again.
 const REMINDER_INTERVAL: Duration = Duration::from_secs(600);
@@ -197,6 +198,7 @@ pub struct Delivery<'a, B: Broker> {
     outbox: Outbox,
     listener: &'a dyn Listener,
     connection: ConnectionState<'a, B>,
+    began: Instant,
     backoff: Backoff,
     counts: Counts,
     /// Whether the broker has ever accepted this client, and the time of the last loss.
@@ -230,6 +232,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
             outbox,
             listener,
             connection: ConnectionState::Waiting(Instant::now()),
+            began: Instant::now(),
             backoff,
             counts: Counts::default(),
             was_accepted: false,
@@ -296,10 +299,16 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         open.is_accepted && self.format.is_ready() && has_progress
     }
 
-    /// Flushes the records on disk, in another thread, so that a slow disk does not delay robots. If the broker does not acknowledge, all records are written there from now on.
+    /// Whether records have waited for some time. The first connection needs a moment.
+    fn is_stalled(&self) -> bool {
+        !self.is_flowing() && self.began.elapsed() >= STALL_TIME
+    }
+
+    /// Flushes the records on disk, in another thread, so that a slow disk does not delay robots.
     fn flush(&mut self) {
         self.next_flush = self.outbox.sync_interval().map(|interval| Instant::now() + interval);
-        if !self.is_flowing() {
+        if self.outbox.is_away() || self.is_stalled() {
+            // This also writes records that an error of the disk has left in memory.
             self.outbox.set_away(true);
         }
         self.flushing = self.outbox.take_unflushed().map(|file| spawn_blocking(move || file.sync_data()));
@@ -321,6 +330,9 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
 
     /// Handles an event of the poller.
     fn handle_event(&mut self, event: &Found) {
+        if !self.outbox.is_away() && self.is_stalled() {
+            self.outbox.set_away(true);
+        }
         for record in self.format.convert_event(event, now_ms()) {
             self.outbox.push(record);
         }

@@ -29,8 +29,8 @@ pub struct Record {
     pub epoch: u64,
 }
 
-/// Interval of the checks whether the broker is away, if each record is flushed at once.
-const ALWAYS_INTERVAL: Duration = Duration::from_secs(1);
+/// Interval of the attempts to write records after a disk error, if each record is flushed at once.
+const RETRY_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Memory overhead of a record.
 const RECORD_OVERHEAD: usize = 128;
@@ -188,6 +188,11 @@ impl Outbox {
         true
     }
 
+    /// Whether the broker is away.
+    pub fn is_away(&self) -> bool {
+        self.is_away
+    }
+
     /// Records whether the broker is away. While it is away, all records are written to disk: the waiting records now,
     /// and later records when they are added.
     pub fn set_away(&mut self, is_away: bool) {
@@ -198,11 +203,12 @@ impl Outbox {
         }
     }
 
-    /// Interval at which the written records must be flushed; `None` if nothing must be flushed.
+    /// Interval at which the written records must be flushed, and failed ones written again; `None` if there is no
+    /// early write.
     pub fn sync_interval(&self) -> Option<Duration> {
         match self.spool.as_ref()?.sync() {
             SyncPolicy::Every(interval) => Some(interval),
-            SyncPolicy::Always => Some(ALWAYS_INTERVAL),
+            SyncPolicy::Always => Some(RETRY_INTERVAL),
             SyncPolicy::Never => None,
         }
     }
