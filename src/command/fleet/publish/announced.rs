@@ -17,8 +17,8 @@ const MAX_TOPICS: usize = 20_000;
 const MAX_BYTES: u64 = 16 << 20;
 /// Number of topics in a question. The answers must stay far below the flood limit of a connection.
 const QUESTION: usize = 32;
-/// Number of connections that may be lost during a question. A broker whose answers end the connection is not asked
-/// again and again.
+/// Number of connections that may be lost during a question. Some brokers close the connection of a client that may not
+/// read a topic. They are not asked again.
 const MAX_LOSSES: u32 = 3;
 /// Interval of the attempts to write the file after a disk error.
 const RETRY_MS: u64 = 60_000;
@@ -107,15 +107,16 @@ impl AnnouncedTopics {
         self.topics.get(topic) == Some(&State::Clearing)
     }
 
-    /// Stale topics whose retained messages are needed next; empty if there are none.
+    /// Stale topics whose retained messages are needed next; empty if there are none, or if the broker cannot be asked.
     pub fn next_question(&mut self) -> Vec<String> {
         let stale = self.topics.iter_mut().filter(|(_, state)| **state == State::Stale).take(QUESTION);
-        stale
+        let asked: Vec<String> = stale
             .map(|(topic, state)| {
                 *state = State::Asked;
                 topic.clone()
             })
-            .collect()
+            .collect();
+        if self.losses < MAX_LOSSES { asked } else { Vec::new() }
     }
 
     /// Ends the question. Returns the topics to clear.
@@ -147,11 +148,9 @@ impl AnnouncedTopics {
     /// Handles the loss of the connection: the next connection asks again.
     pub fn connection_lost(&mut self) {
         let is_open = self.topics.values().any(|state| *state == State::Asked);
-        self.losses += u32::from(is_open);
-        if self.losses < MAX_LOSSES {
-            let open = self.topics.values_mut().filter(|state| matches!(state, State::Asked | State::Clearing));
-            open.for_each(|state| *state = State::Stale);
-        }
+        self.losses += u32::from(is_open && self.losses < MAX_LOSSES);
+        let open = self.topics.values_mut().filter(|state| matches!(state, State::Asked | State::Clearing));
+        open.for_each(|state| *state = State::Stale);
     }
 
     /// Writes the file again if the last attempt failed some time ago.
@@ -238,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn asks_again_after_a_loss_but_not_forever() {
+    fn clears_without_a_question_after_several_losses() {
         let mut announced = AnnouncedTopics::open(None);
         announced.announce(names(&["a"]));
         announced.withdraw("a");
@@ -247,6 +246,8 @@ mod tests {
             announced.connection_lost();
         }
         assert!(announced.next_question().is_empty());
+        assert_eq!(announced.end_question(), ["a"]);
+        assert!(announced.end_question().is_empty());
     }
 
     #[test]

@@ -318,13 +318,18 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
     /// Asks the broker for retained messages that the format needs. If the broker refuses, the format gets no answer.
     fn ask(&mut self) {
         let ConnectionState::Open(open) = &mut self.connection else { return };
-        if !open.is_accepted || open.question.is_some() {
-            return;
-        }
-        let topics = self.format.next_question();
-        if !topics.is_empty() {
-            let _asked = open.uplink.subscribe(&topics);
-            open.question = Some((topics, Instant::now() + ANSWER_TIME));
+        while open.is_accepted && open.question.is_none() {
+            let topics = self.format.next_question();
+            if !topics.is_empty() {
+                let _asked = open.uplink.subscribe(&topics);
+                open.question = Some((topics, Instant::now() + ANSWER_TIME));
+                return;
+            }
+            let records = self.format.end_question(now_ms());
+            if records.is_empty() {
+                return;
+            }
+            records.into_iter().for_each(|record| self.outbox.push(record));
         }
     }
 
@@ -414,9 +419,8 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
                     // If this fails, the broker sends messages that the format ignores.
                     let _ended = open.uplink.unsubscribe(&topics);
                 }
-                for record in self.format.end_question(now_ms()) {
-                    self.outbox.push(record);
-                }
+                let records = self.format.end_question(now_ms());
+                records.into_iter().for_each(|record| self.outbox.push(record));
                 self.ask();
                 Ok(())
             }

@@ -40,7 +40,7 @@ pub trait MessageFormat {
     fn next_question(&mut self) -> Vec<String> {
         Vec::new()
     }
-    /// Ends the question: all retained messages have arrived. Returns further records.
+    /// Ends the question: all retained messages have arrived, or there was no question. Returns further records.
     fn end_question(&mut self, _now_ms: u64) -> Vec<Record> {
         Vec::new()
     }

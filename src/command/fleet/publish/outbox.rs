@@ -25,7 +25,7 @@ pub struct Record {
     pub key: String,
     /// Content.
     pub body: Vec<u8>,
-    /// Number of the Sparkplug birth message before the record; 0 if the record was read from disk.
+    /// Number of the Sparkplug birth message before the record; 0 if an earlier process has written the record.
     pub epoch: u64,
 }
 
@@ -569,6 +569,9 @@ mod tests {
         assert_eq!(drained(&mut on_disk(folder.path(), 10, 1 << 20)), (11..=20).collect::<Vec<_>>());
     }
 
+    /// Size of a record on disk.
+    const ENCODED_SIZE: u64 = 73;
+
     #[derive(Debug, Clone)]
     enum Step {
         Push,
@@ -630,7 +633,7 @@ mod tests {
                     Step::Kill => {
                         under_way.clear();
                         let in_memory = outbox.waiting().0;
-                        let is_full = outbox.waiting().1 + 2 * 65 > disk.map_or(0, |(disk, _)| disk);
+                        let is_full = outbox.waiting().1 + ENCODED_SIZE > disk.map_or(0, |(disk, _)| disk);
                         prop_assert!(
                             in_memory == 0 || is_full || outbox.is_disk_full || !outbox.is_away || !outbox.writes_early(),
                             "{in_memory} records are not on disk"

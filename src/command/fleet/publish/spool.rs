@@ -33,8 +33,8 @@ const STRIDE: u64 = 1 << 24;
 const SUFFIX: &str = "spool";
 /// Length and checksum.
 const HEADER_SIZE: usize = 12;
-/// Type, time, key length.
-const FIELDS: usize = 11;
+/// Type, time, epoch, key length.
+const FIELDS: usize = 19;
 
 /// When the disk gets the records that wait.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,6 +81,8 @@ struct Segment {
     /// Records that were read but have not arrived.
     outstanding: usize,
     is_read: bool,
+    /// Whether this process has written the segment.
+    is_own: bool,
 }
 
 /// The spool.
@@ -118,7 +120,7 @@ impl Spool {
             let number = name.to_str().and_then(|name| name.strip_suffix(SUFFIX)?.strip_suffix('.')?.parse().ok());
             let found = entry.metadata()?;
             if let (Some(number), true) = (number, found.is_file()) {
-                segments.push(Segment { number, bytes: found.len(), outstanding: 0, is_read: false });
+                segments.push(Segment { number, bytes: found.len(), outstanding: 0, is_read: false, is_own: false });
             }
         }
         segments.sort_unstable_by_key(|segment| segment.number);
@@ -182,7 +184,7 @@ impl Spool {
             }
             self.writer = Some(self.create(number).map_err(SpoolError::Io)?);
             self.next = self.next.saturating_add(STRIDE);
-            self.segments.push_back(Segment { number, bytes: 0, outstanding: 0, is_read: false });
+            self.segments.push_back(Segment { number, bytes: 0, outstanding: 0, is_read: false, is_own: true });
         }
         let (Some(writer), Some(segment)) = (&mut self.writer, self.segments.back_mut()) else {
             return Err(SpoolError::Io(io::Error::other("no open file")));
@@ -227,13 +229,16 @@ impl Spool {
                 self.writer = None;
             }
             let number = self.segments[at].number;
-            let (records, damaged) =
+            let (mut records, damaged) =
                 match files::read(&self.path(number), SEGMENT + u64::try_from(MAX_RECORD_SIZE).unwrap_or(0)) {
                     Ok(bytes) => decode_all(&bytes),
                     Err(_) => (VecDeque::new(), 1),
                 };
             self.damaged += damaged;
             let segment = &mut self.segments[at];
+            if !segment.is_own {
+                records.iter_mut().for_each(|record| record.epoch = 0);
+            }
             segment.is_read = true;
             segment.outstanding = records.len();
             if records.is_empty() {
@@ -309,7 +314,7 @@ impl Spool {
                 return (written, Some(error));
             }
             let at = self.segments.partition_point(|segment| segment.number < number);
-            self.segments.insert(at, Segment { number, bytes, outstanding: chunk.len(), is_read: true });
+            self.segments.insert(at, Segment { number, bytes, outstanding: chunk.len(), is_read: true, is_own: true });
             self.next = self.next.max(before.saturating_add(STRIDE));
             written.push((number, chunk.len()));
         }
@@ -415,13 +420,14 @@ fn checksum(bytes: &[u8]) -> [u8; 8] {
     sum
 }
 
-/// Format: length of the data, checksum, and then the data: type, time, length of the key, key, body. Numbers are
+/// Format: length of the data, checksum, and then the data: type, time, epoch, length of the key, key, body. Numbers are
 /// little-endian.
 fn encode(record: &Record) -> Vec<u8> {
-    let Record { kind, time_ms, key, body, .. } = record;
+    let Record { kind, time_ms, key, body, epoch } = record;
     let mut fields = Vec::with_capacity(FIELDS + key.len() + body.len());
     fields.push(*kind);
     fields.extend(time_ms.to_le_bytes());
+    fields.extend(epoch.to_le_bytes());
     fields.extend(u16::try_from(key.len()).unwrap_or(u16::MAX).to_le_bytes());
     fields.extend(key.bytes());
     fields.extend(body);
@@ -453,10 +459,12 @@ fn decode(bytes: &[u8]) -> Option<(Record, &[u8])> {
     }
     let (kind, fields) = fields.split_first()?;
     let (time, fields) = fields.split_first_chunk()?;
+    let (epoch, fields) = fields.split_first_chunk()?;
     let (key, fields) = fields.split_first_chunk()?;
     let (key, body) = fields.split_at_checked(u16::from_le_bytes(*key).into())?;
     let key = std::str::from_utf8(key).ok()?.to_owned();
-    let record = Record { kind: *kind, time_ms: u64::from_le_bytes(*time), key, body: body.to_vec(), epoch: 0 };
+    let (time_ms, epoch) = (u64::from_le_bytes(*time), u64::from_le_bytes(*epoch));
+    let record = Record { kind: *kind, time_ms, key, body: body.to_vec(), epoch };
     Some((record, rest))
 }
 
@@ -554,6 +562,18 @@ mod tests {
     }
 
     #[test]
+    fn epoch_is_valid_only_in_its_process() {
+        let folder = TempDir::new().unwrap();
+        for expected in [3, 0] {
+            let mut spool = Spool::open(folder.path(), 1 << 20, SyncPolicy::Always).unwrap();
+            if expected == 3 {
+                spool.append(&Record { epoch: 3, ..record(1) }).unwrap();
+            }
+            assert_eq!(spool.read().unwrap().1.epoch, expected);
+        }
+    }
+
+    #[test]
     fn each_broker_and_node_has_its_folder() {
         let name = |url: &str, group, node| folder_name(&url.parse().unwrap(), group, node);
         let names = [
@@ -611,8 +631,8 @@ mod tests {
         }
 
         #[test]
-        fn round_trips_records(kind: u8, time_ms: u64, key in "\\PC{0,20}", body in prop::collection::vec(any::<u8>(), 0..99)) {
-            let record = Record { kind, time_ms, key, body, epoch: 0 };
+        fn round_trips_records(kind: u8, time_ms: u64, key in "\\PC{0,20}", body in prop::collection::vec(any::<u8>(), 0..99), epoch: u64) {
+            let record = Record { kind, time_ms, key, body, epoch };
             let bytes = encode(&record);
             let (decoded, rest) = decode(&bytes).unwrap();
             prop_assert_eq!(decoded, record);
