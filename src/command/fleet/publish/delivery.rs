@@ -329,7 +329,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
             if records.is_empty() {
                 return;
             }
-            records.into_iter().for_each(|record| self.outbox.push(record));
+            self.outbox.extend(records);
         }
     }
 
@@ -338,9 +338,8 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         if !self.outbox.is_away() && self.is_stalled() {
             self.outbox.set_away(true);
         }
-        for record in self.format.convert_event(event, now_ms()) {
-            self.outbox.push(record);
-        }
+        let records = self.format.convert_event(event, now_ms());
+        self.outbox.extend(records);
         self.report_disk_error();
         if let Some(note) = self.format.take_note() {
             self.listener.log(Level::Warning, &note);
@@ -420,7 +419,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
                     let _ended = open.uplink.unsubscribe(&topics);
                 }
                 let records = self.format.end_question(now_ms());
-                records.into_iter().for_each(|record| self.outbox.push(record));
+                self.outbox.extend(records);
                 self.ask();
                 Ok(())
             }

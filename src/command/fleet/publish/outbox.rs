@@ -114,6 +114,13 @@ impl Outbox {
         }
     }
 
+    /// Adds records.
+    pub fn extend(&mut self, records: Vec<Record>) {
+        for record in records {
+            self.push(record);
+        }
+    }
+
     /// Adds a record.
     pub fn push(&mut self, record: Record) {
         let size = record.size();
@@ -166,7 +173,8 @@ impl Outbox {
             if has_room || self.spool.as_ref().is_some_and(|spool| spool.bytes() < bytes) {
                 return true;
             }
-            if !(self.writes_early() && self.detach_oldest()) && !self.drop_oldest() {
+            let has_detached = self.writes_early() && self.detach_oldest();
+            if !has_detached && !self.drop_oldest() {
                 return false;
             }
         }

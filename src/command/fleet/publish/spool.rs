@@ -237,7 +237,9 @@ impl Spool {
             self.damaged += damaged;
             let segment = &mut self.segments[at];
             if !segment.is_own {
-                records.iter_mut().for_each(|record| record.epoch = 0);
+                for record in &mut records {
+                    record.epoch = 0;
+                }
             }
             segment.is_read = true;
             segment.outstanding = records.len();
