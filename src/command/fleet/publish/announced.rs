@@ -170,7 +170,8 @@ impl AnnouncedTopics {
         let Some(file) = &self.file else { return };
         let content: String = self.topics.keys().map(|topic| format!("{topic}\n")).collect();
         let was_unsaved = self.is_unsaved;
-        match files::replace(file, content.as_bytes()) {
+        let folder = files::folder_of(file);
+        match files::replace(file, content.as_bytes()).and_then(|()| files::sync_folder(&folder)) {
             Ok(()) => self.is_unsaved = false,
             Err(error) => {
                 self.is_unsaved = true;

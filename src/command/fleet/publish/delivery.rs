@@ -1,6 +1,8 @@
 //! Pump from poller to broker: puts data into the outbox, and sends it while the broker is connected. After a loss it
 //! connects again with a growing backoff.
 
+mod storage;
+
 use std::collections::{HashMap, VecDeque};
 use std::future::{Future, pending};
 use std::io;
@@ -10,8 +12,8 @@ use std::time::Duration;
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 use jiff::Timestamp;
+use tokio::task::JoinHandle;
 use tokio::task::coop::consume_budget;
-use tokio::task::{JoinHandle, spawn_blocking};
 use tokio::time::{Instant, sleep_until, timeout_at};
 
 use super::broker::Url;
@@ -45,9 +47,6 @@ const DELIVERY_TIMEOUT: Duration = Duration::from_millis(500);
 const FINAL_TIMEOUT: Duration = Duration::from_millis(700);
 /// Time for the answers to a question: the broker sends retained messages directly after it has accepted a subscription.
 const ANSWER_TIME: Duration = Duration::from_secs(2);
-/// Time without a connection or an acknowledgement after which waiting records are written to disk. A lost connection
-/// is noticed at once.
-const STALL_TIME: Duration = Duration::from_secs(2);
 /// Interval after which an ongoing failure is reported again.
 const REMINDER_INTERVAL: Duration = Duration::from_secs(600);
 
@@ -292,29 +291,6 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         matches!(&self.connection, ConnectionState::Open(open) if open.question.is_some())
     }
 
-    /// Whether the broker acknowledges the records.
-    fn is_flowing(&self) -> bool {
-        let ConnectionState::Open(open) = &self.connection else { return false };
-        let has_progress = open.is_idle() || open.progress.elapsed() < STALL_TIME;
-        open.is_accepted && self.format.is_ready() && has_progress
-    }
-
-    /// Whether records have waited for some time. The first connection needs a moment.
-    fn is_stalled(&self) -> bool {
-        !self.is_flowing() && self.began.elapsed() >= STALL_TIME
-    }
-
-    /// Flushes the records on disk, in another thread, so that a slow disk does not delay robots.
-    fn flush(&mut self) {
-        self.next_flush = self.outbox.sync_interval().map(|interval| Instant::now() + interval);
-        if self.outbox.is_away() || self.is_stalled() {
-            // This also writes records that an error of the disk has left in memory.
-            self.outbox.set_away(true);
-        }
-        self.flushing = self.outbox.take_unflushed().map(|file| spawn_blocking(move || file.sync_data()));
-        self.report_disk_error();
-    }
-
     /// Asks the broker for retained messages that the format needs. If the broker refuses, the format gets no answer.
     fn ask(&mut self) {
         let ConnectionState::Open(open) = &mut self.connection else { return };
@@ -348,31 +324,6 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         // Without a connection, each drop would be reported. The sum is reported with the next connection.
         if matches!(self.connection, ConnectionState::Open(_)) {
             self.report_dropped();
-        }
-    }
-
-    fn report_disk_error(&mut self) {
-        if let Some(error) = self.outbox.take_disk_error() {
-            let why = plain(&error);
-            self.listener.log(
-                Level::Error,
-                &format!("cannot write messages to disk ({why}): messages that do not fit into memory are dropped"),
-            );
-        }
-    }
-
-    fn report_dropped(&mut self) {
-        let dropped = self.outbox.take_dropped();
-        self.counts.dropped += dropped.overflow + dropped.damaged;
-        if dropped.overflow > 0 {
-            let what = if dropped.overflow == 1 { "message was" } else { "messages were" };
-            self.listener.log(
-                Level::Warning,
-                &format!("{} {what} dropped, the oldest first: the buffer was full", dropped.overflow),
-            );
-        }
-        if dropped.damaged > 0 {
-            self.listener.log(Level::Error, "a part of the buffer on disk was damaged and is lost");
         }
     }
 

@@ -348,7 +348,7 @@ impl Spool {
         std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
         let file = options.open(self.path(number))?;
         if self.sync != SyncPolicy::Never
-            && let Err(error) = sync_folder(&self.folder)
+            && let Err(error) = files::sync_folder(&self.folder)
         {
             self.remove(number);
             return Err(error);
@@ -397,12 +397,6 @@ pub fn folders_without_broker(root: &Path) -> Vec<PathBuf> {
     folders
 }
 
-/// Flushes the names of new files.
-fn sync_folder(folder: &Path) -> io::Result<()> {
-    // Windows has no such call. There, the file system flushes the name together with the file.
-    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
-}
-
 /// Robot data is private to the user of this process.
 fn create_folder(folder: &Path) -> io::Result<()> {
     if folder.is_dir() {
@@ -413,7 +407,7 @@ fn create_folder(folder: &Path) -> io::Result<()> {
     #[cfg(unix)]
     std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
     builder.create(folder)?;
-    sync_folder(&files::folder_of(folder))
+    files::sync_folder(&files::folder_of(folder))
 }
 
 fn checksum(bytes: &[u8]) -> [u8; 8] {
