@@ -50,46 +50,56 @@ fn topics(received: &[ReceivedMessage]) -> Vec<&str> {
     topics
 }
 
+/// The broker is away from the start, or it is lost while messages are on their way.
 #[test]
-fn killed_publisher_loses_no_message_and_tells_no_other_broker() {
+fn killed_publisher_loses_no_message_and_sends_none_to_another_broker() {
     if !broker::is_installed() {
         return eprintln!("{NOT_INSTALLED}");
     }
-    let (mut broker, other) = (Mosquitto::start(), Mosquitto::start());
-    let (workspace, url) = (fleet(), broker.url());
-    let root = workspace.folder.path().join("buffers");
-    let buffer = ["--node", "cell7", "--kinds", "status", "--buffer-dir", root.to_str().unwrap()];
-    broker.kill();
-    let words = ["-r", "press", "publish", &url, "--watch", "50ms", "--every", "1ms", "-v"];
-    let mut publisher = Publisher::start(workspace.command(&[&words[..], &buffer].concat()));
-    publisher.wait_for_message("next try in");
-    // The second try is a second later, so the robots were polled in the meantime.
-    publisher.wait_for_message("next try in");
-    publisher.signal("-KILL");
-    assert_eq!(publisher.end().0, None);
-    let killed = jiff::Timestamp::now();
-    let stored = records_on_disk(&root);
-    assert!(stored > 5, "{stored}");
+    for is_lost in [false, true] {
+        let (mut broker, other) = (Mosquitto::start(), Mosquitto::start());
+        let (workspace, url) = (fleet(), broker.url());
+        let root = workspace.folder.path().join("buffers");
+        let buffer = ["--node", "cell7", "--kinds", "status", "--buffer-dir", root.to_str().unwrap()];
+        let words = ["-r", "press", "publish", &url, "--watch", "50ms", "--every", "1ms", "-v"];
+        if !is_lost {
+            broker.kill();
+        }
+        let mut publisher = Publisher::start(workspace.command(&[&words[..], &buffer].concat()));
+        if is_lost {
+            publisher.wait_for_message("connected to");
+            broker.listen("armctl/press/status").next();
+            broker.kill();
+        }
+        publisher.wait_for_message("next try in");
+        // The second try is a second later, so the robots were polled in the meantime.
+        publisher.wait_for_message("next try in");
+        publisher.signal("-KILL");
+        assert_eq!(publisher.end().0, None);
+        let killed = jiff::Timestamp::now();
+        let stored = records_on_disk(&root);
+        assert!(stored > 5, "{stored}");
 
-    let mut listener = other.listen("armctl/press/status");
-    let words = ["-r", "press", "publish", &other.url(), "--count", "1"];
-    let output = workspace.run(&[&words[..], &buffer].concat());
-    assert!(output.status.success(), "{}", stderr(&output));
-    assert!(time(&listener.next()) > killed, "the other broker gets only new messages");
-    assert_eq!(records_on_disk(&root), stored);
+        let mut listener = other.listen("armctl/press/status");
+        let words = ["-r", "press", "publish", &other.url(), "--count", "1"];
+        let output = workspace.run(&[&words[..], &buffer].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        assert!(time(&listener.next()) > killed, "the other broker gets only new messages");
+        assert_eq!(records_on_disk(&root), stored);
 
-    broker.start_again();
-    let mut listener = broker.listen("armctl/press/status");
-    let words = ["-r", "press", "publish", &url, "--count", "1"];
-    let output = workspace.run(&[&words[..], &buffer].concat());
-    assert!(output.status.success(), "{}", stderr(&output));
-    let mut times = vec![time(&listener.next())];
-    while times.last().is_none_or(|last| *last < killed) {
-        times.push(time(&listener.next()));
+        broker.start_again();
+        let mut listener = broker.listen("armctl/press/status");
+        let words = ["-r", "press", "publish", &url, "--count", "1"];
+        let output = workspace.run(&[&words[..], &buffer].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        let mut times = vec![time(&listener.next())];
+        while times.last().is_none_or(|last| *last < killed) {
+            times.push(time(&listener.next()));
+        }
+        assert!(times.is_sorted(), "{times:?}");
+        assert_eq!(times.len(), stored + 1);
+        assert_eq!(records_on_disk(&root), 0);
     }
-    assert!(times.is_sorted(), "{times:?}");
-    assert_eq!(times.len(), stored + 1);
-    assert_eq!(records_on_disk(&root), 0);
 }
 
 #[test]
