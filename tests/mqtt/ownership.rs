@@ -35,9 +35,9 @@ fn records_on_disk(root: &Path) -> usize {
     count
 }
 
-/// Retained messages of these topics.
+/// Retained messages of these topics, for the user `reader`.
 fn retained(broker: &Mosquitto, topics: &str) -> Vec<ReceivedMessage> {
-    let mut listener = broker.listen(topics);
+    let mut listener = Listener::new(broker.port, topics, "%r %t %p", &["-u", "reader"]);
     // The broker sends this message after all retained messages.
     let end = topics.replace('#', "the/end");
     broker.send(&end, b"x", false);
@@ -159,6 +159,24 @@ fn next_start_clears_what_it_no_longer_publishes() {
         assert_eq!(topics(&retained(&broker, "armctl/#")), left);
         let new = ["plant/cell7/loader/status", "plant/cell7/press/status", "plant/cell7/state"];
         assert_eq!(topics(&retained(&broker, "plant/#")), new);
+    }
+}
+
+#[test]
+fn clears_topics_that_it_may_not_read() {
+    if !broker::is_installed() {
+        return eprintln!("{NOT_INSTALLED}");
+    }
+    let broker = Mosquitto::with("allow_anonymous true\nacl_file FOLDER/acl\n", |folder| {
+        std::fs::write(folder.join("acl"), "topic write armctl/#\nuser reader\ntopic read #\n").unwrap();
+    });
+    let (workspace, url) = (fleet(), broker.url());
+    let publish = ["publish", &url, "--kinds", "status", "--node", "cell7", "--count", "1"];
+    for (options, robots) in [(&["-r", "press,loader"][..], &["loader", "press"][..]), (&["-r", "press"], &["press"])] {
+        let output = workspace.run(&[options, &publish].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+        let expected: Vec<String> = robots.iter().map(|robot| format!("armctl/{robot}/status")).collect();
+        assert_eq!(topics(&retained(&broker, "armctl/#"))[1..], expected);
     }
 }
 
