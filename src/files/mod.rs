@@ -206,6 +206,12 @@ pub fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
+/// Flushes the names of new files in a folder, so that the files exist after a power failure.
+pub fn sync_folder(folder: &Path) -> io::Result<()> {
+    // Windows has no such call. There, the file system flushes the name together with the file.
+    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
+}
+
 /// Returns the folder of a path. For a name without a folder, this is `.`.
 pub fn folder_of(path: &Path) -> PathBuf {
     match path.parent() {

@@ -12,7 +12,7 @@ const COMMANDS: &str = r#"
 export HOME="$FOLDER" XDG_RUNTIME_DIR="$FOLDER"
 unset XDG_CONFIG_HOME ARMCTL_TARGET
 $THERE "$ARMCTL" sim yrcx --bus profinet --interface pd0 > "$FOLDER/sim" 2>&1 & D=$!
-until grep -q 'profinet://' "$FOLDER/sim"; do kill -0 $D || exit 1; done
+wait_for 'profinet://' "$FOLDER/sim" $D
 MAC=$($THERE cat /sys/class/net/pd0/address)
 M='layout=0:1,0.0x8000:1/0x8000,0.0x8001:1/0x8001,1:0x101:i48,2:0x102:o48&watchdog=1900ms'
 typed() { echo "$ $1"; shift; "$@" 2>&1; echo "? $?"; }
@@ -103,7 +103,7 @@ fn commands_a_simulated_device_on_another_network_card() {
 /// card of the pair.
 const DRIVER_COMMANDS: &str = r#"
 $THERE "$ARMCTL" sim yrcx --bus profinet --interface pd0 > "$FOLDER/sim" 2>&1 & D=$!
-until grep -q 'profinet://' "$FOLDER/sim"; do kill -0 $D || exit 1; done
+wait_for 'profinet://' "$FOLDER/sim" $D
 for words in yrcx 'yrcx class2'; do "$PEERS/bin/python" "$SCRIPTS/controller.py" pc0 yrcx-sim $words 2>&1; done
 "$PEERS/bin/python" "$SCRIPTS/dcp.py" 192.168.79.1 yrcx-sim 2>&1
 kill $D

@@ -7,6 +7,13 @@ use std::process::{Command, Stdio};
 /// Message of a test that is skipped because there are no user namespaces.
 pub const SKIPPED: &str = "skipped: there are no user namespaces here";
 
+/// Functions for scripts. `wait_for TEXT FILE PID` waits until a file contains a text. It ends the script when the process
+/// that writes the file has ended. The file can appear later, because a shell starts background commands in a process of
+/// their own, which creates the file.
+const FUNCTIONS: &str = r#"
+wait_for() { until grep -qs -e "$1" "$2"; do kill -0 "$3" || exit 1; done; }
+"#;
+
 /// Creates both namespaces, and runs `$INSIDE` in the first namespace. `$THERE COMMAND` runs a command in the second
 /// namespace.
 const SCRIPT: &str = r#"
@@ -37,7 +44,10 @@ pub fn run(inside: &str, variables: &[(&str, &str)]) -> Option<String> {
         return None;
     }
     let mut command = Command::new("unshare");
-    command.args(["-Urnm", "sh", "-c", SCRIPT]).env("INSIDE", inside).envs(variables.iter().copied());
+    command
+        .args(["-Urnm", "sh", "-c", SCRIPT])
+        .env("INSIDE", format!("{FUNCTIONS}{inside}"))
+        .envs(variables.iter().copied());
     let output = command.output().expect("unshare can be started");
     Some(format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr)))
 }

@@ -37,7 +37,7 @@ export ROLE=end
 C=
 if command -v tshark > /dev/null; then
     tshark -q -i pc0 -w "$CAPTURE" 2> "$CAPTURE.said" & C=$!
-    until grep -q Capturing "$CAPTURE.said"; do kill -0 $C || exit 1; done
+    wait_for Capturing "$CAPTURE.said" $C
 fi
 $THERE "$PROGRAM" --ignored --exact "${NAME}_device" --nocapture & D=$!
 "$PROGRAM" --ignored --exact "${NAME}_controller" --nocapture

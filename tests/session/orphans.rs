@@ -421,19 +421,19 @@ stands() {
   grep '^now ' machine | tail -n 1
 }
 for SIGNAL in KILL STOP; do for WAY in direct session; do
-  rm -f console; mkfifo console
+  rm -f console sim machine opened session moves; mkfifo console
   $THERE "$ARMCTL" sim yrcx --bus profinet --interface pd0 --console < console > sim 2> machine & D=$!
   exec 9> console
-  until grep -q 'profinet://' sim; do kill -0 $D || exit 1; done
+  wait_for 'profinet://' sim $D
   if [ $WAY = session ]; then
     "$ARMCTL" -t "$URL" session open > opened 2> session & H=$!
-    until grep -q 'held by' opened; do kill -0 $H || exit 1; done
+    wait_for 'held by' opened $H
   fi
   "$ARMCTL" -t "$URL" --yes -vv yrcx move --to 900,0,0,0 --speed-of-max 0.1 > /dev/null 2> moves & P=$!
-  until grep -q -e '<- WO 0100' moves; do kill -0 $P || exit 1; done
+  wait_for '<- WO 0100' moves $P
   kill -s $SIGNAL $P
   wait $P
-  if [ $WAY = session ]; then until grep -q 'the robot was stopped' session; do kill -0 $H || exit 1; done; fi
+  if [ $WAY = session ]; then wait_for 'the robot was stopped' session $H; fi
   echo "$WAY $SIGNAL: $(stands)"
   if [ $WAY = session ]; then kill $H; wait $H; fi
   exec 9>&-

@@ -48,6 +48,10 @@ pub struct Envelope {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Place")]
     pub place: Option<Place>,
+    /// Name of the publisher, as in the topic of its state; only in `armctl publish`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "String")]
+    pub node: Option<String>,
     /// Command, for example `yerc.status`.
     pub command: Option<String>,
     /// Whether the command succeeded.
@@ -93,6 +97,7 @@ impl Envelope {
             target: Some(robot.target.value.url().to_owned()),
             simulated: Some(robot.target.value.is_simulated()),
             place: Some(robot.place.clone()).filter(|place| !place.is_empty()),
+            node: None,
             command: Some(command.to_owned()),
             ok: error.is_none(),
             data,
@@ -111,6 +116,7 @@ impl Envelope {
             target: None,
             simulated: None,
             place: None,
+            node: None,
             command: Some(command.to_owned()),
             ok: true,
             data: Some(data),
@@ -129,6 +135,7 @@ impl Envelope {
             target: None,
             simulated: None,
             place: None,
+            node: None,
             command: command.map(ToOwned::to_owned),
             ok: false,
             data: None,

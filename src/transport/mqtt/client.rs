@@ -87,6 +87,11 @@ impl Client {
         self.session.subscribe(Instant::now(), topics)
     }
 
+    /// Ends the subscription to topics: see [`Session::unsubscribe`].
+    pub fn unsubscribe(&mut self, topics: &[String]) -> Result<(), SendError> {
+        self.session.unsubscribe(Instant::now(), topics)
+    }
+
     /// Sends a ping: see [`Session::ping`].
     pub fn ping(&mut self) -> u64 {
         self.session.ping(Instant::now())

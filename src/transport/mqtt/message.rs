@@ -28,12 +28,15 @@ pub struct Message {
     pub retain: bool,
     /// Whether the broker acknowledges the message: `QoS` 1 if it does, `QoS` 0 if not.
     pub acknowledged: bool,
+    /// Time after which the broker deletes the message; `None` if the message stays. Version 3.1.1 has no expiry.
+    pub expiry: Option<Duration>,
 }
 
 impl fmt::Debug for Message {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { topic, payload, retain, acknowledged } = self;
-        write!(f, "{topic}: {} bytes, retain {retain}, acknowledged {acknowledged}", payload.len())
+        let Self { topic, payload, retain, acknowledged, expiry } = self;
+        let len = payload.len();
+        write!(f, "{topic}: {len} bytes, retain {retain}, acknowledged {acknowledged}, expiry {expiry:?}")
     }
 }
 

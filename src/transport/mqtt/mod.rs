@@ -5,11 +5,13 @@
 //! |---|---|
 //! | `message` | messages and events, independent of the version |
 //! | `session` | the protocol between CONNECT and DISCONNECT: time and bytes in, bytes and events out |
+//! | `packets` | CONNECT, and properties of MQTT 5 |
 //! | `client` | driver over TCP or TLS |
 //! | `tls` | trust, client certificates, explanation of certificate errors |
 
 mod client;
 mod message;
+mod packets;
 mod session;
 mod tls;
 

@@ -5,13 +5,14 @@ use std::time::Duration;
 
 use mqtt_protocol_core::mqtt::common::Cursor;
 use mqtt_protocol_core::mqtt::connection::{self, ConnectionOptions, TimerKind};
-use mqtt_protocol_core::mqtt::packet::{Packet, Properties, Property, Qos, SubEntry, SubOpts, v3_1_1, v5_0};
+use mqtt_protocol_core::mqtt::packet::{Packet, Properties, Qos, SubEntry, SubOpts, v3_1_1, v5_0};
 use mqtt_protocol_core::mqtt::prelude::*;
 use mqtt_protocol_core::mqtt::result_code::MqttError;
 use mqtt_protocol_core::mqtt::{Connection, Version as Spoken, role};
 use tokio::time::Instant;
 
 use super::message::{Event, Hello, Message, Refusal, SendError, Version};
+use super::packets::{connect, expiry_property, texts};
 use super::{FLOOD, Loss};
 
 /// Maximum size of a packet from a broker, in bytes. Commands and states need a few hundred bytes.
@@ -26,8 +27,6 @@ const CONNACK: u8 = 0x20;
 const ANSWER: u32 = 256;
 /// Maximum number of bytes of acknowledgements that wait to be sent to a broker.
 const REPLIES: usize = 64 * 1024;
-/// Maximum number of characters that a report contains of a text from a broker.
-const MAX_TEXT_LEN: usize = 200;
 
 /// A session, from CONNECT to its end. A session cannot be used again.
 pub struct Session {
@@ -203,7 +202,7 @@ impl Session {
     /// # Errors
     /// The message is not valid or too large. Nothing was sent.
     pub fn publish(&mut self, now: Instant, message: &Message) -> Result<Option<u64>, SendError> {
-        let Message { topic, payload, retain, acknowledged } = message;
+        let Message { topic, payload, retain, acknowledged, expiry } = message;
         // The standard forbids NUL (section 1.5.4), and some brokers close the connection.
         if topic.is_empty() || topic.contains('\0') {
             return Err(SendError::Invalid);
@@ -216,7 +215,10 @@ impl Session {
                 Ok(packet.into())
             }),
             Version::V5 => v5_0::Publish::builder().topic_name(topic.as_str()).and_then(|builder| {
-                let packet = builder.qos(qos).retain(*retain).packet_id(id).payload(payload.as_slice()).build()?;
+                let builder = builder.qos(qos).retain(*retain).packet_id(id).payload(payload.as_slice());
+                let packet = builder
+                    .props(expiry.map(expiry_property).transpose()?.into_iter().collect::<Properties>())
+                    .build()?;
                 Ok(packet.into())
             }),
         };
@@ -243,6 +245,17 @@ impl Session {
         let packet: Packet = match self.version {
             Version::V3 => v3_1_1::Subscribe::builder().packet_id(id).entries(entries).build()?.into(),
             Version::V5 => v5_0::Subscribe::builder().packet_id(id).entries(entries).build()?.into(),
+        };
+        self.send(now, packet)
+    }
+
+    /// Ends the subscription to these topics.
+    pub fn unsubscribe(&mut self, now: Instant, topics: &[String]) -> Result<(), SendError> {
+        let entries = topics.iter().map(String::as_str);
+        let id = self.inner.acquire_packet_id()?;
+        let packet: Packet = match self.version {
+            Version::V3 => v3_1_1::Unsubscribe::builder().packet_id(id).entries(entries)?.build()?.into(),
+            Version::V5 => v5_0::Unsubscribe::builder().packet_id(id).entries(entries)?.build()?.into(),
         };
         self.send(now, packet)
     }
@@ -357,12 +370,14 @@ impl Session {
                 payload: publish.payload().as_slice().to_vec(),
                 retain: publish.retain(),
                 acknowledged: publish.qos() != Qos::AtMostOnce,
+                expiry: None,
             }),
             Packet::V5_0Publish(publish) => Event::Message(Message {
                 topic: publish.topic_name().to_owned(),
                 payload: publish.payload().as_slice().to_vec(),
                 retain: publish.retain(),
                 acknowledged: publish.qos() != Qos::AtMostOnce,
+                expiry: None,
             }),
             Packet::V3_1_1Pingresp(_) | Packet::V5_0Pingresp(_) => {
                 // An answer is ignored if no ping is waiting for it.
@@ -379,49 +394,6 @@ impl Session {
         };
         self.events.push_back(event);
     }
-}
-
-fn connect(hello: &Hello) -> Result<Packet, MqttError> {
-    let Hello { version, client_id, user, password, keep_alive, will } = hello;
-    let seconds = u16::try_from(keep_alive.as_secs()).unwrap_or(u16::MAX);
-    // The builders of both versions have the same methods, but different types.
-    macro_rules! build {
-        ($connect:path) => {{
-            let mut builder =
-                <$connect>::builder().client_id(client_id.as_str())?.clean_start(true).keep_alive(seconds);
-            if let Some(Message { topic, payload, retain, .. }) = will {
-                builder = builder.will_message(topic.as_str(), payload.clone(), Qos::AtLeastOnce, *retain)?;
-            }
-            if let Some(user) = user {
-                builder = builder.user_name(user.as_str())?;
-            }
-            if let Some(password) = password {
-                builder = builder.password(password.clone())?;
-            }
-            builder.build()?.into()
-        }};
-    }
-    Ok(match version {
-        Version::V3 => build!(v3_1_1::Connect),
-        Version::V5 => build!(v5_0::Connect),
-    })
-}
-
-/// Returns the reason text of the broker, and the other server that it recommends.
-fn texts(properties: &Properties) -> (Option<String>, Option<String>) {
-    let mut found = (None, None);
-    for property in properties {
-        match property {
-            Property::ReasonString(reason) => found.0 = Some(shorten(reason.val())),
-            Property::ServerReference(server) => found.1 = Some(shorten(server.val())),
-            _ => {}
-        }
-    }
-    found
-}
-
-fn shorten(text: &str) -> String {
-    text.chars().take(MAX_TEXT_LEN).collect()
 }
 
 #[cfg(test)]
@@ -442,6 +414,7 @@ mod tests {
                 payload: b"offline".to_vec(),
                 retain: true,
                 acknowledged: true,
+                expiry: None,
             }),
         }
     }
@@ -460,7 +433,7 @@ mod tests {
     }
 
     fn message(acknowledged: bool) -> Message {
-        Message { topic: "a/b".to_owned(), payload: b"x".to_vec(), retain: true, acknowledged }
+        Message { topic: "a/b".to_owned(), payload: b"x".to_vec(), retain: true, acknowledged, expiry: None }
     }
 
     #[test]
@@ -480,6 +453,32 @@ mod tests {
         assert_eq!(*session.outgoing(), expected);
         let shown = format!("{:?}", hello(Version::V5));
         assert!(!shown.contains("secret") && shown.contains("plant"), "{shown}");
+    }
+
+    #[test]
+    fn only_version_5_sends_the_expiry() {
+        // MQTT 5, sections 3.3.2.3 and 3.3.2.3.3: length of the properties, identifier 2, seconds in four bytes.
+        const TOPIC: &[u8] = b"\0\x03a/b\0\x01";
+        for (version, expiry, properties) in [
+            (Version::V5, Some(Duration::from_millis(180_001)), &[5, 2, 0, 0, 0, 181][..]),
+            (Version::V5, None, &[0]),
+            (Version::V3, Some(Duration::from_secs(180)), &[]),
+        ] {
+            let (mut session, now) = connected(version);
+            session.publish(now, &Message { expiry, ..message(true) }).unwrap();
+            assert_eq!(session.outgoing()[2..], [TOPIC, properties, b"x"].concat(), "{version:?} {expiry:?}");
+        }
+    }
+
+    #[test]
+    fn an_unsubscribe_is_no_event() {
+        for (version, unsuback) in [(Version::V3, &[0xb0, 2, 0, 1][..]), (Version::V5, &[0xb0, 4, 0, 1, 0, 0])] {
+            let (mut session, now) = connected(version);
+            session.unsubscribe(now, &["a/b".to_owned()]).unwrap();
+            assert_eq!(session.outgoing()[0], 0xa2);
+            session.handle(now, unsuback);
+            assert!(session.next_event().is_none());
+        }
     }
 
     #[test]

@@ -1,14 +1,18 @@
 //! Pump from poller to broker: puts data into the outbox, and sends it while the broker is connected. After a loss it
 //! connects again with a growing backoff.
 
+mod storage;
+
 use std::collections::{HashMap, VecDeque};
 use std::future::{Future, pending};
+use std::io;
 use std::pin::pin;
 use std::time::Duration;
 
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 use jiff::Timestamp;
+use tokio::task::JoinHandle;
 use tokio::task::coop::consume_budget;
 use tokio::time::{Instant, sleep_until, timeout_at};
 
@@ -41,6 +45,8 @@ const STABLE_AFTER: Duration = Duration::from_secs(10);
 /// acknowledged. DISCONNECT gets the rest of [`END_TIMEOUT`].
 const DELIVERY_TIMEOUT: Duration = Duration::from_millis(500);
 const FINAL_TIMEOUT: Duration = Duration::from_millis(700);
+/// Time for the answers to a question: the broker sends retained messages directly after it has accepted a subscription.
+const ANSWER_TIME: Duration = Duration::from_secs(2);
 /// Interval after which an ongoing failure is reported again.
 const REMINDER_INTERVAL: Duration = Duration::from_secs(600);
 
@@ -60,6 +66,8 @@ pub trait Uplink {
     fn publish(&mut self, message: &Message) -> Result<Option<u64>, SendError>;
     /// Subscribes to topics.
     fn subscribe(&mut self, topics: &[String]) -> Result<(), SendError>;
+    /// Ends the subscription to topics.
+    fn unsubscribe(&mut self, topics: &[String]) -> Result<(), SendError>;
     /// Sends a ping, and returns its number.
     fn ping(&mut self) -> u64;
     /// How many more unacknowledged messages the broker accepts, if it has set a limit.
@@ -129,6 +137,8 @@ struct Open<U> {
     unconfirmed: VecDeque<Ticket>,
     /// Number of the current ping, and the records that it will confirm.
     pending_ping: Option<(u64, Vec<Ticket>)>,
+    /// Topics whose retained messages the broker was asked for, and the time at which the question ends.
+    question: Option<(Vec<String>, Instant)>,
     since: Instant,
     last_ping: Instant,
     /// Time of the last acknowledgement, or the last time at which no message was in transit.
@@ -144,6 +154,7 @@ impl<U> Open<U> {
             acknowledged: HashMap::new(),
             unconfirmed: VecDeque::new(),
             pending_ping: None,
+            question: None,
             since: now,
             last_ping: now,
             progress: now,
@@ -175,6 +186,7 @@ enum Step<U> {
     Event(Event),
     Stuck,
     Ping,
+    Answered,
 }
 
 /// The pump.
@@ -185,6 +197,7 @@ pub struct Delivery<'a, B: Broker> {
     outbox: Outbox,
     listener: &'a dyn Listener,
     connection: ConnectionState<'a, B>,
+    began: Instant,
     backoff: Backoff,
     counts: Counts,
     /// Whether the broker has ever accepted this client, and the time of the last loss.
@@ -196,6 +209,9 @@ pub struct Delivery<'a, B: Broker> {
     ends_without_broker: bool,
     /// Number of messages that the broker rejected.
     rejected: u32,
+    /// Time of the next flush of the buffer on disk; `None` without such a buffer.
+    next_flush: Option<Instant>,
+    flushing: Option<JoinHandle<io::Result<()>>>,
 }
 
 impl<'a, B: Broker + 'a> Delivery<'a, B> {
@@ -207,6 +223,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         (listener, backoff): (&'a dyn Listener, Backoff),
         ends_without_broker: bool,
     ) -> Self {
+        let next_flush = outbox.sync_interval().map(|interval| Instant::now() + interval);
         Self {
             broker,
             url,
@@ -214,6 +231,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
             outbox,
             listener,
             connection: ConnectionState::Waiting(Instant::now()),
+            began: Instant::now(),
             backoff,
             counts: Counts::default(),
             was_accepted: false,
@@ -221,6 +239,8 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
             last_failure: None,
             ends_without_broker,
             rejected: 0,
+            next_flush,
+            flushing: None,
         }
     }
 
@@ -236,13 +256,23 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         let mut stop = pin!(stop);
         let mut has_more = true;
         loop {
-            if !has_more && self.outbox.is_empty() && self.is_idle() {
+            if !has_more && self.outbox.is_empty() && self.is_idle() && !self.has_question() {
                 return Ok(());
             }
+            let flush_at = self.next_flush.filter(|_| self.flushing.is_none());
+            let flushing = &mut self.flushing;
             let next_event = async { if has_more { found().await } else { pending().await } };
             tokio::select! {
                 biased;
                 () = &mut stop => return Ok(()),
+                () = async { match flush_at { Some(at) => sleep_until(at).await, None => pending().await } } => self.flush(),
+                flushed = async { match flushing { Some(flush) => flush.await, None => pending().await } } => {
+                    self.flushing = None;
+                    if let Ok(Err(error)) = flushed {
+                        self.outbox.note_disk_error(error);
+                        self.report_disk_error();
+                    }
+                }
                 next = step(&mut self.connection) => self.handle_step(next)?,
                 event = next_event => match event {
                     None => has_more = false,
@@ -257,36 +287,43 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         matches!(&self.connection, ConnectionState::Open(open) if open.is_accepted && open.is_idle())
     }
 
-    /// Handles an event of the poller.
-    fn handle_event(&mut self, event: &Found) {
-        for record in self.format.convert_event(event, now_ms()) {
-            self.outbox.push(record);
-        }
-        if let Some(error) = self.outbox.take_disk_error() {
-            let why = plain(&error);
-            self.listener.log(
-                Level::Error,
-                &format!("cannot write messages to disk ({why}): messages that do not fit into memory are dropped"),
-            );
-        }
-        // Without a connection, each drop would be reported. The sum is reported with the next connection.
-        if matches!(self.connection, ConnectionState::Open(_)) {
-            self.report_dropped();
+    fn has_question(&self) -> bool {
+        matches!(&self.connection, ConnectionState::Open(open) if open.question.is_some())
+    }
+
+    /// Asks the broker for retained messages that the format needs. If the broker refuses, the format gets no answer.
+    fn ask(&mut self) {
+        let ConnectionState::Open(open) = &mut self.connection else { return };
+        while open.is_accepted && open.question.is_none() {
+            let topics = self.format.next_question();
+            if !topics.is_empty() {
+                let _asked = open.uplink.subscribe(&topics);
+                open.question = Some((topics, Instant::now() + ANSWER_TIME));
+                return;
+            }
+            let records = self.format.end_question(now_ms());
+            if records.is_empty() {
+                return;
+            }
+            self.outbox.extend(records);
         }
     }
 
-    fn report_dropped(&mut self) {
-        let dropped = self.outbox.take_dropped();
-        self.counts.dropped += dropped.overflow + dropped.damaged;
-        if dropped.overflow > 0 {
-            let what = if dropped.overflow == 1 { "message was" } else { "messages were" };
-            self.listener.log(
-                Level::Warning,
-                &format!("{} {what} dropped, the oldest first: the buffer was full", dropped.overflow),
-            );
+    /// Handles an event of the poller.
+    fn handle_event(&mut self, event: &Found) {
+        if !self.outbox.is_away() && self.is_stalled() {
+            self.outbox.set_away(true);
         }
-        if dropped.damaged > 0 {
-            self.listener.log(Level::Error, "a part of the buffer on disk was damaged and is lost");
+        let records = self.format.convert_event(event, now_ms());
+        self.outbox.extend(records);
+        self.report_disk_error();
+        if let Some(note) = self.format.take_note() {
+            self.listener.log(Level::Warning, &note);
+        }
+        self.ask();
+        // Without a connection, each drop would be reported. The sum is reported with the next connection.
+        if matches!(self.connection, ConnectionState::Open(_)) {
+            self.report_dropped();
         }
     }
 
@@ -325,8 +362,20 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
                 self.handle_pong(number);
                 Ok(())
             }
+            Step::Answered => {
+                if let ConnectionState::Open(open) = &mut self.connection
+                    && let Some((topics, _)) = open.question.take()
+                {
+                    // If this fails, the broker sends messages that the format ignores.
+                    let _ended = open.uplink.unsubscribe(&topics);
+                }
+                let records = self.format.end_question(now_ms());
+                self.outbox.extend(records);
+                self.ask();
+                Ok(())
+            }
             Step::Event(Event::Subscribed(is_allowed)) => {
-                if !is_allowed {
+                if !is_allowed && !self.format.topics().is_empty() {
                     self.listener.log(
                         Level::Warning,
                         "the broker refuses the subscription: rebirth commands and the state of the primary host do \
@@ -378,6 +427,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         }
         let messages = self.format.first_messages(now_ms());
         self.send(None, &messages);
+        self.ask();
     }
 
     fn react(&mut self, reaction: Reaction) {
@@ -396,6 +446,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
     fn leave(&mut self) {
         self.listener.set_connected(false);
         self.outbox.requeue();
+        self.outbox.set_away(true);
         self.format.connection_lost();
         self.lost_since = self.lost_since.or_else(|| self.was_accepted.then(Instant::now));
     }
@@ -447,7 +498,9 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         if let Some(ticket) = ticket {
             self.counts.published += u64::from(code.is_none());
             self.counts.refused += u64::from(code.is_some());
-            self.outbox.acknowledge(ticket);
+            if let (Some(record), None) = (self.outbox.acknowledge(ticket), code) {
+                self.format.handle_arrival(&record);
+            }
         }
     }
 
@@ -472,6 +525,9 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
 
     /// Sends records up to the limits.
     fn fill(&mut self) {
+        if self.is_flowing() {
+            self.outbox.set_away(false);
+        }
         loop {
             let ConnectionState::Open(open) = &mut self.connection else { return };
             let has_room = open.is_accepted
@@ -591,6 +647,7 @@ async fn step<B: Broker>(line: &mut ConnectionState<'_, B>) -> Step<B::Uplink> {
             let stuck = open.progress + ACKNOWLEDGE_TIMEOUT;
             let (wants_ping, is_idle) = (!open.unconfirmed.is_empty() && open.pending_ping.is_none(), open.is_idle());
             let ping = open.last_ping + PING_INTERVAL;
+            let answered = open.question.as_ref().map(|(_, until)| *until);
             tokio::select! {
                 biased;
                 event = async {
@@ -600,6 +657,7 @@ async fn step<B: Broker>(line: &mut ConnectionState<'_, B>) -> Step<B::Uplink> {
                 } => Step::Event(event),
                 () = sleep_until(ping), if wants_ping => Step::Ping,
                 () = sleep_until(stuck), if !is_idle => Step::Stuck,
+                () = sleep_until(answered.unwrap_or(stuck)), if answered.is_some() => Step::Answered,
             }
         }
     }

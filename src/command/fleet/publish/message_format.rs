@@ -35,6 +35,21 @@ pub trait MessageFormat {
     fn handle_message(&mut self, message: &Message, now_ms: u64) -> Reaction;
     /// Converts a poller event to records.
     fn convert_event(&mut self, event: &Event, now_ms: u64) -> Vec<Record>;
+    /// Topics whose retained messages are needed next; empty if there are none. The connection asks for them with a
+    /// subscription that lasts until [`end_question`](Self::end_question).
+    fn next_question(&mut self) -> Vec<String> {
+        Vec::new()
+    }
+    /// Ends the question: all retained messages have arrived, or there was no question. Returns further records.
+    fn end_question(&mut self, _now_ms: u64) -> Vec<Record> {
+        Vec::new()
+    }
+    /// Handles the acknowledgement of a record.
+    fn handle_arrival(&mut self, _record: &Record) {}
+    /// A warning for the log.
+    fn take_note(&mut self) -> Option<String> {
+        None
+    }
     /// Whether records can be sent now.
     fn is_ready(&self) -> bool;
     /// Converts a record to messages; empty if the record is out of date.

@@ -6,6 +6,7 @@
 //! | `broker` | address and credentials of the broker |
 //! | `topic` | names as topic levels |
 //! | `extra_topic` | extra commands whose results are published |
+//! | `announced` | retained topics of this node, for the next process |
 //! | `message_format` | trait for a message format |
 //! | `plain_format` | one topic per robot and kind, with envelopes |
 //! | `sparkplug` | a Sparkplug B node whose devices are robots |
@@ -16,6 +17,7 @@
 //! | `log` | log, and status for the service manager |
 //! | `error_text` | texts of broker refusals |
 
+mod announced;
 mod broker;
 mod delivery;
 mod error_text;
@@ -42,15 +44,16 @@ use clap::ValueEnum;
 use futures_util::future::join;
 use tokio::time::timeout;
 
+use self::announced::AnnouncedTopics;
 use self::broker::{Broker, Login, Url};
 use self::delivery::{Backoff, Counts, Delivery, Listener as _};
 use self::extra_topic::ExtraTopic;
 use self::log::BrokerLog;
 use self::message_format::MessageFormat;
 use self::outbox::Outbox;
-use self::plain_format::{Alarms, PlainFormat, Position};
+use self::plain_format::{Alarms, PlainFormat, Position, Times};
 use self::sparkplug::{Names, Node};
-use self::spool::Spool;
+use self::spool::{Spool, SyncPolicy};
 use self::topic::{Levels, Template, Topics};
 use crate::command::fleet::poll::{Event, Poll, PollRequest, RobotId, Subscription};
 use crate::command::fleet::service::{END_TIMEOUT, Service};
@@ -67,7 +70,8 @@ use armctl_frame::settings::duration;
 #[command(
     after_help = "Without -r, --tag, --sim or -t, armctl publishes all robots in the inventory. --watch INTERVAL sets \
                   how often armctl polls the robots (1s). The topics are PREFIX/ROBOT/status and so on, or as --topic says. Messages are \
-                  retained, and their payload is the envelope of --json. PREFIX/NODE/state is online or offline. \
+                  retained, and their payload is the envelope of --json with the name of this publisher (`node`). \
+                  PREFIX/NODE/state is online or offline. \
                   Messages from the broker cannot move a robot or change anything. publish runs until Ctrl-C or \
                   SIGTERM (exit code 0), and connects again after the broker was away. With --count N, publish ends \
                   after N polls of each robot, or with exit code 4 if there is no broker. See \
@@ -126,12 +130,21 @@ struct BufferArguments {
     /// Memory limit of the buffer
     #[arg(long = "buffer-memory", value_name = "SIZE", default_value = "16M", value_parser = memory_size, help_heading = "While the broker is not available")]
     memory: u64,
-    /// Disk limit of the buffer. armctl uses the disk when the memory of the buffer is full. 0 means no disk
+    /// Disk limit of the buffer. 0 means no disk
     #[arg(long = "buffer-disk", value_name = "SIZE", default_value = "256M", value_parser = disk_size, help_heading = "While the broker is not available")]
     disk: u64,
-    /// Folder of the buffer on disk [default: the state folder]
+    /// Folder for the buffers on disk; each broker and node has its own folder in it [default: the state folder]
     #[arg(long = "buffer-dir", value_name = "PATH", help_heading = "While the broker is not available")]
     path: Option<PathBuf>,
+    /// How often armctl flushes waiting messages to disk: a time, `always` (after each message), or `never` (use the
+    /// disk only when the memory is full)
+    #[arg(
+        long = "buffer-sync",
+        value_name = "TIME",
+        default_value = "1s",
+        help_heading = "While the broker is not available"
+    )]
+    sync: SyncPolicy,
 }
 
 /// Minimum size of a buffer in bytes, so that an envelope with a full position fits.
@@ -257,18 +270,25 @@ impl Publish {
         let node = topic::level(&self.node.clone().unwrap_or_else(this_machine))?;
         let mut poll = Poll::new(&run.sources, run.screen.silenced())?;
         let template = self.topic.clone().unwrap_or_default();
-        let topics = Topics { prefix: self.prefix.clone(), template, levels: Levels::new(poll.robots()) };
+        let (prefix, levels) = (self.prefix.clone(), Levels::new(poll.robots()));
+        let topics = Topics { prefix, node: node.clone(), template, levels };
         let check = |robot: &Robot| topics.topic_of(robot, Kind::Status.name());
         for robot in poll.robots() {
             check(robot)?;
         }
         let robots: Vec<RobotId> = poll.robots().iter().map(RobotId::for_robot).collect();
         let service = Service::begin(run.screen)?;
-        let (outbox, folder) = self.outbox(&node)?;
-        let speech = self.create_format((&node, topics.clone()), &also, folder.as_deref());
+        let root = self.buffer_root()?;
+        let (outbox, folder) = self.outbox(root.as_deref(), &url, &node)?;
+        let speech = self.create_format((topics.clone(), poll.robots()), &also, interval, folder.as_deref());
         let log = BrokerLog::new(&service, broker.url.to_string());
         for warning in &broker.warnings {
             log.log(Level::Warning, warning);
+        }
+        for folder in root.iter().flat_map(|root| spool::folders_without_broker(root)) {
+            let what = "messages of an earlier version of armctl, which did not store their broker, so armctl does not \
+                        send them; delete the folder";
+            log.log(Level::Warning, &format!("{}: {what}", folder.display()));
         }
         catch_interrupts();
         let extras = also.iter().map(ExtraTopic::extra).collect();
@@ -345,24 +365,24 @@ impl Publish {
         Ok(())
     }
 
-    /// Creates the outbox. Also returns the state folder of this publisher, if there is one.
-    fn outbox(&self, node: &str) -> Result<(Outbox, Option<PathBuf>), Failure> {
-        let BufferArguments { memory, disk, path } = &self.buffer;
-        let memory = usize::try_from(*memory).unwrap_or(usize::MAX);
-        if *disk == 0 {
-            return Ok((Outbox::new(memory, None), None));
+    /// Folder of all buffers on disk; `None` if no disk is used.
+    fn buffer_root(&self) -> Result<Option<PathBuf>, Failure> {
+        if self.buffer.disk == 0 {
+            return Ok(None);
         }
-        let way = self
-            .sparkplug
-            .group
-            .as_ref()
-            .map_or_else(|| self.prefix.replace('/', "%2F"), |group| format!("spB-{group}"));
-        let usual = || Some(service_state_folder()?.join("publish").join(format!("{way}-{node}")));
-        let Some(folder) = path.clone().or_else(usual) else {
-            return Err(Failure::usage("armctl found no folder for the buffer on disk")
-                .hint("set a folder with --buffer-dir, or use no disk: --buffer-disk 0"));
-        };
-        let spool = Spool::open(&folder, *disk).map_err(|error| {
+        let root = self.buffer.path.clone().or_else(|| Some(service_state_folder()?.join("publish")));
+        root.map(Some).ok_or_else(|| {
+            Failure::usage("armctl found no folder for the buffer on disk")
+                .hint("set a folder with --buffer-dir, or use no disk: --buffer-disk 0")
+        })
+    }
+
+    /// Creates the outbox. Also returns the folder of this node at this broker, if a disk is used.
+    fn outbox(&self, root: Option<&Path>, broker: &Url, node: &str) -> Result<(Outbox, Option<PathBuf>), Failure> {
+        let memory = usize::try_from(self.buffer.memory).unwrap_or(usize::MAX);
+        let Some(root) = root else { return Ok((Outbox::new(memory, None), None)) };
+        let folder = root.join(spool::folder_name(broker, self.sparkplug.group.as_deref(), node));
+        let spool = Spool::open(&folder, self.buffer.disk, self.buffer.sync).map_err(|error| {
             if spool::is_locked(&error) {
                 return Failure::usage(format!("{}: another armctl publishes as '{node}'", folder.display()))
                     .hint("set a different name with --node, or a different folder with --buffer-dir");
@@ -375,17 +395,22 @@ impl Publish {
 
     fn create_format(
         &self,
-        (node, topics): (&str, Topics),
+        (topics, robots): (Topics, &[Robot]),
         also: &Rc<[ExtraTopic]>,
+        interval: Duration,
         folder: Option<&Path>,
     ) -> Box<dyn MessageFormat> {
         let every_ms = u64::try_from(self.every.as_millis()).unwrap_or(u64::MAX);
         let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(|kind| self.kinds.contains(kind)).collect();
         match &self.sparkplug.group {
-            None => Box::new(PlainFormat::new((node.to_owned(), topics), &kinds, Rc::clone(also), every_ms)),
+            None => {
+                let times = Times { every_ms, expiry: plain_format::expiry(self.every, interval) };
+                let announced = AnnouncedTopics::open(folder.map(|folder| folder.join("topics")));
+                Box::new(PlainFormat::new(topics, (&kinds, Rc::clone(also)), times, (announced, robots)))
+            }
             Some(group) => {
-                let (host, levels) = (self.sparkplug.host.clone(), topics.levels);
-                let names = Names { group: group.clone(), node: node.to_owned(), host, levels };
+                let (host, node, levels) = (self.sparkplug.host.clone(), topics.node, topics.levels);
+                let names = Names { group: group.clone(), node, host, levels };
                 let file = folder.map(|folder| folder.join("bdseq"));
                 let text = file.as_deref().and_then(|file| files::text(file, 16).ok());
                 let bd_seq = text.and_then(|text| text.trim().parse().ok()).unwrap_or_default();

@@ -3,13 +3,19 @@
 //!
 //! A message is sent after a change, and at the latest after a given time. If a robot does not answer, all its topics
 //! report that. An old position therefore never appears as the current one.
+//!
+//! The broker deletes a retained message of a robot if no newer message follows ([`expiry`]). Retained messages that
+//! this node no longer publishes are cleared ([`AnnouncedTopics`]).
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
+use std::time::Duration;
 
 use jiff::Timestamp;
+use serde::Deserialize;
 
 use super::Kind;
+use super::announced::AnnouncedTopics;
 use super::extra_topic::ExtraTopic;
 use super::message_format::{MessageFormat, Reaction};
 use super::outbox::Record;
@@ -39,6 +45,32 @@ pub struct Position {
     not_asked: Option<&'static str>,
 }
 
+/// Number of longest intervals between two messages of a topic, after which the last one expires.
+const EXPIRY_INTERVALS: u32 = 3;
+/// Longest pause of the poller between two polls of a robot that does not answer.
+const LONGEST_PAUSE: Duration = Duration::from_secs(60);
+
+/// Time after which a retained message of a robot expires, for robots that are polled at an interval, and data that is
+/// sent again after `every`.
+pub fn expiry(every: Duration, interval: Duration) -> Duration {
+    every.max(interval).max(LONGEST_PAUSE) * EXPIRY_INTERVALS
+}
+
+/// Times of the plain format.
+#[derive(Debug, Clone, Copy)]
+pub struct Times {
+    /// Unchanged data is sent again after this time.
+    pub every_ms: u64,
+    /// Retained messages of robots expire after this time.
+    pub expiry: Duration,
+}
+
+/// The part of a received envelope that says who published it.
+#[derive(Debug, Deserialize)]
+struct Publisher {
+    node: Option<String>,
+}
+
 /// Last message of a topic.
 #[derive(Debug)]
 struct SentState {
@@ -50,27 +82,48 @@ struct SentState {
 /// The plain message format.
 #[derive(Debug)]
 pub struct PlainFormat {
-    node: String,
     topics: Topics,
     kinds: Vec<Kind>,
     also: Rc<[ExtraTopic]>,
-    every_ms: u64,
+    times: Times,
+    announced: AnnouncedTopics,
     sent: BTreeMap<RobotId, BTreeMap<String, SentState>>,
 }
 
 impl PlainFormat {
-    /// Creates the format for these kinds and extra commands; unchanged data is sent again after `every_ms`. `node` is
-    /// a topic level.
-    pub fn new((node, topics): (String, Topics), kinds: &[Kind], also: Rc<[ExtraTopic]>, every_ms: u64) -> Self {
-        Self { node, topics, kinds: kinds.to_vec(), also, every_ms, sent: BTreeMap::new() }
+    /// Creates the format for these kinds and extra commands. `announced` are the topics of the previous process. The
+    /// topics of `robots` stay.
+    pub fn new(
+        topics: Topics,
+        (kinds, also): (&[Kind], Rc<[ExtraTopic]>),
+        times: Times,
+        (announced, robots): (AnnouncedTopics, &[Robot]),
+    ) -> Self {
+        let mut format = Self { topics, kinds: kinds.to_vec(), also, times, announced, sent: BTreeMap::new() };
+        let mut topics: Vec<String> = robots.iter().flat_map(|robot| format.topics_of(robot)).collect();
+        topics.push(format.state_topic());
+        format.announced.announce(topics);
+        format
+    }
+
+    /// Topics of a robot; empty if the robot lacks a level of the template.
+    fn topics_of(&self, robot: &Robot) -> Vec<String> {
+        let also = self.also.iter().filter(|also| also.family() == robot.family).map(ExtraTopic::level);
+        let names = self.kinds.iter().map(|kind| kind.name()).chain(also);
+        names.filter_map(|name| self.topics.topic_of(robot, name).ok()).collect()
+    }
+
+    fn state_topic(&self) -> String {
+        format!("{}/{}/state", self.topics.prefix, self.topics.node)
     }
 
     fn state(&self, state: &str) -> Message {
         Message {
-            topic: format!("{}/{}/state", self.topics.prefix, self.node),
+            topic: self.state_topic(),
             payload: state.as_bytes().to_vec(),
             retain: true,
             acknowledged: true,
+            expiry: None,
         }
     }
 
@@ -84,12 +137,14 @@ impl PlainFormat {
             let Ok(what) = serde_json::to_vec(&envelope) else { continue };
             let is_due = last_sent
                 .get(&kind)
-                .is_none_or(|last| last.what != what || now_ms.saturating_sub(last.at_ms) >= self.every_ms);
+                .is_none_or(|last| last.what != what || now_ms.saturating_sub(last.at_ms) >= self.times.every_ms);
             if !is_due {
                 continue;
             }
             let time = i64::try_from(now_ms).ok().and_then(|ms| Timestamp::from_millisecond(ms).ok());
-            let Ok(body) = serde_json::to_vec(&Envelope { time, ..envelope }) else { continue };
+            let node = Some(self.topics.node.clone());
+            let Ok(body) = serde_json::to_vec(&Envelope { time, node, ..envelope }) else { continue };
+            self.announced.announce([key.clone()]);
             records.push(Record { kind: 0, time_ms: now_ms, key, body, epoch: 0 });
             last_sent.insert(kind, SentState { what, at_ms: now_ms });
         }
@@ -138,17 +193,18 @@ impl PlainFormat {
         self.changed(robot, envelopes, now_ms)
     }
 
-    /// Records for a robot that was removed. They clear its retained messages.
-    fn records_of_removed_robot(&mut self, robot: &Robot, now_ms: u64) -> Vec<Record> {
-        let told = self.sent.remove(&RobotId::for_robot(robot)).unwrap_or_default();
-        let empty = |key: String| Record { kind: 0, time_ms: now_ms, key, body: Vec::new(), epoch: 0 };
-        told.into_keys().filter_map(|kind| self.topics.topic_of(robot, &kind).ok()).map(empty).collect()
+    /// Handles the removal of a robot. Its retained messages are cleared after the broker was asked for them.
+    fn withdraw(&mut self, robot: &Robot) {
+        self.sent.remove(&RobotId::for_robot(robot));
+        for topic in self.topics_of(robot) {
+            self.announced.withdraw(&topic);
+        }
     }
 }
 
 impl MessageFormat for PlainFormat {
     fn client_id(&self) -> String {
-        format!("armctl-{}", self.node)
+        format!("armctl-{}", self.topics.node)
     }
 
     fn will(&mut self, _now_ms: u64) -> Will {
@@ -163,29 +219,78 @@ impl MessageFormat for PlainFormat {
         vec![self.state("online")]
     }
 
-    fn connection_lost(&mut self) {}
+    fn connection_lost(&mut self) {
+        self.announced.connection_lost();
+    }
 
+    /// The broker was asked for retained messages. If one is of another node, it stays.
     fn handle_message(&mut self, message: &Message, _now_ms: u64) -> Reaction {
-        let note = format!("ignored an unexpected message from the broker: {}", message.topic);
+        if !self.announced.is_asked(&message.topic) {
+            let note = format!("ignored an unexpected message from the broker: {}", message.topic);
+            return Reaction { note: Some((Level::Detail, note)), ..Reaction::default() };
+        }
+        let publisher: Option<Publisher> = serde_json::from_slice(&message.payload).ok();
+        let Some(other) = publisher.and_then(|publisher| publisher.node).filter(|node| *node != self.topics.node)
+        else {
+            return Reaction::default();
+        };
+        self.announced.forget(&message.topic);
+        let note = format!("{}: now published by the node {other}, so its message stays", message.topic);
         Reaction { note: Some((Level::Detail, note)), ..Reaction::default() }
     }
 
     fn convert_event(&mut self, event: &Event, now_ms: u64) -> Vec<Record> {
+        self.announced.retry(now_ms);
         match event {
             Event::Polled(look) => self.records_of_poll(look, now_ms),
             Event::Failed { robot, failure, .. } => self.failed(robot, failure, now_ms),
-            Event::Gone(robot) => self.records_of_removed_robot(robot, now_ms),
-            Event::Appeared(_) | Event::Inventory(_) => Vec::new(),
+            Event::Gone(robot) => {
+                self.withdraw(robot);
+                Vec::new()
+            }
+            Event::Appeared(robot) => {
+                let topics = self.topics_of(robot);
+                self.announced.announce(topics);
+                Vec::new()
+            }
+            Event::Inventory(_) => Vec::new(),
         }
+    }
+
+    fn next_question(&mut self) -> Vec<String> {
+        self.announced.next_question()
+    }
+
+    /// Records that clear the retained messages of this node.
+    fn end_question(&mut self, now_ms: u64) -> Vec<Record> {
+        let empty = |key: String| Record { kind: 0, time_ms: now_ms, key, body: Vec::new(), epoch: 0 };
+        self.announced.end_question().into_iter().map(empty).collect()
+    }
+
+    fn handle_arrival(&mut self, record: &Record) {
+        if record.body.is_empty() && self.announced.is_clearing(&record.key) {
+            self.announced.forget(&record.key);
+        }
+    }
+
+    fn take_note(&mut self) -> Option<String> {
+        self.announced.take_note()
     }
 
     fn is_ready(&self) -> bool {
         true
     }
 
+    /// Data of a topic that is no longer published, such as that of a previous process, is sent without retain.
     fn convert_record(&mut self, record: Record, _now_ms: u64) -> Vec<Message> {
         let Record { key, body, .. } = record;
-        vec![Message { topic: key, payload: body, retain: true, acknowledged: true }]
+        let is_clear = body.is_empty();
+        if is_clear && !self.announced.is_clearing(&key) {
+            return Vec::new();
+        }
+        let is_current = self.announced.is_current(&key);
+        let expiry = is_current.then_some(self.times.expiry);
+        vec![Message { topic: key, payload: body, retain: is_clear || is_current, acknowledged: true, expiry }]
     }
 
     fn final_messages(&mut self, _now_ms: u64) -> Vec<Message> {

@@ -11,10 +11,11 @@ use tempfile::TempDir;
 use tokio::sync::{Notify, mpsc};
 use tokio::time::{Instant, sleep};
 
+use super::announced::AnnouncedTopics;
 use super::delivery::{Backoff, Broker, Counts, Delivery, Listener, Uplink};
 use super::outbox::Outbox;
-use super::plain_format::PlainFormat;
-use super::spool::Spool;
+use super::plain_format::{PlainFormat, Times};
+use super::spool::{Spool, SyncPolicy};
 use super::topic::Topics;
 use super::uplink::{Event, Loss, Message, Refusal, SendError, TlsError, Version, Will};
 use super::{ExtraTopic, Kind, MessageFormat};
@@ -80,6 +81,8 @@ struct FakeUplink {
     behavior: RefCell<BrokerBehavior>,
     /// Acknowledged messages.
     taken: RefCell<Vec<Message>>,
+    /// Messages of other nodes.
+    retained: RefCell<Vec<Message>>,
     attempts: RefCell<Vec<Instant>>,
     changed: Notify,
     start: Instant,
@@ -90,6 +93,7 @@ impl FakeUplink {
         Self {
             behavior: RefCell::new(behavior),
             taken: RefCell::default(),
+            retained: RefCell::default(),
             attempts: RefCell::default(),
             changed: Notify::new(),
             start: Instant::now(),
@@ -175,7 +179,16 @@ impl Uplink for Connection<'_> {
         Ok(Some(id))
     }
 
-    fn subscribe(&mut self, _: &[String]) -> Result<(), SendError> {
+    /// The broker sends the retained messages of these topics.
+    fn subscribe(&mut self, topics: &[String]) -> Result<(), SendError> {
+        self.events.push_back(Event::Subscribed(true));
+        let retained = self.fake_uplink.retained.borrow();
+        let messages = retained.iter().filter(|message| topics.contains(&message.topic));
+        self.events.extend(messages.cloned().map(Event::Message));
+        Ok(())
+    }
+
+    fn unsubscribe(&mut self, _: &[String]) -> Result<(), SendError> {
         Ok(())
     }
 
@@ -203,9 +216,14 @@ impl Uplink for Connection<'_> {
 const KINDS: [Kind; 3] = [Kind::Status, Kind::Alarms, Kind::Position];
 
 fn plain() -> Box<dyn MessageFormat> {
+    plain_with(AnnouncedTopics::default(), &[])
+}
+
+fn plain_with(announced: AnnouncedTopics, robots: &[Robot]) -> Box<dyn MessageFormat> {
     let also: Rc<[ExtraTopic]> = Rc::from([]);
-    let topics = Topics { prefix: "armctl".to_owned(), ..Topics::default() };
-    Box::new(PlainFormat::new(("cell7".to_owned(), topics), &KINDS, also, 60_000))
+    let topics = Topics { prefix: "armctl".to_owned(), node: "cell7".to_owned(), ..Topics::default() };
+    let times = Times { every_ms: 60_000, expiry: Duration::from_secs(180) };
+    Box::new(PlainFormat::new(topics, (&KINDS, also), times, (announced, robots)))
 }
 
 /// Records log messages, except those for `-v`.
@@ -233,10 +251,19 @@ async fn pumped(
     outbox: Outbox,
     script: impl AsyncFnOnce(mpsc::UnboundedSender<Found>),
 ) -> (Result<Counts, Failure>, Vec<String>) {
+    pumped_as(plain(), fake_uplink, outbox, script).await
+}
+
+async fn pumped_as(
+    format: Box<dyn MessageFormat>,
+    fake_uplink: &FakeUplink,
+    outbox: Outbox,
+    script: impl AsyncFnOnce(mpsc::UnboundedSender<Found>),
+) -> (Result<Counts, Failure>, Vec<String>) {
     let notes = LogRecorder::default();
     let url = "mqtt://broker".parse().unwrap();
     let (tell, mut found) = mpsc::unbounded_channel();
-    let mut pump = Delivery::new((&fake_uplink, &url), plain(), outbox, (&notes, Backoff::new(7)), false);
+    let mut pump = Delivery::new((&fake_uplink, &url), format, outbox, (&notes, Backoff::new(7)), false);
     let pumped = async {
         let ended = pump.run(async || found.recv().await, pending()).await;
         let counts = pump.end(false).await;
@@ -265,7 +292,7 @@ async fn publishes_changes_at_once_and_other_values_at_an_interval() {
     let mut expected = vec!["armctl/cell7/state".to_owned()];
     expected.extend(kinds(["status", "alarms", "position"]));
     expected.push("armctl/press/position".to_owned());
-    // A silent robot is reported in all its topics. The topics of a removed robot are cleared.
+    // A silent robot is reported in all its topics at once. The topics of a removed robot are cleared.
     expected.extend(kinds(["status", "alarms", "position"]));
     expected.extend(kinds(["alarms", "position", "status"]));
     expected.push("armctl/cell7/state".to_owned());
@@ -274,13 +301,111 @@ async fn publishes_changes_at_once_and_other_values_at_an_interval() {
     let taken = fake_uplink.taken.borrow();
     assert!(taken.iter().all(|message| message.retain && message.acknowledged));
     assert_eq!((&taken[0].payload[..], &taken[11].payload[..]), (&b"online"[..], &b"offline"[..]));
-    assert!(taken[8..11].iter().all(|message| message.payload.is_empty()));
+    assert!(taken[8..11].iter().all(|message| message.payload.is_empty() && message.expiry.is_none()));
+    assert!(taken[1..8].iter().all(|message| message.expiry == Some(Duration::from_secs(180))));
+    assert_eq!((taken[0].expiry, taken[11].expiry), (None, None));
     let silent: serde_json::Value = serde_json::from_slice(&taken[5].payload).unwrap();
     assert_eq!(
-        (&silent["ok"], &silent["data"]["reachable"], &silent["error"]["kind"]),
-        (&false.into(), &false.into(), &"no_answer".into())
+        (&silent["ok"], &silent["data"]["reachable"], &silent["error"]["kind"], &silent["node"]),
+        (&false.into(), &false.into(), &"no_answer".into(), &"cell7".into())
     );
     assert_eq!(counts.unwrap(), Counts { published: 10, ..Counts::default() });
+}
+
+#[tokio::test(start_paused = true)]
+async fn clears_topics_of_the_previous_process_but_not_of_another_node() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("topics");
+    let topics = ["armctl/press", "armctl/loader", "armctl/picker"].map(|robot| format!("{robot}/status"));
+    let old = format!("old/cell7/state\n{}\n", topics.join("\n"));
+    std::fs::write(&file, old).unwrap();
+    let fake_uplink = FakeUplink::new(BrokerBehavior::Works);
+    let retained = [("armctl/picker/status", "{\"node\":\"cell8\"}"), ("armctl/loader/status", "{\"node\":\"cell7\"}")];
+    fake_uplink.retained.replace(
+        retained
+            .map(|(topic, payload)| Message {
+                topic: topic.to_owned(),
+                payload: payload.as_bytes().to_vec(),
+                retain: true,
+                acknowledged: true,
+                expiry: None,
+            })
+            .to_vec(),
+    );
+    let press = robot("press");
+    let format = plain_with(AnnouncedTopics::open(Some(file.clone())), &[(*press).clone()]);
+    // Data of a previous process is still delivered, but not retained again.
+    let mut outbox = Outbox::new(MEMORY, None);
+    let key = "armctl/loader/status".to_owned();
+    outbox.push(super::outbox::Record { kind: 0, time_ms: 1, key, body: b"{}".to_vec(), epoch: 0 });
+    let (counts, log_lines) = pumped_as(format, &fake_uplink, outbox, async |tell| drop(tell)).await;
+    let taken = fake_uplink.taken.borrow();
+    let sent: Vec<_> = taken.iter().map(|sent| (&sent.topic[..], sent.payload.is_empty(), sent.retain)).collect();
+    let expected = [
+        ("armctl/cell7/state", false, true),
+        ("armctl/loader/status", false, false),
+        ("armctl/loader/status", true, true),
+        ("old/cell7/state", true, true),
+        ("armctl/cell7/state", false, true),
+    ];
+    assert_eq!(sent, expected, "{log_lines:?}");
+    assert_eq!(counts.unwrap().published, 3);
+    let left = "armctl/cell7/state\narmctl/press/alarms\narmctl/press/position\narmctl/press/status\n";
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), left);
+}
+
+#[tokio::test(start_paused = true)]
+async fn writes_to_disk_only_while_the_broker_is_away() {
+    let folder = TempDir::new().unwrap();
+    let on_disk = || {
+        let files = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().path());
+        let spools = files.filter(|path| path.extension().is_some_and(|suffix| suffix == "spool"));
+        spools.map(|path| path.metadata().unwrap().len()).sum::<u64>()
+    };
+    let spool = Spool::open(folder.path(), 1 << 20, SyncPolicy::Every(Duration::from_secs(1))).unwrap();
+    let fake_uplink = FakeUplink::new(BrokerBehavior::Works);
+    let (counts, _) = pumped(&fake_uplink, Outbox::new(MEMORY, Some(spool)), async |tell| {
+        let press = robot("press");
+        for second in 0..60 {
+            match second {
+                20 => fake_uplink.set_behavior(BrokerBehavior::Away),
+                40 => fake_uplink.set_behavior(BrokerBehavior::Works),
+                _ => {}
+            }
+            let before = on_disk();
+            tell.send(look(&press, f64::from(second), &[])).unwrap();
+            sleep(Duration::from_millis(100)).await;
+            match second {
+                0..20 => assert_eq!(on_disk(), 0, "{second}"),
+                20..40 => assert!(on_disk() > before, "{second}: the first message is on disk at once"),
+                _ => {}
+            }
+            sleep(Duration::from_millis(900)).await;
+        }
+        sleep(Duration::from_secs(60)).await;
+        tell.send(look(&press, 60.0, &[])).unwrap();
+        sleep(Duration::from_secs(1)).await;
+        assert_eq!(on_disk(), 0);
+    })
+    .await;
+    assert_eq!(fake_uplink.places("press"), (0..61).map(f64::from).collect::<Vec<_>>());
+    assert_eq!(counts.unwrap().reconnects, 1);
+}
+
+#[tokio::test(start_paused = true)]
+async fn writes_to_disk_while_the_broker_acknowledges_nothing() {
+    let folder = TempDir::new().unwrap();
+    let spool = Spool::open(folder.path(), 1 << 20, SyncPolicy::Every(Duration::from_secs(1))).unwrap();
+    let fake_uplink = FakeUplink::new(BrokerBehavior::Hangs);
+    let (counts, _) = pumped(&fake_uplink, Outbox::new(MEMORY, Some(spool)), async |tell| {
+        tell.send(look(&robot("press"), 1.0, &[])).unwrap();
+        sleep(Duration::from_secs(5)).await;
+        let files = std::fs::read_dir(folder.path()).unwrap().count();
+        assert!(files > 0);
+        fake_uplink.set_behavior(BrokerBehavior::Works);
+    })
+    .await;
+    assert_eq!((counts.unwrap().dropped, fake_uplink.places("press")), (0, vec![1.0]));
 }
 
 #[tokio::test(start_paused = true)]
@@ -311,7 +436,7 @@ async fn one_minute_without_broker_loses_nothing() {
 #[tokio::test(start_paused = true)]
 async fn full_buffer_drops_and_reports_the_oldest_record() {
     let folder = TempDir::new().unwrap();
-    let spool = Spool::open(folder.path(), 16 << 10).unwrap();
+    let spool = Spool::open(folder.path(), 16 << 10, SyncPolicy::Never).unwrap();
     let fake_uplink = FakeUplink::new(BrokerBehavior::Away);
     let (counts, log_lines) = pumped(&fake_uplink, Outbox::new(4096, Some(spool)), async |tell| {
         let press = robot("press");

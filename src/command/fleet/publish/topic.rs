@@ -48,6 +48,8 @@ enum Part {
     /// The prefix of all topics.
     Prefix,
     Robot,
+    /// Name of the publisher.
+    Node,
     Family,
     /// What is published: `status`, `alarms`, `position`, or the name of an extra command.
     Kind,
@@ -56,7 +58,7 @@ enum Part {
 }
 
 /// Placeholders of a template.
-const KNOWN: &str = "{robot}, {kind}, {family}, {prefix}, {site}, {area}, {line}, {cell}";
+const KNOWN: &str = "{robot}, {kind}, {node}, {family}, {prefix}, {site}, {area}, {line}, {cell}";
 
 impl Default for Template {
     fn default() -> Self {
@@ -86,6 +88,7 @@ impl FromStr for Part {
         match level.strip_prefix('{').and_then(|rest| rest.strip_suffix('}')) {
             Some("prefix") => Ok(Self::Prefix),
             Some("robot") => Ok(Self::Robot),
+            Some("node") => Ok(Self::Node),
             Some("family") => Ok(Self::Family),
             Some("kind") => Ok(Self::Kind),
             name => match Place::KEYS.into_iter().find(|key| Some(*key) == name) {
@@ -101,6 +104,8 @@ impl FromStr for Part {
 pub struct Topics {
     /// First levels of all topics.
     pub prefix: String,
+    /// Level of the publisher.
+    pub node: String,
     /// Template of the topics.
     pub template: Template,
     /// Topic levels of the robots.
@@ -117,6 +122,7 @@ impl Topics {
             Part::Text(text) => Ok(text.clone()),
             Part::Prefix => Ok(self.prefix.clone()),
             Part::Robot => self.levels.level_of(robot),
+            Part::Node => Ok(self.node.clone()),
             Part::Family => Ok(robot.family.name().to_owned()),
             Part::Kind => Ok(kind.to_owned()),
             Part::Place(key) => match robot.place.get(key) {
@@ -219,10 +225,12 @@ mod tests {
         robot.place.site = Some("Werk #1".to_owned());
         let topic = |template: &str, robot: &Robot| {
             let template = template.parse().unwrap();
-            Topics { prefix: "armctl".to_owned(), template, ..Topics::default() }.topic_of(robot, "status")
+            let node = "cell7".to_owned();
+            Topics { prefix: "armctl".to_owned(), node, template, ..Topics::default() }.topic_of(robot, "status")
         };
         assert_eq!(topic("{prefix}/{robot}/{kind}", &robot).unwrap(), "armctl/a%2Fb/status");
         assert_eq!(topic("{site}/x/{family}/{robot}/{kind}", &robot).unwrap(), "Werk %231/x/toyo/a%2Fb/status");
+        assert_eq!(topic("{prefix}/{node}/{robot}/{kind}", &robot).unwrap(), "armctl/cell7/a%2Fb/status");
         let failure = topic("{line}/{robot}/{kind}", &robot).unwrap_err();
         assert_eq!(failure.hint.as_deref(), Some("set it: `armctl robots set a/b line=NAME`"));
         assert_eq!("{prefix}/{robot}/{kind}".parse(), Ok(Template::default()));
@@ -234,6 +242,7 @@ mod tests {
             "/{robot}/{kind}",
             "{robto}/{kind}",
             "x{robot}/{kind}",
+            "{nodes}/{robot}/{kind}",
         ] {
             assert!(wrong.parse::<Template>().is_err(), "{wrong}");
         }

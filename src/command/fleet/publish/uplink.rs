@@ -33,6 +33,10 @@ impl delivery::Uplink for Client {
         Self::subscribe(self, topics)
     }
 
+    fn unsubscribe(&mut self, topics: &[String]) -> Result<(), SendError> {
+        Self::unsubscribe(self, topics)
+    }
+
     fn ping(&mut self) -> u64 {
         Self::ping(self)
     }

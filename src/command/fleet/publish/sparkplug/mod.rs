@@ -134,7 +134,7 @@ impl Node {
         let seq = self.seq;
         self.seq = seq.wrapping_add(1);
         let payload = Payload { timestamp: Some(now_ms), metrics, seq: Some(seq.into()), uuid: None, body: None };
-        Message { topic, payload: payload.encode_to_vec(), retain: false, acknowledged: false }
+        Message { topic, payload: payload.encode_to_vec(), retain: false, acknowledged: false, expiry: None }
     }
 
     fn device_message(&mut self, message: &DeviceMessage, device: &str, metrics: Vec<Metric>, now_ms: u64) -> Message {
@@ -151,6 +151,7 @@ impl Node {
             payload: payload.encode_to_vec(),
             retain: false,
             acknowledged: true,
+            expiry: None,
         }
     }
 

@@ -60,12 +60,13 @@ fn command(name: &str, value: Value) -> Message {
         payload: payload.encode_to_vec(),
         retain: false,
         acknowledged: true,
+        expiry: None,
     }
 }
 
 fn state(is_online: bool, timestamp: u64) -> Message {
     let payload = format!("{{\"online\":{is_online},\"timestamp\":{timestamp}}}").into_bytes();
-    Message { topic: "spBv1.0/STATE/SCADA".to_owned(), payload, retain: true, acknowledged: true }
+    Message { topic: "spBv1.0/STATE/SCADA".to_owned(), payload, retain: true, acknowledged: true, expiry: None }
 }
 
 #[test]
