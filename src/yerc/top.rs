@@ -8,7 +8,7 @@ use crate::prelude::*;
 use armctl_controller::units;
 use armctl_controller::yerc::payload::{Axes, ControllerStatus, CycleMode, StatusBit};
 use armctl_controller::yerc::query::{
-    Coordinates, Query, QueryError, ReadIoGroups, ReadPosition, ReadPositionError, ReadStatus, ReadTorque,
+    Coordinates, Query, QueryError, ReadIoGroups, ReadJob, ReadPosition, ReadPositionError, ReadStatus, ReadTorque,
 };
 use armctl_frame::Family as _;
 use armctl_frame::face::registration;
@@ -22,6 +22,9 @@ pub struct Poller {
     /// Whether the controller supports alarm texts. This is assumed until the controller refuses them.
     texts: bool,
 }
+
+/// Task that runs the master job.
+const MASTER_TASK: u8 = 0;
 
 /// Signals in the view: name, and first group of the general-purpose signals of this kind. `GROUPS` is the number of
 /// groups of each kind.
@@ -47,7 +50,15 @@ impl registration::Poller for Poller {
             Detail::Axes | Detail::Full => Some(self.whole(detail, status, base.as_ref()).await?),
         };
         let fault = Fault::new(status.faulted(), alarms.first());
-        Ok(Sample { line: report(status, fault, base.as_ref()), answered_in, alarms, full: whole })
+        let mut line = report(status, fault, base.as_ref());
+        if whole.is_some()
+            && let Some(job) = self.ask(ReadJob::new(self.link.model_for_display(), MASTER_TASK)).await?
+        {
+            let name = self.link.encoding.name(job.name.as_bytes()).text;
+            line.state.program = Some(name).filter(|name| !name.is_empty());
+            line.state.speed_override_percent = Some(f64::from(job.speed_override) / 100.0);
+        }
+        Ok(Sample { line, answered_in, alarms, full: whole })
     }
 
     fn link(&mut self) -> &mut Link {

@@ -54,11 +54,20 @@ pub const METRICS: &[Metric] = &[
         |board, samples| each(board, samples, |seen| flag(seen.line()?.state.running))),
     metric("armctl_robot_held", Gauge, "", "Whether the robot is held or paused.",
         |board, samples| each(board, samples, |seen| flag(seen.line()?.state.held))),
+    metric("armctl_robot_homed", Gauge, "", "Whether the origin is known.",
+        |board, samples| each(board, samples, |seen| flag(seen.line()?.state.homed))),
+    metric("armctl_robot_emergency_stop", Gauge, "", "Whether the emergency stop is active.",
+        |board, samples| each(board, samples, |seen| flag(seen.line()?.state.emergency_stop))),
+    metric("armctl_robot_speed_override_ratio", Gauge, "ratio", "Override of all speeds.",
+        |board, samples| each(board, samples, |seen| Some(seen.line()?.state.speed_override_percent? / 100.0))),
+    metric("armctl_robot_alarms", Gauge, "", "Number of active alarms and errors that the robot reports.",
+        |board, samples| each(board, samples, |seen| Some(seen.last_poll.as_ref()?.sample.alarms.len()))),
     metric("armctl_robot_faulted", Gauge, "", "Whether an alarm or error is present.",
         |board, samples| each(board, samples, |seen| flag(seen.line()?.state.fault.faulted))),
     metric("armctl_robot_fault", Info, "", "The first active alarm or error, with its code and text.",
         faults),
     metric("armctl_robot_mode", Info, "", "Operating mode: manual or automatic.", modes),
+    metric("armctl_robot_program", Info, "", "Program or job that is selected or runs.", programs),
     metric("armctl_axis_position_meters", Gauge, "meters", "Position of a linear axis or coordinate.",
         // Divide instead of multiplying by 0.001, so that 0.1025 is not rounded.
         |board, samples| axes(board, samples, MILLIMETRE.symbol, 1000.0)),
@@ -131,6 +140,14 @@ fn modes(board: &Board, samples: &mut Samples<'_>) {
     for seen in board.robots.values() {
         if let Some(mode) = seen.line().and_then(|line| line.state.mode) {
             samples.write_sample(&labels(&seen.labels, &[("mode", mode.name())]), 1);
+        }
+    }
+}
+
+fn programs(board: &Board, samples: &mut Samples<'_>) {
+    for seen in board.robots.values() {
+        if let Some(program) = seen.line().and_then(|line| line.state.program.as_deref()) {
+            samples.write_sample(&labels(&seen.labels, &[("program", program)]), 1);
         }
     }
 }

@@ -51,12 +51,21 @@ fn shows_the_current_state_of_a_robot() {
     let mut board = page_after(&[Event::Appeared(Arc::clone(&robots[0]))]);
     assert_eq!(samples(&board, "armctl_robot_up"), Vec::<String>::new(), "nobody knows yet");
     assert_eq!(samples(&board, "armctl_polls_total"), [format!("{{{CELL1}}} 0")]);
-    board.record_event(&poll_event(&robots[0], sample(-400.0)), 1000.5);
+    let mut polled = sample(-400.0);
+    let state = &mut polled.line.state;
+    (state.homed, state.emergency_stop) = (Some(true), Some(false));
+    (state.program, state.speed_override_percent) = (Some("WELD".to_owned()), Some(25.0));
+    board.record_event(&poll_event(&robots[0], polled), 1000.5);
     for (name, value) in [
         ("armctl_robot_up", "} 1"),
         ("armctl_robot_servo_on", "} 1"),
         ("armctl_robot_running", "} 1"),
         ("armctl_robot_held", "} 0"),
+        ("armctl_robot_homed", "} 1"),
+        ("armctl_robot_emergency_stop", "} 0"),
+        ("armctl_robot_speed_override_ratio", "} 0.25"),
+        ("armctl_robot_alarms", "} 0"),
+        ("armctl_robot_program_info", ",program=\"WELD\"} 1"),
         ("armctl_robot_faulted", "} 0"),
         ("armctl_robot_mode_info", ",mode=\"automatic\"} 1"),
         ("armctl_robot_last_answer_timestamp_seconds", "} 1000.5"),

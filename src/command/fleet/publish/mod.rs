@@ -51,7 +51,7 @@ use self::extra_topic::ExtraTopic;
 use self::log::BrokerLog;
 use self::message_format::MessageFormat;
 use self::outbox::Outbox;
-use self::plain_format::{Alarms, PlainFormat, Position, Times};
+use self::plain_format::{Alarms, Axes, PlainFormat, Position, Times};
 use self::sparkplug::{Names, Node};
 use self::spool::{Spool, SyncPolicy};
 use self::topic::{Levels, Template, Topics};
@@ -59,6 +59,7 @@ use crate::command::fleet::poll::{Event, Poll, PollRequest, RobotId, Subscriptio
 use crate::command::fleet::service::{END_TIMEOUT, Service};
 use armctl_files as files;
 use armctl_frame::SchemaEntry;
+use armctl_frame::face::sample::Detail;
 use armctl_frame::interrupt::{catch_interrupts, interruptible};
 use armctl_frame::local_names::state_folder;
 use armctl_frame::output::log::Level;
@@ -185,12 +186,14 @@ pub enum Kind {
     Status,
     /// Alarms and errors
     Alarms,
-    /// Position
+    /// Position of the first robot in base coordinates
     Position,
+    /// All axes and coordinates, with rotation and torque. This needs more requests to the robot
+    Axes,
 }
 
 impl Kind {
-    const ALL: [Self; 3] = [Self::Status, Self::Alarms, Self::Position];
+    const ALL: [Self; 4] = [Self::Status, Self::Alarms, Self::Position, Self::Axes];
 
     /// Last level of its topic.
     fn name(self) -> &'static str {
@@ -198,6 +201,7 @@ impl Kind {
             Self::Status => "status",
             Self::Alarms => "alarms",
             Self::Position => "position",
+            Self::Axes => "axes",
         }
     }
 
@@ -207,6 +211,7 @@ impl Kind {
             Self::Status => "status",
             Self::Alarms => "publish.alarms",
             Self::Position => "publish.position",
+            Self::Axes => "publish.axes",
         }
     }
 }
@@ -217,6 +222,7 @@ pub fn schemas() -> Vec<SchemaEntry> {
         SchemaEntry::of::<Published>("publish"),
         SchemaEntry::of::<Alarms>("publish.alarms"),
         SchemaEntry::of::<Position>("publish.position"),
+        SchemaEntry::of::<Axes>("publish.axes"),
     ]
 }
 
@@ -292,7 +298,8 @@ impl Publish {
         }
         catch_interrupts();
         let extras = also.iter().map(ExtraTopic::extra).collect();
-        let mut events = poll.subscribe(PollRequest { extras, ..PollRequest::every(interval) });
+        let detail = if self.kinds.contains(&Kind::Axes) { Detail::Axes } else { Detail::Summary };
+        let mut events = poll.subscribe(PollRequest { detail, extras, ..PollRequest::every(interval) });
         let mut polled = Box::pin(poll.run());
         let pauses = Backoff::new(fastrand::u64(..));
         let mut pump =

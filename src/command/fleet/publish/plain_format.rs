@@ -23,6 +23,7 @@ use super::topic::Topics;
 use super::uplink::{Message, Will};
 use crate::command::fleet::poll::{Event, PollResult, RobotId};
 use armctl_frame::face::overview::OverviewReport;
+use armctl_frame::face::sample::Sample;
 use armctl_frame::output::envelope::Envelope;
 use armctl_frame::output::log::Level;
 use armctl_frame::prelude::*;
@@ -43,6 +44,44 @@ pub struct Position {
     position: Option<PositionMm>,
     /// Reason why the position was not read; null if it was read.
     not_asked: Option<&'static str>,
+}
+
+/// All axes and coordinates of a robot.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+pub struct Axes {
+    /// Axes of the first group or robot, then its coordinates in base coordinates with their rotation.
+    axes: Vec<AxisValue>,
+    /// Reason why the axes were not read; null if they were read.
+    not_asked: Option<&'static str>,
+}
+
+/// An axis or a coordinate.
+#[derive(Debug, Clone, Serialize, JsonSchema)]
+struct AxisValue {
+    /// Name: `S`, `X`, `Rz`, `1`.
+    axis: String,
+    /// Position.
+    position: f64,
+    /// Unit of the position: `pulses`, `mm` or `deg`.
+    unit: &'static str,
+    /// Torque; null if the protocol does not report it.
+    torque: Option<f64>,
+    /// Unit of the torque: `% of max`, or `raw` if the unit is not known.
+    torque_unit: Option<&'static str>,
+}
+
+impl Axes {
+    fn of(sample: &Sample) -> Self {
+        let Some(whole) = &sample.full else { return Self { axes: Vec::new(), not_asked: sample.line.not_asked } };
+        let axes = whole.axes.iter().map(|axis| AxisValue {
+            axis: axis.name.clone(),
+            position: axis.position,
+            unit: axis.unit,
+            torque: axis.torque,
+            torque_unit: axis.torque.and(whole.torque_unit),
+        });
+        Self { axes: axes.collect(), not_asked: whole.not_asked }
+    }
 }
 
 /// Number of longest intervals between two messages of a topic, after which the last one expires.
@@ -165,6 +204,7 @@ impl PlainFormat {
                 Kind::Status => serde_json::to_value(&line),
                 Kind::Alarms => serde_json::to_value(Alarms { alarms: look.sample.alarms.clone() }),
                 Kind::Position => serde_json::to_value(Position { position: at.0, not_asked: at.1 }),
+                Kind::Axes => serde_json::to_value(Axes::of(&look.sample)),
             };
             let data = data.map_err(|error| Failure::local(format!("report as JSON: {error}")));
             envelopes.push((kind.name().to_owned(), Envelope::of(robot, kind.id(), data)));
@@ -295,5 +335,32 @@ impl MessageFormat for PlainFormat {
 
     fn final_messages(&mut self, _now_ms: u64) -> Vec<Message> {
         vec![self.state("offline")]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use armctl_frame::face::sample::{Axis, Whole};
+
+    #[test]
+    fn axes_have_units_and_torques() {
+        let joint =
+            Axis { name: "S".to_owned(), position: -400.0, unit: "pulses", torque: Some(12.0), ..Axis::default() };
+        let rotation = Axis { name: "Rz".to_owned(), position: 90.5, unit: "deg", ..Axis::default() };
+        let whole = Whole { axes: vec![joint, rotation], torque_unit: Some("raw"), ..Whole::default() };
+        let axes = serde_json::to_value(Axes::of(&Sample { full: Some(whole), ..Sample::default() })).unwrap();
+        assert_eq!(
+            axes,
+            json!({
+                "axes": [
+                    {"axis": "S", "position": -400.0, "unit": "pulses", "torque": 12.0, "torque_unit": "raw"},
+                    {"axis": "Rz", "position": 90.5, "unit": "deg", "torque": null, "torque_unit": null},
+                ],
+                "not_asked": null,
+            })
+        );
     }
 }

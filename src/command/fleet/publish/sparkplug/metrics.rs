@@ -8,6 +8,7 @@ use srad_types::payload::{DataType, Metric, PropertySet, PropertyValue};
 use super::super::Kind;
 use super::super::extra_topic::ExtraTopic;
 use crate::command::fleet::poll::PollResult;
+use armctl_frame::face::sample::Whole;
 use armctl_frame::robot::state::Mode;
 
 /// Limit of metrics per extra command.
@@ -47,6 +48,12 @@ pub fn metrics_of_poll(look: &PollResult, kinds: &[Kind], also: &[ExtraTopic]) -
                 metric("status/faulted", DataType::Boolean, flag(line.fault.faulted)),
                 metric("status/fault_code", DataType::String, text(line.fault.fault_code.as_deref())),
                 metric("status/fault_text", DataType::String, text(line.fault.fault_text.as_deref())),
+                metric("status/program", DataType::String, text(line.program.as_deref())),
+                metric(
+                    "status/speed_override_percent",
+                    DataType::Double,
+                    line.speed_override_percent.map(Value::DoubleValue),
+                ),
             ]),
             Kind::Alarms => {
                 let alarms = &look.sample.alarms;
@@ -67,6 +74,7 @@ pub fn metrics_of_poll(look: &PollResult, kinds: &[Kind], also: &[ExtraTopic]) -
                 ];
                 metrics.extend(axes.map(|(name, value)| metric(name, DataType::Double, value.map(Value::DoubleValue))));
             }
+            Kind::Axes => metrics.extend(look.sample.full.iter().flat_map(axes)),
         }
     }
     metrics.extend([
@@ -81,6 +89,25 @@ pub fn metrics_of_poll(look: &PollResult, kinds: &[Kind], also: &[ExtraTopic]) -
             let mut found = Vec::new();
             flatten(also.level(), data, 0, &mut found);
             metrics.extend(found);
+        }
+    }
+    metrics
+}
+
+/// Position and torque of all axes and coordinates: `axes/S_pulses`, `axes/Rz_deg`, `axes/S_torque_percent`.
+fn axes(whole: &Whole) -> Vec<Metric> {
+    let mut metrics: Vec<Metric> = Vec::new();
+    let mut add = |name: String, value: f64| {
+        // Names of axes can come from the controller. Two metrics of a device must not have the same name.
+        if metrics.iter().all(|known| known.name.as_ref() != Some(&name)) {
+            metrics.push(metric(&name, DataType::Double, Some(Value::DoubleValue(value))));
+        }
+    };
+    for axis in &whole.axes {
+        add(format!("axes/{}_{}", axis.name, axis.unit), axis.position);
+        if let Some(torque) = axis.torque {
+            let unit = if whole.torque_unit == Some("raw") { "raw" } else { "percent" };
+            add(format!("axes/{}_torque_{unit}", axis.name), torque);
         }
     }
     metrics
@@ -144,6 +171,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
+    use armctl_frame::face::sample::Axis;
 
     #[test]
     fn converts_a_report_to_metrics_with_types_and_units() {
@@ -169,6 +197,20 @@ mod tests {
         );
         assert!(metrics[4].properties.as_ref().is_some_and(|set| set.keys == ["engUnit"]));
         assert_eq!((unit("speed_mm_s"), unit("elapsed_ms"), unit("servo_on")), (Some("mm/s"), Some("ms"), None));
+    }
+
+    #[test]
+    fn each_axis_has_a_metric_for_its_position_and_torque() {
+        let axis =
+            |name: &str, unit, torque| Axis { name: name.to_owned(), position: 1.5, unit, torque, ..Axis::default() };
+        let list = vec![axis("S", "pulses", Some(12.0)), axis("Rz", "deg", None), axis("Rz", "deg", None)];
+        let found = axes(&Whole { axes: list, torque_unit: Some("% of max"), ..Whole::default() });
+        let names: Vec<(&str, Option<&str>)> =
+            found.iter().map(|metric| metric.name.as_deref().unwrap()).map(|name| (name, unit(name))).collect();
+        assert_eq!(
+            names,
+            [("axes/S_pulses", Some("pulses")), ("axes/S_torque_percent", Some("%")), ("axes/Rz_deg", Some("°"))]
+        );
     }
 
     #[test]
