@@ -5,10 +5,12 @@
 //! | `catalogue` | the metrics |
 //! | `board` | data of the robots |
 //! | `page` | text in both exposition formats |
+//! | `page_cache` | pages that several scrapers share |
 
 mod board;
 mod catalogue;
 mod page;
+mod page_cache;
 #[cfg(test)]
 mod tests;
 
@@ -21,6 +23,7 @@ use tokio::time::timeout;
 
 use self::board::Board;
 use self::page::Form;
+use self::page_cache::PageCache;
 use super::poll::{Poll, PollRequest, Subscription};
 use super::service::{END_TIMEOUT, Service};
 use armctl_frame::face::sample::Detail;
@@ -91,12 +94,13 @@ impl Metrics {
         let mut events = poll.subscribe(PollRequest { detail: Detail::Axes, ..PollRequest::every(every) });
         let mut polled = Box::pin(poll.run());
         let board = RefCell::new(Board::default());
+        let pages = PageCache::new(&board);
         service.notify_ready(robots)?;
         let ended = interruptible(async {
             tokio::select! {
                 () = &mut polled => Err(Failure::local("internal error: polling has ended")),
                 () = listen(&mut events, &service, &board) => Err(Failure::local("internal error: no more updates")),
-                ended = server.run(|request| answer(request, &board)) => {
+                ended = server.run(|request| answer(request, &pages)) => {
                     ended.map_err(|error| Failure::io("metrics", &error))
                 }
                 () = service.watchdog_interval(|| service.robots()) => Ok(()),
@@ -136,11 +140,11 @@ fn now() -> f64 {
     SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default().as_secs_f64()
 }
 
-fn answer(request: &Request<'_>, board: &RefCell<Board>) -> Answer {
+fn answer(request: &Request<'_>, pages: &PageCache<'_>) -> Answer {
     match request.path {
         "/metrics" => {
             let form = Form::preferred_form(request.accept);
-            Answer { status: Status::Ok, kind: form.content_type(), body: catalogue::page(&board.borrow(), form) }
+            Answer { status: Status::Ok, kind: form.content_type(), body: pages.body(form) }
         }
         "/healthz" => Answer::text(Status::Ok, "ok"),
         _ => Answer::text(Status::NotFound, "the paths are /metrics and /healthz"),
