@@ -66,7 +66,8 @@ fn another_decoder_reads_births_data_and_deaths() {
     assert_eq!((&x["type"], &x["properties"]["engUnit"]["value"]), (&json!("Double"), &json!("mm")));
     assert_eq!(metric(birth, "status/mode")["type"], "String");
     assert_eq!(metric(birth, "status/servo_on")["type"], "Boolean");
-    let part = metric(birth, "parts/items/B0/value");
+    let part = metric(birth, "parts/items/B0");
+    assert_eq!(part["properties"]["kind"]["value"], "variable");
     assert!(part["type"] == "Int64" && part["value"].is_number(), "{birth}");
     let by_alias = data["metrics"].as_array().unwrap();
     assert!(by_alias.iter().all(|metric| metric["name"].is_null() && metric["alias"].is_number()), "{data}");

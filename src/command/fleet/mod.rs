@@ -9,6 +9,7 @@ pub mod poll;
 #[cfg(feature = "plant")]
 pub mod publish;
 #[cfg(feature = "plant")]
+pub mod report_values;
 pub mod robots;
 #[cfg(feature = "plant")]
 pub mod serve;

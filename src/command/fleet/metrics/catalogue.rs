@@ -1,8 +1,11 @@
 //! Catalogue of the metrics: name, type, unit, help text, source of the value. `docs/monitoring/README.md` explains
 //! each metric, and a test compares the page with this list.
 
+use std::collections::BTreeSet;
+
 use super::board::{Board, RobotMetrics};
 use super::page::{Form, Kind, Page, Samples, labels};
+use crate::command::fleet::report_values::values_of_report;
 use armctl_controller::units::{DEGREE, MILLIMETRE, PULSE};
 
 /// A metric.
@@ -80,6 +83,8 @@ pub const METRICS: &[Metric] = &[
     metric("armctl_axis_torque_raw", Gauge, "raw", "Torque of an axis in the unit of the controller, which is not \
                                                     known.",
         |board, samples| torques(board, samples, "raw", 1.0)),
+    metric("armctl_command_value", Gauge, "",
+        "A number in the answer to a command of --also, with the name of the command and the path of the value.", values),
     metric("armctl_session_open", Gauge, "", "Whether the polls use a session.",
         |board, samples| each(board, samples, |seen| flag(Some(seen.last_poll.as_ref()?.through_session)))),
     metric("armctl_robot_last_answer_timestamp_seconds", Gauge, "seconds", "Time of the last answer of the robot.",
@@ -148,6 +153,30 @@ fn programs(board: &Board, samples: &mut Samples<'_>) {
     for seen in board.robots.values() {
         if let Some(program) = seen.line().and_then(|line| line.state.program.as_deref()) {
             samples.write_sample(&labels(&seen.labels, &[("program", program)]), 1);
+        }
+    }
+}
+
+fn values(board: &Board, samples: &mut Samples<'_>) {
+    for seen in board.robots.values() {
+        // Names of items can come from the controller. A duplicate label would make the whole page invalid.
+        let mut written = BTreeSet::new();
+        let extras = seen.last_poll.iter().flat_map(|polled| &polled.extras);
+        for (text, answer) in extras {
+            let also = board.also.iter().find(|also| also.text() == &**text);
+            let (Some(also), Ok(data)) = (also, answer) else { continue };
+            let command = also.level();
+            for value in values_of_report("", data) {
+                let number =
+                    value.value.as_f64().or_else(|| value.value.as_bool().map(|flag| f64::from(u8::from(flag))));
+                let Some(number) = number else { continue };
+                let path = value.path.trim_start_matches('/');
+                let labels = labels(&seen.labels, &[("command", command), ("value", path)]);
+                if !written.contains(&labels) {
+                    samples.write_sample(&labels, number);
+                    written.insert(labels);
+                }
+            }
         }
     }
 }

@@ -3,10 +3,13 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use serde_json::{Value, json};
+
 use super::board::Board;
 use super::catalogue::{METRICS, page};
 use super::page::{Form, Kind};
 use crate::command::fleet::poll::{Event, PollResult};
+use crate::command::fleet::publish::extra_topic::ExtraTopic;
 use crate::command::fleet::top::testing::{fail, fleet, sample, with_alarm};
 use armctl_frame::face::sample::{Sample, Traffic};
 use armctl_frame::robot::alarm::Alarm;
@@ -90,6 +93,22 @@ fn shows_the_current_state_of_a_robot() {
     assert_eq!(samples(&board, "armctl_robot_last_answer_timestamp_seconds"), [format!("{{{CELL1}}} 1000.5")]);
     board.record_event(&Event::Gone(Arc::clone(&robots[0])), 1002.0);
     assert!(!page(&board, Form::Text).contains("cell1"));
+}
+
+#[test]
+fn serves_numbers_of_extra_commands() {
+    let robots = robots(1);
+    let text = "yerc var get B0..B2";
+    let also = ExtraTopic::all(&[format!("parts={text}")]).unwrap();
+    let mut board = Board { also, ..Board::default() };
+    board.record_event(&Event::Appeared(Arc::clone(&robots[0])), 1000.0);
+    let item = |name: &str, value: Value| json!({"name": name, "label": "x", "ok": !value.is_null(), "value": value});
+    let items = [item("B0", json!(7)), item("B1", json!(true)), item("B2", Value::Null), item("B0", json!(8))];
+    let extras = vec![(Arc::from(text), Ok(json!({"items": items, "text": "no number"})))];
+    let polled = PollResult { extras, ..PollResult::new(Arc::clone(&robots[0]), sample(0.0)) };
+    board.record_event(&Event::Polled(Arc::new(polled)), 1000.0);
+    let of = |value: &str, number: u8| format!("{{{CELL1},command=\"parts\",value=\"items/{value}\"}} {number}");
+    assert_eq!(samples(&board, "armctl_command_value"), [of("B0", 7), of("B1", 1)]);
 }
 
 #[test]

@@ -21,7 +21,7 @@ mod announced;
 mod broker;
 mod delivery;
 mod error_text;
-mod extra_topic;
+pub(super) mod extra_topic;
 mod log;
 mod message_format;
 mod outbox;

@@ -8,13 +8,9 @@ use srad_types::payload::{DataType, Metric, PropertySet, PropertyValue};
 use super::super::Kind;
 use super::super::extra_topic::ExtraTopic;
 use crate::command::fleet::poll::PollResult;
+use crate::command::fleet::report_values::{ReportValue, values_of_report};
 use armctl_frame::face::sample::Whole;
 use armctl_frame::robot::state::Mode;
-
-/// Limit of metrics per extra command.
-const MAX_METRICS: usize = 2000;
-/// Limit of nesting levels in the result of an extra command.
-const MAX_DEPTH: usize = 8;
 
 /// Units by name suffix, as in reports.
 const UNITS: [(&str, &str); 9] = [
@@ -86,9 +82,7 @@ pub fn metrics_of_poll(look: &PollResult, kinds: &[Kind], also: &[ExtraTopic]) -
     metrics.extend(place.map(|(key, value)| metric(&format!("info/{key}"), DataType::String, text(value))));
     for (line, answer) in &look.extras {
         if let (Some(also), Ok(data)) = (also.iter().find(|also| also.text() == &**line), answer) {
-            let mut found = Vec::new();
-            flatten(also.level(), data, 0, &mut found);
-            metrics.extend(found);
+            metrics.extend(values_of_report(also.level(), data).iter().map(metric_of_value));
         }
     }
     metrics
@@ -121,14 +115,8 @@ fn metric(name: &str, kind: DataType, value: Option<Value>) -> Metric {
         Some(value) => metric.set_value(value),
         None => metric.set_null(),
     };
-    metric.properties = unit(name).map(|unit| PropertySet {
-        keys: vec!["engUnit".to_owned()],
-        values: vec![PropertyValue {
-            r#type: Some(DataType::String as u32),
-            is_null: None,
-            value: Some(Property::StringValue(unit.to_owned())),
-        }],
-    });
+    metric.properties = unit(name)
+        .map(|unit| PropertySet { keys: vec!["engUnit".to_owned()], values: vec![text_property(unit.to_owned())] });
     metric
 }
 
@@ -137,33 +125,34 @@ fn unit(name: &str) -> Option<&'static str> {
     found.max_by_key(|(end, _)| end.len()).map(|(_, unit)| *unit)
 }
 
-/// Converts every value of a report, with its path as name. List items use their names if they have some. Null has no
-/// type and is skipped.
-fn flatten(path: &str, data: &Json, depth: usize, metrics: &mut Vec<Metric>) {
-    if metrics.len() >= MAX_METRICS || depth > MAX_DEPTH {
-        return;
-    }
-    let (kind, value) = match data {
-        Json::Null => return,
-        Json::Object(fields) => {
-            return fields.iter().for_each(|(name, data)| flatten(&format!("{path}/{name}"), data, depth + 1, metrics));
-        }
-        Json::Array(items) => {
-            for (at, item) in items.iter().enumerate() {
-                let name = item.get("name").and_then(Json::as_str).filter(|name| !name.is_empty());
-                let name = name.map_or_else(|| at.to_string(), ToOwned::to_owned);
-                flatten(&format!("{path}/{name}"), item, depth + 1, metrics);
-            }
-            return;
-        }
-        Json::Bool(flag) => (DataType::Boolean, Value::BooleanValue(*flag)),
-        Json::String(text) => (DataType::String, Value::StringValue(text.clone())),
+/// Metric of a value of a report.
+fn metric_of_value(value: &ReportValue<'_>) -> Metric {
+    let name = &value.path;
+    let mut metric = match value.value {
+        Json::Bool(flag) => metric(name, DataType::Boolean, Some(Value::BooleanValue(*flag))),
+        Json::String(text) => metric(name, DataType::String, Some(Value::StringValue(text.clone()))),
         Json::Number(number) => match number.as_i64() {
-            Some(whole) => (DataType::Int64, Value::LongValue(whole.cast_unsigned())),
-            None => (DataType::Double, Value::DoubleValue(number.as_f64().unwrap_or(f64::NAN))),
+            Some(whole) => metric(name, DataType::Int64, Some(Value::LongValue(whole.cast_unsigned()))),
+            None => metric(name, DataType::Double, number.as_f64().map(Value::DoubleValue)),
         },
+        // The node uses the type of an earlier value.
+        _ => metric(name, DataType::Unknown, None),
     };
-    metrics.push(metric(path, kind, Some(value)));
+    let constants = value.constants.iter().filter_map(|(key, constant)| {
+        let key = if *key == "unit" { "engUnit" } else { key };
+        Some((key, constant.as_str().map_or_else(|| constant.to_string(), ToOwned::to_owned)))
+    });
+    let properties = metric.properties.get_or_insert_with(PropertySet::default);
+    for (key, text) in constants {
+        properties.keys.push(key.to_owned());
+        properties.values.push(text_property(text));
+    }
+    metric.properties = metric.properties.filter(|properties| !properties.keys.is_empty());
+    metric
+}
+
+fn text_property(text: String) -> PropertyValue {
+    PropertyValue { r#type: Some(DataType::String as u32), is_null: None, value: Some(Property::StringValue(text)) }
 }
 
 #[cfg(test)]
@@ -174,28 +163,30 @@ mod tests {
     use armctl_frame::face::sample::Axis;
 
     #[test]
-    fn converts_a_report_to_metrics_with_types_and_units() {
-        let data =
-            json!({"values": [{"name": "B0", "value": -3, "ok": true}, {"value": 1.5, "x_mm": 2.0}], "why": null});
-        let mut metrics = Vec::new();
-        flatten("parts", &data, 0, &mut metrics);
-        let metrics_text: Vec<String> = metrics
+    fn converts_a_report_to_metrics_with_types_and_properties() {
+        let data = json!({
+            "items": [
+                {"name": "B0", "label": "parts", "kind": "variable", "ok": true, "value": -3},
+                {"name": "B1", "label": null, "ok": false, "error": {"message": "refused"}},
+            ],
+            "x_mm": 2.0,
+        });
+        let found: Vec<Metric> = values_of_report("parts", &data).iter().map(metric_of_value).collect();
+        let texts: Vec<String> = found
             .iter()
             .map(|metric| {
-                format!("{} {:?} {:?}", metric.name.clone().unwrap(), metric.datatype, metric.value.clone().unwrap())
+                let keys = metric.properties.as_ref().map_or_else(Vec::new, |set| set.keys.clone());
+                format!("{} {:?} {:?} {keys:?}", metric.name.clone().unwrap(), metric.datatype.unwrap(), metric.value)
             })
             .collect();
         assert_eq!(
-            metrics_text,
+            texts,
             [
-                "parts/values/B0/name Some(12) StringValue(\"B0\")",
-                "parts/values/B0/value Some(4) LongValue(18446744073709551613)",
-                "parts/values/B0/ok Some(11) BooleanValue(true)",
-                "parts/values/1/value Some(10) DoubleValue(1.5)",
-                "parts/values/1/x_mm Some(10) DoubleValue(2.0)",
+                r#"parts/items/B0 4 Some(LongValue(18446744073709551613)) ["label", "kind"]"#,
+                "parts/items/B1 0 None []",
+                r#"parts/x_mm 10 Some(DoubleValue(2.0)) ["engUnit"]"#,
             ]
         );
-        assert!(metrics[4].properties.as_ref().is_some_and(|set| set.keys == ["engUnit"]));
         assert_eq!((unit("speed_mm_s"), unit("elapsed_ms"), unit("servo_on")), (Some("mm/s"), Some("ms"), None));
     }
 
@@ -211,16 +202,5 @@ mod tests {
             names,
             [("axes/S_pulses", Some("pulses")), ("axes/S_torque_percent", Some("%")), ("axes/Rz_deg", Some("°"))]
         );
-    }
-
-    #[test]
-    fn limits_the_metrics_of_a_report() {
-        let mut metrics = Vec::new();
-        flatten("a", &Json::Array(vec![json!(1); 10_000]), 0, &mut metrics);
-        assert_eq!(metrics.len(), MAX_METRICS);
-        let deep = (0..100).fold(json!(1), |inner, _| json!({ "a": inner }));
-        metrics.clear();
-        flatten("a", &deep, 0, &mut metrics);
-        assert!(metrics.is_empty());
     }
 }

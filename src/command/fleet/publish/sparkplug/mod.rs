@@ -28,6 +28,8 @@ use crate::command::fleet::poll::{Event, PollResult};
 use armctl_frame::output::log::Level;
 use armctl_frame::settings::Robot;
 
+/// Type of a null value of a report, whose type is not known before it has a value.
+const UNKNOWN: u32 = DataType::Unknown as u32;
 /// Minimum time between two births that a host requests.
 const BIRTHS_MS: u64 = 1000;
 
@@ -204,6 +206,9 @@ impl Node {
             metric.timestamp = Some(now_ms);
             let Some(name) = metric.name.clone() else { continue };
             if let Some((_, last)) = device.metrics.get_mut(&name) {
+                if metric.datatype == Some(UNKNOWN) {
+                    metric.datatype = last.datatype;
+                }
                 // A metric keeps its first type, because hosts use the type from the birth message.
                 if metric.datatype != last.datatype {
                     continue;
@@ -212,7 +217,7 @@ impl Node {
                     changed.push(metric.clone());
                 }
                 *last = metric;
-            } else {
+            } else if metric.datatype != Some(UNKNOWN) {
                 has_new = true;
                 changed.push(metric.clone());
                 device.metrics.insert(name, (self.next_alias, metric));
