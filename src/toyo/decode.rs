@@ -29,6 +29,8 @@ pub struct Decode {
 /// Marks that a trace uses for the sender. `REMARK` is the text before the explanation of a line.
 const MARKS: [(&str, Sender); 2] = [("->", Sender::Host), ("<-", Sender::Controller)];
 const REMARK: &str = "  # ";
+/// Maximum number of lines. The explanation of a line takes about 1 kB, and all explanations are one report.
+const MAX_LINES: usize = 100_000;
 
 impl decode::Decode for Decode {
     const ID: &'static str = "decode.toyo";
@@ -55,10 +57,13 @@ impl Decode {
             if self.lines == ["-"] { stdin()?.lines().map(str::to_owned).collect() } else { joined(&self.lines) };
         // A block is never empty. In a trace, the bytes repeat the line above them.
         let lines: Vec<String> = lines.into_iter().filter(|line| is_line(line)).collect();
-        if lines.is_empty() {
-            return Err(Failure::usage("the input has no lines").hint("type lines such as '@STAS SNO=0'"));
+        match lines.len() {
+            0 => Err(Failure::usage("the input has no lines").hint("type lines such as '@STAS SNO=0'")),
+            1..=MAX_LINES => Ok(lines),
+            count => Err(Failure::usage(format!("the input has {count} lines; the maximum is {MAX_LINES}")).hint(
+                "split the input with `split -l 100000`, or record with --trace FILE.pcapng and decode the file",
+            )),
         }
-        Ok(lines)
     }
 }
 
@@ -193,6 +198,9 @@ mod tests {
         assert_eq!(senders(&["@TYPE AX1 RTYP=000001", "@TYPE AX1 RTYP=000000"]), ["host", "controller"]);
         assert_eq!(senders(&["@HSON", "   40 48 53 4f 4e", "@HSOF"]), ["host", "host"]);
         assert!(Decode { lines: vec![" ".into()], selection: Selection::default() }.lines().is_err());
+        let many = Decode { lines: vec!["@HOME".to_owned(); MAX_LINES + 1], selection: Selection::default() };
+        let failure = many.lines().unwrap_err();
+        assert_eq!((failure.kind, failure.message.contains("100001 lines")), (Kind::Usage, true), "{failure:?}");
     }
 
     #[test]
