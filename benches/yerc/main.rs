@@ -152,7 +152,7 @@ fn memory(effort: &Effort) -> anyhow::Result<Table> {
     let controller = Controller::start(effort.big)?;
     let folder = tempfile::tempdir()?;
     let path = folder.path().to_str().context("the folder for temporary files is not UTF-8")?;
-    let mut get = process::armctl(&controller, &["yerc", "file", "get", "BIG.DAT", "--output", path]);
+    let mut get = process::armctl(&controller, &["yerc", "file", "get", "BIG.DAT", "--dir", path]);
     let peak = process::peak_memory(&mut get)?;
     let received = std::fs::metadata(folder.path().join("BIG.DAT"))?.len();
     ensure!(received == effort.big, "{received} bytes were stored");
