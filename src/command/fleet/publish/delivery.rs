@@ -260,18 +260,12 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
                 return Ok(());
             }
             let flush_at = self.next_flush.filter(|_| self.flushing.is_none());
-            let timer_at =
-                self.format.timer_ms().map(|ms| Instant::now() + Duration::from_millis(ms.saturating_sub(now_ms())));
             let flushing = &mut self.flushing;
             let next_event = async { if has_more { found().await } else { pending().await } };
             tokio::select! {
                 biased;
                 () = &mut stop => return Ok(()),
-                () = at(flush_at) => self.flush(),
-                () = at(timer_at) => {
-                    let reaction = self.format.handle_timer(now_ms());
-                    self.react(reaction);
-                }
+                () = async { match flush_at { Some(at) => sleep_until(at).await, None => pending().await } } => self.flush(),
                 flushed = async { match flushing { Some(flush) => flush.await, None => pending().await } } => {
                     self.flushing = None;
                     if let Ok(Err(error)) = flushed {
@@ -666,14 +660,6 @@ async fn step<B: Broker>(line: &mut ConnectionState<'_, B>) -> Step<B::Uplink> {
                 () = sleep_until(answered.unwrap_or(stuck)), if answered.is_some() => Step::Answered,
             }
         }
-    }
-}
-
-/// Waits until this time; for ever without a time.
-async fn at(time: Option<Instant>) {
-    match time {
-        Some(time) => sleep_until(time).await,
-        None => pending().await,
     }
 }
 

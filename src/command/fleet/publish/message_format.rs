@@ -33,14 +33,6 @@ pub trait MessageFormat {
     fn connection_lost(&mut self);
     /// Handles a message of the broker.
     fn handle_message(&mut self, message: &Message, now_ms: u64) -> Reaction;
-    /// Time of the next call of [`handle_timer`](Self::handle_timer), if the format needs one.
-    fn timer_ms(&self) -> Option<u64> {
-        None
-    }
-    /// Does what the format has delayed.
-    fn handle_timer(&mut self, _now_ms: u64) -> Reaction {
-        Reaction::default()
-    }
     /// Converts a poller event to records.
     fn convert_event(&mut self, event: &Event, now_ms: u64) -> Vec<Record>;
     /// Topics whose retained messages are needed next; empty if there are none. The connection asks for them with a

@@ -88,8 +88,6 @@ pub struct Node {
     is_connected: bool,
     is_born: bool,
     born_ms: u64,
-    /// Time of a delayed rebirth.
-    rebirth_ms: Option<u64>,
     /// Time and state of the host's last message.
     host: Option<(u64, bool)>,
     devices: BTreeMap<String, Device>,
@@ -123,7 +121,6 @@ impl Node {
             is_connected: false,
             is_born: false,
             born_ms: 0,
-            rebirth_ms: None,
             host: None,
             devices: BTreeMap::new(),
             next_alias: 1,
@@ -165,7 +162,7 @@ impl Node {
         self.epoch += 1;
         self.seq = 0;
         self.is_born = true;
-        (self.born_ms, self.rebirth_ms) = (now_ms, None);
+        self.born_ms = now_ms;
         let mut rebirth = resolve_metric(NODE_CONTROL_REBIRTH, DataType::Boolean, Value::BooleanValue(false), now_ms);
         rebirth.alias = None;
         let software = Value::StringValue(concat!("armctl ", env!("CARGO_PKG_VERSION")).to_owned());
@@ -315,7 +312,7 @@ impl Node {
             },
             // The node sends its death message, and the next connection waits for the host (section 5.4).
             (false, true) => {
-                (self.is_born, self.rebirth_ms) = (false, None);
+                self.is_born = false;
                 Reaction {
                     messages: vec![self.death(now_ms)],
                     note: Some((
@@ -344,16 +341,10 @@ impl Node {
         if !payload.metrics.iter().any(is_rebirth) {
             return ignored("a command, because armctl only publishes");
         }
-        if !self.is_born {
-            return ignored("a rebirth command before the birth messages");
+        if !self.is_born || now_ms.saturating_sub(self.born_ms) < BIRTHS_MS {
+            return ignored("a rebirth command directly after the birth messages");
         }
-        let due_ms = self.born_ms + BIRTHS_MS;
         let note = Some((Level::Detail, "a host requested a rebirth".to_owned()));
-        if now_ms < due_ms {
-            // The request must not be dropped: its host may have missed the last birth messages.
-            self.rebirth_ms = Some(due_ms);
-            return Reaction { note, ..Reaction::default() };
-        }
         Reaction { messages: self.births(now_ms), note, reconnects: false }
     }
 }
@@ -398,7 +389,7 @@ impl MessageFormat for Node {
     }
 
     fn connection_lost(&mut self) {
-        (self.is_connected, self.is_born, self.rebirth_ms) = (false, false, None);
+        (self.is_connected, self.is_born) = (false, false);
         for device in self.devices.values_mut() {
             device.is_born = false;
         }
@@ -415,15 +406,6 @@ impl MessageFormat for Node {
         } else {
             ignored("an unexpected topic")
         }
-    }
-
-    fn timer_ms(&self) -> Option<u64> {
-        self.rebirth_ms
-    }
-
-    fn handle_timer(&mut self, now_ms: u64) -> Reaction {
-        let messages = if self.rebirth_ms.is_some() { self.births(now_ms) } else { Vec::new() };
-        Reaction { messages, ..Reaction::default() }
     }
 
     fn convert_event(&mut self, event: &Event, now_ms: u64) -> Vec<Record> {
