@@ -196,6 +196,8 @@ pub struct Delivery<'a, B: Broker> {
     ends_without_broker: bool,
     /// Number of messages that the broker rejected.
     rejected: u32,
+    /// Time of the delayed messages of the format.
+    delayed_until: Option<Instant>,
 }
 
 impl<'a, B: Broker + 'a> Delivery<'a, B> {
@@ -221,6 +223,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
             last_failure: None,
             ends_without_broker,
             rejected: 0,
+            delayed_until: None,
         }
     }
 
@@ -240,9 +243,21 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
                 return Ok(());
             }
             let next_event = async { if has_more { found().await } else { pending().await } };
+            let delayed_until = self.delayed_until;
+            let delay = async {
+                match delayed_until {
+                    Some(until) => sleep_until(until).await,
+                    None => pending().await,
+                }
+            };
             tokio::select! {
                 biased;
                 () = &mut stop => return Ok(()),
+                () = delay => {
+                    self.delayed_until = None;
+                    let messages = self.format.delayed_messages(now_ms());
+                    self.send(None, &messages);
+                }
                 next = step(&mut self.connection) => self.handle_step(next)?,
                 event = next_event => match event {
                     None => has_more = false,
@@ -385,6 +400,9 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
             self.listener.log(level, &note);
         }
         self.send(None, &reaction.messages);
+        if let Some(delay) = reaction.delay {
+            self.delayed_until = Some(Instant::now() + delay);
+        }
         if reaction.reconnects {
             // The next connection has a new last will.
             self.leave();
@@ -396,6 +414,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
     fn leave(&mut self) {
         self.listener.set_connected(false);
         self.outbox.requeue();
+        self.delayed_until = None;
         self.format.connection_lost();
         self.lost_since = self.lost_since.or_else(|| self.was_accepted.then(Instant::now));
     }

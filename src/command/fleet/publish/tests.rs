@@ -14,6 +14,7 @@ use tokio::time::{Instant, sleep};
 use super::delivery::{Backoff, Broker, Counts, Delivery, Listener, Uplink};
 use super::outbox::Outbox;
 use super::plain_format::PlainFormat;
+use super::sparkplug::tests::{plain_node, rebirth_request};
 use super::spool::Spool;
 use super::topic::Topics;
 use super::uplink::{Event, Loss, Message, Refusal, SendError, TlsError, Version, Will};
@@ -78,6 +79,8 @@ enum BrokerBehavior {
 #[derive(Debug)]
 struct FakeUplink {
     behavior: RefCell<BrokerBehavior>,
+    /// Events of the first connection after its acceptance.
+    incoming: RefCell<VecDeque<Event>>,
     /// Acknowledged messages.
     taken: RefCell<Vec<Message>>,
     attempts: RefCell<Vec<Instant>>,
@@ -89,6 +92,7 @@ impl FakeUplink {
     fn new(behavior: BrokerBehavior) -> Self {
         Self {
             behavior: RefCell::new(behavior),
+            incoming: RefCell::default(),
             taken: RefCell::default(),
             attempts: RefCell::default(),
             changed: Notify::new(),
@@ -128,7 +132,10 @@ impl<'a> Broker for &'a FakeUplink {
     type Uplink = Connection<'a>;
 
     async fn open(&self, _: String, will: Will) -> Result<Connection<'a>, Loss> {
-        assert_eq!((&will.topic[..], &will.payload[..], will.retain), ("armctl/cell7/state", &b"offline"[..], true));
+        if will.topic != "spBv1.0/Plant/NDEATH/Cell7" {
+            let expected = ("armctl/cell7/state", &b"offline"[..], true);
+            assert_eq!((&will.topic[..], &will.payload[..], will.retain), expected);
+        }
         self.attempts.borrow_mut().push(Instant::now());
         let behavior = *self.behavior.borrow();
         let first = match behavior {
@@ -147,7 +154,9 @@ impl<'a> Broker for &'a FakeUplink {
             }
             BrokerBehavior::Lost => pending().await,
         };
-        Ok(Connection { fake_uplink: self, events: VecDeque::from([first]), next: 1, pings: 0 })
+        let incoming = std::mem::take(&mut *self.incoming.borrow_mut());
+        let events = std::iter::once(first).chain(incoming).collect();
+        Ok(Connection { fake_uplink: self, events, next: 1, pings: 0 })
     }
 }
 
@@ -281,6 +290,19 @@ async fn publishes_changes_at_once_and_other_values_at_an_interval() {
         (&false.into(), &false.into(), &"no_answer".into())
     );
     assert_eq!(counts.unwrap(), Counts { published: 10, ..Counts::default() });
+}
+
+#[tokio::test(start_paused = true)]
+async fn sends_a_delayed_rebirth() {
+    let broker = FakeUplink::new(BrokerBehavior::Works);
+    // The request arrives directly after the births.
+    broker.incoming.borrow_mut().push_back(Event::Message(rebirth_request()));
+    let (notes, url) = (LogRecorder::default(), "mqtt://broker".parse().unwrap());
+    let outbox = Outbox::new(MEMORY, None);
+    let uplink = &broker;
+    let mut pump = Delivery::new((&uplink, &url), plain_node(), outbox, (&notes, Backoff::new(7)), false);
+    pump.run(async || pending().await, sleep(Duration::from_secs(2))).await.unwrap();
+    assert_eq!(broker.topics(), ["spBv1.0/Plant/NBIRTH/Cell7"; 2]);
 }
 
 #[tokio::test(start_paused = true)]

@@ -7,11 +7,12 @@
 
 mod metrics;
 #[cfg(test)]
-mod tests;
+pub mod tests;
 
 use std::collections::BTreeMap;
 use std::fmt;
 use std::rc::Rc;
+use std::time::Duration;
 
 use srad_types::constants::{BDSEQ, NODE_CONTROL_REBIRTH};
 use srad_types::payload::metric::Value;
@@ -28,7 +29,7 @@ use crate::command::fleet::poll::{Event, PollResult};
 use armctl_frame::output::log::Level;
 use armctl_frame::settings::Robot;
 
-/// Minimum time between two births that a host requests.
+/// Minimum time between two births. A rebirth that a host requests earlier waits until this time has passed.
 const BIRTHS_MS: u64 = 1000;
 
 mod kind {
@@ -86,6 +87,8 @@ pub struct Node {
     is_connected: bool,
     is_born: bool,
     born_ms: u64,
+    /// Whether a host has requested a rebirth that waits for [`BIRTHS_MS`].
+    is_rebirth_due: bool,
     /// Time and state of the host's last message.
     host: Option<(u64, bool)>,
     devices: BTreeMap<String, Device>,
@@ -119,6 +122,7 @@ impl Node {
             is_connected: false,
             is_born: false,
             born_ms: 0,
+            is_rebirth_due: false,
             host: None,
             devices: BTreeMap::new(),
             next_alias: 1,
@@ -159,6 +163,7 @@ impl Node {
         self.epoch += 1;
         self.seq = 0;
         self.is_born = true;
+        self.is_rebirth_due = false;
         self.born_ms = now_ms;
         let mut rebirth = resolve_metric(NODE_CONTROL_REBIRTH, DataType::Boolean, Value::BooleanValue(false), now_ms);
         rebirth.alias = None;
@@ -302,7 +307,7 @@ impl Node {
             (true, false) => Reaction {
                 messages: self.births(now_ms),
                 note: Some((Level::Notice, format!("the primary host {name} is online"))),
-                reconnects: false,
+                ..Reaction::default()
             },
             // The node sends its death message, and the next connection waits for the host (section 5.4).
             (false, true) => {
@@ -314,6 +319,7 @@ impl Node {
                         format!("the primary host {name} is offline: armctl stores the data for the host"),
                     )),
                     reconnects: true,
+                    delay: None,
                 }
             }
             (false, false) => Reaction {
@@ -335,11 +341,26 @@ impl Node {
         if !payload.metrics.iter().any(is_rebirth) {
             return ignored("a command, because armctl only publishes");
         }
-        if !self.is_born || now_ms.saturating_sub(self.born_ms) < BIRTHS_MS {
-            return ignored("a rebirth command directly after the birth messages");
+        if !self.is_born {
+            return ignored("a rebirth command before the first birth messages");
         }
-        let note = Some((Level::Detail, "a host requested a rebirth".to_owned()));
-        Reaction { messages: self.births(now_ms), note, reconnects: false }
+        let note = |text: &str| Some((Level::Detail, text.to_owned()));
+        // If the clock was set back, the rebirth waits for the whole time once, and not for the old time.
+        let remaining_ms = BIRTHS_MS.saturating_sub(now_ms.saturating_sub(self.born_ms));
+        if remaining_ms == 0 {
+            let messages = self.births(now_ms);
+            return Reaction { messages, note: note("a host requested a rebirth"), ..Reaction::default() };
+        }
+        // The node sends no data until the rebirth (tck-id-operational-behavior-data-commands-rebirth-action-1). One
+        // rebirth answers all requests of this time.
+        if std::mem::replace(&mut self.is_rebirth_due, true) {
+            return Reaction::default();
+        }
+        Reaction {
+            note: note("a host requested a rebirth directly after the birth messages: armctl delays it"),
+            delay: Some(Duration::from_millis(remaining_ms)),
+            ..Reaction::default()
+        }
     }
 }
 
@@ -383,7 +404,7 @@ impl MessageFormat for Node {
     }
 
     fn connection_lost(&mut self) {
-        (self.is_connected, self.is_born) = (false, false);
+        (self.is_connected, self.is_born, self.is_rebirth_due) = (false, false, false);
         for device in self.devices.values_mut() {
             device.is_born = false;
         }
@@ -402,6 +423,10 @@ impl MessageFormat for Node {
         }
     }
 
+    fn delayed_messages(&mut self, now_ms: u64) -> Vec<Message> {
+        if self.is_born && self.is_rebirth_due { self.births(now_ms) } else { Vec::new() }
+    }
+
     fn convert_event(&mut self, event: &Event, now_ms: u64) -> Vec<Record> {
         match event {
             Event::Polled(look) => self.data_records(look, now_ms).into_iter().collect(),
@@ -411,7 +436,7 @@ impl MessageFormat for Node {
     }
 
     fn is_ready(&self) -> bool {
-        self.is_born
+        self.is_born && !self.is_rebirth_due
     }
 
     fn convert_record(&mut self, record: Record, now_ms: u64) -> Vec<Message> {

@@ -8,6 +8,11 @@ use srad_types::payload::metric::Value;
 use super::super::tests::{look, robot, silence};
 use super::*;
 
+/// A node of group Plant without a primary host.
+pub fn plain_node() -> Box<dyn MessageFormat> {
+    Box::new(node(None).0)
+}
+
 /// A node of group Plant, and the connection numbers that it saves.
 fn node(host: Option<&str>) -> (Node, Rc<RefCell<Vec<u8>>>) {
     let remembered: Rc<RefCell<Vec<u8>>> = Rc::default();
@@ -48,6 +53,11 @@ fn bd_seq_of(message: &Message) -> Option<Value> {
 fn send_all(node: &mut Node, event: &Event, now_ms: u64) -> Vec<Message> {
     let records = node.convert_event(event, now_ms);
     records.into_iter().flat_map(|record| node.convert_record(record, now_ms)).collect()
+}
+
+/// A rebirth request of a host.
+pub fn rebirth_request() -> Message {
+    command(NODE_CONTROL_REBIRTH, Value::BooleanValue(true))
 }
 
 /// A command of a host.
@@ -203,8 +213,21 @@ fn accepts_only_rebirth_commands() {
     node.first_messages(1);
     send_all(&mut node, &look(&robot("press"), 1.0, &[]), 2);
     let yes = Value::BooleanValue(true);
-    // A second birth message so soon would contain the same data.
-    assert_eq!(node.handle_message(&command("Node Control/Rebirth", yes.clone()), 500).messages, []);
+    // A request within a second of the births is delayed. A second request has the same answer.
+    let delayed = node.handle_message(&command("Node Control/Rebirth", yes.clone()), 500);
+    assert_eq!((&delayed.messages[..], delayed.delay), (&[][..], Some(Duration::from_millis(501))));
+    assert!(!node.is_ready(), "no data before the rebirth");
+    let again = node.handle_message(&command("Node Control/Rebirth", yes.clone()), 600);
+    assert_eq!((&again.messages[..], again.delay), (&[][..], None));
+    assert_eq!(headers(&node.delayed_messages(1001)), ["NBIRTH - 0", "DBIRTH press 1"]);
+    assert!(node.is_ready());
+    assert_eq!(node.delayed_messages(1002), [], "one rebirth answers both requests");
+    // A lost connection ends the delay, because the next connection begins with births.
+    node.handle_message(&command("Node Control/Rebirth", yes.clone()), 1003);
+    node.connection_lost();
+    assert_eq!(node.delayed_messages(2001), []);
+    node.first_messages(2002);
+    assert!(node.is_ready());
     let reborn = node.handle_message(&command("Node Control/Rebirth", yes.clone()), 5000);
     assert_eq!(headers(&reborn.messages), ["NBIRTH - 0", "DBIRTH press 1"]);
     assert_eq!(bd_seq_of(&reborn.messages[0]), Some(Value::LongValue(254)), "the same connection");
