@@ -114,9 +114,10 @@ struct SparkplugArguments {
     /// Sparkplug group of this node
     #[arg(long, value_name = "GROUP", requires = "is_wanted", value_parser = topic::identifier, help_heading = "Sparkplug")]
     group: Option<String>,
-    /// The primary host; while this host is offline, armctl stores the data and sends it later as history
+    /// The primary host (repeatable); while all of these hosts are offline, armctl stores the data and sends it later
+    /// as history
     #[arg(long, value_name = "ID", requires = "is_wanted", value_parser = topic::identifier, help_heading = "Sparkplug")]
-    host: Option<String>,
+    host: Vec<String>,
 }
 
 /// Buffer for messages while the broker is away.
@@ -336,7 +337,7 @@ impl Publish {
         if interval < MIN_INTERVAL {
             return wrong("polls at most every 50ms", "use --watch 50ms or more");
         }
-        if run.repeat.count.is_some() && self.sparkplug.host.is_some() {
+        if run.repeat.count.is_some() && !self.sparkplug.host.is_empty() {
             return wrong(
                 "cannot have --count with --host, because --host waits without a limit",
                 "remove --count or --host",
@@ -384,8 +385,8 @@ impl Publish {
         match &self.sparkplug.group {
             None => Box::new(PlainFormat::new((node.to_owned(), topics), &kinds, Rc::clone(also), every_ms)),
             Some(group) => {
-                let (host, levels) = (self.sparkplug.host.clone(), topics.levels);
-                let names = Names { group: group.clone(), node: node.to_owned(), host, levels };
+                let (hosts, levels) = (self.sparkplug.host.clone(), topics.levels);
+                let names = Names { group: group.clone(), node: node.to_owned(), hosts, levels };
                 let file = folder.map(|folder| folder.join("bdseq"));
                 let text = file.as_deref().and_then(|file| files::text(file, 16).ok());
                 let bd_seq = text.and_then(|text| text.trim().parse().ok()).unwrap_or_default();

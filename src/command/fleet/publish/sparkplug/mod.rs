@@ -61,8 +61,8 @@ pub struct Names {
     pub group: String,
     /// Node id.
     pub node: String,
-    /// Primary host id. The node only sends while this host is online.
-    pub host: Option<String>,
+    /// Primary host ids. The node only sends while one of these hosts is online; with no id, always.
+    pub hosts: Vec<String>,
     /// Device ids.
     pub levels: Levels,
 }
@@ -89,8 +89,8 @@ pub struct Node {
     born_ms: u64,
     /// Whether a host has requested a rebirth that waits for [`BIRTHS_MS`].
     is_rebirth_due: bool,
-    /// Time and state of the host's last message.
-    host: Option<(u64, bool)>,
+    /// Time and state of the last message of each host. A new connection starts with all hosts offline.
+    hosts: BTreeMap<String, (u64, bool)>,
     devices: BTreeMap<String, Device>,
     next_alias: u64,
 }
@@ -123,7 +123,7 @@ impl Node {
             is_born: false,
             born_ms: 0,
             is_rebirth_due: false,
-            host: None,
+            hosts: BTreeMap::new(),
             devices: BTreeMap::new(),
             next_alias: 1,
         }
@@ -294,16 +294,15 @@ impl Node {
     }
 
     /// Handles a STATE message of the host.
-    fn handle_host_state(&mut self, message: &Message, now_ms: u64) -> Reaction {
+    fn handle_host_state(&mut self, name: String, message: &Message, now_ms: u64) -> Reaction {
         let Ok(state) = StateBirthDeathCertificate::try_from(&message.payload[..]) else {
             return ignored("an unreadable state of the host");
         };
-        if self.host.is_some_and(|(known, _)| state.timestamp < known) {
+        if self.hosts.get(&name).is_some_and(|(known, _)| state.timestamp < *known) {
             return ignored("a state of the host that is older than the last state");
         }
-        self.host = Some((state.timestamp, state.online));
-        let name = self.names.host.clone().unwrap_or_default();
-        match (state.online, self.is_born) {
+        self.hosts.insert(name.clone(), (state.timestamp, state.online));
+        match (self.hosts.values().any(|(_, is_online)| *is_online), self.is_born) {
             (true, false) => Reaction {
                 messages: self.births(now_ms),
                 note: Some((Level::Notice, format!("the primary host {name} is online"))),
@@ -394,28 +393,31 @@ impl MessageFormat for Node {
     }
 
     fn topics(&self) -> Vec<String> {
-        let host = self.names.host.as_deref().map(state_host_topic);
-        std::iter::once(self.topic(&NodeMessage::NCmd)).chain(host).collect()
+        let hosts = self.names.hosts.iter().map(|host| state_host_topic(host));
+        std::iter::once(self.topic(&NodeMessage::NCmd)).chain(hosts).collect()
     }
 
     fn first_messages(&mut self, now_ms: u64) -> Vec<Message> {
         self.is_connected = true;
-        if self.names.host.is_none() { self.births(now_ms) } else { Vec::new() }
+        if self.names.hosts.is_empty() { self.births(now_ms) } else { Vec::new() }
     }
 
     fn connection_lost(&mut self) {
         (self.is_connected, self.is_born, self.is_rebirth_due) = (false, false, false);
+        for (_, is_online) in self.hosts.values_mut() {
+            *is_online = false;
+        }
         for device in self.devices.values_mut() {
             device.is_born = false;
         }
     }
 
     fn handle_message(&mut self, message: &Message, now_ms: u64) -> Reaction {
-        let is_state = self.names.host.as_deref().is_some_and(|host| message.topic == state_host_topic(host));
+        let host = self.names.hosts.iter().find(|host| message.topic == state_host_topic(host)).cloned();
         if !self.is_connected {
             Reaction::default()
-        } else if is_state {
-            self.handle_host_state(message, now_ms)
+        } else if let Some(host) = host {
+            self.handle_host_state(host, message, now_ms)
         } else if message.topic == self.topic(&NodeMessage::NCmd) {
             self.handle_command(message, now_ms)
         } else {
