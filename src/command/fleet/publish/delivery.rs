@@ -212,6 +212,8 @@ pub struct Delivery<'a, B: Broker> {
     /// Time of the next flush of the buffer on disk; `None` without such a buffer.
     next_flush: Option<Instant>,
     flushing: Option<JoinHandle<io::Result<()>>>,
+    /// Time of the delayed messages of the format.
+    delayed_until: Option<Instant>,
 }
 
 impl<'a, B: Broker + 'a> Delivery<'a, B> {
@@ -241,6 +243,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
             rejected: 0,
             next_flush,
             flushing: None,
+            delayed_until: None,
         }
     }
 
@@ -262,16 +265,22 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
             let flush_at = self.next_flush.filter(|_| self.flushing.is_none());
             let flushing = &mut self.flushing;
             let next_event = async { if has_more { found().await } else { pending().await } };
+            let delayed_until = self.delayed_until;
             tokio::select! {
                 biased;
                 () = &mut stop => return Ok(()),
-                () = async { match flush_at { Some(at) => sleep_until(at).await, None => pending().await } } => self.flush(),
+                () = at(flush_at) => self.flush(),
                 flushed = async { match flushing { Some(flush) => flush.await, None => pending().await } } => {
                     self.flushing = None;
                     if let Ok(Err(error)) = flushed {
                         self.outbox.note_disk_error(error);
                         self.report_disk_error();
                     }
+                }
+                () = at(delayed_until) => {
+                    self.delayed_until = None;
+                    let messages = self.format.delayed_messages(now_ms());
+                    self.send(None, &messages);
                 }
                 next = step(&mut self.connection) => self.handle_step(next)?,
                 event = next_event => match event {
@@ -435,6 +444,9 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
             self.listener.log(level, &note);
         }
         self.send(None, &reaction.messages);
+        if let Some(delay) = reaction.delay {
+            self.delayed_until = Some(Instant::now() + delay);
+        }
         if reaction.reconnects {
             // The next connection has a new last will.
             self.leave();
@@ -447,6 +459,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         self.listener.set_connected(false);
         self.outbox.requeue();
         self.outbox.set_away(true);
+        self.delayed_until = None;
         self.format.connection_lost();
         self.lost_since = self.lost_since.or_else(|| self.was_accepted.then(Instant::now));
     }
@@ -660,6 +673,14 @@ async fn step<B: Broker>(line: &mut ConnectionState<'_, B>) -> Step<B::Uplink> {
                 () = sleep_until(answered.unwrap_or(stuck)), if answered.is_some() => Step::Answered,
             }
         }
+    }
+}
+
+/// Waits until this time; for ever without a time.
+async fn at(time: Option<Instant>) {
+    match time {
+        Some(time) => sleep_until(time).await,
+        None => pending().await,
     }
 }
 

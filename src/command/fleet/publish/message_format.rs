@@ -2,6 +2,8 @@
 //! ([`Node`](super::sparkplug::Node)). Its input is poller events and broker messages. It has no connection and no
 //! clock.
 
+use std::time::Duration;
+
 use super::uplink::{Message, Will};
 use crate::command::fleet::poll::Event;
 use armctl_frame::output::log::Level;
@@ -17,6 +19,8 @@ pub struct Reaction {
     pub note: Option<(Level, String)>,
     /// Whether to close the connection and open a new connection.
     pub reconnects: bool,
+    /// Time after which to call [`MessageFormat::delayed_messages`], because these messages may not be sent yet.
+    pub delay: Option<Duration>,
 }
 
 /// A message format.
@@ -33,6 +37,10 @@ pub trait MessageFormat {
     fn connection_lost(&mut self);
     /// Handles a message of the broker.
     fn handle_message(&mut self, message: &Message, now_ms: u64) -> Reaction;
+    /// Messages to send after the delay of a [`Reaction`]; empty if there are none any more.
+    fn delayed_messages(&mut self, _now_ms: u64) -> Vec<Message> {
+        Vec::new()
+    }
     /// Converts a poller event to records.
     fn convert_event(&mut self, event: &Event, now_ms: u64) -> Vec<Record>;
     /// Topics whose retained messages are needed next; empty if there are none. The connection asks for them with a

@@ -119,9 +119,10 @@ struct SparkplugArguments {
     /// Sparkplug group of this node
     #[arg(long, value_name = "GROUP", requires = "is_wanted", value_parser = topic::identifier, help_heading = "Sparkplug")]
     group: Option<String>,
-    /// The primary host; while this host is offline, armctl stores the data and sends it later as history
+    /// The primary host (repeatable); while all of these hosts are offline, armctl stores the data and sends it later
+    /// as history
     #[arg(long, value_name = "ID", requires = "is_wanted", value_parser = topic::identifier, help_heading = "Sparkplug")]
-    host: Option<String>,
+    host: Vec<String>,
 }
 
 /// Buffer for messages while the broker is away.
@@ -363,7 +364,7 @@ impl Publish {
         if interval < MIN_INTERVAL {
             return wrong("polls at most every 50ms", "use --watch 50ms or more");
         }
-        if run.repeat.count.is_some() && self.sparkplug.host.is_some() {
+        if run.repeat.count.is_some() && !self.sparkplug.host.is_empty() {
             return wrong(
                 "cannot have --count with --host, because --host waits without a limit",
                 "remove --count or --host",
@@ -416,8 +417,8 @@ impl Publish {
                 Box::new(PlainFormat::new(topics, (&kinds, Rc::clone(also)), times, (announced, robots)))
             }
             Some(group) => {
-                let (host, node, levels) = (self.sparkplug.host.clone(), topics.node, topics.levels);
-                let names = Names { group: group.clone(), node, host, levels };
+                let (hosts, node, levels) = (self.sparkplug.host.clone(), topics.node, topics.levels);
+                let names = Names { group: group.clone(), node, hosts, levels };
                 let file = folder.map(|folder| folder.join("bdseq"));
                 let text = file.as_deref().and_then(|file| files::text(file, 16).ok());
                 let bd_seq = text.and_then(|text| text.trim().parse().ok()).unwrap_or_default();

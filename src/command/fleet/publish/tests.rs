@@ -15,6 +15,7 @@ use super::announced::AnnouncedTopics;
 use super::delivery::{Backoff, Broker, Counts, Delivery, Listener, Uplink};
 use super::outbox::Outbox;
 use super::plain_format::{PlainFormat, Times};
+use super::sparkplug::tests::{plain_node, rebirth_request};
 use super::spool::{Spool, SyncPolicy};
 use super::topic::Topics;
 use super::uplink::{Event, Loss, Message, Refusal, SendError, TlsError, Version, Will};
@@ -79,6 +80,8 @@ enum BrokerBehavior {
 #[derive(Debug)]
 struct FakeUplink {
     behavior: RefCell<BrokerBehavior>,
+    /// Events of the first connection after its acceptance.
+    incoming: RefCell<VecDeque<Event>>,
     /// Acknowledged messages.
     taken: RefCell<Vec<Message>>,
     /// Messages of other nodes.
@@ -92,6 +95,7 @@ impl FakeUplink {
     fn new(behavior: BrokerBehavior) -> Self {
         Self {
             behavior: RefCell::new(behavior),
+            incoming: RefCell::default(),
             taken: RefCell::default(),
             retained: RefCell::default(),
             attempts: RefCell::default(),
@@ -132,7 +136,10 @@ impl<'a> Broker for &'a FakeUplink {
     type Uplink = Connection<'a>;
 
     async fn open(&self, _: String, will: Will) -> Result<Connection<'a>, Loss> {
-        assert_eq!((&will.topic[..], &will.payload[..], will.retain), ("armctl/cell7/state", &b"offline"[..], true));
+        if will.topic != "spBv1.0/Plant/NDEATH/Cell7" {
+            let expected = ("armctl/cell7/state", &b"offline"[..], true);
+            assert_eq!((&will.topic[..], &will.payload[..], will.retain), expected);
+        }
         self.attempts.borrow_mut().push(Instant::now());
         let behavior = *self.behavior.borrow();
         let first = match behavior {
@@ -151,7 +158,9 @@ impl<'a> Broker for &'a FakeUplink {
             }
             BrokerBehavior::Lost => pending().await,
         };
-        Ok(Connection { fake_uplink: self, events: VecDeque::from([first]), next: 1, pings: 0 })
+        let incoming = std::mem::take(&mut *self.incoming.borrow_mut());
+        let events = std::iter::once(first).chain(incoming).collect();
+        Ok(Connection { fake_uplink: self, events, next: 1, pings: 0 })
     }
 }
 
@@ -406,6 +415,19 @@ async fn writes_to_disk_while_the_broker_acknowledges_nothing() {
     })
     .await;
     assert_eq!((counts.unwrap().dropped, fake_uplink.places("press")), (0, vec![1.0]));
+}
+
+#[tokio::test(start_paused = true)]
+async fn sends_a_delayed_rebirth() {
+    let broker = FakeUplink::new(BrokerBehavior::Works);
+    // The request arrives directly after the births.
+    broker.incoming.borrow_mut().push_back(Event::Message(rebirth_request()));
+    let (notes, url) = (LogRecorder::default(), "mqtt://broker".parse().unwrap());
+    let outbox = Outbox::new(MEMORY, None);
+    let uplink = &broker;
+    let mut pump = Delivery::new((&uplink, &url), plain_node(), outbox, (&notes, Backoff::new(7)), false);
+    pump.run(async || pending().await, sleep(Duration::from_secs(2))).await.unwrap();
+    assert_eq!(broker.topics(), ["spBv1.0/Plant/NBIRTH/Cell7"; 2]);
 }
 
 #[tokio::test(start_paused = true)]

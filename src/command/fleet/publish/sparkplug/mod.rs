@@ -7,11 +7,12 @@
 
 mod metrics;
 #[cfg(test)]
-mod tests;
+pub mod tests;
 
 use std::collections::BTreeMap;
 use std::fmt;
 use std::rc::Rc;
+use std::time::Duration;
 
 use srad_types::constants::{BDSEQ, NODE_CONTROL_REBIRTH};
 use srad_types::payload::metric::Value;
@@ -30,7 +31,7 @@ use armctl_frame::settings::Robot;
 
 /// Type of a null value of a report, whose type is not known before it has a value.
 const UNKNOWN: u32 = DataType::Unknown as u32;
-/// Minimum time between two births that a host requests.
+/// Minimum time between two births. A rebirth that a host requests earlier waits until this time has passed.
 const BIRTHS_MS: u64 = 1000;
 
 mod kind {
@@ -62,8 +63,8 @@ pub struct Names {
     pub group: String,
     /// Node id.
     pub node: String,
-    /// Primary host id. The node only sends while this host is online.
-    pub host: Option<String>,
+    /// Primary host ids. The node only sends while one of these hosts is online; with no id, always.
+    pub hosts: Vec<String>,
     /// Device ids.
     pub levels: Levels,
 }
@@ -88,8 +89,10 @@ pub struct Node {
     is_connected: bool,
     is_born: bool,
     born_ms: u64,
-    /// Time and state of the host's last message.
-    host: Option<(u64, bool)>,
+    /// Whether a host has requested a rebirth that waits for [`BIRTHS_MS`].
+    is_rebirth_due: bool,
+    /// Time and state of the last message of each host. A new connection starts with all hosts offline.
+    hosts: BTreeMap<String, (u64, bool)>,
     devices: BTreeMap<String, Device>,
     next_alias: u64,
 }
@@ -121,7 +124,8 @@ impl Node {
             is_connected: false,
             is_born: false,
             born_ms: 0,
-            host: None,
+            is_rebirth_due: false,
+            hosts: BTreeMap::new(),
             devices: BTreeMap::new(),
             next_alias: 1,
         }
@@ -162,6 +166,7 @@ impl Node {
         self.epoch += 1;
         self.seq = 0;
         self.is_born = true;
+        self.is_rebirth_due = false;
         self.born_ms = now_ms;
         let mut rebirth = resolve_metric(NODE_CONTROL_REBIRTH, DataType::Boolean, Value::BooleanValue(false), now_ms);
         rebirth.alias = None;
@@ -295,20 +300,19 @@ impl Node {
     }
 
     /// Handles a STATE message of the host.
-    fn handle_host_state(&mut self, message: &Message, now_ms: u64) -> Reaction {
+    fn handle_host_state(&mut self, name: String, message: &Message, now_ms: u64) -> Reaction {
         let Ok(state) = StateBirthDeathCertificate::try_from(&message.payload[..]) else {
             return ignored("an unreadable state of the host");
         };
-        if self.host.is_some_and(|(known, _)| state.timestamp < known) {
+        if self.hosts.get(&name).is_some_and(|(known, _)| state.timestamp < *known) {
             return ignored("a state of the host that is older than the last state");
         }
-        self.host = Some((state.timestamp, state.online));
-        let name = self.names.host.clone().unwrap_or_default();
-        match (state.online, self.is_born) {
+        self.hosts.insert(name.clone(), (state.timestamp, state.online));
+        match (self.hosts.values().any(|(_, is_online)| *is_online), self.is_born) {
             (true, false) => Reaction {
                 messages: self.births(now_ms),
                 note: Some((Level::Notice, format!("the primary host {name} is online"))),
-                reconnects: false,
+                ..Reaction::default()
             },
             // The node sends its death message, and the next connection waits for the host (section 5.4).
             (false, true) => {
@@ -320,6 +324,7 @@ impl Node {
                         format!("the primary host {name} is offline: armctl stores the data for the host"),
                     )),
                     reconnects: true,
+                    delay: None,
                 }
             }
             (false, false) => Reaction {
@@ -341,11 +346,26 @@ impl Node {
         if !payload.metrics.iter().any(is_rebirth) {
             return ignored("a command, because armctl only publishes");
         }
-        if !self.is_born || now_ms.saturating_sub(self.born_ms) < BIRTHS_MS {
-            return ignored("a rebirth command directly after the birth messages");
+        if !self.is_born {
+            return ignored("a rebirth command before the first birth messages");
         }
-        let note = Some((Level::Detail, "a host requested a rebirth".to_owned()));
-        Reaction { messages: self.births(now_ms), note, reconnects: false }
+        let note = |text: &str| Some((Level::Detail, text.to_owned()));
+        // If the clock was set back, the rebirth waits for the whole time once, and not for the old time.
+        let remaining_ms = BIRTHS_MS.saturating_sub(now_ms.saturating_sub(self.born_ms));
+        if remaining_ms == 0 {
+            let messages = self.births(now_ms);
+            return Reaction { messages, note: note("a host requested a rebirth"), ..Reaction::default() };
+        }
+        // The node sends no data until the rebirth (tck-id-operational-behavior-data-commands-rebirth-action-1). One
+        // rebirth answers all requests of this time.
+        if std::mem::replace(&mut self.is_rebirth_due, true) {
+            return Reaction::default();
+        }
+        Reaction {
+            note: note("a host requested a rebirth directly after the birth messages: armctl delays it"),
+            delay: Some(Duration::from_millis(remaining_ms)),
+            ..Reaction::default()
+        }
     }
 }
 
@@ -379,33 +399,40 @@ impl MessageFormat for Node {
     }
 
     fn topics(&self) -> Vec<String> {
-        let host = self.names.host.as_deref().map(state_host_topic);
-        std::iter::once(self.topic(&NodeMessage::NCmd)).chain(host).collect()
+        let hosts = self.names.hosts.iter().map(|host| state_host_topic(host));
+        std::iter::once(self.topic(&NodeMessage::NCmd)).chain(hosts).collect()
     }
 
     fn first_messages(&mut self, now_ms: u64) -> Vec<Message> {
         self.is_connected = true;
-        if self.names.host.is_none() { self.births(now_ms) } else { Vec::new() }
+        if self.names.hosts.is_empty() { self.births(now_ms) } else { Vec::new() }
     }
 
     fn connection_lost(&mut self) {
-        (self.is_connected, self.is_born) = (false, false);
+        (self.is_connected, self.is_born, self.is_rebirth_due) = (false, false, false);
+        for (_, is_online) in self.hosts.values_mut() {
+            *is_online = false;
+        }
         for device in self.devices.values_mut() {
             device.is_born = false;
         }
     }
 
     fn handle_message(&mut self, message: &Message, now_ms: u64) -> Reaction {
-        let is_state = self.names.host.as_deref().is_some_and(|host| message.topic == state_host_topic(host));
+        let host = self.names.hosts.iter().find(|host| message.topic == state_host_topic(host)).cloned();
         if !self.is_connected {
             Reaction::default()
-        } else if is_state {
-            self.handle_host_state(message, now_ms)
+        } else if let Some(host) = host {
+            self.handle_host_state(host, message, now_ms)
         } else if message.topic == self.topic(&NodeMessage::NCmd) {
             self.handle_command(message, now_ms)
         } else {
             ignored("an unexpected topic")
         }
+    }
+
+    fn delayed_messages(&mut self, now_ms: u64) -> Vec<Message> {
+        if self.is_born && self.is_rebirth_due { self.births(now_ms) } else { Vec::new() }
     }
 
     fn convert_event(&mut self, event: &Event, now_ms: u64) -> Vec<Record> {
@@ -417,7 +444,7 @@ impl MessageFormat for Node {
     }
 
     fn is_ready(&self) -> bool {
-        self.is_born
+        self.is_born && !self.is_rebirth_due
     }
 
     fn convert_record(&mut self, record: Record, now_ms: u64) -> Vec<Message> {

@@ -8,13 +8,18 @@ use srad_types::payload::metric::Value;
 use super::super::tests::{look, robot, silence};
 use super::*;
 
+/// A node of group Plant without a primary host.
+pub fn plain_node() -> Box<dyn MessageFormat> {
+    Box::new(node(&[]).0)
+}
+
 /// A node of group Plant, and the connection numbers that it saves.
-fn node(host: Option<&str>) -> (Node, Rc<RefCell<Vec<u8>>>) {
+fn node(hosts: &[&str]) -> (Node, Rc<RefCell<Vec<u8>>>) {
     let remembered: Rc<RefCell<Vec<u8>>> = Rc::default();
     let names = Names {
         group: "Plant".to_owned(),
         node: "Cell7".to_owned(),
-        host: host.map(ToOwned::to_owned),
+        hosts: hosts.iter().map(|&host| host.to_owned()).collect(),
         levels: Levels::default(),
     };
     let remember = {
@@ -50,6 +55,11 @@ fn send_all(node: &mut Node, event: &Event, now_ms: u64) -> Vec<Message> {
     records.into_iter().flat_map(|record| node.convert_record(record, now_ms)).collect()
 }
 
+/// A rebirth request of a host.
+pub fn rebirth_request() -> Message {
+    command(NODE_CONTROL_REBIRTH, Value::BooleanValue(true))
+}
+
 /// A command of a host.
 fn command(name: &str, value: Value) -> Message {
     let mut metric = Metric::new();
@@ -71,7 +81,7 @@ fn state(is_online: bool, timestamp: u64) -> Message {
 
 #[test]
 fn births_define_aliases_that_data_uses() {
-    let (mut node, remembered) = node(None);
+    let (mut node, remembered) = node(&[]);
     let will = node.will(1);
     assert_eq!(
         (headers(std::slice::from_ref(&will)), will.acknowledged, will.retain),
@@ -112,7 +122,7 @@ fn births_define_aliases_that_data_uses() {
 
 #[test]
 fn silent_robot_gets_a_death_and_a_new_birth() {
-    let (mut node, _) = node(None);
+    let (mut node, _) = node(&[]);
     node.will(1);
     node.first_messages(1);
     let press = robot("press");
@@ -125,7 +135,7 @@ fn silent_robot_gets_a_death_and_a_new_birth() {
 
 #[test]
 fn sequence_and_birth_numbers_wrap() {
-    let (mut node, remembered) = node(None);
+    let (mut node, remembered) = node(&[]);
     for expected in [254, 255, 0] {
         let will = node.will(1);
         assert_eq!(bd_seq_of(&will), Some(Value::LongValue(expected)));
@@ -145,7 +155,7 @@ fn sequence_and_birth_numbers_wrap() {
 
 #[test]
 fn sends_records_of_an_outage_as_history() {
-    let (mut node, _) = node(None);
+    let (mut node, _) = node(&[]);
     node.will(1);
     node.first_messages(1);
     let (press, loader) = (robot("press"), robot("loader"));
@@ -183,11 +193,11 @@ fn sends_records_of_an_outage_as_history() {
 
 #[test]
 fn sends_spooled_records_of_unknown_robots() {
-    let (mut node, _) = node(None);
+    let (mut node, _) = node(&[]);
     let press = robot("press");
     let records = node.convert_event(&look(&press, 1.0, &[]), 3);
     let [record] = &records[..] else { panic!("one record") };
-    let (mut next, _) = self::node(None);
+    let (mut next, _) = self::node(&[]);
     next.will(4);
     next.first_messages(4);
     let messages = next.convert_record(Record { epoch: 0, ..record.clone() }, 5);
@@ -199,13 +209,26 @@ fn sends_spooled_records_of_unknown_robots() {
 
 #[test]
 fn accepts_only_rebirth_commands() {
-    let (mut node, _) = node(None);
+    let (mut node, _) = node(&[]);
     node.will(1);
     node.first_messages(1);
     send_all(&mut node, &look(&robot("press"), 1.0, &[]), 2);
     let yes = Value::BooleanValue(true);
-    // A second birth message so soon would contain the same data.
-    assert_eq!(node.handle_message(&command("Node Control/Rebirth", yes.clone()), 500).messages, []);
+    // A request within a second of the births is delayed. A second request has the same answer.
+    let delayed = node.handle_message(&command("Node Control/Rebirth", yes.clone()), 500);
+    assert_eq!((&delayed.messages[..], delayed.delay), (&[][..], Some(Duration::from_millis(501))));
+    assert!(!node.is_ready(), "no data before the rebirth");
+    let again = node.handle_message(&command("Node Control/Rebirth", yes.clone()), 600);
+    assert_eq!((&again.messages[..], again.delay), (&[][..], None));
+    assert_eq!(headers(&node.delayed_messages(1001)), ["NBIRTH - 0", "DBIRTH press 1"]);
+    assert!(node.is_ready());
+    assert_eq!(node.delayed_messages(1002), [], "one rebirth answers both requests");
+    // A lost connection ends the delay, because the next connection begins with births.
+    node.handle_message(&command("Node Control/Rebirth", yes.clone()), 1003);
+    node.connection_lost();
+    assert_eq!(node.delayed_messages(2001), []);
+    node.first_messages(2002);
+    assert!(node.is_ready());
     let reborn = node.handle_message(&command("Node Control/Rebirth", yes.clone()), 5000);
     assert_eq!(headers(&reborn.messages), ["NBIRTH - 0", "DBIRTH press 1"]);
     assert_eq!(bd_seq_of(&reborn.messages[0]), Some(Value::LongValue(254)), "the same connection");
@@ -224,7 +247,7 @@ fn accepts_only_rebirth_commands() {
 
 #[test]
 fn waits_for_the_primary_host() {
-    let (mut node, _) = node(Some("SCADA"));
+    let (mut node, _) = node(&["SCADA"]);
     assert_eq!(node.topics(), ["spBv1.0/Plant/NCMD/Cell7", "spBv1.0/STATE/SCADA"]);
     node.will(1);
     assert_eq!(node.first_messages(1), []);
@@ -250,8 +273,31 @@ fn waits_for_the_primary_host() {
 }
 
 #[test]
+fn sends_while_one_of_two_primary_hosts_is_online() {
+    let (mut node, _) = node(&["SCADA", "SPARE"]);
+    assert_eq!(node.topics().len(), 3);
+    let spare = |is_online, time| Message { topic: "spBv1.0/STATE/SPARE".to_owned(), ..state(is_online, time) };
+    node.will(1);
+    node.first_messages(1);
+    node.handle_message(&state(false, 50), 2);
+    assert!(!node.is_ready());
+    // Each host has its own clock.
+    assert_eq!(headers(&node.handle_message(&spare(true, 10), 3).messages), ["NBIRTH - 0"]);
+    assert_eq!(node.handle_message(&state(true, 60), 4), Reaction::default());
+    assert_eq!(node.handle_message(&spare(false, 11), 5), Reaction::default());
+    assert!(node.is_ready());
+    assert!(node.handle_message(&state(false, 61), 6).reconnects && !node.is_ready());
+    node.handle_message(&state(true, 62), 7);
+    // A state from the last connection does not count.
+    node.connection_lost();
+    node.first_messages(8);
+    node.handle_message(&spare(false, 12), 9);
+    assert!(!node.is_ready());
+}
+
+#[test]
 fn final_message_is_the_death_of_the_node() {
-    let (mut node, _) = node(None);
+    let (mut node, _) = node(&[]);
     assert_eq!(node.final_messages(0), []);
     let will = node.will(1);
     node.first_messages(2);
