@@ -138,9 +138,9 @@ fn metric_of_value(value: &ReportValue<'_>) -> Metric {
         // The node uses the type of an earlier value.
         _ => metric(name, DataType::Unknown, None),
     };
-    let constants = value.constants.iter().filter_map(|(key, constant)| {
+    let constants = value.constants.iter().map(|(key, constant)| {
         let key = if *key == "unit" { "engUnit" } else { key };
-        Some((key, constant.as_str().map_or_else(|| constant.to_string(), ToOwned::to_owned)))
+        (key, constant.as_str().map_or_else(|| constant.to_string(), ToOwned::to_owned))
     });
     let properties = metric.properties.get_or_insert_with(PropertySet::default);
     for (key, text) in constants {

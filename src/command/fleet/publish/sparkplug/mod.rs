@@ -300,14 +300,14 @@ impl Node {
     }
 
     /// Handles a STATE message of the host.
-    fn handle_host_state(&mut self, name: String, message: &Message, now_ms: u64) -> Reaction {
+    fn handle_host_state(&mut self, name: &str, message: &Message, now_ms: u64) -> Reaction {
         let Ok(state) = StateBirthDeathCertificate::try_from(&message.payload[..]) else {
             return ignored("an unreadable state of the host");
         };
-        if self.hosts.get(&name).is_some_and(|(known, _)| state.timestamp < *known) {
+        if self.hosts.get(name).is_some_and(|(known, _)| state.timestamp < *known) {
             return ignored("a state of the host that is older than the last state");
         }
-        self.hosts.insert(name.clone(), (state.timestamp, state.online));
+        self.hosts.insert(name.to_owned(), (state.timestamp, state.online));
         match (self.hosts.values().any(|(_, is_online)| *is_online), self.is_born) {
             (true, false) => Reaction {
                 messages: self.births(now_ms),
@@ -423,7 +423,7 @@ impl MessageFormat for Node {
         if !self.is_connected {
             Reaction::default()
         } else if let Some(host) = host {
-            self.handle_host_state(host, message, now_ms)
+            self.handle_host_state(&host, message, now_ms)
         } else if message.topic == self.topic(&NodeMessage::NCmd) {
             self.handle_command(message, now_ms)
         } else {
