@@ -76,7 +76,7 @@ const FRAME: [(&str, &[&str]); 5] = [
 
 /// Commands that use a transport: links with their traces and faces, capture readers, sessions, simulator servers, the
 /// list of ports, the broker connection, and test peers.
-const LINKS: [&str; 46] = [
+const LINKS: [&str; 48] = [
     "frame/decode/capture/mod.rs",
     "frame/decode/capture/report.rs",
     "frame/decode/capture/stream.rs",
