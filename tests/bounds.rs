@@ -19,12 +19,18 @@ fn run(folder: &Path, words: &[&str]) -> Output {
     armctl(folder, words).output().expect("it runs")
 }
 
-/// Runs the command with a limit of the shell's `ulimit`.
-fn limited(folder: &Path, limit: &str, words: &[&str]) -> Output {
+/// The command with a limit of the shell's `ulimit`. Its threads share heaps: otherwise the C library reserves 64 MB for
+/// each thread, so that a limit of the address space would count threads.
+fn limited_command(folder: &Path, limit: &str, words: &[&str]) -> Command {
     let mut command = Command::new("sh");
-    command.env_clear().env("HOME", folder).env("XDG_RUNTIME_DIR", folder).current_dir(folder).stdin(Stdio::null());
+    command.env_clear().env("HOME", folder).env("XDG_RUNTIME_DIR", folder).env("MALLOC_ARENA_MAX", "1");
+    command.current_dir(folder).stdin(Stdio::null());
     command.args(["-c", &format!("ulimit {limit}; exec \"$0\" \"$@\""), env!("CARGO_BIN_EXE_armctl")]).args(words);
-    command.output().expect("a shell")
+    command
+}
+
+fn limited(folder: &Path, limit: &str, words: &[&str]) -> Output {
+    limited_command(folder, limit, words).output().expect("a shell")
 }
 
 fn stdout(output: &Output) -> String {
@@ -134,9 +140,8 @@ fn reads_only_regular_files_of_limited_size() {
 #[test]
 fn limits_the_length_of_a_script_line() {
     let folder = folder();
-    let mut command = Command::new("sh");
-    let script = "ulimit -v 500000; exec \"$0\" repl </dev/zero";
-    let output = command.args(["-c", script, env!("CARGO_BIN_EXE_armctl")]).current_dir(folder.path()).output();
+    let endless = std::fs::File::open("/dev/zero").expect("it is there");
+    let output = limited_command(folder.path(), "-v 500000", &["repl"]).stdin(endless).output();
     end_within_limit(&output.expect("a shell"), 2, "line 1 of stdin is longer than");
 }
 
