@@ -27,6 +27,7 @@ use armctl_yerc::link::{Link, Yerc};
 use moto_hses_client::HsesClient;
 use tokio::runtime::Runtime;
 
+use common::controllers::{self, Delays};
 use common::table::{Goal, Row, Table};
 use common::{Work, median, ratio, run, run_alternately, runtime};
 use peers::Controller;
@@ -188,16 +189,20 @@ fn lines(effort: &Effort) -> anyhow::Result<Table> {
     let file = folder.path().join("lines");
     std::fs::write(&file, "yerc status\n".repeat(count))?;
     let file = file.to_str().context("the folder for temporary files is not UTF-8")?;
+    // To open the shared link, armctl reads more than the status.
+    let inventory = folder.path().join("robots.toml");
+    std::fs::write(&inventory, controllers::serve([1, 0, 0], Delays::default(), 1)?)?;
     let mut echo = bare::Echo::open(controller.robot)?;
     let bare = || (0..count).try_for_each(|_| Ok(echo.round_trip()?));
     let batch = |args: &[&str]| {
-        let mut command = process::armctl(&controller, &[&["batch", file], args].concat());
+        let mut command = process::unconfigured();
+        command.arg("--config").arg(&inventory).args(["-r", "yerc0", "batch", file]).args(args);
         command.env("XDG_RUNTIME_DIR", folder.path());
         move || process::assert_success(&mut command)
     };
     let (shared, own) = (batch(&[]), batch(&["--no-session"]));
-    let mut simulated = process::simulator(&["batch", file]);
-    simulated.env("XDG_RUNTIME_DIR", folder.path());
+    let mut simulated = process::unconfigured();
+    simulated.args(["--sim", "batch", file]).env("XDG_RUNTIME_DIR", folder.path());
     let simulated = || process::assert_success(&mut simulated);
     let [bare, own, shared, simulated] = run_alternately(
         effort.line_rounds,

@@ -20,14 +20,8 @@ pub fn armctl(controller: &Controller, args: &[&str]) -> Command {
     command
 }
 
-/// Returns a command with the binary of the same build, for the simulator in its process.
-pub fn simulator(args: &[&str]) -> Command {
-    let mut command = unconfigured();
-    command.arg("--sim").args(args);
-    command
-}
-
-fn unconfigured() -> Command {
+/// Returns a command with the binary of the same build, without settings of the user.
+pub fn unconfigured() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
     for name in ["ARMCTL_CONFIG", "ARMCTL_TARGET", "ARMCTL_TIMEOUT", "ARMCTL_RETRIES", "ARMCTL_ENCODING"] {
         command.env_remove(name);

@@ -153,7 +153,9 @@ impl Target {
         match self {
             Self::Socket(socket) => {
                 let mut bytes = Vec::new();
-                frames.iter().for_each(|frame| frame.emit(&mut bytes));
+                for frame in &frames {
+                    frame.emit(&mut bytes);
+                }
                 write_bytes(socket, &bytes).await
             }
             Self::Channel(channel) => {
