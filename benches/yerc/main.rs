@@ -27,6 +27,7 @@ use armctl_yerc::link::{Link, Yerc};
 use moto_hses_client::HsesClient;
 use tokio::runtime::Runtime;
 
+use common::controllers::{self, Delays};
 use common::table::{Goal, Row, Table};
 use common::{Work, median, ratio, run, run_alternately, runtime};
 use peers::Controller;
@@ -41,17 +42,35 @@ struct Effort {
     download: u64,
     starts: usize,
     big: u64,
+    lines: usize,
+    line_rounds: usize,
 }
 
-const FULL: Effort =
-    Effort { status_rounds: 200, exchanges: 400, download_rounds: 15, download: 16 * MIB, starts: 200, big: 64 * MIB };
+const FULL: Effort = Effort {
+    status_rounds: 200,
+    exchanges: 400,
+    download_rounds: 15,
+    download: 16 * MIB,
+    starts: 200,
+    big: 64 * MIB,
+    lines: 2000,
+    line_rounds: 15,
+};
 
-const QUICK: Effort =
-    Effort { status_rounds: 3, exchanges: 200, download_rounds: 3, download: MIB / 2, starts: 5, big: 2 * MIB };
+const QUICK: Effort = Effort {
+    status_rounds: 3,
+    exchanges: 200,
+    download_rounds: 3,
+    download: MIB / 2,
+    starts: 5,
+    big: 2 * MIB,
+    lines: 200,
+    line_rounds: 3,
+};
 
 /// Comparisons, by their argument.
-const COMPARISONS: [(&str, common::Compare<Effort>); 4] =
-    [("status", status), ("download", download), ("start", start), ("memory", memory)];
+const COMPARISONS: [(&str, common::Compare<Effort>); 5] =
+    [("status", status), ("download", download), ("start", start), ("memory", memory), ("lines", lines)];
 
 fn main() -> anyhow::Result<()> {
     run(&COMPARISONS, &FULL, &QUICK)
@@ -159,6 +178,49 @@ fn memory(effort: &Effort) -> anyhow::Result<Table> {
     let mut table = Table::new(format!("memory for a download of {:.0} MiB", mebibytes(effort.big)));
     let row = Row::new("armctl yerc file get, resident at most", format!("{:.1} MiB", mebibytes(peak)));
     table.row(row.goal(mebibytes(peak), Goal::AtMost(20.0, "MiB")));
+    Ok(table)
+}
+
+/// Measures the lines of a command file on its shared link, on links of their own, and on a simulator.
+fn lines(effort: &Effort) -> anyhow::Result<Table> {
+    let count = effort.lines;
+    let controller = Controller::start(0)?;
+    let folder = tempfile::tempdir()?;
+    let file = folder.path().join("lines");
+    std::fs::write(&file, "yerc status\n".repeat(count))?;
+    let file = file.to_str().context("the folder for temporary files is not UTF-8")?;
+    // To open the shared link, armctl reads more than the status.
+    let inventory = folder.path().join("robots.toml");
+    std::fs::write(&inventory, controllers::serve([1, 0, 0], Delays::default(), 1)?)?;
+    let mut echo = bare::Echo::open(controller.robot)?;
+    let bare = || (0..count).try_for_each(|_| Ok(echo.round_trip()?));
+    let batch = |args: &[&str]| {
+        let mut command = process::unconfigured();
+        command.arg("--config").arg(&inventory).args(["-r", "yerc0", "batch", file]).args(args);
+        command.env("XDG_RUNTIME_DIR", folder.path());
+        move || process::assert_success(&mut command)
+    };
+    let (shared, own) = (batch(&[]), batch(&["--no-session"]));
+    let mut simulated = process::unconfigured();
+    simulated.args(["--sim", "batch", file]).env("XDG_RUNTIME_DIR", folder.path());
+    let simulated = || process::assert_success(&mut simulated);
+    let [bare, own, shared, simulated] = run_alternately(
+        effort.line_rounds,
+        [&mut { bare } as &mut dyn Work, &mut { own }, &mut { shared }, &mut { simulated }],
+    )?;
+    #[expect(clippy::cast_precision_loss, reason = "a few thousand lines")]
+    let micros = |times: &[f64]| format!("{:.0} us", median(times) * 1e6 / count as f64);
+    let mut table = Table::new(format!("one line of a command file with {count} lines `yerc status`"));
+    table.row(Row::new("bare blocking UDP echo", micros(&bare)));
+    table.row(Row::new("armctl batch --no-session", micros(&own)));
+    // A line on the shared link takes at most 1.5 times as long as a line on its own link.
+    let goal = Goal::AtLeast(0.667);
+    table.row(Row::new("armctl batch", micros(&shared)).with_comparison(ratio(&own, &shared), "--no-session", goal));
+    table.row(Row::new("armctl batch --sim", micros(&simulated)).with_comparison(
+        ratio(&own, &simulated),
+        "--no-session",
+        goal,
+    ));
     Ok(table)
 }
 

@@ -15,8 +15,14 @@ const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
 /// Returns a command with the binary of the same build, for `controller`.
 pub fn armctl(controller: &Controller, args: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+    let mut command = unconfigured();
     command.arg("--target").arg(controller.url()).args(args);
+    command
+}
+
+/// Returns a command with the binary of the same build, without settings of the user.
+pub fn unconfigured() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
     for name in ["ARMCTL_CONFIG", "ARMCTL_TARGET", "ARMCTL_TIMEOUT", "ARMCTL_RETRIES", "ARMCTL_ENCODING"] {
         command.env_remove(name);
     }

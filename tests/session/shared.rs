@@ -143,6 +143,38 @@ fn monitors_share_a_link_for_one_client() {
     }
 }
 
+/// The lines of a prompt or command file reach the link without a socket. Other processes still share the link.
+#[test]
+fn other_processes_share_the_link_of_a_prompt_and_a_command_file() {
+    for words in ["-r cell --yes yerc repl", "-r cell --yes batch -"] {
+        let simulator = simulator(&Workspace::new(&[]), "yerc", "127.0.0.1:0");
+        let workspace = Workspace::new(&[("cell", "yerc", &simulator.first)]);
+        let (file, prefix) =
+            (workspace.folder.path().join("lines"), if words.ends_with("repl") { "" } else { "yerc " });
+        let motion = format!("{prefix}move relative --z -600 --speed 1mm/s");
+        let reads = format!("{prefix}status --quiet\n").repeat(20);
+        std::fs::write(&file, format!("{reads}{motion}\n{prefix}servo off\n")).unwrap();
+        let mut command = workspace.command(words);
+        command.stdin(std::fs::File::open(&file).unwrap());
+        let holder = Running::start(command, false);
+        let pid = holder.process.id();
+        let mover = workspace.until(|session| session["motion"] != Value::Null)["motion"].clone();
+        assert_eq!((&mover["pid"], &mover["command"]), (&pid.into(), &motion.into()));
+        let read = workspace.run("-r cell yerc status -v");
+        let message = stderr(&read);
+        assert!(message.contains(&format!("through the session of process {pid}")), "{words}: {message}");
+        super::fails(&workspace.run("-r cell --yes yerc servo on"), 7, "another client is moving the robot");
+        let stop = workspace.run("-r cell yerc hold on");
+        assert!(stop.status.success(), "{words}: {}", stderr(&stop));
+        assert_eq!(workspace.data("-r cell yerc status")["held"], true);
+        holder.signal("INT");
+        assert_eq!(holder.end().0, Some(130), "{words}");
+        assert!(workspace.files("sock").is_empty(), "{words}");
+        // The lines after the motion were not sent.
+        assert_eq!(workspace.data("-r cell yerc status")["servo_on"], true);
+    }
+}
+
 /// Without a session, commands open the link one after the other.
 #[test]
 fn commands_wait_for_a_link_for_one_client() {

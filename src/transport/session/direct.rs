@@ -1,7 +1,7 @@
 //! Clients in the process of the host. They reach the host through channels, and need no socket.
 //!
 //! For a read on a datagram link, they do not even need the thread of the host: if the line is free, the client takes
-//! it from a [`DirectLine`], exchanges datagrams itself, and returns the line. Everything else passes
+//! it from the host, exchanges datagrams itself, and returns the line. Everything else passes
 //! through the host, which checks it like the frames of any client: changes, motions, and exchanges for which the line
 //! is not free.
 
