@@ -46,7 +46,7 @@ fn reads_of_yerc(sent: &Sent) {
     assert!(frames.len() > 20);
     for frame in frames {
         let command = u16::from_le_bytes([frame[24], frame[25]]);
-        assert!(matches!(command, 0x70 | 0x72 | 0x74 | 0x75 | 0x76 | 0x77 | 0x300 | 0x30A), "{command:#x}");
+        assert!(matches!(command, 0x70 | 0x72 | 0x73 | 0x74 | 0x75 | 0x76 | 0x77 | 0x300 | 0x30A), "{command:#x}");
         assert!(matches!(frame[29], 0x01 | 0x0E | 0x33), "service {:#x} of {command:#x}", frame[29]);
     }
 }
