@@ -1,5 +1,7 @@
 //! Commands for robots of any family.
 
+#[cfg(feature = "plant")]
+pub mod also;
 pub mod backup;
 pub mod common;
 #[cfg(feature = "plant")]

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::page::labels;
+use crate::command::fleet::also::AlsoCommand;
 use crate::command::fleet::poll::{Event, PollResult, RobotId};
-use crate::command::fleet::publish::extra_topic::ExtraTopic;
 use crate::command::fleet::service::kind;
 use armctl_frame::face::overview::OverviewReport;
 use armctl_frame::face::sample::{Axis, Traffic};
@@ -19,7 +19,7 @@ const RANGES: [f64; 9] = [0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5];
 #[derive(Debug, Default)]
 pub struct Board {
     /// Extra commands.
-    pub also: Rc<[ExtraTopic]>,
+    pub also: Rc<[AlsoCommand]>,
     /// Polled robots by id.
     pub robots: BTreeMap<RobotId, RobotMetrics>,
     /// Whether the last changed inventory could not be read.

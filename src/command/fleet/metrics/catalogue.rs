@@ -165,7 +165,7 @@ fn values(board: &Board, samples: &mut Samples<'_>) {
         for (text, answer) in extras {
             let also = board.also.iter().find(|also| also.text() == &**text);
             let (Some(also), Ok(data)) = (also, answer) else { continue };
-            let command = also.level();
+            let command = also.name();
             for value in values_of_report("", data) {
                 let number =
                     value.value.as_f64().or_else(|| value.value.as_bool().map(|flag| f64::from(u8::from(flag))));

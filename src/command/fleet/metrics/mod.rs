@@ -24,8 +24,8 @@ use tokio::time::timeout;
 use self::board::Board;
 use self::page::Form;
 use self::page_cache::PageCache;
+use super::also::{AlsoArguments, AlsoCommand};
 use super::poll::{Poll, PollRequest, Subscription};
-use super::publish::extra_topic::ExtraTopic;
 use super::service::{END_TIMEOUT, Service};
 use armctl_frame::face::sample::Detail;
 use armctl_frame::failure::plain;
@@ -47,10 +47,8 @@ pub struct Metrics {
     /// Address to listen on
     #[arg(long, alias = "bind", value_name = "ADDRESS", default_value_t = DEFAULT_ADDRESS, value_parser = address)]
     listen: SocketAddr,
-    /// A read command whose numbers are also served, such as 'yerc var get B0..B9' or 'parts=toyo counter get 1'
-    /// (repeatable)
-    #[arg(long, value_name = "LINE")]
-    also: Vec<String>,
+    #[command(flatten)]
+    also: AlsoArguments,
 }
 
 /// Default address. The port is one of the usual exporter ports.
@@ -82,7 +80,7 @@ impl Metrics {
     pub async fn run(&self, run: &Run) -> Result<(), RunError> {
         let every = run.repeat.every.unwrap_or(DEFAULT_INTERVAL);
         check_globals(run, every)?;
-        let also = ExtraTopic::all(&self.also)?;
+        let also = self.also.commands(|_| false)?;
         let service = Service::begin(run.screen)?;
         // Links do not print their own messages; the service reports changes.
         let mut poll = Poll::new(&run.sources, run.screen.silenced())?;
@@ -97,7 +95,7 @@ impl Metrics {
         };
         run.local("serve.metrics", &listening)?;
         self.warn(&service);
-        let extras = also.iter().map(ExtraTopic::extra).collect();
+        let extras = also.iter().map(AlsoCommand::extra).collect();
         let mut events = poll.subscribe(PollRequest { detail: Detail::Axes, extras, ..PollRequest::every(every) });
         let mut polled = Box::pin(poll.run());
         let board = RefCell::new(Board { also, ..Board::default() });

@@ -8,8 +8,8 @@ use serde_json::{Value, json};
 use super::board::Board;
 use super::catalogue::{METRICS, page};
 use super::page::{Form, Kind};
+use crate::command::fleet::also::AlsoArguments;
 use crate::command::fleet::poll::{Event, PollResult};
-use crate::command::fleet::publish::extra_topic::ExtraTopic;
 use crate::command::fleet::top::testing::{fail, fleet, sample, with_alarm};
 use armctl_frame::face::sample::{Sample, Traffic};
 use armctl_frame::robot::alarm::Alarm;
@@ -99,7 +99,7 @@ fn shows_the_current_state_of_a_robot() {
 fn serves_numbers_of_extra_commands() {
     let robots = robots(1);
     let text = "yerc var get B0..B2";
-    let also = ExtraTopic::all(&[format!("parts={text}")]).unwrap();
+    let also = AlsoArguments::of(&[&format!("parts={text}")]).commands(|_| false).unwrap();
     let mut board = Board { also, ..Board::default() };
     board.record_event(&Event::Appeared(Arc::clone(&robots[0])), 1000.0);
     let item = |name: &str, value: Value| json!({"name": name, "label": "x", "ok": !value.is_null(), "value": value});

@@ -5,7 +5,6 @@
 //! |---|---|
 //! | `broker` | address and credentials of the broker |
 //! | `topic` | names as topic levels |
-//! | `extra_topic` | extra commands whose results are published |
 //! | `announced` | retained topics of this node, for the next process |
 //! | `message_format` | trait for a message format |
 //! | `plain_format` | one topic per robot and kind, with envelopes |
@@ -21,7 +20,6 @@ mod announced;
 mod broker;
 mod delivery;
 mod error_text;
-pub(super) mod extra_topic;
 mod log;
 mod message_format;
 mod outbox;
@@ -30,7 +28,7 @@ mod sparkplug;
 mod spool;
 #[cfg(test)]
 mod tests;
-mod topic;
+pub(super) mod topic;
 mod uplink;
 
 use std::collections::BTreeMap;
@@ -47,7 +45,6 @@ use tokio::time::timeout;
 use self::announced::AnnouncedTopics;
 use self::broker::{Broker, Login, Url};
 use self::delivery::{Backoff, Counts, Delivery, Listener as _};
-use self::extra_topic::ExtraTopic;
 use self::log::BrokerLog;
 use self::message_format::MessageFormat;
 use self::outbox::Outbox;
@@ -55,6 +52,7 @@ use self::plain_format::{Alarms, Axes, PlainFormat, Position, Times};
 use self::sparkplug::{Names, Node};
 use self::spool::{Spool, SyncPolicy};
 use self::topic::{Levels, Template, Topics};
+use crate::command::fleet::also::{AlsoArguments, AlsoCommand};
 use crate::command::fleet::poll::{Event, Poll, PollRequest, RobotId, Subscription};
 use crate::command::fleet::service::{END_TIMEOUT, Service};
 use armctl_files as files;
@@ -87,10 +85,8 @@ pub struct Publish {
     /// What to publish of each robot
     #[arg(long, value_name = "KIND", value_delimiter = ',', default_value = "status,alarms,position")]
     kinds: Vec<Kind>,
-    /// A read command whose answer is also published, such as 'yerc var get B0..B9' or 'parts=toyo counter get 1'
-    /// (repeatable)
-    #[arg(long, value_name = "LINE")]
-    also: Vec<String>,
+    #[command(flatten)]
+    also: AlsoArguments,
     /// Longest time between two messages of a topic. After it, armctl sends the data even without a change
     #[arg(long, value_name = "TIME", default_value = "1m", value_parser = duration::parse_some)]
     every: Duration,
@@ -269,7 +265,7 @@ impl Publish {
     pub async fn run(&self, run: &Run) -> Result<(), RunError> {
         let interval = run.repeat.every.unwrap_or(DEFAULT_INTERVAL);
         self.check_globals(run, interval)?;
-        let also = ExtraTopic::all(&self.also)?;
+        let also = self.also.commands(|name| name == "state" || Kind::ALL.iter().any(|kind| kind.name() == name))?;
         let url: Url = self.broker.parse().map_err(|why: String| {
             Failure::usage(format!("this is not a valid broker URL: {why}")).hint("example: mqtt://192.168.1.5")
         })?;
@@ -298,7 +294,7 @@ impl Publish {
             log.log(Level::Warning, &format!("{}: {what}", folder.display()));
         }
         catch_interrupts();
-        let extras = also.iter().map(ExtraTopic::extra).collect();
+        let extras = also.iter().map(AlsoCommand::extra).collect();
         let detail = if self.kinds.contains(&Kind::Axes) { Detail::Axes } else { Detail::Summary };
         let mut events = poll.subscribe(PollRequest { detail, extras, ..PollRequest::every(interval) });
         let mut polled = Box::pin(poll.run());
@@ -404,7 +400,7 @@ impl Publish {
     fn create_format(
         &self,
         (topics, robots): (Topics, &[Robot]),
-        also: &Rc<[ExtraTopic]>,
+        also: &Rc<[AlsoCommand]>,
         interval: Duration,
         folder: Option<&Path>,
     ) -> Box<dyn MessageFormat> {

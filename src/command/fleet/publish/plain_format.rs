@@ -16,11 +16,11 @@ use serde::Deserialize;
 
 use super::Kind;
 use super::announced::AnnouncedTopics;
-use super::extra_topic::ExtraTopic;
 use super::message_format::{MessageFormat, Reaction};
 use super::outbox::Record;
 use super::topic::Topics;
 use super::uplink::{Message, Will};
+use crate::command::fleet::also::AlsoCommand;
 use crate::command::fleet::poll::{Event, PollResult, RobotId};
 use armctl_frame::face::overview::OverviewReport;
 use armctl_frame::face::sample::Sample;
@@ -123,7 +123,7 @@ struct SentState {
 pub struct PlainFormat {
     topics: Topics,
     kinds: Vec<Kind>,
-    also: Rc<[ExtraTopic]>,
+    also: Rc<[AlsoCommand]>,
     times: Times,
     announced: AnnouncedTopics,
     sent: BTreeMap<RobotId, BTreeMap<String, SentState>>,
@@ -134,7 +134,7 @@ impl PlainFormat {
     /// topics of `robots` stay.
     pub fn new(
         topics: Topics,
-        (kinds, also): (&[Kind], Rc<[ExtraTopic]>),
+        (kinds, also): (&[Kind], Rc<[AlsoCommand]>),
         times: Times,
         (announced, robots): (AnnouncedTopics, &[Robot]),
     ) -> Self {
@@ -147,7 +147,7 @@ impl PlainFormat {
 
     /// Topics of a robot; empty if the robot lacks a level of the template.
     fn topics_of(&self, robot: &Robot) -> Vec<String> {
-        let also = self.also.iter().filter(|also| also.family() == robot.family).map(ExtraTopic::level);
+        let also = self.also.iter().filter(|also| also.family() == robot.family).map(AlsoCommand::name);
         let names = self.kinds.iter().map(|kind| kind.name()).chain(also);
         names.filter_map(|name| self.topics.topic_of(robot, name).ok()).collect()
     }
@@ -211,7 +211,7 @@ impl PlainFormat {
         }
         for (text, answer) in &look.extras {
             if let Some(also) = self.also.iter().find(|also| also.text() == &**text) {
-                envelopes.push((also.level().to_owned(), Envelope::of(robot, also.id(), answer.clone())));
+                envelopes.push((also.name().to_owned(), Envelope::of(robot, also.id(), answer.clone())));
             }
         }
         self.changed(robot, envelopes, now_ms)
@@ -228,7 +228,7 @@ impl PlainFormat {
             envelopes.push((kind.name().to_owned(), Envelope { data, ..failed }));
         }
         for also in self.also.iter().filter(|also| also.family() == robot.family) {
-            envelopes.push((also.level().to_owned(), Envelope::of(robot, also.id(), Err(failure.clone()))));
+            envelopes.push((also.name().to_owned(), Envelope::of(robot, also.id(), Err(failure.clone()))));
         }
         self.changed(robot, envelopes, now_ms)
     }

@@ -19,7 +19,7 @@ use super::sparkplug::tests::{plain_node, rebirth_request};
 use super::spool::{Spool, SyncPolicy};
 use super::topic::Topics;
 use super::uplink::{Event, Loss, Message, Refusal, SendError, TlsError, Version, Will};
-use super::{ExtraTopic, Kind, MessageFormat};
+use super::{AlsoCommand, Kind, MessageFormat};
 use crate::command::fleet::poll::{Event as Found, PollResult};
 use crate::command::fleet::service::END_TIMEOUT;
 use armctl_frame::face::overview::OverviewReport;
@@ -229,7 +229,7 @@ fn plain() -> Box<dyn MessageFormat> {
 }
 
 fn plain_with(announced: AnnouncedTopics, robots: &[Robot]) -> Box<dyn MessageFormat> {
-    let also: Rc<[ExtraTopic]> = Rc::from([]);
+    let also: Rc<[AlsoCommand]> = Rc::from([]);
     let topics = Topics { prefix: "armctl".to_owned(), node: "cell7".to_owned(), ..Topics::default() };
     let times = Times { every_ms: 60_000, expiry: Duration::from_secs(180) };
     Box::new(PlainFormat::new(topics, (&KINDS, also), times, (announced, robots)))

@@ -6,7 +6,7 @@ use srad_types::payload::property_value::Value as Property;
 use srad_types::payload::{DataType, Metric, PropertySet, PropertyValue};
 
 use super::super::Kind;
-use super::super::extra_topic::ExtraTopic;
+use crate::command::fleet::also::AlsoCommand;
 use crate::command::fleet::poll::PollResult;
 use crate::command::fleet::report_values::{ReportValue, values_of_report};
 use armctl_frame::face::sample::Whole;
@@ -26,7 +26,7 @@ const UNITS: [(&str, &str); 9] = [
 ];
 
 /// All metrics of a sample, for these kinds and extra commands.
-pub fn metrics_of_poll(look: &PollResult, kinds: &[Kind], also: &[ExtraTopic]) -> Vec<Metric> {
+pub fn metrics_of_poll(look: &PollResult, kinds: &[Kind], also: &[AlsoCommand]) -> Vec<Metric> {
     let line = &look.sample.line.state;
     let text = |text: Option<&str>| text.map(|text| Value::StringValue(text.to_owned()));
     let flag = |flag: Option<bool>| flag.map(Value::BooleanValue);
@@ -82,7 +82,7 @@ pub fn metrics_of_poll(look: &PollResult, kinds: &[Kind], also: &[ExtraTopic]) -
     metrics.extend(place.map(|(key, value)| metric(&format!("info/{key}"), DataType::String, text(value))));
     for (line, answer) in &look.extras {
         if let (Some(also), Ok(data)) = (also.iter().find(|also| also.text() == &**line), answer) {
-            metrics.extend(values_of_report(also.level(), data).iter().map(metric_of_value));
+            metrics.extend(values_of_report(also.name(), data).iter().map(metric_of_value));
         }
     }
     metrics

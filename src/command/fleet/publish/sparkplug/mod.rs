@@ -20,11 +20,11 @@ use srad_types::payload::{DataType, Message as _, Metric, Payload, StateBirthDea
 use srad_types::topic::{DeviceMessage, NodeMessage, device_topic, node_topic, state_host_topic};
 
 use super::Kind;
-use super::extra_topic::ExtraTopic;
 use super::message_format::{MessageFormat, Reaction};
 use super::outbox::Record;
 use super::topic::Levels;
 use super::uplink::{Message, Will};
+use crate::command::fleet::also::AlsoCommand;
 use crate::command::fleet::poll::{Event, PollResult};
 use armctl_frame::output::log::Level;
 use armctl_frame::settings::Robot;
@@ -76,7 +76,7 @@ pub type Remember = Box<dyn FnMut(u8)>;
 pub struct Node {
     names: Names,
     kinds: Vec<Kind>,
-    also: Rc<[ExtraTopic]>,
+    also: Rc<[AlsoCommand]>,
     every_ms: u64,
     /// `bdSeq` (the number that a birth message and its death message have in common) of this connection and of the
     /// next connection.
@@ -108,7 +108,7 @@ impl Node {
     /// the number of the first connection.
     pub fn new(
         names: Names,
-        (kinds, also): (&[Kind], Rc<[ExtraTopic]>),
+        (kinds, also): (&[Kind], Rc<[AlsoCommand]>),
         every_ms: u64,
         (bd_seq, remember): (u8, Remember),
     ) -> Self {

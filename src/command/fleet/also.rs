@@ -1,40 +1,53 @@
-//! Extra commands of `--also`, whose results are published: `yerc var get B0..B9`, or `parts=yerc var get B0..B9`.
+//! Extra commands of `--also`, whose answers are published or served: `yerc var get B0..B9`, or
+//! `parts=yerc var get B0..B9`.
 
 use std::rc::Rc;
 
-use super::Kind;
-use super::topic;
-use crate::command::fleet::poll::Extra;
+use clap::Args;
+
+use super::poll::Extra;
+use super::publish::topic;
 use armctl_frame::failure::Failure;
 use armctl_frame::settings::target::Family;
 
-/// An extra command and its topic level.
+/// The flag for extra commands.
+#[derive(Debug, Args)]
+#[group(skip)]
+pub struct AlsoArguments {
+    /// A read command whose answer is also sent, such as 'yerc var get B0..B9' or 'parts=toyo counter get 1'
+    /// (repeatable)
+    #[arg(long, value_name = "LINE")]
+    also: Vec<String>,
+}
+
+/// An extra command and its name.
 #[derive(Debug)]
-pub struct ExtraTopic {
-    level: String,
+pub struct AlsoCommand {
+    name: String,
     extra: Rc<Extra>,
 }
 
-impl ExtraTopic {
-    /// Parses all lines. Each command must only read, and its level must be unique.
-    pub fn all(lines: &[String]) -> Result<Rc<[Self]>, Failure> {
-        let mut all: Vec<Self> = Vec::with_capacity(lines.len());
-        for line in lines {
-            let also = Self::new(line)?;
-            let is_kind = Kind::ALL.iter().any(|kind| kind.name() == also.level);
-            if is_kind || also.level == "state" || all.iter().any(|other| other.level == also.level) {
-                return Err(Failure::usage(format!("--also '{line}': another topic has the name '{}'", also.level))
+impl AlsoArguments {
+    /// Parses all lines. Each command must only read, and its name must be unique and not reserved.
+    pub fn commands(&self, is_reserved: impl Fn(&str) -> bool) -> Result<Rc<[AlsoCommand]>, Failure> {
+        let mut all: Vec<AlsoCommand> = Vec::with_capacity(self.also.len());
+        for line in &self.also {
+            let also = AlsoCommand::new(line)?;
+            if is_reserved(&also.name) || all.iter().any(|other| other.name == also.name) {
+                return Err(Failure::usage(format!("--also '{line}': another topic has the name '{}'", also.name))
                     .hint(format!("add a different name: --also 'NAME={}'", also.text())));
             }
             if let Some(other) = all.iter().find(|other| other.extra == also.extra) {
-                return Err(Failure::usage(format!("--also '{line}' is a duplicate of '{}'", other.level))
+                return Err(Failure::usage(format!("--also '{line}' is a duplicate of '{}'", other.name))
                     .hint("remove one of them"));
             }
             all.push(also);
         }
         Ok(all.into())
     }
+}
 
+impl AlsoCommand {
     fn new(line: &str) -> Result<Self, Failure> {
         let (name, text) = match line.split_once('=') {
             Some((name, text)) if !name.is_empty() && !name.contains(char::is_whitespace) => (Some(name), text),
@@ -42,7 +55,7 @@ impl ExtraTopic {
         };
         let extra = Extra::parse(text)
             .map_err(|failure| Failure { message: format!("--also: {}", failure.message), ..failure })?;
-        let level = if let Some(name) = name {
+        let name = if let Some(name) = name {
             topic::level(name)?
         } else {
             let words: Vec<&str> = text.split_whitespace().skip(1).collect();
@@ -51,12 +64,12 @@ impl ExtraTopic {
                     .hint(format!("add a shorter name: --also 'NAME={text}'"))
             })?
         };
-        Ok(Self { level, extra: Rc::new(extra) })
+        Ok(Self { name, extra: Rc::new(extra) })
     }
 
-    /// Topic level, or prefix of the metric names.
-    pub fn level(&self) -> &str {
-        &self.level
+    /// Name: a topic level, the prefix of metric names, or a label.
+    pub fn name(&self) -> &str {
+        &self.name
     }
 
     /// Text of the command, as the poller uses it.
@@ -81,17 +94,24 @@ impl ExtraTopic {
 }
 
 #[cfg(test)]
+impl AlsoArguments {
+    /// The flag with these lines.
+    pub fn of(lines: &[&str]) -> Self {
+        Self { also: lines.iter().map(|line| (*line).to_owned()).collect() }
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
 
     fn all(lines: &[&str]) -> Result<Vec<String>, String> {
-        let lines: Vec<String> = lines.iter().map(|line| (*line).to_owned()).collect();
-        let all = ExtraTopic::all(&lines).map_err(|failure| failure.message)?;
-        Ok(all.iter().map(|also| format!("{} {}", also.level, also.id())).collect())
+        let all = AlsoArguments::of(lines).commands(|name| name == "status").map_err(|failure| failure.message)?;
+        Ok(all.iter().map(|also| format!("{} {}", also.name, also.id())).collect())
     }
 
     #[test]
-    fn each_command_line_has_its_own_level() {
+    fn each_command_line_has_its_own_name() {
         assert_eq!(
             all(&["yerc var get B0..B9", "parts=toyo counter get 1"]).unwrap(),
             ["var-get-B0..B9 yerc.var.get", "parts toyo.counter.get"]
