@@ -34,6 +34,16 @@ pub struct Mosquitto {
 }
 
 impl Mosquitto {
+    /// Starts a broker without authentication. If none is installed, prints that the test is skipped.
+    #[expect(clippy::print_stderr, reason = "a test that is skipped says so")]
+    pub fn start_if_installed() -> Option<Self> {
+        if !is_installed() {
+            eprintln!("{NOT_INSTALLED}");
+            return None;
+        }
+        Some(Self::start())
+    }
+
     /// Starts a broker without authentication.
     pub fn start() -> Self {
         Self::with("allow_anonymous true\n", |_| {})

@@ -105,10 +105,7 @@ pub fn stderr(output: &Output) -> String {
 
 #[test]
 fn publishes_an_envelope_per_robot_and_kind() {
-    if !broker::is_installed() {
-        return eprintln!("{NOT_INSTALLED}");
-    }
-    let broker = Mosquitto::start();
+    let Some(broker) = Mosquitto::start_if_installed() else { return };
     for protocol in ["5", "3.1.1"] {
         let prefix = format!("plant/{}", protocol.replace('.', "-"));
         let extra_argument = ["--also", "parts=yerc var get B0..B2", "--also", "toyo counter get 1"];
@@ -155,10 +152,7 @@ fn publishes_an_envelope_per_robot_and_kind() {
 
 #[test]
 fn every_exit_publishes_the_last_will() {
-    if !broker::is_installed() {
-        return eprintln!("{NOT_INSTALLED}");
-    }
-    let broker = Mosquitto::start();
+    let Some(broker) = Mosquitto::start_if_installed() else { return };
     let (workspace, url) = (fleet(), broker.url());
     let mut listener = broker.listen("armctl/cell7/state");
     for (signal, code) in [("-TERM", Some(0)), ("-INT", Some(0)), ("-KILL", None)] {
@@ -172,10 +166,7 @@ fn every_exit_publishes_the_last_will() {
 
 #[test]
 fn returning_broker_gets_missed_records_in_order() {
-    if !broker::is_installed() {
-        return eprintln!("{NOT_INSTALLED}");
-    }
-    let mut broker = Mosquitto::start();
+    let Some(mut broker) = Mosquitto::start_if_installed() else { return };
     let (workspace, url) = (fleet(), broker.url());
     // With `--every 1ms`, unchanged data is also published at every poll.
     let words =
@@ -214,10 +205,7 @@ fn returning_broker_gets_missed_records_in_order() {
 
 #[test]
 fn queued_records_outlive_the_process() {
-    if !broker::is_installed() {
-        return eprintln!("{NOT_INSTALLED}");
-    }
-    let mut broker = Mosquitto::start();
+    let Some(mut broker) = Mosquitto::start_if_installed() else { return };
     let (workspace, url) = (fleet(), broker.url());
     broker.kill();
     let words =
@@ -241,10 +229,7 @@ fn queued_records_outlive_the_process() {
 
 #[test]
 fn removed_robot_is_cleared_at_the_broker() {
-    if !broker::is_installed() {
-        return eprintln!("{NOT_INSTALLED}");
-    }
-    let broker = Mosquitto::start();
+    let Some(broker) = Mosquitto::start_if_installed() else { return };
     let workspace = fleet();
     let mut listener = broker.listen("armctl/+/status");
     let publisher = Publisher::start(workspace.command(&["publish", &broker.url(), "--watch", "50ms"]));
@@ -256,10 +241,7 @@ fn removed_robot_is_cleared_at_the_broker() {
 
 #[test]
 fn escapes_unusual_names_in_topics() {
-    if !broker::is_installed() {
-        return eprintln!("{NOT_INSTALLED}");
-    }
-    let broker = Mosquitto::start();
+    let Some(broker) = Mosquitto::start_if_installed() else { return };
     let workspace = Workspace::new(&[]);
     // The port does not exist. The robot has no other name than its port.
     let words = [
@@ -432,10 +414,7 @@ fn reports_a_full_disk_and_continues() {
 
 #[test]
 fn reports_two_publishers_with_the_same_name() {
-    if !broker::is_installed() {
-        return eprintln!("{NOT_INSTALLED}");
-    }
-    let broker = Mosquitto::start();
+    let Some(broker) = Mosquitto::start_if_installed() else { return };
     let (workspace, url) = (fleet(), broker.url());
     let mut first = Publisher::start(workspace.command(&["publish", &url, "--node", "cell7"]));
     first.wait_for_message("connected to");

@@ -104,10 +104,7 @@ fn killed_publisher_loses_no_message_and_sends_none_to_another_broker() {
 
 #[test]
 fn reports_a_spool_without_a_broker_and_never_sends_it() {
-    if !broker::is_installed() {
-        return eprintln!("{NOT_INSTALLED}");
-    }
-    let broker = Mosquitto::start();
+    let Some(broker) = Mosquitto::start_if_installed() else { return };
     let workspace = fleet();
     let root = workspace.folder.path().join("buffers");
     let old = root.join("armctl-cell7/00000001099511627776.spool");
@@ -182,10 +179,7 @@ fn clears_topics_that_it_may_not_read() {
 
 #[test]
 fn retained_messages_of_robots_expire() {
-    if !broker::is_installed() {
-        return eprintln!("{NOT_INSTALLED}");
-    }
-    let broker = Mosquitto::start();
+    let Some(broker) = Mosquitto::start_if_installed() else { return };
     let workspace = Workspace::new(&[("press", "yerc", "sim:")]);
     let mut listener = Listener::new(broker.port, "armctl/#", "%r %t %E", &["-V", "5"]);
     let words = ["publish", &broker.url(), "--node", "cell7", "--count", "1", "--kinds", "status", "--every", "2m"];
