@@ -396,9 +396,11 @@ fn remove_dangerous(error: &mut clap::Error, path: &[&str], whole: &Command) {
         }
         other => Some(other),
     };
-    if let Some(safe) = safe {
-        error.insert(ContextKind::SuggestedSubcommand, safe);
-    }
+    match safe {
+        Some(safe) => error.insert(ContextKind::SuggestedSubcommand, safe),
+        // The list of other suggestions is empty. clap would print it as a blank line.
+        None => error.remove(ContextKind::Suggested),
+    };
 }
 
 /// A suggested command line, and the text that follows it.
@@ -626,6 +628,8 @@ mod tests {
             ("armctl yerc move joint P2", "type the value after its flag: see `armctl yerc move joint -h`"),
             ("armctl alarm history --csv", "use -o csv"),
             ("armctl compare a b", "the command is `armctl diff`"),
+            ("armctl yerc names set clamp B9", "the command is `armctl names set NAME ADDRESS -r ROBOT`"),
+            ("armctl yerc info position", "the command is `armctl yerc position`"),
             ("armctl names add clamp 27010", "the command is `armctl names set NAME ADDRESS -r ROBOT`"),
             ("armctl toyo program run", "the command is one that moves or powers the robot: see `armctl toyo run -h`"),
             ("armctl toyo io in", "the command is `armctl toyo io list`"),
@@ -634,6 +638,10 @@ mod tests {
             assert_eq!(tip(line).as_deref(), Some(expected), "{line}");
         }
         assert_eq!(tip("armctl yerc file delete"), None, "it deletes");
+        let args = ["armctl", "yrcx", "program", "lst"].map(OsString::from);
+        let error = Cli::command().try_get_matches_from_mut(&args).unwrap_err();
+        let text = add_suggestion(error, &args, &Cli::command()).render().to_string();
+        assert!(!text.contains("\n\n\n"), "a tip that was removed leaves no blank line: {text}");
     }
 
     #[test]

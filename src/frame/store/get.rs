@@ -93,9 +93,9 @@ impl<S: Store> Watchable for Get<S> {
 pub struct List<S: Store> {
     #[command(flatten)]
     options: S::Options,
-    /// Show only these rows
     #[arg(value_name = S::WORDS.placeholder, value_delimiter = ',', required = S::all().is_empty(),
-        value_parser = Rows::<S>::parse)]
+        value_parser = Rows::<S>::parse,
+        help = if S::all().is_empty() { S::WORDS.range } else { "Show only these rows" })]
     rows: Vec<Rows<S>>,
     /// Show empty rows too
     #[arg(long)]
