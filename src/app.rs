@@ -11,6 +11,7 @@ mod name_lookup;
 mod parser;
 mod picker;
 mod prepare;
+mod rehearse;
 mod repl;
 mod spellings;
 mod suggestions;
@@ -127,6 +128,7 @@ async fn run(cli: Cli) -> Result<(), RunError> {
         Invocation::Task(task) => Box::pin(PreparedCommand::new(globals, None, task, None)?.run()).await,
         Invocation::Batch(batch) => Box::pin(batch::run(globals, batch)).await,
         Invocation::Prompt(prefix) => Box::pin(repl::run(globals, prefix)).await,
+        Invocation::Rehearse(rehearse) => Box::pin(rehearse::run(globals, rehearse)).await,
         Invocation::Teach(teach) => Box::pin(teach::run(globals, teach)).await,
         Invocation::Bare(prefix) if repl::can_type() => Box::pin(repl::run(globals, prefix)).await,
         Invocation::Bare(prefix) => Err(repl::usage(&screen(&globals), &prefix)),

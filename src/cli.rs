@@ -7,7 +7,7 @@ use clap::{ArgMatches, Command, FromArgMatches, Parser, Subcommand};
 use crate::command::common;
 use crate::command::families::{self, FAMILIES};
 use crate::command::fleet::teach::Teach;
-use armctl_frame::batch::Batch;
+use armctl_frame::batch::{Batch, Rehearse};
 use armctl_frame::face::family_command::FamilyLine;
 use armctl_frame::flags::Globals;
 use armctl_frame::repl::Repl;
@@ -62,6 +62,8 @@ pub enum Top {
     Repl(Repl),
     /// Run commands from a file
     Batch(Batch),
+    /// Run commands on simulators of a backup, and report what they would change
+    Rehearse(Rehearse),
     /// Full-screen jog and teach panel
     Teach(Teach),
     /// Commands that all families share

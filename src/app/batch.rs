@@ -26,9 +26,10 @@ use armctl_frame::output::{Format, Screen};
 use armctl_frame::run::{RunError, begin_trace};
 use armctl_frame::script_line::{Line, Origin};
 use armctl_frame::session_manager::SessionManager;
+use armctl_frame::settings::rehearsal::Rehearsals;
 
-/// Envelopes that are collected and written together at the end.
-type Results = Rc<RefCell<Vec<Value>>>;
+/// Envelopes that are collected.
+pub type Results = Rc<RefCell<Vec<Value>>>;
 
 /// Runs the commands in a file.
 pub async fn run(globals: Globals, batch: Batch) -> Result<(), RunError> {
@@ -41,7 +42,7 @@ pub async fn run(globals: Globals, batch: Batch) -> Result<(), RunError> {
     let screen = screen(&globals);
     let results: Option<Results> = (screen.format == Format::Json).then(Rc::default);
     let (manager, thread) = host::start(move |text| screen.note(text))?;
-    let plan = Plan { globals: &globals, batch: &batch, screen, manager, results: results.clone() };
+    let plan = Plan { globals: &globals, batch: &batch, screen, manager, results: results.clone(), rehearsal: None };
     let lines = plan.lines(&text)?;
     begin_trace(globals.trace.as_deref().filter(|_| !globals.dry_run))?;
     let done = plan.run_lines(lines).await;
@@ -61,7 +62,7 @@ pub fn refuse_repetition(globals: &Globals) -> Result<(), Failure> {
     Ok(())
 }
 
-fn read(path: &Path) -> Result<String, Failure> {
+pub fn read(path: &Path) -> Result<String, Failure> {
     let limit = files::SETTINGS;
     let bytes = if path.as_os_str() == "-" { files::stdin(limit) } else { files::read(path, limit) };
     let bytes = bytes.with_context(|| path.display().to_string())?;
@@ -71,24 +72,43 @@ fn read(path: &Path) -> Result<String, Failure> {
     Ok(text.strip_prefix('\u{FEFF}').map_or_else(|| text.clone(), ToOwned::to_owned))
 }
 
-struct Plan<'a> {
-    globals: &'a Globals,
-    batch: &'a Batch,
-    screen: Screen,
-    manager: SessionManager,
-    results: Option<Results>,
+/// Flags of a rehearsed line. Its output is collected in one form, and its simulator stays alive after the line.
+fn rehearsed(globals: Globals) -> Result<Globals, Failure> {
+    if globals.config.is_some() {
+        return Err(Failure::usage("a rehearsal reaches only the robots of the backup, not those of --config")
+            .hint("remove --config from the line"));
+    }
+    Ok(Globals { format: None, json: false, jq: None, no_session: false, ..globals })
+}
+
+/// Settings of all lines.
+pub struct Plan<'a> {
+    /// Flags for all lines.
+    pub globals: &'a Globals,
+    /// Options of the file.
+    pub batch: &'a Batch,
+    /// Screen for notes.
+    pub screen: Screen,
+    /// Manager of the links that stay open between lines.
+    pub manager: SessionManager,
+    /// Collects the envelopes of the lines, if they are not written at once.
+    pub results: Option<Results>,
+    /// Records of the robots, if the lines are rehearsed.
+    pub rehearsal: Option<Rehearsals>,
 }
 
 /// A line that is ready to run.
-struct Planned {
+pub struct Planned {
     ready: PreparedCommand,
-    origin: Origin,
-    typed: Arc<str>,
+    /// Source location.
+    pub origin: Origin,
+    /// Line as the user typed it.
+    pub typed: Arc<str>,
 }
 
 impl Plan<'_> {
     /// Prepares all lines. If there are errors, returns the errors of all lines.
-    fn lines(&self, text: &str) -> Result<Vec<Planned>, Failure> {
+    pub fn lines(&self, text: &str) -> Result<Vec<Planned>, Failure> {
         let file: Arc<str> = self.batch.file.display().to_string().into();
         let mut parser = Parser::default();
         let mut planned = Vec::new();
@@ -129,20 +149,33 @@ impl Plan<'_> {
         if words.is_empty() {
             return Ok(None);
         }
+        self.words(parser, words, line, origin).map(Some)
+    }
+
+    /// Prepares a command line. `typed` is the line as the user typed it.
+    pub fn words(
+        &self,
+        parser: &mut Parser,
+        words: Vec<String>,
+        typed: &str,
+        origin: &Origin,
+    ) -> Result<Planned, Failure> {
         let args: Vec<OsString> = std::iter::once("armctl".to_owned()).chain(words).map(OsString::from).collect();
         let parsed = name_lookup::parse(parser, &args, Some(self.globals), true);
         let Words { globals, command } = parsed.map_err(|refusal| refusal.failure())?;
+        let globals = if self.rehearsal.is_some() { rehearsed(globals)? } else { globals };
         let says_format = globals.format.is_some() || globals.json || globals.jq.is_some();
         if says_format && self.screen.is_json() {
             return Err(Failure::usage("a line of a batch cannot have its own output format")
                 .hint("remove the format from the line"));
         }
-        let typed: Arc<str> = line.trim().into();
+        let typed: Arc<str> = typed.trim().into();
         let line = Line {
             typed: Arc::clone(&typed),
             manager: self.manager.clone(),
             origin: Some(origin.clone()),
             results: self.results.clone(),
+            rehearsal: self.rehearsal.clone(),
         };
         let Invocation::Task(task) = command.into() else {
             return Err(Failure::usage("this command cannot run from a file").hint("see `armctl help batch`"));
@@ -152,11 +185,18 @@ impl Plan<'_> {
             return Err(Failure::usage(format!("this command cannot run from a file: {why}"))
                 .hint("run it in another terminal"));
         }
+        if self.rehearsal.is_some() && !ready.can_rehearse() {
+            return Err(Failure::usage(
+                "this command cannot be rehearsed: it does not only use the robots of the backup",
+            )
+            .hint("remove the line from the file, or run the file with `armctl batch`"));
+        }
         ready.check_gate()?;
-        Ok(Some(Planned { ready, origin: origin.clone(), typed }))
+        Ok(Planned { ready, origin: origin.clone(), typed })
     }
 
-    async fn run_lines(&self, lines: Vec<Planned>) -> Result<(), RunError> {
+    /// Runs lines until the first failure.
+    pub async fn run_lines(&self, lines: Vec<Planned>) -> Result<(), RunError> {
         let all = lines.len();
         let mut failed: Vec<(Origin, Failure)> = Vec::new();
         let mut started = 0;

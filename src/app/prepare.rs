@@ -11,7 +11,7 @@ use crate::command::fleet::common;
 use crate::command::fleet::robots::Robots;
 use crate::command::fleet::robots::check::Check;
 use crate::command::fleet::teach::Teach;
-use armctl_frame::batch::Batch;
+use armctl_frame::batch::{Batch, Rehearse};
 use armctl_frame::condition::Condition;
 use armctl_frame::face::family_command::{FamilyLine, ParsedCommand};
 use armctl_frame::failure::Failure;
@@ -34,6 +34,8 @@ pub enum Invocation {
     Task(Task),
     /// A file of commands.
     Batch(Batch),
+    /// Commands that run on simulators.
+    Rehearse(Rehearse),
     /// The teach panel.
     Teach(Teach),
     /// A prompt. These words precede each line that the user types.
@@ -64,6 +66,7 @@ impl From<Top> for Invocation {
             }
             Top::Common(common) => Self::Task(Task::Common(common)),
             Top::Batch(batch) => Self::Batch(batch),
+            Top::Rehearse(rehearse) => Self::Rehearse(rehearse),
             Top::Teach(teach) => Self::Teach(teach),
             Top::Repl(_) => Self::Prompt(Vec::new()),
         }
@@ -133,6 +136,28 @@ impl PreparedCommand {
         }
     }
 
+    /// Whether the command can run in a rehearsal: it reaches only the selected robots, and changes no file of this
+    /// computer except the files that it names.
+    pub fn can_rehearse(&self) -> bool {
+        match &self.task {
+            Task::Family(..) => true,
+            Task::Common(common) => matches!(
+                common,
+                Common::Status(_)
+                    | Common::Alarm(_)
+                    | Common::Io(_)
+                    | Common::Position
+                    | Common::Stop
+                    | Common::Wait(_)
+                    | Common::Backup(_)
+                    | Common::Restore(_)
+                    | Common::Diff(_)
+                    | Common::Decode(_)
+                    | Common::Explain(_)
+            ),
+        }
+    }
+
     /// Returns the reason why the command is not possible in a command file: the command does not end, or its output is
     /// not a result.
     pub fn why_not_in_batch(&self) -> Option<&'static str> {
@@ -183,7 +208,7 @@ pub enum Need {
 }
 
 /// Reads flags, environment and inventory.
-fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Failure> {
+pub fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Failure> {
     let screen = screen(&globals).with_pager(!globals.no_pager && line.is_none());
     let filter = globals.jq.as_deref().map(Filter::new).transpose()?;
     let until = globals.until.as_deref().map(Condition::new).transpose()?;
@@ -199,6 +224,8 @@ fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Fail
     };
     let trace = globals.trace.clone();
     let sources = if need == Need::Nothing { Sources::default() } else { sources(globals, need, line.is_some())? };
+    let rehearsal = line.as_ref().and_then(|line| line.rehearsal.clone());
+    let sources = Sources { rehearsal, ..sources };
     Ok(Run {
         screen,
         sources,
@@ -259,7 +286,7 @@ pub fn sources(globals: Globals, need: Need, among: bool) -> Result<Sources, Fai
         encoding: variable("ARMCTL_ENCODING", |name| name.parse().map_err(|error| format!("{error}")))?,
         ..Options::default()
     };
-    Ok(Sources { selection, flags, environment, inventory })
+    Ok(Sources { selection, flags, environment, inventory, rehearsal: None })
 }
 
 /// Parses robot names or patterns that are separated by commas.

@@ -242,6 +242,9 @@ impl Repl {
                 Err(failure) => Err(failure.into()),
             },
             Invocation::Batch(batch) => Box::pin(batch::run(globals, batch)).await,
+            Invocation::Rehearse(_) => {
+                Err(Failure::usage("a rehearsal cannot run at the prompt").hint("end the prompt with `exit`").into())
+            }
             Invocation::Teach(_) => Err(Failure::usage("the teach panel needs its own terminal")
                 .hint("end the prompt, then run `armctl teach`")
                 .into()),
@@ -276,7 +279,7 @@ async fn line(script: impl AsyncBufRead + Unpin, number: usize) -> Result<Option
 }
 
 fn line_of(manager: &SessionManager, typed: &str) -> Line {
-    Line { typed: Arc::from(typed.trim()), manager: manager.clone(), origin: None, results: None }
+    Line { typed: Arc::from(typed.trim()), manager: manager.clone(), origin: None, results: None, rehearsal: None }
 }
 
 fn failed(screen: &Screen, stopped: RunError) -> Next {

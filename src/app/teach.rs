@@ -104,7 +104,13 @@ struct Lines {
 
 impl Lines {
     fn line(&self, typed: &str) -> Line {
-        Line { typed: Arc::from(typed), manager: self.manager.clone(), origin: None, results: Some(Rc::default()) }
+        Line {
+            typed: Arc::from(typed),
+            manager: self.manager.clone(),
+            origin: None,
+            results: Some(Rc::default()),
+            rehearsal: None,
+        }
     }
 }
 

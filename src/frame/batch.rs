@@ -1,9 +1,13 @@
-//! Arguments of `armctl batch`; `crate::app` runs it.
+//! Arguments of `armctl batch` and `armctl rehearse`; `crate::app` runs them.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
+use clap::{Args, ValueHint};
+
+use crate::settings::duration;
+use armctl_controller::simulator::run_options::Speed;
 use armctl_controller::user_input;
-use clap::Args;
 
 /// Arguments of `batch`.
 #[derive(Debug, Args)]
@@ -23,6 +27,39 @@ pub struct Batch {
 fn assignment(text: &str) -> Result<(String, String), String> {
     let (name, value) = user_input::split_setting(text, "a name", "a value", "SPEED=50")?;
     if is_name(name) { Ok((name.to_owned(), value.to_owned())) } else { Err(format!("'{name}' is not a valid name")) }
+}
+
+/// Arguments of `rehearse`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The robots of the backup become simulators in this process, under their names. armctl runs the \
+                  commands on them, waits until they are idle, and reports what changed on each robot, how it moved, \
+                  what needs a confirmation and what failed. Nothing is sent to a robot: a line that selects a robot \
+                  by address is rejected. A command without --yes continues as if you had confirmed it.\n\nThe exit \
+                  code is the exit code of the commands. See `armctl help simulator`."
+)]
+pub struct Rehearse {
+    /// File with one command per line, as for `armctl batch`; - means stdin
+    #[arg(value_name = "FILE", required_unless_present = "command", conflicts_with = "command")]
+    pub file: Option<PathBuf>,
+    /// Backup of a robot, or of several robots (`armctl backup --all FOLDER`)
+    #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub from: PathBuf,
+    /// Speed of the simulated time, such as 10x. Times in the commands, such as --for 5s, stay real times
+    #[arg(long, value_name = "FACTOR", default_value_t)]
+    pub speed: Speed,
+    /// Longest wait for the end of motions and programs after the last command
+    #[arg(long, value_name = "TIME", default_value = "1m", value_parser = duration::parse)]
+    pub settle: Duration,
+    /// Continue after a failed line
+    #[arg(short, long)]
+    pub keep_going: bool,
+    /// Value of ${NAME} in the file (repeatable)
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub set: Vec<(String, String)>,
+    /// A command instead of a file, after `--`
+    #[arg(last = true, value_name = "COMMAND")]
+    pub command: Vec<String>,
 }
 
 /// Whether a name consists of letters, digits and underscores.

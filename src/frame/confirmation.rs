@@ -8,7 +8,15 @@ use crate::prelude::basics::*;
 
 /// Authorizes a command for `robot` before anything is sent. Asks the user if the risk requires it.
 pub async fn confirm_intent(gate: Gate, screen: &Screen, robot: &Robot, intent: &Intent) -> Result<(), Failure> {
-    if !gate.must_ask(screen, robot, intent)? {
+    let asks = gate.must_ask(screen, robot, intent)?;
+    if let Some(rehearsal) = &robot.rehearsal {
+        let is_known = intent.confirmation != Confirmation::WhenKnown;
+        if is_known && intent.risk >= Risk::Destroy && !gate.dry_run {
+            rehearsal.ask(intent.text.clone(), gate.yes);
+        }
+        return Ok(());
+    }
+    if !asks {
         return Ok(());
     }
     let question = match intent.confirmation {
@@ -50,7 +58,10 @@ impl<'a> Confirmer<'a> {
     /// no user data needs no question.
     pub async fn confirm(&self, change: &Change) -> Result<(), Failure> {
         let risk = self.granted;
-        if !change.is_empty() && self.asks_user() {
+        let is_open = !change.is_empty() && risk >= Risk::Destroy && self.grant.get() < risk;
+        if let Some(rehearsal) = self.robot.rehearsal.as_ref().filter(|_| is_open && !self.gate.dry_run) {
+            rehearsal.ask(change.format_line(), self.gate.yes);
+        } else if !change.is_empty() && self.asks_user() {
             let text = change.format_line();
             if !self.screen.can_ask() {
                 return Err(not_confirmed(self.robot, risk, &text));

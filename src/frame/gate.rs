@@ -88,7 +88,7 @@ impl Gate {
         // The command may find that it replaces nothing, and then no question is necessary. A motion always requires a
         // question.
         let may_be_nothing = intent.confirmation == Confirmation::WhenKnown && intent.risk < Risk::Motion;
-        if !screen.can_ask() && !may_be_nothing {
+        if !screen.can_ask() && !may_be_nothing && robot.rehearsal.is_none() {
             return Err(not_confirmed(robot, intent.risk, &intent.text));
         }
         Ok(true)
@@ -113,9 +113,10 @@ impl Gate {
         ))
     }
 
-    /// Whether a confirmation is required, and `--yes` is missing.
+    /// Whether a confirmation is required, and `--yes` is missing. In a rehearsal, a simulator stands for a robot.
     pub fn needs_yes(&self, robot: &Robot, risk: Risk) -> bool {
-        risk >= Risk::Destroy && !self.yes && !self.dry_run && !robot.target.value.is_simulated()
+        let is_real = !robot.target.value.is_simulated() || robot.rehearsal.is_some();
+        risk >= Risk::Destroy && !self.yes && !self.dry_run && is_real
     }
 
     /// Refuses a motion of several robots, or overwriting data on several robots, unless the command line names each

@@ -13,6 +13,7 @@ use super::session_manager::{HeldBy, SessionManager};
 use crate::output::envelope::Envelope;
 use crate::prelude::basics::*;
 use crate::settings::Sessions;
+use crate::settings::rehearsal::Rehearsals;
 
 /// Context of a line in a REPL or batch.
 #[derive(Debug, Clone)]
@@ -25,6 +26,8 @@ pub struct Line {
     pub origin: Option<Origin>,
     /// Collects envelopes, if they are not written to stdout.
     pub results: Option<Rc<RefCell<Vec<Value>>>>,
+    /// Records of the robots, if the line is rehearsed.
+    pub rehearsal: Option<Rehearsals>,
 }
 
 /// Source location of a batch line.
@@ -68,6 +71,8 @@ impl Line {
                 let trace = access.trace.clone().filter(|_| !session.records || holding.trace.is_none());
                 Access { trace, session: Some(session), ..access }
             }
+            // Without a session, the simulator would forget everything at the end of the line.
+            HeldBy::None(why) if robot.rehearsal.is_some() => return Err(why),
             HeldBy::OtherProcess | HeldBy::None(_) => access,
         })
     }

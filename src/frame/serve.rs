@@ -3,10 +3,13 @@
 
 pub mod terminal_link;
 
+use std::fmt::Write as _;
 use std::io;
 use std::net::{IpAddr, SocketAddr};
 
 use anyhow::Context as _;
+use futures_util::FutureExt as _;
+use futures_util::future::{LocalBoxFuture, select_all};
 use schemars::JsonSchema;
 use serde::Serialize;
 use tokio::io::{AsyncBufReadExt as _, AsyncRead, AsyncReadExt as _, BufReader};
@@ -16,6 +19,7 @@ use crate::failure::{Failure, Kind, plain};
 use crate::interrupt::interruptible;
 use crate::output::view::View;
 use crate::run::{Run, RunError};
+use armctl_controller::similar_word::nearest;
 use armctl_controller::simulator::console::help_line;
 
 /// Arguments of `armctl sim FAMILY`.
@@ -28,7 +32,7 @@ pub trait Serve: Sized {
     /// Report with the address of the simulator.
     type Report: Report + 'static;
     /// Simulator.
-    type Server: Server;
+    type Server: Server + 'static;
 
     /// Starts to listen.
     async fn start(self) -> Result<Started<Self>, Failure>;
@@ -41,6 +45,8 @@ pub struct Started<S: Serve> {
     pub report: S::Report,
     /// Command line that connects to the simulator.
     pub reach: String,
+    /// URL of the simulator.
+    pub target: String,
     /// Simulator.
     pub server: S::Server,
     /// Address that the simulator listens on; `None` for a terminal.
@@ -58,6 +64,40 @@ pub trait Server {
     fn console(&mut self, line: &str) -> Result<String, String>;
     /// Sets the faults of link and device in the form of `--fault`; `None` removes all faults.
     fn set_faults(&mut self, faults: Option<&str>) -> Result<(), String>;
+}
+
+/// A [`Server`] of any family.
+pub trait AnyServer {
+    /// See [`Server::run_until_change`].
+    fn run_until_change(&mut self) -> LocalBoxFuture<'_, io::Result<()>>;
+    /// See [`Server::console`].
+    fn console(&mut self, line: &str) -> Result<String, String>;
+    /// See [`Server::set_faults`].
+    fn set_faults(&mut self, faults: Option<&str>) -> Result<(), String>;
+}
+
+impl<S: Server> AnyServer for S {
+    fn run_until_change(&mut self) -> LocalBoxFuture<'_, io::Result<()>> {
+        Server::run_until_change(self).boxed_local()
+    }
+
+    fn console(&mut self, line: &str) -> Result<String, String> {
+        Server::console(self, line)
+    }
+
+    fn set_faults(&mut self, faults: Option<&str>) -> Result<(), String> {
+        Server::set_faults(self, faults)
+    }
+}
+
+/// A simulator of any family that listens.
+pub struct NamedServer {
+    /// First word of its console lines; empty if there is only one simulator.
+    pub name: String,
+    /// URL of the simulator.
+    pub target: String,
+    /// Simulator.
+    pub server: Box<dyn AnyServer>,
 }
 
 /// Schema of the report of a simulator that listens.
@@ -82,7 +122,7 @@ impl Report for Serving {
 
 /// Starts a simulator, prints its address, and serves it until Ctrl-C.
 pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
-    let Started { report, reach, mut server, address, with_console } = arguments.start().await?;
+    let Started { report, reach, target, server, address, with_console } = arguments.start().await?;
     run.local(S::ID, &report)?;
     if address.is_some_and(|address| !address.ip().is_loopback()) {
         run.screen.note("warning: other computers on the network can reach this simulator");
@@ -92,11 +132,25 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
         let console = if with_console { " or `quit`; `help` lists the console commands" } else { "" };
         run.screen.note(&format!("reach it: {reach}\nend it:   Ctrl-C{console}"));
     }
+    serve(vec![NamedServer { name: String::new(), target, server: Box::new(server) }], with_console, run).await
+}
+
+/// Serves simulators until Ctrl-C, or until `quit` on the console.
+pub async fn serve(mut servers: Vec<NamedServer>, with_console: bool, run: &Run) -> Result<(), RunError> {
     let mut console = with_console.then(|| Console::new(tokio::io::stdin()));
+    let mut first = 0;
     loop {
+        // Each simulator is the first one in turn, so that a busy simulator does not delay the others.
+        first = (first + 1) % servers.len().max(1);
+        let (later, earlier) = servers.split_at_mut(first);
+        let changes = earlier.iter_mut().chain(later).map(|named| {
+            let change = named.server.run_until_change();
+            async { change.await.map_err(|error| Failure::io(format!("simulator {}", named.name).trim_end(), &error)) }
+                .boxed_local()
+        });
         let turn = interruptible(async {
             tokio::select! {
-                outcome = server.run_until_change() => outcome.map(|()| None).map_err(|error| Failure::io("simulator", &error)),
+                (outcome, _, _) = select_all(changes) => outcome.map(|()| None),
                 line = next_line(&mut console) => line.map(Some),
             }
         });
@@ -110,7 +164,7 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
             Some(None) => console = None,
             Some(Some(line)) if line.trim().is_empty() => {}
             Some(Some(line)) if line.trim() == "quit" => return Ok(()),
-            Some(Some(line)) => match console_line(&mut server, &line) {
+            Some(Some(line)) => match named_line(&mut servers, line.trim()) {
                 Ok(text) => run.screen.note(&text),
                 Err(why) => run.screen.failure(&Failure::usage(why).hint("use `help` to list the console commands")),
             },
@@ -118,8 +172,33 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
     }
 }
 
+/// Executes a console line. With several simulators, the line begins with the name of a simulator.
+fn named_line(servers: &mut [NamedServer], line: &str) -> Result<String, String> {
+    if let [NamedServer { name, server, .. }] = &mut *servers
+        && name.is_empty()
+    {
+        return console_line(&mut **server, line);
+    }
+    if line == "help" {
+        let lines = servers.iter().map(|named| help_line(&format!("{} COMMAND", named.name), &named.target));
+        let mut text: String = lines.flat_map(|line| [line, "\n".to_owned()]).collect();
+        let _ = write!(text, "{}", help_line("quit", "end the simulators; `NAME help` lists the commands of a robot"));
+        return Ok(text);
+    }
+    let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+    match servers.iter_mut().find(|named| named.name == word) {
+        Some(_) if rest.trim() == "quit" => Err("`quit` ends all simulators; type it without a name".to_owned()),
+        Some(named) => console_line(&mut *named.server, rest),
+        None => {
+            let near = nearest(word, servers.iter().map(|named| named.name.as_str()));
+            let near = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
+            Err(format!("no robot is called '{word}': begin the line with the name of a robot{near}"))
+        }
+    }
+}
+
 /// Executes a console line: `fault` is common to all simulators, the other lines belong to the family.
-fn console_line(server: &mut impl Server, line: &str) -> Result<String, String> {
+fn console_line(server: &mut dyn AnyServer, line: &str) -> Result<String, String> {
     let line = line.trim();
     if line == "help" {
         let fault = help_line("fault FAULTS|off", "set or remove faults, as with --fault: fault delay=50ms");

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::simulated::{self, Simulated};
+use armctl_controller::simulator::run_options::{RunOptions, Speed};
 use armctl_frame::failure::{Failure, plain};
 use armctl_frame::interrupt::catch_interrupts;
 use armctl_frame::serve::terminal_link::TerminalLink;
@@ -48,6 +49,12 @@ pub struct Serve {
     /// Faults, for example noise=1%,drop=1%,delay=0..50ms,seed=7. Other faults are parity, dup, busy and echo
     #[arg(long, value_name = "FAULTS")]
     fault: Option<LineFaultSpec>,
+    /// TEMP
+    #[arg(long)]
+    from: Option<PathBuf>,
+    /// Speed of the simulated time, such as 10x
+    #[arg(long, value_name = "FACTOR", default_value_t)]
+    speed: Speed,
     /// Read console lines on stdin; `help` lists them
     #[arg(long)]
     console: bool,
@@ -67,24 +74,26 @@ impl serve::Serve for Serve {
 
     async fn start(self) -> Result<Started<Self>, Failure> {
         let start = simulated::start(self.state.as_deref(), self.axes, self.fault.as_ref())?;
-        let speed = self.baud.map(|baud| Pace::new(baud, BITS));
+        let start = start.with_options(RunOptions { speed: self.speed, motions: None });
+        let pace = self.baud.map(|baud| Pace::new(baud, BITS));
         let settings = self.baud.map(|baud| format!("?baud={baud}")).unwrap_or_default();
         // From now on, Ctrl-C must remove the symbolic link.
         catch_interrupts();
         let (server, endpoint, address, link) = if self.pty {
-            let made = StreamServer::pseudo_terminal(speed, self.fault);
+            let made = StreamServer::pseudo_terminal(pace, self.fault);
             let (server, path) = made.map_err(|error| no_terminal(&error))?;
             let link = self.link.map(|link| TerminalLink::create(&link, &path)).transpose()?;
             let name = link.as_ref().map_or_else(|| path.clone(), |link| link.name().display().to_string());
             (server, format!("serial://{name}"), None, link)
         } else {
-            let made = StreamServer::tcp(self.bind, speed, self.fault).await;
+            let made = StreamServer::tcp(self.bind, pace, self.fault).await;
             let (server, local) = made.map_err(|error| bind_failure(&format!("TCP {}", self.bind), &error))?;
             (server, format!("tcp://{local}"), Some(local), None)
         };
         let target = format!("{endpoint}{settings}");
         Ok(Started {
             reach: serve::connect_hint("toyo", &target),
+            target: target.clone(),
             report: Serving { family: "toyo", target },
             server: Toyo { server, simulated: Simulated::new(start), _link: link },
             address,

@@ -25,6 +25,7 @@ fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
                 robot.model.value.named().unwrap_or(Model::Dx200),
                 faults.as_ref(),
             )?;
+            let start = start.with_options(robot.simulator_options());
             Ok(Endpoint::Simulator { start: Box::new(start), faults })
         }
         Place::Serial(_) | Place::Tcp(_) | Place::Bus(_) => {

@@ -8,6 +8,7 @@ use anyhow::Context as _;
 
 use crate::prelude::*;
 use crate::simulator_start::{self, Simulated};
+use armctl_controller::simulator::run_options::{RunOptions, Speed};
 use armctl_controller::yerc::simulator::Simulator;
 use armctl_frame::serve::{self, Started, address, bind_failure};
 use armctl_transport::fault::{FaultSpec, Faults};
@@ -37,6 +38,12 @@ pub struct Serve {
     /// Faults, such as drop=5%,delay=0..50ms,seed=7. Other faults are dup, reorder, corrupt and busy
     #[arg(long, value_name = "FAULTS")]
     fault: Option<FaultSpec>,
+    /// TEMP
+    #[arg(long)]
+    from: Option<PathBuf>,
+    /// Speed of the simulated time, such as 10x
+    #[arg(long, value_name = "FACTOR", default_value_t)]
+    speed: Speed,
     /// Read console lines on stdin, for example `alarm 4315`, `mode teach`, `io 20010 on`, `help`
     #[arg(long)]
     console: bool,
@@ -48,7 +55,16 @@ const ROBOT_PORT: u16 = 10040;
 impl Default for Serve {
     fn default() -> Self {
         let bind = SocketAddr::new(Ipv4Addr::LOCALHOST.into(), ROBOT_PORT);
-        Self { bind, file_port: None, model: None, state: None, fault: None, console: false }
+        Self {
+            bind,
+            file_port: None,
+            model: None,
+            state: None,
+            fault: None,
+            from: None,
+            speed: Speed::default(),
+            console: false,
+        }
     }
 }
 
@@ -65,6 +81,7 @@ impl serve::Serve for Serve {
             let message = format!("the start state is for model {}, but the selected model is {model}", start.model());
             return Err(Failure::usage(message).hint("remove --model, or change the file"));
         }
+        let start = start.with_options(RunOptions { speed: self.speed, motions: None });
         let model = start.model();
         let robot = self.bind;
         let file_port = self.file_port.unwrap_or(if robot.port() == 0 { 0 } else { robot.port().saturating_add(1) });
@@ -76,6 +93,7 @@ impl serve::Serve for Serve {
         let target = format!("udp://{robot}?file_port={}&model={model}", file.port());
         Ok(Started {
             reach: serve::connect_hint("yerc", &target),
+            target: target.clone(),
             report: Serving { family: "yerc", model: model.name(), target },
             server: Yerc { server, simulated: Simulated(Simulator::new(start)) },
             address: Some(robot),

@@ -55,7 +55,10 @@ impl Endpoint<'_> {
         let purpose = match self {
             // Faults of the network can only be simulated on a simulated network.
             Self::Sim(sim) if sim.bus.is_none() && !simulated::has_faults(sim) => {
-                return Ok((ImageLink::in_process(Box::new(simulated::in_process(sim)?)), None));
+                return Ok((
+                    ImageLink::in_process(Box::new(simulated::in_process(sim, robot.simulator_options())?)),
+                    None,
+                ));
             }
             Self::Bus(..) if access.mode == ConnectMode::Monitor => Purpose::Look,
             Self::Bus(..) | Self::Sim(_) => Purpose::Command,

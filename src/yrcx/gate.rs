@@ -13,6 +13,7 @@ use super::link::Yrcx;
 use super::simulated::in_process;
 use super::testing::{planned_line, resolved};
 use crate::prelude::*;
+use armctl_controller::simulator::run_options::RunOptions;
 use armctl_controller::yrcx::image::COMMAND_WORDS;
 use armctl_controller::yrcx::signal::resting;
 use armctl_controller::yrcx::table::Row;
@@ -417,7 +418,11 @@ impl Bench {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().unwrap();
         let (simulated, _) = resolved("sim:", &["status"]).unwrap();
         let shown = Arc::default();
-        let peer = RecordingPeer(in_process(&Sim::default()).unwrap(), Image::default(), Arc::clone(&shown));
+        let peer = RecordingPeer(
+            in_process(&Sim::default(), RunOptions::default()).unwrap(),
+            Image::default(),
+            Arc::clone(&shown),
+        );
         let access = Access::reading(ConnectMode::Control);
         let link = runtime.block_on(Link::to_peer(&simulated, &access, &QUIET, Box::new(peer))).unwrap();
         // The tests use the settings of a real controller, because the gate must treat the simulator as a real

@@ -9,6 +9,7 @@ use super::simulated::start;
 use super::typed_arguments::TypedArguments;
 use crate::prelude::*;
 use armctl_controller::simulator::console::help_line;
+use armctl_controller::simulator::run_options::{RunOptions, Speed};
 use armctl_frame::serve::{self, Serving, Started};
 use armctl_frame::settings::target::bus::simulators;
 
@@ -33,6 +34,12 @@ pub struct ServeArgs {
     /// File with the start state (TOML): robots, memory, programs, alarms, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
+    /// TEMP
+    #[arg(long)]
+    from: Option<PathBuf>,
+    /// Speed of the simulated time, such as 10x
+    #[arg(long, value_name = "FACTOR", default_value_t)]
+    speed: Speed,
     /// Read console lines on stdin; `help` lists them
     #[arg(long)]
     console: bool,
@@ -78,9 +85,11 @@ impl serve::Serve for ServeArgs {
             return Err(misplaced("link", fieldbus.name, "a simulator with a pseudo-terminal"));
         }
         let (start, link, faults) = (start(self.state.as_deref())?, self.link.as_deref(), self.fault.as_deref());
+        let start = start.with_options(RunOptions { speed: self.speed, motions: None });
         let server = serve.serve(ServeOptions { simulator: wanted, start, link, faults })?;
         Ok(Started {
             reach: serve::connect_hint("yrcx", &server.target),
+            target: server.target.clone(),
             report: Serving { family: "yrcx", target: server.target.clone() },
             address: server.address,
             server,

@@ -5,6 +5,7 @@ use std::path::Path;
 use anyhow::Context as _;
 
 pub use armctl_client::yrcx::Simulated;
+use armctl_controller::simulator::run_options::RunOptions;
 use armctl_controller::yrcx::simulator::Start;
 use armctl_files as files;
 use armctl_frame::failure::Failure;
@@ -12,8 +13,8 @@ use armctl_frame::settings::target::Sim;
 use armctl_transport::fault::{FaultNames, FaultText, SimulatorFaults};
 
 /// Creates a simulator in this process, with the start state that the URL names.
-pub fn in_process(sim: &Sim) -> Result<Simulated, Failure> {
-    Ok(Simulated::new(start(sim.state.as_deref())?))
+pub fn in_process(sim: &Sim, options: RunOptions) -> Result<Simulated, Failure> {
+    Ok(Simulated::new(start(sim.state.as_deref())?.with_options(options)))
 }
 
 /// Whether the URL has faults. Faults need a simulated network.

@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use crate::command::families::FAMILIES;
 use crate::command::fleet::status::{Fleet, Overview};
-use crate::command::fleet::{common, names, robots, session, tools, wait};
+use crate::command::fleet::{cell, common, names, rehearsal, robots, session, tools, wait};
 #[cfg(feature = "plant")]
 use crate::command::fleet::{metrics, publish};
 use armctl_controller::similar_word::nearest;
@@ -77,6 +77,8 @@ pub fn all() -> Vec<SchemaEntry> {
         SchemaEntry::of::<robots::Shown>("robots.show"),
         #[cfg(feature = "plant")]
         SchemaEntry::of::<metrics::Listening>("serve.metrics"),
+        cell::schema(),
+        rehearsal::schema(),
         SchemaEntry::of::<session::Closed>("session.close"),
         SchemaEntry::of::<session::Sessions>("session.list"),
         SchemaEntry::of::<Opened>("session.open"),

@@ -3,6 +3,7 @@
 #[cfg(feature = "plant")]
 pub mod also;
 pub mod backup;
+pub mod cell;
 pub mod common;
 #[cfg(feature = "plant")]
 pub mod metrics;
@@ -10,6 +11,7 @@ pub mod names;
 pub mod poll;
 #[cfg(feature = "plant")]
 pub mod publish;
+pub mod rehearsal;
 #[cfg(feature = "plant")]
 pub mod report_values;
 pub mod robots;

@@ -6,6 +6,7 @@ use std::marker::PhantomData;
 use clap::{ArgMatches, Command, FromArgMatches, Subcommand};
 
 use crate::command::families::{self, FAMILIES};
+use crate::command::fleet::cell::CellArguments;
 use armctl_frame::SchemaEntry;
 use armctl_frame::face::tool::{Tool, ToolKind, ToolTask};
 use armctl_frame::prelude::*;
@@ -18,23 +19,27 @@ pub type Explain = FamilyTool<Explaining>;
 
 /// Which simulator to serve.
 #[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true)]
 pub struct Sim {
+    #[command(flatten)]
+    cell: CellArguments,
     #[command(subcommand)]
     family: Option<FamilyTool<Simulating>>,
 }
 
 impl Sim {
-    /// Runs the command. Without a family, lists the simulators.
+    /// Runs the command. Without arguments, lists the simulators.
     pub async fn run(self, run: &Run) -> Result<(), RunError> {
         match self.family {
             Some(simulator) => simulator.run(run).await,
+            None if self.cell.is_named() => self.cell.run(run).await,
             None => run.local("sim", &Simulators::all()),
         }
     }
 
     /// Whether the command only lists the simulators.
     pub fn is_list(&self) -> bool {
-        self.family.is_none()
+        self.family.is_none() && !self.cell.is_named()
     }
 }
 

@@ -42,6 +42,11 @@ impl CompareOptions {
     /// Every byte counts.
     pub const EXACT: Self = Self { tolerance: Tolerance::NONE, exact: true };
 
+    /// Ignores positions within the default tolerance and lines that controllers rewrite.
+    pub fn usual_tolerance() -> Self {
+        Self::usual(Tolerance::of(&[]))
+    }
+
     /// Ignores positions within the tolerance and lines that controllers rewrite.
     pub const fn usual(tolerance: Tolerance) -> Self {
         Self { tolerance, exact: false }
@@ -141,6 +146,11 @@ impl Differences {
         }
         let equal = files.iter().all(|file| file.more.state.is_equal());
         Ok(Self { old: SideReport::new(old), new: SideReport::new(new), equal, tolerance: manner.tolerance, files })
+    }
+
+    /// Files and parts that differ.
+    pub fn changed(self) -> Vec<Difference> {
+        self.files.into_iter().filter(|file| !file.more.state.is_equal()).collect()
     }
 
     fn count(&self, states: &[State]) -> usize {

@@ -9,12 +9,13 @@ use anyhow::Context as _;
 use jiff::Timestamp;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use serde_json::Value;
+use serde_json::{Map, Value, json};
 use sha2::{Digest as _, Sha256};
 
 use crate::local_names::{Target, is_plain_file_name};
 use crate::output::escape;
 use crate::prelude::basics::*;
+use crate::settings::Origin;
 use crate::settings::target::Family;
 use armctl_controller::text::{hex, unhex};
 use armctl_files as files;
@@ -43,6 +44,10 @@ pub struct Manifest<C = Value> {
     pub robot: String,
     /// URL of the robot.
     pub target: String,
+    /// Settings of the robot's inventory entry, with the keys of `robots.toml`; empty in a backup of an address, and in
+    /// a backup of an older armctl.
+    #[serde(skip_serializing_if = "Map::is_empty", default)]
+    pub inventory: Map<String, Value>,
     /// Model and versions.
     pub controller: C,
     /// Selection, if the backup does not include everything: file types, number ranges, name patterns.
@@ -118,6 +123,7 @@ impl<C: About> Manifest<C> {
             family: robot.family.name().to_owned(),
             robot: robot.name.clone(),
             target: robot.target.value.url().to_owned(),
+            inventory: inventory_settings(robot),
             controller,
             scope,
             taken_at: now,
@@ -179,6 +185,32 @@ impl<C: About> Manifest<C> {
         }
         self.controller.check()
     }
+}
+
+/// Settings of the inventory entry that describe the robot and protect it. The settings of its connection are not
+/// among them.
+fn inventory_settings(robot: &Robot) -> Map<String, Value> {
+    let mut settings = Map::new();
+    if robot.target.origin != Origin::Robot {
+        return settings;
+    }
+    let mut set = |key: &str, is_set: bool, value: Value| {
+        if is_set {
+            settings.insert(key.to_owned(), value);
+        }
+    };
+    set("tags", true, json!(robot.tags));
+    for (key, value) in robot.place.levels() {
+        set(key, value.is_some(), json!(value));
+    }
+    let names = robot.names.entry_names();
+    let names: Map<_, _> = names.iter().map(|name| (name.name.clone(), json!(name.address))).collect();
+    set("names", !names.is_empty(), names.into());
+    set("read_only", robot.read_only.value, json!(true));
+    set("hold", robot.hold.value, json!(true));
+    set("encoding", robot.encoding.origin != Origin::BuiltIn, json!(robot.encoding.value.to_string()));
+    set("pulses_per_degree", !robot.pulses_per_degree.is_empty(), json!(robot.pulses_per_degree));
+    settings
 }
 
 /// Reads the manifest in `folder`; `None` if there is none.

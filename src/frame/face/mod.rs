@@ -11,6 +11,8 @@ pub mod shared_commands;
 pub mod teach_panel;
 pub mod tool;
 
+use std::ffi::OsString;
+
 use clap::ArgMatches;
 use futures_util::future::LocalBoxFuture;
 
@@ -23,6 +25,7 @@ use self::teach_panel::Panel;
 use self::tool::{Tool, ToolKind};
 use super::backup::{BackupReport, RestoreReport, RestoreSelection, SaveOptions};
 use super::robot::alarm::Alarm;
+use super::serve::NamedServer;
 use crate::prelude::basics::*;
 use crate::settings::target::Family;
 use crate::{Access, AnyCommand, AnyContext, Connection, Driver, Outcome, SchemaEntry};
@@ -58,6 +61,9 @@ pub trait Face: Sync {
     fn read(&self, matches: &mut ArgMatches) -> Result<FamilyLine, clap::Error>;
     /// Schemas of all reports of the family.
     fn schemas(&self) -> Vec<SchemaEntry>;
+
+    /// Serves a simulator with these arguments of `armctl sim FAMILY`.
+    fn serve(&self, name: String, arguments: Vec<OsString>) -> LocalBoxFuture<'static, Result<NamedServer, Failure>>;
 
     /// Tool of the family of this kind.
     fn tool(&self, kind: ToolKind) -> Tool;

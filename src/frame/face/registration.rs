@@ -1,5 +1,6 @@
 //! Declaration of a family in its own types. [`Registered`] converts it to the [`Face`] for the rest of the program.
 
+use std::ffi::OsString;
 use std::marker::PhantomData;
 
 use clap::{ArgMatches, FromArgMatches as _, Subcommand};
@@ -22,7 +23,7 @@ use crate::connection;
 use crate::decode::Decode;
 use crate::prelude::basics::*;
 use crate::robot::alarm::Alarm;
-use crate::serve::Serve;
+use crate::serve::{NamedServer, Serve, Started};
 use crate::settings::alarms::{Alarms, Origin};
 use crate::settings::target;
 use crate::{Access, AnyCommand, AnyContext, Command, CommandSet, Driver, FamilyArguments, Outcome, SchemaEntry};
@@ -182,6 +183,17 @@ impl<F: Declaration> Face for Registered<F> {
 
     fn schemas(&self) -> Vec<SchemaEntry> {
         F::Commands::schemas()
+    }
+
+    fn serve(&self, name: String, arguments: Vec<OsString>) -> LocalBoxFuture<'static, Result<NamedServer, Failure>> {
+        async move {
+            let command = F::Serve::augment_args(clap::Command::new("sim").no_binary_name(true));
+            let parsed = command.try_get_matches_from(arguments).and_then(|found| F::Serve::from_arg_matches(&found));
+            let serve = parsed.map_err(|error| Failure::local(format!("internal error: {error}")))?;
+            let Started { target, server, .. } = serve.start().await?;
+            Ok(NamedServer { name, target, server: Box::new(server) })
+        }
+        .boxed_local()
     }
 
     fn tool(&self, kind: ToolKind) -> Tool {

@@ -10,6 +10,7 @@ pub mod inventory;
 pub mod model;
 pub mod names;
 pub mod place;
+pub mod rehearsal;
 pub mod target;
 
 use std::fmt;
@@ -23,12 +24,14 @@ use crate::failure::Failure;
 use alarms::Alarms;
 use armctl_controller::names::Name;
 use armctl_controller::similar_word::nearest;
+use armctl_controller::simulator::run_options::RunOptions;
 use armctl_controller::text::Encoding;
 use armctl_controller::yerc::Model;
 use inventory::{Entry, Inventory, Options};
 use model::{ModelCache, ModelSetting};
 use names::RobotNames;
 use place::Place;
+use rehearsal::{Rehearsal, Rehearsals};
 use target::{Address, Family, Target, TargetArgument};
 
 /// Where a setting comes from.
@@ -109,6 +112,8 @@ pub struct Robot {
     pub names: RobotNames,
     /// Path of the inventory. A change of the inventory can make the robot read-only at any time.
     pub inventory: Option<PathBuf>,
+    /// Record of a rehearsal, in which a simulator stands for the robot.
+    pub rehearsal: Option<Rehearsal>,
 }
 
 /// Folder for persistent state of the user; `None` without a home folder.
@@ -130,6 +135,11 @@ impl Robot {
         let cached = || ModelCache::of_user()?.find(&target.address()).map(|told| told.model());
         let simulated = || target.is_simulated().then_some(Model::Dx200);
         self.model.value.named().or_else(cached).or_else(simulated)
+    }
+
+    /// Options of the simulator, if the target is a simulator.
+    pub fn simulator_options(&self) -> RunOptions {
+        self.rehearsal.as_ref().map(Rehearsal::simulator_options).unwrap_or_default()
     }
 
     /// Name of the robot on a command line: its name in the inventory, or its URL.
@@ -229,6 +239,8 @@ pub struct Sources {
     pub environment: Options,
     /// Inventory.
     pub inventory: Inventory,
+    /// Records of a rehearsal. Only the robots of the rehearsal can then be selected.
+    pub rehearsal: Option<Rehearsals>,
 }
 
 /// Default number of retries of a read.
@@ -238,6 +250,11 @@ impl Sources {
     /// Returns the selected robots for a command of `family` (`None`: any family). There is at least one.
     pub fn robots(&self, family: Option<Family>) -> Result<Vec<Robot>, Failure> {
         let selection = &self.selection;
+        if self.rehearsal.is_some() && (selection.sim || selection.target.is_some() || selection.environment.is_some())
+        {
+            return Err(Failure::usage("a rehearsal reaches only the robots of the backup, by name")
+                .hint("select a robot with -r NAME instead of --sim, -t URL or ARMCTL_TARGET"));
+        }
         if selection.from_environment && selection.environment.is_some() {
             return Err(Failure::usage("ARMCTL_TARGET and ARMCTL_ROBOT are both set, and each selects a robot")
                 .hint("unset one of them, or select the robot with -r or -t"));
@@ -343,7 +360,8 @@ impl Sources {
         let robot = self.robot(entry.name.clone(), entry.family, target, &entry.options, entry.tags.clone());
         let names = RobotNames::new(Arc::clone(&entry.names), entry.family, &entry.target.address());
         let (pulses_per_degree, place) = (entry.pulses_per_degree.clone(), entry.place.clone());
-        Ok(Robot { pulses_per_degree, place, names, ..robot })
+        let rehearsal = self.rehearsal.as_ref().and_then(|robots| robots.get(&entry.name)).cloned();
+        Ok(Robot { pulses_per_degree, place, names, rehearsal, ..robot })
     }
 
     /// Returns the robot at a target, with all settings.
@@ -489,6 +507,7 @@ impl Sources {
             alarms: self.alarms(),
             // The path is absolute, so that it stays valid in any folder.
             inventory: self.inventory.path.as_deref().and_then(|path| std::path::absolute(path).ok()),
+            rehearsal: None,
         };
         self.apply_read_only(&mut robot);
         robot

@@ -75,6 +75,11 @@ impl RobotNames {
         Self { entry_names, cache, models, is_simulated, all: Arc::default() }
     }
 
+    /// Names from the inventory entry of the robot.
+    pub fn entry_names(&self) -> &[Name] {
+        &self.entry_names
+    }
+
     /// Location of the cache; `None` for controllers that have no names.
     pub fn cache_file(&self) -> Option<&CacheFile> {
         self.cache.as_ref()

@@ -384,7 +384,10 @@ fn sim(place: &str, query: &mut Query) -> Result<Sim, String> {
         traits: traits(query)?,
         axes,
         baud: baud(query)?,
-        state: query.take("state").map(PathBuf::from),
+        state: {
+            let _temp = query.take("from");
+            query.take("state").map(PathBuf::from)
+        },
         fault: query.take("fault"),
         bus: query.take("bus").map(|name| bus(&name)).transpose()?,
     })

@@ -5,6 +5,7 @@
 
 use super::motion::{AXES, Coordinates, Drive, Path, Segment, minus, plus};
 use crate::Now;
+use crate::simulator::run_options::MotionLog;
 
 /// Owner of the moves that belong to no task: JOG, and return to origin by the host.
 pub(super) const HOST: usize = 4;
@@ -39,6 +40,8 @@ pub(super) struct Arm {
     pub(super) sensors: Coordinates,
     /// The current return to origin.
     pub(super) homing: Option<Homing>,
+    /// Log of the moves.
+    pub(super) motions: Option<MotionLog>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -161,6 +164,7 @@ impl Arm {
     /// Removes finished moves.
     pub(super) fn settle(&mut self, now: Now) {
         if self.segments.iter().any(|segment| segment.ends() <= now) {
+            self.segments.iter().filter(|segment| segment.ends() <= now).for_each(|segment| self.log(segment, now));
             self.segments.retain(|segment| segment.ends() > now);
             self.touch();
         }
@@ -248,6 +252,12 @@ impl Arm {
         None
     }
 
+    fn log(&self, segment: &Segment, now: Now) {
+        if let Some(log) = self.motions.as_ref().filter(|_| !segment.is_in_future(now)) {
+            log.push(segment.entry(now));
+        }
+    }
+
     fn belongs_to(&self, axis: usize, owner: usize) -> bool {
         owner == HOST || self.owners[axis] == owner
     }
@@ -268,6 +278,7 @@ impl Arm {
                 self.segments.push(braked);
                 braked.done(braked.ends())
             } else {
+                self.log(&segment, now);
                 self.goal = plus(&self.goal, &segment.remaining_displacement(now));
                 segment.done(now)
             };

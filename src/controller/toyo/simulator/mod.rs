@@ -100,6 +100,7 @@ use super::layout::Record;
 use super::request::MAX_BLOCK_LEN;
 use crate::Now;
 use crate::simulator::answers::{Busy, DelayedAnswers};
+use crate::simulator::run_options::Speed;
 
 /// Maximum number of answers that wait to be sent.
 const MAX_WAITING: usize = 64;
@@ -111,6 +112,7 @@ pub struct Simulator {
     busy: Busy,
     incoming: IncomingBlock,
     answers: DelayedAnswers<Vec<u8>>,
+    speed: Speed,
 }
 
 /// A partly received block.
@@ -146,8 +148,10 @@ pub struct State {
 
 impl Simulator {
     /// A controller in its start state.
-    pub fn new(start: Start) -> Self {
+    pub fn new(mut start: Start) -> Self {
+        start.world.arm.motions = start.options.motions;
         Self {
+            speed: start.options.speed,
             world: start.world,
             busy: Busy::new(start.busy, start.seed),
             incoming: IncomingBlock::default(),
@@ -182,12 +186,13 @@ impl Simulator {
     /// Takes the next answer that is due at `now`, with its line end.
     pub fn transmit(&mut self, now: Now) -> Option<Vec<u8>> {
         self.advance(now);
-        self.answers.take(now)
+        self.answers.take(self.speed.simulated(now))
     }
 
     /// Time of the next answer or internal event.
     pub fn wake(&self) -> Option<Now> {
-        [self.answers.due(), self.world.next()].into_iter().flatten().min()
+        let due = [self.answers.due(), self.world.next()].into_iter().flatten().min();
+        due.map(|due| self.speed.real(due))
     }
 
     /// Sets the share of requests that the simulator refuses with `@NG`, 0.0 to 1.0.
@@ -210,7 +215,7 @@ impl Simulator {
 
     /// Advances the time to `now`, which never runs backwards.
     pub fn advance(&mut self, now: Now) {
-        let now = now.max(self.world.now);
+        let now = self.speed.simulated(now).max(self.world.now);
         self.world.advance(now);
     }
 

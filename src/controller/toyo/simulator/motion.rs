@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::time::Duration;
 
 use crate::Now;
+use crate::simulator::run_options::{self, path_length};
 
 /// Maximum number of axes.
 pub(super) const AXES: usize = 4;
@@ -71,6 +72,8 @@ pub(super) struct Segment {
     began: Now,
     /// End position. If the move was decelerated early, this position lies before the end of the path.
     end: Coordinates,
+    /// Skipped length and start time, before a deceleration.
+    start: (f64, Now),
 }
 
 impl Drive {
@@ -258,11 +261,32 @@ impl Segment {
     /// A move that begins at time `began`, which may be in the future.
     pub(super) fn new(owner: usize, path: Path, skip: f64, drive: Drive, began: Now) -> Self {
         let profile = Profile::trapezoid((path.length() - skip).max(0.0), drive);
-        Self { owner, path, skip, drive, profile, began, end: path.end() }
+        Self { owner, path, skip, drive, profile, began, end: path.end(), start: (skip, began) }
     }
 
     pub(super) fn ends(&self) -> Now {
         self.began.saturating_add(duration(self.profile.seconds()))
+    }
+
+    /// Entry for the log of motions, if the move ends at `now`.
+    pub(super) fn entry(&self, now: Now) -> run_options::Motion {
+        let (skip, began) = self.start;
+        let now = now.min(self.ends());
+        let done = self.done(now);
+        let to = self.path.at(done);
+        run_options::Motion {
+            group: if self.owner < AXES { format!("task {}", self.owner + 1) } else { "host".to_owned() },
+            from: self.path.at(skip).into(),
+            to: to.into(),
+            unit: "mm",
+            distance_mm: Some(path_length(|share| {
+                let [x, y, z, _] = self.path.at(skip + (done - skip) * share);
+                [x, y, z]
+            })),
+            began,
+            took: now.saturating_sub(began),
+            reached: now >= self.ends() && self.end == self.path.end(),
+        }
     }
 
     /// Time during the deceleration at which `share` of the deceleration is left.

@@ -24,6 +24,7 @@ use super::world::{COUNTERS, Mode, Switches, TIMERS, World};
 use crate::Now;
 use crate::simulator::console;
 use crate::simulator::refuse_if;
+use crate::simulator::run_options::RunOptions;
 use crate::simulator::start::{self, Event, Source, Table, default_entry, default_text};
 use crate::simulator::timeline::Timeline;
 use crate::toyo::field::{Mask, Value};
@@ -38,6 +39,7 @@ pub struct Start {
     pub(super) seed: u64,
     pub(super) answer_delay: Duration,
     pub(super) busy: f64,
+    pub(super) options: RunOptions,
 }
 
 /// A start state with all keys. Each key is optional.
@@ -101,6 +103,12 @@ impl Start {
     #[must_use]
     pub fn with_busy(self, busy: f64) -> Self {
         Self { busy: busy.clamp(0.0, 1.0), ..self }
+    }
+
+    /// Sets the speed of the simulated time, and the log of motions.
+    #[must_use]
+    pub fn with_options(self, options: RunOptions) -> Self {
+        Self { options, ..self }
     }
 
     /// Adds a program to a task, 1 to 4. The task gets as many steps as the program needs (E22).
@@ -258,7 +266,7 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
     world.settle();
     world.events = source.timeline(&entries.events, ConsoleLine::parse)?;
     let answer_delay = Duration::from_millis(entries.answer_delay_ms);
-    Ok(Start { world, seed: entries.seed, answer_delay, busy })
+    Ok(Start { world, seed: entries.seed, answer_delay, busy, options: RunOptions::default() })
 }
 
 /// A controller without content.

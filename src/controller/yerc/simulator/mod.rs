@@ -44,6 +44,7 @@ use self::world::{Refusal, World, code};
 use super::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, RequestFrame, Status, WireError};
 use crate::Now;
 use crate::simulator::answers::{Busy, DelayedAnswers};
+use crate::simulator::run_options::Speed;
 
 /// Maximum number of pending answers.
 const MAX_WAITING: usize = 4096;
@@ -75,12 +76,15 @@ pub struct Simulator {
     files: FileServer,
     busy: Busy,
     answers: DelayedAnswers<Outgoing>,
+    speed: Speed,
 }
 
 impl Simulator {
     /// A controller in its start state.
-    pub fn new(start: Start) -> Self {
+    pub fn new(mut start: Start) -> Self {
+        start.world.arm.motions = start.options.motions;
         Self {
+            speed: start.options.speed,
             files: FileServer::new(start.backup_time, start.backup_size, start.idle_limit),
             busy: Busy::new(start.busy, start.seed),
             answers: DelayedAnswers::new(start.answer_delay, MAX_WAITING),
@@ -91,6 +95,7 @@ impl Simulator {
     /// Handles a datagram that arrived at `now` on the robot or file port. `peer` is a token by which the caller
     /// identifies the client.
     pub fn receive(&mut self, now: Now, division: Division, peer: u64, bytes: &[u8]) {
+        let now = self.speed.simulated(now);
         self.advance(now);
         let now = self.world.now;
         let request = RequestFrame::parse(bytes)
@@ -114,13 +119,15 @@ impl Simulator {
 
     /// Takes the next datagram that is due at `now`.
     pub fn transmit(&mut self, now: Now) -> Option<Outgoing> {
+        let now = self.speed.simulated(now);
         self.advance(now);
         self.answers.take(now)
     }
 
     /// Time of the next datagram or internal event.
     pub fn wake(&self) -> Option<Now> {
-        [self.answers.due(), self.world.wake(), self.files.wake()].into_iter().flatten().min()
+        let due = [self.answers.due(), self.world.wake(), self.files.wake()].into_iter().flatten().min();
+        due.map(|due| self.speed.real(due))
     }
 
     /// Sets the share of requests that the simulator refuses as busy (added status D8FA), 0.0 to 1.0.
@@ -130,6 +137,7 @@ impl Simulator {
 
     /// Executes a console line, for example `alarm 4315 3 1`, `remote off` or `state`. Returns its output, or an error.
     pub fn console(&mut self, now: Now, line: &str) -> Result<String, String> {
+        let now = self.speed.simulated(now);
         self.advance(now);
         let answer = console::execute(&mut self.world, line);
         self.advance(now);

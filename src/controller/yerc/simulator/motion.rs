@@ -9,6 +9,7 @@
 use std::time::Duration;
 
 use crate::Now;
+use crate::simulator::run_options::{self, MotionLog, path_length};
 
 /// Maximum number of axes in the protocol.
 pub(super) const AXES: usize = 8;
@@ -266,11 +267,13 @@ impl Motion {
 pub(super) struct Arm {
     pub(super) groups: Vec<Group>,
     motion: Option<Motion>,
+    /// Log of the motions.
+    pub(super) motions: Option<MotionLog>,
 }
 
 impl Arm {
     pub(super) fn new(groups: Vec<Group>) -> Self {
-        Self { groups, motion: None }
+        Self { groups, motion: None, motions: None }
     }
 
     pub(super) fn find(&self, family: Family, number: u16) -> Option<usize> {
@@ -367,6 +370,7 @@ impl Arm {
     /// Stops the motion at once, as brakes do without servo power.
     pub(super) fn halt(&mut self, now: Now) {
         self.place(now);
+        self.log(now, false);
         self.motion = None;
     }
 
@@ -383,8 +387,33 @@ impl Arm {
             _ if motion.braking.is_some() && now >= motion.end() => Some(End::Stopped),
             _ => None,
         }?;
+        self.log(now, end == End::Arrived);
         self.motion = None;
         Some(end)
+    }
+
+    /// Adds the motion, which ends now, to the log.
+    fn log(&self, now: Now, reached: bool) {
+        let (Some(log), Some(motion)) = (&self.motions, &self.motion) else { return };
+        let fraction = motion.fraction(now).min(motion.limit.map_or(1.0, |(limit, ..)| limit));
+        for leg in &motion.legs {
+            let group = &self.groups[leg.group];
+            let values = |pulses: &Pulses| pulses[..group.axes].to_vec();
+            let tool = |share: f64| {
+                let [x, y, z, ..] = forward(&leg.at(share * fraction));
+                [x, y, z]
+            };
+            log.push(run_options::Motion {
+                group: group.name(),
+                from: values(&leg.from),
+                to: values(&leg.at(fraction)),
+                unit: "pulses",
+                distance_mm: (group.family == Family::Robot).then(|| path_length(tool)),
+                began: motion.begun,
+                took: now.saturating_sub(motion.begun),
+                reached,
+            });
+        }
     }
 
     fn place(&mut self, now: Now) {

@@ -18,6 +18,7 @@ use super::storage::{Content, Storage, check_stored_name};
 use super::variable_file;
 use super::world::{Holds, Meters, Mode, Switches, World};
 use crate::Now;
+use crate::simulator::run_options::RunOptions;
 use crate::simulator::start::{self, Event, Source, Table, default_entry, default_text, numbered};
 use crate::simulator::timeline::Timeline;
 use crate::yerc::Model;
@@ -33,6 +34,7 @@ pub struct Start {
     pub(super) backup_time: Duration,
     pub(super) backup_size: u64,
     pub(super) idle_limit: Duration,
+    pub(super) options: RunOptions,
 }
 
 /// A start state with all keys. Each key is optional.
@@ -135,6 +137,12 @@ impl Start {
     #[must_use]
     pub fn with_busy(self, busy: f64) -> Self {
         Self { busy: busy.clamp(0.0, 1.0), ..self }
+    }
+
+    /// Sets the speed of the simulated time, and the log of motions.
+    #[must_use]
+    pub fn with_options(self, options: RunOptions) -> Self {
+        Self { options, ..self }
     }
 }
 
@@ -346,6 +354,7 @@ fn build(
         backup_time: Duration::from_secs(entries.backup_seconds),
         backup_size: entries.backup_size,
         idle_limit: Duration::from_millis(entries.transfer_timeout_ms),
+        options: RunOptions::default(),
     })
 }
 

@@ -85,6 +85,7 @@ use self::world::{Link, SCAN, World};
 use super::alarm::Alarm;
 use super::image::Image;
 use crate::Now;
+use crate::simulator::run_options::Speed;
 
 /// Maximum number of scans per call. After these scans, the rest of the time is one scan.
 const MAX_SCANS: u32 = 1_000_000;
@@ -111,11 +112,15 @@ pub struct Simulator {
     touched: Option<Now>,
     /// Time of the last scan.
     scanned: Option<Now>,
+    speed: Speed,
 }
 
 impl Simulator {
     /// A controller in its start state, to which no master has connected yet.
-    pub fn new(start: Start) -> Self {
+    pub fn new(mut start: Start) -> Self {
+        for (number, robot) in start.world.robots.iter_mut().enumerate() {
+            robot.log = start.options.motions.clone().map(|log| (number, log));
+        }
         let mut simulator = Self {
             world: start.world,
             remote: Remote::new(start.run_scans, start.seed),
@@ -125,6 +130,7 @@ impl Simulator {
             incoming: None,
             touched: None,
             scanned: None,
+            speed: start.options.speed,
         };
         simulator.scan(Now::ZERO);
         simulator
@@ -139,7 +145,8 @@ impl Simulator {
 
     /// Handles the image of the master from `now` on. `None` means that the link is lost, which is an alarm.
     pub fn input(&mut self, now: Now, image: Option<&Image>) {
-        self.advance(now);
+        let now = self.speed.simulated(now);
+        self.run_scans(now);
         let known = match self.world.link {
             Link::Waiting => None,
             Link::Up => Some(Master::Shows(self.world.inputs)),
@@ -160,6 +167,11 @@ impl Simulator {
 
     /// Time of the next scan that may change something, without an input from outside.
     pub fn wake(&self) -> Option<Now> {
+        self.next_scan().map(|due| self.speed.real(due))
+    }
+
+    /// Simulated time of the next scan that may change something.
+    fn next_scan(&self) -> Option<Now> {
         let due = [self.touched, self.world.due(), self.remote.due(&self.world)].into_iter().flatten().min()?;
         let next = next_scan(due);
         let earliest = self.scanned.map_or(Now::ZERO, |last| last.saturating_add(SCAN));
@@ -168,8 +180,12 @@ impl Simulator {
 
     /// Runs all scans up to `now`. The time never runs backwards.
     pub fn advance(&mut self, now: Now) {
+        self.run_scans(self.speed.simulated(now));
+    }
+
+    fn run_scans(&mut self, now: Now) {
         for _ in 0..MAX_SCANS {
-            let Some(at) = self.wake().filter(|at| *at <= now) else { return };
+            let Some(at) = self.next_scan().filter(|at| *at <= now) else { return };
             self.scan(at);
         }
         self.scan(now.max(self.world.now));
@@ -177,7 +193,8 @@ impl Simulator {
 
     /// Executes a console line, for example `estop on`, `box on` or `state`. Returns its output, or an error.
     pub fn console(&mut self, now: Now, line: &str) -> Result<String, String> {
-        self.advance(now);
+        let now = self.speed.simulated(now);
+        self.run_scans(now);
         if line.trim() == "journal" {
             return Ok(self.journal.take());
         }

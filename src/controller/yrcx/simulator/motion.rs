@@ -6,6 +6,7 @@ use std::time::Duration;
 use super::alarms::Fault;
 use super::geometry::{Arm, FourValues, Geometry};
 use crate::Now;
+use crate::simulator::run_options::{self, path_length};
 
 /// Seconds to full speed with an acceleration coefficient of 100 %.
 const ACCELERATION_TIME: f64 = 0.2;
@@ -169,6 +170,15 @@ impl Leg {
             _ => 1.0,
         }
     }
+
+    /// Length of this share of the path of the tool, in mm.
+    fn length_mm(&self, share: f64, geometry: &Geometry) -> f64 {
+        path_length(|part| {
+            let pulses = self.path.at(part * share, geometry).unwrap_or_default();
+            let [x, y, z, _] = geometry.pose(&pulses);
+            [x, y, z]
+        })
+    }
 }
 
 /// A running motion.
@@ -181,12 +191,38 @@ pub(super) struct Motion {
     /// Reason for a stop, and the deceleration from the position where the stop began.
     stop: Option<(Fault, Profile)>,
     end: End,
+    /// Time and position at the start.
+    start: (Now, FourValues),
+    /// Length of the completed segments in mm, and the completed share of the current segment.
+    done: (f64, f64),
+    /// Time of the last position.
+    now: Now,
 }
 
 impl Motion {
     /// Starts a motion now. When the path is complete, the motion ends with `end`.
     pub(super) fn new(owner: Owner, geometry: Geometry, legs: Vec<Leg>, end: End, now: Now) -> Self {
-        Self { owner, geometry, legs: legs.into(), began: now, stop: None, end }
+        let from = legs.first().and_then(|leg| leg.path.at(0.0, &geometry)).unwrap_or_default();
+        let (start, done) = ((now, from), (0.0, 0.0));
+        Self { owner, geometry, legs: legs.into(), began: now, stop: None, end, start, done, now }
+    }
+
+    /// Entry for the log of motions, at the last position `to` in pulses. `number` is the index of the robot.
+    pub(super) fn entry(&self, number: usize, axes: usize, to: &FourValues, reached: bool) -> run_options::Motion {
+        let (length, share) = self.done;
+        let length = length + self.legs.front().map_or(0.0, |leg| leg.length_mm(share, &self.geometry));
+        let (began, from) = &self.start;
+        let pose = |pulses: &FourValues| self.geometry.pose(pulses).into_iter().take(axes).collect();
+        run_options::Motion {
+            group: format!("robot {}", number + 1),
+            from: pose(from),
+            to: pose(to),
+            unit: "mm",
+            distance_mm: Some(length),
+            began: *began,
+            took: self.now.saturating_sub(*began),
+            reached,
+        }
     }
 
     /// Time at which the current segment ends.
@@ -223,11 +259,13 @@ impl Motion {
                 None => leg.profile.at(seconds).0,
             };
             let share = if over && self.stop.is_none() { 1.0 } else { leg.share(way) };
+            (self.now, self.done.1) = (now.min(due), share);
             place = leg.path.at(share, &self.geometry).or(place);
             match &self.stop {
                 _ if !over => return (place, None),
                 Some((fault, _)) => return (place, Some(End::Stopped(fault.clone()))),
                 None => {
+                    self.done = (self.done.0 + leg.length_mm(1.0, &self.geometry), 0.0);
                     self.legs.pop_front();
                     self.began = due;
                 }

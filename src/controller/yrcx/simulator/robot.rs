@@ -6,6 +6,7 @@ use super::alarms::{AlarmSource, Fault, SOFT_LIMIT};
 use super::geometry::{Arm, FourValues, Geometry, Kind};
 use super::motion::{End, Motion, Owner};
 use crate::Now;
+use crate::simulator::run_options::MotionLog;
 use crate::yrcx::image::Words;
 
 /// Maximum number of axes.
@@ -122,6 +123,8 @@ pub(super) struct Robot {
     /// Axes whose origin becomes known when the motion ends, one bit per axis.
     pub(super) homing: u8,
     pub(super) kept: Option<ResumableMotion>,
+    /// Log of the motions, and the index of this robot.
+    pub(super) log: Option<(usize, MotionLog)>,
 }
 
 impl Robot {
@@ -171,6 +174,7 @@ impl Robot {
             }
         }
         if let Some(end) = end {
+            self.log_motion(!matches!(end, End::Stopped(_)));
             self.motion = None;
             self.pushing = None;
             if end == End::Arrived {
@@ -186,11 +190,18 @@ impl Robot {
 
     /// Ends the motion at once because power is off.
     pub(super) fn halt(&mut self, fault: &Fault) {
+        self.log_motion(false);
         if let Some(motion) = self.motion.take() {
             self.ended.push((motion.owner, End::Stopped(fault.clone())));
         }
         self.pushing = None;
         self.homing = 0;
+    }
+
+    fn log_motion(&self, reached: bool) {
+        if let (Some((number, log)), Some(motion)) = (&self.log, &self.motion) {
+            log.push(motion.entry(*number, self.axes.len(), &self.pulses(), reached));
+        }
     }
 
     /// Removes and returns the end of a motion of `owner`.

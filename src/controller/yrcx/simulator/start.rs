@@ -19,6 +19,7 @@ use super::memory::Memory;
 use super::robot::{Method, Motor};
 use super::world::{Link, Mode, Switches, World};
 use crate::Now;
+use crate::simulator::run_options::RunOptions;
 use crate::simulator::start::{self, Event, Source, Table, numbered};
 use crate::simulator::timeline::Timeline;
 use crate::yrcx::signal::resting;
@@ -32,6 +33,7 @@ pub struct Start {
     pub(super) world: World,
     pub(super) run_scans: u32,
     pub(super) seed: u64,
+    pub(super) options: RunOptions,
 }
 
 /// A start state with all keys. Each key is optional.
@@ -140,6 +142,12 @@ impl Start {
     #[must_use]
     pub fn with_seed(self, seed: u64) -> Self {
         Self { seed, ..self }
+    }
+
+    /// Sets the speed of the simulated time, and the log of motions.
+    #[must_use]
+    pub fn with_options(self, options: RunOptions) -> Self {
+        Self { options, ..self }
     }
 }
 
@@ -412,7 +420,7 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
     // The check uses a copy, so that the world keeps its start state.
     let mut copy = world.clone();
     world.events = source.timeline(&entries.events, |line| console::execute(&mut copy, line))?;
-    Ok(Start { world, run_scans: entries.run_scans, seed: entries.seed })
+    Ok(Start { world, run_scans: entries.run_scans, seed: entries.seed, options: RunOptions::default() })
 }
 
 /// A controller without content.

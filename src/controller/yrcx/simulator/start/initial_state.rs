@@ -88,6 +88,7 @@ fn robot(entry: &RobotEntry, power: bool) -> Result<Robot, String> {
         pushing: None,
         homing: 0,
         kept: None,
+        log: None,
     })
 }
 
