@@ -32,6 +32,7 @@ mod top;
 mod toyo_programs;
 mod toyo_safety;
 mod toyo_sim;
+mod twin;
 mod watching;
 mod yerc_items;
 mod yrcx_link;

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::backup::twin;
 use crate::simulated::{self, Simulated};
 use armctl_frame::failure::{Failure, plain};
 use armctl_frame::interrupt::catch_interrupts;
@@ -45,6 +46,9 @@ pub struct Serve {
     /// File with the start state (TOML): modes, memory, inputs, errors, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
+    /// Backup of a robot, whose data the simulator starts with
+    #[arg(long, value_name = "FOLDER", conflicts_with = "state")]
+    from: Option<PathBuf>,
     /// Faults, for example noise=1%,drop=1%,delay=0..50ms,seed=7. Other faults are parity, dup, busy and echo
     #[arg(long, value_name = "FAULTS")]
     fault: Option<LineFaultSpec>,
@@ -66,7 +70,7 @@ impl serve::Serve for Serve {
     type Server = Toyo;
 
     async fn start(self) -> Result<Started<Self>, Failure> {
-        let start = simulated::start(self.state.as_deref(), self.axes, self.fault.as_ref())?;
+        let start = simulated::start(self.state.as_deref(), self.from.as_deref(), self.axes, self.fault.as_ref())?;
         let speed = self.baud.map(|baud| Pace::new(baud, BITS));
         let settings = self.baud.map(|baud| format!("?baud={baud}")).unwrap_or_default();
         // From now on, Ctrl-C must remove the symbolic link.
@@ -89,6 +93,7 @@ impl serve::Serve for Serve {
             server: Toyo { server, simulated: Simulated::new(start), _link: link },
             address,
             with_console: self.console,
+            unknown: self.from.map(|_| twin::UNKNOWN),
         })
     }
 }

@@ -22,6 +22,7 @@ fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
             })?;
             let start = simulator_start::start(
                 sim.state.as_deref(),
+                sim.from.as_deref(),
                 robot.model.value.named().unwrap_or(Model::Dx200),
                 faults.as_ref(),
             )?;

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 
+use crate::file::twin;
 use crate::prelude::*;
 use crate::simulator_start::{self, Simulated};
 use armctl_controller::yerc::simulator::Simulator;
@@ -34,6 +35,9 @@ pub struct Serve {
     /// File with the start state (TOML): modes, variables, jobs, files, alarms, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
+    /// Backup of a robot, whose data the simulator starts with
+    #[arg(long, value_name = "FOLDER", conflicts_with = "state")]
+    from: Option<PathBuf>,
     /// Faults, such as drop=5%,delay=0..50ms,seed=7. Other faults are dup, reorder, corrupt and busy
     #[arg(long, value_name = "FAULTS")]
     fault: Option<FaultSpec>,
@@ -48,7 +52,7 @@ const ROBOT_PORT: u16 = 10040;
 impl Default for Serve {
     fn default() -> Self {
         let bind = SocketAddr::new(Ipv4Addr::LOCALHOST.into(), ROBOT_PORT);
-        Self { bind, file_port: None, model: None, state: None, fault: None, console: false }
+        Self { bind, file_port: None, model: None, state: None, from: None, fault: None, console: false }
     }
 }
 
@@ -60,7 +64,7 @@ impl serve::Serve for Serve {
 
     async fn start(self) -> Result<Started<Self>, Failure> {
         let model = self.model.unwrap_or(Model::Dx200);
-        let start = simulator_start::start(self.state.as_deref(), model, self.fault.as_ref())?;
+        let start = simulator_start::start(self.state.as_deref(), self.from.as_deref(), model, self.fault.as_ref())?;
         if let Some(model) = self.model.filter(|model| *model != start.model()) {
             let message = format!("the start state is for model {}, but the selected model is {model}", start.model());
             return Err(Failure::usage(message).hint("remove --model, or change the file"));
@@ -80,6 +84,7 @@ impl serve::Serve for Serve {
             server: Yerc { server, simulated: Simulated(Simulator::new(start)) },
             address: Some(robot),
             with_console: self.console,
+            unknown: self.from.map(|_| twin::UNKNOWN),
         })
     }
 }

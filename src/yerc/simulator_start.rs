@@ -4,15 +4,26 @@ use std::path::Path;
 
 use anyhow::Context as _;
 
+use crate::file::twin;
 use crate::prelude::*;
 pub use armctl_client::yerc::Simulated;
 use armctl_controller::yerc::simulator::Start;
 use armctl_files as files;
 use armctl_transport::fault::FaultSpec;
 
-/// Start state with the busy rate of the faults. It comes from a file, or is the built-in state of the model.
-pub fn start(file: Option<&Path>, model: Model, faults: Option<&FaultSpec>) -> Result<Start, Failure> {
-    let start = file.map_or_else(|| Ok(Start::for_model(model)), load)?;
+/// Start state with the busy rate of the faults. It comes from a state file or a backup, or is the built-in state of
+/// the model.
+pub fn start(
+    state: Option<&Path>,
+    from: Option<&Path>,
+    model: Model,
+    faults: Option<&FaultSpec>,
+) -> Result<Start, Failure> {
+    let start = match (from, state) {
+        (Some(folder), _) => twin::start(folder)?,
+        (None, Some(file)) => load(file)?,
+        (None, None) => Start::for_model(model),
+    };
     Ok(match faults {
         Some(faults) => start.with_busy(faults.busy.fraction()),
         None => start,

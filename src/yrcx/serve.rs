@@ -3,9 +3,10 @@
 use std::io;
 use std::path::PathBuf;
 
+use super::backup::twin;
 use super::buses::Servers;
 use super::fieldbus::{Fieldbus, RunningSimulation, ServeOptions};
-use super::simulated::start;
+use super::simulated::start_with;
 use super::typed_arguments::TypedArguments;
 use crate::prelude::*;
 use armctl_controller::simulator::console::help_line;
@@ -33,6 +34,9 @@ pub struct ServeArgs {
     /// File with the start state (TOML): robots, memory, programs, alarms, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
+    /// Backup of a robot, whose data the simulator starts with
+    #[arg(long, value_name = "FOLDER", conflicts_with = "state")]
+    from: Option<PathBuf>,
     /// Read console lines on stdin; `help` lists them
     #[arg(long)]
     console: bool,
@@ -77,7 +81,8 @@ impl serve::Serve for ServeArgs {
         if self.link.is_some() && !serve.has_terminal() {
             return Err(misplaced("link", fieldbus.name, "a simulator with a pseudo-terminal"));
         }
-        let (start, link, faults) = (start(self.state.as_deref())?, self.link.as_deref(), self.fault.as_deref());
+        let (start, link, faults) =
+            (start_with(self.state.as_deref(), self.from.as_deref())?, self.link.as_deref(), self.fault.as_deref());
         let server = serve.serve(ServeOptions { simulator: wanted, start, link, faults })?;
         Ok(Started {
             reach: serve::connect_hint("yrcx", &server.target),
@@ -85,6 +90,7 @@ impl serve::Serve for ServeArgs {
             address: server.address,
             server,
             with_console: self.console,
+            unknown: self.from.map(|_| twin::UNKNOWN),
         })
     }
 }

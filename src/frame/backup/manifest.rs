@@ -238,6 +238,11 @@ pub fn open_existing<C: About>(folder: &Path) -> Result<Manifest<C>, Failure> {
     })
 }
 
+/// Family of the backup in `folder`, if there is one.
+pub fn family_of(folder: &Path) -> Option<Family> {
+    read::<Value>(folder).ok()??.family.parse().ok()
+}
+
 /// Backup subfolders of a folder, one per robot.
 pub fn folders_in(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());

@@ -11,6 +11,7 @@ pub mod parts;
 pub mod save;
 pub mod text_diff;
 mod tolerance;
+pub mod twin;
 
 use std::fmt;
 use std::path::{Path, PathBuf};

@@ -16,6 +16,7 @@ use std::time::Duration;
 
 use serialport::{DataBits, Parity, StopBits};
 
+use crate::backup::manifest;
 use crate::failure::Failure;
 
 use self::url::{Query, baud, choice, confirmer, host_and_port, percent_decoded, port};
@@ -118,7 +119,7 @@ pub enum Place {
     Serial(Serial),
     /// `tcp://HOST:PORT[?baud=9600]`.
     Tcp(Tcp),
-    /// `sim:[?model=…&axes=…&baud=…&state=FILE&fault=…]`: the built-in simulator of the family, in this process.
+    /// `sim:[?model=…&axes=…&baud=…&state=FILE&from=FOLDER&fault=…]`: the built-in simulator of the family, in this process.
     Sim(Sim),
     /// A URL of one of the [`BUSES`].
     Bus(Bus),
@@ -184,6 +185,8 @@ pub struct Sim {
     pub baud: Option<u32>,
     /// File with the start state.
     pub state: Option<PathBuf>,
+    /// Backup of a robot, whose data the simulator starts with.
+    pub from: Option<PathBuf>,
     /// Faults of link and device, in the format of `armctl sim --fault`.
     pub fault: Option<String>,
     /// Fieldbus of a yrcx controller: one of [`bus::simulators`]. Without this setting, a network is simulated only if
@@ -250,6 +253,9 @@ impl Target {
 
     /// The family of this URL, if only one family can use it.
     pub fn family(&self) -> Option<Family> {
+        if let Place::Sim(Sim { from: Some(folder), .. }) = &self.place {
+            return manifest::family_of(folder);
+        }
         let mut families = Family::ALL.into_iter().filter(|family| family.is_reached_over(self.scheme()));
         let first = families.next();
         if families.next().is_some() { None } else { first }
@@ -324,7 +330,7 @@ const FORMS: [(&str, &str); 4] = [
     ("udp", "udp://HOST[:10040][?file_port=PORT+1&model=auto]"),
     ("serial", "serial:///dev/ttyUSB0[?baud=9600&parity=even&data_bits=8&stop_bits=1], or serial://COM3"),
     ("tcp", "tcp://HOST:PORT[?baud=9600]"),
-    ("sim", "sim:[?state=FILE&fault=drop=5%25]"),
+    ("sim", "sim:[?state=FILE&from=FOLDER&fault=drop=5%25]"),
 ];
 
 fn udp(place: &str, query: &mut Query) -> Result<Udp, String> {
@@ -380,11 +386,16 @@ fn sim(place: &str, query: &mut Query) -> Result<Sim, String> {
             _ => return Err(format!("axes must be a number from 1 to 4, not '{text}'")),
         },
     };
+    let [state, from] = ["state", "from"].map(|key| query.take(key).map(PathBuf::from));
+    if state.is_some() && from.is_some() {
+        return Err("a simulator starts with either state or from".to_owned());
+    }
     Ok(Sim {
         traits: traits(query)?,
         axes,
         baud: baud(query)?,
-        state: query.take("state").map(PathBuf::from),
+        state,
+        from,
         fault: query.take("fault"),
         bus: query.take("bus").map(|name| bus(&name)).transpose()?,
     })

@@ -277,7 +277,7 @@ fn writes(path: &Path) -> Result<Vec<String>, Failure> {
         let values = whole(path, &key_text(key), &changes)?;
         let cell = Parameters.cell(key, values).map_err(|failure| in_file(path, &failure.message))?;
         let command = cell.write.text().trim_start_matches('@').to_owned();
-        start = start.with_written(&command).map_err(|why| in_file(path, &why))?;
+        start = start.with_written(1, [&command[..]]).map_err(|why| in_file(path, &why))?;
         commands.push(command);
     }
     Ok(commands)

@@ -17,6 +17,7 @@ mod put;
 mod read;
 mod restore;
 mod transfer;
+pub mod twin;
 mod upload;
 
 pub use backup::back_up;

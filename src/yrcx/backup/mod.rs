@@ -9,6 +9,7 @@ mod restore;
 mod save;
 #[cfg(test)]
 mod tests;
+pub mod twin;
 
 pub use restore::restore;
 pub use save::{Backup, back_up, points};
