@@ -231,7 +231,7 @@ pub fn schemas() -> Vec<SchemaEntry> {
 /// Report of `publish` at its end.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 struct Published {
-    /// URL of the broker; with several brokers, of the last one in use.
+    /// URL of the broker; with several brokers, of the last connection or attempt.
     broker: String,
     /// Name of this publisher at the broker.
     node: String,
@@ -296,6 +296,10 @@ impl Publish {
         for folder in root.iter().flat_map(|root| spool::folders_without_broker(root)) {
             let what = "messages of an earlier version of armctl, which did not store their broker, so armctl does not \
                         send them; delete the folder";
+            log.log(Level::Warning, &format!("{}: {what}", folder.display()));
+        }
+        for folder in folders.iter().flat_map(Folders::of_single_brokers).filter(|folder| spool::has_records(folder)) {
+            let what = "messages that wait for this broker alone; to send them, publish to this broker alone";
             log.log(Level::Warning, &format!("{}: {what}", folder.display()));
         }
         catch_interrupts();
@@ -404,11 +408,10 @@ impl Publish {
         let folder = |urls: &[Url]| root.join(spool::folder_name(urls, self.sparkplug.group.as_deref(), node));
         let brokers: Vec<PathBuf> = urls.iter().map(|url| folder(std::slice::from_ref(url))).collect();
         let spool = folder(urls);
-        let mut locks = Vec::new();
-        for broker in brokers.iter().filter(|broker| **broker != spool) {
-            locks.push(spool::claim_folder(broker).map_err(|error| folder_failure(broker, node, &error))?);
-        }
-        Ok(Folders { spool, brokers, _locks: locks })
+        let claim =
+            |broker: &PathBuf| spool::claim_folder(broker).map_err(|error| folder_failure(broker, node, &error));
+        let locks: Result<_, Failure> = brokers.iter().filter(|broker| **broker != spool).map(claim).collect();
+        Ok(Folders { _locks: locks?, spool, brokers })
     }
 
     fn outbox(&self, folders: Option<&Folders>, node: &str) -> Result<Outbox, Failure> {
@@ -462,6 +465,13 @@ struct Folders {
     /// folder of the messages.
     brokers: Vec<PathBuf>,
     _locks: Vec<files::FolderLock>,
+}
+
+impl Folders {
+    /// Folders of the brokers of a list with several brokers.
+    fn of_single_brokers(&self) -> impl Iterator<Item = &PathBuf> {
+        self.brokers.iter().filter(|broker| **broker != self.spool)
+    }
 }
 
 fn folder_failure(folder: &Path, node: &str, error: &io::Error) -> Failure {

@@ -390,19 +390,21 @@ pub fn folder_name(brokers: &[Url], group: Option<&str>, node: &str) -> String {
 /// Folders in `root`, or `root` itself, with records of an earlier version of armctl. That version did not store to
 /// which broker its records belong, so they are never sent.
 pub fn folders_without_broker(root: &Path) -> Vec<PathBuf> {
-    let has_records = |folder: &PathBuf| {
-        let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-        entries.map(|entry| entry.path()).any(|path| path.extension().is_some_and(|suffix| suffix == SUFFIX))
-    };
     let has_broker = |folder: &PathBuf| {
         let name = folder.file_name().unwrap_or_default().to_string_lossy();
         name.rsplit_once('@').is_some_and(|(_, broker)| broker.starts_with("mqtt"))
     };
     let inner = fs::read_dir(root).into_iter().flatten().flatten().map(|entry| entry.path());
     let mut folders: Vec<PathBuf> = inner.filter(|folder| !has_broker(folder)).chain([root.to_owned()]).collect();
-    folders.retain(has_records);
+    folders.retain(|folder| has_records(folder));
     folders.sort();
     folders
+}
+
+/// Whether a folder contains records.
+pub fn has_records(folder: &Path) -> bool {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.map(|entry| entry.path()).any(|path| path.extension().is_some_and(|suffix| suffix == SUFFIX))
 }
 
 /// Creates and locks a folder. Robot data is private to the user of this process.
