@@ -51,7 +51,7 @@ impl decode::Decode for Decode {
     }
 
     /// The lines of a trace are explained while the trace is recorded.
-    fn decode_stdin(&self) -> Option<impl Iterator<Item = Result<(DecodedLines, Option<String>), Failure>>> {
+    fn decode_stdin(&self) -> Option<impl Iterator<Item = decode::LineReport<DecodedLines>>> {
         let mut decoder = LineByLine::default();
         let lines = (self.lines == ["-"]).then(decode::stdin_lines)?;
         let lines = lines.filter(|line| line.as_ref().map_or(true, |line| is_line(line)));

@@ -40,10 +40,13 @@ pub trait Decode {
     fn decode(&self) -> Result<Self::Report, Failure>;
 
     /// The lines on stdin, each with its problem as soon as it arrives; `None` if stdin is not read line by line.
-    fn decode_stdin(&self) -> Option<impl Iterator<Item = Result<(Self::Report, Option<String>), Failure>>> {
+    fn decode_stdin(&self) -> Option<impl Iterator<Item = LineReport<Self::Report>>> {
         None::<std::iter::Empty<_>>
     }
 }
+
+/// Report about a line, and the problem of the line.
+pub type LineReport<R> = Result<(R, Option<String>), Failure>;
 
 /// Decodes the arguments and prints the result.
 pub fn run<D: Decode>(arguments: &D, run: &Run) -> Result<(), RunError> {
@@ -66,10 +69,7 @@ pub fn run<D: Decode>(arguments: &D, run: &Run) -> Result<(), RunError> {
 }
 
 /// Prints each report as it comes; `None` if there is none.
-fn print_each<R: Report>(
-    reports: impl Iterator<Item = Result<(R, Option<String>), Failure>>,
-    run: &Run,
-) -> Option<Result<(), RunError>> {
+fn print_each<R: Report>(reports: impl Iterator<Item = LineReport<R>>, run: &Run) -> Option<Result<(), RunError>> {
     let (mut count, mut damaged, mut first) = (0, 0, None);
     for report in reports {
         let printed = report.and_then(|(report, problem)| {
