@@ -1,6 +1,7 @@
 //! `yerc job list|show|select|start|stop|edit`.
 
 mod list;
+pub mod programs;
 mod source;
 mod start;
 mod stop;

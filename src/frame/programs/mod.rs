@@ -1,0 +1,3 @@
+//! Programs of a robot or of a folder, whatever the family.
+
+pub mod source;
