@@ -1,7 +1,10 @@
-//! `yerc job list|show|select|start|stop|edit`.
+//! `yerc job`: jobs of the controller, and of folders.
 
+mod calls;
+mod check;
 mod list;
-pub mod programs;
+mod programs;
+mod search;
 mod source;
 mod start;
 mod stop;
@@ -42,6 +45,12 @@ commands! {
         Stop(stop::Stop),
         /// Edit a job in your editor and write it back
         Edit(Edit),
+        /// Find a text, a variable, a signal or a call in jobs
+        Search(search::Search),
+        /// Show which job calls which
+        Calls(calls::Calls),
+        /// Check jobs of a folder or of the controller
+        Check(check::Check),
     }
 }
 

@@ -8,5 +8,6 @@ mod save;
 #[cfg(test)]
 mod tests;
 
+pub use manifest::Controller;
 pub use restore::{Restore, restore};
 pub use save::{Backup, back_up};

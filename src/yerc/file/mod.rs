@@ -20,6 +20,7 @@ mod transfer;
 mod upload;
 
 pub use backup::back_up;
+pub(super) use content::job_form;
 pub use edit::Edit;
 pub(super) use manifest::Manifest;
 pub(super) use name::{ReportedName, exact};
