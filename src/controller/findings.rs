@@ -88,7 +88,11 @@ const RULES: [(Rule, &str, &str); 15] = [
     (Rule::Recursion, "recursion", "a job or a subroutine that calls itself"),
     (Rule::Stops, "stops", "an instruction at which a controller stops with an error"),
     (Rule::Unreachable, "unreachable", "instructions that are never executed, or a program without an end"),
-    (Rule::UnusedJob, "unused-job", "a job that no job calls"),
+    (
+        Rule::UnusedJob,
+        "unused-job",
+        "a job that no job calls; only if master names the jobs that are started otherwise",
+    ),
     (Rule::UnusedLabel, "unused-label", "a label without a jump (toyo)"),
     (Rule::UnusedPosition, "unused-position", "a position that no move uses"),
     (Rule::NeverRead, "never-read", "a variable that is written and never read"),

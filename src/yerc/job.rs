@@ -3,6 +3,8 @@
 mod calls;
 mod check;
 mod list;
+#[cfg(test)]
+mod program_tests;
 mod programs;
 mod search;
 mod source;

@@ -187,7 +187,7 @@ impl Report for CallReport {
             ([], false) => return view,
             (names, false) => format!("called by no program: {}", names.join(", ")),
         };
-        view.append(Section::Lines(vec![Cell::default(), note.into()]))
+        view.append(Section::Lines(vec![note.into()]))
     }
 
     fn failure(&self) -> Option<Failure> {

@@ -102,7 +102,7 @@ pub fn check(programs: &mut [Program], context: &CheckContext) {
         speeds(program, &context.settings, &mut found);
         calls(program, &graph, &names, context, &mut found);
         if is_whole {
-            unused(program, &graph, context, &mut found);
+            unused(program, &graph, &context.settings, &mut found);
             never_read(program, &read, &mut written, &mut found);
         }
         let other = context.compare.iter().flatten().find(|other| other.name == program.name);
@@ -194,15 +194,15 @@ fn calls(
     }
 }
 
-fn unused(program: &Program, graph: &CallGraph, context: &CheckContext, found: &mut Vec<Finding>) {
-    let Program { name, .. } = program;
-    if graph.has_computed_calls || context.settings.is_master(name) || graph.callers(name).next().is_some() {
+/// Reports a program without a caller. If the settings name no master job, each job can be one.
+fn unused(program: &Program, graph: &CallGraph, settings: &CheckSettings, found: &mut Vec<Finding>) {
+    let Program { name, lines, .. } = program;
+    let is_used = settings.is_master(name) || graph.callers(name).next().is_some();
+    if is_used || settings.master.is_empty() || graph.has_computed_calls {
         return;
     }
-    // If the master jobs are unknown, each job can be one.
-    let has_masters = !context.settings.master.is_empty();
-    let severity = if has_masters { Severity::Warning } else { Severity::Note };
-    let unused = finding(Rule::UnusedJob, severity, 1, 1, format!("no job calls {name}"));
+    let line = lines.iter().find(|line| line.text.contains(name.as_str())).map_or(1, |line| line.number);
+    let unused = finding(Rule::UnusedJob, Severity::Warning, line, 1, format!("no job calls {name}"));
     let hint = format!("if a person or a PLC starts {name}, add it to master in {}", super::settings::FILE);
     found.push(Finding { hint: Some(hint), ..unused });
 }

@@ -142,7 +142,7 @@ mod tests {
     fn mistakes_have_their_place_and_a_hint() {
         for (text, message, hint) in [
             ("[rules]\nnever-raed = false", "f:2:1: there is no rule 'never-raed'", "did you mean never-read?"),
-            ("[ignore]\nA = [\"unused\"]", "f:2:6: there is no rule 'unused'", "the rules are syntax, missing-label"),
+            ("[ignore]\nA = [\"xyz\"]", "f:2:6: there is no rule 'xyz'", "the rules are syntax, missing-label"),
             ("max-sped = []", "f:1:1: unknown field `max-sped`, expected one of", "did you mean `max-speed`?"),
             ("max-speed = [\"fast\"]", "f:1:14: 'fast' is not a valid speed limit", ""),
         ] {

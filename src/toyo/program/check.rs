@@ -236,7 +236,7 @@ impl Labelled {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{Bench, Fault};
+    use crate::testing::without_robot;
     use armctl_frame::output::render;
 
     fn verdict(texts: &[(&str, &str)], strict: bool) -> Verdict {
@@ -284,8 +284,7 @@ b.txt: 2 steps, 1 label
         let path = folder.path().join("a.txt");
         let findings = |text: &str| {
             std::fs::write(&path, text).unwrap();
-            let (mut bench, _) = Bench::with_faults("", |_, _| Fault::None);
-            let data = bench.data(&["program", "check", path.to_str().unwrap()]);
+            let (data, _) = without_robot(&["program", "check", path.to_str().unwrap()]).unwrap();
             let findings = data["files"][0]["findings"].as_array().unwrap().clone().into_iter();
             let text = |value: &serde_json::Value| value.as_str().unwrap().to_owned();
             let run = findings.filter(|one| text(&one["message"]).starts_with("in an offline run"));
