@@ -108,6 +108,9 @@ pub struct CallReport {
     unread: Vec<ItemError>,
     #[serde(skip)]
     tree: Vec<Cell>,
+    /// Whether the tree contains all programs.
+    #[serde(skip)]
+    is_whole: bool,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
@@ -169,7 +172,13 @@ impl CallReport {
                 recursive: graph.reaches(name, name),
             }
         });
-        Self { programs: listed.collect(), computed_calls: graph.has_computed_calls, unread, tree }
+        Self {
+            programs: listed.collect(),
+            computed_calls: graph.has_computed_calls,
+            unread,
+            tree,
+            is_whole: root.is_none(),
+        }
     }
 }
 
@@ -181,6 +190,7 @@ impl Report for CallReport {
         let unused = self.programs.iter().filter(|program| program.unused == Some(true));
         let unused: Vec<&str> = unused.map(|program| program.name.as_str()).collect();
         let note = match (&unused[..], self.computed_calls) {
+            _ if !self.is_whole => return view,
             (_, true) => {
                 "a call has a target that is known only at run time, so unused programs are unknown".to_owned()
             }

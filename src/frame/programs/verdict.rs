@@ -7,8 +7,9 @@ use crate::prelude::basics::*;
 use crate::report::Report;
 use armctl_controller::findings::{Finding, Rule};
 
-/// Result for all files. `M` is what the family adds to a file.
+/// Result for all files. `M` is what the family adds to a file. Its name is the name of the schema.
 #[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "{M}")]
 pub struct Verdict<M> {
     files: Vec<FileVerdict<M>>,
     /// Programs that could not be read.

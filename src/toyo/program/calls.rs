@@ -38,7 +38,7 @@ impl Command for Calls {
     }
 
     fn run_alone(&self) -> Result<CallReport, Failure> {
-        let folder = self.from.as_deref().ok_or_else(|| Failure::usage("a folder is missing: --from FOLDER"))?;
+        let folder = self.from.as_deref().ok_or_else(|| Failure::local("internal error: no folder to read"))?;
         self.tree(programs_in(folder)?)
     }
 

@@ -183,6 +183,7 @@ pub type Verdict = verdict::Verdict<Contents>;
 
 /// What a file contains.
 #[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "Verdict")]
 pub struct Contents {
     /// Number of steps; null if the file is not a program.
     steps: Option<usize>,

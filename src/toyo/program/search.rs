@@ -59,7 +59,7 @@ impl Command for Search {
     }
 
     fn run_alone(&self) -> Result<SearchReport, Failure> {
-        let folder = self.from.as_deref().ok_or_else(|| Failure::usage("a folder is missing: --from FOLDER"))?;
+        let folder = self.from.as_deref().ok_or_else(|| Failure::local("internal error: no folder to read"))?;
         self.lines(programs_in(folder)?, &Names::default())
     }
 
@@ -143,6 +143,7 @@ pub struct TagReport {
 /// Result of a search: a tag, or lines.
 #[derive(Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
+#[schemars(rename = "TagReport")]
 pub enum SearchReport {
     /// Step of a tag in the controller.
     Tag(TagReport),

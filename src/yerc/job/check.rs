@@ -69,7 +69,7 @@ impl Check {
         programs.retain(|program| selected.is_empty() || selected.contains(&program.name));
         let verdicts = programs.iter().map(|program| {
             let steps = program.lines.iter().filter(|line| !line.references.is_empty()).count();
-            let contents = Contents { instructions: steps, positions: program.positions.len() };
+            let contents = Contents { instruction_count: steps, position_count: program.positions.len() };
             FileVerdict::new(program, contents)
         });
         Ok(Verdict::new(verdicts.collect(), context.unread, self.limits.strict))
@@ -81,14 +81,15 @@ pub type Verdict = verdict::Verdict<Contents>;
 
 /// What a job contains.
 #[derive(Debug, Serialize, JsonSchema)]
+#[schemars(rename = "JobVerdict")]
 pub struct Contents {
     /// Number of instructions, without comments and labels.
-    instructions: usize,
-    positions: usize,
+    instruction_count: usize,
+    position_count: usize,
 }
 
 impl Summary for Contents {
     fn counts(&self) -> Vec<(usize, &'static str)> {
-        vec![(self.instructions, "instruction"), (self.positions, "position")]
+        vec![(self.instruction_count, "instruction"), (self.position_count, "position")]
     }
 }

@@ -37,7 +37,7 @@ impl JobSource {
     /// # Errors
     /// The errors of [`jobs_in`].
     pub fn folder(&self) -> Result<(&Path, ProgramSet, Encoding), Failure> {
-        let folder = self.from.as_deref().ok_or_else(|| Failure::usage("a folder is missing: --from FOLDER"))?;
+        let folder = self.from.as_deref().ok_or_else(|| Failure::local("internal error: no folder to read"))?;
         let (set, encoding) = jobs_in(folder)?;
         Ok((folder, set, encoding))
     }
