@@ -105,7 +105,7 @@ impl Search {
         self.search.search(&programs, objects.as_slice(), set.unread).map(SearchReport::Lines)
     }
 
-    async fn find_tag(&self, link: &mut Link, tag: u16) -> Result<TagReport, Failure> {
+    async fn find_tag(&self, link: &mut Link, tag: u16) -> Result<TagStep, Failure> {
         let task = task_selection::select_task(link, self.task).await?;
         let status = link.status_of(&[0]).await?;
         if status.executing() || status.paused() {
@@ -127,13 +127,13 @@ impl Search {
             content.layout() == Op::Tag.row().layout && content.number("tag") == Some(tag.into())
         });
         let step = answer.number("step").filter(|_| is_tag);
-        Ok(TagReport { task, tag, step })
+        Ok(TagStep { task, tag, step })
     }
 }
 
 /// Result of a search.
 #[derive(Debug, Serialize, JsonSchema)]
-pub struct TagReport {
+pub struct TagStep {
     task: u8,
     tag: u16,
     /// Step of the tag; null if the controller did not go to the tag (ambiguity C21).
@@ -146,7 +146,7 @@ pub struct TagReport {
 #[schemars(rename = "TagReport")]
 pub enum SearchReport {
     /// Step of a tag in the controller.
-    Tag(TagReport),
+    Tag(TagStep),
     /// Lines of programs.
     Lines(Matches),
 }
@@ -156,10 +156,10 @@ impl Report for SearchReport {
 
     fn view(&self) -> View {
         match self {
-            Self::Tag(TagReport { task, tag, step: Some(step) }) => {
+            Self::Tag(TagStep { task, tag, step: Some(step) }) => {
                 View::text(format!("tag {tag:03} is step {step} of task {task}"))
             }
-            Self::Tag(TagReport { task, tag, step: None }) => {
+            Self::Tag(TagStep { task, tag, step: None }) => {
                 View::text(format!("task {task} has tag {tag:03}; the controller did not report its step"))
             }
             Self::Lines(matches) => matches.view(),
