@@ -287,6 +287,14 @@ mod tests {
         }
     }
 
+    proptest::proptest! {
+        #[test]
+        fn accepts_every_line(line in "(JUMP |SET |\"|\\*|B\\[|OT#\\(|JOB:|V=|[ \\PC]){0,12}") {
+            let columns = 1..=line.chars().count() + 1;
+            proptest::prop_assert!(scan(&line).0.iter().all(|reference| columns.contains(&reference.column)));
+        }
+    }
+
     #[test]
     fn splits_a_job() {
         let text = "/JOB\r\n//NAME A\r\n//POS\r\n///NPOS 1,0,0,0,0,0\r\nC00000=1,2\r\n//INST\r\nNOP\r\nEND\r\n";
