@@ -83,6 +83,8 @@ pub struct CheckContext {
     pub unread: Vec<ItemError>,
     /// Whether other programs may exist that were not read. In that case, calls and variables are not checked.
     pub is_partial: bool,
+    /// Whether it is unknown that these are all programs of a robot, so that a missing program is not certain.
+    pub is_loose: bool,
     /// Programs of another backup.
     pub compare: Option<Vec<Program>>,
 }
@@ -164,8 +166,8 @@ fn speeds(program: &Program, settings: &CheckSettings, found: &mut Vec<Finding>)
     for line in &program.lines {
         for speed in &line.speeds {
             // A limit on the command line comes after the limit in the file, and replaces it.
-            let limits = settings.max_speed.iter().filter(|limit| limit.unit == speed.unit);
-            let Some(limit) = limits.last().filter(|limit| speed.value > limit.value) else { continue };
+            let mut limits = settings.max_speed.iter().filter(|limit| limit.unit == speed.unit);
+            let Some(limit) = limits.next_back().filter(|limit| speed.value > limit.value) else { continue };
             let message = format!("{}{} is above the limit {}{}", speed.value, speed.unit, limit.value, limit.unit);
             found.push(finding(Rule::SpeedLimit, Severity::Warning, line.number, speed.column, message));
         }
@@ -183,7 +185,8 @@ fn calls(
     for place in program.calls(|name| names.contains(name)) {
         let called = &place.1.name;
         if !names.contains(called) && !is_unread(called) {
-            let missing = at(Rule::MissingJob, Severity::Error, place, format!("{called} does not exist"));
+            let severity = if context.is_loose { Severity::Warning } else { Severity::Error };
+            let missing = at(Rule::MissingJob, severity, place, format!("{called} does not exist"));
             found.push(Finding { hint: did_you_mean(called, names.iter().map(String::as_str)), ..missing });
         } else if place.1.role != Role::Start && (*called == program.name || graph.reaches(called, &program.name)) {
             let message = format!("this call of {called} leads to another call of {}", program.name);
@@ -228,9 +231,9 @@ fn never_read(program: &Program, read: &BTreeSet<String>, written: &mut BTreeSet
         let name = scoped(&program.name, &place.1.name);
         let any = format!("{}*", name.trim_end_matches(|c: char| c.is_ascii_digit()));
         if !read.contains(&name) && !read.contains(&any) && !name.ends_with('*') && written.insert(name) {
-            let message = format!("no job reads {}", place.1.name);
+            let message = format!("no instruction reads {}", place.1.name);
             let never = at(Rule::NeverRead, Severity::Warning, place, message);
-            let hint = "if a pendant or a PLC reads the variable, switch the rule off for this job".to_owned();
+            let hint = "if a person or a PLC reads the variable, switch the rule off".to_owned();
             found.push(Finding { hint: Some(hint), ..never });
         }
     }

@@ -38,6 +38,14 @@ pub struct Line {
     pub speeds: Vec<ProgrammedSpeed>,
 }
 
+impl Line {
+    /// Lines of a text, without references.
+    pub fn all(text: &str) -> Vec<Self> {
+        let line = |(number, text): (usize, &str)| Self { number, text: text.to_owned(), ..Self::default() };
+        (1..).zip(text.lines()).map(line).collect()
+    }
+}
+
 /// A position that belongs to a program.
 #[derive(Debug, Clone)]
 pub struct Position {

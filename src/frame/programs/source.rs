@@ -31,6 +31,8 @@ pub struct ProgramSet {
     pub unread: Vec<ItemError>,
     /// Whether the source contains only some of the programs of a robot, such as a backup with `--only`.
     pub is_partial: bool,
+    /// Whether the source is a folder without a manifest, so that it is unknown whether the robot has more programs.
+    pub is_loose: bool,
 }
 
 /// Which files of a folder are programs.
@@ -91,7 +93,7 @@ fn of_folder(folder: &Path, filter: FolderFilter) -> Result<ProgramSet, Failure>
     }
     names.sort();
     let read = |name: &String| read_file(&folder.join(name), name.clone());
-    Ok(ProgramSet { files: names.iter().map(read).collect::<Result<_, _>>()?, ..ProgramSet::default() })
+    Ok(ProgramSet { files: names.iter().map(read).collect::<Result<_, _>>()?, is_loose: true, ..ProgramSet::default() })
 }
 
 fn read_file(path: &Path, name: String) -> Result<ProgramFile, Failure> {

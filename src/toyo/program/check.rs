@@ -73,18 +73,16 @@ impl Command for Check {
     }
 
     fn run_alone(&self) -> Result<Verdict, Failure> {
-        match &self.from {
-            Some(folder) => self.check(programs_in(folder)?, Some(folder), &[]),
-            None => {
-                let read = |path: &PathBuf| {
-                    let file = files::display_path(path);
-                    Ok(ProgramFile { name: file.clone(), file, bytes: files::read(path)? })
-                };
-                let files = self.files.iter().map(read).collect::<Result<_, Failure>>()?;
-                let folder = self.files.first().and_then(|path| path.parent());
-                self.check(ProgramSet { files, is_partial: true, ..ProgramSet::default() }, folder, &[])
-            }
+        if let Some(folder) = &self.from {
+            return self.check(programs_in(folder)?, Some(folder), &[]);
         }
+        let read = |path: &PathBuf| {
+            let file = files::display_path(path);
+            Ok(ProgramFile { name: file.clone(), file, bytes: files::read(path)? })
+        };
+        let files = self.files.iter().map(read).collect::<Result<_, Failure>>()?;
+        let folder = self.files.first().and_then(|path| path.parent());
+        self.check(ProgramSet { files, is_partial: true, ..ProgramSet::default() }, folder, &[])
     }
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Verdict, Failure> {

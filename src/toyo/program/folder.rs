@@ -80,10 +80,7 @@ pub fn check_file(file: &ProgramFile, room: usize, names: &Names, known: &Contro
 /// Lines of a program file. If the file is a valid program, they have their references.
 pub fn read_program(file: &ProgramFile, checked: &Checked) -> Program {
     let text = String::from_utf8_lossy(&file.bytes);
-    let mut lines: Vec<Line> = (1..)
-        .zip(text.lines())
-        .map(|(number, text)| Line { number, text: text.to_owned(), ..Line::default() })
-        .collect();
+    let mut lines = Line::all(&text);
     for (number, mut references) in checked.program.iter().flat_map(program::Program::references) {
         if let Some(line) = lines.get_mut(number - 1) {
             line.references.append(&mut references);

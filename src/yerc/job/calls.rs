@@ -35,7 +35,7 @@ impl Command for Calls {
 
     fn run_alone(&self) -> Result<CallReport, Failure> {
         let (folder, set, encoding) = self.source.folder()?;
-        self.tree(set, encoding, CheckSettings::load(Some(folder))?)
+        self.tree(set, encoding, &CheckSettings::load(Some(folder))?)
     }
 
     async fn run(&self, context: Context<'_, Yerc>) -> Result<CallReport, Failure> {
@@ -43,12 +43,12 @@ impl Command for Calls {
         let mut settings = CheckSettings::load(None)?;
         settings.master.extend(SelectedJob::ask(link).await?.name(link.encoding));
         let set = jobs_of(link, screen).await?;
-        self.tree(set, link.encoding, settings)
+        self.tree(set, link.encoding, &settings)
     }
 }
 
 impl Calls {
-    fn tree(&self, set: ProgramSet, encoding: Encoding, settings: CheckSettings) -> Result<CallReport, Failure> {
+    fn tree(&self, set: ProgramSet, encoding: Encoding, settings: &CheckSettings) -> Result<CallReport, Failure> {
         let programs = parse(&set, encoding);
         let names = programs.iter().map(|program| program.name.as_str());
         let root = self.name.as_deref().map(super::without_suffix);

@@ -64,7 +64,8 @@ impl Check {
         check_names(&selected, programs.iter().map(|program| program.name.as_str()))?;
         let other = self.limits.compare.as_deref().map(jobs_in).transpose()?;
         let compare = other.map(|(set, encoding)| parse(&set, encoding));
-        let context = CheckContext { settings, unread: set.unread, is_partial: set.is_partial, compare };
+        let context =
+            CheckContext { settings, unread: set.unread, is_partial: set.is_partial, is_loose: set.is_loose, compare };
         check(&mut programs, &context);
         programs.retain(|program| selected.is_empty() || selected.contains(&program.name));
         let verdicts = programs.iter().map(|program| {

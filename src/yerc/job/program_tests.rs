@@ -67,9 +67,9 @@ fn planted_faults_are_found() {
             "warning speed-limit MAIN.JBI:9:13 90% is above the limit 50%",
             "error missing-position MAIN.JBI:10:6 MAIN has no position C9",
             "error missing-label MAIN.JBI:11:6 MAIN has no label AGIAN",
-            "error missing-job MAIN.JBI:12:6 SUBB does not exist",
-            "warning never-read MAIN.JBI:14:5 no job reads B5",
-            "warning never-read MAIN.JBI:15:5 no job reads LB0",
+            "warning missing-job MAIN.JBI:12:6 SUBB does not exist",
+            "warning never-read MAIN.JBI:14:5 no instruction reads B5",
+            "warning never-read MAIN.JBI:15:5 no instruction reads LB0",
             "warning unused-job OLD.JBI:2:1 no job calls OLD",
             "warning recursion SUB.JBI:6:6 this call of DEEP leads to another call of SUB",
         ]

@@ -64,10 +64,7 @@ pub fn parse(set: &ProgramSet, encoding: Encoding) -> Vec<Program> {
 fn parse_job(file: &ProgramFile, encoding: Encoding) -> Program {
     let text = encoding.decode(&file.bytes);
     let job = JobText::new(&text);
-    let mut lines: Vec<Line> = (1..)
-        .zip(text.lines())
-        .map(|(number, text)| Line { number, text: text.to_owned(), ..Line::default() })
-        .collect();
+    let mut lines = Line::all(&text);
     for (number, instruction) in &job.instructions {
         if let Some(line) = lines.get_mut(number - 1) {
             (line.references, line.speeds) = scan(instruction);
