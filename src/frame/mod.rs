@@ -39,6 +39,7 @@ pub mod names;
 pub mod output;
 pub mod plot;
 pub mod prelude;
+pub mod programs;
 pub mod prompt;
 pub mod repeat_limiter;
 pub mod repeated_runs;

@@ -1,6 +1,12 @@
-//! `yerc job list|show|select|start|stop|edit`.
+//! `yerc job`: jobs of the controller, and of folders.
 
+mod calls;
+mod check;
 mod list;
+#[cfg(test)]
+mod program_tests;
+mod programs;
+mod search;
 mod source;
 mod start;
 mod stop;
@@ -41,6 +47,12 @@ commands! {
         Stop(stop::Stop),
         /// Edit a job in your editor and write it back
         Edit(Edit),
+        /// Find a text, a variable, a signal or a call in jobs
+        Search(search::Search),
+        /// Show which job calls which
+        Calls(calls::Calls),
+        /// Check jobs of a folder or of the controller
+        Check(check::Check),
     }
 }
 

@@ -6,12 +6,17 @@ pub const NO_DEFAULT: &[&str] = &["robots remove", "session close", "teach"];
 /// The commands, each with the arguments of its examples.
 pub const EXAMPLES: &[(&str, &[&str])] = &[
     ("yerc repl", &["-r cell3", "--sim"]),
+    ("yerc job search", &["'MOV[JL].*VJ=' --from backups/cell3"]),
+    ("yerc job calls", &["--from backups/cell3"]),
+    ("yerc job check", &["--from backups/cell3", "--from new --compare old --tolerance 0.1mm"]),
     ("yrcx repl", &["-r press", "--sim"]),
     ("yrcx io map", &["--bus ethernet-ip", "--bus profinet --input-start 256 --output-start 256"]),
     ("yrcx profinet gsdml", &["GSDML-V2.35-maker-robot.xml", "GSDML-V2.35-maker-robot.xml --json"]),
     ("toyo repl", &["-r loader", "--sim"]),
     ("toyo ports", &["", "--json"]),
-    ("toyo program check", &["pick.toyo", "pick.toyo --strict"]),
+    ("toyo program calls", &["--from backups/loader"]),
+    ("toyo program check", &["pick.toyo --strict", "--from backups/loader"]),
+    ("toyo program search", &["--uses OUT1.3 --from backups/loader"]),
     ("toyo sim run", &["pick.toyo", "pick.toyo --points points.csv --input 'at 2s 0/01/3 on'"]),
     ("repl", &["-r cell3", "--sim"]),
     ("batch", &["morning.txt -r cell3", "morning.txt --set job=WELD --dry-run"]),

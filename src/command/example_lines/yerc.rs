@@ -34,6 +34,9 @@ pub const EXAMPLES: &[Examples] = &[
     ("job list", Read, &["", "--json"]),
     ("job show", Read, &["", "--task all", "--source"]),
     ("job start", Motion, &["", "WELD --wait 2m", "WELD --repeat 20 --stats"]),
+    ("job search", Read, &["--uses clamp", "--calls WELD --json"]),
+    ("job calls", Read, &["MAIN"]),
+    ("job check", Read, &["--max-speed 500mm/s,50%"]),
     ("job stop", Write, &["", "-r cell3"]),
     (
         "move joint",

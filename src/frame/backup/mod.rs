@@ -10,7 +10,7 @@ pub mod manifest;
 pub mod parts;
 pub mod save;
 pub mod text_diff;
-mod tolerance;
+pub mod tolerance;
 pub mod twin;
 
 use std::fmt;

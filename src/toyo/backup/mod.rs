@@ -9,5 +9,6 @@ mod save;
 mod tests;
 pub mod twin;
 
+pub use manifest::Controller;
 pub use restore::{Restore, restore};
 pub use save::{Backup, back_up};
