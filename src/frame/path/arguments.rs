@@ -1,5 +1,6 @@
 //! Arguments of a command that draws a motion.
 
+use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
@@ -10,7 +11,7 @@ use crate::command_set::CommandSet;
 use crate::local_names::Target;
 use crate::prelude::basics::*;
 use crate::text_files;
-use crate::{AnyCommand, Command, SchemaEntry};
+use crate::{AnyCommand, Command, SchemaEntry, ValueKind};
 
 /// A plane of a picture on the terminal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -54,10 +55,10 @@ pub struct PathOptions {
     #[arg(long, value_name = "FILE", requires = "path")]
     html: Option<PathBuf>,
     /// Draw over the motion in this backup, and report which positions differ
-    #[arg(long, value_name = "FOLDER", requires = "path")]
+    #[arg(long, value_name = "FOLDER", requires = "path", add = ValueKind::Backup)]
     compare: Option<PathBuf>,
     /// Read from this backup. Needs no robot
-    #[arg(long, value_name = "FOLDER", requires = "path")]
+    #[arg(long, value_name = "FOLDER", requires = "path", add = ValueKind::Backup)]
     from: Option<PathBuf>,
     /// Replace the files of --svg and --html if they exist
     #[arg(long, requires = "path")]
@@ -103,35 +104,32 @@ impl PathOptions {
     }
 }
 
-/// A command that can draw a motion in place of its own report.
-pub trait Draw: Command + Args {
-    /// The command that draws.
-    type Picture: Command + 'static;
-
-    /// Converts the command to the one that draws.
-    fn picture(self, options: PathOptions) -> Self::Picture;
-}
-
-/// A command with the option `--path`. Each of the two has its own report.
+/// A command with the option `--path`. With it, the command `P` runs, which has its own report.
 #[derive(Debug, Args)]
-pub struct Drawable<C: Args> {
+pub struct Drawable<C: Args, P: Send + Sync> {
     #[command(flatten)]
     command: C,
     #[command(flatten)]
     options: PathOptions,
+    #[arg(skip)]
+    drawing: PhantomData<P>,
 }
 
-impl<C: Draw + 'static> CommandSet for Drawable<C> {
+impl<C, P> CommandSet for Drawable<C, P>
+where
+    C: Command + Args + 'static,
+    P: Command<Report = PathReport> + From<(C, PathOptions)> + Send + Sync + 'static,
+{
     fn lay_out(command: clap::Command, _is_named: &dyn Fn(&str) -> bool) -> clap::Command {
         <Self as Args>::augment_args(command)
     }
 
     fn command(self) -> Box<dyn AnyCommand> {
-        let Self { command, options } = self;
-        if options.path { Box::new(command.picture(options)) } else { Box::new(command) }
+        let Self { command, options, .. } = self;
+        if options.path { Box::new(P::from((command, options))) } else { Box::new(command) }
     }
 
     fn schemas() -> Vec<SchemaEntry> {
-        vec![SchemaEntry::of::<C::Report>(C::ID), SchemaEntry::of::<PathReport>(C::Picture::ID)]
+        vec![SchemaEntry::of::<C::Report>(C::ID), SchemaEntry::of::<PathReport>(P::ID)]
     }
 }

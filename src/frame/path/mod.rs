@@ -12,6 +12,6 @@ mod terminal;
 #[cfg(test)]
 mod tests;
 
-pub use arguments::{Draw, Drawable, PathOptions, Plane};
-pub use model::{Difference, Drawing, Interpolation, Moment, Motion, NotDrawn, Recorder, Step, arc, simplify};
+pub use arguments::{Drawable, PathOptions, Plane};
+pub use model::{Difference, Drawing, Interpolation, Moment, Motion, NotDrawn, Recorder, Step, arc, length, simplify};
 pub use report::PathReport;

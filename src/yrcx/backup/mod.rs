@@ -10,5 +10,6 @@ mod save;
 #[cfg(test)]
 mod tests;
 
+pub use content::Controller;
 pub use restore::restore;
 pub use save::{Backup, back_up, points};

@@ -1,0 +1,427 @@
+//! `toyo program show --path`: the motion of a program, as the offline simulator runs it.
+
+use std::collections::{BTreeMap, HashSet};
+use std::path::PathBuf;
+use std::time::Duration;
+
+use super::folder::{check_file, points_of, program_of, programs_in};
+use super::show::Show;
+use super::text;
+use crate::eeprom_tables::EepromRow as _;
+use crate::files;
+use crate::link::{Link, Toyo};
+use crate::param::{Key, Parameters};
+use crate::point::{self, Points, table};
+use crate::prelude::*;
+use crate::sim::{in_file, parameter_writes};
+use armctl_controller::names::Names;
+use armctl_controller::toyo::errors;
+use armctl_controller::toyo::program::{ControllerData, MAX_STEPS, Program, uses};
+use armctl_controller::toyo::simulator::{Simulator, Start, What};
+use armctl_controller::toyo::table::parameters::PARAMETERS;
+use armctl_controller::toyo::table::{Instruction, Op};
+use armctl_frame::path::{Drawing, Interpolation, Moment, Motion, NotDrawn, PathOptions, PathReport, Step, simplify};
+use armctl_frame::programs::source::ProgramFile;
+use armctl_frame::store::rows_of_file;
+
+/// Interval of the positions.
+const SAMPLE: Duration = Duration::from_millis(20);
+/// Time in the program after which an endless program is no longer followed.
+const LIMIT: Duration = Duration::from_secs(600);
+/// Maximum number of steps of a run.
+const MAX_RUN: usize = 200_000;
+/// Maximum deviation of the drawn path in mm.
+const DEVIATION: f64 = 0.05;
+/// Motion that is too small to be drawn, in mm.
+const STILL: f64 = 1e-6;
+
+/// Draws the motion of a program.
+#[derive(Debug)]
+pub struct ProgramPath {
+    show: Show,
+    options: PathOptions,
+}
+
+impl From<(Show, PathOptions)> for ProgramPath {
+    fn from((show, options): (Show, PathOptions)) -> Self {
+        Self { show, options }
+    }
+}
+
+/// A program with the data that it moves to.
+struct Source {
+    name: String,
+    program: Program,
+    /// Protocol commands that write points and parameters.
+    writes: Vec<String>,
+    /// Whether the speeds are those of the robot.
+    has_parameters: bool,
+}
+
+impl Command for ProgramPath {
+    type Family = Toyo;
+    type Report = PathReport;
+    const ID: &'static str = "toyo.program.path";
+
+    fn risk(&self) -> Risk {
+        if self.takes_robot() && self.task().is_some() { Risk::Write } else { Risk::Read }
+    }
+
+    fn takes_robot(&self) -> bool {
+        self.options.from().is_none() && (self.show.program.is_none() || self.task().is_some())
+    }
+
+    fn uses_files(&self) -> bool {
+        true
+    }
+
+    fn run_alone(&self) -> Result<PathReport, Failure> {
+        self.options.check(false)?;
+        let source = match (self.options.from(), &self.show.program) {
+            (Some(folder), _) => of_folder(folder.to_owned(), &format!("program-{}", self.task().unwrap_or(1)))?,
+            (None, program) => {
+                let path = PathBuf::from(program.as_deref().unwrap_or("-"));
+                let name = files::display_path(&path);
+                let file = ProgramFile { name: name.clone(), file: name, bytes: files::read(&path)? };
+                of_file(file, self.show.points.clone(), self.show.params.clone())?
+            }
+        };
+        self.report(&source)
+    }
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<PathReport, Failure> {
+        let Context { link, screen, several, .. } = context;
+        self.options.check(several)?;
+        let set = program_of(link, screen, self.task()).await?;
+        let file = set.files.into_iter().next().ok_or_else(|| Failure::local("internal error: no program was read"))?;
+        let program = parse(&file)?;
+        let writes = read_data(link, screen, self.task(), &program).await?;
+        self.report(&Source { name: file.name, program, writes, has_parameters: true })
+    }
+}
+
+impl ProgramPath {
+    /// Number of the task, if the user typed one.
+    fn task(&self) -> Option<u8> {
+        self.show.program.as_ref()?.parse().ok().filter(|task| (1..=4).contains(task))
+    }
+
+    fn report(&self, source: &Source) -> Result<PathReport, Failure> {
+        let old = match self.options.compare() {
+            Some(folder) => {
+                let name = if source.name.starts_with("program-") { source.name.as_str() } else { "program-1" };
+                Some(motion(&of_folder(folder.to_owned(), name)?)?)
+            }
+            None => None,
+        };
+        self.options.report(Drawing::new(motion(source)?, old))
+    }
+}
+
+/// A program of a backup, with its points and parameters.
+fn of_folder(folder: PathBuf, name: &str) -> Result<Source, Failure> {
+    let set = programs_in(&folder)?;
+    let found = set.files.into_iter().find(|file| file.name == name);
+    let file = found.ok_or_else(|| {
+        Failure::usage(format!("{} contains no {name}", folder.display()))
+            .hint("type the number of a task with a program")
+    })?;
+    let parameters = Some(folder.join("parameters.csv")).filter(|path| path.exists());
+    of_file(file, points_of(&folder, name), parameters)
+}
+
+fn of_file(file: ProgramFile, points: Option<PathBuf>, parameters: Option<PathBuf>) -> Result<Source, Failure> {
+    let program = parse(&file)?;
+    let mut writes = parameters.as_deref().map(parameter_writes).transpose()?.unwrap_or_default();
+    let table = Points::with_letters(1, Letters::USUAL);
+    if let Some(path) = &points {
+        for (number, changes) in rows_of_file(&table, path)? {
+            let values =
+                changes.whole().ok_or_else(|| in_file(path, &format!("point {number}: values are missing")))?;
+            writes.push(table.cell(number, values)?.write.text());
+        }
+    }
+    Ok(Source { name: file.file, program, writes, has_parameters: parameters.is_some() })
+}
+
+fn parse(file: &ProgramFile) -> Result<Program, Failure> {
+    let checked = check_file(file, MAX_STEPS, &Names::default(), &ControllerData::default());
+    text::program(
+        &file.file,
+        checked,
+        &Screen::new(armctl_frame::output::Format::Table, armctl_frame::output::ColorChoice::Never, true, 0),
+    )
+}
+
+/// Reads the points and the table rows that a program uses, and the parameters of the controller.
+async fn read_data(
+    link: &mut Link,
+    screen: &Screen,
+    task: Option<u8>,
+    program: &Program,
+) -> Result<Vec<String>, Failure> {
+    let records: Vec<Record> = program.steps.iter().map(|step| step.record.clone()).collect();
+    let rows = uses(&records);
+    let is_computed = records
+        .iter()
+        .any(|record| record.number("point").is_some() && record.number("counter").unwrap_or_default() > 0);
+    let numbers: Vec<i32> = match is_computed {
+        true => Points::all(),
+        false => rows.iter().filter(|(id, _)| *id == table().id).map(|(_, row)| *row).collect(),
+    };
+    let mut points = Points::of_task(link, task).await?;
+    points.select(link).await?;
+    let read = point::read(link, screen, &numbers).await;
+    let read = points.deselect(link, read).await?;
+    let is_used = |parameter: &Parameter, row: i32| {
+        rows.iter().any(|(id, used)| *used == row && id[..2] == parameter.id[..2] && parameter.id != table().id)
+    };
+    let all = PARAMETERS.iter().filter(|parameter| parameter.only_on.is_empty());
+    let keys = all.flat_map(|parameter| match parameter.row() {
+        None => vec![Key { parameter, row: None }],
+        Some(_) => {
+            (1..=99).filter(|row| is_used(parameter, *row)).map(|row| Key { parameter, row: Some(row) }).collect()
+        }
+    });
+    let keys: Vec<Key> = keys.collect();
+    let answers = Parameters.read(link, screen, &keys).await?.rows;
+    let known = numbers.iter().map(|_| table()).zip(read.into_iter().map(Result::ok));
+    let known =
+        known.chain(keys.iter().map(|key| key.parameter).zip(answers.into_iter().map(|answer| answer.ok().flatten())));
+    let write = |(parameter, record): (&Parameter, Option<Record>)| {
+        let record = record.filter(Record::is_listed)?;
+        Request::write_parameter(parameter, record.values()).ok().map(|request| request.text())
+    };
+    Ok(known.filter_map(write).collect())
+}
+
+/// Runs a program in the simulator and records its path.
+fn motion(source: &Source) -> Result<Motion, Failure> {
+    let Source { name, program, writes, has_parameters } = source;
+    let internal = |why: String| {
+        Failure::usage(format!("{name} cannot be drawn: {why}")).hint("use `toyo sim run` to see how the program runs")
+    };
+    let mut start = Start::parse("origin = true\n").map_err(internal)?;
+    for command in writes {
+        start = start.with_written(command.trim_start_matches('@')).map_err(internal)?;
+    }
+    let mut motion = Motion {
+        program: name.clone(),
+        frame: "base".to_owned(),
+        axes: vec!["X", "Y", "Z", "R"],
+        unit: "mm",
+        is_timed: true,
+        ..Motion::default()
+    };
+    let mut steps: Vec<Record> = program.steps.iter().map(|step| step.record.clone()).collect();
+    for (step, record) in program.steps.iter().zip(&mut steps) {
+        if matches!(op(&step.text()), Some(Op::Tstr)) {
+            motion.not_drawn.push(NotDrawn {
+                line: step.line,
+                text: step.text(),
+                reason: "the program of another task".to_owned(),
+            });
+            *record = super::steps::nop();
+        }
+    }
+    // Where a motion with PASS ends depends on its start. The start of the first motion is not known.
+    if let Some(first) = steps.iter_mut().find(|record| record.word("arrival").is_some()) {
+        *first = first.clone().with("arrival", Value::Word("POST"));
+    }
+    let mut simulator = Simulator::new(start.with_program(1, steps).map_err(internal)?);
+    simulator.record_trace(true);
+    simulator.console(Duration::ZERO, "start").map_err(internal)?;
+    let mut run =
+        Run { program, number: 0, current: None, steps: Vec::new(), is_known: false, legs: HashSet::new(), useful: 0 };
+    let end = run.follow(&mut simulator, &mut motion);
+    motion.steps = run.steps;
+    let began = motion.moments().next().map_or(0.0, |moment| moment.time);
+    motion.steps.iter_mut().flat_map(|step| &mut step.track).for_each(|moment| moment.time -= began);
+    if end == End::TimeUp {
+        motion.steps.truncate(run.useful);
+        let end = motion.end();
+        motion.notes.push(format!("The program does not end: after {end:.2} s, it repeats what is drawn."));
+    }
+    motion.notes.push(match has_parameters {
+        true => {
+            "Times, pallets and offsets are those of the offline simulator with the parameters of the robot.".to_owned()
+        }
+        false => {
+            "Times and offsets are those of the offline simulator, with the speeds and parameters of a new controller."
+                .to_owned()
+        }
+    });
+    Ok(motion)
+}
+
+/// Why a run was followed no longer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum End {
+    Over,
+    TimeUp,
+}
+
+/// A run of the simulator.
+struct Run<'p> {
+    program: &'p Program,
+    /// Latest step of task 1.
+    number: usize,
+    /// Step of task 1 with its path so far.
+    current: Option<(usize, Vec<Moment>)>,
+    steps: Vec<Step>,
+    /// Whether the position is known: after the first move to an absolute position.
+    is_known: bool,
+    /// Moves that were already drawn: step, start and target in 0.01 mm.
+    legs: HashSet<String>,
+    /// Number of steps up to the last one that is not a repetition.
+    useful: usize,
+}
+
+impl Run<'_> {
+    fn follow(&mut self, simulator: &mut Simulator, motion: &mut Motion) -> End {
+        let mut now = Duration::ZERO;
+        let mut inputs: BTreeMap<(i32, i32), u8> = BTreeMap::new();
+        let mut assumed: Vec<usize> = Vec::new();
+        let mut count = 0;
+        let end = loop {
+            let mut is_over = false;
+            for event in simulator.take_trace() {
+                match event.what {
+                    What::Step { task: 1, step } => {
+                        count += 1;
+                        self.close(moment(event.at, event.position), motion);
+                        self.number = step;
+                        self.current = Some((step, vec![moment(event.at, event.position)]));
+                    }
+                    What::Error(code) => {
+                        let place = moment(event.at, event.position);
+                        if self.is_known {
+                            self.close(place, motion);
+                        }
+                        self.stop(motion, format!("the run stops here: error {}", errors::explain(code).in_a_line()));
+                        is_over = true;
+                    }
+                    What::Ended(1) | What::Stopped => {
+                        self.close(moment(event.at, event.position), motion);
+                        is_over = true;
+                    }
+                    _ => {}
+                }
+            }
+            if is_over {
+                break End::Over;
+            }
+            if now >= LIMIT || count > MAX_RUN {
+                break End::TimeUp;
+            }
+            let Some(due) = simulator.wake() else {
+                // Nothing happens by itself: the program waits for an input, which is then set.
+                match self.awaited(&mut inputs) {
+                    Some((line, console)) if simulator.console(now, &console).is_ok() && simulator.wake().is_some() => {
+                        assumed.push(line);
+                        continue;
+                    }
+                    _ => {
+                        self.stop(motion, "the run waits here without end".to_owned());
+                        break End::Over;
+                    }
+                }
+            };
+            let is_moving = self.current.as_ref().is_some_and(|(step, _)| self.interpolation(*step).is_some());
+            now = if is_moving { due.min(now + SAMPLE) } else { due };
+            simulator.advance(now);
+            if let Some((_, track)) = &mut self.current {
+                track.push(moment(now, simulator.state().position));
+            }
+        };
+        assumed.sort_unstable();
+        assumed.dedup();
+        let lines: Vec<String> = assumed.iter().take(8).map(usize::to_string).collect();
+        motion.notes.push(match &lines[..] {
+            [] => "Inputs are off.".to_owned(),
+            [line] => format!("Inputs are off, except where the program waits for them (line {line})."),
+            lines => format!("Inputs are off, except where the program waits for them (lines {}).", lines.join(", ")),
+        });
+        end
+    }
+
+    /// Ends the current step.
+    fn close(&mut self, end: Moment, motion: &mut Motion) {
+        let Some((number, mut track)) = self.current.take() else { return };
+        track.push(end);
+        let Some(step) = self.program.steps.get(number - 1) else { return };
+        let (Some(first), Some(last)) = (track.first(), track.last()) else { return };
+        let Some(interpolation) = self.interpolation(number) else { return };
+        let text = step.text();
+        let is_relative = step.record.word("aim") == Some("i");
+        if !self.is_known && is_relative {
+            let omitted = NotDrawn {
+                line: step.line,
+                text,
+                reason: "a move by a distance, from a position that is not known".to_owned(),
+            };
+            if !motion.not_drawn.contains(&omitted) {
+                motion.not_drawn.push(omitted);
+            }
+            return;
+        }
+        if self.is_known
+            && track.iter().all(|moment| moment.at.iter().zip(&first.at).all(|(a, b)| (a - b).abs() < STILL))
+        {
+            return;
+        }
+        let point = step.record.number("point").filter(|point| *point > 0 && !is_relative);
+        let point = point.filter(|_| step.record.number("counter").unwrap_or_default() == 0);
+        let name = point.map_or_else(|| format!("step {number}"), |point| format!("PT{point}"));
+        if self.legs.insert(format!("{number} {:.2?} {:.2?}", first.at, last.at)) {
+            self.useful = self.steps.len() + 1;
+        }
+        let (interpolation, track) = if self.is_known {
+            (interpolation, simplify(track, DEVIATION))
+        } else {
+            // The simulator starts at 0, but the robot can start anywhere.
+            (Interpolation::Start, vec![last.clone()])
+        };
+        self.is_known = true;
+        self.steps.push(Step { name, line: step.line, text, interpolation, track });
+    }
+
+    /// How a step moves; `None` if it does not move.
+    fn interpolation(&self, number: usize) -> Option<Interpolation> {
+        let step = self.program.steps.get(number.checked_sub(1)?)?;
+        match op(&step.text())? {
+            Op::Mvc | Op::Mvcp => Some(Interpolation::Arc),
+            Op::Home => Some(Interpolation::Joints),
+            _ => match step.record.word("course")? {
+                "T" => Some(Interpolation::Straight),
+                _ => Some(Interpolation::Joints),
+            },
+        }
+    }
+
+    /// Line of the step that waits for an input, and the console line that sets the input.
+    fn awaited(&self, inputs: &mut BTreeMap<(i32, i32), u8>) -> Option<(usize, String)> {
+        let (number, _) = self.current.as_ref()?;
+        let step = self.program.steps.get(number - 1)?;
+        op(&step.text()).filter(|op| *op == Op::In)?;
+        let (station, port) = (step.record.number("station")?, step.record.number("port")?);
+        let mask = step.record.mask("data")?;
+        let bits = inputs.entry((station, port)).or_default();
+        *bits = *bits & !mask.care | mask.bits;
+        Some((step.line, format!("input {station}/{port:02} {bits:08b}")))
+    }
+
+    /// Lists the current step as the end of the picture.
+    fn stop(&self, motion: &mut Motion, reason: String) {
+        let step = self.number.checked_sub(1).and_then(|index| self.program.steps.get(index));
+        motion.not_drawn.extend(step.map(|step| NotDrawn { line: step.line, text: step.text(), reason }));
+    }
+}
+
+fn moment(at: Duration, position: [f64; 4]) -> Moment {
+    Moment { time: at.as_secs_f64(), at: position.to_vec() }
+}
+
+fn op(text: &str) -> Option<Op> {
+    Instruction::named(text.split(' ').next()?).map(|row| row.op)
+}
