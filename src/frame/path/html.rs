@@ -42,7 +42,12 @@ pub fn page(drawing: &Drawing) -> String {
     page.push_str(&body);
     for (index, placed) in panels.iter().enumerate() {
         if placed.panel.x.axis.is_none() {
-            let _ = writeln!(page, "<path class=\"p-then\" id=\"then{index}\" d=\"M0 {}V{}\"/>", number(placed.top), number(placed.top + placed.height));
+            let _ = writeln!(
+                page,
+                "<path class=\"p-then\" id=\"then{index}\" d=\"M0 {}V{}\"/>",
+                number(placed.top),
+                number(placed.top + placed.height)
+            );
         }
         let _ = writeln!(page, "<circle class=\"p-now\" id=\"dot{index}\" r=\"6.5\" cx=\"-99\" cy=\"-99\"/>");
     }
@@ -54,7 +59,8 @@ pub fn page(drawing: &Drawing) -> String {
         page.push_str("</ul>\n");
     }
     page.push_str(&table(drawing));
-    let _ = write!(page, "</main>\n<script>const path={};\n{SCRIPT}</script>\n</body>\n</html>\n", data(drawing, &panels));
+    let _ =
+        write!(page, "</main>\n<script>const path={};\n{SCRIPT}</script>\n</body>\n</html>\n", data(drawing, &panels));
     page
 }
 
@@ -67,7 +73,12 @@ fn table(drawing: &Drawing) -> String {
         "<table>\n<thead><tr><th class=\"n\">#</th><th class=\"n\">line</th><th>text</th>{time}{axes}</tr></thead>\n<tbody>\n"
     );
     for (index, step) in motion.steps.iter().take(MAX_ROWS).enumerate() {
-        let target: String = step.target().unwrap_or_default().iter().map(|value| format!("<td class=\"n\">{}</td>", number(*value))).collect();
+        let target: String = step
+            .target()
+            .unwrap_or_default()
+            .iter()
+            .map(|value| format!("<td class=\"n\">{}</td>", number(*value)))
+            .collect();
         let end = step.track.last().map_or(0.0, |moment| moment.time);
         let time = if motion.is_timed { format!("<td class=\"n\">{end:.2}</td>") } else { String::new() };
         let _ = writeln!(
@@ -80,7 +91,8 @@ fn table(drawing: &Drawing) -> String {
     }
     table.push_str("</tbody>\n</table>\n");
     if motion.steps.len() > MAX_ROWS {
-        let _ = writeln!(table, "<p class=\"sub\">The list has the first {MAX_ROWS} of {} steps.</p>", motion.steps.len());
+        let _ =
+            writeln!(table, "<p class=\"sub\">The list has the first {MAX_ROWS} of {} steps.</p>", motion.steps.len());
     }
     table
 }

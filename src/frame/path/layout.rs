@@ -150,7 +150,8 @@ fn trace(is_old: bool, motion: &Motion, x: Option<usize>, y: Option<usize>) -> T
     let mut trace = Trace { is_old, strokes: Vec::new(), targets: Vec::new() };
     for (index, step) in motion.steps.iter().enumerate() {
         let places = step.track.iter().map(|moment| {
-            let value = |axis: Option<usize>| axis.map_or(moment.time, |axis| moment.at.get(axis).copied().unwrap_or_default());
+            let value =
+                |axis: Option<usize>| axis.map_or(moment.time, |axis| moment.at.get(axis).copied().unwrap_or_default());
             [value(x), value(y)]
         });
         let points: Vec<[f64; 2]> = places.collect();

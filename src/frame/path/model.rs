@@ -243,7 +243,13 @@ impl Recorder {
         let mut track = Vec::with_capacity(points.len());
         for (index, at) in points.iter().enumerate() {
             done += index.checked_sub(1).map_or(0.0, |before| distance(&points[before], at));
-            let share = if total > 0.0 { done / total } else if index == 0 { 0.0 } else { 1.0 };
+            let share = if total > 0.0 {
+                done / total
+            } else if index == 0 {
+                0.0
+            } else {
+                1.0
+            };
             track.push(Moment { time: began + duration.unwrap_or_default() * share, at: at.clone() });
         }
         self.time = track.last().map_or(began, |moment| moment.time);
@@ -264,11 +270,10 @@ impl Recorder {
     pub fn finish(mut self) -> (Vec<Step>, bool) {
         let is_timed = !self.has_gaps && self.steps.iter().any(|step| step.track.len() > 1);
         if !is_timed {
-            let mut number = -1.0;
+            let mut number = 0.0;
             for step in &mut self.steps {
                 let times = step.track.first().zip(step.track.last()).map(|(first, last)| (first.time, last.time));
                 let (began, ended) = times.unwrap_or_default();
-                number = if step.track.len() > 1 { f64::max(number, 0.0) } else { number };
                 let count = f64::from(u32::try_from(step.track.len().max(2) - 1).unwrap_or(u32::MAX));
                 for (index, moment) in (0_u32..).zip(&mut step.track) {
                     let even = f64::from(index) / count;
@@ -305,7 +310,8 @@ pub fn length(points: &[Vec<f64>]) -> f64 {
 pub fn arc(from: &[f64], via: &[f64], to: &[f64], is_first: bool) -> Vec<Vec<f64>> {
     let minus = |a: &[f64], b: &[f64]| -> [f64; 3] { std::array::from_fn(|axis| a[axis] - b[axis]) };
     let dot = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let cross = |a: &[f64; 3], b: &[f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let cross =
+        |a: &[f64; 3], b: &[f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
     if from.len() < 3 || via.len() < 3 || to.len() < 3 {
         return Vec::new();
     }
@@ -316,7 +322,8 @@ pub fn arc(from: &[f64], via: &[f64], to: &[f64], is_first: bool) -> Vec<Vec<f64
         return Vec::new();
     }
     let (uu, vv) = (dot(&u, &u), dot(&v, &v));
-    let offset = cross(&std::array::from_fn(|axis| uu * v[axis] - vv * u[axis]), &normal).map(|part| part / (2.0 * area));
+    let offset =
+        cross(&std::array::from_fn(|axis| uu * v[axis] - vv * u[axis]), &normal).map(|part| part / (2.0 * area));
     let radius = dot(&offset, &offset).sqrt();
     let first = offset.map(|part| -part / radius);
     let second = cross(&normal.map(|part| part / area.sqrt()), &first);
@@ -359,5 +366,10 @@ pub fn simplify(track: Vec<Moment>, deviation: f64) -> Vec<Moment> {
     }
     kept.extend(track.len().checked_sub(1).filter(|end| kept.last() != Some(end)));
     let mut kept = kept.into_iter().peekable();
-    track.into_iter().enumerate().filter(|(index, _)| kept.next_if_eq(index).is_some()).map(|(_, moment)| moment).collect()
+    track
+        .into_iter()
+        .enumerate()
+        .filter(|(index, _)| kept.next_if_eq(index).is_some())
+        .map(|(_, moment)| moment)
+        .collect()
 }

@@ -26,7 +26,7 @@ function show() {
   const to = next[0] === from[0] || path.moments[index + 2]?.[0] === next[0] ? next : from;
   const share = to[1] > from[1] ? (time - from[1]) / (to[1] - from[1]) : 0;
   const at = from.slice(2).map((value, axis) => value + (to[axis + 2] - value) * share);
-  const step = to[1] > time ? to[0] : from[0];
+  const step = time > from[1] ? to[0] : from[0];
   path.panels.forEach(([x, y, x0, y0, dx, dy], panel) => {
     const left = x0 + (x === null ? time : at[x]) * dx;
     element("dot" + panel).setAttribute("cx", left);

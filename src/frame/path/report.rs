@@ -116,7 +116,8 @@ impl Report for PathReport {
         }
         lines.extend(self.notes.iter().map(|note| note.as_str().into()));
         lines.extend(self.not_drawn.iter().take(MAX_LISTED).map(|omitted| {
-            Cell::from(format!("not drawn: line {}, {}: {}", omitted.line, omitted.text, omitted.reason)).tone(Tone::Warning)
+            Cell::from(format!("not drawn: line {}, {}: {}", omitted.line, omitted.text, omitted.reason))
+                .tone(Tone::Warning)
         }));
         if let Some(more) = self.not_drawn.len().checked_sub(MAX_LISTED).filter(|more| *more > 0) {
             lines.push(format!("{more} more lines are not drawn").into());

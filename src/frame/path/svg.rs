@@ -14,7 +14,7 @@ const LEFT: f64 = 58.0;
 const ABOVE: f64 = 26.0;
 const BELOW: f64 = 38.0;
 /// Maximum height of the panels of a space, and height of an axis over time.
-const MAX_HEIGHT: f64 = 900.0;
+const MAX_HEIGHT: f64 = 760.0;
 const HEIGHT_OF_AXIS: f64 = 96.0;
 /// Pixels between two marks of an axis.
 const TICK: f64 = 70.0;
@@ -103,8 +103,10 @@ pub fn draw(drawing: &Drawing, has_text: bool) -> Picture {
     top = legend(&mut body, drawing, top);
     let panels = placed(drawing, top);
     let mut height = panels.iter().map(|panel| panel.top + panel.height).fold(top, f64::max) + BELOW;
-    for panel in &panels {
-        draw_panel(&mut body, drawing, panel);
+    for (index, panel) in panels.iter().enumerate() {
+        // Axes over time have a common time.
+        let has_numbers = panel.panel.x.axis.is_some() || index + 1 == panels.len();
+        draw_panel(&mut body, drawing, panel, has_numbers);
     }
     if has_text {
         for line in remarks(drawing).iter().flat_map(|remark| wrapped(remark)) {
@@ -128,9 +130,13 @@ pub fn summary(drawing: &Drawing) -> String {
     let motion = &drawing.motion;
     let count = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     let has_motion = motion.steps.iter().any(|step| step.interpolation != Interpolation::Order);
-    let mut parts = vec![count(motion.steps.len(), if has_motion { "step" } else { "point" }), format!("{} ({})", motion.frame, motion.unit)];
+    let mut parts = vec![
+        count(motion.steps.len(), if has_motion { "step" } else { "point" }),
+        format!("{} ({})", motion.frame, motion.unit),
+    ];
     parts.extend(motion.is_timed.then(|| format!("{:.2} s", motion.end())));
-    parts.extend((!motion.not_drawn.is_empty()).then(|| format!("{} not drawn", count(motion.not_drawn.len(), "line"))));
+    parts
+        .extend((!motion.not_drawn.is_empty()).then(|| format!("{} not drawn", count(motion.not_drawn.len(), "line"))));
     parts.join(" · ")
 }
 
@@ -140,8 +146,12 @@ pub fn remarks(drawing: &Drawing) -> Vec<String> {
     const MAX: usize = 20;
     let omitted = &drawing.motion.not_drawn;
     let mut all = notes(drawing);
-    all.extend(omitted.iter().take(MAX).map(|one| format!("Not drawn: line {}, {}: {}", one.line, one.text, one.reason)));
-    all.extend(omitted.len().checked_sub(MAX).filter(|more| *more > 0).map(|more| format!("{more} more lines are not drawn.")));
+    all.extend(
+        omitted.iter().take(MAX).map(|one| format!("Not drawn: line {}, {}: {}", one.line, one.text, one.reason)),
+    );
+    all.extend(
+        omitted.len().checked_sub(MAX).filter(|more| *more > 0).map(|more| format!("{more} more lines are not drawn.")),
+    );
     all
 }
 
@@ -151,11 +161,14 @@ fn legend(body: &mut String, drawing: &Drawing, top: f64) -> f64 {
     if drawing.old.is_some() {
         entries.extend([("", "", "new"), ("p-old", "", "old")]);
     }
-    let has = |interpolations: &[Interpolation]| drawing.motions().any(|(_, motion)| motion.steps.iter().any(|step| interpolations.contains(&step.interpolation)));
+    let has = |interpolations: &[Interpolation]| {
+        drawing
+            .motions()
+            .any(|(_, motion)| motion.steps.iter().any(|step| interpolations.contains(&step.interpolation)))
+    };
     if drawing.motion.has_space() {
         for (interpolations, class, what) in [
-            (&[Interpolation::Straight][..], "", "straight line"),
-            (&[Interpolation::Arc], "", "arc"),
+            (&[Interpolation::Straight, Interpolation::Arc][..], "", "straight line or arc"),
             (&[Interpolation::Joints], "p-dash", "joint motion: not a straight line"),
             (&[Interpolation::Curve], "p-dash", "free curve: only its points are known"),
             (&[Interpolation::Order], "p-order", "order of the numbers, not a motion"),
@@ -165,7 +178,12 @@ fn legend(body: &mut String, drawing: &Drawing, top: f64) -> f64 {
     }
     let mut x = SIDE;
     for (group, class, what) in &entries {
-        let _ = write!(body, "<g class=\"{group}\"><path class=\"p-line {class}\" d=\"M{} {}h28\"/></g>", number(x), number(top + 6.0));
+        let _ = write!(
+            body,
+            "<g class=\"{group}\"><path class=\"p-line {class}\" d=\"M{} {}h28\"/></g>",
+            number(x),
+            number(top + 6.0)
+        );
         text(body, [x + 36.0, top + 10.0], "p-dim", what);
         x += 62.0 + 6.6 * count(what.chars().count());
     }
@@ -179,14 +197,13 @@ fn placed(drawing: &Drawing, top: f64) -> Vec<Placed> {
     let inner = WIDTH - 2.0 * SIDE;
     let top = top + ABOVE;
     if !drawing.motion.has_space() {
-        let last = panels.len().saturating_sub(1);
         let mut next = top;
-        let place = |(index, panel)| {
+        let place = |panel| {
             let placed = Placed { panel, left: SIDE + LEFT, top: next, width: inner - LEFT, height: HEIGHT_OF_AXIS };
-            next += HEIGHT_OF_AXIS + if index == last { 0.0 } else { ABOVE + 8.0 };
+            next += HEIGHT_OF_AXIS + ABOVE;
             placed
         };
-        return panels.into_iter().enumerate().map(place).collect();
+        return panels.into_iter().map(place).collect();
     }
     let [x, y, z] = [panels[0].x.range, panels[0].y.range, panels[1].y.range].map(Range::length);
     let scale = ((inner - 2.0 * LEFT) / (x + y)).min((MAX_HEIGHT - ABOVE - BELOW) / (y + z));
@@ -197,7 +214,7 @@ fn placed(drawing: &Drawing, top: f64) -> Vec<Placed> {
     panels.into_iter().zip(places).map(place).collect()
 }
 
-fn draw_panel(body: &mut String, drawing: &Drawing, placed: &Placed) {
+fn draw_panel(body: &mut String, drawing: &Drawing, placed: &Placed, has_numbers: bool) {
     let Placed { panel, left, top, width, height } = placed;
     let (right, bottom) = (left + width, top + height);
     let _ = writeln!(body, "<g data-panel=\"{}\">", escape(&panel.title));
@@ -206,7 +223,9 @@ fn draw_panel(body: &mut String, drawing: &Drawing, placed: &Placed) {
     for tick in panel.x.range.ticks(width / TICK) {
         let [x, _] = placed.place([tick, panel.y.range.least]);
         let _ = write!(body, "<path class=\"p-grid\" d=\"M{} {}V{}\"/>", number(x), number(*top), number(bottom));
-        anchored(body, [x, bottom + 15.0], "middle", &number(tick));
+        if has_numbers {
+            anchored(body, [x, bottom + 15.0], "middle", &number(tick));
+        }
     }
     for tick in panel.y.range.ticks(count_y) {
         let [_, y] = placed.place([panel.x.range.least, tick]);
@@ -221,7 +240,9 @@ fn draw_panel(body: &mut String, drawing: &Drawing, placed: &Placed) {
         number(*width),
         number(*height)
     );
-    anchored(body, [right, bottom + 30.0], "end", &panel.x.label);
+    if has_numbers {
+        anchored(body, [right, bottom + 30.0], "end", &panel.x.label);
+    }
     anchored(body, [right, top - 9.0], "end", &panel.y.label);
     for trace in &panel.traces {
         let steps = drawing.motions().find(|(is_old, _)| *is_old == trace.is_old).map(|(_, motion)| &motion.steps);
@@ -297,8 +318,10 @@ fn numbers(body: &mut String, targets: impl Iterator<Item = (usize, [f64; 2])>, 
         let width = 6.4 * count(shown.chars().count());
         let fits = |at: &[f64; 2]| {
             let [left, base] = *at;
-            let is_inside = left >= placed.left && left + width <= placed.left + placed.width && base - 10.0 >= placed.top;
-            is_inside && !boxes.iter().any(|[l, t, r, b]| left < *r && left + width > *l && base - 10.0 < *b && base > *t)
+            let is_inside =
+                left >= placed.left && left + width <= placed.left + placed.width && base - 10.0 >= placed.top;
+            is_inside
+                && !boxes.iter().any(|[l, t, r, b]| left < *r && left + width > *l && base - 10.0 < *b && base > *t)
         };
         let spots = [[x + 6.0, y - 6.0], [x + 6.0, y + 13.0], [x - 6.0 - width, y - 6.0], [x - 6.0 - width, y + 13.0]];
         if let Some([left, base]) = spots.into_iter().find(fits) {

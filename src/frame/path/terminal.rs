@@ -2,8 +2,9 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::style::Color;
+use ratatui::style::{Color, Style};
 use ratatui::symbols::Marker;
+use ratatui::text::Span;
 use ratatui::widgets::Widget as _;
 use ratatui::widgets::canvas::{Canvas, Line};
 
@@ -36,9 +37,12 @@ pub fn picture(drawing: &Drawing, plane: Option<Plane>) -> Vec<Vec<Cell>> {
     let has_numbers = drawing.motion.steps.len() <= MAX_NUMBERS;
     let mut lines = Vec::new();
     if !drawing.motion.has_space() {
-        for panel in &panels {
+        let (still, moving): (Vec<&Panel>, Vec<&Panel>) = panels.iter().partition(|panel| panel.y.is_constant);
+        for panel in moving {
             lines.extend(draw(panel, WIDTH, LINES_OF_AXIS, false));
         }
+        let still: Vec<&str> = still.iter().map(|panel| panel.title.as_str()).collect();
+        lines.extend((!still.is_empty()).then(|| vec![format!("no motion: {}", still.join(", ")).into()]));
         return [lines, legend(drawing)].concat();
     }
     let is_flat = |panel: &&Panel| panel.x.is_constant || panel.y.is_constant;
@@ -58,9 +62,11 @@ pub fn picture(drawing: &Drawing, plane: Option<Plane>) -> Vec<Vec<Cell>> {
             let (left, right) = (parts.next().unwrap_or_default(), parts.next());
             match right {
                 None => lines.extend(left),
-                Some(right) => lines.extend(left.into_iter().zip(right).map(|(left, right)| {
-                    [left, vec![" ".repeat(GAP.into()).into()], right].concat()
-                })),
+                Some(right) => lines.extend(
+                    left.into_iter()
+                        .zip(right)
+                        .map(|(left, right)| [left, vec![" ".repeat(GAP.into()).into()], right].concat()),
+                ),
             }
         }
     }
@@ -85,7 +91,11 @@ fn draw(panel: &Panel, columns: u16, rows: u16, has_numbers: bool) -> Vec<Vec<Ce
         for trace in &panel.traces {
             let color = if trace.is_old { OLD } else { NEW };
             for stroke in &trace.strokes {
-                for (from, to) in stroke.points.iter().zip(stroke.points.iter().skip(1).chain(stroke.points.first().filter(|_| stroke.points.len() == 1))) {
+                for (from, to) in stroke
+                    .points
+                    .iter()
+                    .zip(stroke.points.iter().skip(1).chain(stroke.points.first().filter(|_| stroke.points.len() == 1)))
+                {
                     let is_dashed = !matches!(stroke.interpolation, Interpolation::Straight | Interpolation::Arc);
                     for line in dashes(*from, *to, dot, is_dashed && !is_time, color) {
                         context.draw(&line);
@@ -94,16 +104,26 @@ fn draw(panel: &Panel, columns: u16, rows: u16, has_numbers: bool) -> Vec<Vec<Ce
             }
             context.layer();
         }
-        let numbered = panel.traces.iter().filter(|trace| has_numbers && !trace.is_old).flat_map(|trace| &trace.targets);
+        let numbered =
+            panel.traces.iter().filter(|trace| has_numbers && !trace.is_old).flat_map(|trace| &trace.targets);
+        let mut taken: Vec<[f64; 2]> = Vec::new();
         for (index, [x, y]) in numbered {
-            context.print(*x, *y, (index + 1).to_string());
+            // A number has two columns of two dots, and one line of four dots.
+            let is_free = |[left, base]: &[f64; 2]| (x - left).abs() > 5.0 * dot.0 || (y - base).abs() > 4.0 * dot.1;
+            if taken.iter().all(is_free) {
+                taken.push([*x, *y]);
+                context.print(*x, *y, Span::styled((index + 1).to_string(), Style::new().fg(Color::White)));
+            }
         }
     });
     canvas.render(area, &mut buffer);
     let number = |value: f64| if value.abs() >= 1000.0 { format!("{value:.0}") } else { format!("{value:.1}") };
-    let heading = format!("{}  {} {} to {}", panel.title, panel.y.label, number(y.least), number(y.most));
+    let title = if is_time { String::new() } else { format!("{}  ", panel.title) };
+    let heading = format!("{title}{} {} to {}", panel.y.label, number(y.least), number(y.most));
     let footing = format!("{} {} to {}", panel.x.label, number(x.least), number(x.most));
-    let filled = |text: String| vec![Cell::from(format!("{text}{}", " ".repeat(usize::from(columns).saturating_sub(width(&text)))))];
+    let filled = |text: String| {
+        vec![Cell::from(format!("{text}{}", " ".repeat(usize::from(columns).saturating_sub(width(&text)))))]
+    };
     let mut lines = vec![filled(heading)];
     lines.extend(buffer.content.chunks(usize::from(columns)).map(row));
     if !is_time {
@@ -171,4 +191,3 @@ fn legend(drawing: &Drawing) -> Vec<Vec<Cell>> {
     }
     if parts.is_empty() { Vec::new() } else { vec![parts] }
 }
-

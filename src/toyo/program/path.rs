@@ -1,22 +1,23 @@
 //! `toyo program show --path`: the motion of a program, as the offline simulator runs it.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::path::PathBuf;
 use std::time::Duration;
 
 use super::folder::{check_file, points_of, program_of, programs_in};
 use super::show::Show;
-use super::text;
 use crate::eeprom_tables::EepromRow as _;
 use crate::files;
-use crate::link::{Link, Toyo};
-use crate::param::{Key, Parameters};
-use crate::point::{self, Points, table};
+use crate::item_reads::read_each;
+use crate::link::{Link, Toyo, wrong};
+use crate::point::{Points, table};
 use crate::prelude::*;
 use crate::sim::{in_file, parameter_writes};
+use crate::task_selection;
+use armctl_controller::findings::Finding;
 use armctl_controller::names::Names;
 use armctl_controller::toyo::errors;
-use armctl_controller::toyo::program::{ControllerData, MAX_STEPS, Program, uses};
+use armctl_controller::toyo::program::{self, ControllerData, MAX_STEPS, Program, uses};
 use armctl_controller::toyo::simulator::{Simulator, Start, What};
 use armctl_controller::toyo::table::parameters::PARAMETERS;
 use armctl_controller::toyo::table::{Instruction, Op};
@@ -52,10 +53,58 @@ impl From<(Show, PathOptions)> for ProgramPath {
 struct Source {
     name: String,
     program: Program,
+    /// Lines of the program.
+    lines: Vec<String>,
     /// Protocol commands that write points and parameters.
     writes: Vec<String>,
     /// Whether the speeds are those of the robot.
     has_parameters: bool,
+    /// Whether points that are not in `writes` are 0, as in a backup. Otherwise they are not known.
+    has_all_points: bool,
+}
+
+/// Points and groups of the MVM table that are known.
+struct Known {
+    /// `None` if all points are known.
+    points: Option<BTreeSet<i32>>,
+    /// Points of each group.
+    groups: BTreeMap<i32, Vec<i32>>,
+}
+
+impl Known {
+    fn new(writes: &[String], has_all_points: bool) -> Self {
+        let mut known = Self { points: (!has_all_points).then(BTreeSet::new), groups: BTreeMap::new() };
+        for request in writes.iter().filter_map(|text| Request::parse(text).ok()) {
+            let numbers = numbers_of(request.record());
+            match (request.parameter().map(|parameter| parameter.id), &numbers[..]) {
+                (Some("T1"), [point, ..]) => known.points.iter_mut().for_each(|points| points.extend([*point])),
+                (Some("T4.S1"), [group, points @ ..]) => drop(known.groups.insert(*group, points.to_vec())),
+                _ => {}
+            }
+        }
+        known
+    }
+
+    /// Why the target of a step is not known; `None` if it is known. The counter of the step has this value.
+    fn missing(&self, step: &Record, counter: i32) -> Option<String> {
+        let is_known = |point: i32| self.points.as_ref().is_none_or(|points| points.contains(&point));
+        if let Some(group) = step.number("group") {
+            let Some(points) = self.groups.get(&group) else { return Some(format!("the group {group} is not known")) };
+            let missing = points.iter().find(|point| **point > 0 && !is_known(**point))?;
+            return Some(format!("the point {missing} of the group {group} is not known"));
+        }
+        let point = step.number("point")? + counter;
+        (!is_known(point)).then(|| format!("the point {point} is not known"))
+    }
+}
+
+/// The numbers of a record, in their order.
+fn numbers_of(record: &Record) -> Vec<i32> {
+    record
+        .values()
+        .iter()
+        .filter_map(|value| if let Value::Number(number) = value { Some(*number) } else { None })
+        .collect()
 }
 
 impl Command for ProgramPath {
@@ -96,7 +145,14 @@ impl Command for ProgramPath {
         let file = set.files.into_iter().next().ok_or_else(|| Failure::local("internal error: no program was read"))?;
         let program = parse(&file)?;
         let writes = read_data(link, screen, self.task(), &program).await?;
-        self.report(&Source { name: file.name, program, writes, has_parameters: true })
+        self.report(&Source {
+            lines: lines(&file),
+            name: file.name,
+            program,
+            writes,
+            has_parameters: true,
+            has_all_points: false,
+        })
     }
 }
 
@@ -127,7 +183,9 @@ fn of_folder(folder: PathBuf, name: &str) -> Result<Source, Failure> {
             .hint("type the number of a task with a program")
     })?;
     let parameters = Some(folder.join("parameters.csv")).filter(|path| path.exists());
-    of_file(file, points_of(&folder, name), parameters)
+    let points = points_of(&folder, name);
+    let has_all_points = points.is_some();
+    Ok(Source { has_all_points, ..of_file(file, points, parameters)? })
 }
 
 fn of_file(file: ProgramFile, points: Option<PathBuf>, parameters: Option<PathBuf>) -> Result<Source, Failure> {
@@ -141,19 +199,28 @@ fn of_file(file: ProgramFile, points: Option<PathBuf>, parameters: Option<PathBu
             writes.push(table.cell(number, values)?.write.text());
         }
     }
-    Ok(Source { name: file.file, program, writes, has_parameters: parameters.is_some() })
+    Ok(Source {
+        lines: lines(&file),
+        name: file.name,
+        program,
+        writes,
+        has_parameters: parameters.is_some(),
+        has_all_points: false,
+    })
+}
+
+fn lines(file: &ProgramFile) -> Vec<String> {
+    String::from_utf8_lossy(&file.bytes).lines().map(|line| line.trim().to_owned()).collect()
 }
 
 fn parse(file: &ProgramFile) -> Result<Program, Failure> {
     let checked = check_file(file, MAX_STEPS, &Names::default(), &ControllerData::default());
-    text::program(
-        &file.file,
-        checked,
-        &Screen::new(armctl_frame::output::Format::Table, armctl_frame::output::ColorChoice::Never, true, 0),
-    )
+    let errors: Vec<Finding> = checked.errors().cloned().collect();
+    checked.program.ok_or_else(|| files::file_failure(&file.file, &errors))
 }
 
-/// Reads the points and the table rows that a program uses, and the parameters of the controller.
+/// Reads the parameters of the controller, and the table rows and points that a program uses. Returns the commands that
+/// write them.
 async fn read_data(
     link: &mut Link,
     screen: &Screen,
@@ -162,42 +229,52 @@ async fn read_data(
 ) -> Result<Vec<String>, Failure> {
     let records: Vec<Record> = program.steps.iter().map(|step| step.record.clone()).collect();
     let rows = uses(&records);
-    let is_computed = records
-        .iter()
-        .any(|record| record.number("point").is_some() && record.number("counter").unwrap_or_default() > 0);
-    let numbers: Vec<i32> = match is_computed {
-        true => Points::all(),
-        false => rows.iter().filter(|(id, _)| *id == table().id).map(|(_, row)| *row).collect(),
-    };
-    let mut points = Points::of_task(link, task).await?;
-    points.select(link).await?;
-    let read = point::read(link, screen, &numbers).await;
-    let read = points.deselect(link, read).await?;
-    let is_used = |parameter: &Parameter, row: i32| {
-        rows.iter().any(|(id, used)| *used == row && id[..2] == parameter.id[..2] && parameter.id != table().id)
-    };
-    let all = PARAMETERS.iter().filter(|parameter| parameter.only_on.is_empty());
-    let keys = all.flat_map(|parameter| match parameter.row() {
-        None => vec![Key { parameter, row: None }],
-        Some(_) => {
-            (1..=99).filter(|row| is_used(parameter, *row)).map(|row| Key { parameter, row: Some(row) }).collect()
-        }
+    // The rows of a table begin with the same two characters as its sheets.
+    let used = |id: &'static str| rows.iter().filter(move |(table, _)| table[..2] == id[..2]).map(|(_, row)| *row);
+    let tables = PARAMETERS.iter().filter(|parameter| parameter.only_on.is_empty() && parameter.id != table().id);
+    let wanted = tables.flat_map(|parameter| match parameter.row() {
+        None => vec![(parameter, None)],
+        Some(_) => used(parameter.id).map(|row| (parameter, Some(row))).collect(),
     });
-    let keys: Vec<Key> = keys.collect();
-    let answers = Parameters.read(link, screen, &keys).await?.rows;
-    let known = numbers.iter().map(|_| table()).zip(read.into_iter().map(Result::ok));
-    let known =
-        known.chain(keys.iter().map(|key| key.parameter).zip(answers.into_iter().map(|answer| answer.ok().flatten())));
-    let write = |(parameter, record): (&Parameter, Option<Record>)| {
-        let record = record.filter(Record::is_listed)?;
+    let mut writes = read_writes(link, screen, "reading parameters", wanted.collect()).await?;
+    let is_computed = |record: &Record| record.number("counter").is_some_and(|counter| counter > 0);
+    let points: BTreeSet<i32> = if records.iter().any(|record| record.number("point").is_some() && is_computed(record))
+    {
+        Points::all().into_iter().collect()
+    } else {
+        used(table().id)
+            .chain(Known::new(&writes, false).groups.into_values().flatten())
+            .filter(|row| *row > 0)
+            .collect()
+    };
+    let wanted = points.into_iter().map(|point| (table(), Some(point))).collect();
+    task_selection::select_task(link, task).await?;
+    let read = read_writes(link, screen, "reading points", wanted).await;
+    writes.extend(task_selection::restore_task(link, read).await?);
+    Ok(writes)
+}
+
+/// Reads parameters and rows. Returns the commands that write those that were read.
+async fn read_writes(
+    link: &mut Link,
+    screen: &Screen,
+    what: &str,
+    wanted: Vec<(&'static Parameter, Option<i32>)>,
+) -> Result<Vec<String>, Failure> {
+    let requests = wanted.iter().map(|(parameter, row)| Request::read_parameter(parameter, *row));
+    let requests: Vec<Request> = requests.collect::<Result<_, _>>().map_err(|error| wrong(&error))?;
+    let answers = read_each(link, screen, what, &requests).await?;
+    let write = |((parameter, _), answer): ((&Parameter, _), Result<Record, Failure>)| {
+        let record = answer.ok().filter(Record::is_listed)?;
         Request::write_parameter(parameter, record.values()).ok().map(|request| request.text())
     };
-    Ok(known.filter_map(write).collect())
+    Ok(wanted.into_iter().zip(answers).filter_map(write).collect())
 }
 
 /// Runs a program in the simulator and records its path.
 fn motion(source: &Source) -> Result<Motion, Failure> {
-    let Source { name, program, writes, has_parameters } = source;
+    let Source { name, program, lines, writes, has_parameters, has_all_points } = source;
+    let known = Known::new(writes, *has_all_points);
     let internal = |why: String| {
         Failure::usage(format!("{name} cannot be drawn: {why}")).hint("use `toyo sim run` to see how the program runs")
     };
@@ -231,8 +308,18 @@ fn motion(source: &Source) -> Result<Motion, Failure> {
     let mut simulator = Simulator::new(start.with_program(1, steps).map_err(internal)?);
     simulator.record_trace(true);
     simulator.console(Duration::ZERO, "start").map_err(internal)?;
-    let mut run =
-        Run { program, number: 0, current: None, steps: Vec::new(), is_known: false, legs: HashSet::new(), useful: 0 };
+    let mut run = Run {
+        program,
+        lines,
+        known: &known,
+        missing: None,
+        number: 0,
+        current: None,
+        steps: Vec::new(),
+        is_known: false,
+        legs: HashSet::new(),
+        useful: 0,
+    };
     let end = run.follow(&mut simulator, &mut motion);
     motion.steps = run.steps;
     let began = motion.moments().next().map_or(0.0, |moment| moment.time);
@@ -264,6 +351,10 @@ enum End {
 /// A run of the simulator.
 struct Run<'p> {
     program: &'p Program,
+    lines: &'p [String],
+    known: &'p Known,
+    /// Why the target of the current step is not known.
+    missing: Option<String>,
     /// Latest step of task 1.
     number: usize,
     /// Step of task 1 with its path so far.
@@ -291,6 +382,20 @@ impl Run<'_> {
                         count += 1;
                         self.close(moment(event.at, event.position), motion);
                         self.number = step;
+                        self.missing = self.step().and_then(|step| {
+                            let counter = step.record.number("counter").and_then(|number| usize::try_from(number).ok());
+                            let counter =
+                                counter.filter(|number| *number > 0).and_then(|number| simulator.counter(number));
+                            // An arc has two steps, and ends at the second one.
+                            let next = self
+                                .program
+                                .steps
+                                .get(self.number)
+                                .filter(|_| self.interpolation(self.number) == Some(Interpolation::Arc));
+                            let missing =
+                                |step: &program::Step| self.known.missing(&step.record, counter.map_or(0, i32::from));
+                            missing(step).or_else(|| missing(next?))
+                        });
                         self.current = Some((step, vec![moment(event.at, event.position)]));
                     }
                     What::Error(code) => {
@@ -352,17 +457,17 @@ impl Run<'_> {
         let Some(step) = self.program.steps.get(number - 1) else { return };
         let (Some(first), Some(last)) = (track.first(), track.last()) else { return };
         let Some(interpolation) = self.interpolation(number) else { return };
-        let text = step.text();
+        let text = self.text(step.line);
         let is_relative = step.record.word("aim") == Some("i");
-        if !self.is_known && is_relative {
-            let omitted = NotDrawn {
-                line: step.line,
-                text,
-                reason: "a move by a distance, from a position that is not known".to_owned(),
-            };
+        let missing = self.missing.take();
+        if missing.is_some() || !self.is_known && is_relative {
+            let reason =
+                missing.unwrap_or_else(|| "a move by a distance, from a position that is not known".to_owned());
+            let omitted = NotDrawn { line: step.line, text, reason };
             if !motion.not_drawn.contains(&omitted) {
                 motion.not_drawn.push(omitted);
             }
+            self.is_known = false;
             return;
         }
         if self.is_known
@@ -384,6 +489,15 @@ impl Run<'_> {
         };
         self.is_known = true;
         self.steps.push(Step { name, line: step.line, text, interpolation, track });
+    }
+
+    /// The current step.
+    fn step(&self) -> Option<&program::Step> {
+        self.program.steps.get(self.number.checked_sub(1)?)
+    }
+
+    fn text(&self, line: usize) -> String {
+        self.lines.get(line - 1).cloned().unwrap_or_default()
     }
 
     /// How a step moves; `None` if it does not move.
@@ -413,8 +527,8 @@ impl Run<'_> {
 
     /// Lists the current step as the end of the picture.
     fn stop(&self, motion: &mut Motion, reason: String) {
-        let step = self.number.checked_sub(1).and_then(|index| self.program.steps.get(index));
-        motion.not_drawn.extend(step.map(|step| NotDrawn { line: step.line, text: step.text(), reason }));
+        let step = self.step();
+        motion.not_drawn.extend(step.map(|step| NotDrawn { line: step.line, text: self.text(step.line), reason }));
     }
 }
 

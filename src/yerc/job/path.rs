@@ -14,6 +14,7 @@ use armctl_controller::yerc::job::{JobText, scan};
 use armctl_controller::yerc::query::{ReadJob, ReadVariable};
 use armctl_controller::yerc::variables::{Value, VariableKind};
 use armctl_frame::dry_run::unknown;
+use armctl_frame::local_names::folder_of;
 use armctl_frame::path::{
     Drawing, Interpolation, Motion, NotDrawn, PathOptions, PathReport, Recorder, Step, arc, length,
 };
@@ -78,7 +79,7 @@ impl Command for JobPath {
             let name = JobText::new(&text).name.map(ToOwned::to_owned);
             let name = name.unwrap_or_else(|| without_suffix(&text_files::display_path(&path)).to_owned());
             // Jobs that the job calls are often next to it.
-            let mut jobs = path.parent().and_then(|folder| jobs_of_folder(folder).ok()).unwrap_or_default();
+            let mut jobs = jobs_of_folder(&folder_of(&path)).unwrap_or_default();
             jobs.texts.insert(name.clone(), text);
             return self.report(&name, &jobs);
         }
