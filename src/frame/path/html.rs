@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use super::model::{Drawing, Interpolation};
+use super::model::Drawing;
 use super::svg::{self, Placed, escape, number};
 
 /// Maximum number of rows in the list of steps. The line above the picture shows every step.
@@ -30,8 +30,7 @@ pub fn page(drawing: &Drawing) -> String {
         svg::STYLE,
         escape(&svg::summary(drawing))
     );
-    let is_motion = motion.steps.iter().any(|step| step.interpolation != Interpolation::Order);
-    let time = if is_motion { "Time" } else { "Point" };
+    let time = if motion.is_points { "Point" } else { "Time" };
     let _ = write!(
         page,
         "<div class=\"bar\"><button id=\"play\" type=\"button\" aria-label=\"play\">▶</button><label>{time} <input \
@@ -70,7 +69,8 @@ fn table(drawing: &Drawing) -> String {
     let axes: String = motion.axes.iter().map(|axis| format!("<th class=\"n\">{}</th>", escape(axis))).collect();
     let time = if motion.is_timed { "<th class=\"n\">time (s)</th>" } else { "" };
     let mut table = format!(
-        "<table>\n<thead><tr><th class=\"n\">#</th><th class=\"n\">line</th><th>text</th>{time}{axes}</tr></thead>\n<tbody>\n"
+        "<table>\n<thead><tr><th class=\"n\">#</th><th class=\"n\">{}</th><th>text</th>{time}{axes}</tr></thead>\n<tbody>\n",
+        motion.noun()
     );
     for (index, step) in motion.steps.iter().take(MAX_ROWS).enumerate() {
         let target: String = step
@@ -115,6 +115,7 @@ fn data(drawing: &Drawing, panels: &[Placed]) -> String {
     });
     let data = json!({
         "timed": motion.is_timed,
+        "points": motion.is_points,
         "end": exact(motion.end()),
         "unit": motion.unit,
         "axes": motion.axes,

@@ -76,6 +76,8 @@ pub struct Motion {
     pub unit: &'static str,
     /// Whether the times are known.
     pub is_timed: bool,
+    /// Whether these are points without a program.
+    pub is_points: bool,
     /// Steps in the order of the motion.
     pub steps: Vec<Step>,
     /// Lines that are not drawn.
@@ -120,6 +122,16 @@ impl Motion {
     /// Whether the coordinates have a space with the planes XY, XZ and YZ. Otherwise the axes are drawn over time.
     pub fn has_space(&self) -> bool {
         self.unit == "mm" && self.axes.len() >= 3
+    }
+
+    /// Name of a line: `line`, or `point` if there is no program.
+    pub fn noun(&self) -> &'static str {
+        if self.is_points { "point" } else { "line" }
+    }
+
+    /// Number of a step in the picture; of points, the number of the point.
+    pub fn number(&self, index: usize) -> usize {
+        self.steps.get(index).filter(|_| self.is_points).map_or(index + 1, |step| step.line)
     }
 
     /// All moments in order.

@@ -26,7 +26,7 @@ function show() {
   const to = next[0] === from[0] || path.moments[index + 2]?.[0] === next[0] ? next : from;
   const share = to[1] > from[1] ? (time - from[1]) / (to[1] - from[1]) : 0;
   const at = from.slice(2).map((value, axis) => value + (to[axis + 2] - value) * share);
-  const step = time > from[1] ? to[0] : from[0];
+  const step = slider.value === "0" ? 0 : time > from[1] ? to[0] : from[0];
   path.panels.forEach(([x, y, x0, y0, dx, dy], panel) => {
     const left = x0 + (x === null ? time : at[x]) * dx;
     element("dot" + panel).setAttribute("cx", left);
@@ -37,7 +37,7 @@ function show() {
   const digits = path.unit === "mm" ? 2 : 0;
   const place = at.map((value, axis) => path.axes[axis] + " " + value.toFixed(digits)).join("  ");
   element("now").textContent = (path.timed ? time.toFixed(2) + " s   " : "") + place;
-  element("step").textContent = step + 1 + " · line " + path.steps[step][0];
+  element("step").textContent = path.points ? "point " + path.steps[step][0] : step + 1 + " · line " + path.steps[step][0];
   element("text").textContent = path.steps[step][1];
   if (marked) marked.classList.remove("is-now");
   marked = rows[step];

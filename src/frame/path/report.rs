@@ -1,13 +1,14 @@
 //! Report of a drawn motion.
 
-use super::model::{Difference, Drawing, Interpolation, NotDrawn};
+use super::model::{Difference, Drawing, Interpolation, Motion, NotDrawn};
 use super::{Plane, terminal};
 use crate::output::csv::RowsOf;
 use crate::prelude::basics::*;
 use crate::report::Report;
 
-/// Maximum number of steps and of omitted lines that are listed for people.
+/// Maximum number of steps, and of lines that are not drawn, that are listed for people.
 const MAX_LISTED: usize = 30;
+const MAX_OMISSIONS: usize = 20;
 /// Maximum number of axes in the list of steps.
 const MAX_AXES: usize = 6;
 
@@ -36,6 +37,10 @@ pub struct PathReport {
     picture: Vec<Vec<Cell>>,
     #[serde(skip)]
     notes: Vec<String>,
+    #[serde(skip)]
+    omissions: Vec<String>,
+    #[serde(skip)]
+    noun: &'static str,
 }
 
 /// A step of a motion.
@@ -59,7 +64,7 @@ impl PathReport {
     /// Report of a drawing. The picture for the terminal has only one plane, if the user selected one.
     pub fn new(drawing: Drawing, plane: Option<Plane>, files: Vec<String>) -> Self {
         let picture = terminal::picture(&drawing, plane);
-        let notes = notes(&drawing);
+        let (notes, omissions, noun) = (notes(&drawing), omissions(&drawing.motion), drawing.motion.noun());
         let Drawing { motion, difference, .. } = drawing;
         let (is_timed, end) = (motion.is_timed, motion.end());
         let steps = motion.steps.into_iter().map(|step| DrawnStep {
@@ -82,11 +87,13 @@ impl PathReport {
             files,
             picture,
             notes,
+            omissions,
+            noun,
         }
     }
 
     fn table(&self) -> Section {
-        let mut columns = vec!["#", "line", "text"];
+        let mut columns = vec!["#", self.noun, "text"];
         columns.extend(self.duration_s.map(|_| "time (s)"));
         let decimals = if self.unit == "mm" { 2 } else { 0 };
         let shown = self.axes.len().min(MAX_AXES);
@@ -115,13 +122,7 @@ impl Report for PathReport {
             lines.push(format!("{more} more steps: see --json, --svg or --html").into());
         }
         lines.extend(self.notes.iter().map(|note| note.as_str().into()));
-        lines.extend(self.not_drawn.iter().take(MAX_LISTED).map(|omitted| {
-            Cell::from(format!("not drawn: line {}, {}: {}", omitted.line, omitted.text, omitted.reason))
-                .tone(Tone::Warning)
-        }));
-        if let Some(more) = self.not_drawn.len().checked_sub(MAX_LISTED).filter(|more| *more > 0) {
-            lines.push(format!("{more} more lines are not drawn").into());
-        }
+        lines.extend(self.omissions.iter().map(|one| Cell::from(one.as_str()).tone(Tone::Warning)));
         lines.extend(self.files.iter().map(|file| format!("written: {file}").into()));
         view.append(Section::Lines(lines))
     }
@@ -131,11 +132,20 @@ impl Report for PathReport {
 pub fn notes(drawing: &Drawing) -> Vec<String> {
     let Drawing { motion, difference, .. } = drawing;
     let mut notes: Vec<String> = difference.iter().map(Difference::in_a_line).collect();
-    if !motion.is_timed && motion.steps.iter().any(|step| step.interpolation != Interpolation::Order) {
+    if !motion.is_timed && !motion.is_points && !motion.steps.is_empty() {
         notes.push("The times are not known: each step takes the same time.".to_owned());
     }
     notes.extend(motion.notes.iter().cloned());
     notes
+}
+
+/// Sentences about the lines that are not drawn.
+pub fn omissions(motion: &Motion) -> Vec<String> {
+    let sentence = |one: &NotDrawn| format!("Not drawn: {} {}, {}: {}", motion.noun(), one.line, one.text, one.reason);
+    let mut sentences: Vec<String> = motion.not_drawn.iter().take(MAX_OMISSIONS).map(sentence).collect();
+    let more = motion.not_drawn.len().checked_sub(MAX_OMISSIONS).filter(|more| *more > 0);
+    sentences.extend(more.map(|more| format!("Not drawn: {more} more, see --json")));
+    sentences
 }
 
 impl Difference {

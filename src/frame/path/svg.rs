@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::layout::{Panel, Range, panels};
 use super::model::{Drawing, Interpolation, Motion};
-use super::report::notes;
+use super::report::{notes, omissions};
 
 /// Width of the picture, and the space at its sides.
 const WIDTH: f64 = 1000.0;
@@ -129,30 +129,20 @@ fn heading(body: &mut String, drawing: &Drawing) -> f64 {
 pub fn summary(drawing: &Drawing) -> String {
     let motion = &drawing.motion;
     let count = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
-    let has_motion = motion.steps.iter().any(|step| step.interpolation != Interpolation::Order);
     let mut parts = vec![
-        count(motion.steps.len(), if has_motion { "step" } else { "point" }),
+        count(motion.steps.len(), if motion.is_points { "point" } else { "step" }),
         format!("{} ({})", motion.frame, motion.unit),
     ];
     parts.extend(motion.is_timed.then(|| format!("{:.2} s", motion.end())));
-    parts
-        .extend((!motion.not_drawn.is_empty()).then(|| format!("{} not drawn", count(motion.not_drawn.len(), "line"))));
+    parts.extend(
+        (!motion.not_drawn.is_empty()).then(|| format!("{} not drawn", count(motion.not_drawn.len(), motion.noun()))),
+    );
     parts.join(" · ")
 }
 
 /// Sentences below the picture, and the lines that are not drawn.
 pub fn remarks(drawing: &Drawing) -> Vec<String> {
-    /// Maximum number of lines.
-    const MAX: usize = 20;
-    let omitted = &drawing.motion.not_drawn;
-    let mut all = notes(drawing);
-    all.extend(
-        omitted.iter().take(MAX).map(|one| format!("Not drawn: line {}, {}: {}", one.line, one.text, one.reason)),
-    );
-    all.extend(
-        omitted.len().checked_sub(MAX).filter(|more| *more > 0).map(|more| format!("{more} more lines are not drawn.")),
-    );
-    all
+    [notes(drawing), omissions(&drawing.motion)].concat()
 }
 
 /// What the lines mean. Returns the space that is used.
@@ -279,7 +269,9 @@ fn draw_panel(body: &mut String, drawing: &Drawing, placed: &Placed, has_numbers
             let _ = writeln!(body, "<path class=\"p-dots\" d=\"{dots}\"/>");
         } else {
             for (index, [x, y]) in targets() {
-                let title = steps.get(index).map(|step| format!("{}: line {}, {}", index + 1, step.line, step.text));
+                let title = steps
+                    .get(index)
+                    .map(|step| format!("{}: {} {}, {}", index + 1, drawing.motion.noun(), step.line, step.text));
                 let _ = writeln!(
                     body,
                     "<circle class=\"p-dot\" cx=\"{}\" cy=\"{}\" r=\"3.4\"><title>{}</title></circle>",
@@ -290,7 +282,8 @@ fn draw_panel(body: &mut String, drawing: &Drawing, placed: &Placed, has_numbers
             }
         }
         if !trace.is_old && steps.len() <= MAX_NUMBERS && panel.x.axis.is_some() {
-            numbers(body, targets(), placed);
+            let numbered = targets().map(|(index, place)| (drawing.motion.number(index), place));
+            numbers(body, numbered, placed);
         }
         body.push_str("</g>\n");
     }
@@ -302,10 +295,10 @@ fn draw_panel(body: &mut String, drawing: &Drawing, placed: &Placed, has_numbers
 fn numbers(body: &mut String, targets: impl Iterator<Item = (usize, [f64; 2])>, placed: &Placed) {
     let mut places: Vec<([f64; 2], Vec<usize>)> = Vec::new();
     let is_near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() < 5.0 && (a[1] - b[1]).abs() < 5.0;
-    for (index, place) in targets {
+    for (number, place) in targets {
         match places.iter_mut().find(|(other, _)| is_near(*other, place)) {
-            Some((_, numbers)) => numbers.push(index + 1),
-            None => places.push((place, vec![index + 1])),
+            Some((_, numbers)) => numbers.push(number),
+            None => places.push((place, vec![number])),
         }
     }
     let mut boxes: Vec<[f64; 4]> = Vec::new();

@@ -39,7 +39,7 @@ pub fn picture(drawing: &Drawing, plane: Option<Plane>) -> Vec<Vec<Cell>> {
     if !drawing.motion.has_space() {
         let (still, moving): (Vec<&Panel>, Vec<&Panel>) = panels.iter().partition(|panel| panel.y.is_constant);
         for panel in moving {
-            lines.extend(draw(panel, WIDTH, LINES_OF_AXIS, false));
+            lines.extend(draw(drawing, panel, WIDTH, LINES_OF_AXIS, false));
         }
         let still: Vec<&str> = still.iter().map(|panel| panel.title.as_str()).collect();
         lines.extend((!still.is_empty()).then(|| vec![format!("no motion: {}", still.join(", ")).into()]));
@@ -54,11 +54,11 @@ pub fn picture(drawing: &Drawing, plane: Option<Plane>) -> Vec<Vec<Cell>> {
         }
     };
     if let [panel] = chosen[..] {
-        lines.extend(draw(panel, WIDTH, LINES_ALONE, has_numbers));
+        lines.extend(draw(drawing, panel, WIDTH, LINES_ALONE, has_numbers));
     } else {
         for pair in chosen.chunks(2) {
             let half = (WIDTH - GAP) / 2;
-            let mut parts = pair.iter().map(|panel| draw(panel, half, LINES, has_numbers));
+            let mut parts = pair.iter().map(|panel| draw(drawing, panel, half, LINES, has_numbers));
             let (left, right) = (parts.next().unwrap_or_default(), parts.next());
             match right {
                 None => lines.extend(left),
@@ -74,7 +74,7 @@ pub fn picture(drawing: &Drawing, plane: Option<Plane>) -> Vec<Vec<Cell>> {
 }
 
 /// Heading, lines with dots, and range of the horizontal axis.
-fn draw(panel: &Panel, columns: u16, rows: u16, has_numbers: bool) -> Vec<Vec<Cell>> {
+fn draw(drawing: &Drawing, panel: &Panel, columns: u16, rows: u16, has_numbers: bool) -> Vec<Vec<Cell>> {
     let area = Rect::new(0, 0, columns, rows);
     let mut buffer = Buffer::empty(area);
     let (dots_x, dots_y) = (f64::from(columns * 2), f64::from(rows * 4));
@@ -112,7 +112,11 @@ fn draw(panel: &Panel, columns: u16, rows: u16, has_numbers: bool) -> Vec<Vec<Ce
             let is_free = |[left, base]: &[f64; 2]| (x - left).abs() > 5.0 * dot.0 || (y - base).abs() > 4.0 * dot.1;
             if taken.iter().all(is_free) {
                 taken.push([*x, *y]);
-                context.print(*x, *y, Span::styled((index + 1).to_string(), Style::new().fg(Color::White)));
+                context.print(
+                    *x,
+                    *y,
+                    Span::styled(drawing.motion.number(*index).to_string(), Style::new().fg(Color::White)),
+                );
             }
         }
     });

@@ -31,7 +31,7 @@ fn motion(points: &[[f64; 4]], text: &str, interpolation: Interpolation, unit: &
         is_timed,
         steps,
         not_drawn,
-        notes: Vec::new(),
+        ..Motion::default()
     }
 }
 

@@ -26,7 +26,7 @@ use armctl_frame::programs::source::ProgramFile;
 use armctl_frame::store::rows_of_file;
 
 /// Interval of the positions.
-const SAMPLE: Duration = Duration::from_millis(20);
+const SAMPLE: Duration = Duration::from_millis(5);
 /// Time in the program after which an endless program is no longer followed.
 const LIMIT: Duration = Duration::from_secs(600);
 /// Maximum number of steps of a run.
@@ -74,8 +74,9 @@ struct Known {
 impl Known {
     fn new(writes: &[String], has_all_points: bool) -> Self {
         let mut known = Self { points: (!has_all_points).then(BTreeSet::new), groups: BTreeMap::new() };
-        for request in writes.iter().filter_map(|text| Request::parse(text).ok()) {
-            let numbers = numbers_of(request.record());
+        let block = |text: &String| Request::parse(&format!("@{}", text.trim_start_matches('@'))).ok();
+        for request in writes.iter().filter_map(block) {
+            let numbers = request.content().ok().flatten().map(|record| numbers_of(&record)).unwrap_or_default();
             match (request.parameter().map(|parameter| parameter.id), &numbers[..]) {
                 (Some("T1"), [point, ..]) => known.points.iter_mut().for_each(|points| points.extend([*point])),
                 (Some("T4.S1"), [group, points @ ..]) => drop(known.groups.insert(*group, points.to_vec())),
@@ -329,6 +330,9 @@ fn motion(source: &Source) -> Result<Motion, Failure> {
         let end = motion.end();
         motion.notes.push(format!("The program does not end: after {end:.2} s, it repeats what is drawn."));
     }
+    if !motion.not_drawn.is_empty() {
+        motion.notes.push("The times after a line that is not drawn can differ from those of the robot.".to_owned());
+    }
     motion.notes.push(match has_parameters {
         true => {
             "Times, pallets and offsets are those of the offline simulator with the parameters of the robot.".to_owned()
@@ -458,11 +462,11 @@ impl Run<'_> {
         let (Some(first), Some(last)) = (track.first(), track.last()) else { return };
         let Some(interpolation) = self.interpolation(number) else { return };
         let text = self.text(step.line);
-        let is_relative = step.record.word("aim") == Some("i");
+        // MVB goes back to a position that an earlier move had.
+        let is_relative = step.record.word("aim") == Some("i") || op(&step.text()) == Some(Op::Mvb);
         let missing = self.missing.take();
         if missing.is_some() || !self.is_known && is_relative {
-            let reason =
-                missing.unwrap_or_else(|| "a move by a distance, from a position that is not known".to_owned());
+            let reason = missing.unwrap_or_else(|| "a move from a position that is not known".to_owned());
             let omitted = NotDrawn { line: step.line, text, reason };
             if !motion.not_drawn.contains(&omitted) {
                 motion.not_drawn.push(omitted);

@@ -91,6 +91,7 @@ fn motion(points: &[(i32, FourAxes)], unit: Option<&'static str>) -> Motion {
         frame: if is_space { "base" } else { "joint" }.to_owned(),
         axes: if is_space { vec!["X", "Y", "Z", "4"] } else { vec!["1", "2", "3", "4"] },
         unit,
+        is_points: true,
         notes: vec!["These are points, not a program: the fieldbus cannot read programs.".to_owned()],
         ..Motion::default()
     };
