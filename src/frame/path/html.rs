@@ -54,7 +54,7 @@ pub fn page(drawing: &Drawing) -> String {
     let remarks = svg::remarks(drawing);
     if !remarks.is_empty() {
         page.push_str("<ul class=\"notes\">\n");
-        remarks.iter().for_each(|remark| page.push_str(&format!("<li>{}</li>\n", escape(remark))));
+        page.extend(remarks.iter().map(|remark| format!("<li>{}</li>\n", escape(remark))));
         page.push_str("</ul>\n");
     }
     page.push_str(&table(drawing));

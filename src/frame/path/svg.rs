@@ -293,16 +293,16 @@ fn draw_panel(body: &mut String, drawing: &Drawing, placed: &Placed, has_numbers
 /// Numbers of the steps next to their points. Steps at the same place share a text, and a text that would cover another
 /// text is left out.
 fn numbers(body: &mut String, targets: impl Iterator<Item = (usize, [f64; 2])>, placed: &Placed) {
-    let mut places: Vec<([f64; 2], Vec<usize>)> = Vec::new();
+    let mut groups: Vec<([f64; 2], Vec<usize>)> = Vec::new();
     let is_near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() < 5.0 && (a[1] - b[1]).abs() < 5.0;
     for (number, place) in targets {
-        match places.iter_mut().find(|(other, _)| is_near(*other, place)) {
+        match groups.iter_mut().find(|(other, _)| is_near(*other, place)) {
             Some((_, numbers)) => numbers.push(number),
-            None => places.push((place, vec![number])),
+            None => groups.push((place, vec![number])),
         }
     }
     let mut boxes: Vec<[f64; 4]> = Vec::new();
-    for ([x, y], steps) in places {
+    for ([x, y], steps) in groups {
         let shown = if let [first, second, third, _, ..] = steps[..] {
             format!("{first},{second},{third}…")
         } else {

@@ -46,13 +46,13 @@ pub fn picture(drawing: &Drawing, plane: Option<Plane>) -> Vec<Vec<Cell>> {
         return [lines, legend(drawing)].concat();
     }
     let is_flat = |panel: &&Panel| panel.x.is_constant || panel.y.is_constant;
-    let chosen: Vec<&Panel> = match plane {
+    let mut chosen: Vec<&Panel> = match plane {
         Some(plane) => panels.iter().zip(Plane::ALL).filter(|(_, one)| *one == plane).map(|(panel, _)| panel).collect(),
-        None => {
-            let moving: Vec<&Panel> = panels.iter().filter(|panel| !is_flat(panel)).collect();
-            if moving.is_empty() { panels.iter().take(1).collect() } else { moving }
-        }
+        None => panels.iter().filter(|panel| !is_flat(panel)).collect(),
     };
+    if chosen.is_empty() {
+        chosen.extend(panels.first());
+    }
     if let [panel] = chosen[..] {
         lines.extend(draw(drawing, panel, WIDTH, LINES_ALONE, has_numbers));
     } else {

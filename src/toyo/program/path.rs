@@ -1,7 +1,7 @@
 //! `toyo program show --path`: the motion of a program, as the offline simulator runs it.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use super::folder::{check_file, points_of, program_of, programs_in};
@@ -128,12 +128,12 @@ impl Command for ProgramPath {
     fn run_alone(&self) -> Result<PathReport, Failure> {
         self.options.check(false)?;
         let source = match (self.options.from(), &self.show.program) {
-            (Some(folder), _) => of_folder(folder.to_owned(), &format!("program-{}", self.task().unwrap_or(1)))?,
+            (Some(folder), _) => of_folder(folder, &format!("program-{}", self.task().unwrap_or(1)))?,
             (None, program) => {
                 let path = PathBuf::from(program.as_deref().unwrap_or("-"));
                 let name = files::display_path(&path);
                 let file = ProgramFile { name: name.clone(), file: name, bytes: files::read(&path)? };
-                of_file(file, self.show.points.clone(), self.show.params.clone())?
+                of_file(file, self.show.points.as_deref(), self.show.params.as_deref())?
             }
         };
         self.report(&source)
@@ -167,7 +167,7 @@ impl ProgramPath {
         let old = match self.options.compare() {
             Some(folder) => {
                 let name = if source.name.starts_with("program-") { source.name.as_str() } else { "program-1" };
-                Some(motion(&of_folder(folder.to_owned(), name)?)?)
+                Some(motion(&of_folder(folder, name)?)?)
             }
             None => None,
         };
@@ -176,24 +176,24 @@ impl ProgramPath {
 }
 
 /// A program of a backup, with its points and parameters.
-fn of_folder(folder: PathBuf, name: &str) -> Result<Source, Failure> {
-    let set = programs_in(&folder)?;
+fn of_folder(folder: &Path, name: &str) -> Result<Source, Failure> {
+    let set = programs_in(folder)?;
     let found = set.files.into_iter().find(|file| file.name == name);
     let file = found.ok_or_else(|| {
         Failure::usage(format!("{} contains no {name}", folder.display()))
             .hint("type the number of a task with a program")
     })?;
     let parameters = Some(folder.join("parameters.csv")).filter(|path| path.exists());
-    let points = points_of(&folder, name);
+    let points = points_of(folder, name);
     let has_all_points = points.is_some();
-    Ok(Source { has_all_points, ..of_file(file, points, parameters)? })
+    Ok(Source { has_all_points, ..of_file(file, points.as_deref(), parameters.as_deref())? })
 }
 
-fn of_file(file: ProgramFile, points: Option<PathBuf>, parameters: Option<PathBuf>) -> Result<Source, Failure> {
+fn of_file(file: ProgramFile, points: Option<&Path>, parameters: Option<&Path>) -> Result<Source, Failure> {
     let program = parse(&file)?;
-    let mut writes = parameters.as_deref().map(parameter_writes).transpose()?.unwrap_or_default();
+    let mut writes = parameters.map(parameter_writes).transpose()?.unwrap_or_default();
     let table = Points::with_letters(1, Letters::USUAL);
-    if let Some(path) = &points {
+    if let Some(path) = points {
         for (number, changes) in rows_of_file(&table, path)? {
             let values =
                 changes.whole().ok_or_else(|| in_file(path, &format!("point {number}: values are missing")))?;
@@ -333,14 +333,11 @@ fn motion(source: &Source) -> Result<Motion, Failure> {
     if !motion.not_drawn.is_empty() {
         motion.notes.push("The times after a line that is not drawn can differ from those of the robot.".to_owned());
     }
-    motion.notes.push(match has_parameters {
-        true => {
-            "Times, pallets and offsets are those of the offline simulator with the parameters of the robot.".to_owned()
-        }
-        false => {
-            "Times and offsets are those of the offline simulator, with the speeds and parameters of a new controller."
-                .to_owned()
-        }
+    motion.notes.push(if *has_parameters {
+        "Times, pallets and offsets are those of the offline simulator with the parameters of the robot.".to_owned()
+    } else {
+        "Times and offsets are those of the offline simulator, with the speeds and parameters of a new controller."
+            .to_owned()
     });
     Ok(motion)
 }
