@@ -21,6 +21,7 @@ mod gate;
 mod monitoring;
 #[cfg(feature = "plant")]
 mod mqtt;
+mod paths;
 mod pictures;
 mod readme;
 mod repl;

@@ -21,7 +21,7 @@ const LINES: &[(&str, Risk, &[&str])] = &[
     ("status", Read, &[""]),
     ("alarm", Read, &["list", "watch", "history"]),
     ("alarm", Write, &["reset", "cancel"]),
-    ("job", Read, &["show", "list", "show --source", "search A", "calls", "check"]),
+    ("job", Read, &["show", "list", "show --source", "show --path", "show A --path", "search A", "calls", "check"]),
     ("job", Write, &["select A", "stop"]),
     ("job", Destroy, &["edit A"]),
     ("job", Motion, &["start", "start --wait", "start A --repeat 3 --stats"]),

@@ -3,6 +3,7 @@
 mod calls;
 mod check;
 mod list;
+mod path;
 #[cfg(test)]
 mod program_tests;
 mod programs;
@@ -31,14 +32,15 @@ use armctl_controller::yerc::query::{ReadJob, SelectJob, Selection};
 use armctl_controller::yerc::status::{self, is_absent};
 use armctl_frame::items;
 use armctl_frame::items::{ItemError, ItemOutcome};
+use armctl_frame::path::Drawable;
 
 commands! {
     /// Jobs.
     pub enum Job {
         /// List the jobs of the controller
         List(list::List),
-        /// Show the running job: name, line, step, speed override
-        Show(Show),
+        /// Show the running job: name, line, step, speed override; with --path, the motion of a job
+        Show(Drawable<Show, path::JobPath>),
         /// Select the job to start
         Select(Select),
         /// Start the selected job, or a job by name
@@ -59,11 +61,14 @@ commands! {
 /// Shows the job that a task executes (FS and DX 3.3.4).
 #[derive(Debug, Args)]
 pub struct Show {
+    /// Job to draw: its name, or a job file on this computer [default: the running job]
+    #[arg(value_name = "JOB", requires = "path", add = complete::JOB)]
+    job: Option<String>,
     /// Task number (0 is the master task), or all
-    #[arg(long, value_name = "N|all", default_value = "0")]
+    #[arg(long, value_name = "N|all", default_value = "0", conflicts_with = "path")]
     task: Tasks,
     /// Also show the text of the current line. armctl downloads the job file each time
-    #[arg(long)]
+    #[arg(long, conflicts_with = "path")]
     source: bool,
 }
 

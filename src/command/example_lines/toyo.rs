@@ -99,7 +99,7 @@ pub const EXAMPLES: &[Examples] = &[
     ("program check", Read, &[""]),
     ("program search", Read, &["'MOVP.*PT=00[12]'", "--uses CN5"]),
     ("program search", Write, &["1", "10 --task 2"]),
-    ("program show", Read, &["", "--watch 1s"]),
+    ("program show", Read, &["", "--watch 1s", "--path --html path.html"]),
     ("raw", Read, &["@MTSK", "'@STAS SNO=0'"]),
     ("raw", Motion, &["@HOME"]),
     ("reset", Write, &["", "-r loader"]),

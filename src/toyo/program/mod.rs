@@ -10,6 +10,7 @@ mod folder;
 mod get;
 mod insert;
 mod list;
+mod path;
 mod put;
 mod search;
 mod show;
@@ -21,6 +22,7 @@ mod tests;
 pub mod text;
 
 use armctl_frame::commands;
+use armctl_frame::path::Drawable;
 
 commands! {
     /// Commands for sequential programs.
@@ -45,8 +47,8 @@ commands! {
         Search(search::Search),
         /// Show the subroutines and tasks that programs call
         Calls(calls::Calls),
-        /// Show the current step of the program
-        Show(show::Show),
+        /// Show the current step of the program; with --path, the motion of a program
+        Show(Drawable<show::Show, path::ProgramPath>),
         /// Check programs of files, a folder or the controller
         Check(check::Check),
     }

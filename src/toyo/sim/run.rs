@@ -190,7 +190,7 @@ impl Run {
         };
         let mut written = Vec::new();
         if let Some(path) = &self.params {
-            written.extend(writes(path)?);
+            written.extend(parameter_writes(path)?);
         }
         // These writes come before power on, so that parameter 2 is active.
         let mut document: toml::Table = state.parse().map_err(|error| {
@@ -268,7 +268,7 @@ impl Run {
 }
 
 /// Returns the protocol commands that write the parameters of a file.
-fn writes(path: &Path) -> Result<Vec<String>, Failure> {
+pub fn parameter_writes(path: &Path) -> Result<Vec<String>, Failure> {
     let mut start = Start::default();
     let mut commands = Vec::new();
     let mut rows = rows_of_file(&Parameters, path)?;
@@ -289,7 +289,7 @@ fn whole(path: &Path, row: &str, changes: &Changes) -> Result<Vec<Value>, Failur
 }
 
 /// Failure: a row of a file cannot be used.
-fn in_file(path: &Path, why: &str) -> Failure {
+pub fn in_file(path: &Path, why: &str) -> Failure {
     Failure::usage(format!("{}: {why}", files::display_path(path))).hint("use `dump` to write a valid file")
 }
 

@@ -11,5 +11,6 @@ mod save;
 mod tests;
 pub mod twin;
 
+pub use content::Controller;
 pub use restore::restore;
 pub use save::{Backup, back_up, points};
