@@ -61,6 +61,7 @@ impl FlagGroups {
             Common::Robots(_)
             | Common::Sim(_)
             | Common::Decode(_)
+            | Common::Wireshark(_)
             | Common::Completions(_)
             | Common::Man(_)
             | Common::Schema(_)

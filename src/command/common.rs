@@ -2,7 +2,7 @@
 
 use clap::Subcommand;
 
-use super::about::{completions, help, man, schema};
+use super::about::{completions, help, man, schema, wireshark};
 use super::fleet::common::{self, alarm, io};
 use super::fleet::status::Overview;
 use super::fleet::wait::Wait;
@@ -62,6 +62,8 @@ pub enum Common {
     /// Explain an error or alarm code: meaning, cause, remedy
     #[command(subcommand)]
     Explain(tools::Explain),
+    /// Write Wireshark dissectors of all protocols to a folder
+    Wireshark(wireshark::Wireshark),
     /// Print the completion script of a shell
     Completions(completions::Completions),
     /// Write the man pages to a folder
@@ -142,7 +144,8 @@ impl Common {
             | Self::Explain(_)
             | Self::Backup(_)
             | Self::Restore(_)
-            | Self::Diff(_) => None,
+            | Self::Diff(_)
+            | Self::Wireshark(_) => None,
         }
     }
 
@@ -170,6 +173,7 @@ impl Common {
             Self::Names(names) => names.run(run),
             Self::Decode(decode) => decode.run(run).await,
             Self::Explain(explain) => explain.run(run).await,
+            Self::Wireshark(wireshark) => wireshark.run(run),
             Self::Completions(completions) => Ok(completions.run(run)?),
             Self::Man(man) => Ok(man.run(run, root)?),
             Self::Schema(schema) => Ok(schema.run(run)?),

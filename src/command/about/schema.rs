@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
+use super::wireshark::WrittenDissectors;
 use crate::command::families::FAMILIES;
 use crate::command::fleet::status::{Fleet, Overview};
 use crate::command::fleet::{common, names, robots, session, tools, wait};
@@ -81,6 +82,7 @@ pub fn all() -> Vec<SchemaEntry> {
         SchemaEntry::of::<session::Sessions>("session.list"),
         SchemaEntry::of::<Opened>("session.open"),
         SchemaEntry::of::<robots::entry::Changed>("setup"),
+        SchemaEntry::of::<WrittenDissectors>("wireshark"),
         SchemaEntry::of::<tools::Simulators>("sim"),
     ]);
     #[cfg(feature = "plant")]

@@ -61,6 +61,7 @@ pub const EXAMPLES: &[(&str, &[&str])] = &[
     ("explain yerc", &["0x2060", "1F"]),
     ("explain yrcx", &["12.600", "14.400"]),
     ("explain toyo", &["28", "0xA1"]),
+    ("wireshark", &["$HOME/.local/lib/wireshark/plugins", "dissectors --json"]),
     ("completions", &["bash", "zsh"]),
     ("man", &["--dir /usr/local/share/man/man1", ""]),
     ("schema", &["", "yerc.status"]),
