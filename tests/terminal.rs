@@ -33,5 +33,6 @@ mod toyo_programs;
 mod toyo_safety;
 mod toyo_sim;
 mod watching;
+mod wireshark;
 mod yerc_items;
 mod yrcx_link;

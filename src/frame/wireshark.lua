@@ -59,7 +59,7 @@ local ESCAPES = { ["\t"] = "\\t", ["\r"] = "\\r", ["\n"] = "\\n", ["'"] = "\\'",
 
 -- Printable ASCII, with escapes for all other bytes.
 local function escaped(text)
-  return (text:gsub("[^ !#-&%(-%[%]-~]", function(char) return ESCAPES[char] or ("\\x%02x"):format(char:byte()) end))
+  return (text:gsub("[%c\128-\255'\"\\]", function(char) return ESCAPES[char] or ("\\x%02x"):format(char:byte()) end))
 end
 
 -- Adds a value that is not in the bytes of the packet.
@@ -89,4 +89,4 @@ function line.dissector(tvb, pinfo, root)
   end
   return 0
 end
-DissectorTable.get("wtap_encap"):add(wtap.USER0, line)
+DissectorTable.get("wtap_encap"):add((wtap or wtap_encaps).USER0, line)

@@ -104,6 +104,20 @@ local function parameter_of(text)
   end
 end
 
+-- Values of the block by name, by the first form that fits. Contents of a block are not values.
+local function block_values(row, forms, text)
+  for _, form in ipairs(forms) do
+    local values, wrong = scan(form, row.word .. text:gsub("^@", ""):sub(#row.word + 1))
+    if not wrong then
+      local by_name = {}
+      for _, value in ipairs(values) do
+        if value.field.form ~= "text" then by_name[value.field.name] = value.meaning end
+      end
+      return by_name
+    end
+  end
+end
+
 -- What a line contains, by one form of its command: items of name, meaning and place; then the problem and its position.
 local function read_form(row, form, text, is_answer)
   local start = text:sub(1, 1) == "@" and 1 or 0
@@ -128,7 +142,7 @@ local function read_form(row, form, text, is_answer)
     end
   end
   local values, wrong, wrong_at = scan(form, row.word .. text:sub(start + #row.word + 1))
-  local record, page, outer = nil, nil, {}
+  local record, page
   for _, value in ipairs(values) do
     if value.field.name == "record" then record = value.value end
     if value.field.name == "page" then page = value.value end
@@ -159,19 +173,18 @@ local function read_form(row, form, text, is_answer)
       if inner_wrong then return items, inner_wrong, inner_at + value.at + start - 1 end
     else
       add({ value }, start, page)
-      outer[name] = value.meaning
     end
   end
   if wrong then return items, wrong, wrong_at + start end
-  return items, found, nil, outer
+  return items, found
 end
 
 -- A line by the form that fits, or else by the form that fits the longest part of it. Returns also how far it fits.
 local function read_line(row, text, is_answer)
   local best, best_problem, best_at
   for _, form in ipairs(is_answer and row.answers or row.requests) do
-    local items, wrong, at, outer = read_form(row, form, text, is_answer)
-    if not at then return items, wrong, math.huge, outer end
+    local items, wrong, at = read_form(row, form, text, is_answer)
+    if not at then return items, wrong, math.huge end
     if not best or at > best_at then best, best_problem, best_at = items, wrong, at end
   end
   if best then return best, best_problem, best_at end
@@ -209,13 +222,13 @@ local function describe(text, line)
   end
   local row, what = row_of(word_of(text)), line.is_answer and "answer" or "request"
   if not row then return what .. ", unknown", {}, damage_of(text) end
-  local items, wrong, _, outer = read_line(row, text, line.is_answer)
+  local items, wrong = read_line(row, text, line.is_answer)
   local other
   if request and request.row ~= row then
     other = "it answers another request: " .. row.word .. ", not " .. request.row.word
-  elseif request and outer and not (row.word == "RSTX" and tonumber(request.outer.step) == 0) then
-    for name, meaning in pairs(outer) do
-      local asked = request.outer[name]
+  elseif request and not (row.word == "RSTX" and tonumber(request.values.step) == 0) then
+    for name, meaning in pairs(block_values(row, row.answers, text) or {}) do
+      local asked = request.values[name]
       if asked and asked ~= meaning then other = ("it answers another request: %s is %s, not %s"):format(name, meaning, asked) end
     end
   end
@@ -240,8 +253,8 @@ local function line_of(id, pinfo, text, connection, from, to, is_answer)
     if line.request then line.request.line.answer = pinfo.number end
   elseif not damage_of(text) then
     local row = row_of(word_of(text))
-    local _, _, at, outer = read_line(row, text, false)
-    requests[connection] = at == math.huge and { row = row, outer = outer or {}, line = line } or nil
+    local values = block_values(row, row.requests, text)
+    requests[connection] = values and { row = row, values = values, line = line } or nil
   else
     requests[connection] = nil
   end
@@ -327,7 +340,7 @@ line_dissectors[#line_dissectors + 1] = guarded(function(tvb, pinfo, root, is_se
   local before = lines[pinfo.number]
   if not before then
     before = unfinished[is_sent] or ""
-    if before == "" and not is_ours(tvb) then return end
+    if before == "" and not is_ours(tvb) and tvb:range(0, 1):string() ~= "@" then return end
     lines[pinfo.number] = before
     unfinished[is_sent] = (before .. tvb:range():raw()):match("[^\n]*$"):sub(-4 * T.max_len)
   end

@@ -87,7 +87,13 @@ fn part_field(fields: &mut FilterFields, name: &str, size: usize) -> String {
         }
         "service" => ("HEX", service_names()),
         "status" => ("HEX", status::all_statuses().map(|row| (row.code.into(), row.name.to_owned())).collect()),
-        "added status" => ("HEX", status::all_added().map(|row| (row.code.into(), row.name.to_owned())).collect()),
+        "added status" => (
+            "HEX",
+            [(0, "none".to_owned())]
+                .into_iter()
+                .chain(status::all_added().map(|row| (row.code.into(), row.name.to_owned())))
+                .collect(),
+        ),
         "block number" => ("HEX", Vec::new()),
         _ => ("DEC", Vec::new()),
     };

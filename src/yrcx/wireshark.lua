@@ -373,7 +373,8 @@ DissectorTable.get("wtap_encap"):add(0, profibus)
 
 -- The simulator inside a command, recorded by armctl.
 line_dissectors[#line_dissectors + 1] = guarded(function(tvb, pinfo, root, is_sent)
-  if tvb:len() ~= T.image_len then return end
+  -- A line of text has no zeros.
+  if tvb:len() ~= T.image_len or not tvb:range():raw():find("\0", 1, true) then return end
   pinfo.cols.protocol = "YRCX"
   add_image(tvb, pinfo, root, "simulator", not is_sent, "")
   return tvb:len()
