@@ -6,7 +6,7 @@ use super::about::{completions, help, man, schema, wireshark};
 use super::fleet::common::{self, alarm, io};
 use super::fleet::status::Overview;
 use super::fleet::wait::Wait;
-use super::fleet::{backup, names, robots, session, setup, tools, top};
+use super::fleet::{backup, names, report, robots, session, setup, tools, top};
 #[cfg(feature = "plant")]
 use super::fleet::{publish, serve};
 use armctl_frame::run::{Run, RunError};
@@ -54,6 +54,8 @@ pub enum Common {
     Restore(backup::Restore),
     /// Compare backups or controllers with each other
     Diff(backup::Diff),
+    /// Pack the data of a robot for a bug report
+    Report(report::Pack),
     /// Run a simulator as a network or serial server
     Sim(tools::Sim),
     /// Decode protocol bytes or a capture file
@@ -91,6 +93,7 @@ impl Common {
             | Self::Robots(_)
             | Self::Names(_)
             | Self::Session(_)
+            | Self::Report(_)
             | Self::Restore(_) => true,
             #[cfg(feature = "plant")]
             Self::Serve(_) => true,
@@ -145,6 +148,7 @@ impl Common {
             | Self::Backup(_)
             | Self::Restore(_)
             | Self::Diff(_)
+            | Self::Report(_)
             | Self::Wireshark(_) => None,
         }
     }
@@ -167,6 +171,7 @@ impl Common {
             Self::Serve(serve) => Box::pin(serve.run(run)).await,
             #[cfg(feature = "plant")]
             Self::Publish(publish) => Box::pin(publish.run(run)).await,
+            Self::Report(pack) => run.robots(&pack).await,
             Self::Sim(sim) => sim.run(run).await,
             Self::Session(session) => Box::pin(session.run(run)).await,
             Self::Robots(robots) => robots.run(run).await,

@@ -64,12 +64,11 @@ function Reader:take(name, size)
   return self.tvb:range(self.at - size, size)
 end
 
-function Reader:rest(name, key, about)
+function Reader:rest(name, about)
   local size = self:left()
-  if size > 0 and not self.problem then
-    local range = self:take(name, size)
-    self.tree:add(F.data, range, about or ("%d bytes"):format(size)):set_text(name .. ": " .. (about or size .. " bytes"))
-  end
+  if size == 0 or self.problem then return end
+  about = about or size .. " bytes"
+  self.tree:add(F.data, self:take(name, size), about):set_text(name .. ": " .. about)
 end
 
 function Reader:parts(parts)
@@ -257,7 +256,7 @@ local function client(reader, frame, id, block)
     return ("#%d %s: %s, %s, %d bytes"):format(id, size == 0 and "ack" or "data", name, block_name(block), size)
   end
   if row and service and (row.is_file or service.is_write or row.plural) then reader:payload(request, true) end
-  reader:rest("data", nil, "not expected")
+  reader:rest("data", "not expected")
   add_request(reader.tree, request, false)
   if request.is_file then return ("#%d %s '%s'"):format(id, name, escaped(request.data)) end
   return ("#%d %s: instance %d %s, attribute %d, %s, %d bytes"):format(id, name, request.instance,
@@ -283,12 +282,12 @@ local function controller(reader, frame, id, block)
     if row.services[request.service] and not row.services[request.service].is_write then
       reader:payload(request, false)
     end
-    reader:rest("data", nil, "more data than the command has")
+    reader:rest("data", "more data than the command has")
   elseif row or reader.is_file then
     local list = not row and T.list_service == answered
-    reader:rest(list and "names" or "file data", nil, list and text_of(reader.tvb:range(T.header_len):raw()) or nil)
+    reader:rest(list and "names" or "file data", list and text_of(reader.tvb:range(T.header_len):raw()) or nil)
   else
-    reader:rest("data", nil, "depends on the command")
+    reader:rest("data", "depends on the command")
   end
   if request then add_request(reader.tree, request, true) end
   return ("#%d answer%s: %s%s, %d bytes"):format(id, request and " to " .. title_of(request) or "",

@@ -4,47 +4,30 @@ local proto, F, problem, guarded = protocol("armctl_yrcx", "YRCX remote commands
 local links, packets, fragments
 function proto.init() links, packets, fragments = {}, {}, {} end
 
-local function word_at(bytes, word)
-  local low, high = bytes:byte(word * 2 + 1, word * 2 + 2)
-  return low + high * 256
-end
-
 -- Words of an image. An image with signals only has no other words.
 local function words_of(bytes)
   if #bytes == T.signals_len then
     bytes = ("\0"):rep(T.command_words * 2) .. bytes .. ("\0"):rep(T.image_len - T.command_words * 2 - #bytes)
   end
   local words = {}
-  for word = 0, T.image_len / 2 - 1 do words[word] = word_at(bytes, word) end
+  for word = 0, T.image_len / 2 - 1 do
+    local low, high = bytes:byte(word * 2 + 1, word * 2 + 2)
+    words[word] = low + high * 256
+  end
   return words
 end
 
-local function single(bits)
-  local sign, exponent = bits >= 0x80000000 and -1 or 1, math.floor(bits / 0x800000) % 256
-  local fraction = bits % 0x800000
-  if exponent == 255 then return fraction == 0 and sign * math.huge or 0 / 0 end
-  if exponent == 0 then return sign * fraction * 2 ^ -149 end
-  return sign * (fraction + 0x800000) * 2 ^ (exponent - 150)
-end
-
-local function read(field, words)
-  local word = words[field.word]
-  local long = word + (words[field.word + 1] or 0) * 0x10000
-  local form, data = field.form, field.data
+local function read(field, tvb)
+  local range, form, data = tvb:range(field.word * 2, field.words * 2), field.form, field.data
   if form == "bits" then
-    local raw = math.floor(word / 2 ^ data.low) % data.size
+    local raw = math.floor(range:le_uint() / 2 ^ data.low) % data.size
     if data.show.kind ~= "digits" then return raw end
     local tens, units = math.floor(raw / 16), raw % 16
     return tens < 10 and units < 10 and tens * 10 + units or 100 + raw
   end
-  if form == "short" then return word < 0x8000 and word or word - 0x10000 end
-  if form == "long" then return long < 0x80000000 and long or long - 0x100000000 end
-  if form == "real" then return single(long) end
-  local text = ""
-  for at = field.word, field.word + field.words - 1 do
-    text = text .. string.char(words[at] % 256, math.floor(words[at] / 256))
-  end
-  return (text:gsub("[\0 ]+$", ""):gsub("[^ -~]", "\239\191\189"))
+  if form == "real" then return range:le_float() end
+  if form ~= "text" then return range:le_int() end
+  return (range:raw():gsub("[\0 ]+$", ""):gsub("[^ -~]", "\239\191\189"))
 end
 
 local function show(field, value)
@@ -68,16 +51,16 @@ local function show(field, value)
 end
 
 -- The fields that words use, with their values. A condition can also refer to the values of the command.
-local function values_of(layout, words, context)
+local function values_of(layout, tvb, context)
   local flags, values = {}, {}
   for _, field in ipairs(layout) do
-    if flags[field.key] == nil then flags[field.key] = read(field, words) end
+    if flags[field.key] == nil then flags[field.key] = read(field, tvb) end
   end
   for _, field in ipairs(layout) do
     local when = field.when
     local flag = when and (flags[when.key] or context and context[when.key] or 0)
     if not when or when.least <= flag and flag <= when.most then
-      values[#values + 1] = { field = field, value = read(field, words) }
+      values[#values + 1] = { field = field, value = read(field, tvb) }
     end
   end
   return values
@@ -101,7 +84,7 @@ end
 
 local function status_name(words) return T.statuses[words[0]] or ("undocumented status 0x%04X"):format(words[0]) end
 
-local function summary_of(words, is_answer)
+local function summary_of(words, tvb, is_answer)
   if is_answer then
     if words[0] ~= T.status.abnormal then return status_name(words) end
     return ("abnormal end, %s %s"):format(alarm_of(words))
@@ -114,23 +97,23 @@ local function summary_of(words, is_answer)
   local row = row_of(words)
   if not row then return ("unknown command 0x%04X"):format(words[0]) end
   local text = row.id
-  for _, item in ipairs(values_of(row.request, words)) do
+  for _, item in ipairs(values_of(row.request, tvb)) do
     if item.value ~= 0 then text = text .. " " .. item.field.key .. "=" .. show(item.field, item.value) end
   end
   return text
 end
 
-local function words_line(words, is_answer)
+local function words_line(words, tvb, is_answer)
   local last, texts = 0, {}
   for word = 0, T.command_words - 1 do
     texts[word + 1] = ("%04X"):format(words[word])
     if words[word] ~= 0 then last = word end
   end
-  return (is_answer and "WO " or "WI ") .. table.concat(texts, " ", 1, last + 1) .. "  # " .. summary_of(words, is_answer)
+  return (is_answer and "WO " or "WI ") .. table.concat(texts, " ", 1, last + 1) .. "  # " .. summary_of(words, tvb, is_answer)
 end
 
 -- What the image changes, compared with the image before it, and the command to which an answer belongs.
-local function packet_of(number, words, is_answer, name)
+local function packet_of(number, words, tvb, is_answer, name)
   local id = number .. (is_answer and "out" or "in")
   local packet = packets[id]
   if packet then return packet end
@@ -141,8 +124,10 @@ local function packet_of(number, words, is_answer, name)
   local is_new = is_answer and not before
   for word = 0, T.command_words - 1 do is_new = is_new or words[word] ~= (before or { [word] = 0 })[word] end
   if is_new then
-    packet.changes[1] = words_line(words, is_answer)
+    packet.changes[1] = words_line(words, tvb, is_answer)
     if not is_answer and words[0] ~= 0 and (not link.command or words[0] ~= (before and before[0] or 0)) then
+      local row = row_of(words)
+      packet.values = row and numbers(values_of(row.request, tvb)) or {}
       link.command = packet
     end
   end
@@ -163,8 +148,8 @@ local function packet_of(number, words, is_answer, name)
 end
 
 -- Adds the fields that the words use.
-local function add_values(tree, tvb, layout, words, context)
-  for _, item in ipairs(values_of(layout, words, context)) do
+local function add_values(tree, tvb, layout, context)
+  for _, item in ipairs(values_of(layout, tvb, context)) do
     local field = item.field
     local meaning = (show(field, item.value) .. " " .. field.symbol):match("^(.-) *$")
     tree:add(F[field.filter], tvb:range(field.word * 2, field.words * 2), item.value)
@@ -177,7 +162,7 @@ local function add_command(tree, tvb, packet)
   tree:add(F.command, tvb:range(0, 2), words[0] % 0x1000)
   add_generated(tree, F.response_in, packet.answer)
   if not row then return problem(tree, ("0x%04X is not a remote command code"):format(words[0])) end
-  add_values(tree, tvb, row.request, words)
+  add_values(tree, tvb, row.request)
   add_generated(tree, F.risk, row.risk)
   add_generated(tree, F.section, row.section)
 end
@@ -197,12 +182,11 @@ local function add_answer(tree, tvb, packet)
   local row = packet.command and row_of(packet.command.words)
   if not row then return end
   add_generated(tree, F.request_in, packet.command.number)
-  add_generated(tree, F.command, row_of(packet.command.words) and packet.command.words[0] % 0x1000)
-  local context = numbers(values_of(row.request, packet.command.words))
-  local status = words[0]
+  add_generated(tree, F.command, packet.command.words[0] % 0x1000)
+  local context, status = packet.command.values, words[0]
   if status == T.status.normal or status == T.status.abnormal and is_stop and row.is_jog or
       status == T.status.running and context[row.continuous] == 1 then
-    add_values(tree, tvb, row.answer, words, context)
+    add_values(tree, tvb, row.answer, context)
   end
 end
 
@@ -211,7 +195,7 @@ local function add_image(tvb, pinfo, root, bus, is_answer, name)
   local len = tvb:len()
   if len ~= T.signals_len and len < T.image_len then return end
   local bytes = tvb:range(0, len == T.signals_len and len or T.image_len):raw()
-  local packet = packet_of(pinfo.number, words_of(bytes), is_answer, bus .. name)
+  local packet = packet_of(pinfo.number, words_of(bytes), tvb, is_answer, bus .. name)
   local tree = root:add(proto, tvb:range(0, #bytes))
   add_generated(tree, F.bus, bus)
   tree:append_text((is_answer and ", from " or ", to ") .. "the controller")
@@ -245,7 +229,8 @@ local function add_image(tvb, pinfo, root, bus, is_answer, name)
 end
 
 local udp_payload = field_of("udp.payload")
-local cip_service, cip_data, cip_class = field_of("cip.service"), field_of("cip.data"), field_of("cip.class")
+local cip_service, cip_data = field_of("cip.service"), field_of("cip.data")
+local cip_class, cip_instance = field_of("cip.class"), field_of("cip.instance")
 local can_id, can_len = field_of("can.id"), field_of("can.len")
 local io_object, io_status, io_type =
   field_of("pn_io.io_data_object"), field_of("pn_io.ioxs"), field_of("pn_io.frame_info.type")
@@ -264,13 +249,16 @@ local function ethernet_ip(pinfo, root)
       add_image(tvb:range(24, len - 4):tvb(), pinfo, root, "EtherNet/IP", false, tostring(pinfo.dst))
     end
   end
-  -- An explicit message: Get_Attribute_Single reads the image from the controller, and Set_Attribute_Single writes the
-  -- image to it.
-  local service, data, class = cip_service(), cip_data(), cip_class()
-  if service and data and class and class.value == 4 and data.len == T.image_len then
-    local tvb = data.range:tvb()
-    if service.value == 0x8E then add_image(tvb, pinfo, root, "CIP message", true, tostring(pinfo.src)) end
-    if service.value == 0x10 then add_image(tvb, pinfo, root, "CIP message", false, tostring(pinfo.dst)) end
+  -- An explicit message: the answer to Get_Attribute_Single of an assembly, or Set_Attribute_Single. The assembly of
+  -- outputs has the image to the controller.
+  local service, data, class, instance = cip_service(), cip_data(), cip_class(), cip_instance()
+  if service and data and class and instance and class.value == 4 and data.len == T.image_len then
+    local tvb, is_answer = data.range:tvb(), instance.value ~= T.output_assembly
+    if service.value == 0x8E then
+      add_image(tvb, pinfo, root, "CIP message", is_answer, tostring(pinfo.src))
+    elseif service.value == 0x10 then
+      add_image(tvb, pinfo, root, "CIP message", false, tostring(pinfo.dst))
+    end
   end
 end
 

@@ -10,6 +10,7 @@ use armctl_controller::yrcx::signal::{Side, Signal};
 use armctl_controller::yrcx::table::{COMMON_LINES, DurationClass, Field, Form, ROWS, Row, Show};
 use armctl_controller::yrcx::value::Key;
 use armctl_frame::wireshark::{FilterFields, part, table};
+use armctl_transport::eip::settings::Settings;
 
 /// Lua source of the dissector.
 pub fn dissector() -> String {
@@ -43,6 +44,7 @@ pub fn dissector() -> String {
         &json!({
             "image_len": Image::BYTES,
             "signals_len": Image::SIGNAL_BYTES,
+            "output_assembly": Settings::default().output,
             "command_words": COMMAND_WORDS,
             "common_lines": COMMON_LINES,
             "rows": rows,
