@@ -356,15 +356,3 @@ fn traces_of_the_simulators() {
         }
     }
 }
-
-#[test]
-fn does_not_overwrite_the_file_of_another_program() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("armctl.lua");
-    for (content, exit) in [("-- mine", 7), ("-- Wireshark dissectors, written by armctl 0.1.0", 0)] {
-        std::fs::write(&path, content).unwrap();
-        let output = Command::new(env!("CARGO_BIN_EXE_armctl")).arg("wireshark").arg(folder.path()).output().unwrap();
-        assert_eq!(output.status.code(), Some(exit));
-        assert_eq!(std::fs::read(&path).unwrap().starts_with(content.as_bytes()), exit == 7);
-    }
-}

@@ -16,11 +16,11 @@ use crate::command::fleet::robots::Shown;
 use crate::command::fleet::robots::check::{CheckReport, Checked};
 use crate::command::fleet::status::{Fleet, Link};
 use armctl_files as files;
-use armctl_frame::Family as _;
 use armctl_frame::face::overview::OverviewReport;
 use armctl_frame::local_names::Target;
 use armctl_frame::output::envelope::ErrorBody;
 use armctl_frame::prelude::*;
+use armctl_frame::{AnyReport, Family as _};
 use armctl_transport::capture::{Carrier, LINKTYPE_ETHERNET, read};
 use armctl_transport::tap::CaptureWriter;
 
@@ -82,17 +82,17 @@ impl Command for Pack {
             shown.hide_places();
             frames = frames.and_then(|frames| masks.capture(&frames));
         }
-        let mut parts: Vec<(&'static str, Vec<u8>)> = vec![
-            ("versions.json", text(&versions())?),
-            ("check.json", text(&check)?),
-            ("settings.json", text(&shown)?),
-            ("status.json", text(&status)?),
-            ("alarms.json", text(&alarms)?),
-        ];
-        if self.anonymous {
-            for (_, content) in &mut parts {
-                *content = masks.text(&String::from_utf8_lossy(content)).into_bytes();
-            }
+        let mut parts = Vec::new();
+        for (name, content) in [
+            ("versions.json", Ok(versions())),
+            ("check.json", AnyReport::data(&check)),
+            ("settings.json", AnyReport::data(&shown)),
+            ("status.json", Ok(status)),
+            ("alarms.json", Ok(alarms)),
+        ] {
+            let mut content = content?;
+            masks.value(&mut content);
+            parts.push((name, format!("{content:#}\n").into_bytes()));
         }
         parts.extend(frames.filter(|frames| !frames.is_empty()).map(|frames| ("frames.pcapng", frames)));
         write(&target, &parts)?;
@@ -113,7 +113,10 @@ async fn read_state(robot: &Robot, access: Access, screen: &Screen) -> (Value, V
     let alarms = face.alarms(&mut *connection).await;
     // The archive does not depend on how the connection ends.
     let _ = connection.close(screen).await;
-    (status.map_or_else(failed, |status| json!(status)), alarms.map_or_else(failed, |alarms| json!({"alarms": alarms})))
+    (
+        status.map_or_else(failed, |status| json!(OverviewReport { family: robot.family.name(), ..status })),
+        alarms.map_or_else(failed, |alarms| json!({"alarms": alarms})),
+    )
 }
 
 fn versions() -> Value {
@@ -126,12 +129,6 @@ fn versions() -> Value {
         "arch": std::env::consts::ARCH,
         "time": Zoned::now().timestamp(),
     })
-}
-
-fn text(value: &impl Serialize) -> Result<Vec<u8>, Failure> {
-    let text = serde_json::to_string_pretty(value);
-    text.map(|text| format!("{text}\n").into_bytes())
-        .map_err(|error| Failure::local(format!("report as JSON: {error}")))
 }
 
 /// Part of a file name without characters that a path has.
@@ -211,11 +208,18 @@ impl Masks {
         masked
     }
 
-    /// Replaces names and addresses, longest first, so that a part of a name does not break it.
-    fn text(&self, text: &str) -> String {
-        let mut texts: Vec<(&String, &String)> = self.texts.iter().collect();
-        texts.sort_by_key(|(from, _)| std::cmp::Reverse(from.len()));
-        texts.into_iter().fold(text.to_owned(), |text, (from, to)| text.replace(from.as_str(), to))
+    /// Replaces names and addresses in all texts of a value, the longest first, because a name can be a part of another.
+    fn value(&self, value: &mut Value) {
+        match value {
+            Value::String(text) => {
+                let mut texts: Vec<_> = self.texts.iter().collect();
+                texts.sort_by_key(|(from, _)| std::cmp::Reverse(from.len()));
+                *text = texts.into_iter().fold(std::mem::take(text), replace_word);
+            }
+            Value::Array(items) => items.iter_mut().for_each(|item| self.value(item)),
+            Value::Object(entries) => entries.values_mut().for_each(|item| self.value(item)),
+            _ => {}
+        }
     }
 
     /// The capture with other addresses, and without the messages that identify a device. `None` for PROFINET, whose
@@ -251,6 +255,19 @@ impl Masks {
         // Frames of DeviceNet and PROFIBUS have only station numbers.
         if is_framed { (!is_ethernet).then(|| capture.to_vec()) } else { Some(masked) }
     }
+}
+
+/// Replaces a word; 10.0.0.1 is not a word of 10.0.0.12.
+fn replace_word(text: String, (from, to): (&String, &String)) -> String {
+    let is_inside = |char: Option<char>| char.is_some_and(char::is_alphanumeric);
+    let (mut replaced, mut rest) = (String::new(), text.as_str());
+    while let Some((before, after)) = rest.split_once(from.as_str()) {
+        replaced.push_str(before);
+        let is_part = is_inside(replaced.chars().next_back()) || is_inside(after.chars().next());
+        replaced.push_str(if is_part { from } else { to });
+        rest = after;
+    }
+    replaced + rest
 }
 
 /// Whether a message of EtherNet/IP has the identity of a device with its serial number: an answer to ListIdentity, or
@@ -295,7 +312,7 @@ impl Report for Packed {
     }
 
     fn failure(&self) -> Option<Failure> {
-        self.check.failure()
+        Report::failure(&self.check)
     }
 }
 
@@ -304,13 +321,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_and_addresses_are_replaced_longest_first() {
+    fn names_and_addresses_are_replaced_in_texts() {
         let mut masks = Masks::default();
         masks.texts.insert("cell".to_owned(), "robot".to_owned());
         let masked = masks.address([10, 0, 0, 12].into());
         assert_eq!(masks.address([10, 0, 0, 12].into()), masked);
         masks.address([10, 0, 0, 1].into());
-        assert_eq!(masks.text("cell at 10.0.0.12, not 10.0.0.1"), "robot at 192.0.2.1, not 192.0.2.2");
+        let mut value = json!({"cell": ["cell has 10.0.0.12, not 10.0.0.1:80; cells"], "index": 1});
+        masks.value(&mut value);
+        assert_eq!(value, json!({"cell": ["robot has 192.0.2.1, not 192.0.2.2:80; cells"], "index": 1}));
     }
 
     #[test]
