@@ -1,9 +1,9 @@
 local proto, F, problem, guarded = protocol("armctl_toyo", "Toyo host communication", T.fields)
 
--- Votes of the lines for the end that is the controller, last request of each connection, and what is known of each
--- line of each packet.
-local votes, requests, lines, unfinished
-function proto.init() votes, requests, lines, unfinished = {}, {}, {}, {} end
+-- End that is the controller, last request of each connection, what is known of each line of each packet, and
+-- unfinished lines.
+local controllers, requests, lines, unfinished
+function proto.init() controllers, requests, lines, unfinished = {}, {}, {}, {} end
 
 local function row_of(word) return T.rows[word == "HTSK" and "CTSK" or word] end
 
@@ -240,11 +240,9 @@ local function line_of(id, pinfo, text, connection, from, to, is_answer)
   local line = lines[id]
   if line then return line end
   if is_answer == nil then
-    local ends = votes[connection] or {}
-    votes[connection] = ends
-    ends[from] = (ends[from] or 0) + (looks_like_answer(text) and 1 or -1)
-    local own, other = ends[from], ends[to] or -ends[from]
-    is_answer = own > other or own == other and looks_like_answer(text)
+    -- The first line shows the ends.
+    controllers[connection] = controllers[connection] or (looks_like_answer(text) and from or to)
+    is_answer = controllers[connection] == from
   end
   line = { is_answer = is_answer, number = pinfo.number }
   if is_answer then

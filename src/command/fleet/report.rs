@@ -183,14 +183,20 @@ impl Masks {
     fn robot(&mut self, robot: &Robot) -> String {
         let name = format!("robot-{:04x}", fastrand::u16(..));
         let url = robot.target.value.url();
-        let host = url.split_once("://").map_or(url, |(_, rest)| rest);
-        let host = host.split(['?', '/']).next().unwrap_or_default();
-        let host = host.rsplit_once(':').map_or(host, |(host, _)| host);
-        // The file of a serial port says nothing about a plant.
-        if !host.is_empty() {
-            match host.trim_matches(['[', ']']).parse() {
-                Ok(address) => drop(self.address(address)),
-                Err(_) => drop(self.texts.insert(host.to_owned(), "host.example".to_owned())),
+        let place = url.split_once("://").map_or(url, |(_, rest)| rest).split(['?', '/']).next().unwrap_or_default();
+        let host = match place.rsplit_once(':') {
+            Some((host, _)) if !host.contains(':') || host.ends_with(']') => host,
+            _ => place,
+        };
+        // PROFINET: the name of the station, then the interface. The file of a serial port says nothing about a plant.
+        let host = host.split('@').next().unwrap_or_default().trim_matches(['[', ']']);
+        match host.parse() {
+            Ok(address) => {
+                self.address(address);
+            }
+            Err(_) if host.is_empty() => {}
+            Err(_) => {
+                self.texts.insert(host.to_owned(), "host.example".to_owned());
             }
         }
         if let Some(path) = &robot.inventory {
