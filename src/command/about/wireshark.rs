@@ -7,6 +7,7 @@ use anyhow::Context as _;
 
 use crate::cli::VERSION;
 use crate::command::families::FAMILIES;
+use armctl_frame::face::Face;
 use armctl_frame::prelude::*;
 use armctl_frame::wireshark::PRELUDE;
 
@@ -42,7 +43,7 @@ impl Wireshark {
 /// Lua source of the dissectors of all families.
 fn dissectors() -> String {
     let head = format!("-- Written by armctl {VERSION} (`armctl wireshark`) from its tables.\n{PRELUDE}");
-    [head].into_iter().chain(FAMILIES.map(|face| face.dissector())).collect()
+    [head].into_iter().chain(FAMILIES.map(<dyn Face>::dissector)).collect()
 }
 
 /// The written file.

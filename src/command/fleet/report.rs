@@ -83,16 +83,16 @@ impl Command for Pack {
             frames = frames.and_then(|frames| masks.capture(&frames));
         }
         let mut parts = Vec::new();
-        for (name, content) in [
+        for (name, data) in [
             ("versions.json", Ok(versions())),
             ("check.json", AnyReport::data(&check)),
             ("settings.json", AnyReport::data(&shown)),
             ("status.json", Ok(status)),
             ("alarms.json", Ok(alarms)),
         ] {
-            let mut content = content?;
-            masks.value(&mut content);
-            parts.push((name, format!("{content:#}\n").into_bytes()));
+            let mut data = data?;
+            masks.value(&mut data);
+            parts.push((name, format!("{data:#}\n").into_bytes()));
         }
         parts.extend(frames.filter(|frames| !frames.is_empty()).map(|frames| ("frames.pcapng", frames)));
         write(&target, &parts)?;
@@ -220,7 +220,7 @@ impl Masks {
             Value::String(text) => {
                 let mut texts: Vec<_> = self.texts.iter().collect();
                 texts.sort_by_key(|(from, _)| std::cmp::Reverse(from.len()));
-                *text = texts.into_iter().fold(std::mem::take(text), replace_word);
+                *text = texts.into_iter().fold(std::mem::take(text), |text, words| replace_word(&text, words));
             }
             Value::Array(items) => items.iter_mut().for_each(|item| self.value(item)),
             Value::Object(entries) => entries.values_mut().for_each(|item| self.value(item)),
@@ -264,9 +264,9 @@ impl Masks {
 }
 
 /// Replaces a word; 10.0.0.1 is not a word of 10.0.0.12.
-fn replace_word(text: String, (from, to): (&String, &String)) -> String {
+fn replace_word(text: &str, (from, to): (&String, &String)) -> String {
     let is_inside = |char: Option<char>| char.is_some_and(char::is_alphanumeric);
-    let (mut replaced, mut rest) = (String::new(), text.as_str());
+    let (mut replaced, mut rest) = (String::new(), text);
     while let Some((before, after)) = rest.split_once(from.as_str()) {
         replaced.push_str(before);
         let is_part = is_inside(replaced.chars().next_back()) || is_inside(after.chars().next());
