@@ -41,7 +41,6 @@ fn packs_every_family_and_only_reads() {
     let workspace = Workspace::new(&recorded.targets);
     for (folder, option) in [("open", "--json"), ("masked", "--anonymous")] {
         let path = workspace.folder.path().join(folder);
-        std::fs::create_dir(&path).expect("a folder");
         let to = path.to_str().expect("a path");
         let words = ["report", "robot1", "robot2", "robot3", "--to", to, option];
         let (code, text) = run(&workspace, &words);
@@ -73,7 +72,6 @@ fn packs_a_robot_that_does_not_answer() {
     let unused = std::net::UdpSocket::bind("127.0.0.1:0").expect("a port").local_addr().expect("an address");
     let workspace = Workspace::new(&[format!("yerc udp://{unused}")]);
     let path = workspace.folder.path().join("reports");
-    std::fs::create_dir(&path).expect("a folder");
     let to = path.to_str().expect("a path");
     let options = ["--timeout", "50ms", "--retries", "0"];
     let (code, text) = run(&workspace, &[&["report", "robot1", "--to", to][..], &options].concat());

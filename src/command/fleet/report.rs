@@ -17,7 +17,7 @@ use crate::command::fleet::robots::check::{CheckReport, Checked};
 use crate::command::fleet::status::{Fleet, Link};
 use armctl_files as files;
 use armctl_frame::face::overview::OverviewReport;
-use armctl_frame::local_names::Target;
+use armctl_frame::local_names::{Target, make_folder};
 use armctl_frame::output::envelope::ErrorBody;
 use armctl_frame::prelude::*;
 use armctl_frame::{AnyReport, Family as _};
@@ -38,7 +38,7 @@ pub struct Pack {
     /// Robots in the inventory, or a target URL [default: the robots that -r, -t and other flags select]
     #[arg(value_name = "ROBOT", add = ValueKind::RobotOrUrl)]
     pub robots: Vec<String>,
-    /// Folder for the archives
+    /// Folder for the archives; it is created if it does not exist
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     to: PathBuf,
     /// Replace names, addresses and places, and leave serial numbers out
@@ -69,6 +69,7 @@ impl Command for Pack {
         let mut masks = Masks::default();
         let name = if self.anonymous { masks.robot(robot) } else { robot.name.clone() };
         let file = format!("report-{}-{}.tar.gz", file_part(&name), Zoned::now().strftime("%Y-%m-%d"));
+        make_folder(&self.to)?;
         let target = Target::new(self.to.join(file), false)
             .map_err(|failure| failure.hint("move the file, or name another folder with --to"))?;
         let folder = tempfile::tempdir().context("a temporary folder")?;
