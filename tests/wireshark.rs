@@ -37,7 +37,6 @@ impl Bench {
         let found = Command::new("tshark").arg("--version").output().is_ok_and(|output| output.status.success());
         assert!(found || std::env::var_os("CI").is_none(), "tshark belongs to the set-up of .ci/run");
         if !found {
-            println!("{SKIPPED}");
             return None;
         }
         let bench = Self { folder: tempfile::tempdir().unwrap() };
@@ -192,7 +191,7 @@ fn at(number: usize) -> Duration {
 
 #[test]
 fn frames_of_the_manuals_and_of_a_controller() {
-    let Some(bench) = Bench::new() else { return };
+    let Some(bench) = Bench::new() else { return println!("{SKIPPED}") };
     let path = bench.path("yerc.pcapng");
     let mut writer = CaptureWriter::append(&path).unwrap();
     let frames = data("yerc-frames.json");
@@ -222,7 +221,7 @@ fn frames_of_the_manuals_and_of_a_controller() {
 
 #[test]
 fn lines_of_the_toyo_manual() {
-    let Some(bench) = Bench::new() else { return };
+    let Some(bench) = Bench::new() else { return println!("{SKIPPED}") };
     let pairs = data("toyo-transcripts.json");
     for is_serial in [false, true] {
         let path = bench.path(&format!("toyo-{is_serial}.pcapng"));
@@ -269,7 +268,7 @@ fn images() -> Vec<(Direction, Image)> {
 
 #[test]
 fn images_on_every_bus() {
-    let Some(bench) = Bench::new() else { return };
+    let Some(bench) = Bench::new() else { return println!("{SKIPPED}") };
     let images = images();
     let [line, eip, can, profibus] =
         ["line", "eip", "can", "profibus"].map(|name| bench.path(&format!("{name}.pcapng")));
@@ -303,7 +302,7 @@ fn images_on_every_bus() {
         let len = u8::try_from(body.len()).unwrap();
         let telegram = [&[0x68, len, len, 0x68], &body[..], &[sum, 0x16]].concat();
         telegrams.frame(at(number), &telegram).unwrap();
-        telegrams.frame(at(number), &telegram[..1 + number % telegram.len()]).unwrap();
+        telegrams.frame(at(number), &telegram[..=number % telegram.len()]).unwrap();
     }
     for path in [line, eip, can, profibus] {
         assert!(bench.compare("yrcx", &path) > 200, "{}", path.display());
@@ -322,7 +321,7 @@ fn images_on_every_bus() {
 /// Wireshark decodes the messages. The image from the controller is in its input assembly, the other in its output assembly.
 #[test]
 fn images_in_explicit_messages() {
-    let Some(bench) = Bench::new() else { return };
+    let Some(bench) = Bench::new() else { return println!("{SKIPPED}") };
     let path = bench.path("explicit.pcapng");
     let mut writer = CaptureWriter::append_streams(&path).unwrap();
     let (own, controller) = ends(44818);
@@ -349,7 +348,7 @@ fn encapsulated(context: u8, data: &[u8]) -> Vec<u8> {
 
 #[test]
 fn traces_of_the_simulators() {
-    let Some(bench) = Bench::new() else { return };
+    let Some(bench) = Bench::new() else { return println!("{SKIPPED}") };
     for (family, lines) in [
         ("yerc", &["status", "position", "var get B0..B9 P0 R1 S2", "alarm history", "io get 1001", "file list"][..]),
         ("toyo", &["status", "point list", "param list", "alarm history"]),
