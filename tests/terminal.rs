@@ -35,5 +35,6 @@ mod toyo_safety;
 mod toyo_sim;
 mod twin;
 mod watching;
+mod wireshark;
 mod yerc_items;
 mod yrcx_link;

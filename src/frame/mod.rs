@@ -68,6 +68,7 @@ pub mod trace;
 pub mod value_kind;
 pub mod wait_arguments;
 pub mod watch;
+pub mod wireshark;
 
 pub use command::{AnyCommand, AnyContext, Command, Context};
 pub use command_set::{CommandSet, Offline, OfflineCommand, Subcommands};

@@ -57,6 +57,10 @@ impl Declaration for Toyo {
         ]
     }
 
+    fn dissector() -> String {
+        super::wireshark::dissector()
+    }
+
     fn codes() -> Vec<(String, String)> {
         let codes = errors::all().map(|code| (format!("{:02X}", code.code), code.name.to_string()));
         codes.chain(INSTRUCTIONS.iter().map(|row| (row.word.to_owned(), row.about.to_owned()))).collect()

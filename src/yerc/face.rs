@@ -51,6 +51,10 @@ impl Declaration for Yerc {
         vec![("udp://".to_owned(), "yerc: name or address of the controller")]
     }
 
+    fn dissector() -> String {
+        super::wireshark::dissector()
+    }
+
     fn codes() -> Vec<(String, String)> {
         let statuses = status::all_statuses().map(|row| (format!("0x{:02X}", row.code), row.name.to_owned()));
         statuses.chain(status::all_added().map(|row| (format!("0x{:04X}", row.code), row.name.to_owned()))).collect()

@@ -57,6 +57,10 @@ impl Declaration for Yrcx {
         BUSES.iter().map(|bus| (format!("{}://", bus.name), bus.about)).collect()
     }
 
+    fn dissector() -> String {
+        super::wireshark::dissector()
+    }
+
     fn codes() -> Vec<(String, String)> {
         alarm::KNOWN.iter().map(|known| (known.alarm.to_string(), known.text.to_owned())).collect()
     }

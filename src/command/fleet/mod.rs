@@ -10,6 +10,7 @@ pub mod names;
 pub mod poll;
 #[cfg(feature = "plant")]
 pub mod publish;
+pub mod report;
 #[cfg(feature = "plant")]
 pub mod report_values;
 pub mod robots;

@@ -59,6 +59,9 @@ pub trait Face: Sync {
     /// Schemas of all reports of the family.
     fn schemas(&self) -> Vec<SchemaEntry>;
 
+    /// Dissector of the protocol for Wireshark, in Lua, without the functions that all families use.
+    fn dissector(&self) -> String;
+
     /// Tool of the family of this kind.
     fn tool(&self, kind: ToolKind) -> Tool;
 

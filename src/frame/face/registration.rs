@@ -77,6 +77,8 @@ pub trait Declaration: Backups {
     fn urls() -> Vec<(String, &'static str)>;
     /// See [`Face::codes`].
     fn codes() -> Vec<(String, String)>;
+    /// See [`Face::dissector`].
+    fn dissector() -> String;
     /// See [`Face::topics`].
     fn topics() -> Vec<(&'static str, &'static str, String)> {
         Vec::new()
@@ -182,6 +184,10 @@ impl<F: Declaration> Face for Registered<F> {
 
     fn schemas(&self) -> Vec<SchemaEntry> {
         F::Commands::schemas()
+    }
+
+    fn dissector(&self) -> String {
+        F::dissector()
     }
 
     fn tool(&self, kind: ToolKind) -> Tool {
