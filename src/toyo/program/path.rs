@@ -279,10 +279,9 @@ fn motion(source: &Source) -> Result<Motion, Failure> {
     let internal = |why: String| {
         Failure::usage(format!("{name} cannot be drawn: {why}")).hint("use `toyo sim run` to see how the program runs")
     };
-    let mut start = Start::parse("origin = true\n").map_err(internal)?;
-    for command in writes {
-        start = start.with_written(command.trim_start_matches('@')).map_err(internal)?;
-    }
+    let start = Start::parse("origin = true\n").map_err(internal)?;
+    let start =
+        start.with_written(1, writes.iter().map(|command| command.trim_start_matches('@'))).map_err(internal)?;
     let mut motion = Motion {
         program: name.clone(),
         frame: "base".to_owned(),
