@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::programs::jobs_in;
 use super::{Show, without_suffix};
-use crate::file::{exact, fetch};
+use crate::file::{exact, fetch, plan_all};
 use crate::item_requests::ReadError;
 use crate::link::{Link, Yerc};
 use crate::prelude::*;
@@ -110,7 +110,9 @@ impl Command for JobPath {
             }
         };
         if link.is_dry_run() {
-            link.then("download of the job and of the jobs that it calls, and reads of the P variables in its moves");
+            let file = job_file(link, &name)?;
+            plan_all(link, "the text of the job", [file.save()])?;
+            link.then("download of the jobs that the job calls, and reads of the P variables in its moves");
             return Err(unknown());
         }
         let jobs = read(link, &name).await?;
@@ -149,14 +151,18 @@ fn jobs_of_folder(folder: &Path) -> Result<Jobs, Failure> {
     Ok(Jobs { texts: set.files.iter().map(text).collect(), variables: None })
 }
 
+/// File of a job on the controller.
+fn job_file(link: &Link, name: &str) -> Result<FileName, Failure> {
+    let bytes = link.encoding.encode_name(&format!("{name}.JBI"));
+    exact(bytes.map_err(|error| Failure::usage(error.to_string()))?)
+}
+
 /// Reads a job from the controller, the jobs that it calls, and the P variables of its moves.
 async fn read(link: &mut Link, name: &str) -> Result<Jobs, Failure> {
     let mut jobs = Jobs::default();
     let mut open = vec![name.to_owned()];
     while let Some(next) = open.pop().filter(|_| jobs.texts.len() <= MAX_CALLED) {
-        let bytes =
-            link.encoding.encode_name(&format!("{next}.JBI")).map_err(|error| Failure::usage(error.to_string()))?;
-        let (file, mut content) = (exact(bytes)?, Vec::new());
+        let (file, mut content) = (job_file(link, &next)?, Vec::new());
         let read = fetch(link, &file, |block| {
             content.extend_from_slice(block);
             Ok(())
