@@ -24,7 +24,7 @@ const LINES_OF_AXIS: u16 = 4;
 const GAP: u16 = 4;
 /// Maximum number of steps that have their numbers in the picture.
 const MAX_NUMBERS: usize = 40;
-/// Colors in the buffer. The terminal shows the tones of [`tone`].
+/// Colors in the buffer. [`row`] converts them to tones.
 const NEW: Color = Color::Green;
 const OLD: Color = Color::Yellow;
 

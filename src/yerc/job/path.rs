@@ -154,7 +154,10 @@ fn jobs_of_folder(folder: &Path) -> Result<Jobs, Failure> {
 /// File of a job on the controller.
 fn job_file(link: &Link, name: &str) -> Result<FileName, Failure> {
     let bytes = link.encoding.encode_name(&format!("{name}.JBI"));
-    exact(bytes.map_err(|error| Failure::usage(error.to_string()))?)
+    exact(bytes.map_err(|error| {
+        Failure::usage(format!("the job name: {error}"))
+            .hint("set the encoding with --encoding or in the robot's entry in robots.toml")
+    })?)
 }
 
 /// Reads a job from the controller, the jobs that it calls, and the P variables of its moves.
