@@ -128,3 +128,20 @@ fn twin_has_the_values_of_an_edited_backup() {
     desk.fails("-t sim:?from=press yerc status", 2, "backup of a toyo controller");
     desk.fails("sim yrcx --from press", 2, "backup of a toyo controller");
 }
+
+#[test]
+fn twin_has_the_model_of_its_backup() {
+    let desk = Workspace::new("");
+    desk.data("--sim yerc backup weld --only VAR.DAT");
+    desk.data("-t sim:?from=weld&model=dx200 yerc var get B5");
+    desk.fails("-t sim:?from=weld&model=fs100 yerc var get B5", 2, "the selected model is fs100");
+}
+
+#[test]
+fn inventory_is_readable_without_the_backup_of_a_twin() {
+    let desk = Workspace::new("");
+    desk.data("--sim toyo backup press --only points");
+    desk.data("robots add twin sim:?from=press");
+    std::fs::remove_dir_all(desk.folder.path().join("press")).expect("it is removed");
+    desk.data("robots list");
+}

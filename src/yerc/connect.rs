@@ -26,6 +26,9 @@ fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
                 robot.model.value.named().unwrap_or(Model::Dx200),
                 faults.as_ref(),
             )?;
+            if sim.from.is_some() {
+                simulator_start::check_model(&start, robot.model.value.named())?;
+            }
             Ok(Endpoint::Simulator { start: Box::new(start), faults })
         }
         Place::Serial(_) | Place::Tcp(_) | Place::Bus(_) => {

@@ -65,10 +65,7 @@ impl serve::Serve for Serve {
     async fn start(self) -> Result<Started<Self>, Failure> {
         let model = self.model.unwrap_or(Model::Dx200);
         let start = simulator_start::start(self.state.as_deref(), self.from.as_deref(), model, self.fault.as_ref())?;
-        if let Some(model) = self.model.filter(|model| *model != start.model()) {
-            let message = format!("the start state is for model {}, but the selected model is {model}", start.model());
-            return Err(Failure::usage(message).hint("remove --model, or change the file"));
-        }
+        simulator_start::check_model(&start, self.model)?;
         let model = start.model();
         let robot = self.bind;
         let file_port = self.file_port.unwrap_or(if robot.port() == 0 { 0 } else { robot.port().saturating_add(1) });

@@ -30,6 +30,13 @@ pub fn start(
     })
 }
 
+/// Checks that a start state is for the model that the user selected, if any.
+pub fn check_model(start: &Start, selected: Option<Model>) -> Result<(), Failure> {
+    let Some(selected) = selected.filter(|model| *model != start.model()) else { return Ok(()) };
+    let message = format!("the start state is for model {}, but the selected model is {selected}", start.model());
+    Err(Failure::usage(message).hint("remove --model, or change the file"))
+}
+
 /// Maximum size of a file. It is larger than the storage of a controller.
 const MAX_FILE_SIZE: u64 = 256 << 20;
 

@@ -253,12 +253,18 @@ impl Target {
 
     /// The family of this URL, if only one family can use it.
     pub fn family(&self) -> Option<Family> {
-        if let Place::Sim(Sim { from: Some(folder), .. }) = &self.place {
-            return manifest::family_of(folder);
-        }
         let mut families = Family::ALL.into_iter().filter(|family| family.is_reached_over(self.scheme()));
         let first = families.next();
         if families.next().is_some() { None } else { first }
+    }
+
+    /// Family of the backup that a simulator starts with. It is no part of the URL: the folder can be missing, and an
+    /// inventory with this URL must still be readable.
+    pub fn family_of_backup(&self) -> Option<Family> {
+        match &self.place {
+            Place::Sim(Sim { from: Some(folder), .. }) => manifest::family_of(folder),
+            _ => None,
+        }
     }
 
     /// Checks that the URL and all its options are valid for a family.
