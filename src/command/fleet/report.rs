@@ -40,7 +40,7 @@ pub struct Pack {
     pub robots: Vec<String>,
     /// Folder for the archives; it is created if it does not exist
     #[arg(long, value_name = "FOLDER", default_value = ".")]
-    to: PathBuf,
+    dir: PathBuf,
     /// Replace names, addresses and places, and leave serial numbers out
     #[arg(long)]
     anonymous: bool,
@@ -69,15 +69,16 @@ impl Command for Pack {
         let mut masks = Masks::default();
         let name = if self.anonymous { masks.robot(robot) } else { robot.name.clone() };
         let file = format!("report-{}-{}.tar.gz", file_part(&name), Zoned::now().strftime("%Y-%m-%d"));
-        make_folder(&self.to)?;
-        let target = Target::new(self.to.join(file), false)
-            .map_err(|failure| failure.hint("move the file, or name another folder with --to"))?;
+        make_folder(&self.dir)?;
+        let target = Target::new(self.dir.join(file), false)
+            .map_err(|failure| failure.hint("move the file, or name another folder with --dir"))?;
         let folder = tempfile::tempdir().context("a temporary folder")?;
         let trace = folder.path().join("frames.pcapng");
         let access = Access { trace: Some(trace.clone()), ..context.link.clone() };
         let check = CheckReport::of(robot, access.clone(), screen).await?;
         let (status, alarms) = read_state(robot, Access { mode: ConnectMode::Monitor, ..access }, screen).await;
-        let frames = std::fs::read(&trace).unwrap_or_default();
+        // Without an answer, there may be no frames.
+        let frames = files::read(&trace, MAX_FRAMES).unwrap_or_default();
         let (mut shown, mut frames) = (Shown::of(robot), Some(frames));
         if self.anonymous {
             shown.hide_places();
@@ -101,6 +102,9 @@ impl Command for Pack {
         Ok(Packed { path: target.path().display().to_string(), anonymous: self.anonymous, files, check })
     }
 }
+
+/// Maximum size of the recorded frames.
+const MAX_FRAMES: u64 = 64 << 20;
 
 /// State and alarms of a robot, or the reason why they cannot be read.
 async fn read_state(robot: &Robot, access: Access, screen: &Screen) -> (Value, Value) {
