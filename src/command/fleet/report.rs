@@ -11,7 +11,6 @@ use flate2::write::GzEncoder;
 use jiff::Zoned;
 use serde_json::{Value, json};
 
-use crate::cli::LONG_VERSION;
 use crate::command::fleet::robots::Shown;
 use crate::command::fleet::robots::check::{CheckReport, Checked};
 use crate::command::fleet::status::{Fleet, Link};
@@ -128,10 +127,10 @@ fn versions() -> Value {
     let features = [("plant", cfg!(feature = "plant")), ("plant-tls", cfg!(feature = "plant-tls"))];
     let features: Vec<&str> = features.into_iter().filter_map(|(name, is_on)| is_on.then_some(name)).collect();
     json!({
-        "armctl": LONG_VERSION.lines().collect::<Vec<_>>(),
+        "armctl": env!("CARGO_PKG_VERSION"),
+        "commit": env!("BUILT_COMMIT"),
+        "target": env!("BUILT_TARGET"),
         "features": features,
-        "os": std::env::consts::OS,
-        "arch": std::env::consts::ARCH,
         "time": Zoned::now().timestamp(),
     })
 }
