@@ -42,7 +42,7 @@ fn packs_every_family_and_only_reads() {
     for (folder, option) in [("open", "--json"), ("masked", "--anonymous")] {
         let path = workspace.folder.path().join(folder);
         let to = path.to_str().expect("a path");
-        let words = ["report", "robot1", "robot2", "robot3", "--to", to, option];
+        let words = ["report", "robot1", "robot2", "robot3", "--dir", to, option];
         let (code, text) = run(&workspace, &words);
         // The states of the simulators let some layers of the check fail.
         assert!(matches!(code, Some(0 | 8 | 9)), "{code:?} {text}");
@@ -74,7 +74,7 @@ fn packs_a_robot_that_does_not_answer() {
     let path = workspace.folder.path().join("reports");
     let to = path.to_str().expect("a path");
     let options = ["--timeout", "50ms", "--retries", "0"];
-    let (code, text) = run(&workspace, &[&["report", "robot1", "--to", to][..], &options].concat());
+    let (code, text) = run(&workspace, &[&["report", "robot1", "--dir", to][..], &options].concat());
     assert_eq!(code, run(&workspace, &[&["robots", "check", "robot1"][..], &options].concat()).0, "{text}");
     let archives = archives(&path);
     assert!(holds(&archives[0].2, b"\"kind\": \"no_answer\"") && holds(&archives[0].2, b"\"failed\""), "{archives:?}");

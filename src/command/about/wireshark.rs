@@ -5,7 +5,6 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 
-use crate::cli::VERSION;
 use crate::command::families::FAMILIES;
 use armctl_frame::face::Face;
 use armctl_frame::prelude::*;
@@ -42,8 +41,10 @@ impl Wireshark {
 
 /// Lua source of the dissectors of all families.
 fn dissectors() -> String {
-    let head = format!("-- Written by armctl {VERSION} (`armctl wireshark`) from its tables.\n{PRELUDE}");
-    [head].into_iter().chain(FAMILIES.map(<dyn Face>::dissector)).collect()
+    const HEAD: &str =
+        concat!("-- Written by armctl ", env!("CARGO_PKG_VERSION"), " from its tables: `armctl wireshark`.\n");
+
+    [HEAD.to_owned(), PRELUDE.to_owned()].into_iter().chain(FAMILIES.map(<dyn Face>::dissector)).collect()
 }
 
 /// The written file.

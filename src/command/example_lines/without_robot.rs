@@ -50,7 +50,7 @@ pub const EXAMPLES: &[(&str, &[&str])] = &[
     ("setup", &["", "--config plant.toml"]),
     ("robots remove", &["cell3", "cell3 --config plant.toml"]),
     ("robots check", &["cell3", "udp://192.168.1.31"]),
-    ("report", &["cell3", "--all --to reports --anonymous"]),
+    ("report", &["cell3", "--all --dir reports --anonymous"]),
     ("robots discover", &["", "192.168.1.50", "--profibus /dev/ttyUSB0"]),
     ("session open", &["-r press", "-r press --background"]),
     ("session list", &["", "--json"]),

@@ -11,7 +11,6 @@ use flate2::write::GzEncoder;
 use jiff::Zoned;
 use serde_json::{Value, json};
 
-use crate::cli::LONG_VERSION;
 use crate::command::fleet::robots::Shown;
 use crate::command::fleet::robots::check::{CheckReport, Checked};
 use crate::command::fleet::status::{Fleet, Link};
@@ -40,7 +39,7 @@ pub struct Pack {
     pub robots: Vec<String>,
     /// Folder for the archives; it is created if it does not exist
     #[arg(long, value_name = "FOLDER", default_value = ".")]
-    to: PathBuf,
+    dir: PathBuf,
     /// Replace names, addresses and places, and leave serial numbers out
     #[arg(long)]
     anonymous: bool,
@@ -69,15 +68,16 @@ impl Command for Pack {
         let mut masks = Masks::default();
         let name = if self.anonymous { masks.robot(robot) } else { robot.name.clone() };
         let file = format!("report-{}-{}.tar.gz", file_part(&name), Zoned::now().strftime("%Y-%m-%d"));
-        make_folder(&self.to)?;
-        let target = Target::new(self.to.join(file), false)
-            .map_err(|failure| failure.hint("move the file, or name another folder with --to"))?;
+        make_folder(&self.dir)?;
+        let target = Target::new(self.dir.join(file), false)
+            .map_err(|failure| failure.hint("move the file, or name another folder with --dir"))?;
         let folder = tempfile::tempdir().context("a temporary folder")?;
         let trace = folder.path().join("frames.pcapng");
         let access = Access { trace: Some(trace.clone()), ..context.link.clone() };
         let check = CheckReport::of(robot, access.clone(), screen).await?;
         let (status, alarms) = read_state(robot, Access { mode: ConnectMode::Monitor, ..access }, screen).await;
-        let frames = std::fs::read(&trace).unwrap_or_default();
+        // Without an answer, there may be no frames.
+        let frames = files::read(&trace, MAX_FRAMES).unwrap_or_default();
         let (mut shown, mut frames) = (Shown::of(robot), Some(frames));
         if self.anonymous {
             shown.hide_places();
@@ -102,6 +102,9 @@ impl Command for Pack {
     }
 }
 
+/// Maximum size of the recorded frames.
+const MAX_FRAMES: u64 = 64 << 20;
+
 /// State and alarms of a robot, or the reason why they cannot be read.
 async fn read_state(robot: &Robot, access: Access, screen: &Screen) -> (Value, Value) {
     let failed = |failure: Failure| json!({"error": ErrorBody::from(failure)});
@@ -124,10 +127,10 @@ fn versions() -> Value {
     let features = [("plant", cfg!(feature = "plant")), ("plant-tls", cfg!(feature = "plant-tls"))];
     let features: Vec<&str> = features.into_iter().filter_map(|(name, is_on)| is_on.then_some(name)).collect();
     json!({
-        "armctl": LONG_VERSION.lines().collect::<Vec<_>>(),
+        "armctl": env!("CARGO_PKG_VERSION"),
+        "commit": env!("BUILT_COMMIT"),
+        "target": env!("BUILT_TARGET"),
         "features": features,
-        "os": std::env::consts::OS,
-        "arch": std::env::consts::ARCH,
         "time": Zoned::now().timestamp(),
     })
 }
