@@ -145,3 +145,16 @@ fn inventory_is_readable_without_the_backup_of_a_twin() {
     std::fs::remove_dir_all(desk.folder.path().join("press")).expect("it is removed");
     desk.data("robots list");
 }
+
+#[test]
+fn twin_reads_the_numbers_of_a_real_variable_file() {
+    let desk = Workspace::new("");
+    desk.data("--sim yerc backup press");
+    let file = desk.folder.path().join("press/VAR.DAT");
+    let text = std::fs::read_to_string(&file).expect("variables");
+    let (numbers, _) = text.split_once("////P").expect("positions");
+    let real =
+        numbers.replacen("\r\n0,", "\r\n7,", 1) + "////P\r\n///TOOL 0\r\n///POSTYPE PULSE\r\nP0001=1,2,3,4,5,6\r\n";
+    std::fs::write(&file, real).expect("it is written");
+    assert_eq!(desk.data("-t sim:?from=press yerc var get B0")["items"][0]["value"], 7);
+}

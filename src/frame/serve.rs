@@ -48,7 +48,7 @@ pub struct Started<S: Serve> {
     /// Whether the simulator reads console lines on stdin.
     pub with_console: bool,
     /// What the simulator of a backup does not know about its robot.
-    pub unknown: Option<&'static str>,
+    pub unknown: Option<String>,
 }
 
 /// A simulator with its server.
@@ -90,7 +90,7 @@ pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
         run.screen.note("warning: other computers on the network can reach this simulator");
     }
     if let Some(unknown) = unknown {
-        run.screen.note(unknown);
+        run.screen.note(&unknown);
     }
     // A program reads the address from the report, and needs no instructions.
     if !run.screen.is_json() {

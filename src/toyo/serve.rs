@@ -9,6 +9,7 @@ use clap::Args;
 
 use crate::backup::twin;
 use crate::simulated::{self, Simulated};
+use armctl_frame::backup::twin::note;
 use armctl_frame::failure::{Failure, plain};
 use armctl_frame::interrupt::catch_interrupts;
 use armctl_frame::serve::terminal_link::TerminalLink;
@@ -93,7 +94,7 @@ impl serve::Serve for Serve {
             server: Toyo { server, simulated: Simulated::new(start), _link: link },
             address,
             with_console: self.console,
-            unknown: self.from.map(|_| twin::UNKNOWN),
+            unknown: self.from.map(|folder| note(&folder, twin::UNKNOWN)).transpose()?,
         })
     }
 }

@@ -4,11 +4,12 @@ use std::path::Path;
 
 use anyhow::Context as _;
 
-use crate::backup::twin;
 pub use armctl_client::toyo::Simulated;
 use armctl_controller::toyo::simulator::Start;
 use armctl_files as files;
+use armctl_frame::backup::twin;
 use armctl_frame::failure::Failure;
+use armctl_frame::settings::target::Family;
 use armctl_transport::fault::LineFaultSpec;
 
 /// Start state with the busy rate of the faults. It comes from a state file or a backup, or is the built-in state with
@@ -22,7 +23,7 @@ pub fn start(
     let start = match (from, state, axes) {
         (None, None, None) => Start::default(),
         (None, None, Some(axes)) => Start::parse(&format!("axes = {axes}")).map_err(Failure::usage)?,
-        (Some(folder), _, None) => twin::start(folder)?,
+        (Some(folder), _, None) => twin::start(Family::Toyo, folder)?,
         (None, Some(file), None) => load(file)?,
         (Some(_), _, Some(_)) => {
             return Err(Failure::usage("--axes cannot be used with --from").hint("the backup has the number of axes"));

@@ -10,6 +10,7 @@ use crate::file::twin;
 use crate::prelude::*;
 use crate::simulator_start::{self, Simulated};
 use armctl_controller::yerc::simulator::Simulator;
+use armctl_frame::backup::twin::note;
 use armctl_frame::serve::{self, Started, address, bind_failure};
 use armctl_transport::fault::{FaultSpec, Faults};
 use armctl_transport::server::Server;
@@ -81,7 +82,7 @@ impl serve::Serve for Serve {
             server: Yerc { server, simulated: Simulated(Simulator::new(start)) },
             address: Some(robot),
             with_console: self.console,
-            unknown: self.from.map(|_| twin::UNKNOWN),
+            unknown: self.from.map(|folder| note(&folder, twin::UNKNOWN)).transpose()?,
         })
     }
 }

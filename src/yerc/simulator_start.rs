@@ -4,11 +4,12 @@ use std::path::Path;
 
 use anyhow::Context as _;
 
-use crate::file::twin;
 use crate::prelude::*;
 pub use armctl_client::yerc::Simulated;
 use armctl_controller::yerc::simulator::Start;
 use armctl_files as files;
+use armctl_frame::backup::twin;
+use armctl_frame::settings::target::Family;
 use armctl_transport::fault::FaultSpec;
 
 /// Start state with the busy rate of the faults. It comes from a state file or a backup, or is the built-in state of
@@ -20,7 +21,7 @@ pub fn start(
     faults: Option<&FaultSpec>,
 ) -> Result<Start, Failure> {
     let start = match (from, state) {
-        (Some(folder), _) => twin::start(folder)?,
+        (Some(folder), _) => twin::start(Family::Yerc, folder)?,
         (None, Some(file)) => load(file)?,
         (None, None) => Start::for_model(model),
     };

@@ -10,6 +10,7 @@ use super::simulated::start_with;
 use super::typed_arguments::TypedArguments;
 use crate::prelude::*;
 use armctl_controller::simulator::console::help_line;
+use armctl_frame::backup::twin::note;
 use armctl_frame::serve::{self, Serving, Started};
 use armctl_frame::settings::target::bus::simulators;
 
@@ -90,7 +91,7 @@ impl serve::Serve for ServeArgs {
             address: server.address,
             server,
             with_console: self.console,
-            unknown: self.from.map(|_| twin::UNKNOWN),
+            unknown: self.from.map(|folder| note(&folder, twin::UNKNOWN)).transpose()?,
         })
     }
 }

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use anyhow::Context as _;
 
-use crate::backup::twin;
 pub use armctl_client::yrcx::Simulated;
 use armctl_controller::yrcx::simulator::Start;
 use armctl_files as files;
+use armctl_frame::backup::twin;
 use armctl_frame::failure::Failure;
-use armctl_frame::settings::target::Sim;
+use armctl_frame::settings::target::{Family, Sim};
 use armctl_transport::fault::{FaultNames, FaultText, SimulatorFaults};
 
 /// Creates a simulator in this process, with the start state that the URL names.
@@ -30,7 +30,7 @@ pub fn start(sim: &Sim) -> Result<Start, Failure> {
 /// Reads the start state from a state file or a backup, or returns the built-in state.
 pub fn start_with(state: Option<&Path>, from: Option<&Path>) -> Result<Start, Failure> {
     if let Some(folder) = from {
-        return twin::start(folder);
+        return twin::start(Family::Yrcx, folder);
     }
     let Some(path) = state else { return Ok(Start::default()) };
     let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;

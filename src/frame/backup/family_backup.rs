@@ -97,7 +97,7 @@ pub struct Restore<F: Backups> {
 impl<F: Backups> Restore<F> {
     /// Family of the backup.
     pub fn of_family(&self) -> Option<target::Family> {
-        manifest::family_of(&self.options.restoring().folder)
+        target::family_of_backup(&self.options.restoring().folder)
     }
 }
 
@@ -141,7 +141,7 @@ pub struct Diff<F: Backups> {
 impl<F: Backups> Diff<F> {
     /// Family of the backup.
     pub fn of_family(&self) -> Option<target::Family> {
-        manifest::family_of(self.options.old.as_deref()?)
+        target::family_of_backup(self.options.old.as_deref()?)
     }
 
     /// Comparison options.

@@ -15,19 +15,15 @@ use sha2::{Digest as _, Sha256};
 use crate::local_names::{Target, is_plain_file_name};
 use crate::output::escape;
 use crate::prelude::basics::*;
-use crate::settings::target::Family;
+pub use crate::settings::target::MANIFEST;
+use crate::settings::target::{Family, MAX_MANIFEST};
 use armctl_controller::text::{hex, unhex};
 use armctl_files as files;
-
-/// File name of the manifest. No file of a controller has this ending.
-pub const MANIFEST: &str = "manifest.json";
 
 /// Format name, for programs that find the folder.
 const FORMAT: &str = "armctl backup";
 /// Incremented if older programs would misread a newer manifest.
 const VERSION: u32 = 1;
-/// Maximum size of a manifest. No controller has so many files that its manifest is larger.
-const MAX_LIST: u64 = 64 << 20;
 
 /// Manifest of a backup; `C` describes the controller.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -193,7 +189,7 @@ pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
     }
 
     let path = folder.join(MANIFEST);
-    let text = match files::text(&path, MAX_LIST) {
+    let text = match files::text(&path, MAX_MANIFEST) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         text => text.with_context(|| path.display().to_string())?,
     };
@@ -236,11 +232,6 @@ pub fn open_existing<C: About>(folder: &Path) -> Result<Manifest<C>, Failure> {
             None => failure.hint("use the folder of a backup; create one with `armctl backup`"),
         }
     })
-}
-
-/// Family of the backup in `folder`, if there is one.
-pub fn family_of(folder: &Path) -> Option<Family> {
-    read::<Value>(folder).ok()??.family.parse().ok()
 }
 
 /// Backup subfolders of a folder, one per robot.

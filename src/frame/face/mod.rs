@@ -11,6 +11,9 @@ pub mod shared_commands;
 pub mod teach_panel;
 pub mod tool;
 
+use std::any::Any;
+use std::path::Path;
+
 use clap::ArgMatches;
 use futures_util::future::LocalBoxFuture;
 
@@ -58,6 +61,9 @@ pub trait Face: Sync {
     fn read(&self, matches: &mut ArgMatches) -> Result<FamilyLine, clap::Error>;
     /// Schemas of all reports of the family.
     fn schemas(&self) -> Vec<SchemaEntry>;
+
+    /// Start state of the family's simulator with the data of a backup.
+    fn twin(&self, folder: &Path) -> Result<Box<dyn Any>, Failure>;
 
     /// Dissector of the protocol for Wireshark, in Lua, without the functions that all families use.
     fn dissector(&self) -> String;

@@ -1,6 +1,8 @@
 //! Declaration of a family in its own types. [`Registered`] converts it to the [`Face`] for the rest of the program.
 
+use std::any::Any;
 use std::marker::PhantomData;
+use std::path::Path;
 
 use clap::{ArgMatches, FromArgMatches as _, Subcommand};
 use futures_util::FutureExt as _;
@@ -49,6 +51,8 @@ pub trait Declaration: Backups {
     type Stop: Command<Family = Self, Report: CommonReport> + 'static;
     /// `armctl sim`.
     type Serve: Serve + Args + 'static;
+    /// Start state of the simulator.
+    type Start: 'static;
     /// Poller for live views.
     type Poller: Poller<Family = Self>;
 
@@ -79,6 +83,8 @@ pub trait Declaration: Backups {
     fn codes() -> Vec<(String, String)>;
     /// See [`Face::dissector`].
     fn dissector() -> String;
+    /// Start state of the simulator with the data of a backup.
+    fn twin(folder: &Path) -> Result<Self::Start, Failure>;
     /// See [`Face::topics`].
     fn topics() -> Vec<(&'static str, &'static str, String)> {
         Vec::new()
@@ -184,6 +190,10 @@ impl<F: Declaration> Face for Registered<F> {
 
     fn schemas(&self) -> Vec<SchemaEntry> {
         F::Commands::schemas()
+    }
+
+    fn twin(&self, folder: &Path) -> Result<Box<dyn Any>, Failure> {
+        Ok(Box::new(F::twin(folder)?))
     }
 
     fn dissector(&self) -> String {

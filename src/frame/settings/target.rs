@@ -10,14 +10,15 @@ pub mod profinet;
 mod url;
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Duration;
 
+use serde::Deserialize;
 use serialport::{DataBits, Parity, StopBits};
 
-use crate::backup::manifest;
 use crate::failure::Failure;
+use armctl_files as files;
 
 use self::url::{Query, baud, choice, confirmer, host_and_port, percent_decoded, port};
 
@@ -194,6 +195,21 @@ pub struct Sim {
     pub bus: Option<&'static str>,
 }
 
+/// File name of the manifest of a backup. No file of a controller has this ending.
+pub const MANIFEST: &str = "manifest.json";
+/// Maximum size of a manifest. No controller has so many files that its manifest is larger.
+pub const MAX_MANIFEST: u64 = 64 << 20;
+
+/// Family in the manifest of a backup; `None` without a readable manifest.
+pub fn family_of_backup(folder: &Path) -> Option<Family> {
+    #[derive(Deserialize)]
+    struct Head {
+        family: String,
+    }
+    let text = files::text(&folder.join(MANIFEST), MAX_MANIFEST).ok()?;
+    serde_json::from_str::<Head>(&text).ok()?.family.parse().ok()
+}
+
 /// UDP port of the robot server (from the frame table of the manual).
 const ROBOT_PORT: u16 = 10040;
 /// Default baud rate of a serial line (TO 1-2).
@@ -262,7 +278,7 @@ impl Target {
     /// inventory with this URL must still be readable.
     pub fn family_of_backup(&self) -> Option<Family> {
         match &self.place {
-            Place::Sim(Sim { from: Some(folder), .. }) => manifest::family_of(folder),
+            Place::Sim(Sim { from: Some(folder), .. }) => family_of_backup(folder),
             _ => None,
         }
     }

@@ -12,7 +12,8 @@ use armctl_frame::text_files;
 
 /// What a backup does not contain.
 pub const UNKNOWN: &str = "a backup contains no positions of the axes, signals, registers, running times and active \
-                           alarms; the twin has those of a new simulator";
+                           alarms; the twin has those of a new simulator. Position variables in the form of a real \
+                           VAR.DAT are undefined";
 
 /// Start state with the files of a backup.
 pub fn start(folder: &Path) -> Result<Start, Failure> {

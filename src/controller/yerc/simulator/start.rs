@@ -125,9 +125,15 @@ impl Start {
         self.world.model
     }
 
-    /// Adds a file with this name in the encoding of the controller. The file of variables also sets the variables.
+    /// Adds a file of a real controller, with its name in the encoding of the controller. The file of variables also
+    /// sets the variables, without positions in a form that only real controllers write.
     pub fn with_file(mut self, name: &[u8], content: Vec<u8>) -> Result<Self, String> {
-        install(&mut self.world, name, content.into())?;
+        let positions = content.windows(6).position(|line| line == b"////P\r" || line == b"////P\n");
+        let numbers = content.get(..positions.unwrap_or(content.len())).unwrap_or_default().to_vec();
+        match install(&mut self.world, name, content.into()) {
+            Err(_) if name == variable_file::NAME => install(&mut self.world, name, numbers.into())?,
+            installed => installed?,
+        }
         Ok(self)
     }
 
