@@ -29,9 +29,11 @@ use clap::builder::StyledStr;
 use self::parser::{Parser, Refusal};
 use self::prepare::{Invocation, PreparedCommand};
 use crate::cli::{Cli, Words};
+use crate::command::families;
 use armctl_files as files;
 #[cfg(unix)]
 use armctl_frame::background::{DETACHED, close_inherited_files};
+use armctl_frame::backup::twin;
 use armctl_frame::failure::{Failure, Kind, omit_program_name};
 use armctl_frame::flags::Globals;
 use armctl_frame::guardian;
@@ -94,6 +96,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     let screen = screen(&cli.globals);
     screen.use_for_exit();
     files::set_draft_hook(catch_interrupts);
+    twin::register(|family, folder| families::of(family).twin(folder));
     if let Err(failure) = format {
         return exit(Err(report_failure(&screen, failure.into())));
     }

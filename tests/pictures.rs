@@ -31,8 +31,8 @@ const PICTURES: [(&str, &[&str]); 5] = [
     ("check", &["cat pick.toyo", "armctl toyo program check pick.toyo"]),
 ];
 
-/// The panel of `armctl teach`. The test of the panel draws this picture.
-const OTHER_PICTURES: [&str; 1] = ["teach"];
+/// The panel of `armctl teach`, and the motion of a job. Their own tests draw these pictures.
+const OTHER_PICTURES: [&str; 2] = ["teach", "path"];
 
 /// Files in the folder of each session.
 const FILES: [(&str, &str); 5] = [

@@ -21,6 +21,7 @@ mod gate;
 mod monitoring;
 #[cfg(feature = "plant")]
 mod mqtt;
+mod paths;
 mod pictures;
 mod readme;
 mod repl;
@@ -32,6 +33,8 @@ mod top;
 mod toyo_programs;
 mod toyo_safety;
 mod toyo_sim;
+mod twin;
 mod watching;
+mod wireshark;
 mod yerc_items;
 mod yrcx_link;

@@ -48,7 +48,7 @@ fn serve(connection: ConnectionType) -> String {
                 }
                 ConnectionType::PseudoTerminal => StreamServer::pseudo_terminal(None, None).unwrap(),
             };
-            let mut controller = Simulated::new(simulated::start(None, None, None).unwrap());
+            let mut controller = Simulated::new(simulated::start(None, None, None, None).unwrap());
             sender.send(name).unwrap();
             loop {
                 server.turn(&mut controller).await.unwrap();

@@ -75,7 +75,7 @@ async fn yerc(tell: impl FnOnce(String) -> anyhow::Result<()>, delays: Delays) -
     let faults = delays.answer.map(|delay| format!("delay={delay}").parse()).transpose().map_err(anyhow::Error::msg)?;
     let mut server = Server::bind([ANY, ANY], faults.map(Faults::pair)).await?;
     tell(format!("udp://{}?file_port={}", server.local(0)?, server.local(1)?.port()))?;
-    let start = yerc::simulator_start::start(None, yerc_controller::Model::Dx200, None)?;
+    let start = yerc::simulator_start::start(None, None, yerc_controller::Model::Dx200, None)?;
     let mut controller = yerc::simulator_start::Simulated(yerc_controller::simulator::Simulator::new(start));
     loop {
         server.turn(&mut controller).await?;

@@ -182,7 +182,7 @@ async fn controller(
     let (port, files) = (server.local(0)?, server.local(1)?.port());
     tell.send(format!("[[robot]]\nname = \"r{number}\"\ntarget = \"udp://{port}?file_port={files}\"\n"))?;
     drop(tell);
-    let start = yerc::simulator_start::start(None, yerc_controller::Model::Dx200, None)?;
+    let start = yerc::simulator_start::start(None, None, yerc_controller::Model::Dx200, None)?;
     let mut controller = yerc::simulator_start::Simulated(yerc_controller::simulator::Simulator::new(start));
     while !*go.borrow_and_update() {
         tokio::select! {

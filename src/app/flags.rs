@@ -51,7 +51,7 @@ impl FlagGroups {
             Common::Serve(_) => Self { gate: false, ..ALL },
             #[cfg(feature = "plant")]
             Common::Publish(_) => ALL,
-            Common::Session(_) => Self { repeat: false, ..ALL },
+            Common::Session(_) | Common::Report(_) => Self { repeat: false, ..ALL },
             Common::Robots(Robots::List) | Common::Names(_) => Self { robots: true, ..NONE },
             Common::Robots(Robots::Discover(_)) => Self { link: true, gate: true, ..NONE },
             Common::Explain(_) => Self { robots: true, link: true, ..NONE },
@@ -61,6 +61,7 @@ impl FlagGroups {
             Common::Robots(_)
             | Common::Sim(_)
             | Common::Decode(_)
+            | Common::Wireshark(_)
             | Common::Completions(_)
             | Common::Man(_)
             | Common::Schema(_)

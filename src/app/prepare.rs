@@ -107,6 +107,11 @@ impl PreparedCommand {
             }
             Task::Common(Common::Wait(wait)) => run.repeat = wait.repeat(&run.repeat)?,
             Task::Common(Common::Robots(Robots::Check(Check { name: Some(name) }))) => run.sources.choose(name)?,
+            Task::Common(Common::Report(pack)) => match &pack.robots[..] {
+                [] => {}
+                [robot] => run.sources.choose(robot)?,
+                robots => run.sources.choose_all(robots)?,
+            },
             Task::Common(Common::Restore(restore)) => run.sources.selection.simulated = restore.of_family(),
             Task::Common(Common::Diff(diff)) => match diff.robots(&run.sources.inventory) {
                 Some(robots) => run.sources.choose_all(&robots)?,

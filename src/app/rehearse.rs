@@ -171,7 +171,7 @@ async fn ask(plan: &Plan<'_>, words: Vec<String>) -> Result<Value, Failure> {
     let origin = Origin { file: "rehearse".into(), line: 1 };
     let planned = plan.words(&mut Parser::default(), words, "rehearse", &origin)?;
     let outcome = plan.run_lines(vec![planned]).await;
-    let envelopes = plan.results.as_ref().map(RefCell::take).unwrap_or_default();
+    let envelopes = plan.results.as_deref().map(RefCell::take).unwrap_or_default();
     outcome.map_err(|stopped| stopped.failure)?;
     Ok(envelopes
         .into_iter()

@@ -2,11 +2,11 @@
 
 use clap::Subcommand;
 
-use super::about::{completions, help, man, schema};
+use super::about::{completions, help, man, schema, wireshark};
 use super::fleet::common::{self, alarm, io};
 use super::fleet::status::Overview;
 use super::fleet::wait::Wait;
-use super::fleet::{backup, names, robots, session, setup, tools, top};
+use super::fleet::{backup, names, report, robots, session, setup, tools, top};
 #[cfg(feature = "plant")]
 use super::fleet::{publish, serve};
 use armctl_frame::run::{Run, RunError};
@@ -54,6 +54,8 @@ pub enum Common {
     Restore(backup::Restore),
     /// Compare backups or controllers with each other
     Diff(backup::Diff),
+    /// Pack the data of a robot for a bug report
+    Report(report::Pack),
     /// Run a simulator as a network or serial server
     Sim(tools::Sim),
     /// Decode protocol bytes or a capture file
@@ -62,6 +64,8 @@ pub enum Common {
     /// Explain an error or alarm code: meaning, cause, remedy
     #[command(subcommand)]
     Explain(tools::Explain),
+    /// Write Wireshark dissectors of all protocols to a folder
+    Wireshark(wireshark::Wireshark),
     /// Print the completion script of a shell
     Completions(completions::Completions),
     /// Write the man pages to a folder
@@ -89,6 +93,7 @@ impl Common {
             | Self::Robots(_)
             | Self::Names(_)
             | Self::Session(_)
+            | Self::Report(_)
             | Self::Restore(_) => true,
             #[cfg(feature = "plant")]
             Self::Serve(_) => true,
@@ -142,7 +147,9 @@ impl Common {
             | Self::Explain(_)
             | Self::Backup(_)
             | Self::Restore(_)
-            | Self::Diff(_) => None,
+            | Self::Diff(_)
+            | Self::Report(_)
+            | Self::Wireshark(_) => None,
         }
     }
 
@@ -164,12 +171,14 @@ impl Common {
             Self::Serve(serve) => Box::pin(serve.run(run)).await,
             #[cfg(feature = "plant")]
             Self::Publish(publish) => Box::pin(publish.run(run)).await,
+            Self::Report(pack) => run.robots(&pack).await,
             Self::Sim(sim) => sim.run(run).await,
             Self::Session(session) => Box::pin(session.run(run)).await,
             Self::Robots(robots) => robots.run(run).await,
             Self::Names(names) => names.run(run),
             Self::Decode(decode) => decode.run(run).await,
             Self::Explain(explain) => explain.run(run).await,
+            Self::Wireshark(wireshark) => wireshark.run(run),
             Self::Completions(completions) => Ok(completions.run(run)?),
             Self::Man(man) => Ok(man.run(run, root)?),
             Self::Schema(schema) => Ok(schema.run(run)?),

@@ -41,9 +41,6 @@ pub const MISSING: &[(&str, &str, &str)] = &[
         "use `armctl yerc var get P5` to read a point; see `armctl yerc var -h`"),
     ("yerc job get", "jobs are files on a Yaskawa controller", "use `armctl yerc file get WELD.JBI` to download a job"),
     ("yerc job put", "jobs are files on a Yaskawa controller", "see `armctl yerc file put -h`"),
-    ("yerc job search", "the protocol does not search in jobs",
-        "use `armctl yerc job show --source` to see the line that runs"),
-    ("yerc job check", "the controller checks a job when the job is loaded", "see `armctl yerc file put -h`"),
     ("yerc jog", "the protocol has no jog", "use moves by distances as jog steps: see `armctl yerc move relative -h`"),
     ("yerc override", "the protocol does not set the speed override",
         "set `--speed` of a move: see `armctl yerc move joint -h`; use `armctl yerc job show` to see the override of \

@@ -8,6 +8,7 @@ use std::time::Duration;
 
 pub mod findings;
 pub mod names;
+pub mod references;
 pub mod sheet;
 pub mod similar_word;
 pub mod simulator;

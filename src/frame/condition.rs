@@ -24,6 +24,8 @@ pub struct Condition {
     /// Condition as the user typed it.
     text: String,
     filter: Filter,
+    /// Whether the filter begins with a key, such as `.data.held`, so that it is for one envelope.
+    is_for_one: bool,
     /// Keys that the condition uses, each as a path from the top of the envelope.
     keys: Vec<Vec<String>>,
     /// `NAME` in `NAME=VALUE`: a key of the report, or an item in the report.
@@ -79,7 +81,8 @@ impl Condition {
                  .data.held",
             )
         })?;
-        Ok(Self { text: text.to_owned(), filter, keys, name })
+        let is_for_one = text.strip_prefix('.').is_some_and(|rest| rest.starts_with(|c: char| c.is_alphabetic()));
+        Ok(Self { text: text.to_owned(), filter, is_for_one, keys, name })
     }
 
     /// Whether the condition is about the connection itself. In that case, a robot that does not answer is not a
@@ -93,7 +96,12 @@ impl Condition {
     /// # Errors
     /// If the filter fails.
     pub fn is_met(&self, envelopes: &Value) -> Result<bool, Failure> {
-        self.filter.is_true(envelopes)
+        let Value::Array(all) = envelopes else { return self.filter.is_true(envelopes) };
+        if !self.is_for_one {
+            return self.filter.is_true(envelopes);
+        }
+        let met: Vec<bool> = all.iter().map(|envelope| self.filter.is_true(envelope)).collect::<Result<_, _>>()?;
+        Ok(!met.is_empty() && met.iter().all(|is_met| *is_met))
     }
 
     /// Message if the condition can never be true, because a report does not have a key of the condition.
@@ -263,6 +271,10 @@ mod tests {
         let status = json!({ "data": { "servo_on": true, "alarms": [] } });
         assert!(holds(".data.servo_on", &status) && holds(".data.alarms == []", &status));
         assert!(holds(".data.servo_on and (.data.alarms | length) <= 0", &status));
+        // With several robots, a filter for one envelope must be true for all of them.
+        let off = json!({ "data": { "servo_on": false } });
+        assert!(holds(".data.servo_on", &json!([status, status])) && !holds(".data.servo_on", &json!([status, off])));
+        assert!(holds("any(.[]; .data.servo_on)", &json!([status, off])) && !holds(".data.servo_on", &json!([])));
         assert!(Condition::new(".[").is_err() && Condition::new("idel").is_err());
         assert!(Condition::new("27010").is_err() && Condition::new("true").is_err(), "always true");
     }

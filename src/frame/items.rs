@@ -21,6 +21,11 @@ impl ItemError {
         Self { asked: asked.into(), failure }
     }
 
+    /// Name of the item.
+    pub fn asked(&self) -> &str {
+        &self.asked
+    }
+
     /// Failure of a command that has only this item.
     pub fn failure(&self) -> Failure {
         describe_request(&self.asked, self.failure.clone())

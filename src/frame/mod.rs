@@ -9,6 +9,7 @@
 //! | [`failure`] | how a command can fail, with the exit code |
 //! | [`store`] | get, list, watch, set, copy, dump and restore for tables of a controller |
 //! | [`backup`], [`decode`], [`serve`] | what backups, decoders and simulators of all families have in common |
+//! | [`mod@path`] | the motion of a program as a picture |
 //! | [`robot`] | reports that all families share: state, alarms, position, signals, motion, files |
 //! | [`face`] | what the rest of the program can ask of a family |
 //!
@@ -37,8 +38,10 @@ pub mod items;
 pub mod local_names;
 pub mod names;
 pub mod output;
+pub mod path;
 pub mod plot;
 pub mod prelude;
+pub mod programs;
 pub mod prompt;
 pub mod repeat_limiter;
 pub mod repeated_runs;
@@ -65,6 +68,7 @@ pub mod trace;
 pub mod value_kind;
 pub mod wait_arguments;
 pub mod watch;
+pub mod wireshark;
 
 pub use command::{AnyCommand, AnyContext, Command, Context};
 pub use command_set::{CommandSet, Offline, OfflineCommand, Subcommands};

@@ -53,6 +53,8 @@ pub struct Started<S: Serve> {
     pub address: Option<SocketAddr>,
     /// Whether the simulator reads console lines on stdin.
     pub with_console: bool,
+    /// What the simulator of a backup does not know about its robot.
+    pub unknown: Option<String>,
 }
 
 /// A simulator with its server.
@@ -122,10 +124,13 @@ impl Report for Serving {
 
 /// Starts a simulator, prints its address, and serves it until Ctrl-C.
 pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
-    let Started { report, reach, target, server, address, with_console } = arguments.start().await?;
+    let Started { report, reach, target, server, address, with_console, unknown } = arguments.start().await?;
     run.local(S::ID, &report)?;
     if address.is_some_and(|address| !address.ip().is_loopback()) {
         run.screen.note("warning: other computers on the network can reach this simulator");
+    }
+    if let Some(unknown) = unknown {
+        run.screen.note(&unknown);
     }
     // A program reads the address from the report, and needs no instructions.
     if !run.screen.is_json() {

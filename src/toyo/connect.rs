@@ -38,7 +38,7 @@ fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
             let faults = sim.fault.as_deref().map(str::parse::<LineFaultSpec>).transpose().map_err(|error| {
                 Failure::usage(format!("{}: {error}", robot.target.value)).hint("write % as %25 in a URL")
             })?;
-            let start = simulated::start(sim.state.as_deref(), sim.axes, faults.as_ref())?;
+            let start = simulated::start(sim.state.as_deref(), sim.from.as_deref(), sim.axes, faults.as_ref())?;
             let start = start.with_options(robot.simulator_options());
             Ok(Endpoint::Simulator { start: Box::new(start), baud: sim.baud, faults })
         }

@@ -49,6 +49,18 @@ impl decode::Decode for Decode {
     fn decode(&self) -> Result<DecodedLines, Failure> {
         Ok(decode_lines(&self.lines()?))
     }
+
+    /// The lines of a trace are explained while the trace is recorded.
+    fn decode_stdin(&self) -> Option<impl Iterator<Item = decode::LineReport<DecodedLines>>> {
+        let mut decoder = LineByLine::default();
+        let lines = (self.lines == ["-"]).then(decode::stdin_lines)?;
+        let lines = lines.filter(|line| line.as_ref().map_or(true, |line| is_line(line)));
+        Some(lines.map(move |line| {
+            let line = decoder.decode(&line?);
+            let problem = line.problem.clone();
+            Ok((DecodedLines { lines: vec![line] }, problem))
+        }))
+    }
 }
 
 impl Decode {
@@ -90,19 +102,28 @@ fn joined(arguments: &[String]) -> Vec<String> {
 
 /// Explains each line. An answer is explained with the request before it.
 fn decode_lines(lines: &[String]) -> DecodedLines {
-    let mut last_request: Option<Request> = None;
-    let lines = lines.iter().map(|line| {
+    let mut decoder = LineByLine::default();
+    DecodedLines { lines: lines.iter().map(|line| decoder.decode(line)).collect() }
+}
+
+/// Explains lines in their order.
+#[derive(Default)]
+struct LineByLine {
+    last_request: Option<Request>,
+}
+
+impl LineByLine {
+    fn decode(&mut self, line: &str) -> DecodedLine {
         let (marked, text) = unmarked(line);
         // The answer to TYPE has the same form as its request.
-        let is_answer = || last_request.as_ref().is_some_and(|request| request.answer(text).is_ok());
+        let is_answer = || self.last_request.as_ref().is_some_and(|request| request.answer(text).is_ok());
         let sender = marked.unwrap_or_else(|| if is_answer() { Sender::Controller } else { Sender::guess(text) });
-        let description = describe(text, sender, last_request.take().as_ref());
+        let description = describe(text, sender, self.last_request.take().as_ref());
         if sender == Sender::Host {
-            last_request = Request::parse(text).ok();
+            self.last_request = Request::parse(text).ok();
         }
         DecodedLine::new(text, sender, description)
-    });
-    DecodedLines { lines: lines.collect() }
+    }
 }
 
 /// The line without the text that a trace adds.

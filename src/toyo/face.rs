@@ -1,5 +1,7 @@
 //! Implementation of the family interface for `toyo`.
 
+use std::path::Path;
+
 use super::alarm;
 use super::backup::{back_up, restore};
 use super::commands::Commands;
@@ -37,6 +39,7 @@ impl Declaration for Toyo {
     type Position = super::position::Position;
     type Stop = Stop;
     type Serve = Serve;
+    type Start = simulator::Start;
     type Poller = Poller;
 
     const NAME: Family = Family::Toyo;
@@ -55,6 +58,14 @@ impl Declaration for Toyo {
             ("serial://".to_owned(), "toyo: a port of this machine, such as serial:///dev/ttyUSB0 or serial://COM3"),
             ("tcp://".to_owned(), "toyo: HOST:PORT of a serial device server"),
         ]
+    }
+
+    fn twin(folder: &Path) -> Result<Self::Start, Failure> {
+        super::backup::twin::start(folder)
+    }
+
+    fn dissector() -> String {
+        super::wireshark::dissector()
     }
 
     fn codes() -> Vec<(String, String)> {

@@ -11,6 +11,7 @@ use crate::prelude::*;
 use armctl_controller::similar_word::nearest;
 use armctl_controller::toyo::field::{Field, Form, Number};
 use armctl_controller::toyo::layout::{Layout, UNLISTED};
+use armctl_frame::store::comma_hint;
 
 /// A slot for one value that the user types.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -207,7 +208,7 @@ impl Changes {
             if typed.len() != slots.len() {
                 let values = if slots.len() == 1 { "value" } else { "values" };
                 let message = format!("{} {values} needed, but {} typed", slots.len(), typed.len());
-                return Err(wrong_slot(message));
+                return Err(comma_hint(typed, slots.len()).into_iter().fold(wrong_slot(message), Failure::hint));
             }
             for (slot, text) in slots.iter().zip(typed) {
                 slot.put(&mut changes, slot.read(layout, text).map_err(wrong)?);
@@ -434,6 +435,8 @@ mod tests {
     fn error_messages_name_range_unit_and_choices() {
         let error = |name, typed: &[&str]| read(name, typed).unwrap_err();
         assert_eq!(error("P01", &["1", "2"]), "P01: 4 values needed, but 2 typed");
+        let joined = Changes::read("P01", &body("P01"), &Letters::USUAL, &["5,0,0,0".to_owned()]).unwrap_err();
+        assert_eq!(joined.hint.unwrap(), "type blanks between the values: 5 0 0 0");
         assert_eq!(
             error("P01", &["9000", "0", "0", "0"]),
             "P01: ax1: 9000.00 is out of range (a number, -8000.00 to 8000.00 mm)"

@@ -65,4 +65,5 @@ pub mod top;
 mod trace;
 mod user_choices;
 mod wait;
+mod wireshark;
 mod write_log;

@@ -7,8 +7,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::backup::twin;
 use crate::simulated::{self, Simulated};
 use armctl_controller::simulator::run_options::{RunOptions, Speed};
+use armctl_frame::backup::twin::note;
 use armctl_frame::failure::{Failure, plain};
 use armctl_frame::interrupt::catch_interrupts;
 use armctl_frame::serve::terminal_link::TerminalLink;
@@ -46,12 +48,12 @@ pub struct Serve {
     /// File with the start state (TOML): modes, memory, inputs, errors, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
+    /// Backup of a robot, whose data the simulator starts with
+    #[arg(long, value_name = "FOLDER", conflicts_with = "state")]
+    from: Option<PathBuf>,
     /// Faults, for example noise=1%,drop=1%,delay=0..50ms,seed=7. Other faults are parity, dup, busy and echo
     #[arg(long, value_name = "FAULTS")]
     fault: Option<LineFaultSpec>,
-    /// TEMP
-    #[arg(long)]
-    from: Option<PathBuf>,
     /// Speed of the simulated time, such as 10x
     #[arg(long, value_name = "FACTOR", default_value_t)]
     speed: Speed,
@@ -73,7 +75,7 @@ impl serve::Serve for Serve {
     type Server = Toyo;
 
     async fn start(self) -> Result<Started<Self>, Failure> {
-        let start = simulated::start(self.state.as_deref(), self.axes, self.fault.as_ref())?;
+        let start = simulated::start(self.state.as_deref(), self.from.as_deref(), self.axes, self.fault.as_ref())?;
         let start = start.with_options(RunOptions { speed: self.speed, motions: None });
         let pace = self.baud.map(|baud| Pace::new(baud, BITS));
         let settings = self.baud.map(|baud| format!("?baud={baud}")).unwrap_or_default();
@@ -98,6 +100,7 @@ impl serve::Serve for Serve {
             server: Toyo { server, simulated: Simulated::new(start), _link: link },
             address,
             with_console: self.console,
+            unknown: self.from.map(|folder| note(&folder, twin::UNKNOWN)).transpose()?,
         })
     }
 }

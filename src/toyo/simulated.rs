@@ -7,17 +7,28 @@ use anyhow::Context as _;
 pub use armctl_client::toyo::Simulated;
 use armctl_controller::toyo::simulator::Start;
 use armctl_files as files;
+use armctl_frame::backup::twin;
 use armctl_frame::failure::Failure;
+use armctl_frame::settings::target::Family;
 use armctl_transport::fault::LineFaultSpec;
 
-/// Start state with the busy rate of the faults. It comes from a file, or is the built-in state with this number of
-/// axes.
-pub fn start(file: Option<&Path>, axes: Option<u8>, faults: Option<&LineFaultSpec>) -> Result<Start, Failure> {
-    let start = match (file, axes) {
-        (None, None) => Start::default(),
-        (None, Some(axes)) => Start::parse(&format!("axes = {axes}")).map_err(Failure::usage)?,
-        (Some(file), None) => load(file)?,
-        (Some(_), Some(_)) => {
+/// Start state with the busy rate of the faults. It comes from a state file or a backup, or is the built-in state with
+/// this number of axes.
+pub fn start(
+    state: Option<&Path>,
+    from: Option<&Path>,
+    axes: Option<u8>,
+    faults: Option<&LineFaultSpec>,
+) -> Result<Start, Failure> {
+    let start = match (from, state, axes) {
+        (None, None, None) => Start::default(),
+        (None, None, Some(axes)) => Start::parse(&format!("axes = {axes}")).map_err(Failure::usage)?,
+        (Some(folder), _, None) => twin::start(Family::Toyo, folder)?,
+        (None, Some(file), None) => load(file)?,
+        (Some(_), _, Some(_)) => {
+            return Err(Failure::usage("--axes cannot be used with --from").hint("the backup has the number of axes"));
+        }
+        (None, Some(_), Some(_)) => {
             return Err(Failure::usage("--axes cannot be used with --state")
                 .hint("write the number of axes into the state file"));
         }

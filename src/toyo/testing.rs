@@ -272,6 +272,13 @@ impl Bench {
     }
 }
 
+/// Runs a command line that needs no robot.
+pub(super) fn without_robot(words: &[&str]) -> Result<(Value, Option<Failure>), Failure> {
+    let (_, command) = resolved("sim:", words)?;
+    let report = command.without_robot(&quiet()).expect("the command needs no robot")?;
+    Ok((report.data()?, report.failure()))
+}
+
 fn runtime() -> tokio::runtime::Runtime {
     tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime")
 }

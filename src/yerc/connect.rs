@@ -22,10 +22,14 @@ fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
             })?;
             let start = simulator_start::start(
                 sim.state.as_deref(),
+                sim.from.as_deref(),
                 robot.model.value.named().unwrap_or(Model::Dx200),
                 faults.as_ref(),
             )?;
             let start = start.with_options(robot.simulator_options());
+            if sim.from.is_some() {
+                simulator_start::check_model(&start, robot.model.value.named())?;
+            }
             Ok(Endpoint::Simulator { start: Box::new(start), faults })
         }
         Place::Serial(_) | Place::Tcp(_) | Place::Bus(_) => {

@@ -1,5 +1,7 @@
 //! Implementation of the family interface for `yerc`.
 
+use std::path::Path;
+
 use super::alarm;
 use super::commands::Commands;
 use super::control_commands::Hold;
@@ -35,6 +37,7 @@ impl Declaration for Yerc {
     type Position = super::position::Position;
     type Stop = Hold;
     type Serve = Serve;
+    type Start = simulator::Start;
     type Poller = Poller;
 
     const NAME: Family = Family::Yerc;
@@ -49,6 +52,14 @@ impl Declaration for Yerc {
 
     fn urls() -> Vec<(String, &'static str)> {
         vec![("udp://".to_owned(), "yerc: name or address of the controller")]
+    }
+
+    fn twin(folder: &Path) -> Result<Self::Start, Failure> {
+        super::file::twin::start(folder)
+    }
+
+    fn dissector() -> String {
+        super::wireshark::dissector()
     }
 
     fn codes() -> Vec<(String, String)> {

@@ -88,6 +88,8 @@ pub struct Times {
 
 #[derive(Debug, Serialize, JsonSchema)]
 struct Time {
+    /// Name of the counter: `control_power`, `servo`, `servo_R1`, `application_1`.
+    name: String,
     /// Counter: `control_power`, `servo`, `playback`, `motion` or `application`.
     counter: &'static str,
     /// Control group; null for counters without a group.
@@ -117,14 +119,16 @@ impl Time {
             TimeCounter::Motion(group) => ("motion", group, None),
             TimeCounter::Application(number) => ("application", None, Some(number)),
         };
-        let group = group.map(|group| group.to_string());
+        let group: Option<String> = group.map(|group: Group| group.to_string());
+        let owner = group.clone().or_else(|| application.map(|number| number.to_string()));
+        let item = owner.map_or_else(|| name.to_owned(), |owner| format!("{name}_{owner}"));
         let elapsed = time.map(|time| Elapsed {
             since: encoding.decode(time.start.as_bytes()),
             elapsed: encoding.decode(time.elapsed.as_bytes()),
             elapsed_s: time.seconds(),
         });
         let asked = format!("{} time of {}", name.replace('_', " "), of(name, group.as_deref(), application));
-        Self { counter: name, group, application, outcome: ItemOutcome::new(asked, elapsed) }
+        Self { name: item, counter: name, group, application, outcome: ItemOutcome::new(asked, elapsed) }
     }
 }
 
@@ -210,6 +214,8 @@ mod tests {
         );
         let json = serde_json::to_value(&times).unwrap();
         assert_eq!(json["times"][0]["elapsed_s"], 445_506);
+        let names = [0, 1, 2].map(|at| json["times"][at]["name"].as_str().unwrap());
+        assert_eq!(names, ["control_power", "servo_R1", "application_2"]);
         assert_eq!(json["times"][2]["elapsed_s"], serde_json::Value::Null);
     }
 }

@@ -1,6 +1,13 @@
-//! `yerc job list|show|select|start|stop|edit`.
+//! `yerc job`: jobs of the controller, and of folders.
 
+mod calls;
+mod check;
 mod list;
+mod path;
+#[cfg(test)]
+mod program_tests;
+mod programs;
+mod search;
 mod source;
 mod start;
 mod stop;
@@ -25,14 +32,15 @@ use armctl_controller::yerc::query::{ReadJob, SelectJob, Selection};
 use armctl_controller::yerc::status::{self, is_absent};
 use armctl_frame::items;
 use armctl_frame::items::{ItemError, ItemOutcome};
+use armctl_frame::path::Drawable;
 
 commands! {
     /// Jobs.
     pub enum Job {
         /// List the jobs of the controller
         List(list::List),
-        /// Show the running job: name, line, step, speed override
-        Show(Show),
+        /// Show the running job: name, line, step, speed override; with --path, the motion of a job
+        Show(Drawable<Show, path::JobPath>),
         /// Select the job to start
         Select(Select),
         /// Start the selected job, or a job by name
@@ -41,17 +49,26 @@ commands! {
         Stop(stop::Stop),
         /// Edit a job in your editor and write it back
         Edit(Edit),
+        /// Find a text, a variable, a signal or a call in jobs
+        Search(search::Search),
+        /// Show which job calls which
+        Calls(calls::Calls),
+        /// Check jobs of a folder or of the controller
+        Check(check::Check),
     }
 }
 
 /// Shows the job that a task executes (FS and DX 3.3.4).
 #[derive(Debug, Args)]
 pub struct Show {
+    /// Job to draw: its name, or a job file on this computer [default: the running job]
+    #[arg(value_name = "JOB", requires = "path", add = complete::JOB)]
+    job: Option<String>,
     /// Task number (0 is the master task), or all
-    #[arg(long, value_name = "N|all", default_value = "0")]
+    #[arg(long, value_name = "N|all", default_value = "0", conflicts_with = "path")]
     task: Tasks,
     /// Also show the text of the current line. armctl downloads the job file each time
-    #[arg(long)]
+    #[arg(long, conflicts_with = "path")]
     source: bool,
 }
 

@@ -42,3 +42,4 @@ mod testing;
 pub mod top;
 mod trace;
 mod var;
+mod wireshark;

@@ -6,10 +6,12 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 
+use crate::file::twin;
 use crate::prelude::*;
 use crate::simulator_start::{self, Simulated};
 use armctl_controller::simulator::run_options::{RunOptions, Speed};
 use armctl_controller::yerc::simulator::Simulator;
+use armctl_frame::backup::twin::note;
 use armctl_frame::serve::{self, Started, address, bind_failure};
 use armctl_transport::fault::{FaultSpec, Faults};
 use armctl_transport::server::Server;
@@ -35,12 +37,12 @@ pub struct Serve {
     /// File with the start state (TOML): modes, variables, jobs, files, alarms, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
+    /// Backup of a robot, whose data the simulator starts with
+    #[arg(long, value_name = "FOLDER", conflicts_with = "state")]
+    from: Option<PathBuf>,
     /// Faults, such as drop=5%,delay=0..50ms,seed=7. Other faults are dup, reorder, corrupt and busy
     #[arg(long, value_name = "FAULTS")]
     fault: Option<FaultSpec>,
-    /// TEMP
-    #[arg(long)]
-    from: Option<PathBuf>,
     /// Speed of the simulated time, such as 10x
     #[arg(long, value_name = "FACTOR", default_value_t)]
     speed: Speed,
@@ -76,11 +78,8 @@ impl serve::Serve for Serve {
 
     async fn start(self) -> Result<Started<Self>, Failure> {
         let model = self.model.unwrap_or(Model::Dx200);
-        let start = simulator_start::start(self.state.as_deref(), model, self.fault.as_ref())?;
-        if let Some(model) = self.model.filter(|model| *model != start.model()) {
-            let message = format!("the start state is for model {}, but the selected model is {model}", start.model());
-            return Err(Failure::usage(message).hint("remove --model, or change the file"));
-        }
+        let start = simulator_start::start(self.state.as_deref(), self.from.as_deref(), model, self.fault.as_ref())?;
+        simulator_start::check_model(&start, self.model)?;
         let start = start.with_options(RunOptions { speed: self.speed, motions: None });
         let model = start.model();
         let robot = self.bind;
@@ -98,6 +97,7 @@ impl serve::Serve for Serve {
             server: Yerc { server, simulated: Simulated(Simulator::new(start)) },
             address: Some(robot),
             with_console: self.console,
+            unknown: self.from.map(|folder| note(&folder, twin::UNKNOWN)).transpose()?,
         })
     }
 }

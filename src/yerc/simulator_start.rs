@@ -8,15 +8,34 @@ use crate::prelude::*;
 pub use armctl_client::yerc::Simulated;
 use armctl_controller::yerc::simulator::Start;
 use armctl_files as files;
+use armctl_frame::backup::twin;
+use armctl_frame::settings::target::Family;
 use armctl_transport::fault::FaultSpec;
 
-/// Start state with the busy rate of the faults. It comes from a file, or is the built-in state of the model.
-pub fn start(file: Option<&Path>, model: Model, faults: Option<&FaultSpec>) -> Result<Start, Failure> {
-    let start = file.map_or_else(|| Ok(Start::for_model(model)), load)?;
+/// Start state with the busy rate of the faults. It comes from a state file or a backup, or is the built-in state of
+/// the model.
+pub fn start(
+    state: Option<&Path>,
+    from: Option<&Path>,
+    model: Model,
+    faults: Option<&FaultSpec>,
+) -> Result<Start, Failure> {
+    let start = match (from, state) {
+        (Some(folder), _) => twin::start(Family::Yerc, folder)?,
+        (None, Some(file)) => load(file)?,
+        (None, None) => Start::for_model(model),
+    };
     Ok(match faults {
         Some(faults) => start.with_busy(faults.busy.fraction()),
         None => start,
     })
+}
+
+/// Checks that a start state is for the model that the user selected, if any.
+pub fn check_model(start: &Start, selected: Option<Model>) -> Result<(), Failure> {
+    let Some(selected) = selected.filter(|model| *model != start.model()) else { return Ok(()) };
+    let message = format!("the start state is for model {}, but the selected model is {selected}", start.model());
+    Err(Failure::usage(message).hint("remove --model, or change the file"))
 }
 
 /// Maximum size of a file. It is larger than the storage of a controller.

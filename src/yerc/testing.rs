@@ -131,7 +131,7 @@ pub(super) fn resolve_robot(target: &str, words: &[&str]) -> Result<(Robot, Box<
 }
 
 /// Screen without output.
-fn quiet() -> Screen {
+pub(super) fn quiet() -> Screen {
     Screen::new(Format::Json, ColorChoice::Never, true, 0)
 }
 

@@ -1,5 +1,7 @@
 //! Implementation of the family interface for `yrcx`.
 
+use std::path::Path;
+
 use clap::{ArgMatches, Args as _, FromArgMatches as _};
 
 use super::alarm as alarms;
@@ -40,6 +42,7 @@ impl Declaration for Yrcx {
     type Position = super::info::PositionArguments;
     type Stop = Stop;
     type Serve = ServeArgs;
+    type Start = simulator::Start;
     type Poller = Poller;
 
     const NAME: Family = Family::Yrcx;
@@ -55,6 +58,14 @@ impl Declaration for Yrcx {
 
     fn urls() -> Vec<(String, &'static str)> {
         BUSES.iter().map(|bus| (format!("{}://", bus.name), bus.about)).collect()
+    }
+
+    fn twin(folder: &Path) -> Result<Self::Start, Failure> {
+        super::backup::twin::start(folder)
+    }
+
+    fn dissector() -> String {
+        super::wireshark::dissector()
     }
 
     fn codes() -> Vec<(String, String)> {

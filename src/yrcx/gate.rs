@@ -31,7 +31,7 @@ type Lines = (&'static str, &'static [&'static str]);
 const READS: &[Lines] = &[
     ("status", &["", "--full"]),
     ("status-reset", &[""]),
-    ("point", &["get 0..3", "dump @/new.csv 0..3", "list 0..3"]),
+    ("point", &["get 0..3", "dump @/new.csv 0..3", "list 0..3", "list 0..3 --path"]),
     ("comment", &["get 50", "list 0..3", "watch 50", "dump @/comments.csv 0..3"]),
     ("pallet-data", &["get 10", "list 0..3", "watch 10", "dump @/pallets.csv 0..3"]),
     ("shift-data", &["get 4,5", "list 0..3", "watch 4", "dump @/shifts.csv 0..3"]),

@@ -78,3 +78,4 @@ pub mod trace;
 mod typed_arguments;
 mod unit_argument;
 mod var;
+mod wireshark;

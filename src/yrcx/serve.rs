@@ -3,13 +3,15 @@
 use std::io;
 use std::path::PathBuf;
 
+use super::backup::twin;
 use super::buses::Servers;
 use super::fieldbus::{Fieldbus, RunningSimulation, ServeOptions};
-use super::simulated::start;
+use super::simulated::start_with;
 use super::typed_arguments::TypedArguments;
 use crate::prelude::*;
 use armctl_controller::simulator::console::help_line;
 use armctl_controller::simulator::run_options::{RunOptions, Speed};
+use armctl_frame::backup::twin::note;
 use armctl_frame::serve::{self, Serving, Started};
 use armctl_frame::settings::target::bus::simulators;
 
@@ -34,12 +36,12 @@ pub struct ServeArgs {
     /// File with the start state (TOML): robots, memory, programs, alarms, timed events
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
-    /// TEMP
-    #[arg(long)]
-    from: Option<PathBuf>,
     /// Speed of the simulated time, such as 10x
     #[arg(long, value_name = "FACTOR", default_value_t)]
     speed: Speed,
+    /// Backup of a robot, whose data the simulator starts with
+    #[arg(long, value_name = "FOLDER", conflicts_with = "state")]
+    from: Option<PathBuf>,
     /// Read console lines on stdin; `help` lists them
     #[arg(long)]
     console: bool,
@@ -84,7 +86,8 @@ impl serve::Serve for ServeArgs {
         if self.link.is_some() && !serve.has_terminal() {
             return Err(misplaced("link", fieldbus.name, "a simulator with a pseudo-terminal"));
         }
-        let (start, link, faults) = (start(self.state.as_deref())?, self.link.as_deref(), self.fault.as_deref());
+        let (start, link, faults) =
+            (start_with(self.state.as_deref(), self.from.as_deref())?, self.link.as_deref(), self.fault.as_deref());
         let start = start.with_options(RunOptions { speed: self.speed, motions: None });
         let server = serve.serve(ServeOptions { simulator: wanted, start, link, faults })?;
         Ok(Started {
@@ -94,6 +97,7 @@ impl serve::Serve for ServeArgs {
             address: server.address,
             server,
             with_console: self.console,
+            unknown: self.from.map(|folder| note(&folder, twin::UNKNOWN)).transpose()?,
         })
     }
 }

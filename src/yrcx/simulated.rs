@@ -8,13 +8,14 @@ pub use armctl_client::yrcx::Simulated;
 use armctl_controller::simulator::run_options::RunOptions;
 use armctl_controller::yrcx::simulator::Start;
 use armctl_files as files;
+use armctl_frame::backup::twin;
 use armctl_frame::failure::Failure;
-use armctl_frame::settings::target::Sim;
+use armctl_frame::settings::target::{Family, Sim};
 use armctl_transport::fault::{FaultNames, FaultText, SimulatorFaults};
 
 /// Creates a simulator in this process, with the start state that the URL names.
 pub fn in_process(sim: &Sim, options: RunOptions) -> Result<Simulated, Failure> {
-    Ok(Simulated::new(start(sim.state.as_deref())?.with_options(options)))
+    Ok(Simulated::new(start(sim)?.with_options(options)))
 }
 
 /// Whether the URL has faults. Faults need a simulated network.
@@ -22,9 +23,17 @@ pub fn has_faults(sim: &Sim) -> bool {
     sim.fault.is_some()
 }
 
-/// Reads the start state from a file, or returns the built-in state.
-pub fn start(file: Option<&Path>) -> Result<Start, Failure> {
-    let Some(path) = file else { return Ok(Start::default()) };
+/// Start state that a URL names.
+pub fn start(sim: &Sim) -> Result<Start, Failure> {
+    start_with(sim.state.as_deref(), sim.from.as_deref())
+}
+
+/// Reads the start state from a state file or a backup, or returns the built-in state.
+pub fn start_with(state: Option<&Path>, from: Option<&Path>) -> Result<Start, Failure> {
+    if let Some(folder) = from {
+        return twin::start(Family::Yrcx, folder);
+    }
+    let Some(path) = state else { return Ok(Start::default()) };
     let text = files::text(path, files::SETTINGS).with_context(|| path.display().to_string())?;
     Start::parse(&text).map_err(|error| {
         Failure::usage(format!("{}: {error}", path.display()))

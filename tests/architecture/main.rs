@@ -76,7 +76,7 @@ const FRAME: [(&str, &[&str]); 5] = [
 
 /// Commands that use a transport: links with their traces and faces, capture readers, sessions, simulator servers, the
 /// list of ports, the broker connection, and test peers.
-const LINKS: [&str; 48] = [
+const LINKS: [&str; 50] = [
     "frame/decode/capture/mod.rs",
     "frame/decode/capture/report.rs",
     "frame/decode/capture/stream.rs",
@@ -85,6 +85,7 @@ const LINKS: [&str; 48] = [
     "command/fleet/metrics/mod.rs",
     "command/fleet/metrics/page_cache.rs",
     "command/fleet/publish/uplink.rs",
+    "command/fleet/report.rs",
     "command/fleet/service.rs",
     "command/fleet/session/close.rs",
     "command/fleet/session/host.rs",
@@ -117,6 +118,7 @@ const LINKS: [&str; 48] = [
     "yrcx/fieldbus.rs",
     "yrcx/link_error.rs",
     "yrcx/face.rs",
+    "yrcx/wireshark.rs",
     "yrcx/gate.rs",
     "yrcx/session_link.rs",
     "yrcx/link.rs",

@@ -7,6 +7,6 @@ mod frame;
 mod recorder;
 mod safety_page;
 mod toyo;
-mod workspace;
+pub mod workspace;
 mod yerc;
 mod yrcx;

@@ -4,6 +4,7 @@
 #![cfg(all(unix, feature = "plant"))]
 
 mod broker;
+mod failover;
 mod ownership;
 mod sparkplug;
 mod tls;

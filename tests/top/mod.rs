@@ -4,6 +4,7 @@
 
 mod proxy;
 mod recorded;
+mod report;
 
 use std::io::Read as _;
 use std::os::unix::process::CommandExt as _;

@@ -160,8 +160,8 @@ mod tests {
 
     #[test]
     fn bash_replaces_the_current_piece() {
-        assert_eq!(bash("armctl yerc job se", "se", None), "+select\n");
-        assert_eq!(bash("yerc job se", "se", None), "+select\n");
+        assert_eq!(bash("armctl yerc job sel", "sel", None), "+select\n");
+        assert_eq!(bash("yerc job sel", "sel", None), "+select\n");
         assert_eq!(bash("armctl --output=js", "js", None), "+json\n+jsonl\n");
         assert_eq!(bash("armctl -t si", "si", None), "-sim:\n");
         assert_eq!(bash("armctl -t sim: yerc sta", "sta", None), "+status\n");

@@ -12,7 +12,7 @@ fn completes_words_and_flags_of_the_command() {
         ("armctl ye", &["yerc"][..]),
         ("armctl yerc st", &["status", "stop"]),
         ("yerc st", &["status", "stop"]),
-        ("/usr/bin/yerc.exe job se", &["select"]),
+        ("/usr/bin/yerc.exe job sel", &["select"]),
         ("armctl --sim yerc job ", &["edit", "list", "select", "show", "start", "stop"]),
         ("armctl yerc --sim servo o", &["on", "off"]),
         ("armctl yerc job select --li", &["--line"]),

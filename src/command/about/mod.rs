@@ -6,3 +6,4 @@ pub mod help;
 pub mod man;
 pub mod page;
 pub mod schema;
+pub mod wireshark;

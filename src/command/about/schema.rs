@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
+use super::wireshark::WrittenDissectors;
 use crate::command::families::FAMILIES;
+use crate::command::fleet::report::Packed;
 use crate::command::fleet::status::{Fleet, Overview};
 use crate::command::fleet::{cell, common, names, rehearsal, robots, session, tools, wait};
 #[cfg(feature = "plant")]
@@ -64,6 +66,7 @@ pub fn all() -> Vec<SchemaEntry> {
         SchemaEntry::of::<DryRun>("dry-run"),
         SchemaEntry::of::<Envelope>("envelope"),
         SchemaEntry::of::<ErrorBody>("failure"),
+        SchemaEntry::of::<Packed>("report"),
         SchemaEntry::of::<robots::entry::Changed>("robots.add"),
         SchemaEntry::of::<robots::check::CheckReport>("robots.check"),
         SchemaEntry::of::<robots::discover::Discovered>("robots.discover"),
@@ -83,6 +86,7 @@ pub fn all() -> Vec<SchemaEntry> {
         SchemaEntry::of::<session::Sessions>("session.list"),
         SchemaEntry::of::<Opened>("session.open"),
         SchemaEntry::of::<robots::entry::Changed>("setup"),
+        SchemaEntry::of::<WrittenDissectors>("wireshark"),
         SchemaEntry::of::<tools::Simulators>("sim"),
     ]);
     #[cfg(feature = "plant")]

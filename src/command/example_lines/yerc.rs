@@ -32,8 +32,11 @@ pub const EXAMPLES: &[Examples] = &[
     ("job edit", Destroy, &["WELD", "WELD --dry-run"]),
     ("job select", Write, &["WELD", "WELD --line 5"]),
     ("job list", Read, &["", "--json"]),
-    ("job show", Read, &["", "--task all", "--source"]),
+    ("job show", Read, &["", "--source", "WELD --path --html weld.html"]),
     ("job start", Motion, &["", "WELD --wait 2m", "WELD --repeat 20 --stats"]),
+    ("job search", Read, &["--uses clamp", "--calls WELD --json"]),
+    ("job calls", Read, &["MAIN"]),
+    ("job check", Read, &["--max-speed 500mm/s,50%"]),
     ("job stop", Write, &["", "-r cell3"]),
     (
         "move joint",

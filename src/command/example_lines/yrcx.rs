@@ -105,7 +105,7 @@ pub const EXAMPLES: &[Examples] = &[
         Destroy,
         &["100 --mm 10.5,-20,5,-18", "100 --pulse 1000,-2000,500,0", "100 --position position.json"],
     ),
-    ("point list", Read, &["0..29", "0..29 --empty"]),
+    ("point list", Read, &["0..29", "0..29 --empty", "0..29 --path --svg points.svg"]),
     ("point copy", Destroy, &["5 6..8", "5 6..8 --dry-run"]),
     ("point-calc copy", Destroy, &["1 --to 2", "1 --to 2 --dry-run"]),
     ("point-calc add", Destroy, &["1 --to 2", "1 --to 2 --dry-run"]),

@@ -12,6 +12,7 @@ pub mod poll;
 #[cfg(feature = "plant")]
 pub mod publish;
 pub mod rehearsal;
+pub mod report;
 #[cfg(feature = "plant")]
 pub mod report_values;
 pub mod robots;

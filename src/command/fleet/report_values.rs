@@ -58,7 +58,12 @@ fn collect<'a>(path: &str, data: &'a Json, depth: usize, values: &mut Vec<Report
 /// The value of an item, and its further keys that can change.
 fn collect_item<'a>(path: &str, item: &'a Map<String, Json>, depth: usize, values: &mut Vec<ReportValue<'a>>) {
     let start = values.len();
-    collect(path, item.get("value").unwrap_or(&Json::Null), depth, values);
+    // An item whose values have other keys has no value of its own.
+    match item.get("value") {
+        Some(value) => collect(path, value, depth, values),
+        None if item.get("ok") == Some(&Json::Bool(true)) => {}
+        None => collect(path, &Json::Null, depth, values),
+    }
     let constants = CONSTANTS.into_iter().filter_map(|key| Some((key, item.get(key)?)));
     let constants: Vec<(&'static str, &Json)> = constants.filter(|(_, constant)| !constant.is_null()).collect();
     for value in values.iter_mut().skip(start) {
@@ -90,6 +95,7 @@ mod tests {
                 {"name": "CN01", "label": "boxes", "kind": "counter", "raw": 7, "ok": true, "value": 7},
                 {"name": "P0", "label": null, "ok": true, "value": {"x_mm": 1.5, "y_mm": null}},
                 {"name": "CN02", "ok": false, "error": {"message": "refused"}},
+                {"name": "servo", "ok": true, "elapsed_s": 9},
             ],
             "hours": [{"value": 3}],
         });
@@ -101,6 +107,7 @@ mod tests {
                 "a/items/P0/x_mm 1.5 []",
                 "a/items/P0/y_mm null []",
                 "a/items/CN02 null []",
+                "a/items/servo/elapsed_s 9 []",
                 "a/hours/0/value 3 []",
             ]
         );

@@ -92,34 +92,7 @@ impl Show {
     fn run(&self, run: &Run) -> Result<(), RunError> {
         let entry = check_known(&run.sources.inventory, &self.name)?;
         let robot = run.sources.resolve(entry, None)?;
-        let mut settings = vec![row("target", &robot.target, ToString::to_string)];
-        if robot.family.has_model() {
-            settings.push(row("model", &robot.model, ToString::to_string));
-            settings.extend(reported_model(&robot));
-        }
-        settings.extend([
-            row("read_only", &robot.read_only, ToString::to_string),
-            row("hold", &robot.hold, ToString::to_string),
-            row("encoding", &robot.encoding, ToString::to_string),
-            row("timeout", &robot.timeout, |timeout| duration::display(*timeout)),
-            row("retries", &robot.retries, ToString::to_string),
-        ]);
-        if !robot.pulses_per_degree.is_empty() {
-            let value = robot.pulses_per_degree.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
-            settings.push(Value { name: "pulses_per_degree", value, origin: Origin::Robot.to_string() });
-        }
-        let family = robot.family.name();
-        run.local(
-            "robots.show",
-            &Shown {
-                name: robot.name,
-                family,
-                tags: robot.tags,
-                place: robot.place,
-                settings,
-                with_origin: self.origin,
-            },
-        )
+        run.local("robots.show", &Shown { with_origin: self.origin, ..Shown::of(&robot) })
     }
 }
 
@@ -239,6 +212,41 @@ struct Value {
     value: String,
     /// Origin of the value: flag, environment, target URL, robot, defaults or built-in.
     origin: String,
+}
+
+impl Shown {
+    /// Settings of a robot.
+    pub fn of(robot: &Robot) -> Self {
+        let mut settings = vec![row("target", &robot.target, ToString::to_string)];
+        if robot.family.has_model() {
+            settings.push(row("model", &robot.model, ToString::to_string));
+            settings.extend(reported_model(robot));
+        }
+        settings.extend([
+            row("read_only", &robot.read_only, ToString::to_string),
+            row("hold", &robot.hold, ToString::to_string),
+            row("encoding", &robot.encoding, ToString::to_string),
+            row("timeout", &robot.timeout, |timeout| duration::display(*timeout)),
+            row("retries", &robot.retries, ToString::to_string),
+        ]);
+        if !robot.pulses_per_degree.is_empty() {
+            let value = robot.pulses_per_degree.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+            settings.push(Value { name: "pulses_per_degree", value, origin: Origin::Robot.to_string() });
+        }
+        Self {
+            name: robot.name.clone(),
+            family: robot.family.name(),
+            tags: robot.tags.clone(),
+            place: robot.place.clone(),
+            settings,
+            with_origin: false,
+        }
+    }
+
+    /// Removes tags and place, which name parts of a plant.
+    pub fn hide_places(&mut self) {
+        (self.tags, self.place) = (Vec::new(), Place::default());
+    }
 }
 
 impl Report for Shown {

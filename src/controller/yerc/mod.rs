@@ -7,6 +7,7 @@
 pub mod describe;
 pub mod files;
 pub mod group;
+pub mod job;
 mod model;
 pub mod names;
 pub mod payload;

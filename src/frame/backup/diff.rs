@@ -84,7 +84,9 @@ impl DiffOptions {
         // An aborted read is not useful, but a refusal of the controller is a difference.
         let unread_files = match read(options).await {
             Ok(made) => made.unread(),
-            Err(failure) if failure.kind == Kind::Interrupted => Some(Failure::new(failure.kind, "interrupted")),
+            Err(failure) if failure.kind == Kind::Interrupted => {
+                Some(Failure::new(failure.kind, "not everything was read"))
+            }
             Err(failure) => Some(failure),
         };
         if let Some(failure) = unread_files {

@@ -97,7 +97,7 @@ pub struct Restore<F: Backups> {
 impl<F: Backups> Restore<F> {
     /// Family of the backup.
     pub fn of_family(&self) -> Option<target::Family> {
-        family_of(&self.options.restoring().folder)
+        target::family_of_backup(&self.options.restoring().folder)
     }
 }
 
@@ -141,7 +141,7 @@ pub struct Diff<F: Backups> {
 impl<F: Backups> Diff<F> {
     /// Family of the backup.
     pub fn of_family(&self) -> Option<target::Family> {
-        family_of(self.options.old.as_deref()?)
+        target::family_of_backup(self.options.old.as_deref()?)
     }
 
     /// Comparison options.
@@ -208,9 +208,4 @@ fn place(folder: &Path, robot: &Robot, several: bool) -> PathBuf {
     let own = private_folder(folder, &robot.name, true);
     let has_list = |folder: &Path| folder.join(manifest::MANIFEST).exists();
     if several || !has_list(folder) && has_list(&own) { own } else { folder.to_owned() }
-}
-
-/// Family of the backup in a folder, for simulators, which can have any family.
-fn family_of(folder: &Path) -> Option<target::Family> {
-    manifest::read::<Value>(folder).ok()??.family.parse().ok()
 }

@@ -16,19 +16,15 @@ use crate::local_names::{Target, is_plain_file_name};
 use crate::output::escape;
 use crate::prelude::basics::*;
 use crate::settings::Origin;
-use crate::settings::target::Family;
+pub use crate::settings::target::MANIFEST;
+use crate::settings::target::{Family, MAX_MANIFEST};
 use armctl_controller::text::{hex, unhex};
 use armctl_files as files;
-
-/// File name of the manifest. No file of a controller has this ending.
-pub const MANIFEST: &str = "manifest.json";
 
 /// Format name, for programs that find the folder.
 const FORMAT: &str = "armctl backup";
 /// Incremented if older programs would misread a newer manifest.
 const VERSION: u32 = 1;
-/// Maximum size of a manifest. No controller has so many files that its manifest is larger.
-const MAX_LIST: u64 = 64 << 20;
 
 /// Manifest of a backup; `C` describes the controller.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -225,7 +221,7 @@ pub fn read<C: About>(folder: &Path) -> Result<Option<Manifest<C>>, Failure> {
     }
 
     let path = folder.join(MANIFEST);
-    let text = match files::text(&path, MAX_LIST) {
+    let text = match files::text(&path, MAX_MANIFEST) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         text => text.with_context(|| path.display().to_string())?,
     };

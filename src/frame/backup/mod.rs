@@ -10,7 +10,8 @@ pub mod manifest;
 pub mod parts;
 pub mod save;
 pub mod text_diff;
-mod tolerance;
+pub mod tolerance;
+pub mod twin;
 
 use std::fmt;
 use std::path::{Path, PathBuf};

@@ -112,7 +112,7 @@ impl Tolerance {
 
     /// Whether two lines like `C00001=1,2,3` are equal, apart from numbers within the tolerance. Whole numbers are
     /// pulses. Of the decimal numbers, the first three are millimeters.
-    fn allows_position(self, one: &str, other: &str) -> bool {
+    pub fn allows_position(self, one: &str, other: &str) -> bool {
         let numbers = |line: &str| {
             let (_, numbers) = line.trim_end().split_once('=')?;
             Some(numbers.split(',').map(ToOwned::to_owned).collect::<Vec<_>>())

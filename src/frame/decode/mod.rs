@@ -3,10 +3,13 @@
 
 pub mod capture;
 
+use std::io::{self, BufRead as _, Read as _};
+
 use anyhow::Context as _;
 
 use self::capture::{CaptureDecoder, Input, Selection};
 use super::{Report, SchemaEntry};
+use crate::output::{Format, render};
 use crate::prelude::basics::*;
 use crate::run::{Run, RunError};
 use armctl_files as files;
@@ -35,7 +38,15 @@ pub trait Decode {
 
     /// Decodes the given bytes.
     fn decode(&self) -> Result<Self::Report, Failure>;
+
+    /// The lines on stdin, each with its problem as soon as it arrives; `None` if stdin is not read line by line.
+    fn decode_stdin(&self) -> Option<impl Iterator<Item = LineReport<Self::Report>>> {
+        None::<std::iter::Empty<_>>
+    }
 }
+
+/// Report about a line, and the problem of the line.
+pub type LineReport<R> = Result<(R, Option<String>), Failure>;
 
 /// Decodes the arguments and prints the result.
 pub fn run<D: Decode>(arguments: &D, run: &Run) -> Result<(), RunError> {
@@ -46,13 +57,55 @@ pub fn run<D: Decode>(arguments: &D, run: &Run) -> Result<(), RunError> {
         let failure = Failure::usage("--frame and the other options for capture files need a capture file");
         return Err(failure.hint("use a file whose name ends in .pcap, .pcapng or .cap").into());
     }
+    if run.screen.format == Format::Table
+        && run.filter.is_none()
+        && run.line.is_none()
+        && let Some(reports) = arguments.decode_stdin()
+        && let Some(printed) = print_each(reports, run)
+    {
+        return printed;
+    }
     run.local(D::ID, &arguments.decode()?)
+}
+
+/// Prints each report as it comes; `None` if there is none.
+fn print_each<R: Report>(reports: impl Iterator<Item = LineReport<R>>, run: &Run) -> Option<Result<(), RunError>> {
+    let (mut count, mut damaged, mut first) = (0, 0, None);
+    for report in reports {
+        let printed = report.and_then(|(report, problem)| {
+            let text = render::text(&report.view(), run.screen.width(), run.screen.stdout_color());
+            damaged += usize::from(problem.is_some());
+            first = first.take().or(problem);
+            run.screen.data(&if count == 0 { text } else { format!("\n{text}") })
+        });
+        if let Err(failure) = printed {
+            return Some(Err(failure.into()));
+        }
+        count += 1;
+    }
+    let failure = first.map(|first| damage_failure("line", count, damaged, &first));
+    (count > 0).then(|| failure.map_or(Ok(()), |failure| Err(failure.into())))
 }
 
 /// Schemas of the decoding reports of a family.
 pub fn schemas<D: Decode>() -> [SchemaEntry; 2] {
     type Field<D> = <<D as Decode>::Capture as CaptureDecoder>::Field;
     [SchemaEntry::of::<D::Report>(D::ID), SchemaEntry::of::<capture::Capture<Field<D>>>(D::CAPTURE_ID)]
+}
+
+/// Lines on stdin, as they arrive. A line that is much too long is several lines.
+pub fn stdin_lines() -> impl Iterator<Item = Result<String, Failure>> {
+    const MAX_LINE_SIZE: u64 = 64 << 10;
+
+    let mut input = io::stdin().lock();
+    std::iter::from_fn(move || {
+        let mut line = Vec::new();
+        match (&mut input).take(MAX_LINE_SIZE).read_until(b'\n', &mut line).context("stdin") {
+            Ok(0) => None,
+            Ok(_) => Some(Ok(String::from_utf8_lossy(&line).trim_end_matches(['\r', '\n']).to_owned())),
+            Err(error) => Some(Err(error.into())),
+        }
+    })
 }
 
 /// Text on stdin; invalid bytes are replaced and then reported as invalid.
@@ -130,11 +183,13 @@ pub fn in_parentheses(section: Option<&str>) -> String {
 pub fn damage<'a>(what: &str, problems: impl ExactSizeIterator<Item = Option<&'a String>>) -> Option<Failure> {
     let all = problems.len();
     let problems: Vec<&String> = problems.flatten().collect();
-    let first = problems.first()?;
+    problems.first().map(|first| damage_failure(what, all, problems.len(), first))
+}
+
+fn damage_failure(what: &str, all: usize, damaged: usize, first: &str) -> Failure {
     let message = match all {
         1 => format!("the {what} is damaged: {first}"),
-        _ => format!("{} of {all} {what}s are damaged; the first: {first}", problems.len()),
+        _ => format!("{damaged} of {all} {what}s are damaged; the first: {first}"),
     };
-    let hint = "see the output for the fields before the damage";
-    Some(Failure::new(Kind::Malformed, message).hint(hint))
+    Failure::new(Kind::Malformed, message).hint("see the output for the fields before the damage")
 }

@@ -11,7 +11,9 @@ pub mod shared_commands;
 pub mod teach_panel;
 pub mod tool;
 
+use std::any::Any;
 use std::ffi::OsString;
+use std::path::Path;
 
 use clap::ArgMatches;
 use futures_util::future::LocalBoxFuture;
@@ -64,6 +66,11 @@ pub trait Face: Sync {
 
     /// Serves a simulator with these arguments of `armctl sim FAMILY`.
     fn serve(&self, name: String, arguments: Vec<OsString>) -> LocalBoxFuture<'static, Result<NamedServer, Failure>>;
+    /// Start state of the family's simulator with the data of a backup.
+    fn twin(&self, folder: &Path) -> Result<Box<dyn Any>, Failure>;
+
+    /// Dissector of the protocol for Wireshark, in Lua, without the functions that all families use.
+    fn dissector(&self) -> String;
 
     /// Tool of the family of this kind.
     fn tool(&self, kind: ToolKind) -> Tool;

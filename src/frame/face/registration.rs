@@ -1,7 +1,9 @@
 //! Declaration of a family in its own types. [`Registered`] converts it to the [`Face`] for the rest of the program.
 
+use std::any::Any;
 use std::ffi::OsString;
 use std::marker::PhantomData;
+use std::path::Path;
 
 use clap::{ArgMatches, FromArgMatches as _, Subcommand};
 use futures_util::FutureExt as _;
@@ -50,6 +52,8 @@ pub trait Declaration: Backups {
     type Stop: Command<Family = Self, Report: CommonReport> + 'static;
     /// `armctl sim`.
     type Serve: Serve + Args + 'static;
+    /// Start state of the simulator.
+    type Start: 'static;
     /// Poller for live views.
     type Poller: Poller<Family = Self>;
 
@@ -78,6 +82,10 @@ pub trait Declaration: Backups {
     fn urls() -> Vec<(String, &'static str)>;
     /// See [`Face::codes`].
     fn codes() -> Vec<(String, String)>;
+    /// See [`Face::dissector`].
+    fn dissector() -> String;
+    /// Start state of the simulator with the data of a backup.
+    fn twin(folder: &Path) -> Result<Self::Start, Failure>;
     /// See [`Face::topics`].
     fn topics() -> Vec<(&'static str, &'static str, String)> {
         Vec::new()
@@ -194,6 +202,14 @@ impl<F: Declaration> Face for Registered<F> {
             Ok(NamedServer { name, target, server: Box::new(server) })
         }
         .boxed_local()
+    }
+
+    fn twin(&self, folder: &Path) -> Result<Box<dyn Any>, Failure> {
+        Ok(Box::new(F::twin(folder)?))
+    }
+
+    fn dissector(&self) -> String {
+        F::dissector()
     }
 
     fn tool(&self, kind: ToolKind) -> Tool {

@@ -83,5 +83,5 @@ fn answer_of<T>(ask: impl FnOnce(&Term) -> Result<T, Error>) -> Result<T, Failur
 
 /// Returns the failure after Esc or Ctrl-C.
 fn remaining() -> Failure {
-    Failure::new(Kind::Interrupted, "interrupted")
+    Failure::new(Kind::Interrupted, "the question has no answer")
 }

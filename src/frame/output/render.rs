@@ -42,6 +42,7 @@ pub fn csv(view: &View) -> String {
                     out.push('\n');
                 }
             }
+            Section::Picture(_) => {}
         }
     }
     out
@@ -57,6 +58,10 @@ fn section_text(section: &Section, width: u16, color: bool) -> String {
             text
         }
         Section::Lines(lines) => lines.iter().map(|line| with_color(line, color) + "\n").collect(),
+        Section::Picture(lines) => {
+            let line = |parts: &Vec<Cell>| parts.iter().map(|part| with_color(part, color)).collect::<String>();
+            lines.iter().map(|parts| line(parts).trim_end().to_owned() + "\n").collect()
+        }
         Section::Fields(fields) => fields_text(fields, width, color),
         Section::Table(Table { rows, empty, .. }) if rows.is_empty() => format!("{empty}\n"),
         Section::Table(table) => {

@@ -157,6 +157,8 @@ pub enum Section {
     Text(String),
     /// Lines with their own colors, for example a diff.
     Lines(Vec<Cell>),
+    /// Lines whose parts have their own colors, for example a picture of dots.
+    Picture(Vec<Vec<Cell>>),
 }
 
 /// Content of a report, for people.

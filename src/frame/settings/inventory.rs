@@ -347,14 +347,14 @@ pub fn named(family: Family, name: &str, address: &str) -> Result<Name, Failure>
 }
 
 /// Line and column of a byte offset. Both start with 1.
-pub(super) fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
+pub(crate) fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
     let before = text.get(..offset).unwrap_or(text);
     let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
     (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
 }
 
 /// Returns the most similar word in a message of serde such as "unknown field `x`, expected one of `a`, `b`".
-pub(super) fn suggestion(message: &str) -> Option<String> {
+pub(crate) fn suggestion(message: &str) -> Option<String> {
     let (_, rest) = message.split_once("unknown field `")?;
     let (word, rest) = rest.split_once('`')?;
     let is_known = rest.split('`').skip(1).step_by(2);

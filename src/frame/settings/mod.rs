@@ -373,7 +373,7 @@ impl Sources {
         let target = given.resolve(family)?;
         // A simulator without a family is a simulator of the first family.
         let simulated = target.is_simulated().then_some(self.selection.simulated.unwrap_or(Family::Yerc));
-        let Some(family) = family.or(target.family()).or(simulated) else {
+        let Some(family) = family.or(target.family()).or_else(|| target.family_of_backup()).or(simulated) else {
             return Err(Failure::usage(format!("armctl cannot infer the family from target '{target}'"))
                 .hint("name the family: `armctl yerc …`"));
         };

@@ -10,13 +10,15 @@ pub mod profinet;
 mod url;
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Duration;
 
+use serde::Deserialize;
 use serialport::{DataBits, Parity, StopBits};
 
 use crate::failure::Failure;
+use armctl_files as files;
 
 use self::url::{Query, baud, choice, confirmer, host_and_port, percent_decoded, port};
 
@@ -118,7 +120,7 @@ pub enum Place {
     Serial(Serial),
     /// `tcp://HOST:PORT[?baud=9600]`.
     Tcp(Tcp),
-    /// `sim:[?model=…&axes=…&baud=…&state=FILE&fault=…]`: the built-in simulator of the family, in this process.
+    /// `sim:[?model=…&axes=…&baud=…&state=FILE&from=FOLDER&fault=…]`: the built-in simulator of the family, in this process.
     Sim(Sim),
     /// A URL of one of the [`BUSES`].
     Bus(Bus),
@@ -184,11 +186,28 @@ pub struct Sim {
     pub baud: Option<u32>,
     /// File with the start state.
     pub state: Option<PathBuf>,
+    /// Backup of a robot, whose data the simulator starts with.
+    pub from: Option<PathBuf>,
     /// Faults of link and device, in the format of `armctl sim --fault`.
     pub fault: Option<String>,
     /// Fieldbus of a yrcx controller: one of [`bus::simulators`]. Without this setting, a network is simulated only if
     /// the network has faults.
     pub bus: Option<&'static str>,
+}
+
+/// File name of the manifest of a backup. No file of a controller has this ending.
+pub const MANIFEST: &str = "manifest.json";
+/// Maximum size of a manifest. No controller has so many files that its manifest is larger.
+pub const MAX_MANIFEST: u64 = 64 << 20;
+
+/// Family in the manifest of a backup; `None` without a readable manifest.
+pub fn family_of_backup(folder: &Path) -> Option<Family> {
+    #[derive(Deserialize)]
+    struct Head {
+        family: String,
+    }
+    let text = files::text(&folder.join(MANIFEST), MAX_MANIFEST).ok()?;
+    serde_json::from_str::<Head>(&text).ok()?.family.parse().ok()
 }
 
 /// UDP port of the robot server (from the frame table of the manual).
@@ -253,6 +272,15 @@ impl Target {
         let mut families = Family::ALL.into_iter().filter(|family| family.is_reached_over(self.scheme()));
         let first = families.next();
         if families.next().is_some() { None } else { first }
+    }
+
+    /// Family of the backup that a simulator starts with. It is no part of the URL: the folder can be missing, and an
+    /// inventory with this URL must still be readable.
+    pub fn family_of_backup(&self) -> Option<Family> {
+        match &self.place {
+            Place::Sim(Sim { from: Some(folder), .. }) => family_of_backup(folder),
+            _ => None,
+        }
     }
 
     /// Checks that the URL and all its options are valid for a family.
@@ -324,7 +352,7 @@ const FORMS: [(&str, &str); 4] = [
     ("udp", "udp://HOST[:10040][?file_port=PORT+1&model=auto]"),
     ("serial", "serial:///dev/ttyUSB0[?baud=9600&parity=even&data_bits=8&stop_bits=1], or serial://COM3"),
     ("tcp", "tcp://HOST:PORT[?baud=9600]"),
-    ("sim", "sim:[?state=FILE&fault=drop=5%25]"),
+    ("sim", "sim:[?state=FILE&from=FOLDER&fault=drop=5%25]"),
 ];
 
 fn udp(place: &str, query: &mut Query) -> Result<Udp, String> {
@@ -380,14 +408,16 @@ fn sim(place: &str, query: &mut Query) -> Result<Sim, String> {
             _ => return Err(format!("axes must be a number from 1 to 4, not '{text}'")),
         },
     };
+    let [state, from] = ["state", "from"].map(|key| query.take(key).map(PathBuf::from));
+    if state.is_some() && from.is_some() {
+        return Err("a simulator starts with either state or from".to_owned());
+    }
     Ok(Sim {
         traits: traits(query)?,
         axes,
         baud: baud(query)?,
-        state: {
-            let _temp = query.take("from");
-            query.take("state").map(PathBuf::from)
-        },
+        state,
+        from,
         fault: query.take("fault"),
         bus: query.take("bus").map(|name| bus(&name)).transpose()?,
     })

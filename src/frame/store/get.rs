@@ -102,6 +102,13 @@ pub struct List<S: Store> {
     empty: bool,
 }
 
+impl<S: Store> List<S> {
+    /// The rows that the user typed; all rows if the user typed none.
+    pub fn keys(&self) -> Vec<S::Key> {
+        Rows::of(&self.rows)
+    }
+}
+
 impl<S: Store> Command for List<S> {
     type Family = S::Family;
     type Report = ItemsOf<S>;
@@ -113,7 +120,7 @@ impl<S: Store> Command for List<S> {
 
     async fn run(&self, context: Context<'_, S::Family>) -> Result<ItemsOf<S>, Failure> {
         let Context { robot, link, screen, .. } = context;
-        let keys = Rows::of(&self.rows);
+        let keys = self.keys();
         let mut table = S::open(link, &self.options).await?;
         table.prepare(link, &keys).await?;
         let answers = read(&mut table, link, screen, &keys).await?;

@@ -17,7 +17,7 @@ pub use self::copy::Copy;
 pub use self::file::{Dump, LeftOut, Restore, keys_of, rows_of_file};
 pub use self::get::{Get, List};
 pub use self::part::{Part, PartResult, TablePart, Text, part_text};
-pub use self::set::Set;
+pub use self::set::{Set, comma_hint};
 use super::connection::Family;
 use super::names as labels;
 use super::value_kind::ValueKind;

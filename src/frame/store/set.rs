@@ -16,7 +16,7 @@ use armctl_controller::similar_word::nearest;
 pub struct Set<S: Writable> {
     #[command(flatten)]
     options: S::Options,
-    #[arg(value_name = S::WORDS.placeholder, value_parser = one::<S>, help = S::WORDS.range, add = S::COMPLETE)]
+    #[arg(value_name = S::WORDS.placeholder, value_parser = one::<S>, help = one_of(S::WORDS.range), add = S::COMPLETE)]
     row: SingleRow<S>,
     /// All values in their order, or some values as NAME=VALUE. The other values do not change
     #[arg(required = true, value_name = "VALUE", allow_negative_numbers = true, allow_hyphen_values = S::IS_TEXT,
@@ -33,6 +33,21 @@ impl<S: Store> Clone for SingleRow<S> {
     fn clone(&self) -> Self {
         Self(self.0)
     }
+}
+
+/// Help for one row, from the help for several rows: without the examples after the first one.
+fn one_of(rows: &str) -> String {
+    let (rows, examples) = rows.split_once(", such as ").unwrap_or((rows, ""));
+    match examples.split([',', ' ']).next().map(|first| first.trim_end_matches('.')) {
+        Some("") | None => format!("{rows}; type one"),
+        Some(first) => format!("{rows}; type one, such as {first}"),
+    }
+}
+
+/// Hint for values that are joined with commas, such as `5,0,0,0`.
+pub fn comma_hint(words: &[String], fields: usize) -> Option<String> {
+    let [word] = words else { return None };
+    (word.split(',').count() == fields).then(|| format!("type blanks between the values: {}", word.replace(',', " ")))
 }
 
 fn one<S: Store>(text: &str) -> Result<SingleRow<S>, String> {
@@ -95,7 +110,8 @@ pub fn typed<S: Writable>(table: &S, key: S::Key, words: &[String]) -> Result<S:
     } else if words.len() == fields.len() {
         texts = words.iter().map(|word| Some(word.as_str())).collect();
     } else {
-        return Err(invalid(format!("{} values needed, but {} typed", fields.len(), words.len())));
+        let failure = invalid(format!("{} values needed, but {} typed", fields.len(), words.len()));
+        return Err(comma_hint(words, fields.len()).into_iter().fold(failure, Failure::hint));
     }
     table.draft(key, &texts).map_err(invalid)
 }

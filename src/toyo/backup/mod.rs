@@ -7,6 +7,8 @@ mod restore;
 mod save;
 #[cfg(test)]
 mod tests;
+pub mod twin;
 
+pub use manifest::Controller;
 pub use restore::{Restore, restore};
 pub use save::{Backup, back_up};

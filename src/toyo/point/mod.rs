@@ -115,7 +115,7 @@ impl Store for Points {
     const WORDS: TableWords = TableWords {
         nouns: ["point", "points"],
         placeholder: "POINT",
-        range: "Rows of the coordinate table (1 to 999), such as 1-10,20, or names",
+        range: "Rows of the coordinate table (1 to 999), such as 5 or 1-10,20, or names",
         reading: Some("At 9600 baud, a read of 999 points takes a minute and a half."),
         writing: Some(
             "The values are x, y, z and r in mm. Type all values in this order, or only some values by name, for \

@@ -1,34 +1,39 @@
 //! `toyo program check`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use super::text::{self, Remark};
+use super::folder::{
+    add_speeds, check_file, points_of, positions, program_of, programs_in, read_program, table_speeds,
+};
+use super::text;
 use crate::files;
+use crate::link::Toyo;
 use crate::point::Points;
 use crate::prelude::*;
 use crate::sim::{self, Stop};
-use armctl_controller::findings::{Finding, Severity};
+use armctl_controller::findings::{Finding, Rule, Severity};
 use armctl_controller::names::{Name, Names};
+use armctl_controller::references::Role;
 use armctl_controller::toyo::errors;
-use armctl_controller::toyo::program::{self, Checked, ControllerData, MAX_STEPS};
-use armctl_frame::OfflineCommand;
+use armctl_controller::toyo::program::{self, ControllerData, MAX_STEPS};
+use armctl_frame::names;
+use armctl_frame::programs::Program;
+use armctl_frame::programs::check::{CheckArguments, CheckContext, check, moved};
+use armctl_frame::programs::settings;
+use armctl_frame::programs::source::{ProgramFile, ProgramSet};
+use armctl_frame::programs::verdict::{self, FileVerdict};
 use armctl_frame::store::keys_of;
 
-/// Check program files and print each error with line and column. Needs no robot.
+/// Check programs of files, a folder or the controller, and print each finding with line and column.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "The exit code is 0 if all files are valid programs, 8 if a file has errors, and 1 if a file cannot \
-                  be read. `program put` and `sim run` also check the file, and end with exit code 2 after an \
-                  error.\n\nForm of a file: one step per line, # or ; begins a comment, a label can replace a tag, \
-                  numbers need no leading zeros. Warnings show where a controller stops: a RET without a call, a call \
-                  that leads back to itself, an incomplete arc, a missing point, or an error in an offline run of \
-                  some seconds.\n\n      SPD V=5\nnext: MOVP a PT=1 CN=0 S V=0 POST\n      JMPI TAG=next STN=0 \
-                  PN1=.......1   ; while the gripper is full\n      END"
-)]
+#[command(after_help = help())]
 pub struct Check {
-    /// Program files; - means stdin
-    #[arg(required = true, value_name = "FILE")]
+    /// Program files; - means stdin [default: the program of the current task]
+    #[arg(value_name = "FILE", conflicts_with = "from")]
     files: Vec<PathBuf>,
+    /// Check the programs in this folder: a backup, or files program-N.txt and *.toyo
+    #[arg(long, value_name = "FOLDER")]
+    from: Option<PathBuf>,
     /// Number of steps of the task
     #[arg(long, value_name = "STEPS", default_value_t = 5000, value_parser = clap::value_parser!(u16).range(1..=5000))]
     room: u16,
@@ -38,47 +43,116 @@ pub struct Check {
     /// Name of a point, a counter or a timer, in the form of robots.toml, for example pick=PT1 (repeatable)
     #[arg(long, value_name = "NAME=ADDRESS", value_parser = text::name)]
     name: Vec<Name>,
-    /// Treat warnings as errors
-    #[arg(long)]
-    strict: bool,
+    #[command(flatten)]
+    limits: CheckArguments,
+}
+
+fn help() -> String {
+    format!(
+        "The exit code is 0 if all files are valid programs, 8 if a file has errors, and 1 if a file cannot be read. \
+         `program put` and `sim run` also check the file, and end with exit code 2 after an error.\n\nForm of a file: \
+         one step per line, # or ; begins a comment, a label can replace a tag, numbers need no leading zeros. \
+         Warnings show where a controller stops: a RET without a call, a call that leads back to itself, an \
+         incomplete arc, a missing point, or an error in an offline run of some seconds. In a backup, the points of \
+         the task are checked too.\n\n      SPD V=5\nnext: MOVP a PT=1 CN=0 S V=0 POST\n      JMPI TAG=next STN=0 \
+         PN1=.......1   ; while the gripper is full\n      END\n\n{}",
+        settings::help()
+    )
 }
 
 /// Error code of a TSTR step for a task that has no program.
 const NO_TASK: u8 = 0x63;
 
-impl OfflineCommand for Check {
+impl Command for Check {
+    type Family = Toyo;
     type Report = Verdict;
     const ID: &'static str = "toyo.program.check";
 
-    fn run(&self, _screen: &Screen) -> Result<Verdict, Failure> {
-        let room = usize::from(self.room).min(MAX_STEPS);
-        let names = Names::new(self.name.clone());
-        let points = self.points.as_ref().map(|path| keys_of::<Points>(path, &files::read(path)?));
-        let known = ControllerData { points: points.transpose()?.map(|points| points.into_iter().collect()) };
-        let verdict = |path: &PathBuf| {
-            let (bytes, name) = (files::read(path)?, files::display_path(path));
-            let mut checked = program::check_known(&bytes, room, None, &names, &known);
+    fn takes_robot(&self) -> bool {
+        self.files.is_empty() && self.from.is_none()
+    }
+
+    fn run_alone(&self) -> Result<Verdict, Failure> {
+        if let Some(folder) = &self.from {
+            return self.check(programs_in(folder)?, Some(folder), &[]);
+        }
+        let read = |path: &PathBuf| {
+            let file = files::display_path(path);
+            Ok(ProgramFile { name: file.clone(), file, bytes: files::read(path)? })
+        };
+        let files = self.files.iter().map(read).collect::<Result<_, Failure>>()?;
+        let folder = self.files.first().and_then(|path| path.parent());
+        self.check(ProgramSet { files, is_partial: true, ..ProgramSet::default() }, folder, &[])
+    }
+
+    async fn run(&self, context: Context<'_, Toyo>) -> Result<Verdict, Failure> {
+        if self.limits.needs_backup() {
+            return Err(Failure::usage("--max-speed and --compare need the speed table and the points of a backup")
+                .hint("make a backup with `toyo backup FOLDER`, and add --from FOLDER"));
+        }
+        let Context { robot, link, screen, .. } = context;
+        let names: Vec<Name> = names::of_robot(robot, screen).iter().cloned().collect();
+        self.check(program_of(link, screen, None).await?, None, &names)
+    }
+}
+
+impl Check {
+    fn check(&self, set: ProgramSet, folder: Option<&Path>, names: &[Name]) -> Result<Verdict, Failure> {
+        let names = Names::new(self.name.iter().chain(names).cloned().collect());
+        let mut settings = self.limits.settings(folder)?;
+        // Every program of a task can be started from outside.
+        settings.master = vec!["*".to_owned()];
+        let (mut programs, mut parsed) = (Vec::new(), Vec::new());
+        for file in &set.files {
+            let points = self.points.clone().or_else(|| points_of(folder?, &file.name));
+            let taught = points.as_ref().map(|path| keys_of::<Points>(path, &files::read(path)?)).transpose()?;
+            let known = ControllerData { points: taught.map(|points| points.into_iter().collect()) };
+            let mut checked = check_file(file, usize::from(self.room).min(MAX_STEPS), &names, &known);
             if let Some(program) = &checked.program {
-                let stop = sim::rehearse(&name, program, self.points.as_deref())?;
+                let stop = sim::rehearse(&file.file, program, points.as_deref())?;
                 rehearsed(&mut checked.findings, stop.as_ref());
             }
-            Ok(FileVerdict::new(&name, &bytes, &checked))
-        };
-        let files = self.files.iter().map(verdict);
-        Ok(Verdict { files: files.collect::<Result<_, Failure>>()?, strict: self.strict })
+            let mut program = read_program(file, &checked);
+            for line in &mut program.lines {
+                // A check of all paths already reports calls of subroutines.
+                line.references.retain(|reference| reference.role != Role::Call);
+            }
+            if let (Some(folder), Some(parsed)) = (folder, &checked.program) {
+                add_speeds(&mut program, parsed, &table_speeds(folder));
+            }
+            if let (Some(new), Some(other)) = (&points, &self.limits.compare) {
+                let old = points_of(other, &file.name).map(|path| positions(&path)).transpose()?;
+                let found = moved(&positions(new)?, &old.unwrap_or_default(), &other.display().to_string(), &settings);
+                program.findings.extend(at_uses(&program, found));
+            }
+            programs.push(program);
+            parsed.push(checked.program);
+        }
+        let context =
+            CheckContext { settings, unread: set.unread, is_partial: set.is_partial, ..CheckContext::default() };
+        check(&mut programs, &context);
+        let verdicts = programs.iter().zip(&parsed);
+        let verdicts = verdicts.map(|(program, parsed)| FileVerdict::new(program, Contents::new(parsed.as_ref())));
+        Ok(Verdict::new(verdicts.collect(), context.unread, self.limits.strict))
     }
+}
+
+/// Moves findings about points to the first lines that use these points.
+fn at_uses(program: &Program, found: Vec<(String, Finding)>) -> Vec<Finding> {
+    let line_of = |point: &str| program.references().find(|(_, one)| one.name == point).map(|(line, _)| line.number);
+    found.into_iter().filter_map(|(point, finding)| Some(Finding { line: line_of(&point)?, ..finding })).collect()
 }
 
 /// Adds the step at which an offline run stops with an error, unless there is already a finding for this step.
 fn rehearsed(findings: &mut Vec<Finding>, stop: Option<&Stop>) {
     let Some(Stop { code, after_s, line }) = stop else { return };
     let said = findings.iter().filter(|finding| finding.line == *line).map(|finding| finding.severity).min();
-    let severity = match said {
+    let (rule, severity) = match said {
         Some(Severity::Error | Severity::Warning) => return,
         // Here the result depends on the controller, or the program of the task is in another file.
-        Some(Severity::Note) => Severity::Note,
-        None if code.is_none_or(|code| code == NO_TASK) => Severity::Note,
-        None => Severity::Warning,
+        Some(Severity::Note) => (Rule::Unchecked, Severity::Note),
+        None if code.is_none_or(|code| code == NO_TASK) => (Rule::Unchecked, Severity::Note),
+        None => (Rule::Stops, Severity::Warning),
     };
     let what = match code {
         Some(code) => {
@@ -90,6 +164,7 @@ fn rehearsed(findings: &mut Vec<Finding>, stop: Option<&Stop>) {
     findings.insert(
         at,
         Finding {
+            rule,
             severity,
             line: *line,
             column: 1,
@@ -101,28 +176,32 @@ fn rehearsed(findings: &mut Vec<Finding>, stop: Option<&Stop>) {
     );
 }
 
-/// Result for all files.
-#[derive(Debug, Serialize, JsonSchema)]
-pub struct Verdict {
-    files: Vec<FileVerdict>,
-    #[serde(skip)]
-    strict: bool,
-}
+/// Verdict of a check.
+pub type Verdict = verdict::Verdict<Contents>;
 
-/// Result for a file.
+/// What a file contains.
 #[derive(Debug, Serialize, JsonSchema)]
-struct FileVerdict {
-    file: String,
-    /// Whether the file is a program.
-    ok: bool,
+#[schemars(rename = "Verdict")]
+pub struct Contents {
     /// Number of steps; null if the file is not a program.
     steps: Option<usize>,
     /// Labels with their tags.
     labels: Vec<Labelled>,
-    errors: usize,
-    warnings: usize,
-    /// Findings in the order of the text.
-    findings: Vec<Remark>,
+}
+
+impl Contents {
+    fn new(program: Option<&program::Program>) -> Self {
+        Self {
+            steps: program.map(|program| program.steps.len()),
+            labels: program.map(Labelled::of).unwrap_or_default(),
+        }
+    }
+}
+
+impl verdict::Summary for Contents {
+    fn counts(&self) -> Vec<(usize, &'static str)> {
+        vec![(self.steps.unwrap_or_default(), "step"), (self.labels.len(), "label")]
+    }
 }
 
 /// A label of a program file, with the tag that it becomes.
@@ -153,78 +232,20 @@ impl Labelled {
     }
 }
 
-impl FileVerdict {
-    fn new(file: &str, bytes: &[u8], checked: &Checked) -> Self {
-        let text = String::from_utf8_lossy(bytes);
-        let lines: Vec<&str> = text.lines().collect();
-        let findings: Vec<Remark> = checked.findings.iter().map(|finding| Remark::new(finding, &lines)).collect();
-        let count = |severity| findings.iter().filter(|remark| remark.severity == severity).count();
-        Self {
-            file: file.to_owned(),
-            ok: checked.program.is_some(),
-            steps: checked.program.as_ref().map(|program| program.steps.len()),
-            labels: checked.program.as_ref().map(Labelled::of).unwrap_or_default(),
-            errors: count("error"),
-            warnings: count("warning"),
-            findings,
-        }
-    }
-
-    /// Describes the result, for example `pick.txt: 12 steps, 2 labels, 1 warning`.
-    fn in_a_line(&self) -> Cell {
-        let counted = |count: usize, what: &str| match count {
-            0 => None,
-            1 => Some(format!("1 {what}")),
-            _ => Some(format!("{count} {what}s")),
-        };
-        let parts = [
-            self.steps.and_then(|steps| counted(steps, "step")),
-            counted(self.labels.len(), "label"),
-            counted(self.errors, "error"),
-            counted(self.warnings, "warning"),
-        ];
-        let text = format!("{}: {}", self.file, parts.into_iter().flatten().collect::<Vec<_>>().join(", "));
-        Cell::from(text).tone(match self {
-            Self { ok: false, .. } => Tone::Bad,
-            Self { warnings: 0, .. } => Tone::Good,
-            _ => Tone::Warning,
-        })
-    }
-}
-
-impl Report for Verdict {
-    fn view(&self) -> View {
-        let remarks = |file: &FileVerdict| {
-            let mut lines: Vec<Cell> = file.findings.iter().flat_map(|remark| remark.lines(&file.file)).collect();
-            lines.push(file.in_a_line());
-            lines
-        };
-        View { sections: vec![Section::Lines(self.files.iter().flat_map(remarks).collect())] }
-    }
-
-    fn failure(&self) -> Option<Failure> {
-        let bad = |file: &&FileVerdict| !file.ok || (self.strict && file.warnings > 0);
-        let bad: Vec<&str> = self.files.iter().filter(bad).map(|file| file.file.as_str()).collect();
-        let what = match (&bad[..], self.strict) {
-            ([], _) => return None,
-            ([one], false) => format!("{one} has errors"),
-            ([one], true) => format!("{one} has warnings"),
-            (many, _) => format!("{} of {} files have errors: {}", many.len(), self.files.len(), many.join(", ")),
-        };
-        Some(Failure::new(Kind::ConditionNotMet, what))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::without_robot;
     use armctl_frame::output::render;
 
     fn verdict(texts: &[(&str, &str)], strict: bool) -> Verdict {
-        let files = texts
-            .iter()
-            .map(|(name, text)| FileVerdict::new(name, text.as_bytes(), &program::check(text.as_bytes(), MAX_STEPS)));
-        Verdict { files: files.collect(), strict }
+        let files = texts.iter().map(|(name, text)| {
+            let name = (*name).to_owned();
+            let file = ProgramFile { name: name.clone(), file: name, bytes: text.as_bytes().to_vec() };
+            let checked = program::check(text.as_bytes(), MAX_STEPS);
+            FileVerdict::new(&read_program(&file, &checked), Contents::new(checked.program.as_ref()))
+        });
+        Verdict::new(files.collect(), Vec::new(), strict)
     }
 
     #[test]
@@ -232,14 +253,14 @@ mod tests {
         let verdict = verdict(&[("a.txt", "SPD V=11\nEMD\n"), ("b.txt", "x: JMP TAG=x\n")], false);
         assert_eq!(
             render::text(&verdict.view(), 80, false),
-            "error: speed: 11 is out of range (a number, 1 to 10)
+            "error[syntax]: speed: 11 is out of range (a number, 1 to 10)
  --> a.txt:1:7
   |
 1 | SPD V=11
   |       \
              ^
 
-error: unknown instruction 'EMD'
+error[syntax]: unknown instruction 'EMD'
  --> a.txt:2:1
   |
 2 | EMD
@@ -262,24 +283,23 @@ b.txt: 2 steps, 1 label
         let path = folder.path().join("a.txt");
         let findings = |text: &str| {
             std::fs::write(&path, text).unwrap();
-            let check = Check { files: vec![path.clone()], room: 5000, points: None, name: Vec::new(), strict: false };
-            let screen =
-                Screen::new(armctl_frame::output::Format::Json, armctl_frame::output::ColorChoice::Never, true, 0);
-            let verdict = check.run(&screen).unwrap();
-            let told =
-                verdict.files[0].findings.iter().filter(|remark| remark.message.starts_with("in an offline run"));
-            told.map(|remark| (remark.severity, remark.line, remark.message.clone())).collect::<Vec<_>>()
+            let (data, _) = without_robot(&["program", "check", path.to_str().unwrap()]).unwrap();
+            let findings = data["files"][0]["findings"].as_array().unwrap().clone().into_iter();
+            let text = |value: &serde_json::Value| value.as_str().unwrap().to_owned();
+            let run = findings.filter(|one| text(&one["message"]).starts_with("in an offline run"));
+            run.map(|one| (text(&one["severity"]), one["line"].as_u64().unwrap(), text(&one["message"])))
+                .collect::<Vec<_>>()
         };
         let error = |code: &str| format!("in an offline run a controller stops here after 0.001 s: error {code}");
         assert_eq!(
             findings("CNT+ CN1=9999\nCNT+ CN1=1\nEND\n"),
-            [("warning", 2, error("A7: calculation error"))],
+            [("warning".to_owned(), 2, error("A7: calculation error"))],
             "a counter that is too large"
         );
-        assert_eq!(findings("NOP\nTSTR TASK=2\nEND\n"), [("note", 2, error("63: task cannot be started"))]);
+        assert_eq!(findings("NOP\nTSTR TASK=2\nEND\n"), [("note".to_owned(), 2, error("63: task cannot be started"))]);
         assert_eq!(
             findings("NOP\nIN STN=0 PN1=.......1 AND\nEND\n"),
-            [("note", 2, "in an offline run all tasks wait here after 0.001 s".to_owned())]
+            [("note".to_owned(), 2, "in an offline run all tasks wait here after 0.001 s".to_owned())]
         );
         for text in ["RET\n", "a: SPD V=1\nJMP TAG=a\n", "SPD V=1\nEND\n"] {
             assert_eq!(findings(text), [], "{text}: it is said already, or nothing stops");

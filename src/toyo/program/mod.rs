@@ -1,13 +1,16 @@
 //! `toyo program`: sequential programs as files and step by step.
 
+mod calls;
 mod check;
 mod copy;
 mod delete;
 mod diff;
 mod edit;
+mod folder;
 mod get;
 mod insert;
 mod list;
+mod path;
 mod put;
 mod search;
 mod show;
@@ -18,7 +21,8 @@ pub mod table;
 mod tests;
 pub mod text;
 
-use armctl_frame::{Offline, commands};
+use armctl_frame::commands;
+use armctl_frame::path::Drawable;
 
 commands! {
     /// Commands for sequential programs.
@@ -39,12 +43,14 @@ commands! {
         Delete(delete::Delete),
         /// Copy steps, also between tasks
         Copy(copy::Copy),
-        /// Find the step of a tag
+        /// Find lines of programs, or the step of a tag
         Search(search::Search),
-        /// Show the current step of the program
-        Show(show::Show),
-        /// Check program files; needs no robot
-        Check(Offline<check::Check>),
+        /// Show the subroutines and tasks that programs call
+        Calls(calls::Calls),
+        /// Show the current step of the program; with --path, the motion of a program
+        Show(Drawable<show::Show, path::ProgramPath>),
+        /// Check programs of files, a folder or the controller
+        Check(check::Check),
     }
 }
 

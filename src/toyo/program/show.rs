@@ -1,5 +1,7 @@
 //! `toyo program show`.
 
+use std::path::PathBuf;
+
 use super::steps;
 use crate::link::Toyo;
 use crate::prelude::*;
@@ -10,7 +12,27 @@ use armctl_frame::robot::program::Program;
 
 /// Show the current step of the program of the current task.
 #[derive(Debug, Args)]
-pub struct Show {}
+pub struct Show {
+    /// Program to draw: a file, or the task of a program, 1 to 4 [default: the current task]
+    #[arg(value_name = "FILE|NUMBER", requires = "path", value_parser = parse_program)]
+    pub program: Option<String>,
+    /// CSV file of points from `point dump`, for a program file
+    #[arg(long, value_name = "FILE", requires = "program", conflicts_with = "from")]
+    pub points: Option<PathBuf>,
+    /// Parameters and tables (CSV) from `param dump`, for a program file
+    #[arg(long, value_name = "FILE", requires = "program", conflicts_with = "from")]
+    pub params: Option<PathBuf>,
+}
+
+/// Parses a file name or the number of a task.
+fn parse_program(text: &str) -> Result<String, String> {
+    match text.parse::<u32>() {
+        Ok(number) if !(1..=4).contains(&number) => {
+            Err(format!("the tasks are 1 to 4; a file of this name is ./{text}"))
+        }
+        _ => Ok(text.to_owned()),
+    }
+}
 
 impl Command for Show {
     type Family = Toyo;

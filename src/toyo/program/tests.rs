@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::testing::{Bench, blocks};
+use crate::testing::{Bench, blocks, without_robot};
 use armctl_frame::failure::{Failure, Kind};
 
 /// The program in the sample session of the manual (TO 3-1).
@@ -240,4 +240,65 @@ fn blocks_are_those_of_the_manual() {
 #[test]
 fn a_missing_file_is_a_local_failure() {
     assert_eq!(blocks(&["program", "put", "/nowhere/x.txt"]).unwrap_err().kind, Kind::Local);
+}
+
+/// Programs of two tasks, with their points and the speed table.
+fn backup() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let program = "SPD V=5\nnext: MOVP a PT=1 CN=0 S V=0 POST\nOUT STN=0 PN1=.....1.1\nTSTR TASK=2\nCAL TAG=sub\n\
+                   JMPC TAG=next CN1<3\nEND\nsub: CNT+ CN1=1\nCALI TAG=sub2 STN=0 PN1=.......1\nRET\nsub2: MOVP a PT=2 \
+                   CN=0 S V=3 POST\nRET\n";
+    for (name, text) in [
+        ("program-1.txt", program),
+        ("program-2.txt", "JMP TAG=gone\nEND\n"),
+        ("points-1.csv", "name,x_mm,y_mm,z_mm,r_mm\n1,100.00,0.00,0.00,0.00\n2,0.00,0.05,0.00,0.00\n"),
+        ("parameters.csv", "name,value\nT2.3,100.0\nT2.5,250.0\n"),
+    ] {
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
+    folder
+}
+
+#[test]
+fn a_folder_of_programs_is_searched_and_checked() {
+    let folder = backup();
+    let run = |words: &str| {
+        let words: Vec<&str> =
+            words.split_ascii_whitespace().chain(["--from", folder.path().to_str().unwrap()]).collect();
+        without_robot(&words).unwrap()
+    };
+    let found = |words: &str| -> Vec<Value> {
+        let (data, _) = run(&format!("program search {words}"));
+        data["matches"].as_array().unwrap().iter().map(|one| one["line"].clone()).collect()
+    };
+    assert_eq!(found("--uses OUT1.3"), [3]);
+    assert_eq!(found("--uses cn1"), [6, 8]);
+    assert_eq!(found("--uses T2.3"), [11]);
+    assert_eq!(found("--uses next"), [2, 6]);
+    assert_eq!(found("--calls sub2"), [9]);
+    assert_eq!(found("5"), [1], "without a robot, a number is a text");
+    assert_eq!(found("^MOVP"), [0; 0]);
+
+    let rules = |words: &str| -> Vec<String> {
+        let (data, _) = run(&format!("program check {words}"));
+        let files = data["files"].as_array().unwrap().iter();
+        let findings = files.flat_map(|file| file["findings"].as_array().unwrap());
+        let findings = findings.filter(|one| one["severity"] != "note");
+        findings.map(|one| format!("{} {}", one["rule"].as_str().unwrap(), one["line"])).collect()
+    };
+    let old = backup();
+    let points = "name,x_mm,y_mm,z_mm,r_mm\n1,100.00,0.00,0.00,0.00\n2,0.00,0.00,0.00,0.00\n";
+    std::fs::write(old.path().join("points-1.csv"), points).unwrap();
+    let compare = format!("--max-speed 200mm/s --compare {}", old.path().display());
+    assert_eq!(rules(&compare), ["speed-limit 1", "moved-position 11", "missing-label 1"]);
+    assert_eq!(rules(&format!("{compare} --tolerance 0.1")), ["speed-limit 1", "missing-label 1"]);
+    std::fs::write(folder.path().join(".armctl-check.toml"), "[rules]\nmissing-label = false\n").unwrap();
+    assert_eq!(rules(""), [""; 0]);
+
+    std::fs::write(folder.path().join("program-2.txt"), "END\n").unwrap();
+    let (data, _) = run("program calls");
+    let names: Vec<&str> =
+        data["programs"].as_array().unwrap().iter().map(|one| one["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["program-1", "program-1/sub", "program-1/sub2", "program-2"]);
+    assert_eq!(data["programs"][0]["calls"], serde_json::json!(["program-2", "program-1/sub"]));
 }

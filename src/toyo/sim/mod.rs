@@ -5,7 +5,7 @@ mod run;
 mod tests;
 mod trace;
 
-pub use self::run::rehearse;
+pub use self::run::{in_file, parameter_writes, rehearse};
 pub use self::trace::Stop;
 
 use armctl_frame::{Offline, commands};

@@ -190,7 +190,7 @@ impl Run {
         };
         let mut written = Vec::new();
         if let Some(path) = &self.params {
-            written.extend(writes(path)?);
+            written.extend(parameter_writes(path)?);
         }
         // These writes come before power on, so that parameter 2 is active.
         let mut document: toml::Table = state.parse().map_err(|error| {
@@ -268,7 +268,7 @@ impl Run {
 }
 
 /// Returns the protocol commands that write the parameters of a file.
-fn writes(path: &Path) -> Result<Vec<String>, Failure> {
+pub fn parameter_writes(path: &Path) -> Result<Vec<String>, Failure> {
     let mut start = Start::default();
     let mut commands = Vec::new();
     let mut rows = rows_of_file(&Parameters, path)?;
@@ -277,7 +277,7 @@ fn writes(path: &Path) -> Result<Vec<String>, Failure> {
         let values = whole(path, &key_text(key), &changes)?;
         let cell = Parameters.cell(key, values).map_err(|failure| in_file(path, &failure.message))?;
         let command = cell.write.text().trim_start_matches('@').to_owned();
-        start = start.with_written(&command).map_err(|why| in_file(path, &why))?;
+        start = start.with_written(1, [&command[..]]).map_err(|why| in_file(path, &why))?;
         commands.push(command);
     }
     Ok(commands)
@@ -289,7 +289,7 @@ fn whole(path: &Path, row: &str, changes: &Changes) -> Result<Vec<Value>, Failur
 }
 
 /// Failure: a row of a file cannot be used.
-fn in_file(path: &Path, why: &str) -> Failure {
+pub fn in_file(path: &Path, why: &str) -> Failure {
     Failure::usage(format!("{}: {why}", files::display_path(path))).hint("use `dump` to write a valid file")
 }
 

@@ -162,6 +162,23 @@ impl Fixer {
     }
 }
 
+/// Form of a job file.
+#[derive(Debug, Clone, Copy)]
+pub struct JobForm {
+    /// What the file lacks to be a job.
+    pub missing: Option<&'static str>,
+    /// First line that ends in LF without CR.
+    pub bare_line: Option<u64>,
+}
+
+/// Returns the form of a job file.
+pub fn job_form(bytes: &[u8]) -> JobForm {
+    let mut scan = JobScan::default();
+    scan.take(bytes);
+    scan.finish();
+    JobForm { missing: scan.missing(), bare_line: scan.first_bare }
+}
+
 /// Maximum number of bytes of a line that the scan keeps. The longest relevant line contains a job name.
 const HEAD: usize = 48;
 

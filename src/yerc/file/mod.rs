@@ -17,14 +17,17 @@ mod put;
 mod read;
 mod restore;
 mod transfer;
+pub mod twin;
 mod upload;
 
 pub use backup::back_up;
+pub(super) use content::job_form;
 pub use edit::Edit;
+pub(super) use manifest::Manifest;
 pub(super) use name::{ReportedName, exact};
 pub(super) use read::{FileReading, read_files};
 pub use restore::Restore;
-pub(super) use transfer::{LISTS, fetch, list, name_taken as download_failed, plan_all};
+pub(super) use transfer::{LISTS, fetch, fetch_listed, list, name_taken as download_failed, plan_all};
 
 use armctl_frame::commands;
 

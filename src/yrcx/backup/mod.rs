@@ -9,6 +9,8 @@ mod restore;
 mod save;
 #[cfg(test)]
 mod tests;
+pub mod twin;
 
+pub use content::Controller;
 pub use restore::restore;
 pub use save::{Backup, back_up, points};

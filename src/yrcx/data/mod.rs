@@ -3,6 +3,7 @@
 mod comment;
 mod hand;
 mod pallet;
+mod path;
 mod point;
 mod sheet;
 mod shift;

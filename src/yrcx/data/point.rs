@@ -4,12 +4,14 @@ use std::path::{Path, PathBuf};
 
 use clap::ArgGroup;
 
+use super::path::PointPath;
 use super::sheet::PointSheet;
 use crate::link::Yrcx;
 use crate::number_arguments::single;
 use crate::numbered_tables::{Kind, Numbered};
 use crate::position::{Unit, mm, position, unit_of};
 use crate::prelude::*;
+use armctl_frame::path::Drawable;
 use armctl_frame::robot::position::FourAxes;
 use armctl_frame::store::{Copy, Dump, Get, List, Restore, TableWrite, Writable as _, WrittenOf, write};
 use armctl_frame::teach::parse_printed_position;
@@ -19,8 +21,8 @@ commands! {
     pub enum Point {
         /// Read points, for example 100 or 0..29
         Get(Get<Numbered<Points>>),
-        /// List the defined points of a range
-        List(List<Numbered<Points>>),
+        /// List the defined points of a range; with --path, draw them
+        List(Drawable<List<Numbered<Points>>, PointPath>),
         /// Define a point, for example `100 --mm 10,-20,5,-18`
         Set(Set),
         /// Copy a point to other points, for example `5 6..8`

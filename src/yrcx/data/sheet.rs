@@ -1,6 +1,7 @@
 //! Points with their comments, as a spreadsheet has them: `yrcx point dump` and `restore`.
 
 use std::collections::{HashMap, HashSet};
+use std::path::Path;
 
 use super::{Comments, Points};
 use crate::link::{Link, Yrcx};
@@ -9,7 +10,7 @@ use crate::prelude::*;
 use crate::read_requests::plan_each;
 use armctl_frame::robot::item::Plain;
 use armctl_frame::robot::position::FourAxes;
-use armctl_frame::store::Row as TableRow;
+use armctl_frame::store::{Row as TableRow, rows_of_file};
 
 /// The points with their comments.
 #[derive(Debug, Default)]
@@ -50,6 +51,20 @@ impl Content {
 }
 
 impl PointSheet {
+    /// Points in a file, such as the file of a backup.
+    ///
+    /// # Errors
+    /// The file cannot be read, or has mistakes.
+    pub fn points_in(path: &Path) -> Result<Vec<(i32, FourAxes)>, Failure> {
+        let table = Self::default();
+        let mut points = Vec::new();
+        for (number, draft) in rows_of_file(&table, path)? {
+            let content = table.complete_draft(number, &draft, None)?;
+            points.extend(content.point.and_then(|row| Points::value(row.values())).map(|point| (number, point)));
+        }
+        Ok(points)
+    }
+
     /// Reads points, if they are requested, and the comments of some of them, if they are defined.
     async fn read_parts(
         &self,

@@ -29,7 +29,7 @@ pub fn on_loopback(sim: &Sim) -> Result<Hub<Controller>, Failure> {
     let faults = faults_of_url(sim, &FAULTS)?;
     let setup = Setup::sample_controller(Mac::new(MAC).unwrap_or_default(), Bitrate::K500, size(sim.bus));
     let listen = Listen::Tcp(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)));
-    let served = serve(start(sim.state.as_deref())?, setup, &[listen], faults);
+    let served = serve(start(sim)?, setup, &[listen], faults);
     Ok(served.context("the simulator on the loopback")?)
 }
 

@@ -23,7 +23,7 @@ use armctl_transport::image::ImagePeer;
 pub fn on_loopback(sim: &Sim) -> Result<Server<Controller>, Failure> {
     let faults = faults_of_url(sim, &FAULTS)?;
     let listen = AdapterAddresses::anywhere(Ipv4Addr::LOCALHOST);
-    let server = serve(start(sim.state.as_deref())?, listen, faults);
+    let server = serve(start(sim)?, listen, faults);
     Ok(server.context("the simulator on the loopback")?)
 }
 

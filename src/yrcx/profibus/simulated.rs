@@ -44,7 +44,7 @@ impl Default for Options {
 /// Starts a simulator with the faults of the URL.
 pub fn in_process(sim: &Sim) -> Result<Server, Failure> {
     let faults = faults_of_url(sim, &FAULTS)?;
-    serve(start(sim.state.as_deref())?, Options { faults, ..Options::default() })
+    serve(start(sim)?, Options { faults, ..Options::default() })
 }
 
 /// Faults of characters and of the slave.

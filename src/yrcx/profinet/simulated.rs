@@ -25,7 +25,7 @@ const MODULES: (u32, u32) = (0x101, 0x102);
 /// In-process network with a simulator, with the faults of the URL.
 pub fn in_process(sim: &Sim) -> Result<Network, Failure> {
     let faults: SimulatorFaults<FaultSpec, Fault> = faults_of_url(sim, &FAULTS)?;
-    let controller = controller(start(sim.state.as_deref())?);
+    let controller = controller(start(sim)?);
     let device = |mac, ip| {
         let setup = Setup { mac, ip: Some(ip), takes_ip: true, ..setup(NAME, layout()) };
         let mut device = Device::new(setup, controller);

@@ -27,5 +27,6 @@ fn runs_between_two_network_cards() {
     let mut words = device.split(' ');
     let mut armctl = Command::new(words.next().expect("a program"));
     armctl.args(words).arg(env!("CARGO_BIN_EXE_armctl"));
-    hold_all(Controller::start(armctl, "profinet", &["--interface", "pd0"]).url_of_bus("@IFACE", "@pc0"));
+    let controller = Controller::start(armctl, "profinet", &["--interface", "pd0"]).url_of_bus("@IFACE", "@pc0");
+    hold_all(controller, (0, 1));
 }

@@ -125,7 +125,7 @@ fn yerc_commands_send_only_authorized_frames() {
         is_stop: |bytes| bytes.get(24..28) == Some(&[0x83, 0, 1, 0]) || bytes.get(24..26) == Some(&[0x86, 0]),
         _controller: controller,
     };
-    let mut bench = Bench::new(&mut relay);
+    let mut bench = Bench::new(&mut relay, (0, 1));
     bench.write("WELD.JBI", JOB);
     bench.write("new.jbi", &JOB.replace("NOP", "NOP\r\nNOP"));
     bench.write("OTHER.JBI", &JOB.replace("WELD", "OTHER"));
@@ -154,7 +154,7 @@ fn toyo_commands_send_only_authorized_lines() {
         },
         _controller: controller,
     };
-    let mut bench = Bench::new(&mut relay);
+    let mut bench = Bench::new(&mut relay, (0, 1));
     bench.prepare("toyo point set 7 1 2 3 4 --yes");
     bench.prepare("backup press --yes");
     bench.prepare("toyo point set 7 9 9 9 9 --yes");

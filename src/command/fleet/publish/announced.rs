@@ -1,4 +1,4 @@
-//! Retained topics of this node at its broker, also on disk. The next process clears those that it no longer publishes:
+//! Retained topics of this node at one broker, also on disk. The next process clears those that it no longer publishes:
 //! of robots that left the inventory or the selection, and of another prefix or template.
 //!
 //! A topic is on disk before its first message is sent. Before a topic is cleared, the broker is asked for its retained
@@ -95,6 +95,12 @@ impl AnnouncedTopics {
         if let Some(state) = self.topics.get_mut(topic) {
             *state = State::Stale;
         }
+    }
+
+    /// Topics that this process publishes.
+    pub fn current(&self) -> Vec<String> {
+        let current = self.topics.iter().filter(|(_, state)| **state == State::Current);
+        current.map(|(topic, _)| topic.clone()).collect()
     }
 
     /// Whether this process publishes the topic.

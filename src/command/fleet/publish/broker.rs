@@ -1,7 +1,8 @@
-//! Address and credentials of the broker, from the command line, files and the environment.
+//! Addresses and credentials of the brokers, from the command line, files and the environment.
 
 use std::env;
 use std::fmt;
+use std::net::IpAddr;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
@@ -31,6 +32,15 @@ pub struct Url {
     pub port: u16,
     /// Whether the connection uses TLS.
     pub is_secure: bool,
+}
+
+impl Url {
+    /// Canonical name, such as `mqtt-192.168.1.5-1883`: the same for all spellings of a broker.
+    pub fn key(&self) -> String {
+        let scheme = if self.is_secure { "mqtts" } else { "mqtt" };
+        let host = self.host.parse().map_or_else(|_| self.host.to_lowercase(), |ip: IpAddr| ip.to_string());
+        format!("{scheme}-{host}-{}", self.port)
+    }
 }
 
 impl fmt::Display for Url {
@@ -64,7 +74,7 @@ impl FromStr for Url {
             Some((host, port)) => (host, port.strip_prefix(':').or(port.is_empty().then_some("")).ok_or(FORM)?),
             None => rest.split_once(':').unwrap_or((rest, "")),
         };
-        let is_address = host.parse::<std::net::IpAddr>().is_ok();
+        let is_address = host.parse::<IpAddr>().is_ok();
         let is_name = host.chars().all(|c| c.is_alphanumeric() || matches!(c, '.' | '-' | '_'));
         if host.is_empty() || host.len() > 253 || !(is_address || is_name) {
             return Err(FORM.to_owned());
@@ -132,14 +142,13 @@ pub struct Broker {
     pub url: Url,
     /// Address.
     pub endpoint: Endpoint,
-    /// Warnings about the storage and transmission of secrets.
-    pub warnings: Vec<String>,
     version: Version,
     user: Option<String>,
     password: Secret,
 }
 
 /// A value that is never printed.
+#[derive(Clone)]
 struct Secret(Option<Vec<u8>>);
 
 impl fmt::Debug for Secret {
@@ -149,28 +158,23 @@ impl fmt::Debug for Secret {
 }
 
 impl Broker {
-    /// Reads files and environment.
-    pub fn new(url: &Url, login: &Login) -> Result<Self, Failure> {
+    /// Settings of these brokers, with warnings about the storage and transmission of secrets. Each file is read once,
+    /// because it can be a pipe.
+    pub fn for_urls(urls: &[Url], login: &Login) -> Result<(Vec<Self>, Vec<String>), Failure> {
         let has_tls_words = login.ca.is_some() || login.cert.is_some();
-        if has_tls_words && !url.is_secure {
-            return Err(Failure::usage("--ca, --cert and --key need TLS")
-                .hint(format!("write mqtts://{}:8883 for TLS", url.host)));
+        if has_tls_words && urls.iter().all(|url| !url.is_secure) {
+            let host = urls.first().map_or("HOST", |url| &url.host);
+            return Err(
+                Failure::usage("--ca, --cert and --key need TLS").hint(format!("write mqtts://{host}:8883 for TLS"))
+            );
         }
-        let tls = if url.is_secure {
-            let trust = match &login.ca {
-                Some(path) => Trust::Roots(bytes(path)?),
-                None => Trust::System,
-            };
-            let identity = match (&login.cert, &login.key) {
-                (Some(certificates), Some(key)) => {
-                    Some(Identity { certificates: bytes(certificates)?, key: bytes(key)? })
-                }
-                _ => None,
-            };
-            let tls = Tls::new(&url.host, &trust, identity.as_ref());
-            Some(Arc::new(tls.map_err(|error| error_text::certificate_hint(url, &error))?))
-        } else {
-            None
+        let trust = match &login.ca {
+            Some(path) => Trust::Roots(bytes(path)?),
+            None => Trust::System,
+        };
+        let identity = match (&login.cert, &login.key) {
+            (Some(certificates), Some(key)) => Some(Identity { certificates: bytes(certificates)?, key: bytes(key)? }),
+            _ => None,
         };
         let password = Secret(password(login)?);
         let mut warnings = Vec::new();
@@ -184,20 +188,29 @@ impl Broker {
                 ));
             }
         }
-        if password.0.is_some() && !url.is_secure && !login.is_insecure && !is_this_machine(&url.host) {
-            warnings.push(format!(
-                "{url}: armctl sends the password without encryption; use mqtts://, or --insecure on a trusted \
-                 network"
-            ));
+        let mut brokers = Vec::with_capacity(urls.len());
+        for url in urls {
+            let tls = if url.is_secure {
+                let tls = Tls::new(&url.host, &trust, identity.as_ref());
+                Some(Arc::new(tls.map_err(|error| error_text::certificate_hint(url, &error))?))
+            } else {
+                None
+            };
+            if password.0.is_some() && !url.is_secure && !login.is_insecure && !is_this_machine(&url.host) {
+                warnings.push(format!(
+                    "{url}: armctl sends the password without encryption; use mqtts://, or --insecure on a trusted \
+                     network"
+                ));
+            }
+            brokers.push(Self {
+                url: url.clone(),
+                endpoint: Endpoint { host: url.host.clone(), port: url.port, tls },
+                version: login.protocol.into(),
+                user: login.user.clone(),
+                password: password.clone(),
+            });
         }
-        Ok(Self {
-            url: url.clone(),
-            warnings,
-            endpoint: Endpoint { host: url.host.clone(), port: url.port, tls },
-            version: login.protocol.into(),
-            user: login.user.clone(),
-            password,
-        })
+        Ok((brokers, warnings))
     }
 
     /// CONNECT contents with this last will.
@@ -235,7 +248,7 @@ fn others_can_read(_: &Path) -> Result<bool, Failure> {
 
 /// Whether the host is this computer.
 fn is_this_machine(host: &str) -> bool {
-    match host.parse::<std::net::IpAddr>() {
+    match host.parse::<IpAddr>() {
         Ok(address) => address.to_canonical().is_loopback(),
         Err(_) => host.eq_ignore_ascii_case("localhost"),
     }

@@ -1,21 +1,23 @@
-//! Pump from poller to broker: puts data into the outbox, and sends it while the broker is connected. After a loss it
-//! connects again with a growing backoff.
+//! Pump from poller to broker: puts data into the outbox, and sends it while a broker is connected. After a loss it
+//! connects to the next broker, and pauses with a growing backoff after each round.
 
+mod connection;
+mod failover;
 mod storage;
 
-use std::collections::{HashMap, VecDeque};
-use std::future::{Future, pending};
+use std::future::{Future, pending, ready};
 use std::io;
 use std::pin::pin;
 use std::time::Duration;
 
 use futures_util::FutureExt as _;
-use futures_util::future::LocalBoxFuture;
 use jiff::Timestamp;
 use tokio::task::JoinHandle;
-use tokio::task::coop::consume_budget;
-use tokio::time::{Instant, sleep_until, timeout_at};
+use tokio::time::{Instant, sleep_until, timeout, timeout_at};
 
+use self::connection::{ConnectionState, Open, Step, step};
+pub use self::failover::Backoff;
+use self::failover::Brokers;
 use super::broker::Url;
 use super::error_text;
 use super::message_format::{MessageFormat, Reaction};
@@ -33,27 +35,25 @@ const WINDOW: usize = 64;
 const UNCONFIRMED_WINDOW: usize = 1000;
 /// Limit of unsent bytes on the connection.
 const UNSENT_LIMIT: usize = 256 * 1024;
-/// Minimum interval of pings that confirm messages without acknowledgement.
-const PING_INTERVAL: Duration = Duration::from_millis(500);
-/// Time limit for an acknowledgement, while the broker answers pings.
-const ACKNOWLEDGE_TIMEOUT: Duration = Duration::from_secs(30);
-/// First and longest backoff.
-const BACKOFF_RANGE: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(60)];
-/// Lifetime of a connection after which the backoff starts again.
-const STABLE_AFTER: Duration = Duration::from_secs(10);
 /// Time limits at the end: `DELIVERY_TIMEOUT` for queued records, `FINAL_TIMEOUT` until the last message is
 /// acknowledged. DISCONNECT gets the rest of [`END_TIMEOUT`].
 const DELIVERY_TIMEOUT: Duration = Duration::from_millis(500);
 const FINAL_TIMEOUT: Duration = Duration::from_millis(700);
 /// Time for the answers to a question: the broker sends retained messages directly after it has accepted a subscription.
 const ANSWER_TIME: Duration = Duration::from_secs(2);
-/// Interval after which an ongoing failure is reported again.
-const REMINDER_INTERVAL: Duration = Duration::from_secs(600);
+/// Time limit for the end of a connection before the next one.
+const CLOSE_TIMEOUT: Duration = Duration::from_secs(1);
+/// Pause before the next connection to a broker that is the only one.
+const RECONNECT_PAUSE: Duration = Duration::from_secs(1);
+/// Time for the state of a primary host to arrive, if there is another broker.
+const HOST_TIMEOUT: Duration = Duration::from_secs(30);
 
 /// Opens connections to a broker.
 pub trait Broker {
     /// Connection type.
     type Uplink: Uplink;
+    /// URL for messages.
+    fn url(&self) -> &Url;
     /// Connects and sends CONNECT. The first event is the broker's answer.
     async fn open(&self, client_id: String, will: Will) -> Result<Self::Uplink, Loss>;
 }
@@ -78,38 +78,12 @@ pub trait Uplink {
     async fn close(self);
 }
 
-/// Backoff between attempts to connect.
-#[derive(Debug)]
-pub struct Backoff {
-    next: Duration,
-    random: fastrand::Rng,
-}
-
-impl Backoff {
-    /// Creates the backoff with a random seed.
-    pub fn new(seed: u64) -> Self {
-        Self { next: BACKOFF_RANGE[0], random: fastrand::Rng::with_seed(seed) }
-    }
-
-    /// Next pause: twice the last pause, up to a minute, with a random factor. Clients that lost the broker at the same
-    /// time therefore do not all connect again at the same time.
-    pub fn pause(&mut self) -> Duration {
-        let pause = self.next.mul_f64(0.75 + self.random.f64() / 2.0);
-        self.next = (self.next * 2).min(BACKOFF_RANGE[1]);
-        pause
-    }
-
-    fn reset(&mut self) {
-        self.next = BACKOFF_RANGE[0];
-    }
-}
-
 /// Receiver of broker events.
 pub trait Listener {
     /// A message for the log.
     fn log(&self, level: Level, text: &str);
-    /// Records whether the broker has accepted this client. `false`: the connection is lost.
-    fn set_connected(&self, is_there: bool);
+    /// Records which broker is in use, and whether it has accepted this client.
+    fn set_broker(&self, url: &Url, is_connected: bool);
 }
 
 /// Counters of a run.
@@ -127,84 +101,17 @@ pub struct Counts {
     pub undelivered: u64,
 }
 
-/// An open connection with its messages in transit.
-struct Open<U> {
-    uplink: U,
-    is_accepted: bool,
-    /// Messages with acknowledgement, by number.
-    acknowledged: HashMap<u64, Option<Ticket>>,
-    /// Records without acknowledgement that no ping has confirmed yet.
-    unconfirmed: VecDeque<Ticket>,
-    /// Number of the current ping, and the records that it will confirm.
-    pending_ping: Option<(u64, Vec<Ticket>)>,
-    /// Topics whose retained messages the broker was asked for, and the time at which the question ends.
-    question: Option<(Vec<String>, Instant)>,
-    since: Instant,
-    last_ping: Instant,
-    /// Time of the last acknowledgement, or the last time at which no message was in transit.
-    progress: Instant,
-}
-
-impl<U> Open<U> {
-    fn new(uplink: U) -> Self {
-        let now = Instant::now();
-        Self {
-            uplink,
-            is_accepted: false,
-            acknowledged: HashMap::new(),
-            unconfirmed: VecDeque::new(),
-            pending_ping: None,
-            question: None,
-            since: now,
-            last_ping: now,
-            progress: now,
-        }
-    }
-
-    /// Records progress. Returns whether the connection counts as stable.
-    fn note_progress(&mut self) -> bool {
-        self.progress = Instant::now();
-        self.progress - self.since >= STABLE_AFTER
-    }
-
-    fn is_idle(&self) -> bool {
-        self.acknowledged.is_empty() && self.unconfirmed.is_empty() && self.pending_ping.is_none()
-    }
-}
-
-/// State of the connection.
-enum ConnectionState<'a, B: Broker> {
-    Waiting(Instant),
-    Opening(LocalBoxFuture<'a, Result<B::Uplink, Loss>>),
-    Open(Open<B::Uplink>),
-}
-
-/// Next step of the connection.
-enum Step<U> {
-    Connect,
-    Opened(Result<U, Loss>),
-    Event(Event),
-    Stuck,
-    Ping,
-    Answered,
-}
-
 /// The pump.
 pub struct Delivery<'a, B: Broker> {
-    broker: &'a B,
-    url: &'a Url,
+    brokers: Brokers<'a, B>,
     format: Box<dyn MessageFormat>,
     outbox: Outbox,
     listener: &'a dyn Listener,
     connection: ConnectionState<'a, B>,
     began: Instant,
-    backoff: Backoff,
     counts: Counts,
-    /// Whether the broker has ever accepted this client, and the time of the last loss.
-    was_accepted: bool,
+    /// Time of the last loss.
     lost_since: Option<Instant>,
-    /// Last reported failure and its time.
-    last_failure: Option<(String, Instant)>,
     /// Whether a missing broker ends the run.
     ends_without_broker: bool,
     /// Number of messages that the broker rejected.
@@ -217,9 +124,9 @@ pub struct Delivery<'a, B: Broker> {
 }
 
 impl<'a, B: Broker + 'a> Delivery<'a, B> {
-    /// Creates a pump.
+    /// Creates a pump. It uses one of the brokers at a time.
     pub fn new(
-        (broker, url): (&'a B, &'a Url),
+        brokers: &'a [B],
         format: Box<dyn MessageFormat>,
         outbox: Outbox,
         (listener, backoff): (&'a dyn Listener, Backoff),
@@ -227,18 +134,14 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
     ) -> Self {
         let next_flush = outbox.sync_interval().map(|interval| Instant::now() + interval);
         Self {
-            broker,
-            url,
+            brokers: Brokers::new(brokers, backoff),
             format,
             outbox,
             listener,
             connection: ConnectionState::Waiting(Instant::now()),
             began: Instant::now(),
-            backoff,
             counts: Counts::default(),
-            was_accepted: false,
             lost_since: None,
-            last_failure: None,
             ends_without_broker,
             rejected: 0,
             next_flush,
@@ -279,8 +182,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
                 }
                 () = at(delayed_until) => {
                     self.delayed_until = None;
-                    let messages = self.format.delayed_messages(now_ms());
-                    self.send(None, &messages);
+                    self.handle_delay();
                 }
                 next = step(&mut self.connection) => self.handle_step(next)?,
                 event = next_event => match event {
@@ -340,8 +242,15 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
     fn handle_step(&mut self, step: Step<B::Uplink>) -> Result<(), Failure> {
         match step {
             Step::Connect => {
+                let broker = self.brokers.current();
+                self.listener.set_broker(broker.url(), false);
+                self.format.set_broker(self.brokers.number());
                 let (id, will) = (self.format.client_id(), self.format.will(now_ms()));
-                self.connection = ConnectionState::Opening(self.broker.open(id, will).boxed_local());
+                self.connection = ConnectionState::Opening(broker.open(id, will).boxed_local());
+                Ok(())
+            }
+            Step::Closed(next) => {
+                self.connection = ConnectionState::Waiting(next);
                 Ok(())
             }
             Step::Opened(Ok(uplink)) => {
@@ -404,9 +313,10 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
     fn handle_connected(&mut self) {
         let ConnectionState::Open(open) = &mut self.connection else { return };
         open.is_accepted = true;
-        self.listener.set_connected(true);
-        let again = std::mem::replace(&mut self.was_accepted, true);
-        self.last_failure = None;
+        let url = self.brokers.current().url();
+        self.listener.set_broker(url, true);
+        let last = self.brokers.accepted();
+        let again = last.is_some();
         let (waiting, on_disk) = self.outbox.waiting();
         let messages = if waiting == 1 { "message" } else { "messages" };
         let buffered = match (waiting, on_disk) {
@@ -423,9 +333,10 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
             Some(since) => {
                 self.counts.reconnects += 1;
                 let secs = duration::display(Duration::from_secs(since.elapsed().as_secs()));
-                self.listener.log(Level::Notice, &format!("connected to {} again after {secs}{buffered}", self.url));
+                let again = if last == Some(self.brokers.number()) { " again" } else { "" };
+                self.listener.log(Level::Notice, &format!("connected to {url}{again} after {secs}{buffered}"));
             }
-            None => self.listener.log(Level::Notice, &format!("connected to {}{buffered}", self.url)),
+            None => self.listener.log(Level::Notice, &format!("connected to {url}{buffered}")),
         }
         self.report_dropped();
         let topics = self.format.topics();
@@ -436,7 +347,21 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         }
         let messages = self.format.first_messages(now_ms());
         self.send(None, &messages);
+        if !self.format.is_ready() && !self.brokers.is_single() {
+            self.delayed_until = Some(Instant::now() + HOST_TIMEOUT);
+        }
         self.ask();
+    }
+
+    /// Sends the delayed messages of the format. If the format is still not ready, no primary host has sent its state.
+    fn handle_delay(&mut self) {
+        let messages = self.format.delayed_messages(now_ms());
+        self.send(None, &messages);
+        if !self.format.is_ready() {
+            let secs = HOST_TIMEOUT.as_secs();
+            self.listener.log(Level::Notice, &format!("no primary host has sent its state within {secs}s"));
+            self.close_and_continue();
+        }
     }
 
     fn react(&mut self, reaction: Reaction) {
@@ -447,55 +372,65 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         if let Some(delay) = reaction.delay {
             self.delayed_until = Some(Instant::now() + delay);
         }
-        if reaction.reconnects {
-            // The next connection has a new last will.
-            self.leave();
-            self.connection = ConnectionState::Waiting(Instant::now() + BACKOFF_RANGE[0]);
+        if reaction.reconnects || (reaction.tries_next && !self.brokers.is_single()) {
+            self.close_and_continue();
+        }
+    }
+
+    /// Ends the connection with DISCONNECT, and then connects to the next broker, or to the only broker again. The new
+    /// connection has a new last will.
+    fn close_and_continue(&mut self) {
+        self.leave();
+        let pause = if self.brokers.is_single() { Some(RECONNECT_PAUSE) } else { self.brokers.advance() };
+        let next = Instant::now() + pause.unwrap_or_default();
+        let closed = std::mem::replace(&mut self.connection, ConnectionState::Waiting(next));
+        if let ConnectionState::Open(open) = closed {
+            let closed = timeout(CLOSE_TIMEOUT, open.uplink.close()).map(|_in_time| ());
+            self.connection = ConnectionState::Closing(closed.boxed_local(), next);
+        }
+        if !self.brokers.is_single() {
+            self.listener
+                .log(Level::Notice, &format!("next broker: {}{}", self.brokers.current().url(), within(pause)));
         }
     }
 
     /// Handles the end of the connection. Records that have not arrived stay in the queue.
     fn leave(&mut self) {
-        self.listener.set_connected(false);
+        self.listener.set_broker(self.brokers.current().url(), false);
         self.outbox.requeue();
         self.outbox.set_away(true);
         self.delayed_until = None;
         self.format.connection_lost();
-        self.lost_since = self.lost_since.or_else(|| self.was_accepted.then(Instant::now));
+        self.lost_since = self.lost_since.or_else(|| self.brokers.was_accepted().then(Instant::now));
     }
 
     fn handle_loss(&mut self, loss: &Loss) -> Result<(), Failure> {
         self.leave();
-        self.fail(error_text::loss(self.url, loss))
+        self.fail(error_text::loss(self.brokers.current().url(), loss))
     }
 
     fn handle_refusal(&mut self, refusal: &Refusal) -> Result<(), Failure> {
         self.leave();
-        self.fail(error_text::refusal(self.url, refusal))
+        self.fail(error_text::refusal(self.brokers.current().url(), refusal))
     }
 
-    /// Waits before the next attempt after any failure: even the cause of a refusal or of a certificate error can be
-    /// gone a minute later. Only a run with a limit (`--count`) gives up.
+    /// Continues with the next broker. After a round, waits before the next attempt: even the cause of a refusal or of a
+    /// certificate error can be gone a minute later. Only a run with a limit (`--count`) gives up.
     fn fail(&mut self, failure: Failure) -> Result<(), Failure> {
-        if self.ends_without_broker {
-            self.connection = ConnectionState::Waiting(Instant::now());
+        // If the connection worked before, the settings are probably right, unless the broker reports an error in them.
+        let is_setting = failure.kind == Kind::Usage || !self.brokers.was_current_accepted();
+        let level = if self.brokers.is_new_failure(&failure.message) { Level::Warning } else { Level::Detail };
+        let pause = self.brokers.advance();
+        self.connection = ConnectionState::Waiting(Instant::now() + pause.unwrap_or_default());
+        if self.ends_without_broker && pause.is_some() {
             return Err(failure);
         }
-        let pause = self.backoff.pause();
-        self.connection = ConnectionState::Waiting(Instant::now() + pause);
-        let is_known = self
-            .last_failure
-            .as_ref()
-            .is_some_and(|(said, at)| *said == failure.message && at.elapsed() < REMINDER_INTERVAL);
-        // If the connection worked before, the settings are probably right, unless the broker reports an error in them.
-        let is_setting = failure.kind == Kind::Usage || !self.was_accepted;
         let hint = failure.hint.filter(|_| is_setting).map(|hint| format!(" ({hint})")).unwrap_or_default();
-        let level = if is_known { Level::Detail } else { Level::Warning };
-        let again = format!("{}.{}s", pause.as_secs(), pause.subsec_millis() / 100);
-        self.listener.log(level, &format!("{}{hint}; next try in {again}, then repeatedly", failure.message));
-        if !is_known {
-            self.last_failure = Some((failure.message, Instant::now()));
-        }
+        let next = match pause {
+            None => format!("next broker: {}", self.brokers.current().url()),
+            Some(_) => format!("next try{}, then repeatedly", within(pause)),
+        };
+        self.listener.log(level, &format!("{}{hint}; {next}", failure.message));
         Ok(())
     }
 
@@ -503,7 +438,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         let ConnectionState::Open(open) = &mut self.connection else { return };
         let Some(ticket) = open.acknowledged.remove(&id) else { return };
         if open.note_progress() {
-            self.backoff.reset();
+            self.brokers.stable();
         }
         if let Some(code) = code {
             self.refuse(&format!("the broker refused a message (0x{code:02X}): check the publish rights of this user"));
@@ -527,7 +462,7 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
         let ConnectionState::Open(open) = &mut self.connection else { return };
         if let Some((_, tickets)) = open.pending_ping.take_if(|(ping, _)| *ping <= number) {
             if open.note_progress() {
-                self.backoff.reset();
+                self.brokers.stable();
             }
             for ticket in tickets {
                 self.counts.published += 1;
@@ -623,11 +558,12 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
             };
             let _in_time = timeout_at(now + FINAL_TIMEOUT, heard).await;
         }
-        if let ConnectionState::Open(open) =
-            std::mem::replace(&mut self.connection, ConnectionState::Waiting(Instant::now()))
-        {
-            let _in_time = timeout_at(now + END_TIMEOUT, open.uplink.close()).await;
-        }
+        let closed = match std::mem::replace(&mut self.connection, ConnectionState::Waiting(now)) {
+            ConnectionState::Open(open) => open.uplink.close().boxed_local(),
+            ConnectionState::Closing(closed, _) => closed,
+            ConnectionState::Waiting(_) | ConnectionState::Opening(_) => ready(()).boxed_local(),
+        };
+        let _in_time = timeout_at(now + END_TIMEOUT, closed).await;
         self.report_dropped();
         let has_left = !self.outbox.is_empty();
         let outbox = std::mem::replace(&mut self.outbox, Outbox::new(0, None));
@@ -648,32 +584,9 @@ impl<'a, B: Broker + 'a> Delivery<'a, B> {
     }
 }
 
-/// Waits for the next step of the connection. Cancel safe.
-async fn step<B: Broker>(line: &mut ConnectionState<'_, B>) -> Step<B::Uplink> {
-    match line {
-        ConnectionState::Waiting(until) => {
-            sleep_until(*until).await;
-            Step::Connect
-        }
-        ConnectionState::Opening(opened) => Step::Opened(opened.await),
-        ConnectionState::Open(open) => {
-            let stuck = open.progress + ACKNOWLEDGE_TIMEOUT;
-            let (wants_ping, is_idle) = (!open.unconfirmed.is_empty() && open.pending_ping.is_none(), open.is_idle());
-            let ping = open.last_ping + PING_INTERVAL;
-            let answered = open.question.as_ref().map(|(_, until)| *until);
-            tokio::select! {
-                biased;
-                event = async {
-                    // A broker with endless events must not block other tasks.
-                    consume_budget().await;
-                    open.uplink.next().await
-                } => Step::Event(event),
-                () = sleep_until(ping), if wants_ping => Step::Ping,
-                () = sleep_until(stuck), if !is_idle => Step::Stuck,
-                () = sleep_until(answered.unwrap_or(stuck)), if answered.is_some() => Step::Answered,
-            }
-        }
-    }
+/// Text of a pause: ` in 1.2s`.
+fn within(pause: Option<Duration>) -> String {
+    pause.map(|pause| format!(" in {}.{}s", pause.as_secs(), pause.subsec_millis() / 100)).unwrap_or_default()
 }
 
 /// Waits until this time; for ever without a time.

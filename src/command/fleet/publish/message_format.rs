@@ -19,6 +19,8 @@ pub struct Reaction {
     pub note: Option<(Level, String)>,
     /// Whether to close the connection and open a new connection.
     pub reconnects: bool,
+    /// Whether to close the connection and try the next broker of the list, if there is one.
+    pub tries_next: bool,
     /// Time after which to call [`MessageFormat::delayed_messages`], because these messages may not be sent yet.
     pub delay: Option<Duration>,
 }
@@ -27,6 +29,8 @@ pub struct Reaction {
 pub trait MessageFormat {
     /// Client identifier, unique at the broker.
     fn client_id(&self) -> String;
+    /// Sets the broker of the next connection, by its number in the list.
+    fn set_broker(&mut self, broker: usize);
     /// Last will of a new connection.
     fn will(&mut self, now_ms: u64) -> Will;
     /// Topics to subscribe to.

@@ -1,9 +1,9 @@
-//! `armctl publish`: publishes robot data to an MQTT broker when the data changes. It only reads robots. Nothing from
-//! the broker reaches a robot.
+//! `armctl publish`: publishes robot data to an MQTT broker when the data changes; with a list of brokers, to one of
+//! them at a time. It only reads robots. Nothing from a broker reaches a robot.
 //!
 //! | file | contents |
 //! |---|---|
-//! | `broker` | address and credentials of the broker |
+//! | `broker` | addresses and credentials of the brokers |
 //! | `topic` | names as topic levels |
 //! | `announced` | retained topics of this node, for the next process |
 //! | `message_format` | trait for a message format |
@@ -34,6 +34,7 @@ mod uplink;
 use std::collections::BTreeMap;
 use std::env;
 use std::future::pending;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::Duration;
@@ -44,7 +45,7 @@ use tokio::time::timeout;
 
 use self::announced::AnnouncedTopics;
 use self::broker::{Broker, Login, Url};
-use self::delivery::{Backoff, Counts, Delivery, Listener as _};
+use self::delivery::{Backoff, Broker as _, Counts, Delivery, Listener as _};
 use self::log::BrokerLog;
 use self::message_format::MessageFormat;
 use self::outbox::Outbox;
@@ -78,8 +79,12 @@ use armctl_frame::settings::duration;
 )]
 pub struct Publish {
     // clap does not parse this value, because its error message would show the password of an invalid URL.
-    #[arg(value_name = "URL", help = "mqtt://HOST[:1883], or mqtts://HOST[:8883] for TLS")]
-    broker: String,
+    #[arg(
+        value_name = "URL",
+        required = true,
+        help = "mqtt://HOST[:1883], or mqtts://HOST[:8883] for TLS. With several URLs, armctl uses one broker at a time"
+    )]
+    brokers: Vec<String>,
     #[command(flatten)]
     login: Login,
     /// What to publish of each robot
@@ -226,7 +231,7 @@ pub fn schemas() -> Vec<SchemaEntry> {
 /// Report of `publish` at its end.
 #[derive(Debug, Clone, Serialize, JsonSchema)]
 struct Published {
-    /// URL of the broker.
+    /// URL of the broker; with several brokers, of the last connection or attempt.
     broker: String,
     /// Name of this publisher at the broker.
     node: String,
@@ -266,10 +271,8 @@ impl Publish {
         let interval = run.repeat.every.unwrap_or(DEFAULT_INTERVAL);
         self.check_globals(run, interval)?;
         let also = self.also.commands(|name| name == "state" || Kind::ALL.iter().any(|kind| kind.name() == name))?;
-        let url: Url = self.broker.parse().map_err(|why: String| {
-            Failure::usage(format!("this is not a valid broker URL: {why}")).hint("example: mqtt://192.168.1.5")
-        })?;
-        let broker = Broker::new(&url, &self.login)?;
+        let urls = self.urls()?;
+        let (brokers, warnings) = Broker::for_urls(&urls, &self.login)?;
         let node = topic::level(&self.node.clone().unwrap_or_else(this_machine))?;
         let mut poll = Poll::new(&run.sources, run.screen.silenced())?;
         let template = self.topic.clone().unwrap_or_default();
@@ -282,15 +285,21 @@ impl Publish {
         let robots: Vec<RobotId> = poll.robots().iter().map(RobotId::for_robot).collect();
         let service = Service::begin(run.screen)?;
         let root = self.buffer_root()?;
-        let (outbox, folder) = self.outbox(root.as_deref(), &url, &node)?;
-        let speech = self.create_format((topics.clone(), poll.robots()), &also, interval, folder.as_deref());
-        let log = BrokerLog::new(&service, broker.url.to_string());
-        for warning in &broker.warnings {
+        let folders = root.as_deref().map(|root| self.claim_folders(root, &urls, &node)).transpose()?;
+        let outbox = self.outbox(folders.as_ref(), &node)?;
+        let speech =
+            self.create_format((topics.clone(), poll.robots()), &also, interval, (urls.len(), folders.as_ref()));
+        let log = BrokerLog::new(&service, brokers[0].url());
+        for warning in &warnings {
             log.log(Level::Warning, warning);
         }
         for folder in root.iter().flat_map(|root| spool::folders_without_broker(root)) {
             let what = "messages of an earlier version of armctl, which did not store their broker, so armctl does not \
                         send them; delete the folder";
+            log.log(Level::Warning, &format!("{}: {what}", folder.display()));
+        }
+        for folder in folders.iter().flat_map(Folders::of_single_brokers).filter(|folder| spool::has_records(folder)) {
+            let what = "messages that wait for this broker alone; to send them, publish to this broker alone";
             log.log(Level::Warning, &format!("{}: {what}", folder.display()));
         }
         catch_interrupts();
@@ -299,8 +308,7 @@ impl Publish {
         let mut events = poll.subscribe(PollRequest { detail, extras, ..PollRequest::every(interval) });
         let mut polled = Box::pin(poll.run());
         let pauses = Backoff::new(fastrand::u64(..));
-        let mut pump =
-            Delivery::new((&broker, &broker.url), speech, outbox, (&log, pauses), run.repeat.count.is_some());
+        let mut pump = Delivery::new(&brokers, speech, outbox, (&log, pauses), run.repeat.count.is_some());
         let mut looks = PollCounter::new(&robots, run.repeat.count);
         // A broker that is temporarily away must not delay services that wait for this service.
         service.notify_ready(robots.len())?;
@@ -331,8 +339,7 @@ impl Publish {
         let (counts, _in_time) = join(pump.end(has_failed), timeout(END_TIMEOUT, polled)).await;
         ended?;
         let Counts { published, refused, dropped, reconnects, undelivered } = counts;
-        let broker = broker.url.to_string();
-        let robots = robots.len();
+        let (broker, robots) = (log.url(), robots.len());
         run.local("publish", &Published { broker, node, robots, published, refused, dropped, undelivered, reconnects })
     }
 
@@ -381,20 +388,38 @@ impl Publish {
         })
     }
 
-    /// Creates the outbox. Also returns the folder of this node at this broker, if a disk is used.
-    fn outbox(&self, root: Option<&Path>, broker: &Url, node: &str) -> Result<(Outbox, Option<PathBuf>), Failure> {
-        let memory = usize::try_from(self.buffer.memory).unwrap_or(usize::MAX);
-        let Some(root) = root else { return Ok((Outbox::new(memory, None), None)) };
-        let folder = root.join(spool::folder_name(broker, self.sparkplug.group.as_deref(), node));
-        let spool = Spool::open(&folder, self.buffer.disk, self.buffer.sync).map_err(|error| {
-            if spool::is_locked(&error) {
-                return Failure::usage(format!("{}: another armctl publishes as '{node}'", folder.display()))
-                    .hint("set a different name with --node, or a different folder with --buffer-dir");
+    /// URLs of the brokers. An error does not contain a URL, because a wrong one can include a password.
+    fn urls(&self) -> Result<Vec<Url>, Failure> {
+        let mut urls: Vec<Url> = Vec::with_capacity(self.brokers.len());
+        for text in &self.brokers {
+            let url: Url = text.parse().map_err(|why: String| {
+                Failure::usage(format!("this is not a valid broker URL: {why}")).hint("example: mqtt://192.168.1.5")
+            })?;
+            if urls.iter().any(|known| known.key() == url.key()) {
+                return Err(Failure::usage(format!("{url} is in the list twice")).hint("remove one of the two URLs"));
             }
-            Failure::io(folder.display(), &error)
-                .hint("set another folder with --buffer-dir, or use no disk: --buffer-disk 0")
-        })?;
-        Ok((Outbox::new(memory, Some(spool)), Some(folder)))
+            urls.push(url);
+        }
+        Ok(urls)
+    }
+
+    /// Creates and locks the folders of this node.
+    fn claim_folders(&self, root: &Path, urls: &[Url], node: &str) -> Result<Folders, Failure> {
+        let folder = |urls: &[Url]| root.join(spool::folder_name(urls, self.sparkplug.group.as_deref(), node));
+        let brokers: Vec<PathBuf> = urls.iter().map(|url| folder(std::slice::from_ref(url))).collect();
+        let spool = folder(urls);
+        let claim =
+            |broker: &PathBuf| spool::claim_folder(broker).map_err(|error| folder_failure(broker, node, &error));
+        let locks: Result<_, Failure> = brokers.iter().filter(|broker| **broker != spool).map(claim).collect();
+        Ok(Folders { _locks: locks?, spool, brokers })
+    }
+
+    fn outbox(&self, folders: Option<&Folders>, node: &str) -> Result<Outbox, Failure> {
+        let memory = usize::try_from(self.buffer.memory).unwrap_or(usize::MAX);
+        let Some(folders) = folders else { return Ok(Outbox::new(memory, None)) };
+        let spool = Spool::open(&folders.spool, self.buffer.disk, self.buffer.sync)
+            .map_err(|error| folder_failure(&folders.spool, node, &error))?;
+        Ok(Outbox::new(memory, Some(spool)))
     }
 
     fn create_format(
@@ -402,20 +427,21 @@ impl Publish {
         (topics, robots): (Topics, &[Robot]),
         also: &Rc<[AlsoCommand]>,
         interval: Duration,
-        folder: Option<&Path>,
+        (brokers, folders): (usize, Option<&Folders>),
     ) -> Box<dyn MessageFormat> {
         let every_ms = u64::try_from(self.every.as_millis()).unwrap_or(u64::MAX);
         let kinds: Vec<Kind> = Kind::ALL.into_iter().filter(|kind| self.kinds.contains(kind)).collect();
         match &self.sparkplug.group {
             None => {
                 let times = Times { every_ms, expiry: plain_format::expiry(self.every, interval) };
-                let announced = AnnouncedTopics::open(folder.map(|folder| folder.join("topics")));
+                let file = |broker: usize| folders.map(|folders| folders.brokers[broker].join("topics"));
+                let announced = (0..brokers).map(|broker| AnnouncedTopics::open(file(broker))).collect();
                 Box::new(PlainFormat::new(topics, (&kinds, Rc::clone(also)), times, (announced, robots)))
             }
             Some(group) => {
                 let (hosts, node, levels) = (self.sparkplug.host.clone(), topics.node, topics.levels);
                 let names = Names { group: group.clone(), node, hosts, levels };
-                let file = folder.map(|folder| folder.join("bdseq"));
+                let file = folders.map(|folders| folders.spool.join("bdseq"));
                 let text = file.as_deref().and_then(|file| files::text(file, 16).ok());
                 let bd_seq = text.and_then(|text| text.trim().parse().ok()).unwrap_or_default();
                 let remember = Box::new(move |next: u8| {
@@ -429,6 +455,31 @@ impl Publish {
             }
         }
     }
+}
+
+/// Folders of this node. Only this process uses them.
+struct Folders {
+    /// Messages for the list of brokers.
+    spool: PathBuf,
+    /// Data of each broker: another list that contains the broker has the same folder. With one broker, this is the
+    /// folder of the messages.
+    brokers: Vec<PathBuf>,
+    _locks: Vec<files::FolderLock>,
+}
+
+impl Folders {
+    /// Folders of the brokers of a list with several brokers.
+    fn of_single_brokers(&self) -> impl Iterator<Item = &PathBuf> {
+        self.brokers.iter().filter(|broker| **broker != self.spool)
+    }
+}
+
+fn folder_failure(folder: &Path, node: &str, error: &io::Error) -> Failure {
+    if spool::is_locked(error) {
+        return Failure::usage(format!("{}: another armctl publishes as '{node}'", folder.display()))
+            .hint("set a different name with --node, or a different folder with --buffer-dir");
+    }
+    Failure::io(folder.display(), error).hint("set another folder with --buffer-dir, or use no disk: --buffer-disk 0")
 }
 
 /// State folder of the service or of the user.

@@ -125,24 +125,34 @@ pub struct PlainFormat {
     kinds: Vec<Kind>,
     also: Rc<[AlsoCommand]>,
     times: Times,
-    announced: AnnouncedTopics,
+    /// Topics at each broker.
+    announced: Vec<AnnouncedTopics>,
+    /// Broker of the connection, and the broker that has accepted this client last.
+    broker: usize,
+    last_accepted: Option<usize>,
     sent: BTreeMap<RobotId, BTreeMap<String, SentState>>,
 }
 
 impl PlainFormat {
-    /// Creates the format for these kinds and extra commands. `announced` are the topics of the previous process. The
-    /// topics of `robots` stay.
+    /// Creates the format for these kinds and extra commands. `announced` are the topics of the previous process, at
+    /// each broker. The topics of `robots` stay.
     pub fn new(
         topics: Topics,
         (kinds, also): (&[Kind], Rc<[AlsoCommand]>),
         times: Times,
-        (announced, robots): (AnnouncedTopics, &[Robot]),
+        (announced, robots): (Vec<AnnouncedTopics>, &[Robot]),
     ) -> Self {
-        let mut format = Self { topics, kinds: kinds.to_vec(), also, times, announced, sent: BTreeMap::new() };
+        let (kinds, sent) = (kinds.to_vec(), BTreeMap::new());
+        let mut format = Self { topics, kinds, also, times, announced, broker: 0, last_accepted: None, sent };
         let mut topics: Vec<String> = robots.iter().flat_map(|robot| format.topics_of(robot)).collect();
         topics.push(format.state_topic());
-        format.announced.announce(topics);
+        format.announced_here().announce(topics);
         format
+    }
+
+    /// Topics at the broker of the connection.
+    fn announced_here(&mut self) -> &mut AnnouncedTopics {
+        &mut self.announced[self.broker]
     }
 
     /// Topics of a robot; empty if the robot lacks a level of the template.
@@ -183,7 +193,7 @@ impl PlainFormat {
             let time = i64::try_from(now_ms).ok().and_then(|ms| Timestamp::from_millisecond(ms).ok());
             let node = Some(self.topics.node.clone());
             let Ok(body) = serde_json::to_vec(&Envelope { time, node, ..envelope }) else { continue };
-            self.announced.announce([key.clone()]);
+            self.announced[self.broker].announce([key.clone()]);
             records.push(Record { kind: 0, time_ms: now_ms, key, body, epoch: 0 });
             last_sent.insert(kind, SentState { what, at_ms: now_ms });
         }
@@ -237,7 +247,7 @@ impl PlainFormat {
     fn withdraw(&mut self, robot: &Robot) {
         self.sent.remove(&RobotId::for_robot(robot));
         for topic in self.topics_of(robot) {
-            self.announced.withdraw(&topic);
+            self.announced.iter_mut().for_each(|announced| announced.withdraw(&topic));
         }
     }
 }
@@ -245,6 +255,14 @@ impl PlainFormat {
 impl MessageFormat for PlainFormat {
     fn client_id(&self) -> String {
         format!("armctl-{}", self.topics.node)
+    }
+
+    /// The topics of this process are now retained at the new broker, too. At the last broker, they stay until the next
+    /// connection to it.
+    fn set_broker(&mut self, broker: usize) {
+        let current = self.announced_here().current();
+        self.broker = broker;
+        self.announced_here().announce(current);
     }
 
     fn will(&mut self, _now_ms: u64) -> Will {
@@ -255,17 +273,21 @@ impl MessageFormat for PlainFormat {
         Vec::new()
     }
 
+    /// Another broker than the last one gets all data at the next poll.
     fn first_messages(&mut self, _now_ms: u64) -> Vec<Message> {
+        if self.last_accepted.replace(self.broker).is_some_and(|last| last != self.broker) {
+            self.sent.clear();
+        }
         vec![self.state("online")]
     }
 
     fn connection_lost(&mut self) {
-        self.announced.connection_lost();
+        self.announced_here().connection_lost();
     }
 
     /// The broker was asked for retained messages. If one is of another node, it stays.
     fn handle_message(&mut self, message: &Message, _now_ms: u64) -> Reaction {
-        if !self.announced.is_asked(&message.topic) {
+        if !self.announced_here().is_asked(&message.topic) {
             let note = format!("ignored an unexpected message from the broker: {}", message.topic);
             return Reaction { note: Some((Level::Detail, note)), ..Reaction::default() };
         }
@@ -274,13 +296,13 @@ impl MessageFormat for PlainFormat {
         else {
             return Reaction::default();
         };
-        self.announced.forget(&message.topic);
+        self.announced_here().forget(&message.topic);
         let note = format!("{}: now published by the node {other}, so its message stays", message.topic);
         Reaction { note: Some((Level::Detail, note)), ..Reaction::default() }
     }
 
     fn convert_event(&mut self, event: &Event, now_ms: u64) -> Vec<Record> {
-        self.announced.retry(now_ms);
+        self.announced.iter_mut().for_each(|announced| announced.retry(now_ms));
         match event {
             Event::Polled(look) => self.records_of_poll(look, now_ms),
             Event::Failed { robot, failure, .. } => self.failed(robot, failure, now_ms),
@@ -290,7 +312,7 @@ impl MessageFormat for PlainFormat {
             }
             Event::Appeared(robot) => {
                 let topics = self.topics_of(robot);
-                self.announced.announce(topics);
+                self.announced_here().announce(topics);
                 Vec::new()
             }
             Event::Inventory(_) => Vec::new(),
@@ -298,23 +320,23 @@ impl MessageFormat for PlainFormat {
     }
 
     fn next_question(&mut self) -> Vec<String> {
-        self.announced.next_question()
+        self.announced_here().next_question()
     }
 
     /// Records that clear the retained messages of this node.
     fn end_question(&mut self, now_ms: u64) -> Vec<Record> {
         let empty = |key: String| Record { kind: 0, time_ms: now_ms, key, body: Vec::new(), epoch: 0 };
-        self.announced.end_question().into_iter().map(empty).collect()
+        self.announced_here().end_question().into_iter().map(empty).collect()
     }
 
     fn handle_arrival(&mut self, record: &Record) {
-        if record.body.is_empty() && self.announced.is_clearing(&record.key) {
-            self.announced.forget(&record.key);
+        if record.body.is_empty() && self.announced_here().is_clearing(&record.key) {
+            self.announced_here().forget(&record.key);
         }
     }
 
     fn take_note(&mut self) -> Option<String> {
-        self.announced.take_note()
+        self.announced.iter_mut().find_map(AnnouncedTopics::take_note)
     }
 
     fn is_ready(&self) -> bool {
@@ -325,10 +347,10 @@ impl MessageFormat for PlainFormat {
     fn convert_record(&mut self, record: Record, _now_ms: u64) -> Vec<Message> {
         let Record { key, body, .. } = record;
         let is_clear = body.is_empty();
-        if is_clear && !self.announced.is_clearing(&key) {
+        if is_clear && !self.announced_here().is_clearing(&key) {
             return Vec::new();
         }
-        let is_current = self.announced.is_current(&key);
+        let is_current = self.announced_here().is_current(&key);
         let expiry = is_current.then_some(self.times.expiry);
         vec![Message { topic: key, payload: body, retain: is_clear || is_current, acknowledged: true, expiry }]
     }

@@ -4,7 +4,8 @@
 //! record has a length and a checksum, so that an incomplete write and disk damage are detected without effect on other
 //! records. Acknowledgements are not stored: after a kill, the records of the first segment are sent again.
 //!
-//! A spool belongs to one broker and one node, so that data never leaves by another broker ([`folder_name`]).
+//! A spool belongs to one node, and to one broker or one list of brokers, so that data never leaves by another broker
+//! ([`folder_name`]).
 
 use std::collections::VecDeque;
 use std::fs::{self, File, OpenOptions};
@@ -111,8 +112,7 @@ impl Spool {
     /// # Errors
     /// [`ErrorKind::WouldBlock`] if another process uses the folder.
     pub fn open(folder: &Path, most: u64, sync: SyncPolicy) -> io::Result<Self> {
-        create_folder(folder)?;
-        let lock = files::claim_folder(folder)?;
+        let lock = claim_folder(folder)?;
         let mut segments = Vec::new();
         for entry in fs::read_dir(folder)? {
             let entry = entry?;
@@ -362,14 +362,22 @@ impl Spool {
     }
 }
 
-/// Name of the spool folder of a node at a broker. A host has no `@`, a node has no `+`, and a Sparkplug group has no
-/// `+`, so two different names never have the same folder.
-pub fn folder_name(broker: &Url, group: Option<&str>, node: &str) -> String {
+/// Length of the names of brokers above which a folder of several brokers gets a short name.
+const MAX_BROKER_NAMES: usize = 150;
+
+/// Name of the spool folder of a node at a broker, or at a list of brokers in any order. A host has no `@` and no `+`, a
+/// node has no `+`, and a Sparkplug group has no `+`, so two different names never have the same folder.
+pub fn folder_name(brokers: &[Url], group: Option<&str>, node: &str) -> String {
     let group = group.map(|group| format!("spB+{group}+")).unwrap_or_default();
-    let scheme = if broker.is_secure { "mqtts" } else { "mqtt" };
-    let host = broker.host.parse().map_or_else(|_| broker.host.to_lowercase(), |ip: std::net::IpAddr| ip.to_string());
+    let mut keys: Vec<String> = brokers.iter().map(Url::key).collect();
+    keys.sort_unstable();
+    let mut list = keys.join("+");
+    if keys.len() > 1 && list.len() > MAX_BROKER_NAMES {
+        let digits = checksum(list.as_bytes()).iter().fold(String::new(), |all, byte| format!("{all}{byte:02x}"));
+        list = format!("mqtt-list-{digits}");
+    }
     let mut name = String::new();
-    for c in format!("{group}{node}@{scheme}-{host}-{}", broker.port).chars() {
+    for c in format!("{group}{node}@{list}").chars() {
         // Windows does not allow these characters in file names. `%` in a node is already encoded.
         match c {
             '\\' | ':' | '*' | '?' | '"' | '<' | '>' | '|' => name.push_str(&format!("%{:02X}", u32::from(c))),
@@ -382,32 +390,37 @@ pub fn folder_name(broker: &Url, group: Option<&str>, node: &str) -> String {
 /// Folders in `root`, or `root` itself, with records of an earlier version of armctl. That version did not store to
 /// which broker its records belong, so they are never sent.
 pub fn folders_without_broker(root: &Path) -> Vec<PathBuf> {
-    let has_records = |folder: &PathBuf| {
-        let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-        entries.map(|entry| entry.path()).any(|path| path.extension().is_some_and(|suffix| suffix == SUFFIX))
-    };
     let has_broker = |folder: &PathBuf| {
         let name = folder.file_name().unwrap_or_default().to_string_lossy();
         name.rsplit_once('@').is_some_and(|(_, broker)| broker.starts_with("mqtt"))
     };
     let inner = fs::read_dir(root).into_iter().flatten().flatten().map(|entry| entry.path());
     let mut folders: Vec<PathBuf> = inner.filter(|folder| !has_broker(folder)).chain([root.to_owned()]).collect();
-    folders.retain(has_records);
+    folders.retain(|folder| has_records(folder));
     folders.sort();
     folders
 }
 
-/// Robot data is private to the user of this process.
-fn create_folder(folder: &Path) -> io::Result<()> {
-    if folder.is_dir() {
-        return Ok(());
+/// Whether a folder contains records.
+pub fn has_records(folder: &Path) -> bool {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.map(|entry| entry.path()).any(|path| path.extension().is_some_and(|suffix| suffix == SUFFIX))
+}
+
+/// Creates and locks a folder. Robot data is private to the user of this process.
+///
+/// # Errors
+/// [`ErrorKind::WouldBlock`] if another process uses the folder.
+pub fn claim_folder(folder: &Path) -> io::Result<files::FolderLock> {
+    if !folder.is_dir() {
+        let mut builder = fs::DirBuilder::new();
+        builder.recursive(true);
+        #[cfg(unix)]
+        std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
+        builder.create(folder)?;
+        files::sync_folder(&files::folder_of(folder))?;
     }
-    let mut builder = fs::DirBuilder::new();
-    builder.recursive(true);
-    #[cfg(unix)]
-    std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
-    builder.create(folder)?;
-    files::sync_folder(&files::folder_of(folder))
+    files::claim_folder(folder)
 }
 
 fn checksum(bytes: &[u8]) -> [u8; 8] {
@@ -571,7 +584,10 @@ mod tests {
 
     #[test]
     fn each_broker_and_node_has_its_folder() {
-        let name = |url: &str, group, node| folder_name(&url.parse().unwrap(), group, node);
+        let name = |urls: &str, group, node| {
+            let urls: Vec<Url> = urls.split(' ').map(|url| url.parse().unwrap()).collect();
+            folder_name(&urls, group, node)
+        };
         let names = [
             name("mqtt://Plant-A", None, "cell7"),
             name("mqtts://plant-a", None, "cell7"),
@@ -581,6 +597,8 @@ mod tests {
             name("mqtt://plant-a", None, ".."),
             name("mqtt://plant-a", Some("Plant"), "cell7"),
             name("mqtt://plant-a", None, "spB-Plant-cell7"),
+            name("mqtt://plant-a mqtt://plant-b", None, "cell7"),
+            name(&format!("mqtt://{} mqtt://b", "a".repeat(200)), None, "cell7"),
         ];
         assert_eq!(names[0], "cell7@mqtt-plant-a-1883");
         assert_eq!(names[3], "cell7@mqtt-%3A%3A1-1883");
@@ -588,6 +606,10 @@ mod tests {
         for same in ["tcp://plant-a:1883/", "mqtt://PLANT-A", "mqtt://plant-a:01883"] {
             assert_eq!(name(same, None, "cell7"), names[0]);
         }
+        // The order of a list is only a preference.
+        assert_eq!(name("mqtt://PLANT-B tcp://plant-a", None, "cell7"), names[8]);
+        assert_eq!(names[8], "cell7@mqtt-plant-a-1883+mqtt-plant-b-1883");
+        assert!(names[9].starts_with("cell7@mqtt-list-") && names[9].len() < 40);
     }
 
     #[test]

@@ -1,4 +1,6 @@
-//! Tests of the pump in virtual time, with simulated polls and a simulated broker.
+//! Tests of the pump in virtual time, with simulated polls and simulated brokers.
+
+mod failover;
 
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
@@ -12,6 +14,7 @@ use tokio::sync::{Notify, mpsc};
 use tokio::time::{Instant, sleep};
 
 use super::announced::AnnouncedTopics;
+use super::broker::Url;
 use super::delivery::{Backoff, Broker, Counts, Delivery, Listener, Uplink};
 use super::outbox::Outbox;
 use super::plain_format::{PlainFormat, Times};
@@ -89,6 +92,9 @@ struct FakeUplink {
     attempts: RefCell<Vec<Instant>>,
     changed: Notify,
     start: Instant,
+    url: Url,
+    /// Number of open connections to all brokers of the list.
+    connections: Rc<Cell<usize>>,
 }
 
 impl FakeUplink {
@@ -101,6 +107,8 @@ impl FakeUplink {
             attempts: RefCell::default(),
             changed: Notify::new(),
             start: Instant::now(),
+            url: "mqtt://broker".parse().unwrap(),
+            connections: Rc::default(),
         }
     }
 
@@ -132,8 +140,26 @@ struct Connection<'a> {
     pings: u64,
 }
 
+impl<'a> Connection<'a> {
+    /// A client has one connection at a time.
+    fn new(fake_uplink: &'a FakeUplink, events: VecDeque<Event>) -> Self {
+        assert_eq!(fake_uplink.connections.replace(1), 0, "{}", fake_uplink.url);
+        Self { fake_uplink, events, next: 1, pings: 0 }
+    }
+}
+
+impl Drop for Connection<'_> {
+    fn drop(&mut self) {
+        self.fake_uplink.connections.set(0);
+    }
+}
+
 impl<'a> Broker for &'a FakeUplink {
     type Uplink = Connection<'a>;
+
+    fn url(&self) -> &Url {
+        &self.url
+    }
 
     async fn open(&self, _: String, will: Will) -> Result<Connection<'a>, Loss> {
         if will.topic != "spBv1.0/Plant/NDEATH/Cell7" {
@@ -151,16 +177,13 @@ impl<'a> Broker for &'a FakeUplink {
             BrokerBehavior::Works | BrokerBehavior::Hangs => Event::Connected,
             BrokerBehavior::Breaks => {
                 let events = [Event::Connected, Event::Acknowledged(1, None), Event::Lost(Loss::Protocol("noise"))];
-                return Ok(Connection { fake_uplink: self, events: events.into(), next: 1, pings: 0 });
+                return Ok(Connection::new(self, events.into()));
             }
-            BrokerBehavior::Mute => {
-                return Ok(Connection { fake_uplink: self, events: VecDeque::new(), next: 1, pings: 0 });
-            }
+            BrokerBehavior::Mute => return Ok(Connection::new(self, VecDeque::new())),
             BrokerBehavior::Lost => pending().await,
         };
         let incoming = std::mem::take(&mut *self.incoming.borrow_mut());
-        let events = std::iter::once(first).chain(incoming).collect();
-        Ok(Connection { fake_uplink: self, events, next: 1, pings: 0 })
+        Ok(Connection::new(self, std::iter::once(first).chain(incoming).collect()))
     }
 }
 
@@ -225,10 +248,10 @@ impl Uplink for Connection<'_> {
 const KINDS: [Kind; 3] = [Kind::Status, Kind::Alarms, Kind::Position];
 
 fn plain() -> Box<dyn MessageFormat> {
-    plain_with(AnnouncedTopics::default(), &[])
+    plain_with(vec![AnnouncedTopics::default(), AnnouncedTopics::default()], &[])
 }
 
-fn plain_with(announced: AnnouncedTopics, robots: &[Robot]) -> Box<dyn MessageFormat> {
+fn plain_with(announced: Vec<AnnouncedTopics>, robots: &[Robot]) -> Box<dyn MessageFormat> {
     let also: Rc<[AlsoCommand]> = Rc::from([]);
     let topics = Topics { prefix: "armctl".to_owned(), node: "cell7".to_owned(), ..Topics::default() };
     let times = Times { every_ms: 60_000, expiry: Duration::from_secs(180) };
@@ -249,8 +272,8 @@ impl Listener for LogRecorder {
         }
     }
 
-    fn set_connected(&self, is_there: bool) {
-        self.is_reached.set(is_there);
+    fn set_broker(&self, _: &Url, is_connected: bool) {
+        self.is_reached.set(is_connected);
     }
 }
 
@@ -260,19 +283,18 @@ async fn pumped(
     outbox: Outbox,
     script: impl AsyncFnOnce(mpsc::UnboundedSender<Found>),
 ) -> (Result<Counts, Failure>, Vec<String>) {
-    pumped_as(plain(), fake_uplink, outbox, script).await
+    pumped_as(plain(), &[fake_uplink], outbox, script).await
 }
 
 async fn pumped_as(
     format: Box<dyn MessageFormat>,
-    fake_uplink: &FakeUplink,
+    brokers: &[&FakeUplink],
     outbox: Outbox,
     script: impl AsyncFnOnce(mpsc::UnboundedSender<Found>),
 ) -> (Result<Counts, Failure>, Vec<String>) {
     let notes = LogRecorder::default();
-    let url = "mqtt://broker".parse().unwrap();
     let (tell, mut found) = mpsc::unbounded_channel();
-    let mut pump = Delivery::new((&fake_uplink, &url), format, outbox, (&notes, Backoff::new(7)), false);
+    let mut pump = Delivery::new(brokers, format, outbox, (&notes, Backoff::new(7)), false);
     let pumped = async {
         let ended = pump.run(async || found.recv().await, pending()).await;
         let counts = pump.end(false).await;
@@ -342,12 +364,12 @@ async fn clears_topics_of_the_previous_process_but_not_of_another_node() {
             .to_vec(),
     );
     let press = robot("press");
-    let format = plain_with(AnnouncedTopics::open(Some(file.clone())), &[(*press).clone()]);
+    let format = plain_with(vec![AnnouncedTopics::open(Some(file.clone()))], &[(*press).clone()]);
     // Data of a previous process is still delivered, but not retained again.
     let mut outbox = Outbox::new(MEMORY, None);
     let key = "armctl/loader/status".to_owned();
     outbox.push(super::outbox::Record { kind: 0, time_ms: 1, key, body: b"{}".to_vec(), epoch: 0 });
-    let (counts, log_lines) = pumped_as(format, &fake_uplink, outbox, async |tell| drop(tell)).await;
+    let (counts, log_lines) = pumped_as(format, &[&fake_uplink], outbox, async |tell| drop(tell)).await;
     let taken = fake_uplink.taken.borrow();
     let sent: Vec<_> = taken.iter().map(|sent| (&sent.topic[..], sent.payload.is_empty(), sent.retain)).collect();
     let expected = [
@@ -422,10 +444,9 @@ async fn sends_a_delayed_rebirth() {
     let broker = FakeUplink::new(BrokerBehavior::Works);
     // The request arrives directly after the births.
     broker.incoming.borrow_mut().push_back(Event::Message(rebirth_request()));
-    let (notes, url) = (LogRecorder::default(), "mqtt://broker".parse().unwrap());
+    let (notes, brokers) = (LogRecorder::default(), [&broker]);
     let outbox = Outbox::new(MEMORY, None);
-    let uplink = &broker;
-    let mut pump = Delivery::new((&uplink, &url), plain_node(), outbox, (&notes, Backoff::new(7)), false);
+    let mut pump = Delivery::new(&brokers, plain_node(), outbox, (&notes, Backoff::new(7)), false);
     pump.run(async || pending().await, sleep(Duration::from_secs(2))).await.unwrap();
     assert_eq!(broker.topics(), ["spBv1.0/Plant/NBIRTH/Cell7"; 2]);
 }
@@ -527,10 +548,9 @@ async fn ends_within_a_second_in_every_state() {
         BrokerBehavior::Lost,
     ] {
         let fake_uplink = FakeUplink::new(behavior);
-        let (broker, url) = (&fake_uplink, "mqtt://broker".parse().unwrap());
-        let notes = LogRecorder::default();
+        let (brokers, notes) = ([&fake_uplink], LogRecorder::default());
         let outbox = Outbox::new(MEMORY, None);
-        let mut pump = Delivery::new((&broker, &url), plain(), outbox, (&notes, Backoff::new(7)), false);
+        let mut pump = Delivery::new(&brokers, plain(), outbox, (&notes, Backoff::new(7)), false);
         let mut looks = [1.0, 2.0].map(|x_mm| look(&robot("press"), x_mm, &[])).into_iter();
         let found = async || match looks.next() {
             Some(look) => Some(look),
@@ -601,9 +621,8 @@ async fn a_service_outlives_every_refusal() {
 async fn a_bounded_run_ends_with_the_refusal() {
     for (behavior, why) in REFUSALS {
         let fake_uplink = FakeUplink::new(behavior);
-        let (broker, notes, url) = (&fake_uplink, LogRecorder::default(), "mqtt://broker".parse().unwrap());
-        let mut pump =
-            Delivery::new((&broker, &url), plain(), Outbox::new(MEMORY, None), (&notes, Backoff::new(7)), true);
+        let (brokers, notes) = ([&fake_uplink], LogRecorder::default());
+        let mut pump = Delivery::new(&brokers, plain(), Outbox::new(MEMORY, None), (&notes, Backoff::new(7)), true);
         let failure = pump.run(async || pending().await, pending()).await.unwrap_err();
         let (message, hint) = why.split_once(" (").unwrap();
         assert!(failure.message.contains(message) && failure.hint.unwrap().starts_with(hint.trim_end_matches(')')));

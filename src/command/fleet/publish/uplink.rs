@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::broker::Broker;
+use super::broker::{Broker, Url};
 use super::delivery;
 use armctl_transport::mqtt::Client;
 pub use armctl_transport::mqtt::{
@@ -14,6 +14,10 @@ const CONNECT_TIMEOUT: Duration = Duration::from_secs(10);
 
 impl delivery::Broker for Broker {
     type Uplink = Client;
+
+    fn url(&self) -> &Url {
+        &self.url
+    }
 
     async fn open(&self, client_id: String, will: Will) -> Result<Client, Loss> {
         Client::open(&self.endpoint, &self.connect_packet(client_id, will), CONNECT_TIMEOUT).await

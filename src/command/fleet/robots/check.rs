@@ -61,9 +61,7 @@ impl Command for Check {
             return Err(Failure::usage("a check has no dry run: its requests depend on the answers")
                 .hint("run the command without --dry-run; a check only reads"));
         }
-        let mut layers = families::of(robot.family).check(robot, access, screen).await?;
-        layers.extend(layers::drafts());
-        Ok(CheckReport { layers, family: robot.family.name() })
+        CheckReport::of(robot, access, screen).await
     }
 }
 
@@ -73,6 +71,15 @@ pub struct CheckReport {
     layers: Vec<Layer>,
     #[serde(skip)]
     family: &'static str,
+}
+
+impl CheckReport {
+    /// Checks each layer of a robot.
+    pub async fn of(robot: &Robot, access: Access, screen: &Screen) -> Result<Self, Failure> {
+        let mut layers = families::of(robot.family).check(robot, access, screen).await?;
+        layers.extend(layers::drafts());
+        Ok(Self { layers, family: robot.family.name() })
+    }
 }
 
 impl Report for CheckReport {

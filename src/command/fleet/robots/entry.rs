@@ -90,7 +90,7 @@ impl Add {
     pub(super) fn run(self, run: &Run) -> Result<(), RunError> {
         check_new(&run.sources.inventory, &self.name)?;
         let target = self.url.resolve(self.family)?;
-        let Some(family) = self.family.or(target.family()) else {
+        let Some(family) = self.family.or(target.family()).or_else(|| target.family_of_backup()) else {
             let failure = Failure::usage(format!("armctl cannot infer the family from '{target}'"));
             return Err(failure.hint("add --family yerc or --family toyo").into());
         };

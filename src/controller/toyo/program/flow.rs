@@ -1,7 +1,7 @@
 //! Control-flow checks of a program: missing end, unreachable steps, and jumps whose target is known only at run time.
 
 use super::tags::Resolved;
-use crate::findings::{Findings, SourceLocation};
+use crate::findings::{Findings, Rule, SourceLocation};
 use crate::toyo::table::{Instruction, Op};
 
 /// Reports suspicious control flow of a valid program. If the text is a part of a program, the program may continue
@@ -15,6 +15,7 @@ pub(super) fn check(resolved: &Resolved, is_part: bool, findings: &mut Findings)
         {
             let word = jump.row().word;
             findings.warning(
+                Rule::Unreachable,
                 at,
                 format!("the program never reaches this step: it does not continue after {word}"),
                 None,
@@ -31,6 +32,7 @@ pub(super) fn check(resolved: &Resolved, is_part: bool, findings: &mut Findings)
         && !has_computed_target(row.op)
     {
         findings.warning(
+            Rule::Unreachable,
             at,
             format!("the program has no end: {} is its last instruction", row.word),
             Some("add END".to_owned()),

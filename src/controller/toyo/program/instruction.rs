@@ -1,6 +1,6 @@
 //! Parser of one instruction in user notation: short numbers, any case, labels instead of tag numbers.
 
-use crate::findings::{Findings, SourceLocation};
+use crate::findings::{Findings, Rule, SourceLocation};
 use crate::names::{NameMatch, Names};
 use crate::similar_word::nearest;
 use crate::toyo::field::{Field, FieldError, Form, Value};
@@ -128,7 +128,12 @@ fn pass_fixed(draft: &mut Draft, findings: &mut Findings) {
     }
     for value in &mut draft.values {
         if *value == Value::Word("POST") {
-            findings.warning(draft.at, "RSMV never stops at its position: POST has the effect of PASS", None);
+            findings.warning(
+                Rule::Unchecked,
+                draft.at,
+                "RSMV never stops at its position: POST has the effect of PASS",
+                None,
+            );
             *value = Value::Word("PASS");
         }
     }

@@ -19,6 +19,7 @@ mod instruction;
 mod listing;
 mod paths;
 mod reader;
+mod references;
 mod tags;
 #[cfg(test)]
 mod tests;
@@ -30,10 +31,11 @@ pub use listing::{
     uses,
 };
 pub use paths::ControllerData;
+pub use references::name_of;
 
 use super::layout::Record;
 use super::table::Instruction;
-pub use crate::findings::{Finding, Severity};
+pub use crate::findings::{Finding, Rule, Severity};
 use crate::findings::{Findings, SourceLocation};
 use crate::names::Names;
 

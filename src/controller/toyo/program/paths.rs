@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::tags::Resolved;
 use super::{Step, listing};
-use crate::findings::{Findings, SourceLocation};
+use crate::findings::{Findings, Rule, SourceLocation};
 use crate::toyo::layout::Record;
 use crate::toyo::table::Op;
 
@@ -52,9 +52,9 @@ struct Successors {
 }
 
 impl Finder<'_> {
-    fn warn(&mut self, step: usize, message: impl Into<String>, hint: &str) {
+    fn warn(&mut self, rule: Rule, step: usize, message: impl Into<String>, hint: &str) {
         if let Some(at) = self.places.get(step) {
-            self.findings.warning(*at, message, Some(hint.to_owned()));
+            self.findings.warning(rule, *at, message, Some(hint.to_owned()));
         }
     }
 
@@ -67,9 +67,15 @@ impl Finder<'_> {
         for (index, record) in self.steps.iter().map(|step| &step.record).enumerate() {
             let (Some(point), Some(counter)) = (record.number("point"), record.number("counter")) else { continue };
             if counter == 0 && point == 0 {
-                self.warn(index, "point 0 without a counter is not a row of the coordinate table", STOPS_AT_TABLE);
+                self.warn(
+                    Rule::MissingPosition,
+                    index,
+                    "point 0 without a counter is not a row of the coordinate table",
+                    STOPS_AT_TABLE,
+                );
             } else if counter == 0 && known.points.as_ref().is_some_and(|points| !points.contains(&point)) {
                 self.warn(
+                    Rule::MissingPosition,
                     index,
                     format!("point {point} is not in the points file"),
                     "teach the point, or write it with `toyo point set`",
@@ -84,6 +90,7 @@ impl Finder<'_> {
             let port = self.steps[index].record.number("port").filter(|port| *port > INTERNAL_PORTS);
             if let (Some(Op::Iout | Op::Insp), Some(port)) = (self.op(index), port) {
                 self.warn(
+                    Rule::Stops,
                     index,
                     format!("internal port {port} may not exist: controllers have 1 to 4"),
                     "a controller stops with error B5",
@@ -102,6 +109,7 @@ impl Finder<'_> {
                     index += 1;
                 } else {
                     self.warn(
+                        Rule::Stops,
                         index,
                         "an arc needs two steps (a point on the arc, and its end), but the next step is not MVC or \
                          MVCP",
@@ -122,6 +130,7 @@ impl Finder<'_> {
                 continue;
             };
             self.warn(
+                Rule::Stops,
                 index,
                 format!(
                     "no step starts group {number}: without MINI GRP={number}, its counters may have no valid \
@@ -139,6 +148,7 @@ impl Finder<'_> {
         let main = self.reach(0, &tags);
         for index in main.steps.iter().copied().filter(|index| self.op(*index) == Some(Op::Ret)).collect::<Vec<_>>() {
             self.warn(
+                Rule::Stops,
                 index,
                 "the program can reach this step without a call",
                 "a controller stops with error A4 at a RET without a call",
@@ -157,12 +167,17 @@ impl Finder<'_> {
             match depth(entry, &bodies, &mut depths, &mut Vec::new()) {
                 Depth::Calls(depth) if depth > DEPTH => {
                     let message = format!("{depth} nested subroutine calls start here");
-                    self.warn(call, message, "a controller stops with error A3 when its stack is full");
+                    self.warn(Rule::Stops, call, message, "a controller stops with error A3 when its stack is full");
                 }
                 Depth::Calls(_) => {}
                 Depth::Endless(step) => {
                     let message = "this call is recursive: it calls its own subroutine";
-                    self.warn(step, message, "a controller stops with error A3 when its stack is full");
+                    self.warn(
+                        Rule::Recursion,
+                        step,
+                        message,
+                        "a controller stops with error A3 when its stack is full",
+                    );
                     return;
                 }
             }

@@ -3,7 +3,7 @@
 use super::instruction::{Cursor, Draft, TagUse, Target, excerpt, is_label, read as read_instruction};
 use super::listing::NOT_READ;
 use super::{MAX_STEPS, Part};
-use crate::findings::{Findings, SourceLocation};
+use crate::findings::{Findings, Rule, SourceLocation};
 use crate::names::Names;
 use crate::source;
 use crate::toyo::table::Op;
@@ -148,7 +148,7 @@ impl Reader<'_> {
             let message = format!(
                 "the step numbers of the file begin with {first}, but its first instruction becomes step {start}"
             );
-            self.findings.warning(at, message, None);
+            self.findings.warning(Rule::Unchecked, at, message, None);
         }
     }
 

@@ -6,7 +6,7 @@ use std::collections::{BTreeSet, HashMap};
 use super::instruction::{Draft, Target};
 use super::reader::{LabelDefinition, ParsedLines};
 use super::{Label, Part, Program, Step};
-use crate::findings::{Findings, SourceLocation};
+use crate::findings::{Findings, Rule, SourceLocation};
 use crate::similar_word::nearest;
 use crate::toyo::field::Value;
 use crate::toyo::table::Op;
@@ -144,7 +144,7 @@ impl Tags<'_> {
                     let names = self.list.iter().map(|label| label.name.as_str());
                     let near = if findings.is_full() { None } else { nearest(name, names) };
                     let hint = near.map(|near| format!("did you mean {near}?"));
-                    findings.error(used.at, format!("unknown label '{name}'"), hint);
+                    findings.error_of(Rule::MissingLabel, used.at, format!("unknown label '{name}'"), hint);
                 }
                 continue;
             };
@@ -172,7 +172,7 @@ impl Tags<'_> {
                     self.part.is_some_and(|part| part.tags.as_ref().is_none_or(|tags| tags.contains(&tag)));
                 if !place.is_some_and(Option::is_some) && !is_outside {
                     let hint = Some("a controller stops with error A1".to_owned());
-                    findings.error(at, format!("the program has no tag {tag:03}"), hint);
+                    findings.error_of(Rule::MissingLabel, at, format!("the program has no tag {tag:03}"), hint);
                 }
             }
         }
@@ -204,7 +204,7 @@ impl Tags<'_> {
                                 {}=10:",
                 label.name
             );
-            findings.warning(label.at, format!("no step jumps to label {}", label.name), Some(hint));
+            findings.warning(Rule::UnusedLabel, label.at, format!("no step jumps to label {}", label.name), Some(hint));
         }
     }
 }

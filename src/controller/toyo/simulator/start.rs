@@ -117,9 +117,15 @@ impl Start {
         Ok(self.stored())
     }
 
-    /// Adds content with a host write command, for example `WPAR T2 V05=0200.0`, `WPLT …`, `WESY …` or `WSTX …`.
-    pub fn with_written(mut self, command: &str) -> Result<Self, String> {
-        write(&mut self.world, command)?;
+    /// Adds content with host write commands, for example `WPAR T2 V05=0200.0`, `WPLT …`, `WESY …` or `WSTX …`. Points
+    /// and steps belong to `task`, 1 to 4.
+    pub fn with_written<'c>(mut self, task: u8, commands: impl IntoIterator<Item = &'c str>) -> Result<Self, String> {
+        let task = usize::from(task).checked_sub(1).filter(|task| *task < TASKS).ok_or("tasks must be from 1 to 4")?;
+        let current = std::mem::replace(&mut self.world.current, task);
+        for command in commands {
+            write(&mut self.world, command).map_err(|why| format!("{command}: {why}"))?;
+        }
+        self.world.current = current;
         Ok(self.stored())
     }
 
@@ -421,8 +427,8 @@ fn row(key: &str, most: usize) -> Result<usize, String> {
 fn write(world: &mut World, command: &str) -> Result<(), String> {
     let request = Request::parse(&format!("@{command}")).map_err(|error| error.to_string())?;
     request.check().map_err(|error| error.to_string())?;
-    if !matches!(request.command(), Command::Wpar | Command::Wstx | Command::Wplt | Command::Wesy) {
-        return Err("only WPAR, WSTX, WPLT and WESY are possible".to_owned());
+    if !matches!(request.command(), Command::Wpar | Command::Wstx | Command::Wplt | Command::Wesy | Command::Wovr) {
+        return Err("only WPAR, WSTX, WPLT, WESY and WOVR are possible".to_owned());
     }
     edit::execute(world, &request).map(|_| ())
 }

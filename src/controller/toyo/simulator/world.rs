@@ -15,15 +15,13 @@ use super::trace::{Trace, What};
 use crate::Now;
 use crate::simulator::timeline::Timeline;
 use crate::toyo::field::Mask;
-use crate::toyo::table::{FROM_3_36, Models};
+use crate::toyo::table::{Models, supports};
 
 /// Array size for the counters, and below for the timers. Their numbers start at 1, so index 0 is unused.
 pub(super) const COUNTERS: usize = 100;
 pub(super) const TIMERS: usize = 10;
 /// Maximum value of a timer, in 0.1 s.
 const MAX_TIMER_TENTHS: u32 = 9999;
-/// Version 3.36, in hundredths.
-const VERSION_3_36: i32 = 336;
 
 /// States that the operator or the host can switch.
 #[derive(Debug, Clone)]
@@ -335,9 +333,7 @@ impl World {
 
     /// Whether this controller has a feature that only some models or versions have.
     pub(super) fn supports(&self, only_on: Models) -> bool {
-        only_on.is_empty()
-            || only_on.contains(&self.model.as_str())
-            || (only_on == FROM_3_36 && self.version >= VERSION_3_36)
+        supports(only_on, &self.model, self.version)
     }
 
     /// System outputs SY01: error, positioning complete, origin, READY.

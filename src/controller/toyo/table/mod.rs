@@ -26,3 +26,8 @@ pub const KCA25: Models = &["KCA-25-M10", "KCA-25-M40", "KCA-25-M80"];
 pub const KCA: Models = &["KCA-20-M00", "KCA-20-M01", "KCA-25-M10", "KCA-25-M40", "KCA-25-M80"];
 /// A row that needs a minimum version, not a model (ambiguity R24).
 pub const FROM_3_36: Models = &["version 3.36 or later"];
+
+/// Whether a controller has a feature that only some models or versions have. `version` is in hundredths: 336 for 3.36.
+pub fn supports(only_on: Models, model: &str, version: i32) -> bool {
+    only_on.is_empty() || only_on.contains(&model) || (only_on == FROM_3_36 && version >= 336)
+}

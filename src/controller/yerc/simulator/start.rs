@@ -127,6 +127,18 @@ impl Start {
         self.world.model
     }
 
+    /// Adds a file of a real controller, with its name in the encoding of the controller. The file of variables also
+    /// sets the variables, without positions in a form that only real controllers write.
+    pub fn with_file(mut self, name: &[u8], content: Vec<u8>) -> Result<Self, String> {
+        let positions = content.windows(6).position(|line| line == b"////P\r" || line == b"////P\n");
+        let numbers = content.get(..positions.unwrap_or(content.len())).unwrap_or_default().to_vec();
+        match install(&mut self.world, name, content.into()) {
+            Err(_) if name == variable_file::NAME => install(&mut self.world, name, numbers.into())?,
+            installed => installed?,
+        }
+        Ok(self)
+    }
+
     /// Sets the random seed.
     #[must_use]
     pub fn with_seed(self, seed: u64) -> Self {
@@ -530,25 +542,31 @@ fn file(
     read: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
 ) -> Result<(), String> {
     let name = sjis(&entry.name);
-    if check_stored_name(&name).is_err() {
-        return Err(format!("'{}' is not a valid file name of a controller", entry.name));
-    }
     let content = match (&entry.text, &entry.path, entry.size) {
         (Some(text), None, None) => sjis(&text.replace("\r\n", "\n").replace('\n', "\r\n")).into(),
         (None, Some(path), None) => read(path).map_err(|what| format!("{path}: {what}"))?.into(),
         (None, None, Some(size)) => Content::Generated { seed: size ^ name.len() as u64, size },
         _ => return Err("a file must have exactly one of text, path and size".to_owned()),
     };
+    install(world, &name, content)
+}
+
+/// Adds a file.
+fn install(world: &mut World, name: &[u8], content: Content) -> Result<(), String> {
+    let wrong = |what: &str| Err(format!("'{}' {what}", encoding_rs::SHIFT_JIS.decode(name).0));
+    if check_stored_name(name).is_err() {
+        return wrong("is not a valid file name of a controller");
+    }
     if name == variable_file::NAME {
         let bytes = content.piece(0, usize::try_from(content.size()).unwrap_or(usize::MAX));
         if !variable_file::load(&mut world.memory, &bytes) {
-            return Err(format!("'{}' is not a file of variables", entry.name));
+            return wrong("is not a file of variables");
         }
     }
-    world.files.install(&name, content);
+    world.files.install(name, content);
     let stem = name.strip_suffix(b".JBI");
     if stem.is_some_and(|stem| world.files.program(stem).is_none()) {
-        return Err(format!("'{}' does not contain a job with this name", entry.name));
+        return wrong("does not contain a job with this name");
     }
     Ok(())
 }

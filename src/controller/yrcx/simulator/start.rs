@@ -13,15 +13,17 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::alarms::{AlarmLog, LINK};
-use super::console;
 use super::defaults::{self, STOCK};
 use super::memory::Memory;
+use super::request::Request;
 use super::robot::{Method, Motor};
 use super::world::{Link, Mode, Switches, World};
+use super::{commands, console};
 use crate::Now;
 use crate::simulator::run_options::RunOptions;
 use crate::simulator::start::{self, Event, Source, Table, numbered};
 use crate::simulator::timeline::Timeline;
+use crate::yrcx::image::Words;
 use crate::yrcx::signal::resting;
 use crate::yrcx::table::Command;
 use crate::yrcx::value::{Key, Value};
@@ -136,6 +138,15 @@ impl Start {
     /// Parses a start state. An error message gives the problem and the line.
     pub fn parse(text: &str) -> Result<Self, String> {
         build(&start::parse(text)?, text)
+    }
+
+    /// Adds content with the command words of remote commands that write.
+    pub fn with_written<'c>(mut self, commands: impl IntoIterator<Item = &'c Words>) -> Result<Self, String> {
+        for words in commands {
+            let written = Request::read(words).and_then(|request| commands::begin(&mut self.world, &request));
+            written.map_err(|fault| fault.why)?;
+        }
+        Ok(self)
     }
 
     /// Sets the random seed.

@@ -91,8 +91,10 @@ pub struct Node {
     born_ms: u64,
     /// Whether a host has requested a rebirth that waits for [`BIRTHS_MS`].
     is_rebirth_due: bool,
-    /// Time and state of the last message of each host. A new connection starts with all hosts offline.
-    hosts: BTreeMap<String, (u64, bool)>,
+    /// Broker of the connection.
+    broker: usize,
+    /// Time of the last message of each host at each broker, and its state. A new connection starts without states.
+    hosts: BTreeMap<(usize, String), (u64, Option<bool>)>,
     devices: BTreeMap<String, Device>,
     next_alias: u64,
 }
@@ -125,6 +127,7 @@ impl Node {
             is_born: false,
             born_ms: 0,
             is_rebirth_due: false,
+            broker: 0,
             hosts: BTreeMap::new(),
             devices: BTreeMap::new(),
             next_alias: 1,
@@ -304,11 +307,13 @@ impl Node {
         let Ok(state) = StateBirthDeathCertificate::try_from(&message.payload[..]) else {
             return ignored("an unreadable state of the host");
         };
-        if self.hosts.get(name).is_some_and(|(known, _)| state.timestamp < *known) {
+        // The brokers are not connected with each other, so their messages are not compared.
+        let last = self.hosts.entry((self.broker, name.to_owned())).or_default();
+        if state.timestamp < last.0 {
             return ignored("a state of the host that is older than the last state");
         }
-        self.hosts.insert(name.to_owned(), (state.timestamp, state.online));
-        match (self.hosts.values().any(|(_, is_online)| *is_online), self.is_born) {
+        *last = (state.timestamp, Some(state.online));
+        match (self.hosts.values().any(|(_, state)| *state == Some(true)), self.is_born) {
             (true, false) => Reaction {
                 messages: self.births(now_ms),
                 note: Some((Level::Notice, format!("the primary host {name} is online"))),
@@ -324,13 +329,20 @@ impl Node {
                         format!("the primary host {name} is offline: armctl stores the data for the host"),
                     )),
                     reconnects: true,
-                    delay: None,
+                    ..Reaction::default()
                 }
             }
-            (false, false) => Reaction {
-                note: Some((Level::Notice, format!("waiting for the primary host {name}, which is offline"))),
-                ..Reaction::default()
-            },
+            // At another broker, the host can be online (tck-id-operational-behavior-primary-application-state-with-
+            // multiple-servers-walk).
+            (false, false) => {
+                Reaction {
+                    note: Some((Level::Notice, format!("waiting for the primary host {name}, which is offline"))),
+                    tries_next: self.names.hosts.iter().all(|host| {
+                        self.hosts.get(&(self.broker, host.clone())).is_some_and(|(_, state)| state.is_some())
+                    }),
+                    ..Reaction::default()
+                }
+            }
             (true, true) => Reaction::default(),
         }
     }
@@ -391,6 +403,10 @@ impl MessageFormat for Node {
         format!("armctl-{}-{}", self.names.group, self.names.node)
     }
 
+    fn set_broker(&mut self, broker: usize) {
+        self.broker = broker;
+    }
+
     fn will(&mut self, now_ms: u64) -> Will {
         let number = self.bd_seq.1;
         self.bd_seq = (number, number.wrapping_add(1));
@@ -410,8 +426,8 @@ impl MessageFormat for Node {
 
     fn connection_lost(&mut self) {
         (self.is_connected, self.is_born, self.is_rebirth_due) = (false, false, false);
-        for (_, is_online) in self.hosts.values_mut() {
-            *is_online = false;
+        for (_, state) in self.hosts.values_mut() {
+            *state = None;
         }
         for device in self.devices.values_mut() {
             device.is_born = false;

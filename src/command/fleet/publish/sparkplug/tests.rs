@@ -13,6 +13,11 @@ pub fn plain_node() -> Box<dyn MessageFormat> {
     Box::new(node(&[]).0)
 }
 
+/// A node of group Plant with the primary host SCADA.
+pub fn hosted_node() -> Box<dyn MessageFormat> {
+    Box::new(node(&["SCADA"]).0)
+}
+
 /// A node of group Plant, and the connection numbers that it saves.
 fn node(hosts: &[&str]) -> (Node, Rc<RefCell<Vec<u8>>>) {
     let remembered: Rc<RefCell<Vec<u8>>> = Rc::default();
@@ -45,7 +50,8 @@ fn headers(messages: &[Message]) -> Vec<String> {
     messages.iter().map(head).collect()
 }
 
-fn bd_seq_of(message: &Message) -> Option<Value> {
+/// The `bdSeq` of a birth or death message.
+pub fn bd_seq_of(message: &Message) -> Option<Value> {
     payload(message).metrics.into_iter().find(|metric| metric.name.as_deref() == Some("bdSeq"))?.value
 }
 
@@ -74,7 +80,8 @@ fn command(name: &str, value: Value) -> Message {
     }
 }
 
-fn state(is_online: bool, timestamp: u64) -> Message {
+/// A state of the host SCADA.
+pub fn state(is_online: bool, timestamp: u64) -> Message {
     let payload = format!("{{\"online\":{is_online},\"timestamp\":{timestamp}}}").into_bytes();
     Message { topic: "spBv1.0/STATE/SCADA".to_owned(), payload, retain: true, acknowledged: true, expiry: None }
 }

@@ -53,11 +53,11 @@ fn a_wrong_value_of_each_key_has_a_clear_error() {
 fn programs_and_writes_can_be_added() {
     let steps = |count: usize| vec![instruction("CNT+ CN01=0001").unwrap(); count];
     let start = Start::default().with_program(2, steps(10)).unwrap().with_program(1, steps(2)).unwrap();
-    let start = start.with_written("WPAR M09 J").unwrap().with_seed(1).with_busy(0.0);
+    let start = start.with_written(1, ["WPAR M09 J"]).unwrap().with_seed(1).with_busy(0.0);
     let sim = super::Simulator::new(start.clone());
     assert!(sim.step(2, 10).is_some() && sim.step(2, 11).is_none() && sim.step(1, 1990).is_some());
     assert!(start.clone().with_program(3, steps(5001)).unwrap_err().contains("5000 steps"));
-    assert!(start.with_written("WPAR M09 X").is_err());
+    assert!(start.with_written(1, ["WPAR M09 X"]).is_err());
     let full = Start::default().with_program(1, steps(5000)).unwrap();
     assert!(super::Simulator::new(full).step(1, 5000).is_some());
 }

@@ -1,0 +1,160 @@
+//! A simulator that starts from the backup of a robot holds what the backup holds.
+
+use std::fmt::Write as _;
+
+use crate::gate::workspace::Workspace;
+
+/// Random numbers for the content of controllers, the same in every run.
+struct Random(u64);
+
+impl Random {
+    /// A number from `first` to `last`.
+    fn number(&mut self, first: i64, last: i64) -> i64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        first + i64::try_from(self.0 >> 33).expect("31 bits") % (last - first + 1)
+    }
+
+    /// A number with two decimals.
+    fn decimal(&mut self, first: i64, last: i64) -> String {
+        format!("{}.{:02}", self.number(first, last - 1), self.number(0, 99))
+    }
+}
+
+/// Start state of a random yerc controller.
+fn yerc(random: &mut Random) -> String {
+    let model = ["fs100", "dx100", "dx200", "yrc1000"][usize::try_from(random.number(0, 3)).expect("small")];
+    let mut state = format!("model = \"{model}\"\n[variables]\n");
+    for _ in 0..10 {
+        writeln!(state, "B{} = {}", random.number(0, 49), random.number(0, 255)).expect("text grows");
+        writeln!(state, "D{} = {}", random.number(50, 99), random.number(-70_000, 70_000)).expect("text grows");
+    }
+    // A key can occur only once.
+    let mut lines: Vec<&str> = state.lines().collect();
+    lines.sort_by_key(|line| line.split(" = ").next().map(str::to_owned));
+    lines.dedup_by_key(|line| line.split(" = ").next().map(str::to_owned));
+    lines.retain(|line| line.contains(" = ") && !line.starts_with("model"));
+    let mut state = format!("model = \"{model}\"\n[variables]\n{}\n", lines.join("\n"));
+    for number in 0..random.number(1, 4) {
+        let steps: String =
+            (0..random.number(1, 9)).map(|_| format!("SET B{:03} {}\n", 1, random.number(0, 9))).collect();
+        write!(state, "[[file]]\nname = \"J{number}.JBI\"\ntext = \"\"\"\n/JOB\n//NAME J{number}\n//INST\nNOP\n{steps}END\n\"\"\"\n")
+            .expect("text grows");
+    }
+    state
+}
+
+/// Start state of a random yrcx controller.
+fn yrcx(random: &mut Random) -> String {
+    let mut state = format!(
+        "stock = false\n[variables]\nSGI{} = {}\n[[robot]]\naxes = {}\nauto_speed = {}\npayload_g = {}\n[points]\n",
+        random.number(0, 31),
+        random.number(-9, 9_999),
+        random.number(1, 4),
+        random.number(1, 100),
+        random.number(0, 9_999),
+    );
+    for number in 0..5 {
+        let places = [0; 4].map(|_| random.decimal(0, 400)).join(", ");
+        writeln!(state, "{} = {{ mm = [{places}] }}", number * 9 + random.number(0, 8)).expect("text grows");
+    }
+    let pulses = random.number(-99_999, 99_999);
+    write!(state, "50 = {{ pulse = [{pulses}, 0, 0, 1] }}\n[comments]\n50 = \"C{pulses}\"\n[shifts]\n")
+        .expect("text grows");
+    writeln!(state, "{} = [{}, 0.0, 0.0, 0.0]", random.number(1, 39), random.decimal(0, 99)).expect("text grows");
+    write!(state, "[hands]\n{} = {{ robot = 1, data = [{pulses}, 1, 2, 0] }}\n", random.number(0, 31))
+        .expect("text grows");
+    state
+}
+
+/// Start state of a random toyo controller.
+fn toyo(random: &mut Random) -> String {
+    let model = ["KCA-20-M00", "KCA-25-M80", "other"][usize::try_from(random.number(0, 2)).expect("small")];
+    let axes = random.number(2, 4);
+    let mut state = format!("model = \"{model}\"\naxes = {axes}\nversion = \"3.{}\"\n", random.number(30, 40));
+    writeln!(state, "speeds = {{ 5 = {}.0 }}", random.number(1, 300)).expect("text grows");
+    let tags: String =
+        (0..random.number(1, 9)).map(|_| format!("\"TAG TAG={:03}\", ", random.number(1, 999))).collect();
+    writeln!(state, "steps = {{ 1 = [{tags}\"SPD V=05\", \"END\"] }}").expect("text grows");
+    let place = random.decimal(0, 300);
+    writeln!(state, "points = {{ 1 = {{ {} = [{place}, 1.0, 0.0, 0.0] }} }}", random.number(1, 999))
+        .expect("text grows");
+    writeln!(state, "write = [\"WESY PNO=01 ST=000 START=001 LOOP=0002 END=001\"]").expect("text grows");
+    state
+}
+
+/// Checks that the backup of a twin equals the backup that the twin comes from.
+fn check(family: &str, generate: impl Fn(&mut Random) -> String) {
+    for seed in 1..=3 {
+        let desk = Workspace::new("");
+        let state = generate(&mut Random(seed));
+        std::fs::write(desk.folder.path().join("state.toml"), &state).expect("it is written");
+        for line in [
+            format!("-t sim:?state=state.toml {family} backup first"),
+            "-t sim:?from=first backup second".to_owned(),
+            "diff first second --exact".to_owned(),
+        ] {
+            let came = desk.run(&line);
+            assert_eq!(came.exit, Some(0), "{line}: {came:?}\n{state}");
+        }
+    }
+}
+
+#[test]
+fn yerc_twin_equals_its_backup() {
+    check("yerc", yerc);
+}
+
+#[test]
+fn yrcx_twin_equals_its_backup() {
+    check("yrcx", yrcx);
+}
+
+#[test]
+fn toyo_twin_equals_its_backup() {
+    check("toyo", toyo);
+}
+
+#[test]
+fn twin_has_the_values_of_an_edited_backup() {
+    let desk = Workspace::new("");
+    desk.data("--sim toyo backup press --only points");
+    let file = desk.folder.path().join("press/points-1.csv");
+    let text = std::fs::read_to_string(&file).expect("points");
+    std::fs::write(&file, text.replace("\n7,0.00,", "\n7,12.50,")).expect("it is written");
+    assert_eq!(desk.data("-t sim:?from=press toyo point get 7")["items"][0]["value"]["x_mm"], 12.5);
+    std::fs::write(&file, text.replace("\n7,0.00,", "\n7,many,")).expect("it is written");
+    desk.fails("-t sim:?from=press status", 2, "points-1.csv");
+    desk.fails("-t sim:?from=nowhere toyo status", 1, "there is no folder nowhere");
+    desk.fails("-t sim:?from=press yerc status", 2, "backup of a toyo controller");
+    desk.fails("sim yrcx --from press", 2, "backup of a toyo controller");
+}
+
+#[test]
+fn twin_has_the_model_of_its_backup() {
+    let desk = Workspace::new("");
+    desk.data("--sim yerc backup weld --only VAR.DAT");
+    desk.data("-t sim:?from=weld&model=dx200 yerc var get B5");
+    desk.fails("-t sim:?from=weld&model=fs100 yerc var get B5", 2, "the selected model is fs100");
+}
+
+#[test]
+fn inventory_is_readable_without_the_backup_of_a_twin() {
+    let desk = Workspace::new("");
+    desk.data("--sim toyo backup press --only points");
+    desk.data("robots add twin sim:?from=press");
+    std::fs::remove_dir_all(desk.folder.path().join("press")).expect("it is removed");
+    desk.data("robots list");
+}
+
+#[test]
+fn twin_reads_the_numbers_of_a_real_variable_file() {
+    let desk = Workspace::new("");
+    desk.data("--sim yerc backup press");
+    let file = desk.folder.path().join("press/VAR.DAT");
+    let text = std::fs::read_to_string(&file).expect("variables");
+    let (numbers, _) = text.split_once("////P").expect("positions");
+    let real =
+        numbers.replacen("\r\n0,", "\r\n7,", 1) + "////P\r\n///TOOL 0\r\n///POSTYPE PULSE\r\nP0001=1,2,3,4,5,6\r\n";
+    std::fs::write(&file, real).expect("it is written");
+    assert_eq!(desk.data("-t sim:?from=press yerc var get B0")["items"][0]["value"], 7);
+}
