@@ -27,7 +27,7 @@ const DOCUMENTED: [(&str, &str); 3] =
 /// Separator in the output of the shell, between two commands of a block.
 const MARK: &str = "\u{1}--next--";
 /// Pages with console blocks.
-const PAGES: [&str; 13] = [
+const PAGES: [&str; 14] = [
     "README.md",
     "docs/tasks.md",
     "docs/yerc.md",
@@ -35,6 +35,7 @@ const PAGES: [&str; 13] = [
     "docs/yrcx.md",
     "docs/repl.md",
     "docs/backups.md",
+    "docs/cell.md",
     "docs/scripting.md",
     "docs/watching.md",
     "docs/sessions.md",

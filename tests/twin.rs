@@ -1,8 +1,12 @@
 //! A simulator that starts from the backup of a robot holds what the backup holds.
 
 use std::fmt::Write as _;
+use std::io::{BufRead as _, BufReader};
+use std::process::{Command, Stdio};
 
-use crate::gate::workspace::Workspace;
+use serde_json::Value;
+
+use crate::gate::workspace::{Workspace, result_of};
 
 /// Random numbers for the content of controllers, the same in every run.
 struct Random(u64);
@@ -157,4 +161,58 @@ fn twin_reads_the_numbers_of_a_real_variable_file() {
         numbers.replacen("\r\n0,", "\r\n7,", 1) + "////P\r\n///TOOL 0\r\n///POSTYPE PULSE\r\nP0001=1,2,3,4,5,6\r\n";
     std::fs::write(&file, real).expect("it is written");
     assert_eq!(desk.data("-t sim:?from=press yerc var get B0")["items"][0]["value"], 7);
+}
+
+/// Robots of the backup `cell`.
+const CELL: &str = "[[robot]]\nname = \"press\"\ntarget = \"sim:\"\nfamily = \"toyo\"\ntags = [\"line=3\"]\n\
+                    [[robot]]\nname = \"weld\"\ntarget = \"sim:\"\nfamily = \"yerc\"\n";
+
+#[test]
+fn cell_serves_every_robot_of_a_backup() {
+    let desk = Workspace::new(CELL);
+    assert_eq!(desk.run("-q --all backup cell").exit, Some(0));
+    let mut cell = desk.command("sim --cell cell --inventory desk.toml --speed 10x");
+    let mut cell = cell.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
+    // The table of the robots is printed after the inventory is written.
+    let mut line = String::new();
+    BufReader::new(cell.stdout.take().expect("a pipe")).read_line(&mut line).expect("it prints");
+    let status = desk.data("--config desk.toml --tag line=3 status --no-session");
+    desk.data("--config desk.toml -r press toyo point set 3 1 2 3 4 --yes");
+    let point = desk.data("--config desk.toml -r press toyo point get 3");
+    let diff = desk.run("--config desk.toml -r weld diff cell");
+    cell.kill().expect("it runs");
+    cell.wait().expect("it ends");
+    assert_eq!(status["mode"], "automatic", "{line}: {status}");
+    assert_eq!(point["items"][0]["value"]["x_mm"], 1.0, "{point}");
+    assert_eq!(diff.exit, Some(0), "{diff:?}");
+}
+
+#[test]
+fn rehearsal_reports_changes_and_needs_no_network() {
+    if !Command::new("unshare").args(["-Urn", "true"]).status().is_ok_and(|status| status.success()) {
+        println!("skipped: no user namespaces here");
+        return;
+    }
+    let desk = Workspace::new(CELL);
+    assert_eq!(desk.run("-q --all backup cell").exit, Some(0));
+    let lines = "-r press toyo point set 3 1 2 3 4\n-r weld yerc var set B7=99\n-r press toyo point get 9999\n";
+    std::fs::write(desk.folder.path().join("morning.armctl"), lines).expect("it is written");
+    // In this namespace, even the loopback interface is down.
+    let rehearse = desk.command("-Urn -- armctl rehearse morning.armctl --from cell --keep-going --json");
+    let mut alone = Command::new("unshare");
+    alone.args(
+        rehearse.get_args().map(|word| if word == "armctl" { env!("CARGO_BIN_EXE_armctl").as_ref() } else { word }),
+    );
+    alone.env_clear().envs(rehearse.get_envs().filter_map(|(key, value)| Some((key, value?))));
+    alone.env("PATH", std::env::var_os("PATH").unwrap_or_default()).current_dir(desk.folder.path());
+    let came = result_of(&alone.output().expect("unshare runs"));
+    let report: Value = serde_json::from_str(&came.stdout).unwrap_or_else(|_| panic!("{came:?}"));
+    let [press, weld] = &report["data"]["robots"].as_array().expect("robots")[..] else { panic!("{report}") };
+    let change = |robot: &Value| robot["values"].as_array().expect("values").to_vec();
+    assert_eq!(change(press)[0]["name"], "3", "{press}");
+    assert_eq!((&change(weld)[0]["old"], &change(weld)[0]["new"]), (&"7".into(), &"99".into()), "{weld}");
+    assert_eq!(press["questions"].as_array().map(Vec::len), Some(1), "{press}");
+    assert_ne!(came.exit, Some(0), "the last line is wrong: {came:?}");
+    desk.fails("rehearse --from cell -- -t tcp://127.0.0.1:9 toyo status", 2, "only the robots of the backup");
+    desk.fails("rehearse --from cell -- -r other toyo status", 2, "no robot 'other' in the backup");
 }

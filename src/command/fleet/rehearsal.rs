@@ -6,6 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use armctl_controller::simulator::run_options::Motion;
+use armctl_controller::text::Encoding;
 use armctl_files as files;
 use armctl_frame::SchemaEntry;
 use armctl_frame::backup::Only;
@@ -113,7 +114,8 @@ pub struct MotionResult {
 
 impl From<Motion> for MotionResult {
     fn from(Motion { group, from, to, unit, distance_mm, began, took, reached }: Motion) -> Self {
-        let rounded = |value: f64| (value * 1000.0).round() / 1000.0;
+        // The sum with 0.0 turns -0.0 into 0.0.
+        let rounded = |value: f64| (value * 1000.0).round() / 1000.0 + 0.0;
         let ms = |time: std::time::Duration| u64::try_from(time.as_millis()).unwrap_or(u64::MAX);
         Self {
             group,
@@ -150,8 +152,12 @@ impl RehearsedRobot {
         let files = Differences::of(&before, &after, &Only::default(), CompareOptions::usual_tolerance())?.changed();
         let read = |side: &BackupSide, name: &str| {
             let copy = side.manifest.entry(name).and_then(|entry| entry.copy.as_ref());
-            let text = copy.and_then(|copy| files::text(&side.folder.join(&copy.file), MAX_TEXT as u64).ok());
-            copy.zip(text).and_then(|(copy, text)| named_values(&copy.file, &text))
+            let bytes = copy.and_then(|copy| files::read(&side.folder.join(&copy.file), MAX_TEXT as u64).ok());
+            let named = side.manifest.controller["encoding"].as_str().and_then(|name| name.parse::<Encoding>().ok());
+            let text = |bytes: Vec<u8>| {
+                String::from_utf8(bytes).unwrap_or_else(|error| named.unwrap_or_default().decode(error.as_bytes()))
+            };
+            copy.zip(bytes).and_then(|(copy, bytes)| named_values(&copy.file, &text(bytes)))
         };
         let changed = |file: &Difference| match (read(&before, &file.name), read(&after, &file.name)) {
             (Some(old), Some(new)) => changes(Some(&file.name), &old, &new),

@@ -397,12 +397,17 @@ impl Sources {
             }
             if chosen.len() == before && self.inventory.matching(pattern).next().is_none() {
                 let set = if selection.from_environment { "ARMCTL_ROBOT: " } else { "" };
-                let failure = Failure::usage(format!("{set}there is no robot '{pattern}' in the inventory"));
+                let place = if self.rehearsal.is_some() { "backup" } else { "inventory" };
+                let failure = Failure::usage(format!("{set}there is no robot '{pattern}' in the {place}"));
                 if pattern.contains("://") || pattern.starts_with("sim:") {
                     return Err(failure.hint("use -t (--target) for a URL"));
                 }
                 return Err(match (nearest(pattern, known()), &self.inventory.path) {
                     (Some(name), _) => failure.hint(format!("did you mean '{name}'?")),
+                    (None, _) if self.rehearsal.is_some() => {
+                        let names: Vec<&str> = known().collect();
+                        failure.hint(format!("the backup has {}", names.join(", ")))
+                    }
                     (None, Some(path)) => {
                         failure.hint(format!("`armctl robots list` lists the robots in {}", path.display()))
                     }
