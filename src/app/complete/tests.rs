@@ -13,7 +13,7 @@ fn completes_words_and_flags_of_the_command() {
         ("armctl yerc st", &["status", "stop"]),
         ("yerc st", &["status", "stop"]),
         ("/usr/bin/yerc.exe job sel", &["select"]),
-        ("armctl --sim yerc job ", &["edit", "list", "select", "show", "start", "stop"]),
+        ("armctl --sim yerc job ", &["calls", "check", "edit", "list", "search", "select", "show", "start", "stop"]),
         ("armctl yerc --sim servo o", &["on", "off"]),
         ("armctl yerc job select --li", &["--line"]),
         ("armctl -o j", &["json", "jsonl"]),
