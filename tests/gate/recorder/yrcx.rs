@@ -170,7 +170,7 @@ fn armctl() -> Command {
 /// Divides the lines among controllers that run at the same time. Each line waits most of its time for its bus, for
 /// example two seconds for the check of MAC IDs on DeviceNet.
 fn hold_in_parts(bus: &str, more: &[&str]) {
-    const PARTS: usize = 4;
+    const PARTS: usize = 2;
     std::thread::scope(|scope| {
         for part in 0..PARTS {
             scope.spawn(move || hold_all(Controller::start(armctl(), bus, more), (part, PARTS)));
