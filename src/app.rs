@@ -35,7 +35,6 @@ use armctl_files as files;
 use armctl_frame::background::{DETACHED, close_inherited_files};
 use armctl_frame::backup::twin;
 use armctl_frame::failure::{Failure, Kind, omit_program_name};
-use armctl_frame::flags::Globals;
 use armctl_frame::guardian;
 use armctl_frame::interrupt::catch_interrupts;
 use armctl_frame::output::envelope::Envelope;
@@ -93,7 +92,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     if let Ok(format) = &format {
         cli.globals.format = cli.globals.format.or(*format);
     }
-    let screen = screen(&cli.globals);
+    let screen = cli.globals.screen();
     screen.use_for_exit();
     files::set_draft_hook(catch_interrupts);
     twin::register(|family, folder| families::of(family).twin(folder));
@@ -134,7 +133,7 @@ async fn run(cli: Cli) -> Result<(), RunError> {
         Invocation::Rehearse(rehearse) => Box::pin(rehearse::run(globals, rehearse)).await,
         Invocation::Teach(teach) => Box::pin(teach::run(globals, teach)).await,
         Invocation::Bare(prefix) if repl::can_type() => Box::pin(repl::run(globals, prefix)).await,
-        Invocation::Bare(prefix) => Err(repl::usage(&screen(&globals), &prefix)),
+        Invocation::Bare(prefix) => Err(repl::usage(&globals.screen(), &prefix)),
     }
 }
 
@@ -166,18 +165,6 @@ fn check_descriptors() -> Result<(), Failure> {
 #[cfg(not(unix))]
 fn check_descriptors() -> Result<(), Failure> {
     Ok(())
-}
-
-fn screen(globals: &Globals) -> Screen {
-    let format = match globals.format {
-        Some(format) => format,
-        None if globals.json || globals.jq.is_some() => Format::Json,
-        None => Format::Table,
-    };
-    let is_filtered = globals.jq.is_some() && !globals.json && globals.format.is_none();
-    Screen::new(format, globals.color(), globals.quiet, globals.verbose)
-        .with_plain_errors(is_filtered)
-        .with_questions(!globals.no_input)
 }
 
 /// Prints a failure in the requested format, unless it was already reported. Returns its kind.

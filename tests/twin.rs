@@ -155,7 +155,7 @@ fn twin_reads_the_numbers_of_a_real_variable_file() {
     let desk = Workspace::new("");
     desk.data("--sim yerc backup press");
     let file = desk.folder.path().join("press/VAR.DAT");
-    let text = std::fs::read_to_string(&file).expect("variables");
+    let text = String::from_utf8_lossy(&std::fs::read(&file).expect("variables")).into_owned();
     let (numbers, _) = text.split_once("////P").expect("positions");
     let real =
         numbers.replacen("\r\n0,", "\r\n7,", 1) + "////P\r\n///TOOL 0\r\n///POSTYPE PULSE\r\nP0001=1,2,3,4,5,6\r\n";
@@ -176,13 +176,15 @@ fn cell_serves_every_robot_of_a_backup() {
     // The table of the robots is printed after the inventory is written.
     let mut line = String::new();
     BufReader::new(cell.stdout.take().expect("a pipe")).read_line(&mut line).expect("it prints");
-    let status = desk.data("--config desk.toml --tag line=3 status --no-session");
+    let status = desk.data("--config desk.toml -r press status --no-session");
+    let tagged = desk.run("--config desk.toml --tag line=3 robots list");
     desk.data("--config desk.toml -r press toyo point set 3 1 2 3 4 --yes");
     let point = desk.data("--config desk.toml -r press toyo point get 3");
     let diff = desk.run("--config desk.toml -r weld diff cell");
     cell.kill().expect("it runs");
     cell.wait().expect("it ends");
     assert_eq!(status["mode"], "automatic", "{line}: {status}");
+    assert!(tagged.stdout.contains("press") && !tagged.stdout.contains("weld"), "{tagged:?}");
     assert_eq!(point["items"][0]["value"]["x_mm"], 1.0, "{point}");
     assert_eq!(diff.exit, Some(0), "{diff:?}");
 }
@@ -195,10 +197,10 @@ fn rehearsal_reports_changes_and_needs_no_network() {
     }
     let desk = Workspace::new(CELL);
     assert_eq!(desk.run("-q --all backup cell").exit, Some(0));
-    let lines = "-r press toyo point set 3 1 2 3 4\n-r weld yerc var set B7=99\n-r press toyo point get 9999\n";
+    let lines = "-r press toyo point set 3 1 2 3 4\n-r press toyo home\n-r weld yerc var set B7=99\n-r weld yerc job select NOWHERE\n";
     std::fs::write(desk.folder.path().join("morning.armctl"), lines).expect("it is written");
     // In this namespace, even the loopback interface is down.
-    let rehearse = desk.command("-Urn -- armctl rehearse morning.armctl --from cell --keep-going --json");
+    let rehearse = desk.command("-Urn -- armctl rehearse morning.armctl --from cell --speed 100x --keep-going --json");
     let mut alone = Command::new("unshare");
     alone.args(
         rehearse.get_args().map(|word| if word == "armctl" { env!("CARGO_BIN_EXE_armctl").as_ref() } else { word }),
@@ -208,7 +210,7 @@ fn rehearsal_reports_changes_and_needs_no_network() {
     let came = result_of(&alone.output().expect("unshare runs"));
     let report: Value = serde_json::from_str(&came.stdout).unwrap_or_else(|_| panic!("{came:?}"));
     let [press, weld] = &report["data"]["robots"].as_array().expect("robots")[..] else { panic!("{report}") };
-    let change = |robot: &Value| robot["values"].as_array().expect("values").to_vec();
+    let change = |robot: &Value| robot["changes"].as_array().expect("values").to_vec();
     assert_eq!(change(press)[0]["name"], "3", "{press}");
     assert_eq!((&change(weld)[0]["old"], &change(weld)[0]["new"]), (&"7".into(), &"99".into()), "{weld}");
     assert_eq!(press["questions"].as_array().map(Vec::len), Some(1), "{press}");

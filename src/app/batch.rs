@@ -14,7 +14,7 @@ use serde_json::Value;
 
 use super::parser::Parser;
 use super::prepare::{Invocation, PreparedCommand};
-use super::{line_words, name_lookup, screen};
+use super::{line_words, name_lookup};
 use crate::cli::Words;
 use crate::command::fleet::session::host;
 use armctl_files as files;
@@ -39,7 +39,7 @@ pub async fn run(globals: Globals, batch: Batch) -> Result<(), RunError> {
     // With `--jq`, the filter is applied to each envelope separately, so the output is one JSON value for each line.
     let format = if globals.jq.is_some() { Some(Format::Jsonl) } else { globals.format };
     let globals = Globals { format, json: globals.json && globals.jq.is_none(), ..globals };
-    let screen = screen(&globals);
+    let screen = globals.screen();
     let results: Option<Results> = (screen.format == Format::Json).then(Rc::default);
     let (manager, thread) = host::start(move |text| screen.note(text))?;
     let plan = Plan { globals: &globals, batch: &batch, screen, manager, results: results.clone(), rehearsal: None };

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{CommandFactory as _, ValueEnum as _};
 
-use super::{flags, screen};
+use super::flags;
 use crate::cli::{Cli, FamilyWord, Top};
 use crate::command::common::Common;
 use crate::command::fleet::common;
@@ -214,7 +214,7 @@ pub enum Need {
 
 /// Reads flags, environment and inventory.
 pub fn prepare(globals: Globals, need: Need, line: Option<Line>) -> Result<Run, Failure> {
-    let screen = screen(&globals).with_pager(!globals.no_pager && line.is_none());
+    let screen = globals.screen().with_pager(!globals.no_pager && line.is_none());
     let filter = globals.jq.as_deref().map(Filter::new).transpose()?;
     let until = globals.until.as_deref().map(Condition::new).transpose()?;
     let check = globals.check.as_deref().map(Condition::new).transpose()?;

@@ -12,7 +12,6 @@ use serde_json::Value;
 use super::batch::{Plan, Results, read, refuse_repetition};
 use super::parser::Parser;
 use super::prepare::{Need, prepare};
-use super::screen;
 use crate::command::fleet::cell::{SavedRobot, inventory_text, robots_in};
 use crate::command::fleet::rehearsal::{ID, LineResult, RehearsalReport, RehearsedRobot, Snapshot};
 use crate::command::fleet::session::host;
@@ -52,13 +51,13 @@ pub async fn run(globals: Globals, rehearse: Rehearse) -> Result<(), RunError> {
         set: rehearse.set.clone(),
     };
     let (manager, thread) = host::start({
-        let screen = screen(&globals);
+        let screen = globals.screen();
         move |text| screen.note(text)
     })?;
     let plan = |globals| Plan {
         globals,
         batch: &batch,
-        screen: screen(globals),
+        screen: globals.screen(),
         manager: manager.clone(),
         results: Some(Results::default()),
         rehearsal: Some(Arc::clone(&records)),
@@ -126,7 +125,7 @@ impl Rehearsed<'_> {
             let old = Snapshot { folder: &old, signals: old_signals };
             let new = Snapshot { folder: &new, signals: new_signals };
             let mut robot = RehearsedRobot::compare(name, *family, [old, new])?;
-            robot.is_running = running.get(name.as_str()).copied().flatten();
+            robot.running = running.get(name.as_str()).copied().flatten();
             robots.push(robot);
         }
         for (name, motions, questions) in recorded {
@@ -138,7 +137,7 @@ impl Rehearsed<'_> {
         let results = lines.results.as_ref().map(Rc::clone).unwrap_or_default();
         Ok(RehearsalReport {
             folder: self.rehearse.from.display().to_string(),
-            speed: self.rehearse.speed.to_string(),
+            time_factor: self.rehearse.speed.factor(),
             lines: results.borrow().iter().map(|envelope| line_result(envelope, &typed)).collect(),
             robots,
             failure,

@@ -24,7 +24,7 @@ use self::terminal::Terminal;
 use super::batch::{self, refuse_repetition};
 use super::parser::{Parser, Refusal};
 use super::prepare::{Invocation, Need, PreparedCommand, sources};
-use super::{line_words, name_lookup, refuse, report_failure, screen};
+use super::{line_words, name_lookup, refuse, report_failure};
 use crate::cli::Words;
 use crate::command::families;
 use crate::command::fleet::session::host::{self, ManagerThread};
@@ -94,7 +94,7 @@ impl Repl {
         if let (true, Some(robot)) = (prefix.is_empty(), &robot) {
             prefix.push(robot.family.name().to_owned());
         }
-        Ok(Self { screen: screen(&globals), globals, line_parser: LineParser::new(prefix), robot })
+        Ok(Self { screen: globals.screen(), globals, line_parser: LineParser::new(prefix), robot })
     }
 
     /// Runs lines from a terminal.
@@ -234,7 +234,7 @@ impl Repl {
             };
         let own = globals.clone();
         let globals = globals.within(&self.globals);
-        let screen = screen(&globals);
+        let screen = globals.screen();
         let line = line_of(manager, text);
         let done = match command.into() {
             Invocation::Task(task) => match PreparedCommand::new(own, Some(&self.globals), task, Some(line)) {

@@ -10,7 +10,6 @@ use serde_json::Value;
 use super::batch::refuse_repetition;
 use super::parser::Parser;
 use super::prepare::{Invocation, Need, PreparedCommand, sources};
-use super::screen;
 use crate::cli::Words;
 use crate::command::families;
 use crate::command::fleet::session::host;
@@ -29,7 +28,7 @@ use armctl_frame::session_manager::SessionManager;
 /// Shows the teach panel until the user leaves it.
 pub async fn run(globals: Globals, teach: Teach) -> Result<(), RunError> {
     refuse_repetition(&globals)?;
-    let screen = screen(&globals);
+    let screen = globals.screen();
     let robot = select_robot(&globals, &teach)?;
     check_globals(&globals, &screen)?;
     catch_interrupts();

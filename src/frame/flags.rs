@@ -7,7 +7,7 @@ use clap::Args;
 
 use crate::ValueKind;
 use crate::gate::OnInterrupt;
-use crate::output::{ColorChoice, Format};
+use crate::output::{ColorChoice, Format, Screen};
 use crate::settings::duration;
 use crate::settings::target::TargetArgument;
 use armctl_controller::text::Encoding;
@@ -140,6 +140,19 @@ pub struct Globals {
 }
 
 impl Globals {
+    /// Output settings.
+    pub fn screen(&self) -> Screen {
+        let format = match self.format {
+            Some(format) => format,
+            None if self.json || self.jq.is_some() => Format::Json,
+            None => Format::Table,
+        };
+        let is_filtered = self.jq.is_some() && !self.json && self.format.is_none();
+        Screen::new(format, self.color(), self.quiet, self.verbose)
+            .with_plain_errors(is_filtered)
+            .with_questions(!self.no_input)
+    }
+
     /// Returns the flags of one line, completed with the flags for all lines. If the line has a flag for the robot, the
     /// format or the verbosity, this flag replaces all flags of the same group.
     #[must_use]

@@ -106,7 +106,7 @@ fn command_flags_do_not_shadow_global_flags() {
         let shadowed = own_flags().filter(|(flag, _)| known.contains(flag) && flag != "--for");
         found.extend(shadowed.map(|(flag, _)| format!("{path} {flag}")));
         // The same thing has the same flag in all commands: --dir is written, --from and --compare are read.
-        let is_usual = |flag: &str| ["--dir", "--from", "--compare"].contains(&flag);
+        let is_usual = |flag: &str| ["--dir", "--from", "--compare", "--cell"].contains(&flag);
         let into_folder = own_flags().filter(|(flag, argument)| is_folder(argument) && !is_usual(flag));
         found.extend(into_folder.map(|(flag, _)| format!("{path} {flag}: a folder is --dir")));
         let global = own_flags().filter(|(_, argument)| argument.is_global_set()).map(|(flag, _)| flag);

@@ -9,8 +9,20 @@ use armctl_frame::output::csv::{RowsOf, Sheet};
 use serde_json::Value;
 
 /// Words of commands that write files, wait, or need another target than a simulator.
-const EXCLUDED: [&str; 10] =
-    ["watch", "--for", "--continuous", "auto-mode", "backup", "diff", "dump", "file", " -t ", "program get"];
+const EXCLUDED: [&str; 12] = [
+    "--svg",
+    "--html",
+    "watch",
+    "--for",
+    "--continuous",
+    "auto-mode",
+    "backup",
+    "diff",
+    "dump",
+    "file",
+    " -t ",
+    "program get",
+];
 
 /// stdout of a command line on the simulator; `None` if the command failed.
 fn print_report(line: &str, format: &str, folder: &Path) -> Option<String> {

@@ -31,6 +31,7 @@ transcripts! {
     backups
     batch
     captures
+    cell
     command_help
     common_commands
     common_terms

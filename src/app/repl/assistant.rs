@@ -12,7 +12,7 @@ use rustyline::{Context, Helper};
 
 use super::line_parser::LineParser;
 use crate::app::complete::complete;
-use crate::app::{line_words, screen};
+use crate::app::line_words;
 use armctl_frame::flags::Globals;
 
 /// Assistant of the line editor.
@@ -31,7 +31,7 @@ impl Assistant {
             line_parser: RefCell::new(LineParser::new(line_parser.prefix().to_vec())),
             flags: globals.robot_words().into_iter().map(OsString::from).collect(),
             hinter: HistoryHinter::new(),
-            colour: screen(globals).stdout_color(),
+            colour: globals.screen().stdout_color(),
         }
     }
 

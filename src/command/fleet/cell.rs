@@ -203,7 +203,8 @@ struct CellReport {
     inventory: Option<String>,
     /// Robots.
     robots: Vec<CellRobot>,
-    /// Content of the robots.toml.
+    /// Content of the robots.toml. Programs read the robots instead.
+    #[serde(skip)]
     text: String,
 }
 

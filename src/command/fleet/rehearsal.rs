@@ -31,8 +31,8 @@ pub fn schema() -> SchemaEntry {
 pub struct RehearsalReport {
     /// Folder of the backup.
     pub folder: String,
-    /// Speed of the simulated time.
-    pub speed: String,
+    /// Simulated time that passes in one second.
+    pub time_factor: f64,
     /// Results of the commands, in their order.
     pub lines: Vec<LineResult>,
     /// Robots that were rehearsed.
@@ -65,7 +65,7 @@ pub struct RehearsedRobot {
     /// Family.
     pub family: &'static str,
     /// Changed variables, points and other values of files with a known form.
-    pub values: Vec<ValueChange>,
+    pub changes: Vec<ValueChange>,
     /// Changed files and parts, as in `armctl diff`.
     pub files: Vec<Difference>,
     /// Changed signals.
@@ -75,7 +75,7 @@ pub struct RehearsedRobot {
     /// Confirmations.
     pub questions: Vec<Question>,
     /// Whether a motion or a program still runs; null if the state could not be read.
-    pub is_running: Option<bool>,
+    pub running: Option<bool>,
 }
 
 /// Old and new value. A value is null if it did not exist.
@@ -166,12 +166,12 @@ impl RehearsedRobot {
         Ok(Self {
             robot: robot.to_owned(),
             family: family.name(),
-            values: files.iter().flat_map(changed).collect(),
+            changes: files.iter().flat_map(changed).collect(),
             files,
             signals: changes(None, old.signals, new.signals),
             motions: Vec::new(),
             questions: Vec::new(),
-            is_running: None,
+            running: None,
         })
     }
 }
@@ -272,11 +272,11 @@ impl RehearsedRobot {
     fn sections(&self) -> Vec<Section> {
         let mut sections = Vec::new();
         let mut changed = Table::new(&["changed", "old", "new"], "");
-        for ValueChange { file, name, old, new } in self.values.iter().chain(&self.signals) {
+        for ValueChange { file, name, old, new } in self.changes.iter().chain(&self.signals) {
             let name = file.as_ref().map_or_else(|| format!("signal {name}"), |file| format!("{file} {name}"));
             changed.row([name.into(), Cell::optional(old.as_deref()), Cell::optional(new.as_deref())]);
         }
-        let has_values = |file: &Difference| self.values.iter().any(|value| value.file.as_ref() == Some(&file.name));
+        let has_values = |file: &Difference| self.changes.iter().any(|value| value.file.as_ref() == Some(&file.name));
         let unnamed: Vec<&Difference> = self.files.iter().filter(|file| !has_values(file)).collect();
         for file in &unnamed {
             let states = match file.more.state {
@@ -318,7 +318,7 @@ impl RehearsedRobot {
         if !confirmed.rows.is_empty() {
             sections.push(Section::Table(confirmed));
         }
-        if self.is_running == Some(true) {
+        if self.running == Some(true) {
             sections
                 .push(Section::Text("still running at the end of the rehearsal; wait longer with --settle".to_owned()));
         }

@@ -32,6 +32,11 @@ impl Default for Speed {
 }
 
 impl Speed {
+    /// Simulated seconds in a second.
+    pub fn factor(self) -> f64 {
+        f64::from(self.0) / f64::from(REAL)
+    }
+
     /// Simulated time at a real time after the start.
     pub(crate) fn simulated(self, real: Now) -> Now {
         nanoseconds(real.as_nanos().saturating_mul(self.0.into()) / u128::from(REAL))
@@ -49,7 +54,7 @@ fn nanoseconds(count: u128) -> Now {
 
 impl fmt::Display for Speed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}x", f64::from(self.0) / f64::from(REAL))
+        write!(f, "{}x", self.factor())
     }
 }
 
