@@ -362,7 +362,6 @@ fn wrong_arguments_are_rejected_before_any_block_is_sent() {
             ("program get --from 0", "1..=5000"),
             ("program get --task 5", "1..=4"),
             ("program get --from 5 --to 4", ""),
-            ("program search 1000", "1..=999"),
             ("program insert 1 OUT STN=9", ""),
             ("program insert 1 JMP TAG=next", ""),
             ("program delete 5 --to 4", ""),

@@ -20,6 +20,7 @@ pub const EXAMPLES: &[(&str, &[&str])] = &[
     ("toyo sim run", &["pick.toyo", "pick.toyo --points points.csv --input 'at 2s 0/01/3 on'"]),
     ("repl", &["-r cell3", "--sim"]),
     ("batch", &["morning.txt -r cell3", "morning.txt --set job=WELD --dry-run"]),
+    ("rehearse", &["morning.txt --from backup", "--from backup/cell3 --speed 10x -- yerc job start MAIN --yes"]),
     ("top", &["", "-r cell3"]),
     #[cfg(feature = "plant")]
     ("serve metrics", &["", "--tag line1 --listen 0.0.0.0:9464"]),

@@ -222,4 +222,19 @@ mod tests {
         assert!(Status::default().slave_not_ready());
         assert!(!Status::default().with(3, 0x10).slave_not_ready());
     }
+
+    #[test]
+    fn each_page_and_mode_has_its_own_bits() {
+        let status = (0..5).fold(Status::default(), |status, page| status.with(page, 0x10 + page)).with(5, 0xFF);
+        assert_eq!([0, 1, 2, 3, 4, 5].map(|page| status.page(page)), [0x10, 0x11, 0x12, 0x13, 0x14, 0]);
+        // Ambiguity R27: the order of the bits.
+        let kinds = [ProgramKind::Sequential, ProgramKind::Palletizing, ProgramKind::ExternalPoint, ProgramKind::Easy];
+        let modes = [RunMode::Automatic, RunMode::Step, RunMode::Program];
+        for (bits, kind) in (0..).zip(kinds) {
+            assert_eq!((kind.bits(), Status::default().with(2, bits).program_kind()), (bits, kind));
+        }
+        for (bits, mode) in (0..).zip(modes) {
+            assert_eq!((mode.bits(), Status::default().with(2, bits << 2).run_mode()), (bits, Some(mode)));
+        }
+    }
 }

@@ -372,4 +372,14 @@ mod tests {
         let longer = [&b"A.JBI\r\n"[..], &[b'A'; MAX_DATA + 1]].concat();
         assert_eq!(split_list(&longer), Err(ListError { line: 2, len: MAX_DATA + 1 }));
     }
+
+    #[test]
+    fn names_carry_their_bytes_and_type() {
+        let name = FileName::new(*b"\x83\x5c.jbi").unwrap();
+        assert_eq!((name.as_bytes(), name.file_type()), (&b"\x83\x5c.jbi"[..], Some(FileType::Jbi)));
+        assert_eq!(format!("{name:?}"), "\"\\x83\\\\.jbi\"");
+        assert_eq!((FileType::Cnd.filter(), FileType::Prm.to_string()), ("*.CND".to_owned(), "PRM".to_owned()));
+        assert_eq!(FileName::new(*b"A.EXE").unwrap().file_type(), None);
+        assert!(matches!(FileName::new(*b"A.EXE").unwrap().check_load(), Err(FileNameError::Type { .. })));
+    }
 }
