@@ -1,6 +1,5 @@
 //! Pictures of motions: `--path` of each family. `ARMCTL_BLESS=1 cargo test --test terminal paths::` writes the pictures
 //! in `tests/data/path/` again; look at them in a browser. The page runs in Chromium, where it is installed.
-#![expect(clippy::print_stdout, reason = "a test that is skipped says so")]
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

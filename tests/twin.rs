@@ -210,7 +210,7 @@ fn rehearsal_reports_changes_and_needs_no_network() {
     let came = result_of(&alone.output().expect("unshare runs"));
     let report: Value = serde_json::from_str(&came.stdout).unwrap_or_else(|_| panic!("{came:?}"));
     let [press, weld] = &report["data"]["robots"].as_array().expect("robots")[..] else { panic!("{report}") };
-    let change = |robot: &Value| robot["changes"].as_array().expect("values").to_vec();
+    let change = |robot: &Value| robot["changes"].as_array().expect("values").clone();
     assert_eq!(change(press)[0]["name"], "3", "{press}");
     assert_eq!((&change(weld)[0]["old"], &change(weld)[0]["new"]), (&"7".into(), &"99".into()), "{weld}");
     assert_eq!(press["questions"].as_array().map(Vec::len), Some(1), "{press}");

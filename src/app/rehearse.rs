@@ -81,14 +81,13 @@ struct Rehearsed<'a> {
 impl Rehearsed<'_> {
     /// Runs the commands on `lines`, and reads the robots before and after with `snapshots`.
     async fn report(&self, lines: &Plan<'_>, snapshots: &Plan<'_>) -> Result<RehearsalReport, RunError> {
-        let planned = match &self.rehearse.file {
-            Some(file) => lines.lines(&read(file)?)?,
-            None => {
-                let typed = self.rehearse.command.join(" ");
-                let words = self.rehearse.command.iter().skip_while(|word| *word == "armctl").cloned().collect();
-                let origin = Origin { file: "command".into(), line: 1 };
-                vec![lines.words(&mut Parser::default(), words, &typed, &origin)?]
-            }
+        let planned = if let Some(file) = &self.rehearse.file {
+            lines.lines(&read(file)?)?
+        } else {
+            let typed = self.rehearse.command.join(" ");
+            let words = self.rehearse.command.iter().skip_while(|word| *word == "armctl").cloned().collect();
+            let origin = Origin { file: "command".into(), line: 1 };
+            vec![lines.words(&mut Parser::default(), words, &typed, &origin)?]
         };
         let typed: BTreeMap<usize, String> =
             planned.iter().map(|planned| (planned.origin.line, planned.typed.to_string())).collect();

@@ -88,7 +88,7 @@ pub fn schema() -> SchemaEntry {
 /// A file that does not exist, or that this command has written.
 fn replaceable(path: PathBuf) -> Result<Target, Failure> {
     let is_own = files::text(&path, files::SETTINGS).is_ok_and(|text| text.starts_with(HEADER));
-    Ok(Target::new(path, is_own).map_err(|failure| failure.hint("use another path for the robots.toml of the cell"))?)
+    Target::new(path, is_own).map_err(|failure| failure.hint("use another path for the robots.toml of the cell"))
 }
 
 /// A robot of a backup.

@@ -215,7 +215,7 @@ fn named_values(file: &str, text: &str) -> Option<BTreeMap<String, String>> {
         }
         return Some(values);
     }
-    if !file.ends_with(".csv") {
+    if Path::new(file).extension().is_none_or(|ending| ending != "csv") {
         return None;
     }
     for line in text.lines().skip(1) {

@@ -96,18 +96,15 @@ impl Command for JobPath {
     async fn run(&self, context: Context<'_, Yerc>) -> Result<PathReport, Failure> {
         let Context { link, several, .. } = context;
         self.options.check(several)?;
-        let name = match &self.job {
-            Some(job) => without_suffix(job).to_owned(),
-            None => {
-                let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
-                let info = link.ask(&question).await?;
-                if info.name.is_empty() {
-                    return Err(
-                        Failure::new(Kind::ConditionNotMet, "no job is selected").hint("type the name of a job")
-                    );
-                }
-                link.encoding.decode(info.name.as_bytes())
+        let name = if let Some(job) = &self.job {
+            without_suffix(job).to_owned()
+        } else {
+            let question = link.by_model(|model| ReadJob::new(model, 0)).await?;
+            let info = link.ask(&question).await?;
+            if info.name.is_empty() {
+                return Err(Failure::new(Kind::ConditionNotMet, "no job is selected").hint("type the name of a job"));
             }
+            link.encoding.decode(info.name.as_bytes())
         };
         if link.is_dry_run() {
             let file = job_file(link, &name)?;

@@ -285,7 +285,8 @@ impl Segment {
             })),
             began,
             took: now.saturating_sub(began),
-            reached: now >= self.ends() && self.end == self.path.end(),
+            reached: now >= self.ends()
+                && self.end.iter().zip(self.path.end()).all(|(end, aim)| end.total_cmp(&aim).is_eq()),
         }
     }
 
