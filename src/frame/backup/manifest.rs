@@ -195,7 +195,7 @@ fn inventory_settings(robot: &Robot) -> Map<String, Value> {
             settings.insert(key.to_owned(), value);
         }
     };
-    set("tags", true, json!(robot.tags));
+    set("tags", !robot.tags.is_empty(), json!(robot.tags));
     for (key, value) in robot.place.levels() {
         set(key, value.is_some(), json!(value));
     }
