@@ -50,8 +50,18 @@ pub fn udp(controller: SocketAddr) -> (SocketAddr, Sent) {
     (address, sent)
 }
 
+/// Connections that a controller accepts.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Connections {
+    /// Any number at a time.
+    Parallel,
+    /// One at a time. The relay closes a connection before it opens the next, as the client did. Otherwise, the
+    /// controller may refuse the next client, because it does not know yet that the last one is gone.
+    InTurn,
+}
+
 /// Relays TCP connections.
-pub fn tcp(controller: SocketAddr) -> (SocketAddr, Sent) {
+pub fn tcp(controller: SocketAddr, connections: Connections) -> (SocketAddr, Sent) {
     let (listener, sent) = (TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).expect("a port"), Sent::default());
     let address = listener.local_addr().expect("an address");
     let log = sent.clone();
@@ -61,8 +71,13 @@ pub fn tcp(controller: SocketAddr) -> (SocketAddr, Sent) {
             let (from_client, to_client) = (client.try_clone().expect("a socket"), client);
             let (from_server, to_server) = (server.try_clone().expect("a socket"), server);
             let log = log.clone();
-            thread::spawn(move || pass(from_client, to_server, |bytes| log.add(bytes)));
-            thread::spawn(move || pass(from_server, to_client, |_| {}));
+            let relays = [
+                thread::spawn(move || pass(from_client, to_server, |bytes| log.add(bytes))),
+                thread::spawn(move || pass(from_server, to_client, |_| {})),
+            ];
+            if connections == Connections::InTurn {
+                relays.map(|relay| relay.join().expect("no panic"));
+            }
         }
     });
     (address, sent)

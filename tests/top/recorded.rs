@@ -1,6 +1,6 @@
 //! Controllers of all families behind recording relays, and checks of the recorded data.
 
-use super::proxy::{self, Sent};
+use super::proxy::{self, Connections, Sent};
 use crate::support::simulator::Simulator;
 
 /// One controller of each family, on the loopback interface.
@@ -16,8 +16,8 @@ impl Recorded {
         let simulators = ["yerc", "toyo", "yrcx"].map(Simulator::start);
         let [yerc, toyo, yrcx] = &simulators;
         let (yerc_at, to_yerc) = proxy::udp(yerc.place().0);
-        let (toyo_at, to_toyo) = proxy::tcp(toyo.place().0);
-        let (yrcx_at, to_yrcx) = proxy::tcp(yrcx.place().0);
+        let (toyo_at, to_toyo) = proxy::tcp(toyo.place().0, Connections::InTurn);
+        let (yrcx_at, to_yrcx) = proxy::tcp(yrcx.place().0, Connections::Parallel);
         let targets = [
             format!("yerc udp://{yerc_at}?{}", yerc.place().1),
             format!("toyo tcp://{toyo_at}"),
