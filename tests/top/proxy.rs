@@ -76,7 +76,9 @@ pub fn tcp(controller: SocketAddr, connections: Connections) -> (SocketAddr, Sen
                 thread::spawn(move || pass(from_server, to_client, |_| {})),
             ];
             if connections == Connections::InTurn {
-                relays.map(|relay| relay.join().expect("no panic"));
+                for relay in relays {
+                    relay.join().expect("no panic");
+                }
             }
         }
     });
