@@ -123,6 +123,12 @@ fn suggest_flag_or_value(error: &mut clap::Error, typed: &TypedLine<'_>, whole: 
     let command = typed.path.iter().try_fold(whole, |command, word| command.find_subcommand(word))?;
     if let Some(flag) = word.strip_prefix("--") {
         let flag = flag.split('=').next().unwrap_or(flag);
+        if command.get_positionals().any(|argument| argument.get_id() == "settings") {
+            if error.remove(ContextKind::SuggestedArg).is_some() {
+                plain_usage(error, typed, whole);
+            }
+            return Some(format!("type settings without --: {}=VALUE", flag.replace('-', "_")));
+        }
         let is_named = |argument: &&Arg| argument.get_id().as_str().eq_ignore_ascii_case(flag);
         command.get_positionals().find(is_named)?;
         if error.remove(ContextKind::SuggestedArg).is_some() {

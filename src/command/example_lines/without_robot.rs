@@ -37,7 +37,7 @@ pub const EXAMPLES: &[(&str, &[&str])] = &[
     ("teach", &["-r cell3", "-r cell3 --max-step 1 --max-speed 5"]),
     ("robots list", &["", "--json"]),
     ("robots show", &["cell3", "cell3 --origin"]),
-    ("robots add", &["cell3 udp://192.168.1.31 --read-only", "loader serial:///dev/ttyUSB0 --with-tag line1"]),
+    ("robots add", &["cell3 udp://192.168.1.31 --read-only", "loader serial:///dev/ttyUSB0 site=berlin line=3"]),
     ("names list", &["-r cell3", "clamp"]),
     ("names set", &["clamp 27010 -r cell3", "parts B5"]),
     (

@@ -48,7 +48,7 @@ impl Setup {
         if !yes(run, format!("Write this to {path}?"), true).await.map_err(no_terminal)? {
             return Err(Failure::new(Kind::Rejected, "not confirmed; nothing was written").into());
         }
-        robot.add(run, "setup")?;
+        robot.add(run, "setup", &[])?;
         run.screen.note("use `armctl status` to see the state of the robot, and `armctl -h` to list the commands");
         Ok(())
     }

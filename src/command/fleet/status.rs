@@ -154,12 +154,13 @@ impl Command for Overview {
     fn summary(&self, envelopes: &[Envelope]) -> Option<String> {
         let mut lines = Vec::new();
         if let Some(key) = &self.by {
-            let mut places: BTreeMap<Option<&str>, Vec<&Envelope>> = BTreeMap::new();
+            // Robots without a place are last.
+            let mut places: BTreeMap<(bool, Option<&str>), Vec<&Envelope>> = BTreeMap::new();
             for envelope in envelopes {
                 let place = envelope.place.as_ref().and_then(|place| place.get(key));
-                places.entry(place).or_default().push(envelope);
+                places.entry((place.is_none(), place)).or_default().push(envelope);
             }
-            for (place, envelopes) in places {
+            for ((_, place), envelopes) in places {
                 let label = place.map_or_else(|| format!("no {key}"), |place| format!("{key} {place}"));
                 lines.push(format!("{label}: {}", count(&envelopes.into_iter())));
             }

@@ -314,7 +314,9 @@ impl FromStr for Target {
             return Err(wrong(format!("port {rest} is not from 1 to 65535")));
         }
         if scheme.is_empty() {
-            return Err(wrong("the scheme is missing, for example udp://".into()));
+            let is_family = url.parse::<Family>().is_ok();
+            let family = if is_family { "this is a family, but the target is a URL; " } else { "" };
+            return Err(wrong(format!("{family}the scheme is missing, for example udp://")));
         }
         let (place, query) = rest.split_once('?').unwrap_or((rest, ""));
         let mut query = Query::parse(query).map_err(wrong)?;
@@ -399,7 +401,9 @@ fn tcp(place: &str, query: &mut Query) -> Result<Tcp, String> {
 
 fn sim(place: &str, query: &mut Query) -> Result<Sim, String> {
     if !place.is_empty() {
-        return Err(format!("'{place}' after sim: has no meaning; parameters start with ?"));
+        let family = place.parse::<Family>().map(|family| format!("; the target is sim: and the family is {family}"));
+        let family = family.unwrap_or_else(|_| "; parameters start with ?".to_owned());
+        return Err(format!("'{place}' after sim: has no meaning{family}"));
     }
     let axes = match query.take("axes") {
         None => None,

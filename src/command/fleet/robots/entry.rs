@@ -39,6 +39,9 @@ pub struct Add {
     /// Make this robot the default robot
     #[arg(long)]
     default: bool,
+    /// Other settings, such as site=berlin or timeout=5s; `armctl robots set --help` lists them
+    #[arg(value_name = "KEY=VALUE", add = ValueKind::Listed(candidates))]
+    settings: Vec<String>,
 }
 
 /// A new inventory entry.
@@ -78,9 +81,13 @@ impl NewRobot {
         table
     }
 
-    /// Writes the entry to the file.
-    pub fn add(self, run: &Run, id: &'static str) -> Result<(), RunError> {
-        let file = change(run, |document| document.add(self.table(), self.is_default))?;
+    /// Writes the entry to the file, with other settings `KEY=VALUE`.
+    pub fn add(self, run: &Run, id: &'static str, settings: &[String]) -> Result<(), RunError> {
+        let settings = assignments(settings, self.family)?;
+        let file = change(run, |document| {
+            document.add(self.table(), self.is_default)?;
+            settings.into_iter().try_for_each(|(key, new)| document.set(&self.name, key, new).map(drop))
+        })?;
         let target = self.target.url().to_owned();
         changes_text(run.local(id, &Changed { done: "added", name: self.name, target, file }))
     }
@@ -97,8 +104,8 @@ impl Add {
         target
             .check(family)
             .map_err(|why| Failure::usage(why).hint("see `armctl help targets` for the URLs of each family"))?;
-        let Self { name, read_only, hold, tags, default: is_default, .. } = self;
-        NewRobot { name, target, family, read_only, hold, tags, is_default }.add(run, "robots.add")
+        let Self { name, read_only, hold, tags, default: is_default, settings, .. } = self;
+        NewRobot { name, target, family, read_only, hold, tags, is_default }.add(run, "robots.add", &settings)
     }
 }
 
@@ -218,18 +225,7 @@ impl Set {
 /// Writes settings of a robot to the file.
 pub fn set(run: &Run, id: &'static str, robot: String, settings: &[String]) -> Result<(), RunError> {
     let entry = check_known(&run.sources.inventory, &robot)?;
-    let settings = settings.iter().map(|setting| assignments(setting)).collect::<Result<Vec<_>, _>>()?;
-    // The meaning of an address without a scheme depends on the family, which can be set in the same command.
-    let family = settings.iter().find(|(key, ..)| *key == "family").and_then(|(_, text, _)| text.parse().ok());
-    let family = family.unwrap_or(entry.family);
-    let values = settings.iter().map(|(key, text, parse)| {
-        let new = if text.is_empty() { None } else { Some(parse(text, family).map_err(|why| add_context(key, why))?) };
-        if let (Some(name), Some(_)) = (key.strip_prefix("names."), &new) {
-            named(family, name, text).map_err(|why| add_context(key, why))?;
-        }
-        Ok((*key, new))
-    });
-    let values = values.collect::<Result<Vec<_>, Failure>>()?;
+    let values = assignments(settings, entry.family)?;
     let mut changes = Vec::new();
     let file = change(run, |document| {
         for (key, new) in values {
@@ -248,8 +244,24 @@ fn address(text: &str, family: Family) -> Result<Value, Failure> {
     Ok(text.parse::<i64>().map_or_else(|_| text.into(), Value::from))
 }
 
+/// Parses typed settings for a robot of a family: keys, and new values; `None` removes a setting.
+fn assignments(settings: &[String], family: Family) -> Result<Vec<(&str, Option<Value>)>, Failure> {
+    let settings = settings.iter().map(|setting| assignment(setting)).collect::<Result<Vec<_>, _>>()?;
+    // The meaning of an address without a scheme depends on the family, which can be set in the same command.
+    let typed = settings.iter().find(|(key, ..)| *key == "family").and_then(|(_, text, _)| text.parse().ok());
+    let family = typed.unwrap_or(family);
+    let value = |(key, text, parse): (_, &str, Parse)| {
+        let new = if text.is_empty() { None } else { Some(parse(text, family).map_err(|why| add_context(key, why))?) };
+        if let (Some(name), Some(_)) = (key.strip_prefix("names."), &new) {
+            named(family, name, text).map_err(|why| add_context(key, why))?;
+        }
+        Ok((key, new))
+    };
+    settings.into_iter().map(value).collect()
+}
+
 /// Splits a typed setting into its key and text, and finds its parser.
-fn assignments(setting: &str) -> Result<(&str, &str, Parse), Failure> {
+fn assignment(setting: &str) -> Result<(&str, &str, Parse), Failure> {
     let Some((key, text)) = setting.split_once('=') else {
         return Err(Failure::usage(format!("'{setting}' is not KEY=VALUE"))
             .hint("type settings such as read_only=off or timeout=5s"));
