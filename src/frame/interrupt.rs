@@ -4,10 +4,11 @@
 //! running work, which stops the robot. A second request ends the process at once. The first request also ends the
 //! process if the work is busy with a computation and does not react.
 
-use std::future::Future;
+use std::future::{Future, poll_fn};
 use std::pin::pin;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{OnceLock, mpsc};
+use std::task::Poll;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -127,13 +128,18 @@ fn start() -> std::io::Result<TerminationRequest> {
     Ok(requests)
 }
 
-/// Waits for a termination request for which `counts` is true.
+/// Waits for a termination request for which `counts` is true. Each poll looks at the request itself, because the
+/// channel wakes its receivers one after the other: if an outer wait is woken first, the inner wait, which handles the
+/// request, must see it, too.
 async fn wait(mut asked: watch::Receiver<Option<&'static str>>, counts: impl Fn(&str) -> bool) -> &'static str {
-    let how = asked.wait_for(|how| how.is_some_and(&counts)).await.ok().and_then(|how| *how);
-    match how {
-        Some(how) => how,
-        None => std::future::pending().await,
-    }
+    let request = asked.clone();
+    let mut wakes = pin!(async { while asked.changed().await.is_ok() {} }.fuse());
+    poll_fn(|context| {
+        // First the registration, then the look, so that no request is missed between them.
+        let _ = wakes.as_mut().poll(context);
+        request.borrow().filter(|how| counts(how)).map_or(Poll::Pending, Poll::Ready)
+    })
+    .await
 }
 
 /// Passes each termination request to the work.
@@ -333,8 +339,7 @@ impl Signals {
 
 #[cfg(test)]
 mod tests {
-    use std::future::{pending, poll_fn};
-    use std::task::Poll;
+    use std::future::pending;
 
     use super::*;
 
@@ -342,9 +347,12 @@ mod tests {
     async fn inner_wait_handles_the_request() {
         let (ask, asked) = watch::channel(None);
         let inner = run_until_request(pending::<()>(), wait(asked.clone(), |_| true));
-        // The request arrives after the work was polled.
+        // The request arrives after the work was polled. The channel has not woken the inner wait yet.
         let outer = poll_fn(|_| {
-            ask.send_replace(Some(KEYS));
+            ask.send_if_modified(|how| {
+                *how = Some(KEYS);
+                false
+            });
             Poll::Ready("outer")
         });
         assert_eq!(run_until_request(inner, outer).await, Ok(Err(KEYS)));
