@@ -44,7 +44,7 @@ pub fn add_suggestion(mut error: clap::Error, args: &[OsString], whole: &Command
                 .or_else(|| suggest_quotes(&error, args, &typed, whole))
                 .or_else(|| suggest_flag_or_value(&mut error, &typed, whole));
             let has_tip = error.get(ContextKind::SuggestedArg).or(error.get(ContextKind::Suggested)).is_some();
-            tip.or_else(|| suggest_example(&typed.path).filter(|_| !has_tip))
+            tip.or_else(|| suggest_example(&typed.path, None).filter(|_| !has_tip))
         }
         ErrorKind::MissingRequiredArgument if typed.path == ["robots", "discover"] => {
             // The flag `--for` limits a condition, and this command has no condition.
@@ -323,14 +323,16 @@ fn suggest_value(error: &clap::Error, typed: &TypedLine<'_>, whole: &Command) ->
     let names: Vec<&str> = values.iter().map(clap::builder::PossibleValue::get_name).collect();
     match names.split_last() {
         Some((last, others)) if !others.is_empty() => Some(format!("use {} or {last}", others.join(", "))),
-        _ => suggest_example(&typed.path),
+        _ => suggest_example(&typed.path, argument?.get_long()),
     }
 }
 
-/// Returns an example of the command, if the command is not dangerous.
-fn suggest_example(path: &[&str]) -> Option<String> {
-    let mut lines = example_lines::examples(path).filter(|_| example_lines::preselects(path));
-    lines.next().map(|line| format!("example: `armctl {line}`"))
+/// Returns an example of the command, with the missing flag if possible. There is no example of a dangerous command.
+fn suggest_example(path: &[&str], missing: Option<&str>) -> Option<String> {
+    let lines: Vec<String> = example_lines::examples(path).filter(|_| example_lines::preselects(path)).collect();
+    let has_flag = |line: &&String| line.split(' ').any(|word| word.strip_prefix("--") == missing);
+    let line = lines.iter().find(has_flag).or(lines.first())?;
+    Some(format!("example: `armctl {line}`"))
 }
 
 /// Removes the suggestion of a flag that does not resemble the typed flag enough.

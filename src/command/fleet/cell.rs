@@ -187,8 +187,15 @@ impl SavedRobot {
 pub fn inventory_text(folder: &Path, entries: Vec<TomlTable>) -> Result<String, Failure> {
     let broken = |why: &str| Failure::local(format!("internal error: {why}"));
     let mut document = Document::parse("").map_err(|error| broken(&error.to_string()))?;
-    for entry in entries {
-        document.add(entry, false).map_err(broken)?;
+    let (count, mut has_default) = (entries.len(), false);
+    for mut entry in entries {
+        let is_default = entry.remove(manifest::DEFAULT).is_some_and(|item| item.as_bool() == Some(true));
+        has_default |= is_default;
+        document.add(entry, is_default).map_err(broken)?;
+    }
+    // Without a default robot in the plant, a command that names no robot is refused, here as there.
+    if count > 1 && !has_default {
+        document.remove_default();
     }
     let shown = folder.display().to_string().replace(char::is_control, "?");
     let text = format!("{HEADER} {shown}, served by `armctl sim --cell`\n{document}");

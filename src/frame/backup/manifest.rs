@@ -40,8 +40,8 @@ pub struct Manifest<C = Value> {
     pub robot: String,
     /// URL of the robot.
     pub target: String,
-    /// Settings of the robot's inventory entry, with the keys of `robots.toml`; empty in a backup of an address, and in
-    /// a backup of an older armctl.
+    /// Settings of the robot's inventory entry, with the keys of `robots.toml`, and `default` if it is the default
+    /// robot. Empty in a backup of an address, and in a backup of an older armctl.
     #[serde(skip_serializing_if = "Map::is_empty", default)]
     pub inventory: Map<String, Value>,
     /// Model and versions.
@@ -183,6 +183,9 @@ impl<C: About> Manifest<C> {
     }
 }
 
+/// Key in the settings of the inventory entry: whether the robot is the default robot.
+pub const DEFAULT: &str = "default";
+
 /// Settings of the inventory entry that describe the robot and protect it. The settings of its connection are not
 /// among them.
 fn inventory_settings(robot: &Robot) -> Map<String, Value> {
@@ -195,6 +198,7 @@ fn inventory_settings(robot: &Robot) -> Map<String, Value> {
             settings.insert(key.to_owned(), value);
         }
     };
+    set(DEFAULT, robot.is_default, json!(true));
     set("tags", !robot.tags.is_empty(), json!(robot.tags));
     for (key, value) in robot.place.levels() {
         set(key, value.is_some(), json!(value));
@@ -258,11 +262,17 @@ pub fn open_existing<C: About>(folder: &Path) -> Result<Manifest<C>, Failure> {
         } else {
             format!("there is no folder {shown}")
         });
-        match folders_in(folder).first() {
-            Some(one) => failure
-                .hint(format!("select a subfolder, such as {}: the backups are in the subfolders", one.display())),
-            None => failure.hint("use the folder of a backup; create one with `armctl backup`"),
-        }
+        add_subfolder::<C>(failure, folder, "use the folder of a backup; create one with `armctl backup`")
+    })
+}
+
+/// Adds a hint to use a subfolder of a fleet backup, one of the family if there is one, or another hint.
+pub fn add_subfolder<C: About>(failure: Failure, folder: &Path, otherwise: &str) -> Failure {
+    let folders = folders_in(folder);
+    let has_family = |one: &&PathBuf| read::<C>(one).is_ok();
+    failure.hint(match folders.iter().find(has_family).or(folders.first()) {
+        Some(one) => format!("select a subfolder, such as {}: the backups are in the subfolders", one.display()),
+        None => otherwise.to_owned(),
     })
 }
 

@@ -62,11 +62,8 @@ pub fn read_folder<C: About>(
     };
     if set.files.is_empty() && set.unread.is_empty() {
         let failure = Failure::usage(format!("{} contains no {}", folder.display(), filter.expected));
-        return Err(match manifest::folders_in(folder).first() {
-            Some(one) => failure
-                .hint(format!("select a subfolder, such as {}: the backups are in the subfolders", one.display())),
-            None => failure.hint("use the folder of a backup, or a folder with program files"),
-        });
+        let otherwise = "use the folder of a backup, or a folder with program files";
+        return Err(manifest::add_subfolder::<C>(failure, folder, otherwise));
     }
     Ok((set, manifest))
 }

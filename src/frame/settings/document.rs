@@ -94,7 +94,7 @@ impl Document {
     }
 
     /// Removes the default robot, but keeps the comment above it. The comment may be the header comment of the file.
-    fn remove_default(&mut self) {
+    pub fn remove_default(&mut self) {
         let Some((key, _)) = self.0.as_table_mut().remove_entry("default") else { return };
         let above = key.leaf_decor().prefix().and_then(|prefix| prefix.as_str()).unwrap_or_default();
         if above.contains('#') {

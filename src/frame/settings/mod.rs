@@ -104,6 +104,8 @@ pub struct Robot {
     pub tags: Vec<String>,
     /// Place in the plant.
     pub place: Place,
+    /// Whether the inventory names this robot as its default.
+    pub is_default: bool,
     /// Sessions that commands of the robot use.
     pub sessions: Sessions,
     /// Alarm explanations of the robot's site.
@@ -361,7 +363,8 @@ impl Sources {
         let names = RobotNames::new(Arc::clone(&entry.names), entry.family, &entry.target.address());
         let (pulses_per_degree, place) = (entry.pulses_per_degree.clone(), entry.place.clone());
         let rehearsal = self.rehearsal.as_ref().and_then(|robots| robots.get(&entry.name)).cloned();
-        Ok(Robot { pulses_per_degree, place, names, rehearsal, ..robot })
+        let is_default = self.inventory.default.as_ref() == Some(&entry.name);
+        Ok(Robot { pulses_per_degree, place, is_default, names, rehearsal, ..robot })
     }
 
     /// Returns the robot at a target, with all settings.
@@ -508,6 +511,7 @@ impl Sources {
             pulses_per_degree: Vec::new(),
             tags,
             place: Place::default(),
+            is_default: false,
             sessions: self.selection.sessions,
             alarms: self.alarms(),
             // The path is absolute, so that it stays valid in any folder.
