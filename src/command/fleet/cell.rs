@@ -12,6 +12,7 @@ use armctl_controller::simulator::run_options::Speed;
 use armctl_files as files;
 use armctl_frame::SchemaEntry;
 use armctl_frame::backup::manifest::{self, Manifest};
+use armctl_frame::backup::recording::{self, Head};
 use armctl_frame::local_names::Target;
 use armctl_frame::prelude::*;
 use armctl_frame::serve;
@@ -34,6 +35,12 @@ pub struct CellArguments {
     /// Read console lines on stdin, for example `cell3 alarm 4315`; `help` lists the robots
     #[arg(long, requires = "cell")]
     console: bool,
+    /// Give the answers of the recordings in the folder (`armctl record`) at the same times, also without a backup
+    #[arg(long, requires = "cell")]
+    replay: bool,
+    /// Start the recordings again at their end [default: keep the last state]
+    #[arg(long = "loop", requires = "replay")]
+    is_loop: bool,
 }
 
 /// First words of a robots.toml that this command may replace.
@@ -50,12 +57,13 @@ impl CellArguments {
         let folder = self.cell.unwrap_or_default();
         let inventory = self.inventory.map(replaceable).transpose()?;
         let (mut servers, mut robots, mut tables) = (Vec::new(), Vec::new(), Vec::new());
-        for robot in robots_in(&folder)? {
+        let saved = if self.replay { recorded_robots_in(&folder)? } else { robots_in(&folder)? };
+        for robot in saved {
             let named = |failure: Failure| {
                 let message = format!("{}: {}", robot.name, failure.message);
                 Failure { message, ..failure }
             };
-            let server = robot.serve(self.speed.unwrap_or_default()).await.map_err(named)?;
+            let server = robot.serve(self.speed.unwrap_or_default(), self.is_loop).await.map_err(named)?;
             tables.push(robot.entry(&server.target).map_err(named)?);
             robots.push(robot.report(&server.target));
             servers.push(server);
@@ -69,6 +77,11 @@ impl CellArguments {
         let inventory = inventory.map(|target| target.path().display().to_string());
         let shown = inventory.clone().unwrap_or_else(|| "FILE".to_owned());
         run.local(ID, &CellReport { inventory, robots, text })?;
+        for server in &servers {
+            if let Some(replay) = &server.replay {
+                run.screen.note(&format!("{}: {replay}", server.name));
+            }
+        }
         if !run.screen.is_json() {
             let console = if self.console { " or `quit`; `help` lists the robots" } else { "" };
             run.screen.note(&format!("reach them: armctl --config {shown} status --all\nend them:   Ctrl-C{console}"));
@@ -100,8 +113,10 @@ pub struct SavedRobot {
     pub family: Family,
     /// Folder of its backup.
     pub folder: PathBuf,
-    /// Manifest of its backup.
+    /// Manifest of its backup; without a backup, of its recording.
     pub manifest: Manifest,
+    /// Recording that its simulator replays.
+    recording: Option<Head>,
 }
 
 /// Settings of an inventory entry that a manifest does not decide.
@@ -109,11 +124,32 @@ const OWN_KEYS: [&str; 3] = ["name", "target", "family"];
 
 /// Robots of a backup: of one robot, or of a fleet with a subfolder for each robot.
 pub fn robots_in(folder: &Path) -> Result<Vec<SavedRobot>, Failure> {
-    let folders = if folder.join(manifest::MANIFEST).exists() { Vec::new() } else { manifest::folders_in(folder) };
+    saved_robots(folder, &[manifest::MANIFEST])
+}
+
+/// Robots of recordings and backups, in the same folders. At least one robot has a recording.
+fn recorded_robots_in(folder: &Path) -> Result<Vec<SavedRobot>, Failure> {
+    let robots = saved_robots(folder, &[manifest::MANIFEST, recording::FILE])?;
+    if robots.iter().all(|robot| robot.recording.is_none()) {
+        return Err(Failure::local(format!("{} contains no {}", folder.display(), recording::FILE))
+            .hint(format!("record the robots: `armctl record {} --all`", folder.display())));
+    }
+    Ok(robots)
+}
+
+/// Robots of the folders that contain one of these files.
+fn saved_robots(folder: &Path, files: &[&str]) -> Result<Vec<SavedRobot>, Failure> {
+    let is_saved = |folder: &Path| files.iter().any(|file| folder.join(file).exists());
+    let folders = if is_saved(folder) { Vec::new() } else { manifest::folders_with(folder, files) };
     let folders = if folders.is_empty() { vec![folder.to_owned()] } else { folders };
     let mut robots: Vec<SavedRobot> = Vec::new();
     for folder in folders {
-        let manifest: Manifest = manifest::open_existing(&folder)?;
+        let file = folder.join(recording::FILE);
+        let recording = (files.contains(&recording::FILE) && file.exists()).then(|| Head::read(&file)).transpose()?;
+        let manifest = match &recording {
+            Some(head) if !folder.join(manifest::MANIFEST).exists() => head.manifest.clone(),
+            _ => manifest::open_existing(&folder)?,
+        };
         let family = manifest.family.parse().map_err(|why| Failure::local(format!("{}: {why}", folder.display())))?;
         let name = manifest.robot.clone();
         let invalid = |why: &str| {
@@ -125,18 +161,30 @@ pub fn robots_in(folder: &Path) -> Result<Vec<SavedRobot>, Failure> {
         if robots.iter().any(|known| known.name == name) {
             return invalid(&format!("two backups are of a robot '{name}'"));
         }
-        robots.push(SavedRobot { name, family, folder, manifest });
+        robots.push(SavedRobot { name, family, folder, manifest, recording });
     }
     Ok(robots)
 }
 
 impl SavedRobot {
     /// Serves the robot on free ports of the loopback interface.
-    async fn serve(&self, speed: Speed) -> Result<serve::NamedServer, Failure> {
-        let mut arguments: Vec<OsString> = ["--bind", "127.0.0.1:0", "--from"].map(OsString::from).into();
-        arguments.push(self.folder.clone().into());
-        arguments.extend(["--speed".into(), speed.to_string().into()]);
+    async fn serve(&self, speed: Speed, is_loop: bool) -> Result<serve::NamedServer, Failure> {
+        let mut arguments: Vec<OsString> = ["--bind", "127.0.0.1:0", "--speed"].map(OsString::from).into();
+        arguments.push(speed.to_string().into());
+        if self.folder.join(manifest::MANIFEST).exists() {
+            arguments.extend(["--from".into(), self.folder.clone().into()]);
+        } else if let Some(model) = self.recording.as_ref().and_then(|head| head.model.as_ref()) {
+            arguments.extend(["--model".into(), model.into()]);
+        }
+        if let Some(recording) = self.recording_path() {
+            arguments.extend(["--replay".into(), recording.into()]);
+            arguments.extend(is_loop.then(|| "--loop".into()));
+        }
         families::of(self.family).serve(self.name.clone(), arguments).await
+    }
+
+    fn recording_path(&self) -> Option<PathBuf> {
+        self.recording.as_ref().map(|_| self.folder.join(recording::FILE))
     }
 
     /// URL of the simulator of the robot in this process.
@@ -177,6 +225,7 @@ impl SavedRobot {
             family: self.family.name(),
             target: target.to_owned(),
             backup: self.folder.display().to_string(),
+            recording: self.recording_path().map(|path| path.display().to_string()),
             taken_at: self.manifest.taken_at.to_string(),
             replaces: self.manifest.target.clone(),
         }
@@ -224,6 +273,8 @@ struct CellRobot {
     target: String,
     /// Folder of the backup.
     backup: String,
+    /// File with the recording that the simulator replays; null without --replay.
+    recording: Option<String>,
     /// Time when the backup started.
     taken_at: String,
     /// URL of the robot in the backup.

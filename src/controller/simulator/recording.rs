@@ -1,13 +1,29 @@
 //! Recordings: what a controller answered to reads over a time, and the replay of these answers by a simulator.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use crate::Now;
 
 /// Answers by request. Each family writes both as text: `recording` of the family, or the blocks of toyo.
 pub type Answers = BTreeMap<String, String>;
+
+/// Answers that a client received since they were last taken. The clones of a log share their content.
+#[derive(Debug, Clone, Default)]
+pub struct AnswerLog(Arc<Mutex<Answers>>);
+
+impl AnswerLog {
+    /// Adds the answer to a request, or replaces it.
+    pub fn insert(&self, request: String, answer: String) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(request, answer);
+    }
+
+    /// Removes and returns the answers.
+    pub fn take(&self) -> Answers {
+        std::mem::take(&mut *self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
 
 /// What one poll of a controller found.
 #[derive(Debug, Clone, PartialEq, Eq)]
