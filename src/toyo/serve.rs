@@ -16,6 +16,7 @@ use armctl_frame::failure::{Failure, plain};
 use armctl_frame::interrupt::catch_interrupts;
 use armctl_frame::serve::terminal_link::TerminalLink;
 use armctl_frame::serve::{self, Serving, Started, address, bind_failure};
+use armctl_frame::settings::target::Family;
 use armctl_transport::fault::LineFaultSpec;
 use armctl_transport::line::Pace;
 use armctl_transport::stream_server::StreamServer;
@@ -80,7 +81,7 @@ impl serve::Serve for Serve {
     async fn start(self) -> Result<Started<Self>, Failure> {
         let start = simulated::start(self.state.as_deref(), self.from.as_deref(), self.axes, self.fault.as_ref())?;
         let start = start.with_options(RunOptions { speed: self.speed, motions: None });
-        let (start, replay) = self.replay.apply(start, "toyo")?;
+        let (start, replay) = self.replay.apply(start, Family::Toyo)?;
         let pace = self.baud.map(|baud| Pace::new(baud, BITS));
         let settings = self.baud.map(|baud| format!("?baud={baud}")).unwrap_or_default();
         // From now on, Ctrl-C must remove the symbolic link.

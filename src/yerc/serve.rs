@@ -14,6 +14,7 @@ use armctl_controller::yerc::simulator::Simulator;
 use armctl_frame::backup::recording::ReplayArguments;
 use armctl_frame::backup::twin::note;
 use armctl_frame::serve::{self, Started, address, bind_failure};
+use armctl_frame::settings::target::Family;
 use armctl_transport::fault::{FaultSpec, Faults};
 use armctl_transport::server::Server;
 
@@ -85,7 +86,7 @@ impl serve::Serve for Serve {
         let start = simulator_start::start(self.state.as_deref(), self.from.as_deref(), model, self.fault.as_ref())?;
         simulator_start::check_model(&start, self.model)?;
         let start = start.with_options(RunOptions { speed: self.speed, motions: None });
-        let (start, replay) = self.replay.apply(start, "yerc")?;
+        let (start, replay) = self.replay.apply(start, Family::Yerc)?;
         let model = start.model();
         let robot = self.bind;
         let file_port = self.file_port.unwrap_or(if robot.port() == 0 { 0 } else { robot.port().saturating_add(1) });

@@ -14,6 +14,7 @@ use armctl_controller::simulator::run_options::{RunOptions, Speed};
 use armctl_frame::backup::recording::ReplayArguments;
 use armctl_frame::backup::twin::note;
 use armctl_frame::serve::{self, Serving, Started};
+use armctl_frame::settings::target::Family;
 use armctl_frame::settings::target::bus::simulators;
 
 /// Simulate a YRCX on a fieldbus
@@ -92,7 +93,7 @@ impl serve::Serve for ServeArgs {
         let (start, link, faults) =
             (start_with(self.state.as_deref(), self.from.as_deref())?, self.link.as_deref(), self.fault.as_deref());
         let start = start.with_options(RunOptions { speed: self.speed, motions: None });
-        let (start, replay) = self.replay.apply(start, "yrcx")?;
+        let (start, replay) = self.replay.apply(start, Family::Yrcx)?;
         let server = serve.serve(ServeOptions { simulator: wanted, start, link, faults })?;
         Ok(Started {
             reach: serve::connect_hint("yrcx", &server.target),

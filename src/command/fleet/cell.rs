@@ -271,11 +271,11 @@ struct CellRobot {
     family: &'static str,
     /// URL of the simulator.
     target: String,
-    /// Folder of the backup.
+    /// Folder of the backup and the recording.
     backup: String,
     /// File with the recording that the simulator replays; null without --replay.
     recording: Option<String>,
-    /// Time when the backup started.
+    /// Time when the backup started; without a backup, the recording.
     taken_at: String,
     /// URL of the robot in the backup.
     replaces: String,
@@ -286,11 +286,18 @@ impl Report for CellReport {
         if self.inventory.is_none() {
             return View::text(self.text.trim_end());
         }
-        let mut table = Table::new(&["robot", "target", "replaces", "backup of"], "");
+        let has_recordings = self.robots.iter().any(|robot| robot.recording.is_some());
+        let last = if has_recordings { "recording" } else { "backup of" };
+        let mut table = Table::new(&["robot", "target", "replaces", last], "");
         for robot in &self.robots {
             let target = Cell::from(robot.target.as_str()).whole();
             let replaces = Cell::from(robot.replaces.as_str()).whole();
-            table.row([robot.robot.as_str().into(), target, replaces, robot.taken_at.as_str().into()]);
+            let last = if has_recordings {
+                Cell::optional(robot.recording.as_deref())
+            } else {
+                robot.taken_at.as_str().into()
+            };
+            table.row([robot.robot.as_str().into(), target, replaces, last]);
         }
         View::table(table)
     }

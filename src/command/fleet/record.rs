@@ -1,7 +1,11 @@
 //! `armctl record`: keeps what robots answer, for a replay by simulators. It only reads.
 
+#[cfg(test)]
+mod tests;
+
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
+use std::future::pending;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -9,7 +13,6 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use clap::ValueHint;
-use futures_util::future::join;
 use serde_json::{Map, Value};
 use tokio::time::{Instant, sleep, timeout};
 
@@ -46,7 +49,7 @@ pub struct Record {
     folder: PathBuf,
     /// End after this time
     #[arg(long = "for", value_name = "TIME", value_parser = duration::parse_some)]
-    duration: Option<Duration>,
+    within: Option<Duration>,
     /// End when the recordings have this size together
     #[arg(long, value_name = "SIZE", default_value = "1G", value_parser = size)]
     max_size: u64,
@@ -133,26 +136,37 @@ impl Record {
     pub async fn run(&self, run: &Run) -> Result<(), RunError> {
         let every = run.repeat.every.unwrap_or(DEFAULT_INTERVAL);
         check_globals(run, every)?;
+        let poll = Poll::new(&run.sources, run.screen.silenced())?;
+        catch_interrupts();
+        let report = self.record(poll, (every, run.repeat.count), &run.screen).await?;
+        run.local(ID, &report)
+    }
+
+    /// Records the robots of a poller at an interval, up to a number of polls of each robot.
+    async fn record(
+        &self,
+        mut poll: Poll,
+        (every, count): (Duration, Option<u64>),
+        screen: &Screen,
+    ) -> Result<RecordReport, Failure> {
         let extras = self.also.iter().map(|line| Extra::parse(line).map(Rc::new)).collect::<Result<Rc<[_]>, _>>();
         let extras = extras.map_err(|failure| Failure { message: format!("--also: {}", failure.message), ..failure })?;
-        let mut poll = Poll::new(&run.sources, run.screen.silenced())?;
         let mut recorder = Recorder { folder: &self.folder, every, start: Instant::now(), files: BTreeMap::new() };
         for robot in poll.robots() {
             recorder.add(robot)?;
         }
-        catch_interrupts();
-        let count = poll.robots().len();
-        let (plural, shown) = (if count == 1 { "" } else { "s" }, self.folder.display());
-        run.screen.note(&format!("recording {count} robot{plural} in {shown}; end it with Ctrl-C"));
+        let (robots, folder) = (poll.robots().len(), self.folder.display());
+        let plural = if robots == 1 { "" } else { "s" };
+        screen.note(&format!("recording {robots} robot{plural} in {folder}; end it with Ctrl-C"));
         let ids: Vec<RobotId> = poll.robots().iter().map(RobotId::for_robot).collect();
-        let mut counter = PollCounter::new(&ids, run.repeat.count);
+        let mut counter = PollCounter::new(&ids, count);
         let request = PollRequest { detail: Detail::Full, extras, answers: true, ..PollRequest::every(every) };
         let mut events = poll.subscribe(PollRequest { longest_pause: LONGEST_PAUSE.max(every), ..request });
         let mut polled = Box::pin(poll.run());
         let ended = {
             let record = async {
                 while let Some(event) = counter.next(&mut events).await {
-                    recorder.note(&event, run)?;
+                    recorder.note(&event, screen)?;
                     if recorder.bytes() >= self.max_size {
                         return Ok(End::Size);
                     }
@@ -160,12 +174,12 @@ impl Record {
                 Ok(End::Count)
             };
             let time = async {
-                match self.duration {
-                    Some(duration) => sleep(duration).await,
-                    None => std::future::pending().await,
+                match self.within {
+                    Some(time) => sleep(time).await,
+                    None => pending().await,
                 }
             };
-            let record = interruptible(async {
+            let recorded = interruptible(async {
                 tokio::select! {
                     ended = record => ended,
                     () = time => Ok(End::Time),
@@ -173,11 +187,11 @@ impl Record {
                 }
             });
             // Ctrl-C or SIGTERM is the normal end of a recording.
-            record.await.unwrap_or(Ok(End::Interrupted))?
+            recorded.await.unwrap_or(Ok(End::Interrupted))?
         };
         drop(events);
-        let (_in_time, report) = join(timeout(END_TIMEOUT, polled), async { recorder.report(ended) }).await;
-        run.local(ID, &report)
+        let _in_time = timeout(END_TIMEOUT, polled).await;
+        Ok(recorder.report(ended))
     }
 }
 
@@ -222,11 +236,11 @@ impl Recorder<'_> {
     }
 
     /// Writes a poll.
-    fn note(&mut self, event: &Event, run: &Run) -> Result<(), Failure> {
+    fn note(&mut self, event: &Event, screen: &Screen) -> Result<(), Failure> {
         let (robot, line) = match event {
             Event::Appeared(robot) => {
                 return self.add(robot).or_else(|failure| {
-                    run.screen.failure(&failure);
+                    screen.failure(&failure);
                     Ok(())
                 });
             }
@@ -236,12 +250,13 @@ impl Recorder<'_> {
         };
         let Some(file) = self.files.get_mut(&RobotId::for_robot(robot)) else { return Ok(()) };
         match event {
-            Event::Failed { failure, .. } if !file.is_silent => run.screen.note(&failure.message),
-            Event::Polled(_) if file.is_silent => run.screen.note(&format!("{}: answers again", robot.label())),
+            Event::Failed { failure, .. } if !file.is_silent => screen.note(&failure.message),
+            Event::Polled(_) if file.is_silent => screen.note(&format!("{}: answers again", robot.label())),
             _ => {}
         }
         file.is_silent = line.error.is_some();
-        file.write(self.start.elapsed(), line)
+        let took = if let Event::Polled(look) = event { look.took } else { Duration::ZERO };
+        file.write(self.start.elapsed().saturating_sub(took), line)
     }
 
     fn bytes(&self) -> u64 {
@@ -313,7 +328,7 @@ impl RobotFile {
 /// A poll. Only time and answers are replayed. The other keys are for people and programs.
 #[derive(Debug, Default, Serialize)]
 struct Line {
-    /// Time after the start of the recording.
+    /// Start of the poll after the start of the recording; without an answer, its end.
     at_ms: u64,
     status: Option<OverviewReport>,
     alarms: Vec<Alarm>,

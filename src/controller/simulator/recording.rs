@@ -82,6 +82,8 @@ impl Replay {
     pub(crate) fn due(&self) -> Option<Now> {
         let samples = &self.recording.samples;
         match samples.get(self.next) {
+            // Before the first sample, nothing is known. So the first sample begins with the pass.
+            Some(_) if self.next == 0 => Some(self.began),
             Some(sample) => Some(self.began.saturating_add(sample.at)),
             None if self.recording.is_loop && !samples.is_empty() => Some(self.end_of_pass()),
             None => None,

@@ -41,17 +41,19 @@ pub struct ReplayArguments {
 impl ReplayArguments {
     /// Start state that replays the recording, with a text about the recording. Without a recording, the start state
     /// stays the same.
-    pub fn apply<S: Replayable>(&self, start: S, family: &str) -> Result<(S, Option<String>), Failure> {
+    pub fn apply<S: Replayable>(&self, start: S, family: Family) -> Result<(S, Option<String>), Failure> {
         let Some(path) = &self.replay else { return Ok((start, None)) };
-        let recorded = Recorded::read(path)?;
-        let recorded_family = &recorded.head.manifest.family;
-        if recorded_family != family {
-            let message = format!("{} is a recording of a {recorded_family} controller", path.display());
-            return Err(Failure::usage(message).hint(format!("replay it with `armctl sim {recorded_family} --replay`")));
-        }
+        let recorded = Recorded::of_family(path, family)?;
         let note = recorded.note(path);
         Ok((start.with_recording(Recording::new(recorded.samples, self.is_loop)), Some(note)))
     }
+}
+
+/// Start state that replays a recording, if there is one, for the simulator of a URL.
+pub fn with_replay<S: Replayable>(start: S, path: Option<&Path>, family: Family) -> Result<S, Failure> {
+    let Some(path) = path else { return Ok(start) };
+    let recorded = Recorded::of_family(path, family)?;
+    Ok(start.with_recording(Recording::new(recorded.samples, false)))
 }
 
 /// First line of a recording.
@@ -132,6 +134,17 @@ impl Recorded {
                 .hint("record the robot again with `armctl record`"));
         }
         Ok(Self { head, samples, is_torn })
+    }
+
+    /// Reads a recording of a family.
+    fn of_family(path: &Path, family: Family) -> Result<Self, Failure> {
+        let recorded = Self::read(path)?;
+        let found = &recorded.head.manifest.family;
+        if found != family.name() {
+            let message = format!("{} is a recording of a {found} controller", path.display());
+            return Err(Failure::usage(message).hint(format!("replay it with `armctl sim {found} --replay FILE`")));
+        }
+        Ok(recorded)
     }
 
     /// What the recording contains, and what a replay leaves out.
