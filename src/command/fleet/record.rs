@@ -150,7 +150,8 @@ impl Record {
         screen: &Screen,
     ) -> Result<RecordReport, Failure> {
         let extras = self.also.iter().map(|line| Extra::parse(line).map(Rc::new)).collect::<Result<Rc<[_]>, _>>();
-        let extras = extras.map_err(|failure| Failure { message: format!("--also: {}", failure.message), ..failure })?;
+        let extras =
+            extras.map_err(|failure| Failure { message: format!("--also: {}", failure.message), ..failure })?;
         let mut recorder = Recorder { folder: &self.folder, every, start: Instant::now(), files: BTreeMap::new() };
         for robot in poll.robots() {
             recorder.add(robot)?;
@@ -179,7 +180,7 @@ impl Record {
                     None => pending().await,
                 }
             };
-            let recorded = interruptible(async {
+            let until_end = interruptible(async {
                 tokio::select! {
                     ended = record => ended,
                     () = time => Ok(End::Time),
@@ -187,7 +188,7 @@ impl Record {
                 }
             });
             // Ctrl-C or SIGTERM is the normal end of a recording.
-            recorded.await.unwrap_or(Ok(End::Interrupted))?
+            until_end.await.unwrap_or(Ok(End::Interrupted))?
         };
         drop(events);
         let _in_time = timeout(END_TIMEOUT, polled).await;
@@ -226,8 +227,11 @@ impl Recorder<'_> {
             return Ok(());
         }
         if !is_name(&robot.name) {
-            let message = format!("'{}' is not a valid robot name, and the folder of a recording has the name", robot.name);
-            return Err(Failure::usage(message).hint("add the robot with `armctl robots add NAME URL`, and use -r NAME"));
+            let message =
+                format!("'{}' is not a valid robot name, and the folder of a recording has the name", robot.name);
+            return Err(
+                Failure::usage(message).hint("add the robot with `armctl robots add NAME URL`, and use -r NAME")
+            );
         }
         let folder = private_folder(self.folder, &robot.name, true);
         make_folder(&folder)?;
@@ -297,8 +301,7 @@ impl RobotFile {
             }
             _ => Failure::io(path.display(), &error),
         })?;
-        let mut file =
-            Self { path, file, last: Answers::new(), is_silent: false, polls: 0, failed: 0, bytes: 0 };
+        let mut file = Self { path, file, last: Answers::new(), is_silent: false, polls: 0, failed: 0, bytes: 0 };
         file.append(head)?;
         Ok(file)
     }
@@ -308,7 +311,8 @@ impl RobotFile {
         self.failed += u64::from(line.error.is_some());
         let answers = line.answers.unwrap_or_default();
         let is_new = |(request, answer): &(&String, &String)| self.last.get(*request) != Some(answer);
-        let changed = answers.iter().filter(is_new).map(|(request, answer)| (request.clone(), answer.clone())).collect();
+        let changed =
+            answers.iter().filter(is_new).map(|(request, answer)| (request.clone(), answer.clone())).collect();
         // After a failure, the next line has all answers.
         self.last = answers;
         let changed = line.error.is_none().then_some(changed);

@@ -50,8 +50,7 @@ mod tests {
 
     #[test]
     fn texts_of_exchanges_are_parsed_again() {
-        let request =
-            Request { command: 0x300, instance: 1001, attribute: 0, service: 0x33, data: vec![4, 0, 0, 0] };
+        let request = Request { command: 0x300, instance: 1001, attribute: 0, service: 0x33, data: vec![4, 0, 0, 0] };
         assert_eq!(request_text(&request), "0x300 1001 0 0x33 04000000");
         let status = Request { command: 0x72, instance: 1, data: Vec::new(), service: 1, ..request.clone() };
         assert_eq!(request_text(&status), "0x72 1 0 0x01");

@@ -190,7 +190,7 @@ impl RobotTask {
         }
         let through_session = link.is_shared;
         let answers = self.answers.take();
-        Ok(PollResult { through_session, extras, unexplained, answers, ..PollResult::new(robot, sample) })
+        Ok(PollResult { through_session, extras, answers, unexplained, ..PollResult::new(robot, sample) })
     }
 
     /// Runs an extra command, unless it needs a connection whose end would affect the controller.

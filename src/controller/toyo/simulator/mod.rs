@@ -282,7 +282,11 @@ impl Simulator {
     fn take_block(&mut self) {
         let IncomingBlock { bytes, damaged } = std::mem::take(&mut self.incoming);
         // Noise and damaged blocks get no answer (TO 1-3). A recorded controller may have been silent.
-        if damaged || self.replay.is_silent() || bytes.is_empty() || !bytes.iter().all(|byte| matches!(byte, b' '..=b'~')) {
+        if damaged
+            || self.replay.is_silent()
+            || bytes.is_empty()
+            || !bytes.iter().all(|byte| matches!(byte, b' '..=b'~'))
+        {
             return;
         }
         let block = String::from_utf8_lossy(&bytes);

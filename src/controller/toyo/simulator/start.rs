@@ -23,8 +23,8 @@ use super::trace::Trace;
 use super::world::{COUNTERS, Mode, Switches, TIMERS, World};
 use crate::Now;
 use crate::simulator::console;
-use crate::simulator::refuse_if;
 use crate::simulator::recording::{Recording, Replayable};
+use crate::simulator::refuse_if;
 use crate::simulator::run_options::RunOptions;
 use crate::simulator::start::{self, Event, Source, Table, default_entry, default_text};
 use crate::simulator::timeline::Timeline;
@@ -280,7 +280,14 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
     world.settle();
     world.events = source.timeline(&entries.events, ConsoleLine::parse)?;
     let answer_delay = Duration::from_millis(entries.answer_delay_ms);
-    Ok(Start { world, seed: entries.seed, answer_delay, busy, options: RunOptions::default(), recording: Recording::default() })
+    Ok(Start {
+        world,
+        seed: entries.seed,
+        answer_delay,
+        busy,
+        options: RunOptions::default(),
+        recording: Recording::default(),
+    })
 }
 
 /// A controller without content.

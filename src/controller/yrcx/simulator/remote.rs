@@ -83,12 +83,10 @@ impl Remote {
     pub(super) fn scan(&mut self, world: &mut World, replay: &Replay) {
         let words = (world.link != Link::Down).then(|| world.inputs.command());
         match (&mut self.state, words) {
-            (State::Ready, Some(words)) if words[0] != Status::Ready.word() => {
-                match replay::answer(replay, &words) {
-                    Some(recorded) => self.end(recorded),
-                    None => self.take(world, &words),
-                }
-            }
+            (State::Ready, Some(words)) if words[0] != Status::Ready.word() => match replay::answer(replay, &words) {
+                Some(recorded) => self.end(recorded),
+                None => self.take(world, &words),
+            },
             (State::Running(running), Some(words)) if words != running.request.words => running.held = false,
             (State::Ended, Some(words)) if words[0] == Status::Ready.word() => {
                 self.state = State::Ready;

@@ -439,7 +439,13 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
     // The check uses a copy, so that the world keeps its start state.
     let mut copy = world.clone();
     world.events = source.timeline(&entries.events, |line| console::execute(&mut copy, line))?;
-    Ok(Start { world, run_scans: entries.run_scans, seed: entries.seed, options: RunOptions::default(), recording: Recording::default() })
+    Ok(Start {
+        world,
+        run_scans: entries.run_scans,
+        seed: entries.seed,
+        options: RunOptions::default(),
+        recording: Recording::default(),
+    })
 }
 
 /// A controller without content.
