@@ -129,12 +129,11 @@ pub fn robots_in(folder: &Path) -> Result<Vec<SavedRobot>, Failure> {
 
 /// Robots of recordings and backups, in the same folders. At least one robot has a recording.
 fn recorded_robots_in(folder: &Path) -> Result<Vec<SavedRobot>, Failure> {
-    let robots = saved_robots(folder, &[manifest::MANIFEST, recording::FILE])?;
-    if robots.iter().all(|robot| robot.recording.is_none()) {
+    if !folder.join(recording::FILE).exists() && manifest::folders_with(folder, &[recording::FILE]).is_empty() {
         return Err(Failure::local(format!("{} contains no {}", folder.display(), recording::FILE))
             .hint(format!("record the robots: `armctl record {} --all`", folder.display())));
     }
-    Ok(robots)
+    saved_robots(folder, &[manifest::MANIFEST, recording::FILE])
 }
 
 /// Robots of the folders that contain one of these files.

@@ -6,7 +6,7 @@ mod tests;
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
 use std::future::pending;
-use std::io::{self, Write as _};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -20,6 +20,7 @@ use super::axes::Axes;
 use super::byte_size::size;
 use super::poll::{Event, Extra, Poll, PollCounter, PollRequest, PollResult, RobotId};
 use armctl_controller::simulator::recording::Answers;
+use armctl_files as files;
 use armctl_frame::SchemaEntry;
 use armctl_frame::backup::recording::{FILE, Head};
 use armctl_frame::face::overview::OverviewReport;
@@ -153,6 +154,10 @@ impl Record {
         let extras =
             extras.map_err(|failure| Failure { message: format!("--also: {}", failure.message), ..failure })?;
         let mut recorder = Recorder { folder: &self.folder, every, start: Instant::now(), files: BTreeMap::new() };
+        // All files are checked before the first one is created.
+        for robot in poll.robots() {
+            recorder.path(robot)?;
+        }
         for robot in poll.robots() {
             recorder.add(robot)?;
         }
@@ -220,22 +225,31 @@ struct Recorder<'a> {
 }
 
 impl Recorder<'_> {
-    /// Creates the file of a robot. An existing recording is never overwritten.
+    /// Path of the recording of a robot, which must not exist. A recording is never overwritten.
+    fn path(&self, robot: &Robot) -> Result<PathBuf, Failure> {
+        if !is_name(&robot.name) {
+            let message = format!("'{}' is not a valid name for the folder of a recording", robot.name);
+            return Err(
+                Failure::usage(message).hint("add the robot with `armctl robots add NAME URL`, and use -r NAME")
+            );
+        }
+        let path = private_folder(self.folder, &robot.name, true).join(FILE);
+        if path.exists() {
+            return Err(Failure::local(format!("{} already exists and was not changed", path.display()))
+                .hint("record in another folder, or move this file"));
+        }
+        Ok(path)
+    }
+
+    /// Creates the file of a robot, unless this command has created it before.
     fn add(&mut self, robot: &Robot) -> Result<(), Failure> {
         let id = RobotId::for_robot(robot);
         if self.files.contains_key(&id) {
             return Ok(());
         }
-        if !is_name(&robot.name) {
-            let message =
-                format!("'{}' is not a valid robot name, and the folder of a recording has the name", robot.name);
-            return Err(
-                Failure::usage(message).hint("add the robot with `armctl robots add NAME URL`, and use -r NAME")
-            );
-        }
-        let folder = private_folder(self.folder, &robot.name, true);
-        make_folder(&folder)?;
-        self.files.insert(id, RobotFile::create(folder.join(FILE), &Head::new(robot, self.every))?);
+        let path = self.path(robot)?;
+        make_folder(&files::folder_of(&path))?;
+        self.files.insert(id, RobotFile::create(path, &Head::new(robot, self.every))?);
         Ok(())
     }
 
@@ -294,13 +308,8 @@ struct RobotFile {
 
 impl RobotFile {
     fn create(path: PathBuf, head: &Head) -> Result<Self, Failure> {
-        let file = OpenOptions::new().write(true).create_new(true).open(&path).map_err(|error| match error.kind() {
-            io::ErrorKind::AlreadyExists => {
-                Failure::local(format!("{} already exists and was not changed", path.display()))
-                    .hint("record in another folder, or move this file")
-            }
-            _ => Failure::io(path.display(), &error),
-        })?;
+        let file = OpenOptions::new().write(true).create_new(true).open(&path);
+        let file = file.map_err(|error| Failure::io(path.display(), &error))?;
         let mut file = Self { path, file, last: Answers::new(), is_silent: false, polls: 0, failed: 0, bytes: 0 };
         file.append(head)?;
         Ok(file)
