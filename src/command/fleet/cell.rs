@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use clap::{Args, ValueHint};
 use toml_edit::{Table as TomlTable, value};
@@ -12,11 +13,12 @@ use armctl_controller::simulator::run_options::Speed;
 use armctl_files as files;
 use armctl_frame::SchemaEntry;
 use armctl_frame::backup::manifest::{self, Manifest};
-use armctl_frame::backup::recording::{self, Head};
+use armctl_frame::backup::recording::{self, Head, Recorded};
 use armctl_frame::local_names::Target;
 use armctl_frame::prelude::*;
 use armctl_frame::serve;
 use armctl_frame::settings::document::Document;
+use armctl_frame::settings::duration;
 use armctl_frame::settings::inventory::{Inventory, is_name};
 use armctl_frame::settings::target::Family;
 
@@ -58,12 +60,14 @@ impl CellArguments {
         let inventory = self.inventory.map(replaceable).transpose()?;
         let (mut servers, mut robots, mut tables) = (Vec::new(), Vec::new(), Vec::new());
         let saved = if self.replay { recorded_robots_in(&folder)? } else { robots_in(&folder)? };
+        // All robots start again together.
+        let pass = if self.is_loop { Some(longest_recording(&saved)?) } else { None };
         for robot in saved {
             let named = |failure: Failure| {
                 let message = format!("{}: {}", robot.name, failure.message);
                 Failure { message, ..failure }
             };
-            let server = robot.serve(self.speed.unwrap_or_default(), self.is_loop).await.map_err(named)?;
+            let server = robot.serve(self.speed.unwrap_or_default(), pass).await.map_err(named)?;
             tables.push(robot.entry(&server.target).map_err(named)?);
             robots.push(robot.report(&server.target));
             servers.push(server);
@@ -136,6 +140,12 @@ fn recorded_robots_in(folder: &Path) -> Result<Vec<SavedRobot>, Failure> {
     saved_robots(folder, &[manifest::MANIFEST, recording::FILE])
 }
 
+/// Duration of the longest recording.
+fn longest_recording(robots: &[SavedRobot]) -> Result<Duration, Failure> {
+    let passes = robots.iter().filter_map(SavedRobot::recording_path).map(|path| Ok(Recorded::read(&path)?.pass()));
+    passes.collect::<Result<Vec<_>, Failure>>().map(|passes| passes.into_iter().max().unwrap_or_default())
+}
+
 /// Robots of the folders that contain one of these files.
 fn saved_robots(folder: &Path, files: &[&str]) -> Result<Vec<SavedRobot>, Failure> {
     let is_saved = |folder: &Path| files.iter().any(|file| folder.join(file).exists());
@@ -149,6 +159,13 @@ fn saved_robots(folder: &Path, files: &[&str]) -> Result<Vec<SavedRobot>, Failur
             Some(head) if !folder.join(manifest::MANIFEST).exists() => head.manifest.clone(),
             _ => manifest::open_existing(&folder)?,
         };
+        if let Some(Head { manifest: recorded, .. }) = &recording
+            && (&recorded.robot, &recorded.family) != (&manifest.robot, &manifest.family)
+        {
+            let (backup, recorded) = (&manifest.robot, &recorded.robot);
+            return Err(Failure::local(format!("{}: the recording is of {recorded}, not of {backup}", file.display()))
+                .hint("move the recording to the folder of its robot"));
+        }
         let family = manifest.family.parse().map_err(|why| Failure::local(format!("{}: {why}", folder.display())))?;
         let name = manifest.robot.clone();
         let invalid = |why: &str| {
@@ -167,7 +184,7 @@ fn saved_robots(folder: &Path, files: &[&str]) -> Result<Vec<SavedRobot>, Failur
 
 impl SavedRobot {
     /// Serves the robot on free ports of the loopback interface.
-    async fn serve(&self, speed: Speed, is_loop: bool) -> Result<serve::NamedServer, Failure> {
+    async fn serve(&self, speed: Speed, pass: Option<Duration>) -> Result<serve::NamedServer, Failure> {
         let mut arguments: Vec<OsString> = ["--bind", "127.0.0.1:0", "--speed"].map(OsString::from).into();
         arguments.push(speed.to_string().into());
         if self.folder.join(manifest::MANIFEST).exists() {
@@ -177,7 +194,7 @@ impl SavedRobot {
         }
         if let Some(recording) = self.recording_path() {
             arguments.extend(["--replay".into(), recording.into()]);
-            arguments.extend(is_loop.then(|| "--loop".into()));
+            arguments.extend(pass.map(|pass| format!("--loop={}", duration::display(pass)).into()));
         }
         families::of(self.family).serve(self.name.clone(), arguments).await
     }

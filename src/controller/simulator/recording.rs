@@ -38,14 +38,15 @@ pub struct Sample {
 #[derive(Debug, Clone, Default)]
 pub struct Recording {
     samples: Arc<[Sample]>,
-    /// Whether the replay starts again at the end. Otherwise, the last sample stays.
-    is_loop: bool,
+    /// Time after which the replay starts again. Without it, the last sample stays.
+    pass: Option<Duration>,
 }
 
 impl Recording {
-    /// Recording with these samples, whose times must not decrease.
-    pub fn new(samples: Vec<Sample>, is_loop: bool) -> Self {
-        Self { samples: samples.into(), is_loop }
+    /// Recording with these samples, whose times must not decrease. After `pass`, which must not be 0, the replay starts
+    /// again. Without it, the last sample stays.
+    pub fn new(samples: Vec<Sample>, pass: Option<Duration>) -> Self {
+        Self { samples: samples.into(), pass }
     }
 }
 
@@ -56,9 +57,6 @@ pub trait Replayable: Sized {
     #[must_use]
     fn with_recording(self, recording: Recording) -> Self;
 }
-
-/// Shortest time of a pass of a loop.
-const MIN_PASS: Duration = Duration::from_secs(1);
 
 /// A running replay. Without a recording, nothing happens.
 #[derive(Debug, Clone, Default)]
@@ -80,25 +78,24 @@ impl Replay {
 
     /// Time of the next sample.
     pub(crate) fn due(&self) -> Option<Now> {
-        let samples = &self.recording.samples;
-        match samples.get(self.next) {
+        let Recording { samples, pass } = &self.recording;
+        let after = match self.next_sample() {
             // Before the first sample, nothing is known. So the first sample begins with the pass.
-            Some(_) if self.next == 0 => Some(self.began),
-            Some(sample) => Some(self.began.saturating_add(sample.at)),
-            None if self.recording.is_loop && !samples.is_empty() => Some(self.end_of_pass()),
-            None => None,
-        }
+            Some(_) if self.next == 0 => Some(Duration::ZERO),
+            Some(sample) => Some(sample.at),
+            None => pass.filter(|_| !samples.is_empty()),
+        };
+        after.map(|after| self.began.saturating_add(after))
     }
 
     /// Takes the next sample that is due at `now`. Returns its answers, which are empty if the controller was silent.
     pub(crate) fn take(&mut self, now: Now) -> Option<Answers> {
         self.due().filter(|due| *due <= now)?;
-        if self.next == self.recording.samples.len() {
-            (self.began, self.next) = (self.end_of_pass(), 0);
+        if self.next_sample().is_none() {
+            (self.began, self.next) = (self.due()?, 0);
             self.answers.clear();
-            return self.take(now).or_else(|| Some(Answers::new()));
         }
-        let changed = self.recording.samples[self.next].answers.clone();
+        let changed = self.next_sample()?.answers.clone();
         self.next += 1;
         self.is_silent = changed.is_none();
         let changed = changed.unwrap_or_default();
@@ -121,14 +118,10 @@ impl Replay {
         self.is_silent
     }
 
-    /// The last sample is shown as long as the one before.
-    fn end_of_pass(&self) -> Now {
-        let at = |back: usize| {
-            let index = self.recording.samples.len().checked_sub(back);
-            index.map_or(Duration::ZERO, |index| self.recording.samples[index].at)
-        };
-        let pass = at(1).saturating_add(at(1).saturating_sub(at(2)));
-        self.began.saturating_add(pass.max(MIN_PASS))
+    /// Next sample of the present pass.
+    fn next_sample(&self) -> Option<&Sample> {
+        let Recording { samples, pass } = &self.recording;
+        samples.get(self.next).filter(|sample| self.next == 0 || pass.is_none_or(|pass| sample.at < pass))
     }
 }
 
@@ -161,7 +154,7 @@ mod tests {
 
     #[test]
     fn gives_the_last_answer_and_holds_the_last_sample() {
-        let mut replay = Replay::new(Recording::new(samples(), false));
+        let mut replay = Replay::new(Recording::new(samples(), None));
         let answers = |a: &str, b: &str, is_silent| (Some(a.to_owned()), Some(b.to_owned()), is_silent);
         for (ms, expected) in [
             (0, answers("1", "1", false)),
@@ -182,14 +175,17 @@ mod tests {
     fn loop_starts_again_without_the_answers_of_the_last_pass() {
         let first = sample(0, Some(&[("a", "1")]));
         let samples = vec![first, sample(1, Some(&[("a", "2"), ("b", "2")]))];
-        let mut replay = Replay::new(Recording::new(samples, true));
+        let mut replay = Replay::new(Recording::new(samples.clone(), Some(2 * SECOND)));
         assert_eq!(at(&mut replay, SECOND).1.as_deref(), Some("2"));
         assert_eq!(replay.due(), Some(2 * SECOND));
         assert_eq!(at(&mut replay, 2 * SECOND), (Some("1".to_owned()), None, false));
         assert_eq!(at(&mut replay, 5 * SECOND).0.as_deref(), Some("2"), "third pass");
-        let mut empty = Replay::new(Recording::new(Vec::new(), true));
+        let mut short = Replay::new(Recording::new(samples, Some(SECOND / 2)));
+        assert_eq!(at(&mut short, 9 * SECOND).0.as_deref(), Some("1"), "the second sample is after the pass");
+        assert_eq!(short.due(), Some(19 * SECOND / 2));
+        let mut empty = Replay::new(Recording::new(Vec::new(), Some(SECOND)));
         assert_eq!((empty.due(), empty.take(SECOND)), (None, None));
-        let mut single = Replay::new(Recording::new(vec![sample(0, None)], true));
+        let mut single = Replay::new(Recording::new(vec![sample(0, None)], Some(SECOND)));
         assert!(at(&mut single, SECOND).2 && single.due() == Some(2 * SECOND));
     }
 }

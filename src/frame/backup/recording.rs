@@ -12,6 +12,7 @@ use serde::Deserialize;
 
 use super::manifest::Manifest;
 use crate::prelude::basics::*;
+use crate::settings::duration;
 use crate::settings::target::Family;
 use armctl_controller::simulator::recording::{Answers, Recording, Replayable, Sample};
 use armctl_files as files;
@@ -33,9 +34,12 @@ pub struct ReplayArguments {
     /// Recording of a robot (`armctl record`), whose answers the simulator gives at the same times
     #[arg(long, value_name = "FILE", conflicts_with = "state")]
     replay: Option<PathBuf>,
-    /// Start the recording again at its end [default: keep the last state]
-    #[arg(long = "loop", requires = "replay")]
-    is_loop: bool,
+    /// Start the recording again at its end, or after this time [default: keep the last state]
+    #[arg(
+        long = "loop", value_name = "TIME", num_args = 0..=1, require_equals = true,
+        value_parser = duration::parse, default_missing_value = "0s", requires = "replay"
+    )]
+    pass: Option<Duration>,
 }
 
 impl ReplayArguments {
@@ -45,7 +49,9 @@ impl ReplayArguments {
         let Some(path) = &self.replay else { return Ok((start, None)) };
         let recorded = Recorded::of_family(path, family)?;
         let note = recorded.note(path);
-        Ok((start.with_recording(Recording::new(recorded.samples, self.is_loop)), Some(note)))
+        // Without a time, the pass is the whole recording.
+        let pass = self.pass.map(|pass| if pass.is_zero() { recorded.pass() } else { pass });
+        Ok((start.with_recording(Recording::new(recorded.samples, pass)), Some(note)))
     }
 }
 
@@ -53,7 +59,7 @@ impl ReplayArguments {
 pub fn with_replay<S: Replayable>(start: S, path: Option<&Path>, family: Family) -> Result<S, Failure> {
     let Some(path) = path else { return Ok(start) };
     let recorded = Recorded::of_family(path, family)?;
-    Ok(start.with_recording(Recording::new(recorded.samples, false)))
+    Ok(start.with_recording(Recording::new(recorded.samples, None)))
 }
 
 /// First line of a recording.
@@ -145,6 +151,12 @@ impl Recorded {
             return Err(Failure::usage(message).hint(format!("replay it with `armctl sim {found} --replay FILE`")));
         }
         Ok(recorded)
+    }
+
+    /// Duration of the recording. The last poll lasts one interval.
+    pub fn pass(&self) -> Duration {
+        let end = self.samples.last().map_or(Duration::ZERO, |last| last.at);
+        end + Duration::from_millis(self.head.interval_ms.max(1))
     }
 
     /// What the recording contains, and what a replay leaves out.

@@ -12,7 +12,7 @@ fn read(start: &str, requests: &[&str]) -> Answers {
 /// A simulator that replays a sample each second.
 fn replay(samples: impl IntoIterator<Item = Option<Answers>>) -> Bench {
     let samples = (0..).zip(samples).map(|(seconds, answers)| Sample { at: Duration::from_secs(seconds), answers });
-    let start = Start::default().with_recording(Recording::new(samples.collect(), false));
+    let start = Start::default().with_recording(Recording::new(samples.collect(), None));
     Bench { sim: Simulator::new(start), now: Now::ZERO }
 }
 

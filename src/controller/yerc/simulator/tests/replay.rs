@@ -22,7 +22,7 @@ fn replay(samples: impl IntoIterator<Item = Option<Answers>>) -> Bench {
     let samples = (0..).zip(samples).map(|(seconds, answers)| Sample { at: Duration::from_secs(seconds), answers });
     let start = Start::parse("job = \"TESTJOB\"", |_| Err(String::new()))
         .unwrap()
-        .with_recording(Recording::new(samples.collect(), false));
+        .with_recording(Recording::new(samples.collect(), None));
     Bench { simulator: Simulator::new(start), now: Now::ZERO }
 }
 

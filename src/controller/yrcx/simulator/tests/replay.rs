@@ -21,7 +21,7 @@ fn read(start: &str, commands: &[Draft]) -> Answers {
 fn replay(samples: impl IntoIterator<Item = Option<Answers>>) -> Bench {
     let at = |number: u64| Duration::from_secs(10 * number);
     let samples = (0..).zip(samples).map(|(number, answers)| Sample { at: at(number), answers });
-    let start = Start::default().with_recording(Recording::new(samples.collect(), false));
+    let start = Start::default().with_recording(Recording::new(samples.collect(), None));
     let mut bench = Bench { simulator: Simulator::new(start), now: Now::ZERO, image: resting() };
     bench.wait(200);
     bench
