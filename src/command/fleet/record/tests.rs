@@ -6,6 +6,7 @@ use serde_json::json;
 use tempfile::TempDir;
 
 use super::*;
+use crate::command::families::FAMILIES;
 use armctl_frame::backup::recording::Recorded;
 use armctl_frame::settings::inventory::{Inventory, Location};
 use armctl_frame::settings::{Selection, Sources};
@@ -133,6 +134,7 @@ fn record(folder: &Path) -> Record {
 
 #[tokio::test(start_paused = true)]
 async fn replay_gives_a_poller_what_was_recorded() {
+    assert_eq!(STATES.len(), FAMILIES.len(), "each family has a start state here");
     let plant = Plant::new();
     for (family, states) in [("yerc", 8), ("yrcx", 5), ("toyo", 9)] {
         // A simulator in this process starts with its link. With one robot, both starts have the same phase.
