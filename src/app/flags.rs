@@ -47,6 +47,7 @@ impl FlagGroups {
             | Common::Backup(_)
             | Common::Diff(_)
             | Common::Robots(Robots::Check(_)) => ALL,
+            Common::Record(_) => Self { gate: false, ..ALL },
             #[cfg(feature = "plant")]
             Common::Serve(_) => Self { gate: false, ..ALL },
             #[cfg(feature = "plant")]

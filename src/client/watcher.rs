@@ -16,6 +16,11 @@ pub trait Watcher<E>: Debug + Send {
         let _ = (direction, address_pair, bytes);
     }
 
+    /// A read was answered. `exchange` gives the request and the answer as text, in the form of recordings.
+    fn answered(&mut self, exchange: &dyn Fn() -> (String, String)) {
+        let _ = exchange;
+    }
+
     /// An event occurred.
     fn event(&mut self, event: E) {
         let _ = event;

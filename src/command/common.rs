@@ -6,7 +6,7 @@ use super::about::{completions, help, man, schema, wireshark};
 use super::fleet::common::{self, alarm, io};
 use super::fleet::status::Overview;
 use super::fleet::wait::Wait;
-use super::fleet::{backup, names, report, robots, session, setup, tools, top};
+use super::fleet::{backup, names, record, report, robots, session, setup, tools, top};
 #[cfg(feature = "plant")]
 use super::fleet::{publish, serve};
 use armctl_frame::run::{Run, RunError};
@@ -50,6 +50,8 @@ pub enum Common {
     Session(session::Session),
     /// Save all data of a controller to a folder
     Backup(backup::Backup),
+    /// Record what robots answer, for a replay by simulators
+    Record(record::Record),
     /// Restore a backup
     Restore(backup::Restore),
     /// Compare backups or controllers with each other
@@ -93,6 +95,7 @@ impl Common {
             | Self::Robots(_)
             | Self::Names(_)
             | Self::Session(_)
+            | Self::Record(_)
             | Self::Report(_)
             | Self::Restore(_) => true,
             #[cfg(feature = "plant")]
@@ -127,6 +130,7 @@ impl Common {
             #[cfg(feature = "plant")]
             Self::Serve(_) => Some("it serves until you end it"),
             Self::Top(_) => Some("it is a full-screen display"),
+            Self::Record(_) => Some("it records until you end it"),
             #[cfg(feature = "plant")]
             Self::Publish(_) => Some("it publishes until you end it"),
             Self::Setup(_) => Some("it asks questions at the terminal; use `robots add` instead"),
@@ -171,6 +175,7 @@ impl Common {
             Self::Serve(serve) => Box::pin(serve.run(run)).await,
             #[cfg(feature = "plant")]
             Self::Publish(publish) => Box::pin(publish.run(run)).await,
+            Self::Record(record) => Box::pin(record.run(run)).await,
             Self::Report(pack) => run.robots(&pack).await,
             Self::Sim(sim) => sim.run(run).await,
             Self::Session(session) => Box::pin(session.run(run)).await,

@@ -14,6 +14,7 @@ use super::session_manager::OwnSession;
 use crate::gate::{Grant, Intent};
 use crate::prelude::basics::*;
 use crate::settings::target;
+use armctl_controller::simulator::recording::AnswerLog;
 
 /// What a command may do with a link.
 #[derive(Debug, Clone)]
@@ -24,6 +25,8 @@ pub struct Access {
     pub dry_run: bool,
     /// Trace file.
     pub trace: Option<PathBuf>,
+    /// Log of the answers to reads, for a recording.
+    pub answers: Option<AnswerLog>,
     /// Connection that the command needs.
     pub mode: ConnectMode,
     /// Command line of the command, if it is not the command line of the process.
@@ -43,7 +46,18 @@ impl Access {
     pub fn reading(mode: ConnectMode) -> Self {
         let (grant, own) = (Grant::up_to(Risk::Read), FamilyArguments::default());
         let (leaves_motion, is_stop) = (false, false);
-        Self { grant, dry_run: false, trace: None, mode, typed: None, own, leaves_motion, is_stop, session: None }
+        Self {
+            grant,
+            dry_run: false,
+            trace: None,
+            answers: None,
+            mode,
+            typed: None,
+            own,
+            leaves_motion,
+            is_stop,
+            session: None,
+        }
     }
 }
 

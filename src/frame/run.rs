@@ -443,6 +443,7 @@ impl Run {
             grant: Grant::up_to(command.intent(Some(robot)).initial_risk()),
             dry_run: self.gate.dry_run,
             trace: self.trace.clone(),
+            answers: None,
             mode: command.connect_mode(robot),
             typed: None,
             own: self.own.clone(),

@@ -55,6 +55,8 @@ pub struct Started<S: Serve> {
     pub with_console: bool,
     /// What the simulator of a backup does not know about its robot.
     pub unknown: Option<String>,
+    /// What the simulator replays.
+    pub replay: Option<String>,
 }
 
 /// A simulator with its server.
@@ -100,6 +102,8 @@ pub struct NamedServer {
     pub target: String,
     /// Simulator.
     pub server: Box<dyn AnyServer>,
+    /// What the simulator replays.
+    pub replay: Option<String>,
 }
 
 /// Schema of the report of a simulator that listens.
@@ -124,20 +128,21 @@ impl Report for Serving {
 
 /// Starts a simulator, prints its address, and serves it until Ctrl-C.
 pub async fn run<S: Serve>(arguments: S, run: &Run) -> Result<(), RunError> {
-    let Started { report, reach, target, server, address, with_console, unknown } = arguments.start().await?;
+    let Started { report, reach, target, server, address, with_console, unknown, replay } = arguments.start().await?;
     run.local(S::ID, &report)?;
     if address.is_some_and(|address| !address.ip().is_loopback()) {
         run.screen.note("warning: other computers on the network can reach this simulator");
     }
-    if let Some(unknown) = unknown {
-        run.screen.note(&unknown);
+    for text in [&unknown, &replay].into_iter().flatten() {
+        run.screen.note(text);
     }
     // A program reads the address from the report, and needs no instructions.
     if !run.screen.is_json() {
         let console = if with_console { " or `quit`; `help` lists the console commands" } else { "" };
         run.screen.note(&format!("reach it: {reach}\nend it:   Ctrl-C{console}"));
     }
-    serve(vec![NamedServer { name: String::new(), target, server: Box::new(server) }], with_console, run).await
+    let server = NamedServer { name: String::new(), target, server: Box::new(server), replay };
+    serve(vec![server], with_console, run).await
 }
 
 /// Serves simulators until Ctrl-C, or until `quit` on the console.

@@ -11,6 +11,7 @@ use anyhow::Context as _;
 use super::connection::Access;
 use crate::failure::{Failure, plain};
 use crate::output::Screen;
+use armctl_controller::simulator::recording::AnswerLog;
 use armctl_controller::text::hex;
 use armctl_transport::tap::{CaptureWriter, Direction};
 
@@ -25,6 +26,7 @@ pub struct Trace {
     pending: Option<Vec<String>>,
     /// Reason why the trace is incomplete.
     failure: Option<Failure>,
+    answers: Option<AnswerLog>,
 }
 
 impl Trace {
@@ -57,7 +59,7 @@ impl Trace {
             Some(path) if !access.dry_run => Some(begin(path).with_context(|| path.display().to_string())?),
             _ => None,
         };
-        Ok(Self { screen: *screen, level, capture, pending: None, failure: None })
+        Ok(Self { screen: *screen, level, capture, pending: None, failure: None, answers: access.answers.clone() })
     }
 
     /// Text that the user requested: 0 is nothing, 1 is one line per frame, 2 is also the bytes.
@@ -117,6 +119,14 @@ impl Trace {
         if let Err(error) = add(capture, now()) {
             self.capture = None;
             self.failure = Some(incomplete(&plain(&error)));
+        }
+    }
+
+    /// Adds the answer to a read to the log of answers, if there is one.
+    pub fn answered(&mut self, exchange: &dyn Fn() -> (String, String)) {
+        if let Some(answers) = &self.answers {
+            let (request, answer) = exchange();
+            answers.insert(request, answer);
         }
     }
 

@@ -9,9 +9,10 @@ use super::simulated;
 use crate::prelude::*;
 use armctl_client::toyo::{Client, Endpoint, Error, Line, Options};
 use armctl_frame::Family as _;
+use armctl_frame::backup::recording::with_replay;
 use armctl_frame::session_client::{LockResult, lock_or_attach};
 use armctl_frame::settings::Sessions;
-use armctl_frame::settings::target::{self, Place};
+use armctl_frame::settings::target::{self, Family, Place};
 use armctl_frame::trace::lock_writer;
 use armctl_transport::fault::LineFaultSpec;
 use armctl_transport::serial;
@@ -39,6 +40,7 @@ fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
                 Failure::usage(format!("{}: {error}", robot.target.value)).hint("write % as %25 in a URL")
             })?;
             let start = simulated::start(sim.state.as_deref(), sim.from.as_deref(), sim.axes, faults.as_ref())?;
+            let start = with_replay(start, sim.replay.as_deref(), Family::Toyo)?;
             let start = start.with_options(robot.simulator_options());
             Ok(Endpoint::Simulator { start: Box::new(start), baud: sim.baud, faults })
         }

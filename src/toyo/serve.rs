@@ -10,11 +10,13 @@ use clap::Args;
 use crate::backup::twin;
 use crate::simulated::{self, Simulated};
 use armctl_controller::simulator::run_options::{RunOptions, Speed};
+use armctl_frame::backup::recording::ReplayArguments;
 use armctl_frame::backup::twin::note;
 use armctl_frame::failure::{Failure, plain};
 use armctl_frame::interrupt::catch_interrupts;
 use armctl_frame::serve::terminal_link::TerminalLink;
 use armctl_frame::serve::{self, Serving, Started, address, bind_failure};
+use armctl_frame::settings::target::Family;
 use armctl_transport::fault::LineFaultSpec;
 use armctl_transport::line::Pace;
 use armctl_transport::stream_server::StreamServer;
@@ -57,6 +59,8 @@ pub struct Serve {
     /// Speed of the simulated time, such as 10x
     #[arg(long, value_name = "FACTOR", default_value_t)]
     speed: Speed,
+    #[command(flatten)]
+    replay: ReplayArguments,
     /// Read console lines on stdin; `help` lists them
     #[arg(long)]
     console: bool,
@@ -77,6 +81,7 @@ impl serve::Serve for Serve {
     async fn start(self) -> Result<Started<Self>, Failure> {
         let start = simulated::start(self.state.as_deref(), self.from.as_deref(), self.axes, self.fault.as_ref())?;
         let start = start.with_options(RunOptions { speed: self.speed, motions: None });
+        let (start, replay) = self.replay.apply(start, Family::Toyo)?;
         let pace = self.baud.map(|baud| Pace::new(baud, BITS));
         let settings = self.baud.map(|baud| format!("?baud={baud}")).unwrap_or_default();
         // From now on, Ctrl-C must remove the symbolic link.
@@ -100,6 +105,7 @@ impl serve::Serve for Serve {
             server: Toyo { server, simulated: Simulated::new(start), _link: link },
             address,
             with_console: self.console,
+            replay,
             unknown: self.from.map(|folder| note(&folder, twin::UNKNOWN)).transpose()?,
         })
     }

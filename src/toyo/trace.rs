@@ -60,6 +60,11 @@ impl Trace {
         self.record.resume();
     }
 
+    /// See [`trace::Trace::answered`].
+    pub fn answered(&mut self, exchange: &dyn Fn() -> (String, String)) {
+        self.record.answered(exchange);
+    }
+
     /// Closes the trace. Returns a failure if it is incomplete.
     pub fn finish(&mut self) -> Result<(), Failure> {
         self.flush();

@@ -7,9 +7,10 @@ use super::simulator_start;
 use crate::prelude::*;
 use armctl_client::yerc::{Client, Endpoint, Options};
 use armctl_frame::Family as _;
+use armctl_frame::backup::recording::with_replay;
 use armctl_frame::session_client::attach;
 use armctl_frame::settings::Sessions;
-use armctl_frame::settings::target::Place;
+use armctl_frame::settings::target::{Family, Place};
 use armctl_transport::fault::FaultSpec;
 use armctl_transport::session::host::shared_link::Datagrams;
 
@@ -26,6 +27,7 @@ fn endpoint(robot: &Robot) -> Result<Endpoint, Failure> {
                 robot.model.value.named().unwrap_or(Model::Dx200),
                 faults.as_ref(),
             )?;
+            let start = with_replay(start, sim.replay.as_deref(), Family::Yerc)?;
             let start = start.with_options(robot.simulator_options());
             if sim.from.is_some() {
                 simulator_start::check_model(&start, robot.model.value.named())?;

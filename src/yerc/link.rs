@@ -277,6 +277,10 @@ impl Watcher<Event> for TraceObserver {
         lock_writer(&self.trace).record(direction, ends, bytes);
     }
 
+    fn answered(&mut self, exchange: &dyn Fn() -> (String, String)) {
+        lock_writer(&self.trace).answered(exchange);
+    }
+
     fn event(&mut self, event: Event) {
         match event {
             Event::UnexpectedTraffic(counters) => self.screen.detail(1, &format!("{}: {counters}", self.label)),

@@ -11,8 +11,10 @@ use crate::prelude::*;
 use crate::simulator_start::{self, Simulated};
 use armctl_controller::simulator::run_options::{RunOptions, Speed};
 use armctl_controller::yerc::simulator::Simulator;
+use armctl_frame::backup::recording::ReplayArguments;
 use armctl_frame::backup::twin::note;
 use armctl_frame::serve::{self, Started, address, bind_failure};
+use armctl_frame::settings::target::Family;
 use armctl_transport::fault::{FaultSpec, Faults};
 use armctl_transport::server::Server;
 
@@ -46,6 +48,8 @@ pub struct Serve {
     /// Speed of the simulated time, such as 10x
     #[arg(long, value_name = "FACTOR", default_value_t)]
     speed: Speed,
+    #[command(flatten)]
+    replay: ReplayArguments,
     /// Read console lines on stdin, for example `alarm 4315`, `mode teach`, `io 20010 on`, `help`
     #[arg(long)]
     console: bool,
@@ -65,6 +69,7 @@ impl Default for Serve {
             fault: None,
             from: None,
             speed: Speed::default(),
+            replay: ReplayArguments::default(),
             console: false,
         }
     }
@@ -81,6 +86,7 @@ impl serve::Serve for Serve {
         let start = simulator_start::start(self.state.as_deref(), self.from.as_deref(), model, self.fault.as_ref())?;
         simulator_start::check_model(&start, self.model)?;
         let start = start.with_options(RunOptions { speed: self.speed, motions: None });
+        let (start, replay) = self.replay.apply(start, Family::Yerc)?;
         let model = start.model();
         let robot = self.bind;
         let file_port = self.file_port.unwrap_or(if robot.port() == 0 { 0 } else { robot.port().saturating_add(1) });
@@ -97,6 +103,7 @@ impl serve::Serve for Serve {
             server: Yerc { server, simulated: Simulated(Simulator::new(start)) },
             address: Some(robot),
             with_console: self.console,
+            replay,
             unknown: self.from.map(|folder| note(&folder, twin::UNKNOWN)).transpose()?,
         })
     }

@@ -38,6 +38,11 @@ impl Trace {
         self.record.datagram(direction, ends, bytes);
     }
 
+    /// See [`trace::Trace::answered`].
+    pub fn answered(&mut self, exchange: &dyn Fn() -> (String, String)) {
+        self.record.answered(exchange);
+    }
+
     /// Closes the trace. Returns a failure if the trace is incomplete.
     pub fn finish(&mut self) -> Result<(), Failure> {
         self.record.finish()

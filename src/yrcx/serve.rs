@@ -11,8 +11,10 @@ use super::typed_arguments::TypedArguments;
 use crate::prelude::*;
 use armctl_controller::simulator::console::help_line;
 use armctl_controller::simulator::run_options::{RunOptions, Speed};
+use armctl_frame::backup::recording::ReplayArguments;
 use armctl_frame::backup::twin::note;
 use armctl_frame::serve::{self, Serving, Started};
+use armctl_frame::settings::target::Family;
 use armctl_frame::settings::target::bus::simulators;
 
 /// Simulate a YRCX on a fieldbus
@@ -42,6 +44,8 @@ pub struct ServeArgs {
     /// Backup of a robot, whose data the simulator starts with
     #[arg(long, value_name = "FOLDER", conflicts_with = "state")]
     from: Option<PathBuf>,
+    #[command(flatten)]
+    replay: ReplayArguments,
     /// Read console lines on stdin; `help` lists them
     #[arg(long)]
     console: bool,
@@ -89,6 +93,7 @@ impl serve::Serve for ServeArgs {
         let (start, link, faults) =
             (start_with(self.state.as_deref(), self.from.as_deref())?, self.link.as_deref(), self.fault.as_deref());
         let start = start.with_options(RunOptions { speed: self.speed, motions: None });
+        let (start, replay) = self.replay.apply(start, Family::Yrcx)?;
         let server = serve.serve(ServeOptions { simulator: wanted, start, link, faults })?;
         Ok(Started {
             reach: serve::connect_hint("yrcx", &server.target),
@@ -97,6 +102,7 @@ impl serve::Serve for ServeArgs {
             address: server.address,
             server,
             with_console: self.console,
+            replay,
             unknown: self.from.map(|folder| note(&folder, twin::UNKNOWN)).transpose()?,
         })
     }

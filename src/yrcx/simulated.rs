@@ -8,6 +8,7 @@ pub use armctl_client::yrcx::Simulated;
 use armctl_controller::simulator::run_options::RunOptions;
 use armctl_controller::yrcx::simulator::Start;
 use armctl_files as files;
+use armctl_frame::backup::recording::with_replay;
 use armctl_frame::backup::twin;
 use armctl_frame::failure::Failure;
 use armctl_frame::settings::target::{Family, Sim};
@@ -25,7 +26,7 @@ pub fn has_faults(sim: &Sim) -> bool {
 
 /// Start state that a URL names.
 pub fn start(sim: &Sim) -> Result<Start, Failure> {
-    start_with(sim.state.as_deref(), sim.from.as_deref())
+    with_replay(start_with(sim.state.as_deref(), sim.from.as_deref())?, sim.replay.as_deref(), Family::Yrcx)
 }
 
 /// Reads the start state from a state file or a backup, or returns the built-in state.

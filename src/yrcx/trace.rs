@@ -57,6 +57,11 @@ impl Trace {
         }
     }
 
+    /// See [`trace::Trace::answered`].
+    pub fn answered(&mut self, exchange: &dyn Fn() -> (String, String)) {
+        self.text.answered(exchange);
+    }
+
     /// Closes the trace and reports whether it is complete.
     pub fn finish(&mut self) -> Result<(), Failure> {
         self.text.finish()

@@ -55,6 +55,7 @@ transcripts! {
     positions
     publish
     raw
+    recordings
     repl
     robots
     robots_check

@@ -187,11 +187,20 @@ fn sends_only_reads_for_every_key() {
     controllers.assert_only_reads();
 }
 
+/// Word that stands for a folder of the test.
+const FOLDER: &str = "FOLDER";
+
 #[test]
 fn services_send_only_reads() {
-    for words in [["serve", "metrics", "--listen", "127.0.0.1:0"], ["publish", "mqtt://127.0.0.1:1", "--every", "1s"]] {
+    for words in [
+        ["serve", "metrics", "--listen", "127.0.0.1:0"],
+        ["publish", "mqtt://127.0.0.1:1", "--every", "1s"],
+        ["record", FOLDER, "--max-size", "1G"],
+    ] {
         let controllers = Recorded::start();
         let workspace = Workspace::new(&controllers.targets);
+        let folder = workspace.folder.path().join("recordings").into_os_string().into_string().expect("a path");
+        let words = words.map(|word| if word == FOLDER { folder.as_str() } else { word });
         let mut command = workspace.command(&[&words[..], &["--all", "--watch", "50ms"]].concat());
         let mut service = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("it starts");
         while controllers.fewest_requests() < 60 {

@@ -429,6 +429,9 @@ impl Client {
                 // The answer to an order may be the late answer to an earlier order. An answer to a read proves that no
                 // earlier answer is pending.
                 self.is_fenced = risk == Risk::Read;
+                if risk == Risk::Read {
+                    self.watcher.answered(&|| (request.text(), block.trim_end().to_owned()));
+                }
                 request.answer_kept(&block).map_err(|error| malformed(&block, &error))
             }
             ended => Err(self.unanswered(ended, risk, Some(request))),

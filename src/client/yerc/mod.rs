@@ -19,6 +19,7 @@ use armctl_controller::yerc::Model;
 use armctl_controller::yerc::files::FileName;
 use armctl_controller::yerc::group::Group;
 use armctl_controller::yerc::query::{Coordinates, Hold, Query};
+use armctl_controller::yerc::recording::{answer_text, request_text};
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::session::{
     Abort, Counters, Download, DownloadEnd, Ended, Exchange, Ids, Policy, Reply, Upload, UploadEnd, is_busy,
@@ -220,7 +221,11 @@ impl Client {
     /// repeated after a timeout.
     pub async fn raw(&mut self, request: &Request) -> Result<Reply, Error> {
         self.prepare(request).await?;
-        let reply = self.transact(request, request.risk() == Risk::Read).await?;
+        let is_read = request.risk() == Risk::Read;
+        let reply = self.transact(request, is_read).await?;
+        if is_read && request.division() == Division::Robot {
+            self.watcher.answered(&|| (request_text(request), answer_text(reply.status, &reply.data)));
+        }
         self.learn_model(request, &reply);
         Ok(reply)
     }

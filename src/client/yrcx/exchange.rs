@@ -6,6 +6,7 @@ use armctl_controller::Risk;
 use armctl_controller::yrcx::answer::Answer;
 use armctl_controller::yrcx::image::Words;
 use armctl_controller::yrcx::order::Order;
+use armctl_controller::yrcx::recording::words_text;
 use armctl_controller::yrcx::session::{Ended, Exchange, Outcome};
 use armctl_controller::yrcx::signal::input;
 use armctl_controller::yrcx::table::DurationClass;
@@ -88,7 +89,13 @@ impl Client {
                 Ended::NotSent(_) | Ended::NoAnswer(_) if repetitions > 0 && start.elapsed() < total_timeout => {
                     repetitions -= 1;
                 }
-                _ => return self.reply(outcome),
+                _ => {
+                    let reply = self.reply(outcome)?;
+                    if order.risk() == Risk::Read {
+                        self.watcher.answered(&|| (words_text(order.words()), words_text(&reply.words)));
+                    }
+                    return Ok(reply);
+                }
             }
         }
     }

@@ -5,6 +5,7 @@ use std::time::Duration;
 use armctl_controller::Risk;
 use armctl_controller::yrcx::image::Image;
 use armctl_controller::yrcx::procedure::Procedure;
+use armctl_controller::yrcx::recording::{IMAGE, signals_text};
 use armctl_controller::yrcx::sequence::{self, Sequence};
 use tokio::time::Instant;
 
@@ -57,6 +58,7 @@ impl Client {
         let until = Instant::now() + self.timeout;
         loop {
             if let Some(image) = self.input {
+                self.watcher.answered(&|| (IMAGE.to_owned(), signals_text(&image)));
                 return Ok(image);
             }
             if Instant::now() >= until {

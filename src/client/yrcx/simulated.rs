@@ -26,7 +26,7 @@ impl ImagePeer for Simulated {
 
     fn output(&mut self, now: Duration) -> Option<Vec<u8>> {
         self.0.advance(now);
-        Some(self.0.output().to_bytes().to_vec())
+        (!self.0.is_silent()).then(|| self.0.output().to_bytes().to_vec())
     }
 
     fn wake(&self) -> Option<Duration> {

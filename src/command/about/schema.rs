@@ -8,7 +8,7 @@ use super::wireshark::WrittenDissectors;
 use crate::command::families::FAMILIES;
 use crate::command::fleet::report::Packed;
 use crate::command::fleet::status::{Fleet, Overview};
-use crate::command::fleet::{cell, common, names, rehearsal, robots, session, tools, wait};
+use crate::command::fleet::{cell, common, names, record, rehearsal, robots, session, tools, wait};
 #[cfg(feature = "plant")]
 use crate::command::fleet::{metrics, publish};
 use armctl_controller::similar_word::nearest;
@@ -81,6 +81,7 @@ pub fn all() -> Vec<SchemaEntry> {
         #[cfg(feature = "plant")]
         SchemaEntry::of::<metrics::Listening>("serve.metrics"),
         cell::schema(),
+        record::schema(),
         rehearsal::schema(),
         SchemaEntry::of::<session::Closed>("session.close"),
         SchemaEntry::of::<session::Sessions>("session.list"),

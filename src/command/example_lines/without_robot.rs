@@ -21,6 +21,7 @@ pub const EXAMPLES: &[(&str, &[&str])] = &[
     ("repl", &["-r cell3", "--sim"]),
     ("batch", &["morning.txt -r cell3", "morning.txt --set job=WELD --dry-run"]),
     ("rehearse", &["morning.txt --from backup", "--from backup/cell3 --speed 10x -- yerc job start MAIN --yes"]),
+    ("record", &["recordings --all --for 10m", "cell --tag line1 --watch 500ms --also 'yerc var get B0..B9'"]),
     ("top", &["", "-r cell3"]),
     #[cfg(feature = "plant")]
     ("serve metrics", &["", "--tag line1 --listen 0.0.0.0:9464"]),

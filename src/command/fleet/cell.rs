@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use clap::{Args, ValueHint};
 use toml_edit::{Table as TomlTable, value};
@@ -12,10 +13,12 @@ use armctl_controller::simulator::run_options::Speed;
 use armctl_files as files;
 use armctl_frame::SchemaEntry;
 use armctl_frame::backup::manifest::{self, Manifest};
+use armctl_frame::backup::recording::{self, Head, Recorded};
 use armctl_frame::local_names::Target;
 use armctl_frame::prelude::*;
 use armctl_frame::serve;
 use armctl_frame::settings::document::Document;
+use armctl_frame::settings::duration;
 use armctl_frame::settings::inventory::{Inventory, is_name};
 use armctl_frame::settings::target::Family;
 
@@ -34,6 +37,12 @@ pub struct CellArguments {
     /// Read console lines on stdin, for example `cell3 alarm 4315`; `help` lists the robots
     #[arg(long, requires = "cell")]
     console: bool,
+    /// Give the answers of the recordings in the folder (`armctl record`) at the same times, also without a backup
+    #[arg(long, requires = "cell")]
+    replay: bool,
+    /// Start the recordings again at their end [default: keep the last state]
+    #[arg(long = "loop", requires = "replay")]
+    is_loop: bool,
 }
 
 /// First words of a robots.toml that this command may replace.
@@ -50,12 +59,15 @@ impl CellArguments {
         let folder = self.cell.unwrap_or_default();
         let inventory = self.inventory.map(replaceable).transpose()?;
         let (mut servers, mut robots, mut tables) = (Vec::new(), Vec::new(), Vec::new());
-        for robot in robots_in(&folder)? {
+        let saved = if self.replay { recorded_robots_in(&folder)? } else { robots_in(&folder)? };
+        // All robots start again together.
+        let pass = if self.is_loop { Some(longest_recording(&saved)?) } else { None };
+        for robot in saved {
             let named = |failure: Failure| {
                 let message = format!("{}: {}", robot.name, failure.message);
                 Failure { message, ..failure }
             };
-            let server = robot.serve(self.speed.unwrap_or_default()).await.map_err(named)?;
+            let server = robot.serve(self.speed.unwrap_or_default(), pass).await.map_err(named)?;
             tables.push(robot.entry(&server.target).map_err(named)?);
             robots.push(robot.report(&server.target));
             servers.push(server);
@@ -69,6 +81,11 @@ impl CellArguments {
         let inventory = inventory.map(|target| target.path().display().to_string());
         let shown = inventory.clone().unwrap_or_else(|| "FILE".to_owned());
         run.local(ID, &CellReport { inventory, robots, text })?;
+        for server in &servers {
+            if let Some(replay) = &server.replay {
+                run.screen.note(&format!("{}: {replay}", server.name));
+            }
+        }
         if !run.screen.is_json() {
             let console = if self.console { " or `quit`; `help` lists the robots" } else { "" };
             run.screen.note(&format!("reach them: armctl --config {shown} status --all\nend them:   Ctrl-C{console}"));
@@ -100,8 +117,10 @@ pub struct SavedRobot {
     pub family: Family,
     /// Folder of its backup.
     pub folder: PathBuf,
-    /// Manifest of its backup.
+    /// Manifest of its backup; without a backup, of its recording.
     pub manifest: Manifest,
+    /// Recording that its simulator replays.
+    recording: Option<Head>,
 }
 
 /// Settings of an inventory entry that a manifest does not decide.
@@ -109,11 +128,44 @@ const OWN_KEYS: [&str; 3] = ["name", "target", "family"];
 
 /// Robots of a backup: of one robot, or of a fleet with a subfolder for each robot.
 pub fn robots_in(folder: &Path) -> Result<Vec<SavedRobot>, Failure> {
-    let folders = if folder.join(manifest::MANIFEST).exists() { Vec::new() } else { manifest::folders_in(folder) };
+    saved_robots(folder, &[manifest::MANIFEST])
+}
+
+/// Robots of recordings and backups, in the same folders. At least one robot has a recording.
+fn recorded_robots_in(folder: &Path) -> Result<Vec<SavedRobot>, Failure> {
+    if !folder.join(recording::FILE).exists() && manifest::folders_with(folder, &[recording::FILE]).is_empty() {
+        return Err(Failure::local(format!("{} contains no {}", folder.display(), recording::FILE))
+            .hint(format!("record the robots: `armctl record {} --all`", folder.display())));
+    }
+    saved_robots(folder, &[manifest::MANIFEST, recording::FILE])
+}
+
+/// Duration of the longest recording.
+fn longest_recording(robots: &[SavedRobot]) -> Result<Duration, Failure> {
+    let passes = robots.iter().filter_map(SavedRobot::recording_path).map(|path| Ok(Recorded::read(&path)?.pass()));
+    passes.collect::<Result<Vec<_>, Failure>>().map(|passes| passes.into_iter().max().unwrap_or_default())
+}
+
+/// Robots of the folders that contain one of these files.
+fn saved_robots(folder: &Path, files: &[&str]) -> Result<Vec<SavedRobot>, Failure> {
+    let is_saved = |folder: &Path| files.iter().any(|file| folder.join(file).exists());
+    let folders = if is_saved(folder) { Vec::new() } else { manifest::folders_with(folder, files) };
     let folders = if folders.is_empty() { vec![folder.to_owned()] } else { folders };
     let mut robots: Vec<SavedRobot> = Vec::new();
     for folder in folders {
-        let manifest: Manifest = manifest::open_existing(&folder)?;
+        let file = folder.join(recording::FILE);
+        let recording = (files.contains(&recording::FILE) && file.exists()).then(|| Head::read(&file)).transpose()?;
+        let manifest = match &recording {
+            Some(head) if !folder.join(manifest::MANIFEST).exists() => head.manifest.clone(),
+            _ => manifest::open_existing(&folder)?,
+        };
+        if let Some(Head { manifest: recorded, .. }) = &recording
+            && (&recorded.robot, &recorded.family) != (&manifest.robot, &manifest.family)
+        {
+            let (backup, recorded) = (&manifest.robot, &recorded.robot);
+            return Err(Failure::local(format!("{}: the recording is of {recorded}, not of {backup}", file.display()))
+                .hint("move the recording to the folder of its robot"));
+        }
         let family = manifest.family.parse().map_err(|why| Failure::local(format!("{}: {why}", folder.display())))?;
         let name = manifest.robot.clone();
         let invalid = |why: &str| {
@@ -125,18 +177,30 @@ pub fn robots_in(folder: &Path) -> Result<Vec<SavedRobot>, Failure> {
         if robots.iter().any(|known| known.name == name) {
             return invalid(&format!("two backups are of a robot '{name}'"));
         }
-        robots.push(SavedRobot { name, family, folder, manifest });
+        robots.push(SavedRobot { name, family, folder, manifest, recording });
     }
     Ok(robots)
 }
 
 impl SavedRobot {
     /// Serves the robot on free ports of the loopback interface.
-    async fn serve(&self, speed: Speed) -> Result<serve::NamedServer, Failure> {
-        let mut arguments: Vec<OsString> = ["--bind", "127.0.0.1:0", "--from"].map(OsString::from).into();
-        arguments.push(self.folder.clone().into());
-        arguments.extend(["--speed".into(), speed.to_string().into()]);
+    async fn serve(&self, speed: Speed, pass: Option<Duration>) -> Result<serve::NamedServer, Failure> {
+        let mut arguments: Vec<OsString> = ["--bind", "127.0.0.1:0", "--speed"].map(OsString::from).into();
+        arguments.push(speed.to_string().into());
+        if self.folder.join(manifest::MANIFEST).exists() {
+            arguments.extend(["--from".into(), self.folder.clone().into()]);
+        } else if let Some(model) = self.recording.as_ref().and_then(|head| head.model.as_ref()) {
+            arguments.extend(["--model".into(), model.into()]);
+        }
+        if let Some(recording) = self.recording_path() {
+            arguments.extend(["--replay".into(), recording.into()]);
+            arguments.extend(pass.map(|pass| format!("--loop={}", duration::display(pass)).into()));
+        }
         families::of(self.family).serve(self.name.clone(), arguments).await
+    }
+
+    fn recording_path(&self) -> Option<PathBuf> {
+        self.recording.as_ref().map(|_| self.folder.join(recording::FILE))
     }
 
     /// URL of the simulator of the robot in this process.
@@ -177,6 +241,7 @@ impl SavedRobot {
             family: self.family.name(),
             target: target.to_owned(),
             backup: self.folder.display().to_string(),
+            recording: self.recording_path().map(|path| path.display().to_string()),
             taken_at: self.manifest.taken_at.to_string(),
             replaces: self.manifest.target.clone(),
         }
@@ -222,9 +287,11 @@ struct CellRobot {
     family: &'static str,
     /// URL of the simulator.
     target: String,
-    /// Folder of the backup.
+    /// Folder of the backup and the recording.
     backup: String,
-    /// Time when the backup started.
+    /// File with the recording that the simulator replays; null without --replay.
+    recording: Option<String>,
+    /// Time when the backup started; without a backup, the recording.
     taken_at: String,
     /// URL of the robot in the backup.
     replaces: String,
@@ -235,11 +302,18 @@ impl Report for CellReport {
         if self.inventory.is_none() {
             return View::text(self.text.trim_end());
         }
-        let mut table = Table::new(&["robot", "target", "replaces", "backup of"], "");
+        let has_recordings = self.robots.iter().any(|robot| robot.recording.is_some());
+        let last = if has_recordings { "recording" } else { "backup of" };
+        let mut table = Table::new(&["robot", "target", "replaces", last], "");
         for robot in &self.robots {
             let target = Cell::from(robot.target.as_str()).whole();
             let replaces = Cell::from(robot.replaces.as_str()).whole();
-            table.row([robot.robot.as_str().into(), target, replaces, robot.taken_at.as_str().into()]);
+            let last = if has_recordings {
+                Cell::optional(robot.recording.as_deref())
+            } else {
+                robot.taken_at.as_str().into()
+            };
+            table.row([robot.robot.as_str().into(), target, replaces, last]);
         }
         View::table(table)
     }

@@ -2,7 +2,9 @@
 
 #[cfg(feature = "plant")]
 pub mod also;
+pub mod axes;
 pub mod backup;
+pub mod byte_size;
 pub mod cell;
 pub mod common;
 #[cfg(feature = "plant")]
@@ -11,6 +13,7 @@ pub mod names;
 pub mod poll;
 #[cfg(feature = "plant")]
 pub mod publish;
+pub mod record;
 pub mod rehearsal;
 pub mod report;
 #[cfg(feature = "plant")]

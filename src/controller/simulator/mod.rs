@@ -1,9 +1,10 @@
-//! Common parts of the simulators: start states, console, timed events, delayed answers, run options.
+//! Common parts of the simulators: start states, console, timed events, delayed answers, run options, replay.
 //!
 //! A family adds the keys of its start state, its console commands, and the controller itself.
 
 pub(crate) mod answers;
 pub mod console;
+pub mod recording;
 pub mod run_options;
 pub(crate) mod start;
 pub(crate) mod timeline;

@@ -13,6 +13,7 @@ pub mod names;
 pub mod payload;
 pub mod query;
 pub mod read_only_filter;
+pub mod recording;
 pub mod request;
 pub mod session;
 pub mod signal;

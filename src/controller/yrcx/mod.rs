@@ -16,6 +16,7 @@ pub mod names;
 pub mod order;
 pub mod procedure;
 pub mod read_only_filter;
+pub mod recording;
 pub mod register;
 pub mod sequence;
 pub mod session;

@@ -278,8 +278,14 @@ pub fn add_subfolder<C: About>(failure: Failure, folder: &Path, otherwise: &str)
 
 /// Backup subfolders of a folder, one per robot.
 pub fn folders_in(folder: &Path) -> Vec<PathBuf> {
+    folders_with(folder, &[MANIFEST])
+}
+
+/// Subfolders of a folder that contain at least one of these files.
+pub fn folders_with(folder: &Path, files: &[&str]) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
-    let mut found: Vec<PathBuf> = entries.filter(|path| path.join(MANIFEST).exists()).collect();
+    let is_there = |path: &PathBuf| files.iter().any(|file| path.join(file).exists());
+    let mut found: Vec<PathBuf> = entries.filter(is_there).collect();
     found.sort();
     found
 }

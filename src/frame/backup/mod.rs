@@ -8,6 +8,7 @@ pub mod family_backup;
 pub mod job_date;
 pub mod manifest;
 pub mod parts;
+pub mod recording;
 pub mod save;
 pub mod text_diff;
 pub mod tolerance;

@@ -29,6 +29,7 @@ use crate::serve::{NamedServer, Serve, Started};
 use crate::settings::alarms::{Alarms, Origin};
 use crate::settings::target;
 use crate::{Access, AnyCommand, AnyContext, Command, CommandSet, Driver, FamilyArguments, Outcome, SchemaEntry};
+use armctl_controller::simulator::recording::Replayable;
 use armctl_transport::session::host::Guard;
 
 /// A family, declared in its `face.rs`.
@@ -53,7 +54,7 @@ pub trait Declaration: Backups {
     /// `armctl sim`.
     type Serve: Serve + Args + 'static;
     /// Start state of the simulator.
-    type Start: 'static;
+    type Start: Replayable + 'static;
     /// Poller for live views.
     type Poller: Poller<Family = Self>;
 
@@ -198,8 +199,8 @@ impl<F: Declaration> Face for Registered<F> {
             let command = F::Serve::augment_args(clap::Command::new("sim").no_binary_name(true));
             let parsed = command.try_get_matches_from(arguments).and_then(|found| F::Serve::from_arg_matches(&found));
             let serve = parsed.map_err(|error| Failure::local(format!("internal error: {error}")))?;
-            let Started { target, server, .. } = serve.start().await?;
-            Ok(NamedServer { name, target, server: Box::new(server) })
+            let Started { target, server, replay, .. } = serve.start().await?;
+            Ok(NamedServer { name, target, server: Box::new(server), replay })
         }
         .boxed_local()
     }

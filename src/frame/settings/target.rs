@@ -120,7 +120,8 @@ pub enum Place {
     Serial(Serial),
     /// `tcp://HOST:PORT[?baud=9600]`.
     Tcp(Tcp),
-    /// `sim:[?model=…&axes=…&baud=…&state=FILE&from=FOLDER&fault=…]`: the built-in simulator of the family, in this process.
+    /// `sim:[?model=…&axes=…&baud=…&state=FILE&from=FOLDER&replay=FILE&fault=…]`: the built-in simulator of the family, in
+    /// this process.
     Sim(Sim),
     /// A URL of one of the [`BUSES`].
     Bus(Bus),
@@ -188,6 +189,8 @@ pub struct Sim {
     pub state: Option<PathBuf>,
     /// Backup of a robot, whose data the simulator starts with.
     pub from: Option<PathBuf>,
+    /// Recording of a robot, whose answers the simulator gives.
+    pub replay: Option<PathBuf>,
     /// Faults of link and device, in the format of `armctl sim --fault`.
     pub fault: Option<String>,
     /// Fieldbus of a yrcx controller: one of [`bus::simulators`]. Without this setting, a network is simulated only if
@@ -354,7 +357,7 @@ const FORMS: [(&str, &str); 4] = [
     ("udp", "udp://HOST[:10040][?file_port=PORT+1&model=auto]"),
     ("serial", "serial:///dev/ttyUSB0[?baud=9600&parity=even&data_bits=8&stop_bits=1], or serial://COM3"),
     ("tcp", "tcp://HOST:PORT[?baud=9600]"),
-    ("sim", "sim:[?state=FILE&from=FOLDER&fault=drop=5%25]"),
+    ("sim", "sim:[?state=FILE&from=FOLDER&replay=FILE&fault=drop=5%25]"),
 ];
 
 fn udp(place: &str, query: &mut Query) -> Result<Udp, String> {
@@ -412,9 +415,12 @@ fn sim(place: &str, query: &mut Query) -> Result<Sim, String> {
             _ => return Err(format!("axes must be a number from 1 to 4, not '{text}'")),
         },
     };
-    let [state, from] = ["state", "from"].map(|key| query.take(key).map(PathBuf::from));
+    let [state, from, replay] = ["state", "from", "replay"].map(|key| query.take(key).map(PathBuf::from));
     if state.is_some() && from.is_some() {
         return Err("a simulator starts with either state or from".to_owned());
+    }
+    if state.is_some() && replay.is_some() {
+        return Err("a simulator has either state or replay".to_owned());
     }
     Ok(Sim {
         traits: traits(query)?,
@@ -422,6 +428,7 @@ fn sim(place: &str, query: &mut Query) -> Result<Sim, String> {
         baud: baud(query)?,
         state,
         from,
+        replay,
         fault: query.take("fault"),
         bus: query.take("bus").map(|name| bus(&name)).transpose()?,
     })

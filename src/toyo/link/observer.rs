@@ -57,6 +57,10 @@ impl Watcher<Event> for SharedObserver {
         lock_writer(&self.0).trace.record(direction, bytes);
     }
 
+    fn answered(&mut self, exchange: &dyn Fn() -> (String, String)) {
+        lock_writer(&self.0).trace.answered(exchange);
+    }
+
     fn event(&mut self, event: Event) {
         let mut observer = lock_writer(&self.0);
         match event {

@@ -91,6 +91,11 @@ impl Application for Controller {
         }
     }
 
+    fn is_silent(&mut self, now: Duration) -> bool {
+        self.0.0.advance(now);
+        self.0.0.is_silent()
+    }
+
     fn event(&mut self, now: Duration, event: &Event) {
         if let Event::Closed(peer) | Event::TimedOut(peer) = event
             && peer.role == Role::ExclusiveOwner

@@ -21,6 +21,10 @@ pub(super) struct TrafficObserver {
 }
 
 impl Watcher<Event> for TrafficObserver {
+    fn answered(&mut self, exchange: &dyn Fn() -> (String, String)) {
+        lock_writer(&self.trace).answered(exchange);
+    }
+
     fn event(&mut self, event: Event) {
         let Self { trace, screen, label } = self;
         match event {

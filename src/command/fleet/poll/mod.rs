@@ -7,12 +7,14 @@
 //! |---|---|
 //! | `robot_loop` | polling loop of one robot: ticks, backoff, session |
 //! | `roster` | list of robots, updated from the inventory |
+//! | `counter` | end after a number of polls |
 //! | `poll_request` | needs of the consumers, and their sum |
 //! | `extra_command` | extra read commands with each poll |
 //!
 //! The poller only reads, through links in [`ConnectMode::Monitor`](armctl_frame::ConnectMode). It opens no control
 //! connection to a YRCX. If a session has the link, it polls through the session.
 
+mod counter;
 mod extra_command;
 mod poll_request;
 mod robot_loop;
@@ -34,11 +36,13 @@ use serde_json::Value;
 use tokio::sync::{mpsc, watch};
 use tokio::time::timeout;
 
+pub use self::counter::PollCounter;
 pub use self::extra_command::Extra;
 use self::poll_request::MergedRequests;
 pub use self::poll_request::PollRequest;
 use self::robot_loop::{RobotTask, follow};
 use self::roster::Roster;
+use armctl_controller::simulator::recording::{AnswerLog, Answers};
 use armctl_frame::face::sample::{Sample, Traffic};
 use armctl_frame::prelude::*;
 use armctl_frame::settings::Sources;
@@ -104,6 +108,8 @@ pub struct PollResult {
     pub traffic: Traffic,
     /// Results of the extra commands, each with its text.
     pub extras: Vec<(Arc<str>, Result<Value, Failure>)>,
+    /// Answers of the controller since the last successful poll, if a consumer requested them.
+    pub answers: Answers,
     /// Error of `alarms.toml`, if it prevented an explanation of the fault.
     pub unexplained: Option<Failure>,
 }
@@ -119,6 +125,7 @@ impl PollResult {
             through_session: false,
             traffic: Traffic::default(),
             extras: Vec::new(),
+            answers: Answers::new(),
             unexplained: None,
         }
     }
@@ -304,6 +311,7 @@ impl Fleet {
                 stop: stopped,
                 events: self.events.clone(),
                 extra_commands: HashMap::new(),
+                answers: AnswerLog::default(),
             };
             self.active.insert(id.clone(), Active { entry: given, robot: Arc::clone(&robot), stop: Some(stop) });
             self.events.send(Event::Appeared(robot)).await;

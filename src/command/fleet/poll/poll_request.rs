@@ -19,6 +19,8 @@ pub struct PollRequest {
     pub whole: Option<RobotId>,
     /// Extra commands with each poll.
     pub extras: Rc<[Rc<Extra>]>,
+    /// Whether the results contain the answers of the controller, for a recording.
+    pub answers: bool,
     /// Longest backoff of a robot that does not answer. The backoff starts with one second, or with `every` if that is
     /// longer, and doubles.
     pub longest_pause: Duration,
@@ -32,6 +34,7 @@ impl PollRequest {
             detail: Detail::Summary,
             whole: None,
             extras: Rc::from([]),
+            answers: false,
             longest_pause: Duration::from_secs(60),
         }
     }
@@ -44,6 +47,8 @@ pub(super) struct MergedRequests {
     pub every: Duration,
     /// See [`PollRequest::longest_pause`].
     pub longest_pause: Duration,
+    /// See [`PollRequest::answers`]. It applies to links that open later.
+    pub answers: bool,
     detail: Detail,
     whole: Vec<RobotId>,
     extras: Vec<Rc<Extra>>,
@@ -58,6 +63,7 @@ impl MergedRequests {
         let idle = Self {
             every: IDLE_INTERVAL,
             longest_pause: IDLE_INTERVAL,
+            answers: false,
             detail: Detail::Summary,
             whole: Vec::new(),
             extras: Vec::new(),
@@ -69,6 +75,7 @@ impl MergedRequests {
     fn merge(mut self, other: Self) -> Self {
         self.every = self.every.min(other.every);
         self.longest_pause = self.longest_pause.min(other.longest_pause);
+        self.answers |= other.answers;
         self.detail = self.detail.max(other.detail);
         self.whole.extend(other.whole);
         let new = other.extras.into_iter().filter(|extra| !self.extras.contains(extra)).collect::<Vec<_>>();
@@ -89,7 +96,7 @@ impl MergedRequests {
 
 impl From<PollRequest> for MergedRequests {
     fn from(request: PollRequest) -> Self {
-        let PollRequest { every, detail, whole, extras, longest_pause } = request;
-        Self { every, longest_pause, detail, whole: whole.into_iter().collect(), extras: extras.to_vec() }
+        let PollRequest { every, detail, whole, extras, answers, longest_pause } = request;
+        Self { every, longest_pause, answers, detail, whole: whole.into_iter().collect(), extras: extras.to_vec() }
     }
 }

@@ -12,6 +12,7 @@ use super::extra_command::Read;
 use super::poll_request::MergedRequests;
 use super::{CLOSE_TIMEOUT, Event, EventSender, Extra, PollResult, RobotId, wait_for_stop};
 use crate::command::families;
+use armctl_controller::simulator::recording::AnswerLog;
 use armctl_frame::ConnectionEffect;
 use armctl_frame::face::Watch;
 use armctl_frame::face::sample::Traffic;
@@ -30,6 +31,8 @@ pub(super) struct RobotTask {
     pub events: EventSender,
     /// Extra commands of this robot by their text.
     pub extra_commands: HashMap<Arc<str>, Option<Read>>,
+    /// Answers since the last successful poll.
+    pub answers: AnswerLog,
 }
 
 /// First backoff after a failure, unless the interval is longer.
@@ -62,7 +65,8 @@ pub(super) async fn follow(mut follower: RobotTask) {
                 let family = families::of(robot.family);
                 let robot = &open_shared_session(family.driver(), robot).await?;
                 let is_shared = is_held(robot);
-                let access = Access::reading(ConnectMode::Monitor);
+                let answers = follower.requests.borrow().answers.then(|| follower.answers.clone());
+                let access = Access { answers, ..Access::reading(ConnectMode::Monitor) };
                 let watch = family.watch(robot, access, screen).await?;
                 Ok(Link { watch, is_shared, reported: Traffic::default() })
             } => opened,
@@ -185,7 +189,8 @@ impl RobotTask {
             }
         }
         let through_session = link.is_shared;
-        Ok(PollResult { through_session, extras, unexplained, ..PollResult::new(robot, sample) })
+        let answers = self.answers.take();
+        Ok(PollResult { through_session, extras, answers, unexplained, ..PollResult::new(robot, sample) })
     }
 
     /// Runs an extra command, unless it needs a connection whose end would affect the controller.

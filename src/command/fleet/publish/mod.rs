@@ -31,7 +31,6 @@ mod tests;
 pub(super) mod topic;
 mod uplink;
 
-use std::collections::BTreeMap;
 use std::env;
 use std::future::pending;
 use std::io;
@@ -49,12 +48,14 @@ use self::delivery::{Backoff, Broker as _, Counts, Delivery, Listener as _};
 use self::log::BrokerLog;
 use self::message_format::MessageFormat;
 use self::outbox::Outbox;
-use self::plain_format::{Alarms, Axes, PlainFormat, Position, Times};
+use self::plain_format::{Alarms, PlainFormat, Position, Times};
 use self::sparkplug::{Names, Node};
 use self::spool::{Spool, SyncPolicy};
 use self::topic::{Levels, Template, Topics};
 use crate::command::fleet::also::{AlsoArguments, AlsoCommand};
-use crate::command::fleet::poll::{Event, Poll, PollRequest, RobotId, Subscription};
+use crate::command::fleet::axes::Axes;
+use crate::command::fleet::byte_size::size;
+use crate::command::fleet::poll::{Event, Poll, PollCounter, PollRequest, RobotId};
 use crate::command::fleet::service::{END_TIMEOUT, Service};
 use armctl_files as files;
 use armctl_frame::SchemaEntry;
@@ -155,20 +156,6 @@ const MIN_SIZE: u64 = 64 << 10;
 /// Minimum and default polling interval.
 const MIN_INTERVAL: Duration = Duration::from_millis(50);
 const DEFAULT_INTERVAL: Duration = Duration::from_secs(1);
-
-fn size(text: &str) -> Result<u64, String> {
-    let wrong = || format!("'{text}' is not a valid size; write 64K, 16M or 1G");
-    let digits = text.bytes().take_while(u8::is_ascii_digit).count();
-    let (number, unit) = text.split_at_checked(digits).ok_or_else(wrong)?;
-    let shift = match unit.to_ascii_lowercase().trim_end_matches("ib").trim_end_matches('b') {
-        "" => 0,
-        "k" => 10,
-        "m" => 20,
-        "g" => 30,
-        _ => return Err(wrong()),
-    };
-    number.parse::<u64>().ok().and_then(|number| number.checked_mul(1 << shift)).ok_or_else(wrong)
-}
 
 fn memory_size(text: &str) -> Result<u64, String> {
     match size(text)? {
@@ -498,40 +485,4 @@ fn this_machine() -> String {
 #[cfg(not(unix))]
 fn this_machine() -> String {
     env::var("COMPUTERNAME").unwrap_or_else(|_| "armctl".to_owned())
-}
-
-/// Events of the poller, up to a number of polls per robot.
-#[derive(Debug)]
-struct PollCounter {
-    left: BTreeMap<RobotId, u64>,
-    is_bounded: bool,
-}
-
-impl PollCounter {
-    fn new(robots: &[RobotId], count: Option<u64>) -> Self {
-        let left = count.map(|count| robots.iter().map(|id| (id.clone(), count)).collect()).unwrap_or_default();
-        Self { left, is_bounded: count.is_some() }
-    }
-
-    async fn next(&mut self, events: &mut Subscription) -> Option<Event> {
-        if self.is_bounded && self.left.is_empty() {
-            return None;
-        }
-        let event = events.next().await?;
-        let polled_robots = match &event {
-            Event::Polled(look) => Some((RobotId::for_robot(&look.robot), 1)),
-            Event::Failed { robot, .. } => Some((RobotId::for_robot(robot), 1)),
-            Event::Gone(robot) => Some((RobotId::for_robot(robot), u64::MAX)),
-            Event::Appeared(_) | Event::Inventory(_) => None,
-        };
-        if let Some((id, looks)) = polled_robots
-            && let Some(left) = self.left.get_mut(&id)
-        {
-            *left = left.saturating_sub(looks);
-            if *left == 0 {
-                self.left.remove(&id);
-            }
-        }
-        Some(event)
-    }
 }

@@ -21,9 +21,9 @@ use super::outbox::Record;
 use super::topic::Topics;
 use super::uplink::{Message, Will};
 use crate::command::fleet::also::AlsoCommand;
+use crate::command::fleet::axes::Axes;
 use crate::command::fleet::poll::{Event, PollResult, RobotId};
 use armctl_frame::face::overview::OverviewReport;
-use armctl_frame::face::sample::Sample;
 use armctl_frame::output::envelope::Envelope;
 use armctl_frame::output::log::Level;
 use armctl_frame::prelude::*;
@@ -44,44 +44,6 @@ pub struct Position {
     position: Option<PositionMm>,
     /// Reason why the position was not read; null if it was read.
     not_asked: Option<&'static str>,
-}
-
-/// All axes and coordinates of a robot.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-pub struct Axes {
-    /// Axes of the first group or robot, then its coordinates in base coordinates with their rotation.
-    axes: Vec<AxisValue>,
-    /// Reason why the axes were not read; null if they were read.
-    not_asked: Option<&'static str>,
-}
-
-/// An axis or a coordinate.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-struct AxisValue {
-    /// Name: `S`, `X`, `Rz`, `1`.
-    axis: String,
-    /// Position.
-    position: f64,
-    /// Unit of the position: `pulses`, `mm` or `deg`.
-    unit: &'static str,
-    /// Torque; null if the protocol does not report it.
-    torque: Option<f64>,
-    /// Unit of the torque: `% of max`, or `raw` if the unit is not known.
-    torque_unit: Option<&'static str>,
-}
-
-impl Axes {
-    fn of(sample: &Sample) -> Self {
-        let Some(whole) = &sample.full else { return Self { axes: Vec::new(), not_asked: sample.line.not_asked } };
-        let axes = whole.axes.iter().map(|axis| AxisValue {
-            axis: axis.name.clone(),
-            position: axis.position,
-            unit: axis.unit,
-            torque: axis.torque,
-            torque_unit: axis.torque.and(whole.torque_unit),
-        });
-        Self { axes: axes.collect(), not_asked: whole.not_asked }
-    }
 }
 
 /// Number of longest intervals between two messages of a topic, after which the last one expires.
@@ -365,7 +327,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use armctl_frame::face::sample::{Axis, Whole};
+    use armctl_frame::face::sample::{Axis, Sample, Whole};
 
     #[test]
     fn axes_have_units_and_torques() {

@@ -17,6 +17,7 @@
 //! | `matrix`, `routine` | matrix positions; palletizing, easy programs, single points |
 //! | `commands`, `edit`, `monitor`, `operate`, `reply` | host commands |
 //! | `console`, `trace` | operator actions, and events |
+//! | `replay` | state of a recorded controller |
 //!
 //! The manual specifies the protocol, but says little about the behavior of a controller. The simulator makes these
 //! assumptions:
@@ -77,6 +78,7 @@ mod motion;
 mod moves;
 mod operate;
 mod position_effects;
+mod replay;
 mod reply;
 mod routine;
 mod run;
@@ -100,6 +102,7 @@ use super::layout::Record;
 use super::request::MAX_BLOCK_LEN;
 use crate::Now;
 use crate::simulator::answers::{Busy, DelayedAnswers};
+use crate::simulator::recording::Replay;
 use crate::simulator::run_options::Speed;
 
 /// Maximum number of answers that wait to be sent.
@@ -112,6 +115,7 @@ pub struct Simulator {
     busy: Busy,
     incoming: IncomingBlock,
     answers: DelayedAnswers<Vec<u8>>,
+    replay: Replay,
     speed: Speed,
 }
 
@@ -156,6 +160,7 @@ impl Simulator {
             busy: Busy::new(start.busy, start.seed),
             incoming: IncomingBlock::default(),
             answers: DelayedAnswers::new(start.answer_delay, MAX_WAITING),
+            replay: Replay::new(start.recording),
         }
     }
 
@@ -191,7 +196,7 @@ impl Simulator {
 
     /// Time of the next answer or internal event.
     pub fn wake(&self) -> Option<Now> {
-        let due = [self.answers.due(), self.world.next()].into_iter().flatten().min();
+        let due = [self.answers.due(), self.world.next(), self.replay.due()].into_iter().flatten().min();
         due.map(|due| self.speed.real(due))
     }
 
@@ -217,6 +222,9 @@ impl Simulator {
     pub fn advance(&mut self, now: Now) {
         let now = self.speed.simulated(now).max(self.world.now);
         self.world.advance(now);
+        while let Some(changed) = self.replay.take(now) {
+            replay::follow(&mut self.world, &changed);
+        }
     }
 
     /// Switches the recording of events for [`Simulator::take_trace`] on or off.
@@ -273,12 +281,22 @@ impl Simulator {
 
     fn take_block(&mut self) {
         let IncomingBlock { bytes, damaged } = std::mem::take(&mut self.incoming);
-        // Noise and damaged blocks get no answer (TO 1-3).
-        if damaged || bytes.is_empty() || !bytes.iter().all(|byte| matches!(byte, b' '..=b'~')) {
+        // Noise and damaged blocks get no answer (TO 1-3). A recorded controller may have been silent.
+        if damaged
+            || self.replay.is_silent()
+            || bytes.is_empty()
+            || !bytes.iter().all(|byte| matches!(byte, b' '..=b'~'))
+        {
             return;
         }
         let block = String::from_utf8_lossy(&bytes);
-        let answer = if self.busy.refuses() { "@NG".to_owned() } else { commands::answer(&mut self.world, &block) };
+        let answer = if self.busy.refuses() {
+            "@NG".to_owned()
+        } else if let Some(recorded) = self.replay.answer(block.trim_end()) {
+            recorded.to_owned()
+        } else {
+            commands::answer(&mut self.world, &block)
+        };
         self.answers.push(self.world.now, format!("{answer}\r\n").into_bytes());
     }
 }

@@ -23,6 +23,7 @@ use super::trace::Trace;
 use super::world::{COUNTERS, Mode, Switches, TIMERS, World};
 use crate::Now;
 use crate::simulator::console;
+use crate::simulator::recording::{Recording, Replayable};
 use crate::simulator::refuse_if;
 use crate::simulator::run_options::RunOptions;
 use crate::simulator::start::{self, Event, Source, Table, default_entry, default_text};
@@ -40,6 +41,7 @@ pub struct Start {
     pub(super) answer_delay: Duration,
     pub(super) busy: f64,
     pub(super) options: RunOptions,
+    pub(super) recording: Recording,
 }
 
 /// A start state with all keys. Each key is optional.
@@ -136,6 +138,12 @@ impl Start {
         self.world.load();
         self.world.settle();
         self
+    }
+}
+
+impl Replayable for Start {
+    fn with_recording(self, recording: Recording) -> Self {
+        Self { recording, ..self }
     }
 }
 
@@ -272,7 +280,14 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
     world.settle();
     world.events = source.timeline(&entries.events, ConsoleLine::parse)?;
     let answer_delay = Duration::from_millis(entries.answer_delay_ms);
-    Ok(Start { world, seed: entries.seed, answer_delay, busy, options: RunOptions::default() })
+    Ok(Start {
+        world,
+        seed: entries.seed,
+        answer_delay,
+        busy,
+        options: RunOptions::default(),
+        recording: Recording::default(),
+    })
 }
 
 /// A controller without content.

@@ -15,6 +15,7 @@
 //! | `robot`, `reads`, `operate`, `moves` | robot server |
 //! | `transfer` | file server |
 //! | `console` | operator actions |
+//! | `replay` | state of a recorded controller |
 
 mod alarms;
 mod console;
@@ -27,6 +28,7 @@ mod moves;
 mod name_lists;
 mod playback;
 mod read_commands;
+mod replay;
 mod robot;
 mod start;
 mod storage;
@@ -41,9 +43,12 @@ pub use start::{EXAMPLE, Start};
 
 use self::transfer::FileServer;
 use self::world::{Refusal, World, code};
+use super::recording::{parse_answer, request_text};
+use super::request::Request;
 use super::wire::{ANSWER_BIT, AnswerFrame, Division, HEADER_LEN, LAST_BLOCK, RequestFrame, Status, WireError};
 use crate::Now;
 use crate::simulator::answers::{Busy, DelayedAnswers};
+use crate::simulator::recording::Replay;
 use crate::simulator::run_options::Speed;
 
 /// Maximum number of pending answers.
@@ -76,6 +81,7 @@ pub struct Simulator {
     files: FileServer,
     busy: Busy,
     answers: DelayedAnswers<Outgoing>,
+    replay: Replay,
     speed: Speed,
 }
 
@@ -88,6 +94,7 @@ impl Simulator {
             files: FileServer::new(start.backup_time, start.backup_size, start.idle_limit),
             busy: Busy::new(start.busy, start.seed),
             answers: DelayedAnswers::new(start.answer_delay, MAX_WAITING),
+            replay: Replay::new(start.recording),
             world: start.world,
         }
     }
@@ -97,6 +104,9 @@ impl Simulator {
     pub fn receive(&mut self, now: Now, division: Division, peer: u64, bytes: &[u8]) {
         let now = self.speed.simulated(now);
         self.advance(now);
+        if self.replay.is_silent() {
+            return;
+        }
         let now = self.world.now;
         let request = RequestFrame::parse(bytes)
             .map_err(|error| malformed(&error))
@@ -126,7 +136,8 @@ impl Simulator {
 
     /// Time of the next datagram or internal event.
     pub fn wake(&self) -> Option<Now> {
-        let due = [self.answers.due(), self.world.wake(), self.files.wake()].into_iter().flatten().min();
+        let due = [self.answers.due(), self.world.wake(), self.files.wake(), self.replay.due()];
+        let due = due.into_iter().flatten().min();
         due.map(|due| self.speed.real(due))
     }
 
@@ -147,6 +158,9 @@ impl Simulator {
     /// Advances world and transfers to `now`, which never runs backwards.
     fn advance(&mut self, now: Now) {
         let now = now.max(self.world.now);
+        while let Some(changed) = self.replay.take(now) {
+            replay::follow(&mut self.world, &mut self.replay, &changed);
+        }
         while let Some(at) = self.files.wake().filter(|&at| at <= now) {
             self.world.advance(at.max(self.world.now));
             let reply = self.files.advance(&mut self.world, at);
@@ -169,6 +183,8 @@ impl Simulator {
             Err(Refusal::Added(code::BLOCK))
         } else if self.busy.refuses() {
             Err(Refusal::Added(code::BUSY))
+        } else if let Some((status, data)) = self.recorded(request) {
+            return answer_frame(Division::Robot, request.service, request.id, LAST_BLOCK, status, &data);
         } else {
             robot::answer(&mut self.world, request)
         };
@@ -177,6 +193,11 @@ impl Simulator {
             Err(refused) => (refused.status(self.world.model), Vec::new()),
         };
         answer_frame(Division::Robot, request.service, request.id, LAST_BLOCK, status, &data)
+    }
+
+    /// Recorded answer to a request.
+    fn recorded(&self, request: &RequestFrame<'_>) -> Option<(Status, Vec<u8>)> {
+        self.replay.answer(&request_text(&Request::from(*request))).and_then(parse_answer)
     }
 }
 

@@ -158,7 +158,7 @@ impl World {
     }
 
     /// Stores a validated element.
-    fn write_element(&mut self, store: Store, instance: u16, bytes: &[u8]) {
+    pub(super) fn write_element(&mut self, store: Store, instance: u16, bytes: &[u8]) {
         match (store, bytes) {
             (Store::Io, &[byte]) => self.memory.set_io(instance, byte),
             (Store::Register, &[low, high]) => {

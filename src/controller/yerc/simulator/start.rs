@@ -18,6 +18,7 @@ use super::storage::{Content, Storage, check_stored_name};
 use super::variable_file;
 use super::world::{Holds, Meters, Mode, Switches, World};
 use crate::Now;
+use crate::simulator::recording::{Recording, Replayable};
 use crate::simulator::run_options::RunOptions;
 use crate::simulator::start::{self, Event, Source, Table, default_entry, default_text, numbered};
 use crate::simulator::timeline::Timeline;
@@ -35,6 +36,7 @@ pub struct Start {
     pub(super) backup_size: u64,
     pub(super) idle_limit: Duration,
     pub(super) options: RunOptions,
+    pub(super) recording: Recording,
 }
 
 /// A start state with all keys. Each key is optional.
@@ -155,6 +157,12 @@ impl Start {
     #[must_use]
     pub fn with_options(self, options: RunOptions) -> Self {
         Self { options, ..self }
+    }
+}
+
+impl Replayable for Start {
+    fn with_recording(self, recording: Recording) -> Self {
+        Self { recording, ..self }
     }
 }
 
@@ -367,6 +375,7 @@ fn build(
         backup_size: entries.backup_size,
         idle_limit: Duration::from_millis(entries.transfer_timeout_ms),
         options: RunOptions::default(),
+        recording: Recording::default(),
     })
 }
 

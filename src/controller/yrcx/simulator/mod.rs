@@ -16,6 +16,7 @@
 //! | `program`, `task` | programs in a subset of the language, and their tasks |
 //! | `console` | operator actions |
 //! | `journal` | images of masters |
+//! | `replay` | signals and state of a recorded controller |
 //!
 //! The manual specifies the protocol, but less of the behavior of a controller. The simulator makes these assumptions:
 //!
@@ -66,6 +67,7 @@ mod operation_commands;
 mod program;
 mod read_commands;
 mod remote;
+mod replay;
 mod request;
 mod robot;
 mod signals;
@@ -85,6 +87,7 @@ use self::world::{Link, SCAN, World};
 use super::alarm::Alarm;
 use super::image::Image;
 use crate::Now;
+use crate::simulator::recording::Replay;
 use crate::simulator::run_options::Speed;
 
 /// Maximum number of scans per call. After these scans, the rest of the time is one scan.
@@ -112,6 +115,7 @@ pub struct Simulator {
     touched: Option<Now>,
     /// Time of the last scan.
     scanned: Option<Now>,
+    replay: Replay,
     speed: Speed,
 }
 
@@ -130,6 +134,7 @@ impl Simulator {
             incoming: None,
             touched: None,
             scanned: None,
+            replay: Replay::new(start.recording),
             speed: start.options.speed,
         };
         simulator.scan(Now::ZERO);
@@ -165,6 +170,11 @@ impl Simulator {
         &self.shown
     }
 
+    /// Whether the recorded controller did not answer at this time. The fieldbus device must then be silent too.
+    pub fn is_silent(&self) -> bool {
+        self.replay.is_silent()
+    }
+
     /// Time of the next scan that may change something, without an input from outside.
     pub fn wake(&self) -> Option<Now> {
         self.next_scan().map(|due| self.speed.real(due))
@@ -172,7 +182,8 @@ impl Simulator {
 
     /// Simulated time of the next scan that may change something.
     fn next_scan(&self) -> Option<Now> {
-        let due = [self.touched, self.world.due(), self.remote.due(&self.world)].into_iter().flatten().min()?;
+        let due = [self.touched, self.world.due(), self.remote.due(&self.world), self.replay.due()];
+        let due = due.into_iter().flatten().min()?;
         let next = next_scan(due);
         let earliest = self.scanned.map_or(Now::ZERO, |last| last.saturating_add(SCAN));
         Some(next.max(earliest))
@@ -215,10 +226,14 @@ impl Simulator {
         }
         self.dedicated.scan(&mut self.world);
         self.world.scan();
-        self.remote.scan(&mut self.world);
+        while self.replay.take(at).is_some() {
+            replay::follow(&mut self.world, &self.replay);
+        }
+        self.remote.scan(&mut self.world, &self.replay);
         let words = self.remote.words();
         self.shown.set_command(&words);
         signals::show(&mut self.world, &mut self.shown);
+        replay::show(&self.replay, &mut self.shown);
     }
 }
 

@@ -5,9 +5,11 @@ use super::commands::{self, CommandProgress};
 use super::motion::{End, Owner};
 use super::motion_commands;
 use super::read_commands;
+use super::replay;
 use super::request::Request;
 use super::world::{Link, SCAN, World};
 use crate::Now;
+use crate::simulator::recording::Replay;
 use crate::yrcx::answer::Status;
 use crate::yrcx::image::{COMMAND_WORDS, Words};
 use crate::yrcx::table::DurationClass;
@@ -78,10 +80,13 @@ impl Remote {
     }
 
     /// Handles one scan of the handshake. Call this function after all other parts have handled the scan.
-    pub(super) fn scan(&mut self, world: &mut World) {
+    pub(super) fn scan(&mut self, world: &mut World, replay: &Replay) {
         let words = (world.link != Link::Down).then(|| world.inputs.command());
         match (&mut self.state, words) {
-            (State::Ready, Some(words)) if words[0] != Status::Ready.word() => self.take(world, &words),
+            (State::Ready, Some(words)) if words[0] != Status::Ready.word() => match replay::answer(replay, &words) {
+                Some(recorded) => self.end(recorded),
+                None => self.take(world, &words),
+            },
             (State::Running(running), Some(words)) if words != running.request.words => running.held = false,
             (State::Ended, Some(words)) if words[0] == Status::Ready.word() => {
                 self.state = State::Ready;

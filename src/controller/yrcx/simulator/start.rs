@@ -20,6 +20,7 @@ use super::robot::{Method, Motor};
 use super::world::{Link, Mode, Switches, World};
 use super::{commands, console};
 use crate::Now;
+use crate::simulator::recording::{Recording, Replayable};
 use crate::simulator::run_options::RunOptions;
 use crate::simulator::start::{self, Event, Source, Table, numbered};
 use crate::simulator::timeline::Timeline;
@@ -36,6 +37,7 @@ pub struct Start {
     pub(super) run_scans: u32,
     pub(super) seed: u64,
     pub(super) options: RunOptions,
+    pub(super) recording: Recording,
 }
 
 /// A start state with all keys. Each key is optional.
@@ -159,6 +161,12 @@ impl Start {
     #[must_use]
     pub fn with_options(self, options: RunOptions) -> Self {
         Self { options, ..self }
+    }
+}
+
+impl Replayable for Start {
+    fn with_recording(self, recording: Recording) -> Self {
+        Self { recording, ..self }
     }
 }
 
@@ -431,7 +439,13 @@ fn build(entries: &Entries, text: &str) -> Result<Start, String> {
     // The check uses a copy, so that the world keeps its start state.
     let mut copy = world.clone();
     world.events = source.timeline(&entries.events, |line| console::execute(&mut copy, line))?;
-    Ok(Start { world, run_scans: entries.run_scans, seed: entries.seed, options: RunOptions::default() })
+    Ok(Start {
+        world,
+        run_scans: entries.run_scans,
+        seed: entries.seed,
+        options: RunOptions::default(),
+        recording: Recording::default(),
+    })
 }
 
 /// A controller without content.

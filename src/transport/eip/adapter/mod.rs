@@ -92,6 +92,10 @@ pub trait Application: Send {
     fn image_out(&mut self, now: Now, instance: u32, image: &[u8], run: bool);
     /// Updates the image to originators. The buffer contains the previous image.
     fn image_in(&mut self, now: Now, instance: u32, image: &mut [u8]);
+    /// Whether the device answers no request and sends no image.
+    fn is_silent(&mut self, _now: Now) -> bool {
+        false
+    }
     /// Handles the opening or the end of a connection.
     fn event(&mut self, now: Now, event: &Event);
 }
@@ -228,6 +232,7 @@ impl<A: Application> Adapter<A> {
         while let Some(bytes) = self.clients.get_mut(&client).and_then(|state| state.frames.pop()) {
             let Ok(frame) = Frame::parse(&bytes) else { return };
             match self.fault {
+                _ if self.application.is_silent(now) => {}
                 Some(AdapterFault::Mute) => {}
                 Some(AdapterFault::Reset) if frame.command == Command::SEND_RR_DATA => {
                     self.outputs.push_back(Output::HangUp(client));
@@ -298,17 +303,18 @@ impl<A: Application> Adapter<A> {
     }
 
     fn produce(&mut self, now: Now) {
+        let fault = if self.application.is_silent(now) { Some(AdapterFault::Stall) } else { self.fault };
         for connections in &mut self.connections {
             let Some(producer) = connections.producer.as_mut().filter(|producer| now >= producer.due()) else {
                 continue;
             };
             let instance = connections.peer.input;
             let Some(image) = self.images.get_mut(&instance) else { continue };
-            if self.fault != Some(AdapterFault::Frozen) || producer.sent == 0 {
+            if fault != Some(AdapterFault::Frozen) || producer.sent == 0 {
                 self.application.image_in(now, instance, image);
             }
             let datagram = producer.produce(now, None, image);
-            for bytes in fault::images(self.fault, producer.sent, datagram) {
+            for bytes in fault::images(fault, producer.sent, datagram) {
                 self.outputs.push_back(Output::Datagram(connections.destination, bytes));
             }
         }

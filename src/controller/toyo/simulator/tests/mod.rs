@@ -5,6 +5,7 @@ mod instructions;
 mod line;
 mod memory;
 mod motion;
+mod replay;
 mod routines;
 mod start;
 mod survival;

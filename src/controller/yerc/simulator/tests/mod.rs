@@ -12,6 +12,7 @@ use crate::yerc::payload::{
 mod files;
 mod life;
 mod motion;
+mod replay;
 mod robot;
 mod survival;
 

@@ -16,6 +16,7 @@ mod life;
 mod motion;
 mod programs;
 mod refusals;
+mod replay;
 mod sessions;
 mod signals;
 
