@@ -83,7 +83,7 @@ class Eip(World):
         self.controller = Yrcx()
         self.line = Images(self.controller)
         self.adapter = await Adapter.open(self.line)
-        self.target = "eip://127.0.0.1:%d?rpi=20ms" % self.adapter.number
+        self.target = "eip://127.0.0.1:%d?rpi=20ms&multiplier=64" % self.adapter.number
         self.operations = YrcxOperations(self.controller, folder, tag)
         return self
 

@@ -14,7 +14,7 @@ SIZE = 48
 CYCLIC_FAULTS = ["none", "lose some", "lose long", "double", "reorder", "delay some", "delay long", "cut", "flood",
                  "wrong peer", "reset", "kill client", "kill holder"]
 CYCLIC_HARMLESS = {"none", "lose some", "double", "reorder", "delay some", "cut", "flood", "wrong peer", "reset"}
-SHORT, LONG = 3, 60  # packets: some are less than the timeout of a connection (16), many are more
+SHORT, LONG = 3, 300  # packets both ways: few are less than the timeout of a connection (64 one way), many are more
 
 
 class Images:
@@ -211,7 +211,7 @@ class Adapter(asyncio.DatagramProtocol):
         if kind.startswith("lose") or kind == "cut" and len(data) < 20:
             return
         if kind.startswith("delay"):
-            late = 0.08 if kind == "delay some" else 1.0
+            late = 0.08 if kind == "delay some" else 3.0
             asyncio.get_running_loop().call_later(late, self.consume, data)
             return
         if kind == "reorder":
@@ -258,7 +258,7 @@ class Adapter(asyncio.DatagramProtocol):
         if kind.startswith("lose"):
             return
         if kind.startswith("delay"):
-            loop.call_later(0.08 if kind == "delay some" else 1.0, self.send, packet, peer)
+            loop.call_later(0.08 if kind == "delay some" else 3.0, self.send, packet, peer)
             return
         if kind == "cut":
             return self.send(packet[:chance.randrange(len(packet))], peer)
@@ -267,7 +267,7 @@ class Adapter(asyncio.DatagramProtocol):
         if kind == "flood":
             for _ in range(100):
                 other = bytearray(packet)
-                other[chance.randrange(14)] ^= 1 + chance.randrange(255)
+                other[chance.randrange(10)] ^= 1 + chance.randrange(255)
                 self.send(bytes(other) if chance.randrange(2) else bytes(chance.randrange(256) for _ in range(40)), peer)
         if kind == "wrong peer":
             forged = bytearray(packet)

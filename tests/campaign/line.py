@@ -49,7 +49,7 @@ class Line:
     def __init__(self, controller, timeout):
         self.controller, self.timeout = controller, timeout
         self.plan = Plan()
-        self.sent, self.last_answer = [], None
+        self.sent, self.last_answer = [], (None, b"")
         self.on_kill = lambda: None
         self.operation, self.ordered = 0, False
         self.late_until = 0.0
@@ -86,8 +86,8 @@ class Line:
             return peer.reset()
         if answer is None or kind == "lose answer":
             return
-        previous, self.last_answer = self.last_answer, answer
-        if kind == "reorder" and previous is not None:
+        (client, previous), self.last_answer = self.last_answer, (peer.client(), answer)
+        if kind == "reorder" and client == peer.client():
             peer.send(previous)
         if kind == "cut":
             return peer.send(answer[:chance.randrange(0, len(answer))])
@@ -138,6 +138,9 @@ class UdpPort(asyncio.DatagramProtocol):
 
 class UdpPeer:
     is_stream = False
+
+    def client(self):
+        return self.address
 
     def __init__(self, port, address):
         self.port, self.address = port, address
@@ -194,6 +197,9 @@ class TcpPort:
 class TcpPeer:
     is_stream = True
 
+    def client(self):
+        return self
+
     def __init__(self, writer):
         self.writer = writer
 
@@ -213,6 +219,9 @@ class Terminal:
     """A pseudo-terminal. It has no connections: a late answer arrives at whoever listens."""
 
     is_stream = True
+
+    def client(self):
+        return self
 
     def __init__(self, line, splitter=Lines):
         self.master, self.slave = pty.openpty()

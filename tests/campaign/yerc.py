@@ -241,6 +241,9 @@ class Yerc:
             return None  # a late frame of a transfer that is over
         at = block & 0x7FFFFFFF
         if service == 0x15:
+            if block == LAST - 1 and not data:
+                self.transfer = None  # the abort of armctl, which the manual does not have: a block out of order
+                raise Refused(0x1F, 0xE4A1)
             self.expect(1 <= len(data) <= BLOCK, "size of a block: %d" % len(data))
             have = len(transfer["blocks"])
             if at == have + 1 and not transfer["done"]:
@@ -253,6 +256,9 @@ class Yerc:
                 self.apply(("put", transfer["name"]), False)
             return answer(2, number, block, service, b"")
         self.expect(data == b"", "an ack with data")
+        if block == LAST - 1:
+            self.transfer = None  # the abort of armctl
+            raise Refused(0x1F, 0xE4A2)
         if block & LAST:
             return None
         return self.block(at + 1)
