@@ -61,7 +61,7 @@ class Toyo:
         if block == b"@HSOF":
             self.host = False
             return b"@OK"
-        if block in (b"@STOP", b"@REST", b"@CERR"):
+        if block in (b"@STOP", b"@REST", b"@CERR", b"@JGST X=SP Y=SP Z=SP R=SP"):
             self.target = None
             return b"@OK"
         if match := re.fullmatch(rb"@STAS SNO=([0-4])", block):

@@ -19,7 +19,7 @@ class Yrcx:
         self.command, self.left, self.after = None, 0, None
         self.status, self.response = READY, [0] * 15
         self.applied, self.wrong, self.refused = [], [], 0
-        self.emergency = False
+        self.emergency, self.withdrawn = False, 0
         self.on_command = lambda is_change: None
 
     def is_stop(self, message):
@@ -36,7 +36,9 @@ class Yrcx:
                 self.begin(words)
         elif self.left:
             self.left -= 1
-            if command != self.command[0]:
+            if command == 0:
+                self.withdrawn += 1  # armctl does this after --timeout without a status: see docs/reliability.md
+            elif command != self.command[0]:
                 self.wrong.append("WI0 changed during a command: %04X" % command)
             if not inputs & 0x40 and self.after is not None and self.after[0] == "move":
                 self.end(FAILED, [12, 400])  # the stop input
