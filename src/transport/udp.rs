@@ -27,6 +27,8 @@ struct Open {
     /// Local address of the socket. It is cached, because every frame needs it and a system call takes a tenth of a
     /// round trip.
     local: SocketAddr,
+    /// Whether a datagram was sent, and none was received since.
+    awaits_answer: bool,
 }
 
 impl Udp {
@@ -65,26 +67,30 @@ impl Udp {
 
     /// Sends one datagram.
     pub async fn send(&mut self, channel: usize, bytes: &[u8]) -> io::Result<()> {
-        let socket = self.channels[channel].socket().await?;
-        let sent = match socket.try_send(bytes) {
-            Err(error) if error.kind() == io::ErrorKind::WouldBlock => socket.send(bytes).await?,
+        let open = self.channels[channel].open().await?;
+        let sent = match open.socket.try_send(bytes) {
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => open.socket.send(bytes).await?,
             result => result?,
         };
+        open.awaits_answer = true;
         if sent == bytes.len() { Ok(()) } else { Err(io::Error::other("the datagram was cut short")) }
     }
 
     /// Waits until `until` for one datagram. Bytes that do not fit into `buffer` are dropped.
     pub async fn receive(&mut self, channel: usize, buffer: &mut [u8], until: Instant) -> io::Result<Option<usize>> {
-        let socket = self.channels[channel].socket().await?;
+        let open = self.channels[channel].open().await?;
         // Other tasks (Ctrl-C, other robots) get time to run, even if datagrams arrive without a pause.
         consume_budget().await;
         // A peer on this computer (a simulator or proxy) gets time to answer first. If it answers now, the client needs
         // no failed read, timer and wait in the reactor. This saves a tenth of the round trip. For a remote peer, the
-        // cost is negligible.
-        std::thread::yield_now();
-        match socket.try_recv(buffer) {
+        // cost is negligible. Only once for each request: on a busy computer, each yield costs milliseconds, and a few
+        // stray datagrams would use up the time for the answer.
+        if std::mem::take(&mut open.awaits_answer) {
+            std::thread::yield_now();
+        }
+        match open.socket.try_recv(buffer) {
             Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
-                timeout_at(until, socket.recv(buffer)).await.ok().transpose()
+                timeout_at(until, open.socket.recv(buffer)).await.ok().transpose()
             }
             received => received.map(Some),
         }
@@ -92,14 +98,14 @@ impl Udp {
 }
 
 impl Channel {
-    async fn socket(&mut self) -> io::Result<&UdpSocket> {
+    async fn open(&mut self) -> io::Result<&mut Open> {
         if self.open.is_none() {
             let peer = self.peer;
             let any: IpAddr = if peer.is_ipv4() { Ipv4Addr::UNSPECIFIED.into() } else { Ipv6Addr::UNSPECIFIED.into() };
             let socket = UdpSocket::bind(SocketAddr::new(any, 0)).await?;
             socket.connect(peer).await?;
-            self.open = Some(Open { local: socket.local_addr()?, socket });
+            self.open = Some(Open { local: socket.local_addr()?, socket, awaits_answer: false });
         }
-        Ok(&self.open.as_ref().expect("opened above").socket)
+        Ok(self.open.as_mut().expect("opened above"))
     }
 }

@@ -164,7 +164,7 @@ proptest! {
             adapter.receive_datagram(now, SocketAddrV4::new(ORIGINATOR_ADDRESS, 2222), &damaged(image));
             adapter.discovered(SocketAddrV4::new(ORIGINATOR_ADDRESS, 2222), &damaged(image));
             if let Ok(datagram) = Cyclic::parse(&damaged(image)) {
-                originator.receive_datagram(now + MS, &datagram);
+                originator.receive_datagram(now + MS, 2222, &datagram);
             }
         }
         let later = now + Duration::from_secs(60);

@@ -9,7 +9,7 @@ use armctl_transport::eip::originator::State;
 use armctl_transport::eip::settings::{Multiplier, Role, Settings};
 use armctl_transport::eip::wire::{Command, Cyclic, Frame, Identity, Key, Open, Request, RrData, Status};
 
-use super::world::{MS, Mirror, ORIGINATOR_ADDRESS, World, identity, resting, settings, setup};
+use super::world::{ADAPTER_ADDRESS, MS, Mirror, ORIGINATOR_ADDRESS, World, identity, resting, settings, setup};
 
 /// An image that can be recognized by its mark.
 fn image(mark: u8) -> Vec<u8> {
@@ -490,4 +490,16 @@ fn ignores_images_of_other_senders() {
     world.adapter.receive_datagram(world.now, stranger, &forged);
     assert_eq!(world.adapter.application().history, before);
     assert!(!world.originator.expects(ORIGINATOR_ADDRESS, 0x1000));
+}
+
+#[test]
+fn ignores_images_of_another_port_of_the_device() {
+    let mut world = World::open(setup(), settings(), "");
+    world.run(100 * MS);
+    let before = world.originator.view().input.unwrap();
+    // The connection id is not secret: a program on the same computer can read it.
+    let id = (0..u32::MAX).find(|id| world.originator.expects(ADAPTER_ADDRESS, *id)).unwrap();
+    let forged = Cyclic { id, sequence: 1_000_000, count: 0, body: &[0xAA; 48] };
+    world.originator.receive_datagram(world.now, 40_000, &forged);
+    assert_eq!(world.originator.view().input.unwrap().image, before.image);
 }

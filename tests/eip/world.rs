@@ -295,7 +295,7 @@ impl World {
             Packet::ImageIn(to, bytes) if *to.ip() == ORIGINATOR_ADDRESS || self.joined.contains(to.ip()) => {
                 let Ok(datagram) = Cyclic::parse(&bytes) else { return };
                 if self.originator.expects(ADAPTER_ADDRESS, datagram.id) {
-                    self.originator.receive_datagram(self.now, &datagram);
+                    self.originator.receive_datagram(self.now, IO_PORT, &datagram);
                 }
             }
             _ => {}

@@ -69,6 +69,44 @@ async fn no_answer_to_a_change_is_an_unknown_outcome() {
     assert!(client.totals.sent > before + 5, "a stop is repeated");
 }
 
+#[tokio::test]
+async fn an_answer_behind_stray_datagrams_counts_after_the_deadline() {
+    use armctl_controller::yerc::wire::{AnswerFrame, LAST_BLOCK, Status};
+
+    let controller = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
+    let ports = [controller.local_addr().unwrap().port(); 2];
+    let answer = |id| {
+        let data = &[0xC2, 0, 0, 0, 0x40, 0, 0, 0];
+        AnswerFrame {
+            division: Division::Robot,
+            ack: true,
+            id,
+            block: LAST_BLOCK,
+            service: 0x81,
+            status: Status::OK,
+            data,
+        }
+        .emit()
+    };
+    let mut client =
+        Client::connect(Endpoint::Udp { host: "127.0.0.1".into(), ports }, Options::new(MODEL)).await.unwrap();
+    let first = tokio::task::spawn_blocking(move || {
+        let mut request = [0; 64];
+        let (_, client) = controller.recv_from(&mut request).unwrap();
+        controller.send_to(&answer(request[11]), client).unwrap();
+        (controller, client, request[11])
+    });
+    client.ask(&ReadStatus).await.unwrap();
+    let (controller, address, id) = first.await.unwrap();
+    // Now 100 stray datagrams and the answer wait in the socket, and the time is already over.
+    for _ in 0..100 {
+        controller.send_to(b"stray", address).unwrap();
+    }
+    controller.send_to(&answer(id.wrapping_add(1)), address).unwrap();
+    client.policy = client.policy.with(Duration::from_nanos(1), 0);
+    assert!(client.ask(&ReadStatus).await.unwrap().servo_on());
+}
+
 #[tokio::test(start_paused = true)]
 async fn dry_run_plans_requests_and_has_no_answers() {
     let mut client = Client::dry_run(Options::new(MODEL).with_risk(Risk::Motion));

@@ -25,7 +25,7 @@ pub enum Robots {
     /// Show the effective settings of a robot
     Show(Show),
     /// Add a robot; `armctl setup` asks for each setting
-    Add(entry::Add),
+    Add(Box<entry::Add>),
     /// Change settings of a robot
     Set(entry::Set),
     /// Rename a robot

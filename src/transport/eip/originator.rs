@@ -67,6 +67,8 @@ struct Io {
     consumer: Consumer,
     destination: SocketAddrV4,
     group: Option<Ipv4Addr>,
+    /// UDP port from which the first image came. The standard leaves the choice of this port to the device.
+    source_port: Option<u16>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -249,11 +251,16 @@ impl Originator {
         self.io.as_ref().is_some_and(|io| io.consumer.id() == id && hosts(io))
     }
 
-    /// Handles a datagram of this connection.
-    pub fn receive_datagram(&mut self, now: Now, datagram: &Cyclic<'_>) {
+    /// Handles a datagram of this connection. `from` is its source port. After the first image, datagrams from other
+    /// ports are ignored, so that another program at the address of the device cannot forge an image.
+    pub fn receive_datagram(&mut self, now: Now, from: u16, datagram: &Cyclic<'_>) {
         let Some(io) = &mut self.io else { return };
+        if io.source_port.is_some_and(|port| port != from) {
+            return;
+        }
         match io.consumer.take(now, datagram) {
             DatagramResult::Image { image, .. } => {
+                io.source_port = Some(from);
                 self.tries = 0;
                 let before = self.view.input.as_ref().filter(|input| *input.image == *image);
                 self.view.input = Some(Input {
@@ -406,6 +413,7 @@ impl Originator {
         let intervals = self.settings.multiplier.intervals();
         let size = usize::from(self.settings.input_size);
         self.io = Some(Io {
+            source_port: None,
             // A device starts to send when it answers. The originator starts half an interval later, so that the next
             // image of the device already contains the reaction to the image of the originator.
             producer: Producer::new(opened.o_t_id, to, now.saturating_add(to / 2)),

@@ -313,7 +313,7 @@ impl SharedState {
         // Several connections to one device can share a multicast group.
         for slot in slots.values_mut().filter(|slot| slot.core.expects(*from.ip(), datagram.id)) {
             slot.tap.pass(false, from, SocketAddrV4::new(slot.local_address, self.local.port()), bytes);
-            slot.core.receive_datagram(now, &datagram);
+            slot.core.receive_datagram(now, from.port(), &datagram);
             if slot.core.take_changed() {
                 slot.view.send_replace(slot.core.view());
             }
