@@ -38,7 +38,7 @@ pub fn text(data: &[u8]) {
 fn same(frame: &Frame) {
     let mut lines = Lines::default();
     let line = emit(frame).iter().find_map(|byte| lines.push(*byte)).expect("a line");
-    assert_eq!(line.adapter_messages(), Some(AdapterMessage::Frame(frame.clone())));
+    assert_eq!(line.adapter_messages(), Some(AdapterMessage::Frame(*frame)));
     assert_eq!(Frame::from_capture(&frame.to_capture()).as_ref(), Some(frame));
     seen((frame.to_string(), describe(frame), frame.bits()));
 }

@@ -77,11 +77,11 @@ fn blocks(data: &[u8]) {
             assert_eq!(Request::parse_all(&again).as_ref(), Ok(&requests));
         }
     }
-    if let Ok(responses) = Response::parse_all(data) {
-        if !responses.iter().any(|response| matches!(response, Response::Other(_))) {
-            let again: Vec<u8> = responses.iter().flat_map(Response::emit).collect();
-            assert_eq!(Response::parse_all(&again).as_ref(), Ok(&responses));
-        }
+    if let Ok(responses) = Response::parse_all(data)
+        && !responses.iter().any(|response| matches!(response, Response::Other(_)))
+    {
+        let again: Vec<u8> = responses.iter().flat_map(Response::emit).collect();
+        assert_eq!(Response::parse_all(&again).as_ref(), Ok(&responses));
     }
     for kind in [BlockType::READ, BlockType::WRITE, BlockType::READ.answer(), BlockType::WRITE.answer()] {
         seen(Record::parse(data, kind).is_ok());

@@ -103,7 +103,7 @@ pub fn name_file(data: &[u8]) {
     for file in names::FILES {
         for encoding in [Encoding::default(), Encoding::Utf8] {
             if let Ok(found) = names::read(file, data, encoding) {
-                let lines = data.iter().filter(|byte| **byte == b'\n').count() + 1;
+                let lines = data.split(|byte| *byte == b'\n').count();
                 assert!(found.names.len() <= 8 * lines, "{} names", found.names.len());
                 seen(format!("{found:?}"));
             }
