@@ -4,10 +4,10 @@
 mod capture_files;
 mod captures;
 mod coverage;
-mod fuzz;
 mod golden;
 mod golden_toyo;
 mod properties;
+mod random_answers;
 mod toyo_properties;
 mod toyo_tables;
 mod yrcx_golden;

@@ -1,4 +1,4 @@
-//! Capture files: tests with random bytes, and comparison with tshark if it is installed. The files in
+//! Capture files: cut files, and comparison with tshark if it is installed. The files in
 //! `tests/cli/files/` were written by hand from the specifications of the formats. The transcript `captures` shows
 //! their content.
 
@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use armctl_transport::capture::{Carrier, OpenError, read};
-use proptest::prelude::*;
 
 const FILES: [&str; 3] = ["vlan.pcap", "lines.pcapng", "speed.pcapng"];
 
@@ -92,37 +91,5 @@ fn truncated_file_yields_the_messages_before_the_cut() {
             }
         }
         assert!(problems.iter().all(|problem| problem.starts_with("the file ends inside")), "{problems:?}");
-    }
-}
-
-proptest! {
-    #[test]
-    fn reader_never_panics_on_random_bytes(
-        name in 0..FILES.len(),
-        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8),
-    ) {
-        let mut bytes = file(FILES[name]);
-        for (at, byte) in changes {
-            let at = at.index(bytes.len());
-            bytes[at] = byte;
-        }
-        let mut heard = 0;
-        // No packet is read twice, so the messages cannot have more bytes than the file.
-        let _ = read(&*bytes, |message| heard += message.bytes.len());
-        prop_assert!(heard <= bytes.len());
-    }
-
-    #[test]
-    fn reader_never_panics_on_bytes_after_a_magic_number(magic in 0..6usize, rest in prop::collection::vec(any::<u8>(), 0..512)) {
-        let magics: [[u8; 4]; 6] = [
-            [0xA1, 0xB2, 0xC3, 0xD4],
-            [0xD4, 0xC3, 0xB2, 0xA1],
-            [0xA1, 0xB2, 0x3C, 0x4D],
-            [0x4D, 0x3C, 0xB2, 0xA1],
-            [0x0A, 0x0D, 0x0D, 0x0A],
-            [0x1F, 0x8B, 0x08, 0x00],
-        ];
-        let bytes = [&magics[magic][..], &rest].concat();
-        let _ = read(&*bytes, |_| ());
     }
 }

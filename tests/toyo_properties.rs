@@ -1,18 +1,18 @@
-//! Properties of the Toyo codec. Written values have the full width and can be read again, values out of range are
-//! never written, and no text causes a panic.
+//! Properties of the Toyo codec. Written values have the full width and can be read again, and values out of range are
+//! never written.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-use armctl_controller::toyo::describe::{Sender, describe, summary};
+use armctl_controller::toyo::describe::{Sender, describe};
 use armctl_controller::toyo::field::{Field, Form, Mask, Value};
 use armctl_controller::toyo::layout::{Layout, Record};
 use armctl_controller::toyo::program;
-use armctl_controller::toyo::request::{MAX_BLOCK_LEN, Request, instruction};
+use armctl_controller::toyo::request::{MAX_BLOCK_LEN, Request};
+use armctl_controller::toyo::table::Op;
 use armctl_controller::toyo::table::commands::ROWS;
 use armctl_controller::toyo::table::instructions::INSTRUCTIONS;
 use armctl_controller::toyo::table::palletizing::RECORDS;
 use armctl_controller::toyo::table::parameters::PARAMETERS;
-use armctl_controller::toyo::table::{Op, Parameter};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
@@ -75,27 +75,6 @@ fn width(field: &Field, value: &Value) -> usize {
         (_, Value::Text(text)) => text.len(),
         (_, other) => panic!("{}: {other:?}", field.name),
     }
-}
-
-/// Lines; many of them are similar to a block.
-fn line() -> impl Strategy<Value = String> {
-    let block = (any::<Index>(), picks(), vec((any::<Index>(), any::<char>()), 0..4), any::<Index>()).prop_map(
-        |(row, picks, changes, cut)| {
-            let (front, layout) = layouts()[row.index(layouts().len())];
-            let text = format!("{front}{}", layout.emit(&values(&layout, &picks)).unwrap());
-            let mut text: Vec<char> = text.chars().collect();
-            let whole = changes.is_empty();
-            for (at, c) in changes {
-                let at = at.index(text.len());
-                text[at] = c;
-            }
-            if !whole {
-                text.truncate(cut.index(text.len() + 1));
-            }
-            text.into_iter().collect()
-        },
-    );
-    prop_oneof![4 => block, 1 => any::<String>(), 1 => "@[A-Z]{4}( [A-Z0-9=+.<>/*-]{0,16}){0,6}"]
 }
 
 /// Records of a valid program. Each used tag exists exactly once, and RSMV has the word PASS.
@@ -209,39 +188,6 @@ proptest! {
     }
 
     #[test]
-    fn parsing_any_line_causes_no_panic(text in line(), other in line()) {
-        let _ = (instruction(&text), Parameter::from_text(&text));
-        if let Ok(request) = Request::parse(&text) {
-            let _ = (request.check(), request.content(), request.risk(), request.parameter());
-            let again = Request::parse(&request.text());
-            prop_assert!(again.is_ok() || request.text().len() + 2 > MAX_BLOCK_LEN, "{}", request.text());
-            for block in [&other, &text] {
-                if let Ok(armctl_controller::toyo::request::Answer::Data(record)) = request.answer(block) {
-                    let _ = request.answered(&record);
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn describing_any_line_causes_no_panic(text in line(), asked in line()) {
-        let request = Request::parse(&asked).ok();
-        let line = text.trim_end_matches(['\r', '\n']);
-        for sender in [Sender::guess(&text), Sender::Host, Sender::Controller] {
-            for request in [None, request.as_ref()] {
-                let description = describe(&text, sender, request);
-                prop_assert!(description.problem.is_some() || !description.fields.is_empty());
-                for field in &description.fields {
-                    let raw: String = line.chars().skip(field.column - 1).take(field.width).collect();
-                    prop_assert_eq!(&raw, &field.raw, "{:?}", field);
-                }
-                let summary = summary(&text, sender, request);
-                prop_assert!(!summary.contains(char::is_control), "{}", summary);
-            }
-        }
-    }
-
-    #[test]
     fn blocks_in_range_have_no_problem(row: Index, picks in picks()) {
         let row = &ROWS[row.index(ROWS.len())];
         // These fields belong to another table, or the manual does not specify them (ambiguity C5).
@@ -265,26 +211,4 @@ proptest! {
         let fits = program::check(listing.text.as_bytes(), room).program.is_some();
         prop_assert_eq!(fits, read.len() <= room);
     }
-
-    #[test]
-    fn any_bytes_are_a_program_or_an_error(bytes in vec(any::<u8>(), 0..400), lines in vec(text_line(), 0..40)) {
-        for text in [&bytes[..], lines.join("\n").as_bytes()] {
-            let checked = program::check(text, 100);
-            prop_assert_eq!(checked.program.is_some(), checked.errors().count() == 0);
-            for finding in &checked.findings {
-                prop_assert!(finding.line >= 1 && finding.column >= 1 && !finding.message.is_empty());
-            }
-            for step in checked.program.iter().flat_map(|program| &program.steps) {
-                prop_assert!(instruction(&step.text()).unwrap() == step.record && step.record.emit().is_ok());
-            }
-        }
-    }
-}
-
-/// Lines; many of them are similar to a line of a program.
-fn text_line() -> impl Strategy<Value = String> {
-    let words = select(&INSTRUCTIONS[..]).prop_map(|row| row.word);
-    let mangled = (words, "( ?[a-zA-Z=<>0-9.+:#;-]{0,8}){0,5}").prop_map(|(word, rest)| format!("{word} {rest}"));
-    let whole = (steps(), any::<Index>()).prop_map(|(steps, at)| at.get(&steps).written().to_lowercase());
-    prop_oneof![mangled, whole, "[a-c]{1,2}(=[0-9]{1,4})?:", any::<String>()]
 }

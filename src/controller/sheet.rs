@@ -280,8 +280,9 @@ pub fn update(
     let text = String::from_utf8_lossy(bytes);
     let end = if text.contains("\r\n") { "\r\n" } else { "\n" };
     let mut updated = String::with_capacity(text.len());
+    let mut old_rows = sheet.rows.iter().peekable();
     for (index, line) in text.split_inclusive('\n').enumerate() {
-        let old = sheet.rows.iter().find(|row| row.line == index + 1);
+        let old = old_rows.next_if(|row| row.line == index + 1);
         match old.and_then(|old| Some((old, left.remove(&canonical(old.text(key)))?))) {
             Some((old, row)) => updated.extend([&cells(row, &|at| old.whole(at).to_owned()), end]),
             None => updated.push_str(line),

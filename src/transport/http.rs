@@ -311,7 +311,8 @@ fn is_full(error: &io::Error) -> bool {
 }
 
 /// A response to one request.
-struct Response {
+#[derive(Debug)]
+pub struct Response {
     answer: Answer,
     /// Whether the client requested only the head.
     is_head: bool,
@@ -324,6 +325,23 @@ impl Response {
     fn refusal(status: Status, text: &str) -> Self {
         Self { answer: Answer::text(status, text), is_head: false, is_gzip: false }
     }
+
+    /// Head and body, as they are sent.
+    pub fn parts(&self) -> (String, &[u8]) {
+        let Self { answer: Answer { status, kind, body }, is_head, is_gzip } = self;
+        let (body, encoding) = match is_gzip.then(|| body.gzip()).flatten() {
+            Some(compressed) => (compressed, "Content-Encoding: gzip\r\n"),
+            None => (body.text.as_bytes(), ""),
+        };
+        let allow = if *status == Status::MethodNotAllowed { "Allow: GET, HEAD\r\n" } else { "" };
+        let head = format!(
+            "HTTP/1.1 {}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\n{encoding}{allow}Cache-Control: no-store\r\n\
+             Vary: Accept, Accept-Encoding\r\nX-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n",
+            status.line(),
+            body.len()
+        );
+        (head, if *is_head { &[] } else { body })
+    }
 }
 
 async fn serve(
@@ -334,22 +352,9 @@ async fn serve(
 ) -> io::Result<()> {
     let Some(response) = read_request(&mut stream, answer).await? else { return Ok(()) };
     connections.borrow_mut().start_answer(number);
-    let Response { answer: Answer { status, kind, body }, is_head, is_gzip } = response;
-    let (body, encoding) = match is_gzip.then(|| body.gzip()).flatten() {
-        Some(compressed) => (compressed, "Content-Encoding: gzip\r\n"),
-        None => (body.text.as_bytes(), ""),
-    };
-    let allow = if status == Status::MethodNotAllowed { "Allow: GET, HEAD\r\n" } else { "" };
-    let head = format!(
-        "HTTP/1.1 {}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\n{encoding}{allow}Cache-Control: no-store\r\n\
-         Vary: Accept, Accept-Encoding\r\nX-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n",
-        status.line(),
-        body.len()
-    );
+    let (head, body) = response.parts();
     stream.write_all(head.as_bytes()).await?;
-    if !is_head {
-        stream.write_all(body).await?;
-    }
+    stream.write_all(body).await?;
     stream.shutdown().await?;
     connections.borrow_mut().end_answer(number);
     // The server first reads the remaining bytes. If bytes arrived after the close, the system would discard the
@@ -369,16 +374,23 @@ async fn read_request(
         if read == 0 && length < HEAD {
             return Ok(None);
         }
-        let mut lines = [httparse::EMPTY_HEADER; LINES];
-        let mut request = httparse::Request::new(&mut lines);
-        return Ok(Some(match request.parse(&head) {
-            Ok(httparse::Status::Complete(_)) => answered(&request, answer),
-            Ok(httparse::Status::Partial) if head.len() < HEAD => continue,
-            Ok(httparse::Status::Partial) | Err(httparse::Error::TooManyHeaders) => {
-                Response::refusal(Status::TooLong, "the request is too long")
-            }
-            Err(_) => Response::refusal(Status::BadRequest, "this is not an HTTP request"),
-        }));
+        if let Some(response) = respond(&head, answer) {
+            return Ok(Some(response));
+        }
+    }
+}
+
+/// The response to the bytes of a request so far; `None` if more bytes are needed.
+pub fn respond(head: &[u8], answer: &impl Fn(&Request<'_>) -> Answer) -> Option<Response> {
+    let mut lines = [httparse::EMPTY_HEADER; LINES];
+    let mut request = httparse::Request::new(&mut lines);
+    match request.parse(head) {
+        Ok(httparse::Status::Complete(_)) => Some(answered(&request, answer)),
+        Ok(httparse::Status::Partial) if head.len() < HEAD => None,
+        Ok(httparse::Status::Partial) | Err(httparse::Error::TooManyHeaders) => {
+            Some(Response::refusal(Status::TooLong, "the request is too long"))
+        }
+        Err(_) => Some(Response::refusal(Status::BadRequest, "this is not an HTTP request")),
     }
 }
 

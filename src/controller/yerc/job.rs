@@ -98,7 +98,9 @@ impl<'t> Scanner<'t> {
         if word.is_empty() && self.rest().starts_with('*') {
             return self.label(Role::Label);
         }
-        self.add(Role::Word, word.to_owned(), start);
+        if !word.is_empty() {
+            self.add(Role::Word, word.to_owned(), start);
+        }
         let first = self.references.len();
         while let Some(next) = self.rest().chars().next() {
             let is_start = self.line[..self.at].ends_with(char::is_whitespace);
@@ -254,6 +256,13 @@ mod tests {
         let references = references.iter().filter(|reference| reference.role != Role::Word);
         let words = references.map(|reference| format!("{:?} {}@{}", reference.role, reference.name, reference.column));
         words.chain(speeds.iter().map(|speed| format!("{}{}", speed.value, speed.unit))).collect::<Vec<_>>().join(", ")
+    }
+
+    #[test]
+    fn a_line_without_an_instruction_has_no_word() {
+        for line in ["", "  ", "12"] {
+            assert_eq!(scan(line).0, [], "{line}");
+        }
     }
 
     #[test]

@@ -12,7 +12,7 @@ use mqtt_protocol_core::mqtt::{Connection, Version as Spoken, role};
 use tokio::time::Instant;
 
 use super::message::{Event, Hello, Message, Refusal, SendError, Version};
-use super::packets::{connect, expiry_property, texts};
+use super::packets::{IdentifierCheck, connect, expiry_property, texts};
 use super::{FLOOD, Loss};
 
 /// Maximum size of a packet from a broker, in bytes. Commands and states need a few hundred bytes.
@@ -45,6 +45,7 @@ pub struct Session {
     pongs: u64,
     has_heard: bool,
     flood: Flood,
+    identifiers: IdentifierCheck,
     /// Number of bytes of replies that were queued after the connection last accepted all output.
     replies: usize,
     is_over: bool,
@@ -111,6 +112,7 @@ impl Session {
             pongs: 0,
             has_heard: false,
             flood: Flood::new(now),
+            identifiers: IdentifierCheck::default(),
             replies: 0,
             is_over: false,
         };
@@ -157,6 +159,9 @@ impl Session {
             && *first != CONNACK
         {
             return self.lose(Loss::Garbage(format!("the data begins with 0x{first:02X}")));
+        }
+        if !bytes.iter().all(|byte| self.identifiers.accepts(*byte)) {
+            return self.lose(Loss::Garbage("a packet has the identifier 0".to_owned()));
         }
         self.flood.bytes(now, bytes.len());
         if self.outgoing.is_empty() {

@@ -45,11 +45,22 @@ pub fn of(value: &Value, encoding: Encoding) -> Cells {
         Data::Position(position) => position.fields(),
         Data::Text(text) if text.is_empty() => Cells::from([cell(TEXT, EMPTY.to_owned())]),
         Data::Text(text) if text == EMPTY => Cells::from([cell(BYTES, hex(text.as_bytes())), cell(TEXT, text)]),
+        // A row is one line of the file.
+        Data::Text(text) if text.contains(char::is_control) => Cells::from([cell(BYTES, hex(string_bytes(value)))]),
         Data::Text(text) => Cells::from([cell(TEXT, text)]),
         number => Cells::from([cell(NUMBER, number.to_string())]),
     };
     cells.extend(bytes.map(|bytes| cell(BYTES, bytes)));
     cells
+}
+
+/// Bytes of a string; none for other values.
+fn string_bytes(value: &Value) -> &[u8] {
+    match value {
+        Value::Short(text) => text.as_bytes(),
+        Value::Long(text) => text.as_bytes(),
+        _ => &[],
+    }
 }
 
 /// Value of a number or a string, from its cells.
@@ -182,6 +193,7 @@ mod tests {
         assert_eq!(back.map(|value| value.emit()), Ok(value.emit()), "{cells:?}");
         let columns: Vec<String> = fields().into_iter().map(|field| field.name.into_owned()).collect();
         assert!(cells.keys().all(|column| columns.contains(column)), "{cells:?}");
+        assert!(!cells.values().any(|text| text.contains(char::is_control)), "a file has one line a row: {cells:?}");
     }
 
     #[test]

@@ -277,12 +277,5 @@ mod tests {
             prop_assert_eq!(adapter_messages(&emit(&frame)), [Some(AdapterMessage::Frame(frame))]);
             prop_assert_eq!(lines(&emit(&frame))[0].command(), Command::Send(frame));
         }
-
-        #[test]
-        fn no_bytes_panic(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
-            for line in lines(&bytes) {
-                let _ = (line.adapter_messages(), line.command());
-            }
-        }
     }
 }

@@ -380,18 +380,6 @@ mod tests {
         }
 
         #[test]
-        fn no_bytes_panic(bytes in proptest::collection::vec(any::<u8>(), 0..20)) {
-            for format in FORMATS {
-                let _ = Request::parse(format, &bytes);
-            }
-            if let Some(answer) = Answer::parse(&bytes)
-                && !matches!(answer, Answer::Refused { .. })
-            {
-                prop_assert_eq!(answer.emit(), bytes);
-            }
-        }
-
-        #[test]
         fn headers_round_trip(byte: u8) {
             prop_assert_eq!(Header::parse(byte).emit(), byte);
         }
