@@ -288,6 +288,27 @@ fn read_only_robot_refuses_commands_even_with_yes() {
     assert_eq!(run("status").status.code(), Some(0));
 }
 
+#[test]
+fn refuses_numbers_and_robots_that_could_be_meant_differently() {
+    let controller = robot(|_| None);
+    for line in ["move relative --z 5 --speed 10 --yes", "move relative --z 2,5 --speed 10mm/s --yes"] {
+        let output = controller.run(line);
+        assert_eq!(output.status.code(), Some(2), "{line}: {}", stderr(&output));
+    }
+    assert_eq!(*controller.requests.lock().unwrap(), []);
+    let folder = tempfile::tempdir().unwrap();
+    let inventory = folder.path().join("robots.toml");
+    let entry =
+        |name: &str| format!("[[robot]]\nname = \"{name}\"\nfamily = \"yerc\"\ntarget = \"{}\"\n", controller.url);
+    std::fs::write(&inventory, entry("left") + &entry("right").replace("127.0.0.1", "127.0.0.2")).unwrap();
+    for words in [&["yerc", "servo", "on", "--yes"][..], &["-r", "lefft", "yerc", "servo", "on", "--yes"]] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_armctl"));
+        let output = command.arg("--config").arg(&inventory).args(words).env("HOME", folder.path()).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{words:?}: {}", stderr(&output));
+    }
+    assert_eq!(*controller.requests.lock().unwrap(), []);
+}
+
 /// A pattern can match any number of robots. Therefore, a motion requires the name of each robot.
 #[test]
 fn patterns_do_not_move_robots() {

@@ -235,7 +235,7 @@ pub fn eip(link: &mut Disturbance<'_>) {
                         if let Ok(datagram) = Cyclic::parse(&bytes)
                             && originator.expects(theirs, datagram.id)
                         {
-                            originator.receive_datagram(now, &datagram);
+                            originator.receive_datagram(now, IO_PORT, &datagram);
                         }
                     }
                 }

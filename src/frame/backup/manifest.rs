@@ -262,18 +262,18 @@ pub fn open_existing<C: About>(folder: &Path) -> Result<Manifest<C>, Failure> {
         } else {
             format!("there is no folder {shown}")
         });
-        add_subfolder::<C>(failure, folder, "use the folder of a backup; create one with `armctl backup`")
+        failure.hint(subfolder_hint::<C>(folder, "use the folder of a backup; create one with `armctl backup`"))
     })
 }
 
-/// Adds a hint to use a subfolder of a fleet backup, one of the family if there is one, or another hint.
-pub fn add_subfolder<C: About>(failure: Failure, folder: &Path, otherwise: &str) -> Failure {
+/// Hint to use a subfolder of a fleet backup, one of the family if there is one, or another hint.
+pub fn subfolder_hint<C: About>(folder: &Path, otherwise: &str) -> String {
     let folders = folders_in(folder);
     let has_family = |one: &&PathBuf| read::<C>(one).is_ok();
-    failure.hint(match folders.iter().find(has_family).or(folders.first()) {
+    match folders.iter().find(has_family).or(folders.first()) {
         Some(one) => format!("select a subfolder, such as {}: the backups are in the subfolders", one.display()),
         None => otherwise.to_owned(),
-    })
+    }
 }
 
 /// Backup subfolders of a folder, one per robot.

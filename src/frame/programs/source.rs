@@ -61,9 +61,9 @@ pub fn read_folder<C: About>(
         None => of_folder(folder, filter)?,
     };
     if set.files.is_empty() && set.unread.is_empty() {
-        let failure = Failure::usage(format!("{} contains no {}", folder.display(), filter.expected));
         let otherwise = "use the folder of a backup, or a folder with program files";
-        return Err(manifest::add_subfolder::<C>(failure, folder, otherwise));
+        return Err(Failure::usage(format!("{} contains no {}", folder.display(), filter.expected))
+            .hint(manifest::subfolder_hint::<C>(folder, otherwise)));
     }
     Ok((set, manifest))
 }
