@@ -32,7 +32,7 @@ const PICTURES: [(&str, &[&str]); 5] = [
 ];
 
 /// The panel of `armctl teach`, and the motion of a job. Their own tests draw these pictures.
-const OTHER_PICTURES: [&str; 2] = ["teach", "path"];
+const OTHER_PICTURES: [&str; 3] = ["teach", "path", "soak"];
 
 /// Files in the folder of each session.
 const FILES: [(&str, &str); 5] = [
@@ -87,7 +87,7 @@ fn pictures_are_current() {
 #[test]
 fn every_picture_is_used() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let pages = ["README.md", "docs/yerc.md", "docs/yrcx.md", "docs/toyo.md", "docs/safety.md"];
+    let pages = ["README.md", "docs/yerc.md", "docs/yrcx.md", "docs/toyo.md", "docs/safety.md", "docs/reliability.md"];
     let pages = pages.map(|page| std::fs::read_to_string(root.join(page)).expect("the page is there"));
     for name in PICTURES.map(|(name, _)| name).into_iter().chain(OTHER_PICTURES) {
         assert!(pages.iter().any(|page| page.contains(&format!("pictures/{name}.svg)"))), "nobody shows {name}.svg");
