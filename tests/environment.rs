@@ -261,3 +261,15 @@ fn shows_progress_and_restores_the_terminal() {
         assert!(!folder.path().join("BIG.DAT").exists(), "half a file is there");
     }
 }
+
+#[test]
+fn a_chain_of_own_processes_has_an_end() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = |generation: &str| {
+        let mut command = armctl("--sim yerc status --jq .ok", folder.path());
+        command.env("ARMCTL_CHILD", generation).output().expect("it runs")
+    };
+    assert_eq!(stdout(&run("1")), "true\n");
+    let last = run("5");
+    assert!(!last.status.success() && stderr(&last).contains("starts itself again and again"), "{last:?}");
+}

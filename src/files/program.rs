@@ -16,18 +16,26 @@ pub fn this_program() -> io::Result<PathBuf> {
     Ok(if !path.exists() && own.exists() { own.to_owned() } else { path })
 }
 
-/// Environment variable of a process that this program started. Its arguments contain all subcommands, so the name of
-/// the executable adds none. A copy of the executable may have the name of a family.
+/// Environment variable of a process that this program started: number of processes of this program above it. The
+/// arguments of the process contain all subcommands, so the name of the executable adds none. A copy of the executable
+/// may have the name of a family.
 const STARTED_BY_ITSELF: &str = "ARMCTL_CHILD";
+/// Maximum number of processes in such a chain; a guardian of a session in the background has two above it. If this code
+/// is in another program, such as a test, that program may start itself again and again.
+const MAX_GENERATIONS: u8 = 5;
 
 /// Creates a command that starts this program in its own process group. Ctrl-C and a closed terminal do not reach this
 /// group.
 ///
 /// # Errors
-/// The errors of [`this_program`].
+/// The errors of [`this_program`]; or this process is the last of a chain that is too long.
 pub fn own_command() -> io::Result<Command> {
+    let above = std::env::var(STARTED_BY_ITSELF).map_or(0, |above| above.parse().unwrap_or(MAX_GENERATIONS));
+    if above >= MAX_GENERATIONS {
+        return Err(io::Error::other("internal error: the program starts itself again and again"));
+    }
     let mut command = Command::new(this_program()?);
-    command.env(STARTED_BY_ITSELF, "1");
+    command.env(STARTED_BY_ITSELF, (above + 1).to_string());
     leave_process_group(&mut command);
     Ok(command)
 }

@@ -50,8 +50,11 @@ const SUSPEND: &str = "Ctrl-Z (SIGTSTP)";
 
 /// Two requests within this time count as one request. `timeout`, for example, sends each request twice.
 const ECHO_WINDOW: Duration = Duration::from_millis(100);
-/// Time in which busy work must react to a request.
+/// Time in which work that was busy at the request must react to it.
 const BUSY_TIMEOUT: Duration = Duration::from_millis(500);
+/// Time for busy work that started after the request. It is the report of what was done until then, which must not be
+/// lost on a slow computer.
+const REPORT_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// There is one listener for the whole process, so that no signal is lost between two waits.
 static REQUEST: OnceLock<Result<TerminationRequest, String>> = OnceLock::new();
@@ -145,20 +148,17 @@ async fn wait(mut asked: watch::Receiver<Option<&'static str>>, counts: impl Fn(
 /// Passes each termination request to the work.
 async fn forward_signals(mut signals: Signals, requests: TerminationRequest) {
     let mut presses = Presses::default();
-    // The work that was running at the last check. While a request is pending, the check is repeated after each
-    // `BUSY_TIMEOUT`.
-    let mut seen = None;
+    // While a request is pending, busy work is checked after each `BUSY_TIMEOUT`.
+    let mut busy = BusyCheck::default();
     loop {
         let is_waiting = requests.borrow().is_some();
         let how = tokio::select! {
             how = signals.next() => how,
             () = tokio::time::sleep(BUSY_TIMEOUT), if is_waiting => {
-                let now = busy_work::current();
-                if now.is_some() && now == seen {
+                if busy.is_stuck(busy_work::current(), Instant::now()) {
                     let how = *requests.borrow();
                     immediate_exit::exit_now(how.unwrap_or(KEYS));
                 }
-                seen = now;
                 continue;
             }
         };
@@ -170,7 +170,7 @@ async fn forward_signals(mut signals: Signals, requests: TerminationRequest) {
         if presses.press(how, requests.borrow().is_some(), Instant::now()) {
             immediate_exit::exit_now(&format!("{how} again: armctl ended at once; a motion or command may continue"));
         }
-        seen = busy_work::current();
+        busy = BusyCheck::new(busy_work::current(), Instant::now());
         // The first request stays set. A Ctrl-C can be cleared for the next line, so a later request replaces it.
         requests.send_if_modified(|asked| {
             let is_first = asked.is_none_or(|asked| asked == KEYS);
@@ -179,6 +179,27 @@ async fn forward_signals(mut signals: Signals, requests: TerminationRequest) {
             }
             is_first
         });
+    }
+}
+
+/// Busy work since a request, by its number.
+#[derive(Debug, Default)]
+struct BusyCheck {
+    at_request: Option<u64>,
+    /// The work at the last check, and when it was first seen.
+    seen: Option<(u64, Instant)>,
+}
+
+impl BusyCheck {
+    fn new(work: Option<u64>, now: Instant) -> Self {
+        Self { at_request: work, seen: work.map(|work| (work, now)) }
+    }
+
+    /// Whether the work has been the same for too long.
+    fn is_stuck(&mut self, work: Option<u64>, now: Instant) -> bool {
+        self.seen = work.map(|work| self.seen.filter(|(seen, _)| *seen == work).unwrap_or((work, now)));
+        let limit = if work == self.at_request { BUSY_TIMEOUT } else { REPORT_TIMEOUT };
+        self.seen.is_some_and(|(_, since)| now.duration_since(since) >= limit)
     }
 }
 
@@ -362,6 +383,19 @@ mod tests {
     async fn request_ends_work_that_does_not_handle_it() {
         assert_eq!(run_until_request(pending::<()>(), async { KEYS }).await, Err(KEYS));
         assert_eq!(run_until_request(async { 1 }, async { KEYS }).await, Ok(1));
+    }
+
+    #[test]
+    fn report_after_a_request_has_more_time_than_busy_work() {
+        let start = Instant::now();
+        let at = |millis| start + Duration::from_millis(millis);
+        assert!(BusyCheck::new(Some(7), start).is_stuck(Some(7), at(500)));
+        let mut busy = BusyCheck::new(Some(7), start);
+        assert!(!busy.is_stuck(Some(8), at(500)), "other work");
+        assert!(!busy.is_stuck(Some(8), at(5499)));
+        assert!(busy.is_stuck(Some(8), at(5500)));
+        assert!(!busy.is_stuck(None, at(6000)));
+        assert!(!busy.is_stuck(Some(9), at(6500)), "a new report");
     }
 
     #[test]

@@ -37,8 +37,9 @@ async fn exchanges_images_and_messages() {
     let scanner = Scanner::start(LOOPBACK).unwrap();
     let mut connection = scanner.open(server.address(), quick(), Tap::default()).await.unwrap();
     let generation = connection.view().generation;
-    connection.set_image(generation, &[0x5A; 48]).unwrap();
-    let change = connection.set_run(generation, true).unwrap();
+    // In this order, the image that comes back is an answer to both changes.
+    connection.set_run(generation, true).unwrap();
+    let change = connection.set_image(generation, &[0x5A; 48]).unwrap();
     let is_back = |image: &[u8]| image == [0xA5; 48];
     let view = connection.until(|view| view.input.as_ref().is_some_and(|input| is_back(&input.image))).await;
     assert!(view.sent >= change);
