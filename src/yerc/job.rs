@@ -3,6 +3,7 @@
 mod calls;
 mod check;
 mod list;
+mod order;
 mod path;
 #[cfg(test)]
 mod program_tests;

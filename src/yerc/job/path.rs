@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use super::order::{Executed, RunOrder};
 use super::programs::jobs_in;
 use super::{Show, without_suffix};
 use crate::file::{exact, fetch, plan_all};
@@ -177,8 +178,8 @@ async fn read(link: &mut Link, name: &str) -> Result<Jobs, Failure> {
         jobs.texts.insert(next, text);
         open.extend(called.into_iter().filter(|name| !jobs.texts.contains_key(name)));
     }
-    let text = jobs.texts.get(name).map(String::as_str).unwrap_or_default();
-    let moves = JobText::new(text).instructions.into_iter().filter(|(_, line)| interpolation(line).is_some());
+    let lines = jobs.texts.values().flat_map(|text| JobText::new(text).instructions);
+    let moves = lines.filter(|(_, line)| interpolation(line).is_some());
     let numbers: BTreeSet<u16> = moves.filter_map(|(_, line)| variable(&scan(line).0)).collect();
     let numbers: Vec<u16> = numbers.into_iter().collect();
     let questions: Vec<ReadVariable> =
@@ -263,29 +264,30 @@ fn variable(references: &[Reference]) -> Option<u16> {
 }
 
 /// A line that moves the robot to a place.
-struct Move<'t> {
+struct Move {
     line: usize,
-    text: &'t str,
+    text: String,
     name: String,
+    /// Whether the place is the value of a P variable.
+    is_variable: bool,
     interpolation: Interpolation,
     place: Place,
     speeds: Vec<ProgrammedSpeed>,
 }
 
 /// What a line means for the path.
-enum Event<'t> {
-    Move(Move<'t>),
+enum Event {
+    Move(Move),
     Wait(f64),
-    /// The position is not known after this line.
-    Lost(NotDrawn),
+    /// The position is not known after this line. The line may be reported.
+    Lost(Option<NotDrawn>),
 }
 
 /// The motion of a job. Without a preferred frame, the frame of most positions is drawn.
 fn motion(name: &str, jobs: &Jobs, preferred: Option<&str>) -> Motion {
-    let text = jobs.texts.get(name).map(String::as_str).unwrap_or_default();
-    let job = JobText::new(text);
-    let places = positions(text);
-    let mut events: Vec<Event<'_>> = job.instructions.iter().filter_map(|line| event(*line, &places, jobs)).collect();
+    let order = RunOrder::new(name, &jobs.texts);
+    let places = jobs.texts.iter().map(|(name, text)| (name.as_str(), positions(text))).collect();
+    let mut events: Vec<Event> = order.lines.iter().flat_map(|line| events_of(line, &places, jobs)).collect();
     let mut counts: Vec<(&str, usize)> = Vec::new();
     for event in &events {
         let Event::Move(Move { place, .. }) = event else { continue };
@@ -302,7 +304,7 @@ fn motion(name: &str, jobs: &Jobs, preferred: Option<&str>) -> Motion {
             && place.frame != frame
         {
             let reason = format!("the position is in another frame: {}", place.frame);
-            *event = Event::Lost(NotDrawn { line: *line, text: (*text).to_owned(), reason });
+            *event = Event::Lost(Some(NotDrawn { line: *line, text: text.clone(), reason }));
         }
     }
     let moves = events.iter().filter_map(|event| if let Event::Move(one) = event { Some(&one.place) } else { None });
@@ -321,7 +323,7 @@ fn motion(name: &str, jobs: &Jobs, preferred: Option<&str>) -> Motion {
             Event::Wait(seconds) => recorder.wait(*seconds),
             Event::Lost(omitted) => {
                 recorder.lose_position();
-                motion.not_drawn.push(omitted.clone());
+                motion.not_drawn.extend(omitted.clone().filter(|one| !motion.not_drawn.contains(one)));
             }
             Event::Move(one) => {
                 let (interpolation, via) =
@@ -331,7 +333,7 @@ fn motion(name: &str, jobs: &Jobs, preferred: Option<&str>) -> Motion {
                 let step = Step {
                     name: one.name.clone(),
                     line: one.line,
-                    text: one.text.to_owned(),
+                    text: one.text.clone(),
                     interpolation,
                     track: Vec::new(),
                 };
@@ -346,26 +348,36 @@ fn motion(name: &str, jobs: &Jobs, preferred: Option<&str>) -> Motion {
     if motion.is_timed && has_speeds {
         motion.notes.push("V= is read as mm/s; ramps and the speed override are not included in the times.".to_owned());
     }
-    let has = |words: &[&str]| {
-        job.instructions.iter().any(|(_, line)| line.split_whitespace().any(|word| words.contains(&word)))
-    };
-    if has(&["JUMP", "IF", "IFTHEN", "WHILE", "SWITCH", "FOR"]) {
-        motion.notes.push("Jumps and conditions are not followed: the lines are drawn in their order.".to_owned());
-    }
-    if job.positions.iter().any(|one| one.key.starts_with('B') || one.key.starts_with('E')) {
+    let has_branches = order.lines.iter().any(|line| line.begins_branch);
+    let notes = [
+        (order.has_conditions, "Conditions are not evaluated: lines that depend on one are drawn in their order."),
+        (has_branches, "Lines that only a jump with a condition reaches are drawn last, from their first position."),
+        (order.repeats, "A loop is drawn once."),
+        (order.is_cut(), "The job executes more lines; they are not drawn."),
+    ];
+    motion.notes.extend(notes.iter().filter(|(holds, _)| *holds).map(|(_, note)| (*note).to_owned()));
+    let executed: BTreeSet<&str> = order.lines.iter().map(|line| line.job).collect();
+    let stations = jobs.texts.iter().filter(|(name, _)| executed.contains(name.as_str()));
+    if stations.flat_map(|(_, text)| JobText::new(text).positions).any(|one| one.key.starts_with(['B', 'E'])) {
         motion.notes.push("Positions of base axes and stations (BC, EC) are not drawn.".to_owned());
     }
-    if events.iter().any(|event| matches!(event, Event::Move(one) if one.name.starts_with('P'))) {
+    if events.iter().any(|event| matches!(event, Event::Move(one) if one.is_variable)) {
         motion.notes.push("P variables are drawn with their present values.".to_owned());
     }
     motion
 }
 
+/// What a line does, in its order.
+fn events_of(executed: &Executed<'_>, places: &BTreeMap<&str, BTreeMap<&str, Place>>, jobs: &Jobs) -> Vec<Event> {
+    let branch = executed.begins_branch.then_some(Event::Lost(None));
+    branch.into_iter().chain(event(executed, places, jobs)).collect()
+}
+
 /// What a line does; `None` if it does not matter for the path.
-fn event<'t>((line, text): (usize, &'t str), places: &BTreeMap<&str, Place>, jobs: &Jobs) -> Option<Event<'t>> {
-    let text = text.trim();
+fn event(executed: &Executed<'_>, places: &BTreeMap<&str, BTreeMap<&str, Place>>, jobs: &Jobs) -> Option<Event> {
+    let Executed { line, text, .. } = *executed;
     let (references, speeds) = scan(text);
-    let lost = |reason: String| Some(Event::Lost(NotDrawn { line, text: text.to_owned(), reason }));
+    let lost = |reason: String| Some(Event::Lost(Some(NotDrawn { line, text: executed.named(text), reason })));
     let first = text.split_whitespace().next()?;
     match (first, interpolation(text)) {
         ("TIMER", _) => {
@@ -377,15 +389,19 @@ fn event<'t>((line, text): (usize, &'t str), places: &BTreeMap<&str, Place>, job
         (word, None) if word.starts_with("+MOV") => return lost("a motion of another group".to_owned()),
         (_, None) => {
             let called = references.iter().find(|one| matches!(one.role, Role::Call | Role::Start))?;
-            let Some(moves) = moves(&called.name, jobs, &mut BTreeSet::new()) else {
-                return lost(format!("the job {} is not there", called.name));
+            let is_missing = !jobs.texts.contains_key(&called.name);
+            return match first {
+                _ if is_missing => lost(format!("the job {} is not there", called.name)),
+                "PSTART" => lost(format!("the job {} runs at the same time", called.name)),
+                _ if executed.is_open_call => lost(format!("this call of {} leads back to it", called.name)),
+                _ => None,
             };
-            return if moves { lost(format!("the job {} moves the robot", called.name)) } else { None };
         }
         _ => {}
     }
     let operand = text.split_whitespace().nth(1).unwrap_or_default();
-    let place = match (places.get(operand), variable(&references)) {
+    let number = variable(&references);
+    let place = match (places.get(executed.job).and_then(|places| places.get(operand)), number) {
         (Some(place), _) => place.clone(),
         (None, Some(number)) => match jobs.variables.as_ref().map(|known| known.get(&number)) {
             Some(Some(place)) => place.clone(),
@@ -394,29 +410,20 @@ fn event<'t>((line, text): (usize, &'t str), places: &BTreeMap<&str, Place>, job
         },
         (None, None) => return lost(format!("the position {operand} is not known")),
     };
-    let interpolation = interpolation(text)?;
-    Some(Event::Move(Move { line, text, name: operand.to_owned(), interpolation, place, speeds }))
-}
-
-/// Whether a job, or a job that it calls, moves the robot; `None` if a job is not known.
-fn moves(name: &str, jobs: &Jobs, seen: &mut BTreeSet<String>) -> Option<bool> {
-    let text = jobs.texts.get(name)?;
-    if !seen.insert(name.to_owned()) {
-        return Some(false);
-    }
-    if JobText::new(text)
-        .instructions
-        .iter()
-        .any(|(_, line)| line.trim().starts_with("IMOV") || interpolation(line).is_some())
-    {
-        return Some(true);
-    }
-    calls(text).iter().try_fold(false, |any, called| Some(any || moves(called, jobs, seen)?))
+    Some(Event::Move(Move {
+        line,
+        text: executed.named(text),
+        name: executed.named(operand),
+        is_variable: number.is_some(),
+        interpolation: interpolation(text)?,
+        place,
+        speeds,
+    }))
 }
 
 /// Interpolation of a move, with the points between its start and its target. An arc has three positions of MOVC: the
 /// robot moves to the first one on a straight line.
-fn shape(events: &[Event<'_>], index: usize) -> (Interpolation, Vec<Vec<f64>>) {
+fn shape(events: &[Event], index: usize) -> (Interpolation, Vec<Vec<f64>>) {
     let at = |index: Option<usize>| match index.and_then(|index| events.get(index)) {
         Some(Event::Move(one)) => Some(one),
         _ => None,
@@ -438,7 +445,7 @@ fn shape(events: &[Event<'_>], index: usize) -> (Interpolation, Vec<Vec<f64>>) {
 }
 
 /// Duration of a move with these points.
-fn seconds(one: &Move<'_>, points: &[Vec<f64>]) -> Option<f64> {
+fn seconds(one: &Move, points: &[Vec<f64>]) -> Option<f64> {
     let speed = |unit: &str| one.speeds.iter().find(|speed| speed.unit == unit && speed.value > 0.0);
     let [first, .., last] = points else { return None };
     if let Some(speed) = speed("mm/s") {
