@@ -94,7 +94,7 @@ const RULES: [(Rule, &str, &str); 15] = [
         "a job that no job calls; only if master names the jobs that are started otherwise",
     ),
     (Rule::UnusedLabel, "unused-label", "a label without a jump (toyo)"),
-    (Rule::UnusedPosition, "unused-position", "a position that no move uses"),
+    (Rule::UnusedPosition, "unused-position", "a taught position that no move uses"),
     (Rule::NeverRead, "never-read", "a variable that is written and never read"),
     (Rule::SpeedLimit, "speed-limit", "a motion above the limit of --max-speed"),
     (Rule::MovedPosition, "moved-position", "a position that differs from the one in --compare"),

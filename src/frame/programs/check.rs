@@ -16,6 +16,9 @@ use armctl_controller::findings::{Finding, Rule, Severity};
 use armctl_controller::references::{Reference, Role};
 use armctl_controller::similar_word::nearest;
 
+/// Maximum number of positions that a finding names.
+const MAX_NAMES: usize = 20;
+
 /// Maximum speed in one unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpeedLimit {
@@ -57,11 +60,6 @@ pub struct CheckArguments {
 }
 
 impl CheckArguments {
-    /// Whether a check needs data of a backup besides the programs.
-    pub fn needs_backup(&self) -> bool {
-        !self.max_speed.is_empty() || self.compare.is_some()
-    }
-
     /// Reads the settings for a folder. The arguments have priority.
     ///
     /// # Errors
@@ -155,11 +153,19 @@ fn positions(program: &Program, found: &mut Vec<Finding>) {
     }
     let unused: Vec<&Position> =
         program.positions.iter().filter(|position| !used.contains(position.name.as_str())).collect();
-    if let Some(first) = unused.first() {
-        let names: Vec<&str> = unused.iter().map(|position| position.name.as_str()).collect();
-        let message = format!("no instruction uses {}", names.join(", "));
-        found.push(finding(Rule::UnusedPosition, Severity::Warning, first.line, 1, message));
-    }
+    let names: Vec<String> = unused.iter().map(|position| position.name.clone()).collect();
+    found.extend(unused.first().and_then(|first| unused_positions(first.line, &names)));
+}
+
+/// Finding about positions that no instruction uses; `None` if there are none.
+pub fn unused_positions(line: usize, names: &[String]) -> Option<Finding> {
+    let shown = names.iter().take(MAX_NAMES).map(String::as_str).collect::<Vec<_>>().join(", ");
+    let more = match names.len().saturating_sub(MAX_NAMES) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let message = format!("no instruction uses {shown}{more}");
+    (!names.is_empty()).then(|| finding(Rule::UnusedPosition, Severity::Warning, line, 1, message))
 }
 
 fn speeds(program: &Program, settings: &CheckSettings, found: &mut Vec<Finding>) {

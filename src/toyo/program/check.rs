@@ -2,9 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::folder::{
-    add_speeds, check_file, points_of, positions, program_of, programs_in, read_program, table_speeds,
-};
+use super::folder::{add_speeds, check_file, parameters_of, points_of, program_of, programs_in, read_program};
+use super::robot_data::{RobotData, Wanted, read_data};
 use super::text;
 use crate::files;
 use crate::link::Toyo;
@@ -18,8 +17,8 @@ use armctl_controller::toyo::errors;
 use armctl_controller::toyo::program::{self, ControllerData, MAX_STEPS};
 use armctl_frame::names;
 use armctl_frame::programs::Program;
-use armctl_frame::programs::check::{CheckArguments, CheckContext, check, moved};
-use armctl_frame::programs::settings;
+use armctl_frame::programs::check::{CheckArguments, CheckContext, check, moved, unused_positions};
+use armctl_frame::programs::settings::{self, CheckSettings};
 use armctl_frame::programs::source::{ProgramFile, ProgramSet};
 use armctl_frame::programs::verdict::{self, FileVerdict};
 use armctl_frame::store::keys_of;
@@ -74,7 +73,7 @@ impl Command for Check {
 
     fn run_alone(&self) -> Result<Verdict, Failure> {
         if let Some(folder) = &self.from {
-            return self.check(programs_in(folder)?, Some(folder), &[]);
+            return self.check(programs_in(folder)?, &Source::Folder(folder.clone()), &[]);
         }
         let read = |path: &PathBuf| {
             let file = files::display_path(path);
@@ -82,22 +81,40 @@ impl Command for Check {
         };
         let files = self.files.iter().map(read).collect::<Result<_, Failure>>()?;
         let folder = self.files.first().and_then(|path| path.parent());
-        self.check(ProgramSet { files, is_partial: true, ..ProgramSet::default() }, folder, &[])
+        let source = folder.map_or(Source::Nowhere, |folder| Source::Folder(folder.to_owned()));
+        self.check(ProgramSet { files, is_partial: true, ..ProgramSet::default() }, &source, &[])
     }
 
     async fn run(&self, context: Context<'_, Toyo>) -> Result<Verdict, Failure> {
-        if self.limits.needs_backup() {
-            return Err(Failure::usage("--max-speed and --compare need the speed table and the points of a backup")
-                .hint("make a backup with `toyo backup FOLDER`, and add --from FOLDER"));
-        }
         let Context { robot, link, screen, .. } = context;
+        let settings = self.limits.settings(None)?;
+        let needs_data = !settings.max_speed.is_empty() || self.limits.compare.is_some();
+        let set = program_of(link, screen, None).await;
+        if link.is_dry_run() && needs_data {
+            link.then("reads of the speeds and points that the program uses");
+        }
+        let set = set?;
+        let mut data = RobotData::default();
+        if let Some(file) = set.files.first().filter(|_| needs_data)
+            && let Some(program) = check_file(file, MAX_STEPS, &Names::default(), &ControllerData::default()).program
+        {
+            data = read_data(link, screen, None, &program, Wanted::Used).await?;
+        }
         let names: Vec<Name> = names::of_robot(robot, screen).iter().cloned().collect();
-        self.check(program_of(link, screen, None).await?, None, &names)
+        self.check(set, &Source::Robot(data), &names)
     }
 }
 
+/// Where the points and the speeds of the programs are.
+enum Source {
+    Folder(PathBuf),
+    Robot(RobotData),
+    Nowhere,
+}
+
 impl Check {
-    fn check(&self, set: ProgramSet, folder: Option<&Path>, names: &[Name]) -> Result<Verdict, Failure> {
+    fn check(&self, set: ProgramSet, source: &Source, names: &[Name]) -> Result<Verdict, Failure> {
+        let folder = if let Source::Folder(folder) = source { Some(folder.as_path()) } else { None };
         let names = Names::new(self.name.iter().chain(names).cloned().collect());
         let mut settings = self.limits.settings(folder)?;
         // Every program of a task can be started from outside.
@@ -117,12 +134,19 @@ impl Check {
                 // A check of all paths already reports calls of subroutines.
                 line.references.retain(|reference| reference.role != Role::Call);
             }
-            if let (Some(folder), Some(parsed)) = (folder, &checked.program) {
-                add_speeds(&mut program, parsed, &table_speeds(folder));
+            let data = match source {
+                Source::Folder(folder) => &RobotData::of_files(points.as_deref(), parameters_of(folder).as_deref())?,
+                Source::Robot(data) => data,
+                Source::Nowhere => &RobotData::of_files(points.as_deref(), None)?,
+            };
+            if let Some(parsed) = &checked.program {
+                add_speeds(&mut program, parsed, &data.speeds);
+                let unused = data.unused_points(parsed);
+                program.findings.extend(unused_positions(1, &unused));
             }
-            if let (Some(new), Some(other)) = (&points, &self.limits.compare) {
-                let old = points_of(other, &file.name).map(|path| positions(&path)).transpose()?;
-                let found = moved(&positions(new)?, &old.unwrap_or_default(), &other.display().to_string(), &settings);
+            if let Some(other) = &self.limits.compare {
+                let old = RobotData::of_files(points_of(other, &file.name).as_deref(), None)?;
+                let found = moved_points(data, &old, other, &settings);
                 program.findings.extend(at_uses(&program, found));
             }
             programs.push(program);
@@ -135,6 +159,14 @@ impl Check {
         let verdicts = verdicts.map(|(program, parsed)| FileVerdict::new(program, Contents::new(parsed.as_ref())));
         Ok(Verdict::new(verdicts.collect(), context.unread, self.limits.strict))
     }
+}
+
+/// Points that differ from the points of the same numbers in a backup.
+fn moved_points(data: &RobotData, old: &RobotData, folder: &Path, settings: &CheckSettings) -> Vec<(String, Finding)> {
+    let old = old.positions();
+    let of_name = |name: &str| old.iter().find(|one| one.name == name).cloned();
+    let pairs = data.positions().into_iter().filter_map(|new| Some((of_name(&new.name)?, new)));
+    pairs.flat_map(|(old, new)| moved(&[new], &[old], &folder.display().to_string(), settings)).collect()
 }
 
 /// Moves findings about points to the first lines that use these points.

@@ -5,17 +5,15 @@ use std::path::{Path, PathBuf};
 
 use super::get::Get;
 use crate::backup::Controller;
-use crate::files;
 use crate::link::Link;
 use crate::prelude::*;
 use crate::task_selection;
 use armctl_controller::names::Names;
 use armctl_controller::references::ProgrammedSpeed;
-use armctl_controller::toyo::names;
 use armctl_controller::toyo::program::{self, Checked, ControllerData, NOT_IN_MANUAL, Rows, Style};
 use armctl_frame::dry_run::unknown;
 use armctl_frame::programs::source::{FolderFilter, ProgramFile, ProgramSet, read_folder};
-use armctl_frame::programs::{Line, Position, Program};
+use armctl_frame::programs::{Line, Program};
 
 const PROGRAMS: FolderFilter =
     FolderFilter { holds: "program", is_program, expected: "programs (program-N.txt or *.toyo)" };
@@ -90,33 +88,10 @@ pub fn read_program(file: &ProgramFile, checked: &Checked) -> Program {
     Program { name: file.name.clone(), file: file.file.clone(), lines, findings, ..Program::default() }
 }
 
-/// Points in a file of `point dump`, in the notation of a position: `PT012=100.00,20.00`.
-///
-/// # Errors
-/// The file cannot be read.
-pub fn positions(path: &Path) -> Result<Vec<Position>, Failure> {
-    let bytes = files::read(path)?;
-    let text = String::from_utf8_lossy(&bytes);
-    let rows = (1..).zip(text.lines()).filter_map(|(line, row)| {
-        let (point, values) = row.split_once(',')?;
-        let name = point.parse().ok().map(names::point)?;
-        Some(Position { line, text: format!("{name}={values}"), name })
-    });
-    Ok(rows.collect())
+/// File with the parameters and tables of a backup.
+pub fn parameters_of(folder: &Path) -> Option<PathBuf> {
+    Some(folder.join("parameters.csv")).filter(|path| path.exists())
 }
-
-/// Speeds in mm/s of the rows of the speed table, in the parameters of a backup. Empty without such a file.
-pub fn table_speeds(folder: &Path) -> BTreeMap<i32, f64> {
-    let bytes = files::read(&folder.join(PARAMETERS)).unwrap_or_default();
-    let text = String::from_utf8_lossy(&bytes);
-    let speed = |line: &str| {
-        let (name, value) = line.split_once(',')?;
-        Some((name.strip_prefix("T2.")?.parse().ok()?, value.trim().rsplit('=').next()?.parse().ok()?))
-    };
-    text.lines().filter_map(speed).collect()
-}
-
-const PARAMETERS: &str = "parameters.csv";
 
 /// Adds the speeds that the steps select in the speed table.
 pub fn add_speeds(program: &mut Program, parsed: &program::Program, table: &BTreeMap<i32, f64>) {

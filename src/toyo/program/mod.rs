@@ -12,6 +12,7 @@ mod insert;
 mod list;
 mod path;
 mod put;
+mod robot_data;
 mod search;
 mod show;
 pub mod source_texts;

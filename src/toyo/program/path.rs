@@ -1,29 +1,24 @@
 //! `toyo program show --path`: the motion of a program, as the offline simulator runs it.
 
-use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use super::folder::{check_file, points_of, program_of, programs_in};
+use super::folder::{check_file, parameters_of, points_of, program_of, programs_in};
+use super::robot_data::{RobotData, Wanted, read_data};
 use super::show::Show;
-use crate::eeprom_tables::EepromRow as _;
 use crate::files;
-use crate::item_reads::read_each;
-use crate::link::{Link, Toyo, wrong};
-use crate::point::{Points, table};
+use crate::link::Toyo;
 use crate::prelude::*;
-use crate::sim::{in_file, parameter_writes};
-use crate::task_selection;
 use armctl_controller::findings::Finding;
 use armctl_controller::names::Names;
 use armctl_controller::toyo::errors;
-use armctl_controller::toyo::program::{self, ControllerData, MAX_STEPS, Program, uses};
+use armctl_controller::toyo::program::{self, ControllerData, MAX_STEPS, Program};
+use armctl_controller::toyo::request::instruction;
 use armctl_controller::toyo::simulator::{Simulator, Start, What};
-use armctl_controller::toyo::table::parameters::PARAMETERS;
 use armctl_controller::toyo::table::{Instruction, Op};
 use armctl_frame::path::{Drawing, Interpolation, Moment, Motion, NotDrawn, PathOptions, PathReport, Step, simplify};
 use armctl_frame::programs::source::ProgramFile;
-use armctl_frame::store::rows_of_file;
 
 /// Interval of the positions.
 const SAMPLE: Duration = Duration::from_millis(5);
@@ -55,57 +50,14 @@ struct Source {
     program: Program,
     /// Lines of the program.
     lines: Vec<String>,
-    /// Protocol commands that write points and parameters.
-    writes: Vec<String>,
+    /// Points, groups and parameters.
+    data: RobotData,
+    /// Task of the program.
+    task: u8,
     /// Whether the speeds are those of the robot.
     has_parameters: bool,
-    /// Whether points that are not in `writes` are 0, as in a backup. Otherwise they are not known.
+    /// Whether points that are not in `data` are 0, as in a backup. Otherwise they are not known.
     has_all_points: bool,
-}
-
-/// Points and groups of the MVM table that are known.
-struct Known {
-    /// `None` if all points are known.
-    points: Option<BTreeSet<i32>>,
-    /// Points of each group.
-    groups: BTreeMap<i32, Vec<i32>>,
-}
-
-impl Known {
-    fn new(writes: &[String], has_all_points: bool) -> Self {
-        let mut known = Self { points: (!has_all_points).then(BTreeSet::new), groups: BTreeMap::new() };
-        let block = |text: &String| Request::parse(&format!("@{}", text.trim_start_matches('@'))).ok();
-        for request in writes.iter().filter_map(block) {
-            let numbers = request.content().ok().flatten().map(|record| numbers_of(&record)).unwrap_or_default();
-            match (request.parameter().map(|parameter| parameter.id), &numbers[..]) {
-                (Some("T1"), [point, ..]) => known.points.iter_mut().for_each(|points| points.extend([*point])),
-                (Some("T4.S1"), [group, points @ ..]) => drop(known.groups.insert(*group, points.to_vec())),
-                _ => {}
-            }
-        }
-        known
-    }
-
-    /// Why the target of a step is not known; `None` if it is known. The counter of the step has this value.
-    fn missing(&self, step: &Record, counter: i32) -> Option<String> {
-        let is_known = |point: i32| self.points.as_ref().is_none_or(|points| points.contains(&point));
-        if let Some(group) = step.number("group") {
-            let Some(points) = self.groups.get(&group) else { return Some(format!("the group {group} is not known")) };
-            let missing = points.iter().find(|point| **point > 0 && !is_known(**point))?;
-            return Some(format!("the point {missing} of the group {group} is not known"));
-        }
-        let point = step.number("point")? + counter;
-        (!is_known(point)).then(|| format!("the point {point} is not known"))
-    }
-}
-
-/// The numbers of a record, in their order.
-fn numbers_of(record: &Record) -> Vec<i32> {
-    record
-        .values()
-        .iter()
-        .filter_map(|value| if let Value::Number(number) = value { Some(*number) } else { None })
-        .collect()
 }
 
 impl Command for ProgramPath {
@@ -145,12 +97,13 @@ impl Command for ProgramPath {
         let set = program_of(link, screen, self.task()).await?;
         let file = set.files.into_iter().next().ok_or_else(|| Failure::local("internal error: no program was read"))?;
         let program = parse(&file)?;
-        let writes = read_data(link, screen, self.task(), &program).await?;
+        let data = read_data(link, screen, self.task(), &program, Wanted::Everything).await?;
         self.report(&Source {
             lines: lines(&file),
+            task: task_of(&file.name),
             name: file.name,
             program,
-            writes,
+            data,
             has_parameters: true,
             has_all_points: false,
         })
@@ -183,7 +136,7 @@ fn of_folder(folder: &Path, name: &str) -> Result<Source, Failure> {
         Failure::usage(format!("{} contains no {name}", folder.display()))
             .hint("type the number of a task with a program")
     })?;
-    let parameters = Some(folder.join("parameters.csv")).filter(|path| path.exists());
+    let parameters = parameters_of(folder);
     let points = points_of(folder, name);
     let has_all_points = points.is_some();
     Ok(Source { has_all_points, ..of_file(file, points.as_deref(), parameters.as_deref())? })
@@ -191,23 +144,20 @@ fn of_folder(folder: &Path, name: &str) -> Result<Source, Failure> {
 
 fn of_file(file: ProgramFile, points: Option<&Path>, parameters: Option<&Path>) -> Result<Source, Failure> {
     let program = parse(&file)?;
-    let mut writes = parameters.map(parameter_writes).transpose()?.unwrap_or_default();
-    let table = Points::with_letters(1, Letters::USUAL);
-    if let Some(path) = points {
-        for (number, changes) in rows_of_file(&table, path)? {
-            let values =
-                changes.whole().ok_or_else(|| in_file(path, &format!("point {number}: values are missing")))?;
-            writes.push(table.cell(number, values)?.write.text());
-        }
-    }
     Ok(Source {
         lines: lines(&file),
+        task: task_of(&file.name),
         name: file.name,
         program,
-        writes,
+        data: RobotData::of_files(points, parameters)?,
         has_parameters: parameters.is_some(),
         has_all_points: false,
     })
+}
+
+/// Task of a program of a backup or of the controller; 1 for other programs.
+fn task_of(name: &str) -> u8 {
+    name.strip_prefix("program-").and_then(|task| task.parse().ok()).filter(|task| (1..=4).contains(task)).unwrap_or(1)
 }
 
 fn lines(file: &ProgramFile) -> Vec<String> {
@@ -220,68 +170,18 @@ fn parse(file: &ProgramFile) -> Result<Program, Failure> {
     checked.program.ok_or_else(|| files::file_failure(&file.file, &errors))
 }
 
-/// Reads the parameters of the controller, and the table rows and points that a program uses. Returns the commands that
-/// write them.
-async fn read_data(
-    link: &mut Link,
-    screen: &Screen,
-    task: Option<u8>,
-    program: &Program,
-) -> Result<Vec<String>, Failure> {
-    let records: Vec<Record> = program.steps.iter().map(|step| step.record.clone()).collect();
-    let rows = uses(&records);
-    // The rows of a table begin with the same two characters as its sheets.
-    let used = |id: &'static str| rows.iter().filter(move |(table, _)| table[..2] == id[..2]).map(|(_, row)| *row);
-    let tables = PARAMETERS.iter().filter(|parameter| parameter.only_on.is_empty() && parameter.id != table().id);
-    let wanted = tables.flat_map(|parameter| match parameter.row() {
-        None => vec![(parameter, None)],
-        Some(_) => used(parameter.id).map(|row| (parameter, Some(row))).collect(),
-    });
-    let mut writes = read_writes(link, screen, "reading parameters", wanted.collect()).await?;
-    let is_computed = |record: &Record| record.number("counter").is_some_and(|counter| counter > 0);
-    let points: BTreeSet<i32> = if records.iter().any(|record| record.number("point").is_some() && is_computed(record))
-    {
-        Points::all().into_iter().collect()
-    } else {
-        used(table().id)
-            .chain(Known::new(&writes, false).groups.into_values().flatten())
-            .filter(|row| *row > 0)
-            .collect()
-    };
-    let wanted = points.into_iter().map(|point| (table(), Some(point))).collect();
-    task_selection::select_task(link, task).await?;
-    let read = read_writes(link, screen, "reading points", wanted).await;
-    writes.extend(task_selection::restore_task(link, read).await?);
-    Ok(writes)
-}
-
-/// Reads parameters and rows. Returns the commands that write those that were read.
-async fn read_writes(
-    link: &mut Link,
-    screen: &Screen,
-    what: &str,
-    wanted: Vec<(&'static Parameter, Option<i32>)>,
-) -> Result<Vec<String>, Failure> {
-    let requests = wanted.iter().map(|(parameter, row)| Request::read_parameter(parameter, *row));
-    let requests: Vec<Request> = requests.collect::<Result<_, _>>().map_err(|error| wrong(&error))?;
-    let answers = read_each(link, screen, what, &requests).await?;
-    let write = |((parameter, _), answer): ((&Parameter, _), Result<Record, Failure>)| {
-        let record = answer.ok().filter(Record::is_listed)?;
-        Request::write_parameter(parameter, record.values()).ok().map(|request| request.text())
-    };
-    Ok(wanted.into_iter().zip(answers).filter_map(write).collect())
-}
-
 /// Runs a program in the simulator and records its path.
 fn motion(source: &Source) -> Result<Motion, Failure> {
-    let Source { name, program, lines, writes, has_parameters, has_all_points } = source;
-    let known = Known::new(writes, *has_all_points);
+    let Source { name, program, lines, data, has_parameters, .. } = source;
+    // Without parameters, all axes belong to task 1.
+    let task = if *has_parameters { source.task } else { 1 };
     let internal = |why: String| {
         Failure::usage(format!("{name} cannot be drawn: {why}")).hint("use `toyo sim run` to see how the program runs")
     };
     let start = Start::parse("origin = true\n").map_err(internal)?;
-    let start =
-        start.with_written(1, writes.iter().map(|command| command.trim_start_matches('@'))).map_err(internal)?;
+    let start = start
+        .with_written(task, data.writes.iter().map(|command| command.trim_start_matches('@')))
+        .map_err(internal)?;
     let mut motion = Motion {
         program: name.clone(),
         frame: "base".to_owned(),
@@ -305,13 +205,19 @@ fn motion(source: &Source) -> Result<Motion, Failure> {
     if let Some(first) = steps.iter_mut().find(|record| record.word("arrival").is_some()) {
         *first = first.clone().with("arrival", Value::Word("POST"));
     }
-    let mut simulator = Simulator::new(start.with_program(1, steps).map_err(internal)?);
+    let mut start = start.with_program(task.into(), steps).map_err(internal)?;
+    if task > 1 {
+        let first = [&format!("TSTR TASK={task:02}")[..], "END"].into_iter().map(instruction).collect::<Result<_, _>>();
+        start = start.with_program(1, first.map_err(|error| internal(error.to_string()))?).map_err(internal)?;
+    }
+    let mut simulator = Simulator::new(start);
     simulator.record_trace(true);
     simulator.console(Duration::ZERO, "start").map_err(internal)?;
     let mut run = Run {
         program,
         lines,
-        known: &known,
+        source,
+        task: task.into(),
         missing: None,
         number: 0,
         current: None,
@@ -352,12 +258,14 @@ enum End {
 struct Run<'p> {
     program: &'p Program,
     lines: &'p [String],
-    known: &'p Known,
+    source: &'p Source,
+    /// Task of the program.
+    task: usize,
     /// Why the target of the current step is not known.
     missing: Option<String>,
-    /// Latest step of task 1.
+    /// Latest step of the task.
     number: usize,
-    /// Step of task 1 with its path so far.
+    /// Step of the task with its path so far.
     current: Option<(usize, Vec<Moment>)>,
     steps: Vec<Step>,
     /// Whether the position is known: after the first move to an absolute position.
@@ -378,7 +286,7 @@ impl Run<'_> {
             let mut is_over = false;
             for event in simulator.take_trace() {
                 match event.what {
-                    What::Step { task: 1, step } => {
+                    What::Step { task, step } if task == self.task => {
                         count += 1;
                         self.close(moment(event.at, event.position), motion);
                         self.number = step;
@@ -392,8 +300,10 @@ impl Run<'_> {
                                 .steps
                                 .get(self.number)
                                 .filter(|_| self.interpolation(self.number) == Some(Interpolation::Arc));
-                            let missing =
-                                |step: &program::Step| self.known.missing(&step.record, counter.map_or(0, i32::from));
+                            let missing = |step: &program::Step| {
+                                let Source { data, has_all_points, .. } = self.source;
+                                data.missing(&step.record, counter.map_or(0, i32::from), *has_all_points)
+                            };
                             missing(step).or_else(|| missing(next?))
                         });
                         self.current = Some((step, vec![moment(event.at, event.position)]));
@@ -406,7 +316,8 @@ impl Run<'_> {
                         self.stop(motion, format!("the run stops here: error {}", errors::explain(code).in_a_line()));
                         is_over = true;
                     }
-                    What::Ended(1) | What::Stopped => {
+                    What::Ended(task) if task != self.task => {}
+                    What::Ended(_) | What::Stopped => {
                         self.close(moment(event.at, event.position), motion);
                         is_over = true;
                     }

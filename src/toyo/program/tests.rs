@@ -295,10 +295,57 @@ fn a_folder_of_programs_is_searched_and_checked() {
     std::fs::write(folder.path().join(".armctl-check.toml"), "[rules]\nmissing-label = false\n").unwrap();
     assert_eq!(rules(""), [""; 0]);
 
+    let swapped = "name,x_mm,y_mm,z_mm,r_mm\n1,0.00,0.05,0.00,0.00\n2,100.00,0.00,0.00,0.00\n";
+    std::fs::write(old.path().join("points-1.csv"), swapped).unwrap();
+    assert_eq!(rules(&compare), ["speed-limit 1", "moved-position 2", "moved-position 11"], "points have numbers");
+    let more = "name,x_mm,y_mm,z_mm,r_mm\n1,0,0,0,0\n2,0,0,0,0\n3,5,0,0,0\n4,0,0,0,0\n";
+    std::fs::write(folder.path().join("points-1.csv"), more).unwrap();
+    assert_eq!(rules(""), ["unused-position 1"], "a point of zeros is not taught");
+
     std::fs::write(folder.path().join("program-2.txt"), "END\n").unwrap();
     let (data, _) = run("program calls");
     let names: Vec<&str> =
         data["programs"].as_array().unwrap().iter().map(|one| one["name"].as_str().unwrap()).collect();
     assert_eq!(names, ["program-1", "program-1/sub", "program-1/sub2", "program-2"]);
     assert_eq!(data["programs"][0]["calls"], serde_json::json!(["program-2", "program-1/sub"]));
+}
+
+#[test]
+fn a_program_of_the_controller_is_checked_with_its_data() {
+    let old = backup();
+    let points = "name,x_mm,y_mm,z_mm,r_mm\n1,9.00,0.00,0.00,0.00\n";
+    std::fs::write(old.path().join("points-1.csv"), points).unwrap();
+    let folder = old.path().to_str().unwrap();
+    let mut workspace = Workspace::with("points = { 1 = { 1 = [100.0, 20.0, 0.0, 0.0], 7 = [1.0, 0.0, 0.0, 0.0] } }");
+    workspace.put("MOVP a PT=1 CN=0 S V=3 POST\nEND\n", &[]).unwrap();
+    let words = ["program", "check", "--max-speed", "20mm/s", "--compare", folder];
+    let (data, _) = workspace.bench.run(&words).unwrap();
+    let findings = data["files"][0]["findings"].as_array().unwrap().iter();
+    let messages: Vec<&str> = findings.map(|one| one["message"].as_str().unwrap()).collect();
+    assert_eq!(messages[1], "50mm/s is above the limit 20mm/s");
+    assert!(
+        messages[0].starts_with("PT001 is 100.00,20.00,0.00,0.00, and was 9.00,0.00,0.00,0.00 in "),
+        "{messages:?}"
+    );
+}
+
+#[test]
+fn a_program_of_another_task_is_drawn_with_the_axes_of_the_task() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in [
+        // Two axes for task 1, two for task 2.
+        ("parameters.csv", "name,value\ntask-axes,2200\n"),
+        ("program-2.txt", "MOVP a PT=1 CN=0 S V=3 POST\nMOVP a PT=2 CN=0 S V=3 POST\nEND\n"),
+        ("points-2.csv", "name,x_mm,y_mm,z_mm,r_mm\n1,10.00,20.00,30.00,40.00\n2,0.00,0.00,50.00,0.00\n"),
+    ] {
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
+    let words = ["program", "show", "2", "--path", "--from", folder.path().to_str().unwrap()];
+    let (data, _) = without_robot(&words).unwrap();
+    let targets: Vec<&Value> = data["steps"].as_array().unwrap().iter().map(|step| &step["target"]).collect();
+    assert_eq!(
+        targets,
+        [&serde_json::json!([0.0, 0.0, 30.0, 40.0]), &serde_json::json!([0.0, 0.0, 50.0, 0.0])],
+        "{data}"
+    );
 }
