@@ -74,13 +74,14 @@ pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failur
 }
 
 /// Returns the result of `work`, or the request that ended `work`. The work may wait for the same request. For this
-/// reason, the work is polled once more after the request has arrived from the signal thread.
+/// reason, the work is polled once more after the request has arrived from the signal thread. This poll is
+/// `unconstrained`: if the work exhausted the task budget, its own `select!` would otherwise not look at the request.
 async fn run_until_request<T, R>(work: impl Future<Output = T>, request: impl Future<Output = R>) -> Result<T, R> {
     let mut work = pin!(work);
     tokio::select! {
         biased;
         done = &mut work => Ok(done),
-        how = request => work.now_or_never().ok_or(how),
+        how = request => unconstrained(work).now_or_never().ok_or(how),
     }
 }
 
@@ -362,20 +363,29 @@ impl Signals {
 mod tests {
     use std::future::pending;
 
+    use tokio::task::coop::consume_budget;
+
     use super::*;
 
     #[tokio::test]
     async fn inner_wait_handles_the_request() {
         let (ask, asked) = watch::channel(None);
-        let inner = run_until_request(pending::<()>(), wait(asked.clone(), |_| true));
+        // A peer that answers each request at once lets the work exhaust the task budget.
+        let busy = poll_fn(|context| {
+            for _ in 0..1000 {
+                let _ = pin!(consume_budget()).poll(context);
+            }
+            Poll::<()>::Pending
+        });
+        let inner = run_until_request(busy, unconstrained(wait(asked.clone(), |_| true)));
         // The request arrives after the work was polled. The channel has not woken the inner wait yet.
-        let outer = poll_fn(|_| {
+        let outer = unconstrained(poll_fn(|_| {
             ask.send_if_modified(|how| {
                 *how = Some(KEYS);
                 false
             });
             Poll::Ready("outer")
-        });
+        }));
         assert_eq!(run_until_request(inner, outer).await, Ok(Err(KEYS)));
     }
 

@@ -25,6 +25,7 @@ use std::time::Duration;
 
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
+use tokio::task::yield_now;
 use tokio::time::{Instant, timeout_at};
 
 pub use self::error::{Cause, LinkError, Outputs};
@@ -245,6 +246,8 @@ impl ImageLink {
                 if Instant::now() < until {
                     timeout_at(until, next).await.unwrap_or(Event::Timeout)
                 } else {
+                    // With an exhausted task budget, an image that has already arrived would not be read.
+                    yield_now().await;
                     next.now_or_never().unwrap_or(Event::Timeout)
                 }
             }
