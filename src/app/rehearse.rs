@@ -12,6 +12,7 @@ use serde_json::Value;
 use super::batch::{Plan, Results, read, refuse_repetition};
 use super::parser::Parser;
 use super::prepare::{Need, prepare};
+use crate::command::families;
 use crate::command::fleet::cell::{SavedRobot, inventory_text, robots_in};
 use crate::command::fleet::rehearsal::{ID, LineResult, RehearsalReport, RehearsedRobot, Snapshot};
 use crate::command::fleet::session::host;
@@ -117,13 +118,8 @@ impl Rehearsed<'_> {
             self.records.iter().map(|(name, record)| (name, record.motions.take(), record.take_questions())).collect();
         let after = self.snapshots(snapshots, "after").await?;
         let mut robots = Vec::new();
-        for (SavedRobot { name, family, .. }, (old_signals, new_signals)) in
-            self.saved.iter().zip(before.iter().zip(&after))
-        {
-            let [old, new] = ["before", "after"].map(|time| self.folder.join(time).join(name));
-            let old = Snapshot { folder: &old, signals: old_signals };
-            let new = Snapshot { folder: &new, signals: new_signals };
-            let mut robot = RehearsedRobot::compare(name, *family, [old, new])?;
+        for (SavedRobot { name, family, .. }, snapshots) in self.saved.iter().zip(before.iter().zip(&after)) {
+            let mut robot = RehearsedRobot::compare(name, *family, [snapshots.0, snapshots.1])?;
             robot.running = running.get(name.as_str()).copied().flatten();
             robots.push(robot);
         }
@@ -143,11 +139,12 @@ impl Rehearsed<'_> {
         })
     }
 
-    /// Saves all robots below `time`. Returns their signals.
-    async fn snapshots(&self, plan: &Plan<'_>, time: &str) -> Result<Vec<BTreeMap<String, String>>, Failure> {
-        let mut signals = Vec::new();
-        for SavedRobot { name, .. } in self.saved {
-            let folder = self.folder.join(time).join(name).display().to_string();
+    /// Saves all robots below `time`.
+    async fn snapshots(&self, plan: &Plan<'_>, time: &str) -> Result<Vec<Snapshot>, Failure> {
+        let mut snapshots = Vec::new();
+        for SavedRobot { name, family, .. } in self.saved {
+            let path = self.folder.join(time).join(name);
+            let folder = path.display().to_string();
             let named = |failure: Failure| {
                 let message = format!("{name}: the simulator cannot be read: {}", failure.message);
                 Failure { message, ..failure }
@@ -157,10 +154,18 @@ impl Rehearsed<'_> {
                 Err(failure) if failure.kind != Kind::Mixed => return Err(named(failure)),
                 _ => {}
             }
-            let listed = ask(plan, ["io", "list", "-r", name].map(ToOwned::to_owned).into()).await.unwrap_or_default();
-            signals.push(signals_of(&listed));
+            let list = async |words: &[&str]| {
+                let words = [words, &["-r", name]].concat().into_iter().map(ToOwned::to_owned);
+                Ok::<_, Failure>(values_of(&ask(plan, words.collect()).await?))
+            };
+            let mut values = BTreeMap::new();
+            for noun in families::of(*family).unsaved() {
+                values.append(&mut list(&[family.name(), noun, "list", "--empty"]).await.map_err(named)?);
+            }
+            let signals = list(&["io", "list"]).await.unwrap_or_default();
+            snapshots.push(Snapshot { folder: path, values, signals });
         }
-        Ok(signals)
+        Ok(snapshots)
     }
 }
 
@@ -178,8 +183,8 @@ async fn ask(plan: &Plan<'_>, words: Vec<String>) -> Result<Value, Failure> {
         .unwrap_or_default())
 }
 
-/// Values of the signals in a report of `io list`, by name. A signal that is off and has no name is not listed.
-fn signals_of(report: &Value) -> BTreeMap<String, String> {
+/// Values of the items of a report by name. `io list` does not list a signal that is off and has no name.
+fn values_of(report: &Value) -> BTreeMap<String, String> {
     let items = report.get("items").and_then(Value::as_array).into_iter().flatten();
     let text = |value: &Value| match value {
         Value::Bool(is_on) => if *is_on { "on" } else { "off" }.to_owned(),

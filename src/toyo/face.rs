@@ -48,6 +48,7 @@ impl Declaration for Toyo {
     const AFTER_HELP: &'static str =
         "Cable, settings and first contact: `armctl help toyo-setup`. Serial ports: `armctl toyo ports`.";
     const SETUP: (&'static str, &'static str) = ("cable and settings of a Toyo controller", include_str!("setup.txt"));
+    const UNSAVED: &'static [&'static str] = &["counter", "timer"];
     const START_STATE: &'static str = simulator::EXAMPLE;
     const PANEL: Panel = teach_panel::PANEL;
     const GUARD: Guard =

@@ -45,6 +45,7 @@ impl Declaration for Yerc {
     const ABOUT: &'static str = "Yaskawa FS100, DX100, DX200 and YRC1000 over the high-speed Ethernet server (UDP)";
     const AFTER_HELP: &'static str = "Settings and first contact: `armctl help yerc-setup`.";
     const SETUP: (&'static str, &'static str) = ("settings of a Yaskawa controller", include_str!("setup.txt"));
+    const UNSAVED: &'static [&'static str] = &["register"];
     const START_STATE: &'static str = simulator::EXAMPLE;
     const PANEL: Panel = teach_panel::PANEL;
     const GUARD: Guard =

@@ -50,6 +50,7 @@ impl Declaration for Yrcx {
     const ABOUT: &'static str = "OMRON / Yamaha YRCX over a fieldbus";
     const AFTER_HELP: &'static str = "Settings and first contact: `armctl help yrcx-setup`.";
     const SETUP: (&'static str, &'static str) = ("settings of a YRCX", include_str!("setup.txt"));
+    const UNSAVED: &'static [&'static str] = &[];
     const START_STATE: &'static str = simulator::EXAMPLE;
     const PANEL: Panel = teach_panel::PANEL;
     const GUARD: Guard = Guard { is_harmless_data: |_| false, is_harmless_image: read_only_filter::only_stops };

@@ -1,7 +1,7 @@
 //! Report of `armctl rehearse`: what commands changed on the simulators of a backup.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
@@ -81,9 +81,9 @@ pub struct RehearsedRobot {
 /// Old and new value. A value is null if it did not exist.
 #[derive(Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct ValueChange {
-    /// File or part of the value; null for a signal.
+    /// File or part of the value; null for a signal, and for a value that a backup does not contain.
     pub file: Option<String>,
-    /// Name: `B005`, the number of a point, or the name of a signal.
+    /// Name: `B005`, `CN01`, the number of a point, or the name of a signal.
     pub name: String,
     /// Value before the commands.
     pub old: Option<String>,
@@ -130,17 +130,19 @@ impl From<Motion> for MotionResult {
     }
 }
 
-/// Data of a robot at one time: the folder of its backup, and its signals by name.
-pub struct Snapshot<'a> {
+/// Data of a robot at one time.
+pub struct Snapshot {
     /// Folder of the backup.
-    pub folder: &'a Path,
-    /// Signals.
-    pub signals: &'a BTreeMap<String, String>,
+    pub folder: PathBuf,
+    /// Values that a backup does not contain, by name.
+    pub values: BTreeMap<String, String>,
+    /// Signals by name.
+    pub signals: BTreeMap<String, String>,
 }
 
 impl RehearsedRobot {
     /// Compares two snapshots of a robot.
-    pub fn compare(robot: &str, family: Family, [old, new]: [Snapshot<'_>; 2]) -> Result<Self, Failure> {
+    pub fn compare(robot: &str, family: Family, [old, new]: [&Snapshot; 2]) -> Result<Self, Failure> {
         let side = |folder: &Path| {
             Ok::<_, Failure>(BackupSide {
                 manifest: manifest::open_existing(folder)?,
@@ -148,7 +150,7 @@ impl RehearsedRobot {
                 is_controller: true,
             })
         };
-        let [before, after] = [side(old.folder)?, side(new.folder)?];
+        let [before, after] = [side(&old.folder)?, side(&new.folder)?];
         let files = Differences::of(&before, &after, &Only::default(), CompareOptions::usual_tolerance())?.changed();
         let read = |side: &BackupSide, name: &str| {
             let copy = side.manifest.entry(name).and_then(|entry| entry.copy.as_ref());
@@ -166,9 +168,9 @@ impl RehearsedRobot {
         Ok(Self {
             robot: robot.to_owned(),
             family: family.name(),
-            changes: files.iter().flat_map(changed).collect(),
+            changes: files.iter().flat_map(changed).chain(changes(None, &old.values, &new.values)).collect(),
             files,
-            signals: changes(None, old.signals, new.signals),
+            signals: changes(None, &old.signals, &new.signals),
             motions: Vec::new(),
             questions: Vec::new(),
             running: None,
@@ -272,8 +274,12 @@ impl RehearsedRobot {
     fn sections(&self) -> Vec<Section> {
         let mut sections = Vec::new();
         let mut changed = Table::new(&["changed", "old", "new"], "");
-        for ValueChange { file, name, old, new } in self.changes.iter().chain(&self.signals) {
-            let name = file.as_ref().map_or_else(|| format!("signal {name}"), |file| format!("{file} {name}"));
+        for ValueChange { file, name, old, new } in &self.changes {
+            let name = file.as_ref().map_or_else(|| name.clone(), |file| format!("{file} {name}"));
+            changed.row([name.into(), Cell::optional(old.as_deref()), Cell::optional(new.as_deref())]);
+        }
+        for ValueChange { name, old, new, .. } in &self.signals {
+            let name = format!("signal {name}");
             changed.row([name.into(), Cell::optional(old.as_deref()), Cell::optional(new.as_deref())]);
         }
         let has_values = |file: &Difference| self.changes.iter().any(|value| value.file.as_ref() == Some(&file.name));

@@ -52,6 +52,8 @@ pub trait Face: Sync {
     fn topics(&self) -> Vec<(&'static str, &'static str, String)>;
     /// URL of the simulator that `sim` starts without arguments.
     fn simulator(&self) -> &'static str;
+    /// Nouns whose `list` has values that a backup does not contain.
+    fn unsaved(&self) -> &'static [&'static str];
     /// Example of a simulator start state.
     fn start_state(&self) -> &'static str;
 

@@ -68,6 +68,8 @@ pub trait Declaration: Backups {
     const AFTER_HELP: &'static str;
     /// See [`Face::setup`].
     const SETUP: (&'static str, &'static str);
+    /// See [`Face::unsaved`].
+    const UNSAVED: &'static [&'static str];
     /// See [`Face::start_state`].
     const START_STATE: &'static str;
     /// See [`Face::guard`].
@@ -171,6 +173,10 @@ impl<F: Declaration> Face for Registered<F> {
 
     fn simulator(&self) -> &'static str {
         F::Serve::TARGET
+    }
+
+    fn unsaved(&self) -> &'static [&'static str] {
+        F::UNSAVED
     }
 
     fn start_state(&self) -> &'static str {
