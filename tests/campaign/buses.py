@@ -1,6 +1,8 @@
 """The buses of the campaign: how each controller is reached, and which faults its line has."""
 
 
+import devicenet
+import profibus
 from eip import CYCLIC_FAULTS, CYCLIC_HARMLESS, Adapter, Images
 from line import DATAGRAM_FAULTS, HARMLESS, STREAM_FAULTS, TERMINAL_FAULTS, Line, TcpPort, Terminal, UdpPort
 from operations import ToyoOperations, YercOperations, YrcxOperations
@@ -91,10 +93,35 @@ class Eip(World):
         self.adapter.close()
 
 
+class DeviceNet(Eip):
+    name, faults, harmless = "yrcx-devicenet", devicenet.FAULTS, devicenet.HARMLESS
+
+    async def open(self, folder, tag):
+        self.controller = Yrcx()
+        self.line = Images(self.controller)
+        self.adapter = await devicenet.Slave.open(self.line)
+        self.target = "slcan://127.0.0.1:%d?mac=5" % self.adapter.number
+        self.operations = YrcxOperations(self.controller, folder, tag)
+        return self
+
+
+class Profibus(Eip):
+    name, faults, harmless = "yrcx-profibus", profibus.FAULTS, profibus.HARMLESS
+
+    async def open(self, folder, tag):
+        self.controller = Yrcx()
+        self.line = Images(self.controller)
+        self.adapter = profibus.Slave.open(self.line)
+        # The slot time is long, because the slave is a program on a busy computer.
+        self.target = "profibus://%s?station=5&slot=60ms&watchdog=1s" % self.adapter.path
+        self.operations = YrcxOperations(self.controller, folder, tag)
+        return self
+
+
 def bus(world):
     async def make(folder, tag):
         return await world().open(folder, tag)
     return make
 
 
-BUSES = {world.name: bus(world) for world in (YercWorld, ToyoTcp, ToyoTerminal, Eip)}
+BUSES = {world.name: bus(world) for world in (YercWorld, ToyoTcp, ToyoTerminal, Eip, DeviceNet, Profibus)}

@@ -15,6 +15,7 @@ CYCLIC_FAULTS = ["none", "lose some", "lose long", "double", "reorder", "delay s
                  "wrong peer", "reset", "kill client", "kill holder"]
 CYCLIC_HARMLESS = {"none", "lose some", "double", "reorder", "delay some", "cut", "flood", "wrong peer", "reset"}
 SHORT, LONG = 3, 300  # packets both ways: few are less than the timeout of a connection (64 one way), many are more
+LONGEST = 3.0  # seconds after which also a long fault ends
 
 
 class Images:
@@ -24,7 +25,7 @@ class Images:
         self.controller = controller
         self.plan, self.on_kill = Plan(), lambda: None
         self.sent, self.ordered = [], False
-        self.packets_left, self.held = 0, None
+        self.packets_left, self.until, self.held = 0, 0.0, None
         self.on_reset = lambda: None
         controller.on_command = self.command_begins
 
@@ -45,10 +46,11 @@ class Images:
             self.on_reset()
         else:
             self.packets_left = LONG if kind.endswith("long") else SHORT
+            self.until = asyncio.get_running_loop().time() + LONGEST
 
     def fault(self):
         """The fault of this packet."""
-        if not self.packets_left:
+        if not self.packets_left or asyncio.get_running_loop().time() > self.until:
             return "none"
         self.packets_left -= 1
         return self.plan.kind
