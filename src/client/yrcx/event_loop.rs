@@ -8,7 +8,7 @@ use armctl_controller::yrcx::image::{Image, Words};
 use armctl_controller::yrcx::order::Order;
 use armctl_controller::yrcx::register::general;
 use armctl_controller::yrcx::sequence::{self, Sequence};
-use armctl_controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next, Outcome, Silence};
+use armctl_controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next, Outcome, Policy, Silence};
 use armctl_controller::yrcx::signal::{input, output};
 use armctl_controller::yrcx::table::DurationClass;
 use armctl_transport::image::{Event as LinkEvent, LinkError};
@@ -54,7 +54,11 @@ impl Client {
         self.claim_motion(order.risk()).await?;
         self.reserve_words().await?;
         self.words = general(&self.output.next.command());
-        let mut exchange = Exchange::new(order.clone(), self.policy);
+        let settle = match &self.transport {
+            Transport::Image(link) => link.watchdog() * 2,
+            Transport::DryRun(_) | Transport::Nothing => Duration::ZERO,
+        };
+        let mut exchange = Exchange::new(order.clone(), Policy { settle, ..self.policy });
         if let Some(image) = &self.input {
             exchange.handle(self.now(), image);
         }
