@@ -3,6 +3,7 @@
 
 import devicenet
 import profibus
+import profinet
 from eip import CYCLIC_FAULTS, CYCLIC_HARMLESS, Adapter, Images
 from line import DATAGRAM_FAULTS, HARMLESS, STREAM_FAULTS, TERMINAL_FAULTS, Line, TcpPort, Terminal, UdpPort
 from operations import ToyoOperations, YercOperations, YrcxOperations
@@ -14,6 +15,7 @@ from yrcx import Yrcx
 class World:
     needs_session, session_flags, timeout, stop = False, [], 0.2, None
     harmless = HARMLESS
+    prefix = []  # words before those of armctl
 
     async def settle(self):
         pass
@@ -118,10 +120,23 @@ class Profibus(Eip):
         return self
 
 
+class Profinet(Eip):
+    name, faults, harmless = "yrcx-profinet", profinet.FAULTS, profinet.HARMLESS
+
+    async def open(self, folder, tag):
+        self.controller = Yrcx()
+        self.line = Images(self.controller)
+        self.adapter = await profinet.Device.open(self.line)
+        self.prefix = self.adapter.prefix
+        self.target = "profinet://%s@%s?layout=%s&cycle=32ms&watchdog=960ms" % (self.adapter.name, self.adapter.peer_card, profinet.LAYOUT)
+        self.operations = YrcxOperations(self.controller, folder, tag)
+        return self
+
+
 def bus(world):
     async def make(folder, tag):
         return await world().open(folder, tag)
     return make
 
 
-BUSES = {world.name: bus(world) for world in (YercWorld, ToyoTcp, ToyoTerminal, Eip, DeviceNet, Profibus)}
+BUSES = {world.name: bus(world) for world in (YercWorld, ToyoTcp, ToyoTerminal, Eip, DeviceNet, Profibus, Profinet)}

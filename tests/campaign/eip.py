@@ -47,7 +47,7 @@ class Images:
         if kind.startswith("kill"):
             self.on_kill()
         elif kind == "reset":
-            self.on_reset()
+            asyncio.get_running_loop().call_soon(self.on_reset)  # after this image
         else:
             self.packets_left = PACKETS.get(kind.split(" ")[-1], PACKETS["some"])
             self.until = asyncio.get_running_loop().time() + LONGEST
