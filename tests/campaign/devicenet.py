@@ -9,6 +9,7 @@ import asyncio
 import socket
 import struct
 
+from line import Stall
 from yrcx import to_bytes, to_words
 
 SIZE, MAC, VENDOR, SERIAL = 48, 5, 636, 0x00C0FFEE
@@ -29,7 +30,7 @@ class Slave:
         slave = cls()
         slave.images, slave.controller, slave.wrong = images, images.controller, images.controller.wrong
         slave.writer, slave.is_open, slave.rate = None, False, None
-        slave.late_until, slave.off_until = 0.0, 0.0
+        slave.stall, slave.off_until = Stall(), 0.0
         slave.owner, slave.choice = None, 0
         slave.forget()
         slave.server = await asyncio.start_server(slave.serve, "127.0.0.1", 0)
@@ -108,11 +109,7 @@ class Slave:
 
     def text(self, text):
         """Sends text to the client, in order."""
-        loop = asyncio.get_running_loop()
-        if loop.time() < self.late_until:
-            loop.call_at(self.late_until, self.write, self.writer, text)
-        else:
-            self.write(self.writer, text)
+        self.stall.pass_on(self.write, self.writer, text)
 
     def write(self, writer, text):
         if writer is not None and not writer.is_closing():
@@ -346,7 +343,7 @@ class Slave:
         elif kind == "reorder":
             frames[at], frames[at - 1] = frames[at - 1], frames[at]
         elif kind.startswith("delay"):
-            self.late_until = max(self.late_until, loop.time() + (0.08 if kind == "delay some" else 3.0))
+            self.stall.hold(0.08 if kind == "delay some" else 3.0)
             self.images.packets_left = 0
         elif kind == "bus off":
             self.off_until = loop.time() + 2.0

@@ -111,6 +111,29 @@ class Line:
             peer.send(answer)
 
 
+class Stall:
+    """Holds everything for a time, and then passes it on in order."""
+
+    def __init__(self):
+        self.waiting = []
+
+    def hold(self, seconds):
+        if not self.waiting:
+            asyncio.get_running_loop().call_later(seconds, self.end)
+            self.waiting.append((lambda: None, ()))
+
+    def end(self):
+        waiting, self.waiting = self.waiting, []
+        for call, words in waiting:
+            call(*words)
+
+    def pass_on(self, call, *words):
+        if self.waiting:
+            self.waiting.append((call, words))
+        else:
+            call(*words)
+
+
 class UdpPort(asyncio.DatagramProtocol):
     """A port of a controller. Each datagram is a message."""
 

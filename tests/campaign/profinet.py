@@ -14,6 +14,7 @@ import subprocess
 import sys
 import uuid
 
+from line import Stall
 from yrcx import to_bytes, to_words
 
 SIZE, PORT, ETHERTYPE, VENDOR, DEVICE = 48, 34964, 0x8892, 0xFFFF, 1
@@ -31,6 +32,7 @@ INSIDE = "CAMPAIGN_NAMESPACE"
 def enter_namespace():
     """Starts this program again in a network namespace of its own. Returns False if the computer has none."""
     if os.environ.get(INSIDE):
+        subprocess.run(["ip", "link", "set", "lo", "up"], check=True)  # for the other buses
         return True
     if any(shutil.which(tool) is None for tool in ("unshare", "nsenter", "ip")):
         return False
@@ -47,7 +49,6 @@ class Namespace:
     shared = None
 
     def __init__(self):
-        subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
         # The namespace ends with this process, which then closes the standard input.
         script = "mount -t sysfs none /sys && ip link set lo up && echo ready && exec cat"
         self.process = subprocess.Popen(["unshare", "-nm", "sh", "-c", script], stdout=subprocess.PIPE, stdin=subprocess.PIPE)
@@ -91,7 +92,7 @@ class Device(asyncio.DatagramProtocol):
         device.raw.bind((card, ETHERTYPE))
         device.raw.setblocking(False)
         device.mac = device.raw.getsockname()[4]
-        device.ar, device.calls = None, {}
+        device.ar, device.calls, device.stall = None, {}, Stall()
         loop = asyncio.get_running_loop()
         loop.add_reader(device.raw, device.readable)
         device.udp, _ = await loop.create_datagram_endpoint(lambda: device, (socket.inet_ntoa(device.address), PORT))
@@ -420,19 +421,22 @@ class Device(asyncio.DatagramProtocol):
         kind = self.images.fault()
         if kind.startswith("lose") or kind == "cut":
             return
-        loop = asyncio.get_running_loop()
-        if kind.startswith("delay"):
-            loop.call_later(0.08 if kind == "delay some" else 3.0, self.consume, self.ar, source, data)
-            return
+        self.delay(kind)
         if kind == "reorder":
             held, self.images.held = self.images.held, data
             if held is None:
                 return
             self.consume(self.ar, source, data)
             data, self.images.held = held, None
-        self.consume(self.ar, source, data)
+        self.stall.pass_on(self.consume, self.ar, source, data)
         if kind == "double":
             self.consume(self.ar, source, data)
+
+    def delay(self, kind):
+        """Ethernet keeps the order of frames: what follows a late frame is late, too."""
+        if kind.startswith("delay"):
+            self.stall.hold(0.08 if kind == "delay some" else 3.0)
+            self.images.packets_left = 0
 
     def consume(self, ar, source, data):
         if ar is None or self.ar is not ar:
@@ -480,9 +484,7 @@ class Device(asyncio.DatagramProtocol):
         kind, chance = self.images.fault(), self.images.plan.random
         if kind.startswith("lose"):
             return
-        if kind.startswith("delay"):
-            loop.call_later(0.08 if kind == "delay some" else 3.0, self.frame, target, name, data)
-            return
+        self.delay(kind)
         if kind == "cut":
             return self.frame(target, name, data[:chance.randrange(len(data))])
         if kind == "reorder":
@@ -497,6 +499,6 @@ class Device(asyncio.DatagramProtocol):
             forged = self.data(ar, to_bytes([0x0200] + [0x1234] * 15 + [0] * 8))
             ar["out"] = ar["out"] - 32 * ar["in_ratio"] & 0xFFFF
             self.frame(target, name, forged, source=b"\2\0\0\0\0\x99")
-        self.frame(target, name, data)
+        self.stall.pass_on(self.frame, target, name, data)
         if kind == "double":
             self.frame(target, name, data)
