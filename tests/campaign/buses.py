@@ -23,6 +23,9 @@ class World:
     def close(self):
         pass
 
+    def killed(self):
+        """armctl was killed."""
+
     def without_number(self, message):
         return message
 
@@ -75,6 +78,9 @@ class ToyoTerminal(ToyoTcp):
         self.operations = ToyoOperations(self.controller, folder, tag)
         return self
 
+    def killed(self):
+        self.terminal.release()
+
     def close(self):
         self.terminal.close()
 
@@ -102,7 +108,7 @@ class DeviceNet(Eip):
         self.controller = Yrcx()
         self.line = Images(self.controller)
         self.adapter = await devicenet.Slave.open(self.line)
-        self.target = "slcan://127.0.0.1:%d?mac=5" % self.adapter.number
+        self.target = "slcan://127.0.0.1:%d?mac=5&rate=250ms" % self.adapter.number
         self.operations = YrcxOperations(self.controller, folder, tag)
         return self
 
@@ -118,6 +124,9 @@ class Profibus(Eip):
         self.target = "profibus://%s?station=5&slot=60ms&watchdog=1s" % self.adapter.path
         self.operations = YrcxOperations(self.controller, folder, tag)
         return self
+
+    def killed(self):
+        self.adapter.terminal.release()
 
 
 class Profinet(Eip):

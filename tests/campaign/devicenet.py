@@ -17,7 +17,10 @@ NAME = b"YRCX (strict)"
 ANSWER, REQUEST, POLL, UNCONNECTED, DUPLICATE = 0x42B, 0x42C, 0x42D, 0x42E, 0x42F
 POLL_ANSWER = 0x3C0 + MAC
 LINE = 32  # longest line of an adapter
-FAULTS = ["none", "lose some", "lose long", "double", "reorder", "delay some", "delay long", "cut", "flood", "wrong peer", "reset",
+# Seconds of a stall. "past" is longer than the time limit of the command, and shorter than the watchdog of the connection.
+LATE = {"delay some": 0.08, "delay past": 0.7, "delay long": 3.0}
+FAULTS = ["none", "lose some", "lose long", "double", "reorder", "delay some", "delay past", "delay long", "cut", "flood",
+          "wrong peer", "reset",
           "bus off", "kill client", "kill holder"]
 HARMLESS = {"none", "lose some", "double", "reorder", "delay some", "cut", "flood", "wrong peer"}
 
@@ -343,7 +346,7 @@ class Slave:
         elif kind == "reorder":
             frames[at], frames[at - 1] = frames[at - 1], frames[at]
         elif kind.startswith("delay"):
-            self.stall.hold(0.08 if kind == "delay some" else 3.0)
+            self.stall.hold(LATE[kind])
             self.images.packets_left = 0
         elif kind == "bus off":
             self.off_until = loop.time() + 2.0

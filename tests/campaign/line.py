@@ -5,11 +5,13 @@ line counts what armctl sent, apart from what the controller applied: a fault of
 """
 
 import asyncio
+import fcntl
 import os
 import pty
 import random
 import socket
 import struct
+import termios
 import tty
 
 # The faults of a line that carries one request and one answer at a time.
@@ -270,6 +272,10 @@ class Terminal:
 
     def reset(self):
         pass
+
+    def release(self):
+        """The flag of exclusive use ends with the last user of a port. Here, this process also uses the port."""
+        fcntl.ioctl(self.slave, termios.TIOCNXCL)
 
     def close(self):
         asyncio.get_running_loop().remove_reader(self.master)

@@ -23,7 +23,10 @@ MODULES = {0: (1, {1: 1, 0x8000: 0x8000, 0x8001: 0x8001}), 1: (0x101, {1: 1}), 2
 DATA = {(1, 1): (SIZE, 0), (2, 1): (0, SIZE)}  # bytes from and to the device
 GOOD, VALID = 0x80, 0x15  # IOPS and IOCS; the bits primary, DataValid and run of a data status
 INTERFACES = "DEA0000%d-6C97-11D1-8271-00A02442DF7D"
-FAULTS = ["none", "lose some", "lose long", "double", "reorder", "delay some", "delay long", "cut", "flood", "wrong peer", "reset",
+# Seconds of a stall. "past" is longer than the time limit of the command, and shorter than the watchdog of the connection.
+LATE = {"delay some": 0.08, "delay past": 0.7, "delay long": 3.0}
+FAULTS = ["none", "lose some", "lose long", "double", "reorder", "delay some", "delay past", "delay long", "cut", "flood",
+          "wrong peer", "reset",
           "kill client", "kill holder"]
 HARMLESS = {"none", "lose some", "double", "reorder", "delay some", "cut", "flood", "wrong peer"}
 INSIDE = "CAMPAIGN_NAMESPACE"
@@ -435,7 +438,7 @@ class Device(asyncio.DatagramProtocol):
     def delay(self, kind):
         """Ethernet keeps the order of frames: what follows a late frame is late, too."""
         if kind.startswith("delay"):
-            self.stall.hold(0.08 if kind == "delay some" else 3.0)
+            self.stall.hold(LATE[kind])
             self.images.packets_left = 0
 
     def consume(self, ar, source, data):
