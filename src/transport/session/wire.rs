@@ -197,6 +197,7 @@ pub struct Images {
     /// Image from the device.
     pub seen: Option<Vec<u8>>,
     /// Time without an image after which either end gives the link up.
+    #[serde(default)]
     pub watchdog_ms: u64,
 }
 
