@@ -1,6 +1,9 @@
 """The buses of the campaign: how each controller is reached, and which faults its line has."""
 
 
+import devicenet
+import profibus
+import profinet
 from eip import CYCLIC_FAULTS, CYCLIC_HARMLESS, Adapter, Images
 from line import DATAGRAM_FAULTS, HARMLESS, STREAM_FAULTS, TERMINAL_FAULTS, Line, TcpPort, Terminal, UdpPort
 from operations import ToyoOperations, YercOperations, YrcxOperations
@@ -12,12 +15,16 @@ from yrcx import Yrcx
 class World:
     needs_session, session_flags, timeout, stop = False, [], 0.2, None
     harmless = HARMLESS
+    prefix = []  # words before those of armctl
 
     async def settle(self):
         pass
 
     def close(self):
         pass
+
+    def killed(self):
+        """armctl was killed."""
 
     def without_number(self, message):
         return message
@@ -71,6 +78,9 @@ class ToyoTerminal(ToyoTcp):
         self.operations = ToyoOperations(self.controller, folder, tag)
         return self
 
+    def killed(self):
+        self.terminal.release()
+
     def close(self):
         self.terminal.close()
 
@@ -91,10 +101,51 @@ class Eip(World):
         self.adapter.close()
 
 
+class DeviceNet(Eip):
+    name, faults, harmless = "yrcx-devicenet", devicenet.FAULTS, devicenet.HARMLESS
+
+    async def open(self, folder, tag):
+        self.controller = Yrcx()
+        self.line = Images(self.controller)
+        self.adapter = await devicenet.Slave.open(self.line)
+        self.target = "slcan://127.0.0.1:%d?mac=5&rate=250ms" % self.adapter.number
+        self.operations = YrcxOperations(self.controller, folder, tag)
+        return self
+
+
+class Profibus(Eip):
+    name, faults, harmless = "yrcx-profibus", profibus.FAULTS, profibus.HARMLESS
+
+    async def open(self, folder, tag):
+        self.controller = Yrcx()
+        self.line = Images(self.controller)
+        self.adapter = profibus.Slave.open(self.line)
+        # The slot time is long, because the slave is a program on a busy computer.
+        self.target = "profibus://%s?station=5&slot=60ms&watchdog=1s" % self.adapter.path
+        self.operations = YrcxOperations(self.controller, folder, tag)
+        return self
+
+    def killed(self):
+        self.adapter.terminal.release()
+
+
+class Profinet(Eip):
+    name, faults, harmless = "yrcx-profinet", profinet.FAULTS, profinet.HARMLESS
+
+    async def open(self, folder, tag):
+        self.controller = Yrcx()
+        self.line = Images(self.controller)
+        self.adapter = await profinet.Device.open(self.line)
+        self.prefix = self.adapter.prefix
+        self.target = "profinet://%s@%s?layout=%s&cycle=32ms&watchdog=960ms" % (self.adapter.name, self.adapter.peer_card, profinet.LAYOUT)
+        self.operations = YrcxOperations(self.controller, folder, tag)
+        return self
+
+
 def bus(world):
     async def make(folder, tag):
         return await world().open(folder, tag)
     return make
 
 
-BUSES = {world.name: bus(world) for world in (YercWorld, ToyoTcp, ToyoTerminal, Eip)}
+BUSES = {world.name: bus(world) for world in (YercWorld, ToyoTcp, ToyoTerminal, Eip, DeviceNet, Profibus, Profinet)}

@@ -11,10 +11,15 @@ from line import Plan
 from yrcx import to_bytes, to_words
 
 SIZE = 48
-CYCLIC_FAULTS = ["none", "lose some", "lose long", "double", "reorder", "delay some", "delay long", "cut", "flood",
-                 "wrong peer", "reset", "kill client", "kill holder"]
+CYCLIC_FAULTS = ["none", "lose some", "lose long", "double", "reorder", "delay some", "delay past", "delay long", "cut",
+                 "flood", "wrong peer", "reset", "kill client", "kill holder"]
 CYCLIC_HARMLESS = {"none", "lose some", "double", "reorder", "delay some", "cut", "flood", "wrong peer", "reset"}
-SHORT, LONG = 3, 300  # packets both ways: few are less than the timeout of a connection (64 one way), many are more
+# Packets both ways: few are less than the timeout of a connection (64 one way), many are more.
+PACKETS = {"some": 3, "past": 200, "long": 300}
+# Seconds by which a packet is late. "past" is longer than the time limit of the command, and shorter than the timeout of the
+# connection: the end of the command arrives when the client has given up, and perhaps sends the next command.
+LATE = {"delay some": 0.08, "delay past": 1.1, "delay long": 3.0}
+LONGEST = 3.0  # seconds after which also a long fault ends
 
 
 class Images:
@@ -24,7 +29,7 @@ class Images:
         self.controller = controller
         self.plan, self.on_kill = Plan(), lambda: None
         self.sent, self.ordered = [], False
-        self.packets_left, self.held = 0, None
+        self.packets_left, self.until, self.held = 0, 0.0, None
         self.on_reset = lambda: None
         controller.on_command = self.command_begins
 
@@ -42,13 +47,14 @@ class Images:
         if kind.startswith("kill"):
             self.on_kill()
         elif kind == "reset":
-            self.on_reset()
+            asyncio.get_running_loop().call_soon(self.on_reset)  # after this image
         else:
-            self.packets_left = LONG if kind.endswith("long") else SHORT
+            self.packets_left = PACKETS.get(kind.split(" ")[-1], PACKETS["some"])
+            self.until = asyncio.get_running_loop().time() + LONGEST
 
     def fault(self):
         """The fault of this packet."""
-        if not self.packets_left:
+        if not self.packets_left or asyncio.get_running_loop().time() > self.until:
             return "none"
         self.packets_left -= 1
         return self.plan.kind
@@ -211,8 +217,7 @@ class Adapter(asyncio.DatagramProtocol):
         if kind.startswith("lose") or kind == "cut" and len(data) < 20:
             return
         if kind.startswith("delay"):
-            late = 0.08 if kind == "delay some" else 3.0
-            asyncio.get_running_loop().call_later(late, self.consume, data)
+            asyncio.get_running_loop().call_later(LATE[kind], self.consume, data)
             return
         if kind == "reorder":
             held, self.images.held = self.images.held, data
@@ -258,7 +263,7 @@ class Adapter(asyncio.DatagramProtocol):
         if kind.startswith("lose"):
             return
         if kind.startswith("delay"):
-            loop.call_later(0.08 if kind == "delay some" else 3.0, self.send, packet, peer)
+            loop.call_later(LATE[kind], self.send, packet, peer)
             return
         if kind == "cut":
             return self.send(packet[:chance.randrange(len(packet))], peer)

@@ -5,11 +5,13 @@ line counts what armctl sent, apart from what the controller applied: a fault of
 """
 
 import asyncio
+import fcntl
 import os
 import pty
 import random
 import socket
 import struct
+import termios
 import tty
 
 # The faults of a line that carries one request and one answer at a time.
@@ -109,6 +111,29 @@ class Line:
         peer.send(answer)
         if kind == "double answer":
             peer.send(answer)
+
+
+class Stall:
+    """Holds everything for a time, and then passes it on in order."""
+
+    def __init__(self):
+        self.waiting = []
+
+    def hold(self, seconds):
+        if not self.waiting:
+            asyncio.get_running_loop().call_later(seconds, self.end)
+            self.waiting.append((lambda: None, ()))
+
+    def end(self):
+        waiting, self.waiting = self.waiting, []
+        for call, words in waiting:
+            call(*words)
+
+    def pass_on(self, call, *words):
+        if self.waiting:
+            self.waiting.append((call, words))
+        else:
+            call(*words)
 
 
 class UdpPort(asyncio.DatagramProtocol):
@@ -247,6 +272,10 @@ class Terminal:
 
     def reset(self):
         pass
+
+    def release(self):
+        """The flag of exclusive use ends with the last user of a port. Here, this process also uses the port."""
+        fcntl.ioctl(self.slave, termios.TIOCNXCL)
 
     def close(self):
         asyncio.get_running_loop().remove_reader(self.master)

@@ -8,7 +8,7 @@ use armctl_controller::yrcx::image::{Image, Words};
 use armctl_controller::yrcx::order::Order;
 use armctl_controller::yrcx::register::general;
 use armctl_controller::yrcx::sequence::{self, Sequence};
-use armctl_controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next, Outcome, Silence};
+use armctl_controller::yrcx::session::{Ended, Exchange, ImageSession as _, Next, Outcome, Policy, Silence};
 use armctl_controller::yrcx::signal::{input, output};
 use armctl_controller::yrcx::table::DurationClass;
 use armctl_transport::image::{Event as LinkEvent, LinkError};
@@ -21,6 +21,9 @@ use super::{Client, Event, Reply, Transport};
 
 /// Poll interval of a session without a deadline.
 pub(super) const NO_DEADLINE: Duration = Duration::from_secs(3600);
+/// Longest time for which the status reset stays after a command without an answer, also on a link with a longer watchdog
+/// time. Images that old do not occur in practice, and the next command waits.
+const MAX_SETTLE: Duration = Duration::from_secs(10);
 /// Time limit for sending the last change before the connection is closed.
 const LEAVE_TIMEOUT: Duration = Duration::from_secs(1);
 
@@ -54,7 +57,11 @@ impl Client {
         self.claim_motion(order.risk()).await?;
         self.reserve_words().await?;
         self.words = general(&self.output.next.command());
-        let mut exchange = Exchange::new(order.clone(), self.policy);
+        let settle = match &self.transport {
+            Transport::Image(link) => link.watchdog().saturating_mul(2).min(MAX_SETTLE),
+            Transport::DryRun(_) | Transport::Nothing => Duration::ZERO,
+        };
+        let mut exchange = Exchange::new(order.clone(), Policy { settle, ..self.policy });
         if let Some(image) = &self.input {
             exchange.handle(self.now(), image);
         }

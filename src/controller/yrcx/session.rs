@@ -56,11 +56,25 @@ pub struct Policy {
     pub motion: Option<Duration>,
     /// Until the controller is ready again after the command.
     pub release: Duration,
+    /// Time for which the status reset stays after a command without an answer: the longest time in which an image gets
+    /// to the controller, and its answer back, on a link that is not lost.
+    pub settle: Duration,
     /// Until an interrupted command ends.
     pub stop: Duration,
 }
 
 impl Policy {
+    const DEFAULT: Self = Self {
+        ready: Duration::from_secs(3),
+        accept: Duration::from_secs(3),
+        quick: Duration::from_secs(10),
+        power: Duration::from_secs(30),
+        motion: None,
+        release: Duration::from_secs(3),
+        settle: Duration::ZERO,
+        stop: Duration::from_secs(3),
+    };
+
     /// Time limit of a command, by its duration class.
     pub const fn longest(&self, pace: DurationClass) -> Option<Duration> {
         match pace {
@@ -73,15 +87,7 @@ impl Policy {
 
 impl Default for Policy {
     fn default() -> Self {
-        Self {
-            ready: Duration::from_secs(3),
-            accept: Duration::from_secs(3),
-            quick: Duration::from_secs(10),
-            power: Duration::from_secs(30),
-            motion: None,
-            release: Duration::from_secs(3),
-            stop: Duration::from_secs(3),
-        }
+        Self::DEFAULT
     }
 }
 

@@ -50,9 +50,13 @@ impl Bus for Connection {
     }
 
     fn loss(&self, view: View) -> (Cause, Outputs) {
-        let outputs = Outputs::ReleasedWithin(view.details.rate.unwrap_or_default() * WATCHDOG);
+        let outputs = Outputs::ReleasedWithin(self.watchdog());
         let error = view.last_error.unwrap_or(Error::Outdated);
         (Cause { advice: advice(&error), ..Cause::new(error) }, outputs)
+    }
+
+    fn watchdog(&self) -> Duration {
+        self.view().details.rate.unwrap_or_default() * WATCHDOG
     }
 
     fn traffic(&self) -> Traffic {

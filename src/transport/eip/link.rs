@@ -27,6 +27,7 @@ pub struct Device {
     connection: Connection,
     /// What the device does with its outputs after a loss of the connection.
     outputs: Outputs,
+    watchdog: Duration,
 }
 
 impl Class1 {
@@ -34,14 +35,13 @@ impl Class1 {
     pub async fn open(host: &str, port: u16, settings: Settings, tap: Tap) -> Result<Self, EipError> {
         let target = resolve(host, port).await?;
         let sizes = Sizes { output: settings.output_size.into(), input: settings.input_size.into() };
+        let watchdog = settings.rpi.saturating_mul(settings.multiplier.intervals());
         let outputs = match settings.role {
-            Role::ExclusiveOwner => {
-                Outputs::ReleasedWithin(settings.rpi.saturating_mul(settings.multiplier.intervals()))
-            }
+            Role::ExclusiveOwner => Outputs::ReleasedWithin(watchdog),
             Role::InputOnly | Role::ListenOnly => Outputs::Never,
         };
         let connection = Scanner::shared()?.open(target, settings, tap).await?;
-        Ok(Self::over(Device { connection, outputs }, sizes))
+        Ok(Self::over(Device { connection, outputs, watchdog }, sizes))
     }
 }
 
@@ -63,6 +63,10 @@ impl Bus for Device {
 
     fn loss(&self, view: View) -> (Cause, Outputs) {
         (Cause::of_loss(view.last_error), self.outputs)
+    }
+
+    fn watchdog(&self) -> Duration {
+        self.watchdog
     }
 
     fn traffic(&self) -> Traffic {

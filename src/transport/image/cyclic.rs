@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::sync::Arc;
+use std::time::Duration;
 
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
@@ -35,6 +36,9 @@ pub trait Bus: fmt::Debug + 'static {
 
     /// Returns the cause of a loss, and the state of the outputs after the loss.
     fn loss(&self, view: View<Self::Error, Self::Statistics, Self::Details>) -> (Cause, Outputs);
+
+    /// Time without an image after which either end gives the connection up.
+    fn watchdog(&self) -> Duration;
 
     /// Counters of the connection.
     fn traffic(&self) -> Traffic;
@@ -109,6 +113,10 @@ impl<B: Bus> ImageConnection for Cyclic<B> {
 
     fn next<'a>(&'a mut self, reported: ReportedState<'a>) -> LocalBoxFuture<'a, Event> {
         self.wait(reported).boxed_local()
+    }
+
+    fn watchdog(&self) -> Duration {
+        self.bus.watchdog()
     }
 
     fn traffic(&self) -> Option<Traffic> {

@@ -72,6 +72,12 @@ pub trait ImageConnection: fmt::Debug {
     /// [`Event::Reopened`]. The future is cancel safe.
     fn next<'a>(&'a mut self, reported: ReportedState<'a>) -> LocalBoxFuture<'a, Event>;
 
+    /// Time without an image after which either end gives the connection up, so that no image is older. It is 0 if
+    /// images need no time.
+    fn watchdog(&self) -> Duration {
+        Duration::ZERO
+    }
+
     /// Counters of the connection; `None` for a connection without a cycle.
     fn traffic(&self) -> Option<Traffic> {
         None
@@ -171,6 +177,17 @@ impl ImageLink {
         match &self.end {
             End::Local(connection) => connection.sizes().output,
             End::Session(attached) => attached.output().map_or(0, <[u8]>::len),
+        }
+    }
+
+    /// See [`ImageConnection::watchdog`].
+    pub fn watchdog(&self) -> Duration {
+        match &self.end {
+            End::Local(connection) => connection.watchdog(),
+            End::Session(attached) => {
+                let watchdog = attached.welcome.images.as_ref().map_or(0, |images| images.watchdog_ms);
+                Duration::from_millis(watchdog)
+            }
         }
     }
 

@@ -89,6 +89,10 @@ impl Bus for Slave {
         (LinkError::from(error).cause().clone(), outputs)
     }
 
+    fn watchdog(&self) -> Duration {
+        self.connection.view().details.watchdog
+    }
+
     fn traffic(&self) -> Traffic {
         let view = self.connection.view();
         let counters = view.statistics;

@@ -1,5 +1,7 @@
 //! PROFINET as a fieldbus of images: a connection in which armctl is the IO controller of a device.
 
+use std::time::Duration;
+
 use futures_util::FutureExt as _;
 use futures_util::future::LocalBoxFuture;
 
@@ -52,6 +54,10 @@ impl Bus for Device {
             _ => Outputs::ReleasedWithin(self.settings.watchdog_time()),
         };
         (Cause::of_loss(view.last_error), outputs)
+    }
+
+    fn watchdog(&self) -> Duration {
+        self.settings.watchdog_time()
     }
 
     fn traffic(&self) -> Traffic {

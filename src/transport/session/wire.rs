@@ -196,6 +196,9 @@ pub struct Images {
     pub shown: Vec<u8>,
     /// Image from the device.
     pub seen: Option<Vec<u8>>,
+    /// Time without an image after which either end gives the link up.
+    #[serde(default)]
+    pub watchdog_ms: u64,
 }
 
 /// Command that is still active in the exclusive part of the image. Its client has ended or crashed.

@@ -132,6 +132,8 @@ pub struct Exchange {
     /// Time at which the status was last valid.
     sane: Now,
     interrupted: Option<Now>,
+    /// Time from which the ready status does not come from before the end of the last command.
+    settled: Now,
     /// Whether the stop input is off because of an interruption.
     stopping: bool,
     running: Option<Answer>,
@@ -161,6 +163,7 @@ impl Exchange {
             sent: None,
             sane: Now::ZERO,
             interrupted: None,
+            settled: Now::ZERO,
             stopping: false,
             running: None,
             outcome,
@@ -225,6 +228,7 @@ impl Exchange {
         let data_sent = output.last_sent().is_some_and(|sent| sent.command() == words);
         match self.status() {
             // The status reset was already sent together with the data words.
+            Some(Status::Ready) if data_sent && now < self.settled => {}
             Some(Status::Ready) if data_sent && self.order.row().code == STATUS_RESET => {
                 return self.finish(now, output, Ended::Answered(Answer::Done(Values::default())));
             }
@@ -237,7 +241,7 @@ impl Exchange {
             Some(Status::Ready) | None => {}
             Some(status) => self.outcome.leftover = self.outcome.leftover.or(Some(status)),
         }
-        if now >= self.started_or(now).saturating_add(self.policy.ready) {
+        if now >= self.ready_until(now) {
             let hindrance = match self.status() {
                 Some(Status::Ready) | None => NotSentReason::NoImage,
                 Some(status) => NotSentReason::NotReady(status),
@@ -324,12 +328,19 @@ impl Exchange {
     }
 
     /// Waits for the ready status. Then switches the stop input on again.
+    ///
+    /// After a command without an answer, an image with its end status can still be on its way. The next command would
+    /// take this status for its own. Therefore the status reset stays for the longest time that an image needs.
     fn release(&mut self, now: Now, output: &mut Output) {
         let Phase::Release(since) = self.phase else { return };
+        if self.is_unanswered() && self.linked && !self.outcome.stop_held {
+            self.take_late_end(now);
+        }
+        let is_settled = !self.is_unanswered() || !self.linked || now >= since.saturating_add(self.policy.settle);
         let never_sent = matches!(self.outcome.ended, Ended::NotSent(_));
         let reset_sent = output.last_sent().is_some_and(|sent| sent.command() == [0; COMMAND_WORDS]);
         self.outcome.released = self.linked && reset_sent && self.status() == Some(Status::Ready);
-        let patient = self.linked && now < self.release_until(since);
+        let patient = self.linked && (now < self.release_until(since) || !is_settled);
         if !patient && self.stopping {
             self.outcome.stop_held = true;
             self.stopping = false;
@@ -344,9 +355,26 @@ impl Exchange {
             self.outcome.ended,
             Ended::OutcomeUnknown(Silence::Interrupted) | Ended::NoAnswer(Silence::Interrupted)
         );
-        if never_sent || (restored && (self.outcome.released || was_given_up)) || !patient {
+        if never_sent || (restored && is_settled && (self.outcome.released || was_given_up)) || !patient {
             self.phase = Phase::Over;
         }
+    }
+
+    /// Takes an end status that arrives after the time limit. No other command was sent, so it belongs to this command.
+    fn take_late_end(&mut self, now: Now) {
+        if !self.status().is_some_and(Status::is_end) {
+            return;
+        }
+        let words = self.input.unwrap_or_default().command();
+        if let Some(answer) = Answer::parse(&self.order, &words) {
+            self.outcome.words = Some(words);
+            self.outcome.ended = Ended::Answered(answer);
+            self.outcome.elapsed = self.elapsed(now);
+        }
+    }
+
+    const fn is_unanswered(&self) -> bool {
+        matches!(self.outcome.ended, Ended::NoAnswer(_) | Ended::OutcomeUnknown(_))
     }
 
     fn hold_stop(&mut self, output: &mut Output) {
@@ -371,7 +399,12 @@ impl Exchange {
         self.started.unwrap_or(now)
     }
 
-    /// Deadline for the ready status. After a stop, it is the deadline of the stop. It is extended if the edge of the
+    /// Deadline for the ready status before the command.
+    fn ready_until(&self, now: Now) -> Now {
+        self.started_or(now).max(self.settled).saturating_add(self.policy.ready)
+    }
+
+    /// Deadline for the ready status after the command. After a stop, it is the deadline of the stop. It is extended if the edge of the
     /// stop input needs more time.
     fn release_until(&self, since: Now) -> Now {
         let over = since.saturating_add(self.policy.release);
@@ -394,13 +427,18 @@ impl Exchange {
     /// Time of the next action if no image arrives before it.
     fn due(&self, now: Now, output: &Output) -> Now {
         match self.phase {
-            Phase::Prepare => self.started_or(now).saturating_add(self.policy.ready),
+            Phase::Prepare if now < self.settled => self.settled,
+            Phase::Prepare => self.ready_until(now),
             Phase::Command => match self.interrupted {
                 Some(since) => self.deadline().min(since.saturating_add(self.policy.stop)),
                 None => self.deadline(),
             },
             Phase::Release(since) => {
-                let over = self.release_until(since);
+                let settled = since.saturating_add(self.policy.settle);
+                let over = match self.release_until(since) {
+                    over if self.is_unanswered() && now < settled => over.min(settled),
+                    over => over,
+                };
                 match edge_due(now, output, input::STOP) {
                     Some(edge) if self.stopping => over.min(edge),
                     _ => over,
@@ -415,7 +453,13 @@ impl ImageSession for Exchange {
     type Outcome = Outcome;
 
     fn poll(&mut self, now: Now, output: &mut Output) -> Next<Outcome> {
-        self.started.get_or_insert(now);
+        if self.started.is_none() {
+            self.started = Some(now);
+            if output.next.command()[0] != 0 {
+                // The command of a client that has died. Its end status can still arrive.
+                self.settled = now.saturating_add(self.policy.settle);
+            }
+        }
         match self.phase {
             Phase::Prepare => self.prepare(now, output),
             Phase::Command => self.command(now, output),

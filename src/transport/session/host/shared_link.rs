@@ -281,6 +281,7 @@ impl Images {
             exclusive: self.rules.exclusive,
             shown: self.shown.clone(),
             seen: self.seen.as_ref().map(|seen| seen.to_vec()),
+            watchdog_ms: u64::try_from(self.link.watchdog().as_millis()).unwrap_or(u64::MAX),
         }
     }
 }

@@ -53,6 +53,9 @@ struct World {
     cut: Option<u64>,
     interrupt: Option<u64>,
     updates: Vec<Values>,
+    /// Age of the images that arrive from the controller, and the images that are on their way.
+    late: u64,
+    on_the_way: Vec<(u64, Image)>,
 }
 
 impl World {
@@ -68,6 +71,8 @@ impl World {
             cut: None,
             interrupt: None,
             updates: Vec::new(),
+            late: 0,
+            on_the_way: Vec::new(),
         }
     }
 
@@ -97,7 +102,9 @@ impl World {
                 self.scan(&sent);
             }
             if linked && self.now % RPI == 10 {
-                self.exchange.handle(now, &self.shown);
+                self.on_the_way.push((self.now, self.shown));
+                let arrived = self.on_the_way.iter().rev().find(|(sent, _)| sent + self.late <= self.now);
+                self.exchange.handle(now, &arrived.map_or_else(Image::default, |(_, image)| *image));
                 if let Some(Answer::Running(values)) = self.exchange.running() {
                     self.updates.push(values);
                 }
@@ -426,4 +433,39 @@ impl World {
         }
         edges
     }
+}
+
+/// A time limit that is shorter than the age of images that a link allows.
+const HASTY: Policy = Policy { accept: ms(100), settle: ms(640), ..Policy::DEFAULT };
+
+#[test]
+fn an_end_status_after_the_time_limit_belongs_to_the_command_that_is_still_the_last_one() {
+    let mut world = World { late: 300, ..World::new(move_to_19(), Script { runs: Some(40), ..Script::default() }) };
+    world.exchange.policy = HASTY;
+    let outcome = world.run();
+    assert!(matches!(outcome.ended, Ended::Answered(Answer::Done(_))), "{:?}", outcome.ended);
+    assert!(outcome.released);
+    let commands = world.commands();
+    assert_eq!(commands.iter().filter(|(code, _)| *code != 0).count(), 1, "{commands:?}");
+}
+
+#[test]
+fn the_status_reset_stays_after_a_command_without_an_answer_while_an_image_can_be_on_its_way() {
+    let mut world = World::new(servo_status(), Script { takes: false, ..Script::default() });
+    world.exchange.policy = HASTY;
+    assert_eq!(world.run().ended, Ended::NoAnswer(Silence::NotTaken));
+    let reset = world.sent.last().map(|(at, image)| (*at, image.0[0])).unwrap();
+    assert_eq!(reset.1, 0);
+    assert!(world.now >= reset.0 + 620, "the reset of {} ms ended at {} ms", reset.0, world.now);
+}
+
+#[test]
+fn a_command_waits_for_the_late_end_of_a_command_that_a_dead_client_left() {
+    let mut world = World::new(servo_status(), Script::default());
+    world.exchange.policy = HASTY;
+    world.output.next.set_command(move_to_19().words());
+    assert!(matches!(world.run().ended, Ended::Answered(_)));
+    let command = servo_status().words()[0];
+    let first = world.sent.iter().find(|(_, image)| image.0[0] == command).unwrap();
+    assert!(first.0 >= 640, "sent after {} ms", first.0);
 }
