@@ -47,8 +47,8 @@ impl Grant {
 
     /// The highest authorized risk.
     pub fn get(&self) -> Risk {
-        // The index is always valid: only `raise` and `up_to` write the number, and both write the number of a risk.
-        RISKS[usize::from(self.0.highest.load(Ordering::Relaxed)).min(RISKS.len() - 1)]
+        let highest = self.0.highest.load(Ordering::Relaxed);
+        RISKS.into_iter().rev().find(|risk| *risk as u8 <= highest).unwrap_or(Risk::Read)
     }
 
     /// Raises the limit. A lower risk than the current limit has no effect.

@@ -5,6 +5,7 @@ mod axis_letters;
 mod error;
 mod fence;
 mod plan;
+mod protocol;
 mod simulated;
 mod stop;
 mod temporary_changes;
@@ -16,28 +17,23 @@ use std::io;
 use std::sync::Arc;
 use std::time::Duration;
 
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::request::{Answer, Request};
-use armctl_controller::toyo::session::{Counters, ExchangeResult, LineSession, Policy};
-use armctl_controller::toyo::status::Status;
-use armctl_controller::toyo::table::commands::Command;
+use armctl_controller::toyo::session::{ExchangeResult, LineSession, Policy};
 use armctl_controller::{Risk, Session as _, Step};
-pub use armctl_transport::serial::OpenError;
 use armctl_transport::session::client::SessionBusy;
 use armctl_transport::tap::Direction;
-pub use armctl_transport::tcp::ConnectError;
 use tokio::time::Instant;
 
 pub use self::axis_letters::{Letters, letters_request};
 pub use self::error::{Error, Refusal, Unanswered};
 pub use self::fence::FENCE;
+#[doc(inline)]
+pub use self::protocol::*;
 pub use self::simulated::Simulated;
 pub use self::stop::MotionKind;
 use self::temporary_changes::{HostState, needs_host};
 pub use self::transport::{BAUD, BITS, Endpoint, Line, Opening};
 use self::transport::{Opener, Transport, no_addresses};
-use crate::{AddressPair, Grant, NotAuthorized, Plan, Reason, Watcher};
+use crate::{AddressPair, Grant, LONGEST_TIMEOUT, NotAuthorized, Plan, Reason, Watcher};
 
 /// A connection to one controller.
 ///
@@ -145,7 +141,7 @@ impl Client {
     /// # Errors
     /// [`Error::Port`] or [`Error::DeviceServer`] if the line cannot be opened.
     pub async fn connect(endpoint: Endpoint, options: Options) -> Result<Self, Error> {
-        let timeout = options.timeout;
+        let timeout = options.timeout.min(LONGEST_TIMEOUT);
         let mut client = Self::over(endpoint.open(timeout).await?, endpoint.character(), options);
         client.reopen_by(move || {
             let endpoint = endpoint.clone();
@@ -166,7 +162,11 @@ impl Client {
     }
 
     fn with(transport: Transport, character: Duration, options: Options) -> Self {
-        let policy = Policy { timeout: options.timeout, retries: options.retries, character };
+        let policy = Policy {
+            timeout: options.timeout.min(LONGEST_TIMEOUT),
+            retries: options.retries,
+            character: character.min(LONGEST_TIMEOUT),
+        };
         Self {
             address_pair: transport.address_pair(),
             transport,
@@ -494,7 +494,7 @@ impl Client {
                 });
             }
             now = self.started.elapsed();
-            self.session.handle(now, &buffer[..received]);
+            self.session.handle(now, buffer.get(..received).unwrap_or_default());
         }
     }
 
@@ -512,7 +512,7 @@ impl Client {
             self.watcher.frame(
                 Direction::Received,
                 self.address_pair.unwrap_or_else(no_addresses),
-                &buffer[..received],
+                buffer.get(..received).unwrap_or_default(),
             );
         }
         Ok(received)

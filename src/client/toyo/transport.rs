@@ -17,7 +17,7 @@ use tokio::time::Instant;
 
 use super::error::Error;
 use super::simulated::Simulated;
-use crate::{AddressPair, Plan};
+use crate::{AddressPair, LONGEST_TIMEOUT, Plan};
 
 /// An open line to a controller.
 pub type Line = Stream<Box<dyn Peer + Send>>;
@@ -107,7 +107,7 @@ impl Endpoint {
                 .map(Stream::Serial)
                 .map_err(|error| Error::Port { path: line.path.clone(), error: Arc::new(error) }),
             Self::Tcp { host, port, .. } => {
-                let until = Instant::now() + timeout.max(MIN_CONNECT_TIMEOUT);
+                let until = Instant::now() + timeout.clamp(MIN_CONNECT_TIMEOUT, LONGEST_TIMEOUT);
                 let opened = Tcp::open(host, *port, until).await.map(Stream::Tcp);
                 opened.map_err(|error| Error::DeviceServer { host: host.clone(), port: *port, error: Arc::new(error) })
             }
@@ -122,7 +122,7 @@ impl Endpoint {
 
 /// Opens a port. If the port is busy, waits up to `timeout`: another armctl command may use the port for a short time.
 async fn open_port(line: &serial::Line, timeout: Duration) -> Result<Serial, serial::OpenError> {
-    let until = Instant::now() + timeout;
+    let until = Instant::now() + timeout.min(LONGEST_TIMEOUT);
     loop {
         match Serial::open(line) {
             Err(serial::OpenError::Busy) if Instant::now() + BUSY_RETRY_INTERVAL <= until => {

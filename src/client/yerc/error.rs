@@ -11,7 +11,7 @@ use armctl_controller::yerc::payload::PayloadError;
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::session::{Counters, DownloadEnd};
 use armctl_controller::yerc::status;
-use armctl_controller::yerc::wire::{Division, Status};
+use armctl_controller::yerc::wire::{Division, MAX_DATA, Status};
 use armctl_transport::session::client::SessionBusy;
 use thiserror::Error;
 
@@ -108,6 +108,12 @@ pub enum Error {
         remembered: Model,
         /// The model that the controller reports.
         found: Model,
+    },
+    /// A request with more data than a frame can have. Nothing was sent.
+    #[error("the request has {bytes} bytes of data; a frame can have at most {MAX_DATA}")]
+    TooLarge {
+        /// Size of the data.
+        bytes: usize,
     },
     /// A dry run sends nothing and has no answer.
     #[error("a dry run has no answer")]

@@ -5,6 +5,7 @@ mod batch;
 mod error;
 mod model;
 mod plan;
+mod protocol;
 mod simulated;
 #[cfg(test)]
 mod tests;
@@ -15,17 +16,10 @@ use std::io;
 use std::sync::Arc;
 use std::time::Duration;
 
-use armctl_controller::yerc::Model;
-use armctl_controller::yerc::files::FileName;
-use armctl_controller::yerc::group::Group;
-use armctl_controller::yerc::query::{Coordinates, Hold, Query};
 use armctl_controller::yerc::recording::{answer_text, request_text};
-use armctl_controller::yerc::request::Request;
-use armctl_controller::yerc::session::{
-    Abort, Counters, Download, DownloadEnd, Ended, Exchange, Ids, Policy, Reply, Upload, UploadEnd, is_busy,
-};
+use armctl_controller::yerc::session::{Abort, Download, Ended, Exchange, Ids, Policy, Upload, is_busy};
 use armctl_controller::yerc::table::service;
-use armctl_controller::yerc::wire::Division;
+use armctl_controller::yerc::wire::{Division, MAX_DATA};
 use armctl_controller::{Risk, Session, Step};
 use armctl_transport::session::client::{Attached, SessionBusy};
 use armctl_transport::tap::Direction;
@@ -36,11 +30,13 @@ pub use self::batch::{Batch, Outcome, ReadError};
 pub use self::error::{Cause, Error, Refusal, RefusedRequest, TransferError};
 pub use self::model::Identity;
 use self::model::ModelSource;
+#[doc(inline)]
+pub use self::protocol::*;
 pub use self::simulated::Simulated;
 use self::simulated::channel;
 use self::transport::Transport;
 pub use self::transport::{Endpoint, PORTS};
-use crate::{Grant, NotAuthorized, Plan, STOP_INTERVAL, STOP_TIMEOUT, STOP_TRIES, Watcher};
+use crate::{Grant, LONGEST_TIMEOUT, NotAuthorized, Plan, STOP_INTERVAL, STOP_TIMEOUT, STOP_TRIES, Watcher};
 
 /// Maximum number of frames that are read from the socket after a deadline. A receive buffer of the operating system has
 /// fewer small datagrams.
@@ -176,7 +172,7 @@ impl Client {
         let Options { model, grant, timeout, retries } = options;
         Self {
             transport,
-            policy: Policy::default().with(timeout, retries),
+            policy: Policy::default().with(timeout.min(LONGEST_TIMEOUT), retries),
             ids: Ids::default(),
             grant,
             has_moved: false,
@@ -315,7 +311,7 @@ impl Client {
         let before = self.totals.sent;
         let mut session = Download::new(&request.into(), limit, self.policy, &self.ids);
         if let Some(wait) = first_wait {
-            session = session.with_first_wait(wait);
+            session = session.with_first_wait(wait.min(LONGEST_TIMEOUT));
         }
         let mut bytes = 0;
         let result = self.drive(Division::File, &mut session, |file_request| match file_request {
@@ -433,7 +429,7 @@ impl Client {
         while Instant::now() < until
             && let Some(len) = self.receive(channel, until).await?
         {
-            if let Some(ack) = last.linger(&self.buffer[..len]) {
+            if let Some(ack) = last.linger(self.buffer.get(..len).unwrap_or_default()) {
                 self.send(channel, &ack).await?;
             }
         }
@@ -444,6 +440,9 @@ impl Client {
     /// [`Error::DryRun`].
     async fn prepare(&mut self, request: &Request) -> Result<(), Error> {
         self.authorize(request)?;
+        if request.data.len() > MAX_DATA {
+            return Err(Error::TooLarge { bytes: request.data.len() });
+        }
         if self.is_dry_run() {
             self.plan_next(request)?;
             return Err(Error::DryRun);
@@ -541,10 +540,13 @@ impl Client {
                     {
                         open.answered();
                     }
-                    let again = self.last_download.as_mut().and_then(|last| last.linger(&self.buffer[..len]));
+                    let again = self
+                        .last_download
+                        .as_mut()
+                        .and_then(|last| last.linger(self.buffer.get(..len).unwrap_or_default()));
                     match again {
                         Some(ack) => self.send(channel, &ack).await?,
-                        None => session.handle(now, &self.buffer[..len]),
+                        None => session.handle(now, self.buffer.get(..len).unwrap_or_default()),
                     }
                 }
                 Step::Done(outcome) => {
@@ -570,7 +572,11 @@ impl Client {
         let received = self.transport.receive(channel, &mut self.buffer[..], until).await;
         let Some(len) = received.map_err(|error| self.io_error(channel, error))? else { return Ok(None) };
         self.totals.received += 1;
-        self.watcher.frame(Direction::Received, self.transport.address_pair(channel), &self.buffer[..len]);
+        self.watcher.frame(
+            Direction::Received,
+            self.transport.address_pair(channel),
+            self.buffer.get(..len).unwrap_or_default(),
+        );
         Ok(Some(len))
     }
 

@@ -100,7 +100,9 @@ impl Transport {
         let loopback = |port| SocketAddr::from(([127, 0, 0, 1], port));
         match self {
             Self::Udp(udp) => (udp.local(channel).unwrap_or(loopback(0)), udp.peer(channel)),
-            Self::Sim(_) | Self::Session(_) | Self::DryRun(_) => (loopback(40000), loopback(PORTS[channel.min(1)])),
+            Self::Sim(_) | Self::Session(_) | Self::DryRun(_) => {
+                (loopback(40000), loopback(PORTS[usize::from(channel > 0)]))
+            }
         }
     }
 

@@ -8,12 +8,14 @@
 //! Any [`ImageLink`] works: EtherNet/IP, DeviceNet, PROFIBUS, a session, or a simulator in this process.
 
 mod continuous_output;
+mod eip;
 mod error;
 mod event_loop;
 mod exchange;
 mod general_words;
 mod jog;
 mod plan;
+mod protocol;
 mod session_rules;
 mod shared;
 mod signals;
@@ -25,24 +27,22 @@ mod tests;
 use std::time::Duration;
 
 use armctl_controller::Risk;
-use armctl_controller::yrcx::alarm::Alarm;
-use armctl_controller::yrcx::answer::Status;
-use armctl_controller::yrcx::image::{Image, Output, Words};
-use armctl_controller::yrcx::sequence::{self, Sequence};
+use armctl_controller::yrcx::image::Output;
+use armctl_controller::yrcx::sequence::Sequence;
 use armctl_controller::yrcx::session::{Exchange, Outcome, Policy};
 use armctl_controller::yrcx::signal::resting;
-use armctl_controller::yrcx::simulator::Start;
-use armctl_controller::yrcx::table::Command;
-use armctl_transport::image::{ImageLink, LinkError, Traffic};
 use tokio::time::Instant;
 
+pub use self::eip::{EIP_PORT, open_eip};
 pub use self::error::{Error, Refusal};
 pub use self::exchange::{CompletedCommand, Reply};
 pub use self::plan::hex;
+#[doc(inline)]
+pub use self::protocol::*;
 pub use self::session_rules::open_session_link;
 pub use self::simulated::Simulated;
 pub use self::stop::StopResult;
-use crate::{Grant, Plan, STOP_TIMEOUT, Watcher};
+use crate::{Grant, LONGEST_TIMEOUT, Plan, STOP_TIMEOUT, Watcher};
 
 /// A connection to one controller. The client must stay on one thread, because fieldbus links must too.
 #[derive(Debug)]
@@ -240,6 +240,7 @@ impl Client {
 
     fn new(transport: Transport, size: usize, options: Options) -> Self {
         let Options { commands, is_held, grant, timeout, retries } = options;
+        let timeout = timeout.min(LONGEST_TIMEOUT);
         let policy = Policy {
             ready: timeout,
             accept: timeout,
