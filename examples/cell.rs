@@ -9,7 +9,9 @@ use std::time::Duration;
 
 use armctl_client::toyo::{self, MotionKind, jog};
 use armctl_client::units::{Millimetres, Percent};
-use armctl_client::yerc::{self, Model::Dx200, ReadStatus, ReadVariable, SelectJob, Selection, StartJob, VariableKind};
+use armctl_client::yerc::{
+    self, Model::Dx200, ReadStatus, ReadVariable, SelectJob, Selection, StartJob, Value, VariableKind,
+};
 use armctl_client::yrcx::{self, Command, Key, Side, Signal};
 use armctl_client::{Risk, yerc::Servo};
 
@@ -63,8 +65,9 @@ impl Cell {
         while self.welder.ask(&ReadStatus).await?.running() {
             tokio::time::sleep(Duration::from_millis(20)).await;
         }
-        let parts = self.welder.ask(&ReadVariable::new(VariableKind::D, 0)).await?;
-        println!("welder: D000 is {parts:?}");
+        if let Value::Double(parts) = self.welder.ask(&ReadVariable::new(VariableKind::D, 0)).await? {
+            println!("welder: D000 is {parts}");
+        }
 
         let go = Command::MovePtp.order().with(Key::Point, 1).with(Key::SpeedPercent, Percent::from(100));
         let moved = self.picker.ask(&go.with(Key::Report, 2).build()?).await?.values;

@@ -11,6 +11,18 @@ use super::{Client, Error, Refusal};
 const LETTERS: [&str; 4] = ["X", "Y", "Z", "R"];
 
 /// The letter of each axis, in axis order; `None` if unknown.
+///
+/// ```
+/// use armctl_client::toyo::{Client, Endpoint, Letters, Options};
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut robot = Client::connect(Endpoint::simulator(), Options::default()).await?;
+/// let letters: Letters = robot.letters().await?;
+/// assert_eq!((letters.of(0), letters.axis("X"), letters.name(0)), ("X", Some(0), "x"));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Letters([Option<&'static str>; 4]);
 
@@ -93,6 +105,7 @@ impl Client {
 }
 
 /// The request that reads parameter E01, the axis letters.
+#[doc(hidden)]
 pub fn letters_request() -> Request {
     Request::of(Command::Rpar, [Value::Text("E01".to_owned())])
 }

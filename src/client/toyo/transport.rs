@@ -20,11 +20,14 @@ use super::simulated::Simulated;
 use crate::{AddressPair, LONGEST_TIMEOUT, Plan};
 
 /// An open line to a controller.
+///
+/// Example: [`Endpoint`]
 pub type Line = Stream<Box<dyn Peer + Send>>;
 
 pub(super) struct Opener(pub Box<dyn Fn() -> Opening + Send>);
 
 /// A future that opens a line.
+#[doc(hidden)]
 pub type Opening = Pin<Box<dyn Future<Output = Result<Line, Error>> + Send>>;
 
 impl fmt::Debug for Opener {
@@ -34,6 +37,26 @@ impl fmt::Debug for Opener {
 }
 
 /// Address of a controller.
+///
+/// ```
+/// use std::time::Duration;
+///
+/// use armctl_client::toyo::{Client, Endpoint, Line, Options, Start};
+/// use armctl_client::units::Millimetres;
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let start = Box::new(Start::parse("origin = true\nposition = [12.5, 0.0, 0.0, 0.0]")?);
+/// let endpoint = Endpoint::Simulator { start, baud: Some(9600), faults: None };
+/// let line: Line = endpoint.open(Duration::from_secs(3)).await?;
+/// let mut robot = Client::over(line, endpoint.character(), Options::default());
+/// let x = robot.read_position().await?.millimetres("x");
+/// assert_eq!(x, Some(Millimetres::from_steps(12_500)));
+/// let serial = Endpoint::serial("/dev/ttyUSB0"); // 9600 baud, 8E1
+/// let server = Endpoint::tcp("192.0.2.20", 4001);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone)]
 pub enum Endpoint {
     /// A serial port of this machine.

@@ -4,6 +4,7 @@ mod axes;
 mod batch;
 mod error;
 mod model;
+mod options;
 mod plan;
 mod protocol;
 mod simulated;
@@ -30,6 +31,7 @@ pub use self::batch::{Batch, Outcome, ReadError};
 pub use self::error::{Cause, Error, Refusal, RefusedRequest, TransferError};
 pub use self::model::Identity;
 use self::model::ModelSource;
+pub use self::options::{Event, Options, Totals};
 #[doc(inline)]
 pub use self::protocol::*;
 pub use self::simulated::Simulated;
@@ -46,6 +48,26 @@ const MAX_QUEUED: u32 = 1000;
 ///
 /// The client processes one request at a time. A call may be dropped before its end: the client stays usable, because
 /// the session discards late answers.
+///
+/// ```
+/// use armctl_client::Risk;
+/// use armctl_client::yerc::{Client, Endpoint, Model, Options, ReadJob, SelectJob, Selection, Totals};
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let options = Options { retries: 1, ..Options::auto().with_risk(Risk::Write) };
+/// let mut robot = Client::connect(Endpoint::simulator(Model::Dx200), options).await?;
+/// let model = robot.model().await?;
+/// robot.ask(&SelectJob::new(model, b"TESTJOB", Selection::Execute { line: 0 })?).await?;
+/// let job = robot.ask(&ReadJob::new(model, 0)?).await?;
+/// assert_eq!(job.name.as_bytes(), b"TESTJOB");
+/// let missing = robot.try_ask(&SelectJob::new(model, b"NOSUCH", Selection::Execute { line: 0 })?).await?;
+/// println!("the controller refused: {}", missing.unwrap_err());
+/// let totals: Totals = robot.close().await?;
+/// assert_eq!(totals.exchanges, 3);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug)]
 pub struct Client {
     transport: Transport,
@@ -71,65 +93,6 @@ pub struct Client {
     purpose: Option<&'static str>,
     /// Existing axes of the groups whose axis configuration was read.
     axis_sets: Vec<(Group, Coordinates, AxisSet)>,
-}
-
-/// Settings of a client.
-#[derive(Debug, Clone)]
-pub struct Options {
-    /// Model of the controller. Without a model, the client reads the model when a request depends on it. A simulator
-    /// always uses its own model.
-    pub model: Option<Model>,
-    /// The highest risk that may be sent.
-    pub grant: Grant,
-    /// Time limit of one attempt.
-    pub timeout: Duration,
-    /// Number of retries after a timeout, for a request that changes nothing and for a file block.
-    pub retries: u32,
-}
-
-impl Options {
-    /// Options for this model, read only, with the default limits: 3 s, 3 retries.
-    pub fn new(model: Model) -> Self {
-        Self { model: Some(model), ..Self::auto() }
-    }
-
-    /// Options without a model, read only, with the default limits. The client reads the model from the controller.
-    pub fn auto() -> Self {
-        let Policy { timeout, retries, .. } = Policy::default();
-        Self { model: None, grant: Grant::default(), timeout, retries }
-    }
-
-    /// Authorizes this risk and everything below it.
-    #[must_use]
-    pub fn with_risk(self, risk: Risk) -> Self {
-        Self { grant: Grant::up_to(risk), ..self }
-    }
-}
-
-/// An event of a client, other than a frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Event {
-    /// An exchange or transfer ended. During it, the client received frames that do not belong to its requests.
-    UnexpectedTraffic(Counters),
-    /// A transfer was aborted, and the controller did not confirm the end. The controller may stay busy until its timer
-    /// expires.
-    TransferLeftOpen,
-}
-
-/// Traffic of a client.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Totals {
-    /// Frames sent.
-    pub sent: u64,
-    /// Frames received.
-    pub received: u64,
-    /// Time spent in exchanges and transfers.
-    pub waited: Duration,
-    /// Completed exchanges and transfers.
-    pub exchanges: u32,
-    /// Unexpected events on the link: see [`Counters`].
-    pub disturbances: u64,
 }
 
 /// Size of the receive buffer: larger than the largest frame, so that the client detects an oversized datagram.
@@ -158,6 +121,7 @@ impl Client {
     }
 
     /// Creates a client in a session. The session owns the link and shares it with other clients.
+    #[doc(hidden)]
     pub fn in_session(session: Box<Attached>, options: Options) -> Self {
         Self::release(Transport::Session(session), options)
     }

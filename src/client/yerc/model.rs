@@ -25,6 +25,20 @@ const SYSTEM_INFO: u16 = 0x89;
 const DEFAULT_MODEL: Model = Model::Dx200;
 
 /// Identification of a controller.
+///
+/// ```
+/// use armctl_client::yerc::{Client, Endpoint, Identity, Model, Options, ReadSystemInfo};
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut robot = Client::connect(Endpoint::simulator(Model::Fs100), Options::auto()).await?;
+/// robot.ask(&ReadSystemInfo::FIRST_ROBOT).await?;
+/// let Some(Identity { model, software }) = robot.identity() else { return Err("no identity".into()) };
+/// assert_eq!(*model, Some(Model::Fs100));
+/// println!("{software:?}");
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Identity {
     /// Model to which the software belongs; `None` if unknown.

@@ -45,6 +45,25 @@ pub use self::stop::StopResult;
 use crate::{Grant, LONGEST_TIMEOUT, Plan, STOP_TIMEOUT, Watcher};
 
 /// A connection to one controller. The client must stay on one thread, because fieldbus links must too.
+///
+/// ```
+/// use armctl_client::yrcx::{Client, Command, CompletedCommand, Key, Options, Procedure, Start, Totals, output};
+/// use armctl_client::Risk;
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let options = Options { retries: 0, ..Options::default().with_risk(Risk::Motion) };
+/// let mut robot = Client::simulated(Start::default(), options).await?;
+/// robot.run_procedure(Procedure::power_on()).await?;
+/// assert!(output::SERVO_ON.is_on(&robot.input_image().await?));
+/// let read = Command::PointGet.order().with(Key::Point, 1).build()?;
+/// let CompletedCommand { values, .. } = robot.ask(&read).await?;
+/// println!("X is {:?}", values.millimetres(Key::Axis1));
+/// let totals: Totals = robot.close().await?;
+/// assert_eq!(totals.commands, 1);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent state")]
 pub struct Client {
@@ -100,6 +119,8 @@ enum Transport {
 }
 
 /// Settings of a client.
+///
+/// Example: [`Client`]
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Whether the client may send commands to the controller. If not, the client only monitors the signals.
@@ -134,6 +155,8 @@ impl Options {
 }
 
 /// An event of a client.
+///
+/// Example: [`Watcher`]
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub enum Event {
@@ -176,6 +199,8 @@ pub enum Event {
 }
 
 /// Activity of a client.
+///
+/// Example: [`Client`]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Totals {
     /// Remote commands sent.
