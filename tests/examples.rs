@@ -17,7 +17,7 @@ fn run(example: &str) -> String {
 #[test]
 fn toyo_reads_and_moves() {
     let point = "T1 PT=001 X=+0000.00 Y=+0000.00 Z=+0000.00 R=+0000.00";
-    let said = format!("servo on: true, host on: false\npoint 1: {point}\naxis 1 is at 0.01 mm\n");
+    let said = format!("servo on: true, host on: false\npoint 1: {point}\naxis 1 is at 0.010 mm\n");
     assert_eq!(run("toyo"), said);
 }
 
@@ -28,6 +28,11 @@ fn yerc_reads_fetches_and_moves() {
 
 #[test]
 fn yrcx_reads_and_moves() {
-    let place = "[100000, 100000, 0, 0] um";
-    assert_eq!(run("yrcx"), format!("servo on: true, alarm: false\npoint 1: {place}\nmoved to {place}\n"));
+    assert_eq!(run("yrcx"), "servo on: true, alarm: false\npoint 1: X 100.000 mm\nmoved to X 100.000 mm\n");
+}
+
+#[test]
+fn cell_runs_robots_of_all_families() {
+    let said = "picker: SO(20) is on\nslider: at 0.010 mm\nwelder: D000 is 1\npicker: at X 100.000 mm\n";
+    assert_eq!(run("cell"), said);
 }

@@ -9,6 +9,15 @@ use thiserror::Error;
 
 /// The highest risk that a client may send. Clones share one limit: a call of [`Grant::raise`] on one clone raises the
 /// limit of all clones. The client checks the limit before every request.
+///
+/// ```
+/// use armctl_client::{Grant, NotAuthorized, Risk};
+///
+/// let grant = Grant::up_to(Risk::Write);
+/// assert!(grant.check(Risk::Read, "read a variable").is_ok());
+/// let refused: NotAuthorized = grant.check(Risk::Motion, "start a job").unwrap_err();
+/// assert_eq!(refused.to_string(), "start a job (motion) is not authorized; nothing was sent");
+/// ```
 #[derive(Debug, Clone)]
 pub struct Grant(Arc<GrantState>);
 
@@ -28,6 +37,8 @@ impl fmt::Debug for Hook {
 }
 
 /// A request above the authorized risk. Nothing was sent.
+///
+/// Example: [`Grant`]
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{what} ({}) is not authorized; nothing was sent", .risk.name())]
 pub struct NotAuthorized {
@@ -47,8 +58,8 @@ impl Grant {
 
     /// The highest authorized risk.
     pub fn get(&self) -> Risk {
-        // The index is always valid: only `raise` and `up_to` write the number, and both write the number of a risk.
-        RISKS[usize::from(self.0.highest.load(Ordering::Relaxed)).min(RISKS.len() - 1)]
+        let highest = self.0.highest.load(Ordering::Relaxed);
+        RISKS.into_iter().rev().find(|risk| *risk as u8 <= highest).unwrap_or(Risk::Read)
     }
 
     /// Raises the limit. A lower risk than the current limit has no effect.

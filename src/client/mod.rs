@@ -1,29 +1,32 @@
-//! Clients of robot controllers. A client connects to one controller, sends requests, transfers files and returns typed
-//! errors.
-//!
-//! A client runs the protocol sessions of its family (they have no sockets and no clock) over a transport (which
-//! carries bytes only). A client has no settings, prompts or output texts. A [`Watcher`] observes the frames and
-//! events.
-//!
-//! Three rules apply to every client:
-//!
-//! - **Authorization.** The client checks every request against a [`Grant`] before it sends the request. The default
-//!   grant allows only reads. A stop is always allowed.
-//! - **A refusal is an answer.** A refusal by the controller is data with a code. `try_ask` returns the refusal as a
-//!   value; `ask` returns it as an error.
-//! - **A change is sent once.** If the answer to a change is lost, the error reports that the outcome is unknown.
-//!
-//! A client in a dry run records in a [`Plan`] the frames that it would send. It receives no answers.
+#![doc = include_str!("README.md")]
+#![cfg_attr(not(test), deny(clippy::expect_used, clippy::indexing_slicing, clippy::panic, clippy::unreachable))]
+#![cfg_attr(
+    not(all(feature = "toyo", feature = "yerc", feature = "yrcx")),
+    allow(dead_code, reason = "no family uses all of what they share")
+)]
 
 use std::time::Duration;
 
+mod blocking;
 mod grant;
 mod plan;
+#[cfg(feature = "toyo")]
 pub mod toyo;
+pub mod units;
 mod watcher;
+#[cfg(feature = "yerc")]
 pub mod yerc;
+#[cfg(feature = "yrcx")]
 pub mod yrcx;
 
+/// The crates with the protocols and the transports, whole. They can change in each version.
+pub mod unstable {
+    pub use armctl_controller as controller;
+    pub use armctl_transport as transport;
+}
+
+/// Longest time limit: a later deadline may not exist in the clock of the computer.
+const LONGEST_TIMEOUT: Duration = Duration::from_secs(365 * 24 * 3600);
 /// Repeat interval of an unconfirmed stop.
 const STOP_INTERVAL: Duration = Duration::from_millis(200);
 /// Attempts to send an unconfirmed stop.
@@ -31,6 +34,13 @@ const STOP_TRIES: u32 = 15;
 /// Time limit for the confirmation of a stop.
 const STOP_TIMEOUT: Duration = STOP_INTERVAL.saturating_mul(STOP_TRIES);
 
+#[doc(inline)]
+pub use armctl_controller::Risk;
+#[doc(inline)]
+pub use armctl_transport::session::client::SessionBusy;
+#[doc(inline)]
+pub use armctl_transport::tap::Direction;
+pub use blocking::Blocking;
 pub use grant::{Grant, NotAuthorized};
 pub use plan::{Plan, Reason};
 pub use watcher::{AddressPair, Watcher};

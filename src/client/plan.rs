@@ -3,6 +3,22 @@
 use serde_json::{Value, json};
 
 /// The frames of a dry run, in the order of sending.
+///
+/// ```
+/// use armctl_client::yerc::{Client, Model, Options, Query, ReadStatus, Servo};
+/// use armctl_client::{Plan, Reason, Risk};
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut robot = Client::dry_run(Options::new(Model::Dx200).with_risk(Risk::Motion));
+/// robot.ask(&Servo(true)).await?;
+/// robot.plan_if(&ReadStatus.request(), Reason::about("check the servo power"));
+/// let Plan { frames, .. } = robot.take_plan();
+/// assert!(frames[0]["hex"].as_str().is_some_and(|hex| hex.starts_with("59455243")));
+/// assert_eq!(frames[1]["about"], "check the servo power");
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Plan {
     /// One JSON object per frame. The key that contains the bytes of the frame depends on the controller family (`hex`,
@@ -15,6 +31,8 @@ pub struct Plan {
 }
 
 /// Why a frame of a plan is sent.
+///
+/// Example: [`Plan`]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Reason<'a> {
     /// Purpose of the frame.
@@ -37,10 +55,10 @@ impl<'a> Reason<'a> {
 }
 
 /// Name and readable value of a field of a motion request, for example `("speed", "50.0 mm/s")`.
-pub type ReadableField = (String, String);
+pub(crate) type ReadableField = (String, String);
 
 /// Adds the readable fields to a frame. Without fields, the frame stays as it is.
-pub fn with_fields(mut frame: Value, fields: &[ReadableField]) -> Value {
+pub(crate) fn with_fields(mut frame: Value, fields: &[ReadableField]) -> Value {
     if let Some(frame) = frame.as_object_mut().filter(|_| !fields.is_empty()) {
         let field = |(name, value): &ReadableField| json!({ "name": name, "value": value });
         frame.insert("fields".to_owned(), fields.iter().map(field).collect());
@@ -49,7 +67,7 @@ pub fn with_fields(mut frame: Value, fields: &[ReadableField]) -> Value {
 }
 
 /// Merges the fields of two variants of a request. If the values of a field differ, the merged value is `?`.
-pub fn merge_fields(one: Vec<ReadableField>, other: &[ReadableField]) -> Vec<ReadableField> {
+pub(crate) fn merge_fields(one: Vec<ReadableField>, other: &[ReadableField]) -> Vec<ReadableField> {
     let of = |(index, (name, value)): (usize, ReadableField)| {
         let is_same = other.get(index).is_some_and(|(_, other)| *other == value);
         (name, if is_same { value } else { "?".to_owned() })

@@ -4,6 +4,11 @@
 //! and bytes and returns the next step. A driver outside of this module moves the bytes. Because of this, the same
 //! session can run against a socket, against a simulator in this process, and against a fault injector in virtual time.
 
+#![cfg_attr(
+    not(all(feature = "toyo", feature = "yerc", feature = "yrcx")),
+    allow(dead_code, reason = "no family uses all of what they share")
+)]
+
 use std::time::Duration;
 
 pub mod findings;
@@ -16,10 +21,13 @@ mod source;
 #[cfg(test)]
 mod testing;
 pub mod text;
+#[cfg(feature = "toyo")]
 pub mod toyo;
 pub mod units;
 pub mod user_input;
+#[cfg(feature = "yerc")]
 pub mod yerc;
+#[cfg(feature = "yrcx")]
 pub mod yrcx;
 
 /// Time since an origin that the driver chooses. It never runs backwards.

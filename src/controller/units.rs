@@ -1,9 +1,10 @@
-//! Exact conversion between decimal text and protocol integers.
+//! Exact conversion between decimal text and protocol integers, and quantities whose type is their unit.
 //!
 //! The conversion uses no floating point: a value is sent exactly as typed, or it is rejected. The constants are the
 //! resolutions of Yaskawa controllers (FS and DX 3.3.39). Other families define their own resolutions.
 
 use std::fmt;
+use std::str::FromStr;
 
 use thiserror::Error;
 
@@ -30,6 +31,79 @@ pub const MILLIMETRE_PER_SECOND: Unit = Unit { symbol: "mm/s", decimals: 1 };
 pub const DEGREE_PER_SECOND: Unit = Unit { symbol: "deg/s", decimals: 1 };
 /// Encoder pulses.
 pub const PULSE: Unit = Unit { symbol: "pulses", decimals: 0 };
+
+/// Declares quantities: a number of steps, with a type for its unit.
+macro_rules! quantities {
+    ($($(#[$doc:meta])* $name:ident $unit:ident,)*) => {$(
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+        pub struct $name(i32);
+
+        impl $name {
+            /// Symbol and resolution.
+            pub const UNIT: Unit = $unit;
+
+            /// A number of steps of the resolution.
+            pub const fn from_steps(steps: i32) -> Self {
+                Self(steps)
+            }
+
+            /// Number of steps of the resolution.
+            pub const fn steps(self) -> i32 {
+                self.0
+            }
+
+            /// The number in the unit, for calculations.
+            pub fn to_f64(self) -> f64 {
+                f64::from(self.0) / f64::from(10_u32.pow(Self::UNIT.decimals.into()))
+            }
+
+            /// Text with the symbol and without zeros at the end, for example `12.5 mm`.
+            pub fn short(self) -> String {
+                let number = Self::UNIT.show(self.0).to_string();
+                let number = if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { &number };
+                format!("{number} {}", Self::UNIT.symbol)
+            }
+        }
+
+        impl From<i16> for $name {
+            /// A whole number in the unit.
+            fn from(whole: i16) -> Self {
+                Self(i32::from(whole) * 10_i32.pow(Self::UNIT.decimals.into()))
+            }
+        }
+
+        impl FromStr for $name {
+            type Err = UnitError;
+
+            /// Parses a decimal number without symbol, exactly.
+            fn from_str(text: &str) -> Result<Self, UnitError> {
+                Self::UNIT.parse(text).map(Self)
+            }
+        }
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "{} {}", Self::UNIT.show(self.0), Self::UNIT.symbol)
+            }
+        }
+    )*};
+}
+
+quantities! {
+    /// A length in steps of 0.001 mm.
+    Millimetres MILLIMETRE,
+    /// An angle in steps of 0.0001 degree.
+    Degrees DEGREE,
+    /// A share in steps of 0.01 %.
+    Percent PERCENT,
+    /// A speed in steps of 0.1 mm/s.
+    MillimetresPerSecond MILLIMETRE_PER_SECOND,
+    /// A speed of rotation in steps of 0.1 degree/s.
+    DegreesPerSecond DEGREE_PER_SECOND,
+    /// A position of an axis in encoder pulses.
+    Pulses PULSE,
+}
 
 /// A text that is not a valid value of its unit.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -170,6 +244,19 @@ mod tests {
         assert_eq!(MILLIMETRE.show(100_000).to_string(), "100.000");
         assert_eq!(PULSE.show(i32::MIN).to_string(), "-2147483648");
         assert_eq!(MILLIMETRE.parse("-2147483.648"), Ok(i32::MIN));
+    }
+
+    #[test]
+    fn quantities_convert_exactly() {
+        assert_eq!(Millimetres::from(-32_768).steps(), -32_768_000);
+        assert_eq!(Degrees::from(i16::MAX).to_string(), "32767.0000 deg");
+        assert_eq!("0.1".parse::<MillimetresPerSecond>(), Ok(MillimetresPerSecond::from_steps(1)));
+        assert_eq!((Percent::from_steps(1250).short(), Percent::from(100).short()), ("12.5 %".into(), "100 %".into()));
+        assert_eq!(
+            (Pulses::from(100).short(), Millimetres::from_steps(-1).short()),
+            ("100 pulses".into(), "-0.001 mm".into())
+        );
+        assert!((Millimetres::from_steps(12_500).to_f64() - 12.5).abs() < f64::EPSILON);
     }
 
     #[test]

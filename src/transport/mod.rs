@@ -2,9 +2,13 @@
 //!
 //! Transports and controllers do not depend on each other.
 
+#[cfg(feature = "fieldbus")]
 mod bytes;
+#[cfg(feature = "fieldbus")]
 pub mod capture;
+#[cfg(feature = "fieldbus")]
 pub mod devicenet;
+#[cfg(feature = "fieldbus")]
 pub mod eip;
 pub mod fault;
 #[cfg(feature = "plant")]
@@ -13,12 +17,15 @@ pub mod image;
 #[cfg(all(unix, feature = "plant"))]
 pub mod journal;
 pub mod line;
+#[cfg(feature = "fieldbus")]
 pub mod local_error;
 #[cfg(feature = "plant")]
 pub mod mqtt;
 mod port;
 pub mod port_list;
+#[cfg(feature = "fieldbus")]
 pub mod profibus;
+#[cfg(feature = "fieldbus")]
 pub mod profinet;
 mod pty;
 pub mod serial;
@@ -46,6 +53,7 @@ fn closed_error(why: impl Display) -> io::Error {
 }
 
 /// Refuses with `error` if `is_refused`.
+#[cfg(feature = "fieldbus")]
 fn refuse_if<E>(is_refused: bool, error: E) -> Result<(), E> {
     if is_refused { Err(error) } else { Ok(()) }
 }

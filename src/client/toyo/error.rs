@@ -15,6 +15,28 @@ use thiserror::Error;
 use crate::NotAuthorized;
 
 /// Why a request has no usable answer.
+///
+/// ```
+/// use armctl_client::toyo::{Client, Command, Endpoint, Error, Options, Refusal, Request, Start, Unanswered};
+/// use armctl_client::Risk;
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let start = Box::new(Start::parse("pendant = true")?);
+/// let endpoint = Endpoint::Simulator { start, baud: None, faults: None };
+/// let mut robot = Client::connect(endpoint, Options::default().with_risk(Risk::Motion)).await?;
+/// match robot.ask(&Request::bare(Command::Home)).await {
+///     Err(Error::PendantOn) => println!("switch the teach pendant off"),
+///     Err(Error::Refused(Refusal(request))) => println!("refused: {}", request.text()),
+///     Err(Error::OutcomeUnknown(unanswered)) => {
+///         let Unanswered { request, waited, .. } = *unanswered;
+///         println!("no answer to {request:?} within {waited:?}: the axes may move");
+///     }
+///     other => println!("{other:?}"),
+/// }
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -144,11 +166,15 @@ impl Error {
 }
 
 /// A refusal (`@NG`) of a request. The protocol has no refusal codes.
+///
+/// Example: [`enum@Error`]
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("the controller refused {} (@NG)", .0.text().trim_start_matches('@'))]
 pub struct Refusal(pub Request);
 
 /// Details of a missing answer.
+///
+/// Example: [`enum@Error`]
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Unanswered {
     /// The request; `None` for a free-text block.

@@ -12,6 +12,7 @@ use super::{Client, Error, Event, Transport, status_page};
 use crate::Reason;
 
 /// Purpose of the fence in a plan.
+#[doc(hidden)]
 pub const FENCE: &str = "check that the line is quiet";
 
 impl Client {

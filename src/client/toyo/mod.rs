@@ -4,7 +4,9 @@
 mod axis_letters;
 mod error;
 mod fence;
+mod options;
 mod plan;
+mod protocol;
 mod simulated;
 mod stop;
 mod temporary_changes;
@@ -16,33 +18,50 @@ use std::io;
 use std::sync::Arc;
 use std::time::Duration;
 
-use armctl_controller::toyo::field::Value;
-use armctl_controller::toyo::layout::Record;
-use armctl_controller::toyo::request::{Answer, Request};
-use armctl_controller::toyo::session::{Counters, ExchangeResult, LineSession, Policy};
-use armctl_controller::toyo::status::Status;
-use armctl_controller::toyo::table::commands::Command;
+use armctl_controller::toyo::session::{ExchangeResult, LineSession, Policy};
 use armctl_controller::{Risk, Session as _, Step};
-pub use armctl_transport::serial::OpenError;
 use armctl_transport::session::client::SessionBusy;
 use armctl_transport::tap::Direction;
-pub use armctl_transport::tcp::ConnectError;
 use tokio::time::Instant;
 
 pub use self::axis_letters::{Letters, letters_request};
 pub use self::error::{Error, Refusal, Unanswered};
 pub use self::fence::FENCE;
+pub use self::options::{Event, Options, Totals};
+#[doc(inline)]
+pub use self::protocol::*;
 pub use self::simulated::Simulated;
 pub use self::stop::MotionKind;
 use self::temporary_changes::{HostState, needs_host};
 pub use self::transport::{BAUD, BITS, Endpoint, Line, Opening};
 use self::transport::{Opener, Transport, no_addresses};
-use crate::{AddressPair, Grant, NotAuthorized, Plan, Reason, Watcher};
+use crate::{AddressPair, Grant, LONGEST_TIMEOUT, NotAuthorized, Plan, Reason, Watcher};
 
 /// A connection to one controller.
 ///
 /// The client processes one request at a time. A call may be dropped before its end: the client stays usable, because
 /// the session discards late answers.
+///
+/// ```
+/// use std::time::Duration;
+///
+/// use armctl_client::toyo::{Client, Command, Endpoint, Options, Request, Totals, Value};
+/// use armctl_client::Risk;
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let options = Options { timeout: Duration::from_secs(2), ..Options::default().with_risk(Risk::Write) };
+/// let mut robot = Client::connect(Endpoint::simulator(), options).await?;
+/// let write = Request::new(Command::Mcst, vec![Value::Number(1), Value::Number(42)])?;
+/// robot.ask(&write).await?;
+/// let read = Request::new(Command::Mcnt, vec![Value::Number(1)])?;
+/// assert_eq!(robot.ask(&read).await?.number("count"), Some(42));
+/// let (totals, closed): (Totals, _) = robot.close().await;
+/// closed?;
+/// println!("{:?}", totals.counters);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug)]
 pub struct Client {
     transport: Transport,
@@ -74,60 +93,6 @@ pub struct Client {
     letters: Option<Letters>,
 }
 
-/// Settings of a client.
-#[derive(Debug, Clone)]
-pub struct Options {
-    /// The highest risk that may be sent.
-    pub grant: Grant,
-    /// Time limit of one attempt, from the last character sent to the answer. The manual gives 1 s (TO 1-3).
-    pub timeout: Duration,
-    /// Number of retries after a timeout. Only a request that changes nothing is repeated.
-    pub retries: u32,
-}
-
-impl Default for Options {
-    /// Read only, 1 s time limit, 3 retries.
-    fn default() -> Self {
-        Self { grant: Grant::default(), timeout: Duration::from_secs(1), retries: 3 }
-    }
-}
-
-impl Options {
-    /// Authorizes this risk and everything below it.
-    #[must_use]
-    pub fn with_risk(self, risk: Risk) -> Self {
-        Self { grant: Grant::up_to(risk), ..self }
-    }
-}
-
-/// An event of a client. The client reports a change of the controller before it sends the change. If this process is
-/// killed, a log of the events shows how to undo the change.
-#[derive(Debug, Clone, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Event {
-    /// A motion is about to start; `None` after the motion has ended.
-    Motion(Option<MotionKind>),
-    /// `true`: the client is about to switch the host ON temporarily. `false`: the host is OFF again.
-    HostSwitch(bool),
-    /// The client is about to make a temporary change. This request undoes the change.
-    TemporaryChange(Request),
-    /// The change of this undo request was undone, or was never made.
-    Undone(Request),
-    /// The line is lost, and this undo request was not sent.
-    NotUndone(Request),
-    /// The client read the state of host control.
-    Host {
-        /// The status that was read. It includes at least the page with the host state.
-        status: Status,
-        /// Whether this client switched the host ON.
-        is_taken: bool,
-    },
-    /// The client read the current task, while no temporary change was active.
-    Task(Option<i32>),
-    /// A lost line is open again.
-    Reopened,
-}
-
 const BUFFER: usize = 1024;
 /// Maximum number of characters in one exchange: about 5 s at the highest baud rate. Answers are much shorter.
 const MAX_RECEIVED: usize = 64 * 1024;
@@ -145,7 +110,7 @@ impl Client {
     /// # Errors
     /// [`Error::Port`] or [`Error::DeviceServer`] if the line cannot be opened.
     pub async fn connect(endpoint: Endpoint, options: Options) -> Result<Self, Error> {
-        let timeout = options.timeout;
+        let timeout = options.timeout.min(LONGEST_TIMEOUT);
         let mut client = Self::over(endpoint.open(timeout).await?, endpoint.character(), options);
         client.reopen_by(move || {
             let endpoint = endpoint.clone();
@@ -166,7 +131,11 @@ impl Client {
     }
 
     fn with(transport: Transport, character: Duration, options: Options) -> Self {
-        let policy = Policy { timeout: options.timeout, retries: options.retries, character };
+        let policy = Policy {
+            timeout: options.timeout.min(LONGEST_TIMEOUT),
+            retries: options.retries,
+            character: character.min(LONGEST_TIMEOUT),
+        };
         Self {
             address_pair: transport.address_pair(),
             transport,
@@ -195,6 +164,7 @@ impl Client {
     }
 
     /// Sets the function that reopens a lost line for a read.
+    #[doc(hidden)]
     pub fn reopen_by(&mut self, open: impl Fn() -> Opening + Send + 'static) {
         self.opener = Some(Opener(Box::new(open)));
     }
@@ -494,7 +464,7 @@ impl Client {
                 });
             }
             now = self.started.elapsed();
-            self.session.handle(now, &buffer[..received]);
+            self.session.handle(now, buffer.get(..received).unwrap_or_default());
         }
     }
 
@@ -512,7 +482,7 @@ impl Client {
             self.watcher.frame(
                 Direction::Received,
                 self.address_pair.unwrap_or_else(no_addresses),
-                &buffer[..received],
+                buffer.get(..received).unwrap_or_default(),
             );
         }
         Ok(received)
@@ -538,15 +508,6 @@ impl Client {
         let error = Error::Io { is_shared: self.transport.is_shared(), error: Arc::new(error) };
         if is_open { Error::LostAfterSending(Box::new(error)) } else { error }
     }
-}
-
-/// Line statistics.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Totals {
-    /// Blocks sent and received, and errors.
-    pub counters: Counters,
-    /// Time spent in exchanges.
-    pub waited: Duration,
 }
 
 fn malformed(block: &str, why: &(impl ToString + ?Sized)) -> Error {

@@ -7,6 +7,7 @@ use armctl_transport::sim::Peer;
 
 /// A simulated controller.
 #[derive(Debug)]
+#[doc(hidden)]
 pub struct Simulated(pub Simulator);
 
 impl Simulated {

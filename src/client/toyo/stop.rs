@@ -22,6 +22,23 @@ const POLL_INTERVAL: Duration = Duration::from_millis(50);
 const REPETITIONS: u32 = 3;
 
 /// Kind of motion that a stop must end.
+///
+/// ```
+/// use armctl_client::toyo::{Client, Endpoint, MotionKind, Options, jog};
+/// use armctl_client::Risk;
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut robot = Client::connect(Endpoint::simulator(), Options::default().with_risk(Risk::Motion)).await?;
+/// robot.ask(&jog("RS", None)).await?;
+/// robot.ask(&jog("+L", Some(0))).await?;
+/// assert_eq!(robot.moving(), Some(MotionKind::Jog));
+/// let place = robot.stop(MotionKind::Jog).await?;
+/// println!("stopped at {:?}", place.millimetres("x"));
+/// robot.close().await.1?;
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MotionKind {
     /// A jog: runs until it is stopped.

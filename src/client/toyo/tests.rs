@@ -128,3 +128,38 @@ async fn a_jog_moves_until_stop_and_stop_returns_the_final_position() {
     assert!(after.number("x") > before.number("x") && client.moving().is_none());
     assert_eq!(client.read_position().await.unwrap(), after);
 }
+
+#[tokio::test(start_paused = true)]
+async fn refuses_a_request_whose_values_do_not_fit() {
+    let mut client = connected(Risk::Motion, "host = true", None).await;
+    client.status().await.unwrap();
+    let before = client.totals().counters.sent;
+    let wrong = [status_page(9), jog("XX", None), jog("+C", Some(4)), counter(1_000, -1), Request::bare(Command::Rpar)];
+    for request in &wrong[..2] {
+        let error = client.raw(request).await.unwrap_err();
+        assert!(matches!(error, Error::InvalidRequest(_)), "{error}");
+    }
+    assert!(client.status_of(&[200]).await.is_err());
+    for request in wrong {
+        assert!(!request.text().is_empty());
+        assert_eq!(
+            request.check().is_err(),
+            request != jog("+C", Some(4)),
+            "no axis moves: a stop: {}",
+            request.text()
+        );
+    }
+    assert_eq!(client.totals().counters.sent, before, "nothing was sent");
+}
+
+#[tokio::test(start_paused = true)]
+async fn accepts_the_longest_time_limit() {
+    let options = Options { timeout: Duration::MAX, retries: u32::MAX, ..Options::default() };
+    let mut client = Client::connect(Endpoint::simulator(), options.clone()).await.unwrap();
+    assert!(client.status().await.unwrap().servo_on());
+    client.stop(MotionKind::Jog).await.unwrap();
+    client.close().await.1.unwrap();
+    let line = Endpoint::simulator().open(Duration::MAX).await.unwrap();
+    let mut client = Client::over(line, Duration::MAX, options);
+    assert!(client.status().await.unwrap().servo_on());
+}

@@ -17,14 +17,17 @@ use tokio::time::Instant;
 
 use super::error::Error;
 use super::simulated::Simulated;
-use crate::{AddressPair, Plan};
+use crate::{AddressPair, LONGEST_TIMEOUT, Plan};
 
 /// An open line to a controller.
+///
+/// Example: [`Endpoint`]
 pub type Line = Stream<Box<dyn Peer + Send>>;
 
 pub(super) struct Opener(pub Box<dyn Fn() -> Opening + Send>);
 
 /// A future that opens a line.
+#[doc(hidden)]
 pub type Opening = Pin<Box<dyn Future<Output = Result<Line, Error>> + Send>>;
 
 impl fmt::Debug for Opener {
@@ -34,6 +37,26 @@ impl fmt::Debug for Opener {
 }
 
 /// Address of a controller.
+///
+/// ```
+/// use std::time::Duration;
+///
+/// use armctl_client::toyo::{Client, Endpoint, Line, Options, Start};
+/// use armctl_client::units::Millimetres;
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let start = Box::new(Start::parse("origin = true\nposition = [12.5, 0.0, 0.0, 0.0]")?);
+/// let endpoint = Endpoint::Simulator { start, baud: Some(9600), faults: None };
+/// let line: Line = endpoint.open(Duration::from_secs(3)).await?;
+/// let mut robot = Client::over(line, endpoint.character(), Options::default());
+/// let x = robot.read_position().await?.millimetres("x");
+/// assert_eq!(x, Some(Millimetres::from_steps(12_500)));
+/// let serial = Endpoint::serial("/dev/ttyUSB0"); // 9600 baud, 8E1
+/// let server = Endpoint::tcp("192.0.2.20", 4001);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone)]
 pub enum Endpoint {
     /// A serial port of this machine.
@@ -107,7 +130,7 @@ impl Endpoint {
                 .map(Stream::Serial)
                 .map_err(|error| Error::Port { path: line.path.clone(), error: Arc::new(error) }),
             Self::Tcp { host, port, .. } => {
-                let until = Instant::now() + timeout.max(MIN_CONNECT_TIMEOUT);
+                let until = Instant::now() + timeout.clamp(MIN_CONNECT_TIMEOUT, LONGEST_TIMEOUT);
                 let opened = Tcp::open(host, *port, until).await.map(Stream::Tcp);
                 opened.map_err(|error| Error::DeviceServer { host: host.clone(), port: *port, error: Arc::new(error) })
             }
@@ -122,7 +145,7 @@ impl Endpoint {
 
 /// Opens a port. If the port is busy, waits up to `timeout`: another armctl command may use the port for a short time.
 async fn open_port(line: &serial::Line, timeout: Duration) -> Result<Serial, serial::OpenError> {
-    let until = Instant::now() + timeout;
+    let until = Instant::now() + timeout.min(LONGEST_TIMEOUT);
     loop {
         match Serial::open(line) {
             Err(serial::OpenError::Busy) if Instant::now() + BUSY_RETRY_INTERVAL <= until => {

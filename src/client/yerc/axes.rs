@@ -10,6 +10,21 @@ use super::Client;
 use crate::Reason;
 
 /// Set of existing axes, one bit per axis.
+///
+/// ```
+/// use armctl_client::yerc::{AxisSet, Client, Coordinates, Endpoint, Group, Model, Options, ReadPosition};
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut robot = Client::connect(Endpoint::simulator(Model::Dx200), Options::auto()).await?;
+/// let read = ReadPosition::new(Model::Dx200, Group::R1, Coordinates::Pulse)?;
+/// let axes = robot.ask(&read).await?.axes;
+/// let (axes, axis_set): (_, AxisSet) = robot.existing_axes(Group::R1, Coordinates::Pulse, axes).await;
+/// assert!(axis_set.has(5));
+/// assert!(axes.as_slice().len() >= 6);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AxisSet(u8);
 

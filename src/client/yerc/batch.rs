@@ -6,6 +6,8 @@ use armctl_controller::yerc::status::is_absent;
 use super::{Client, Error, Refusal};
 
 /// Why one read of a batch has no answer. `E` is the error type.
+///
+/// Example: [`Batch`]
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ReadError<E = Error> {
     /// The controller refused.
@@ -17,6 +19,8 @@ pub enum ReadError<E = Error> {
 }
 
 /// Result of one read.
+///
+/// Example: [`Batch`]
 pub type Outcome<T, E = Error> = Result<T, ReadError<E>>;
 
 impl<E> ReadError<E> {
@@ -36,6 +40,26 @@ impl<E> ReadError<E> {
 }
 
 /// State of a batch of reads ([`Client::ask_in_batch`]).
+///
+/// ```
+/// use armctl_client::yerc::{Batch, Client, Endpoint, Model, Options, Outcome, ReadError, ReadVariable, Value, VariableKind};
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut robot = Client::connect(Endpoint::simulator(Model::Dx200), Options::auto()).await?;
+/// let mut batch = Batch::default();
+/// for number in [0, 5_000] {
+///     let read = ReadVariable::new(VariableKind::B, number);
+///     let outcome: Outcome<Value> = robot.ask_in_batch(&mut batch, &read).await?;
+///     match outcome {
+///         Ok(value) => println!("B{number} is {value:?}"),
+///         Err(error @ ReadError::Refused(_)) => assert!(number == 5_000 && error.is_absent()),
+///         Err(error) => panic!("{error:?}"),
+///     }
+/// }
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Default)]
 pub struct Batch {
     /// Whether the controller has answered a request. A refusal is also an answer.

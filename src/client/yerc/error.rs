@@ -11,13 +11,29 @@ use armctl_controller::yerc::payload::PayloadError;
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::session::{Counters, DownloadEnd};
 use armctl_controller::yerc::status;
-use armctl_controller::yerc::wire::{Division, Status};
+use armctl_controller::yerc::wire::{Division, MAX_DATA, Status};
 use armctl_transport::session::client::SessionBusy;
 use thiserror::Error;
 
 use crate::NotAuthorized;
 
 /// Why a request has no usable answer.
+///
+/// ```
+/// use armctl_client::yerc::{Client, Endpoint, Error, FileName, Model, Options, Refusal, RefusedRequest};
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut robot = Client::connect(Endpoint::simulator(Model::Dx200), Options::auto()).await?;
+/// match robot.read_file(&FileName::new("NOSUCH.JBI")?).await {
+///     Ok(job) => println!("{} bytes", job.len()),
+///     Err(Error::Refused(Refusal { status, to: RefusedRequest::File(_) })) => println!("refused: {status:?}"),
+///     Err(Error::OutcomeUnknown { .. } | Error::CutShort { .. }) => unreachable!("a read changes nothing"),
+///     Err(error) => return Err(error.into()),
+/// }
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -109,6 +125,12 @@ pub enum Error {
         /// The model that the controller reports.
         found: Model,
     },
+    /// A request with more data than a frame can have. Nothing was sent.
+    #[error("the request has {bytes} bytes of data; a frame can have at most {MAX_DATA}")]
+    TooLarge {
+        /// Size of the data.
+        bytes: usize,
+    },
     /// A dry run sends nothing and has no answer.
     #[error("a dry run has no answer")]
     DryRun,
@@ -131,6 +153,8 @@ impl Error {
 }
 
 /// A refusal of a controller.
+///
+/// Example: [`enum@Error`]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("the controller refused {to}: {}", status::explain(*.status).name)]
 pub struct Refusal {
@@ -148,6 +172,8 @@ impl Refusal {
 }
 
 /// Identification of a refused request.
+///
+/// Example: [`enum@Error`]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RefusedRequest {
     /// A request to the robot server.
@@ -180,6 +206,24 @@ impl fmt::Display for RefusedRequest {
 }
 
 /// The end of a transfer that did not complete.
+///
+/// ```
+/// use armctl_client::yerc::{Cause, Client, Endpoint, FileName, Model, Options, TransferError};
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut robot = Client::connect(Endpoint::simulator(Model::Dx200), Options::auto()).await?;
+/// let request = FileName::new("TESTJOB.JBI")?.save();
+/// let full = |_: &[u8]| Err("the disk is full");
+/// match robot.download(&request, 1_000_000, None, full).await {
+///     Err(TransferError { cause: Cause::Caller(why), bytes }) => println!("{why} after {bytes} bytes"),
+///     Err(TransferError { cause: Cause::Client(error), .. }) => return Err(error.into()),
+///     Ok(end) => panic!("{end:?}"),
+/// }
+/// robot.close().await?; // ends the transfer at the controller
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone)]
 pub struct TransferError<E> {
     /// Bytes sent or received before the end. After an upload, the controller may have stored a part of the file, or
@@ -190,6 +234,8 @@ pub struct TransferError<E> {
 }
 
 /// The side that caused the end of a transfer.
+///
+/// Example: [`TransferError`]
 #[derive(Debug, Clone)]
 pub enum Cause<E> {
     /// The link or the controller.

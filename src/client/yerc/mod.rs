@@ -4,7 +4,9 @@ mod axes;
 mod batch;
 mod error;
 mod model;
+mod options;
 mod plan;
+mod protocol;
 mod simulated;
 #[cfg(test)]
 mod tests;
@@ -15,17 +17,10 @@ use std::io;
 use std::sync::Arc;
 use std::time::Duration;
 
-use armctl_controller::yerc::Model;
-use armctl_controller::yerc::files::FileName;
-use armctl_controller::yerc::group::Group;
-use armctl_controller::yerc::query::{Coordinates, Hold, Query};
 use armctl_controller::yerc::recording::{answer_text, request_text};
-use armctl_controller::yerc::request::Request;
-use armctl_controller::yerc::session::{
-    Abort, Counters, Download, DownloadEnd, Ended, Exchange, Ids, Policy, Reply, Upload, UploadEnd, is_busy,
-};
+use armctl_controller::yerc::session::{Abort, Download, Ended, Exchange, Ids, Policy, Upload, is_busy};
 use armctl_controller::yerc::table::service;
-use armctl_controller::yerc::wire::Division;
+use armctl_controller::yerc::wire::{Division, MAX_DATA};
 use armctl_controller::{Risk, Session, Step};
 use armctl_transport::session::client::{Attached, SessionBusy};
 use armctl_transport::tap::Direction;
@@ -36,11 +31,14 @@ pub use self::batch::{Batch, Outcome, ReadError};
 pub use self::error::{Cause, Error, Refusal, RefusedRequest, TransferError};
 pub use self::model::Identity;
 use self::model::ModelSource;
+pub use self::options::{Event, Options, Totals};
+#[doc(inline)]
+pub use self::protocol::*;
 pub use self::simulated::Simulated;
 use self::simulated::channel;
 use self::transport::Transport;
 pub use self::transport::{Endpoint, PORTS};
-use crate::{Grant, NotAuthorized, Plan, STOP_INTERVAL, STOP_TIMEOUT, STOP_TRIES, Watcher};
+use crate::{Grant, LONGEST_TIMEOUT, NotAuthorized, Plan, STOP_INTERVAL, STOP_TIMEOUT, STOP_TRIES, Watcher};
 
 /// Maximum number of frames that are read from the socket after a deadline. A receive buffer of the operating system has
 /// fewer small datagrams.
@@ -50,6 +48,26 @@ const MAX_QUEUED: u32 = 1000;
 ///
 /// The client processes one request at a time. A call may be dropped before its end: the client stays usable, because
 /// the session discards late answers.
+///
+/// ```
+/// use armctl_client::Risk;
+/// use armctl_client::yerc::{Client, Endpoint, Model, Options, ReadJob, SelectJob, Selection, Totals};
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let options = Options { retries: 1, ..Options::auto().with_risk(Risk::Write) };
+/// let mut robot = Client::connect(Endpoint::simulator(Model::Dx200), options).await?;
+/// let model = robot.model().await?;
+/// robot.ask(&SelectJob::new(model, b"TESTJOB", Selection::Execute { line: 0 })?).await?;
+/// let job = robot.ask(&ReadJob::new(model, 0)?).await?;
+/// assert_eq!(job.name.as_bytes(), b"TESTJOB");
+/// let missing = robot.try_ask(&SelectJob::new(model, b"NOSUCH", Selection::Execute { line: 0 })?).await?;
+/// println!("the controller refused: {}", missing.unwrap_err());
+/// let totals: Totals = robot.close().await?;
+/// assert_eq!(totals.exchanges, 3);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug)]
 pub struct Client {
     transport: Transport,
@@ -75,65 +93,6 @@ pub struct Client {
     purpose: Option<&'static str>,
     /// Existing axes of the groups whose axis configuration was read.
     axis_sets: Vec<(Group, Coordinates, AxisSet)>,
-}
-
-/// Settings of a client.
-#[derive(Debug, Clone)]
-pub struct Options {
-    /// Model of the controller. Without a model, the client reads the model when a request depends on it. A simulator
-    /// always uses its own model.
-    pub model: Option<Model>,
-    /// The highest risk that may be sent.
-    pub grant: Grant,
-    /// Time limit of one attempt.
-    pub timeout: Duration,
-    /// Number of retries after a timeout, for a request that changes nothing and for a file block.
-    pub retries: u32,
-}
-
-impl Options {
-    /// Options for this model, read only, with the default limits: 3 s, 3 retries.
-    pub fn new(model: Model) -> Self {
-        Self { model: Some(model), ..Self::auto() }
-    }
-
-    /// Options without a model, read only, with the default limits. The client reads the model from the controller.
-    pub fn auto() -> Self {
-        let Policy { timeout, retries, .. } = Policy::default();
-        Self { model: None, grant: Grant::default(), timeout, retries }
-    }
-
-    /// Authorizes this risk and everything below it.
-    #[must_use]
-    pub fn with_risk(self, risk: Risk) -> Self {
-        Self { grant: Grant::up_to(risk), ..self }
-    }
-}
-
-/// An event of a client, other than a frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Event {
-    /// An exchange or transfer ended. During it, the client received frames that do not belong to its requests.
-    UnexpectedTraffic(Counters),
-    /// A transfer was aborted, and the controller did not confirm the end. The controller may stay busy until its timer
-    /// expires.
-    TransferLeftOpen,
-}
-
-/// Traffic of a client.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Totals {
-    /// Frames sent.
-    pub sent: u64,
-    /// Frames received.
-    pub received: u64,
-    /// Time spent in exchanges and transfers.
-    pub waited: Duration,
-    /// Completed exchanges and transfers.
-    pub exchanges: u32,
-    /// Unexpected events on the link: see [`Counters`].
-    pub disturbances: u64,
 }
 
 /// Size of the receive buffer: larger than the largest frame, so that the client detects an oversized datagram.
@@ -162,6 +121,7 @@ impl Client {
     }
 
     /// Creates a client in a session. The session owns the link and shares it with other clients.
+    #[doc(hidden)]
     pub fn in_session(session: Box<Attached>, options: Options) -> Self {
         Self::release(Transport::Session(session), options)
     }
@@ -176,7 +136,7 @@ impl Client {
         let Options { model, grant, timeout, retries } = options;
         Self {
             transport,
-            policy: Policy::default().with(timeout, retries),
+            policy: Policy::default().with(timeout.min(LONGEST_TIMEOUT), retries),
             ids: Ids::default(),
             grant,
             has_moved: false,
@@ -315,7 +275,7 @@ impl Client {
         let before = self.totals.sent;
         let mut session = Download::new(&request.into(), limit, self.policy, &self.ids);
         if let Some(wait) = first_wait {
-            session = session.with_first_wait(wait);
+            session = session.with_first_wait(wait.min(LONGEST_TIMEOUT));
         }
         let mut bytes = 0;
         let result = self.drive(Division::File, &mut session, |file_request| match file_request {
@@ -433,7 +393,7 @@ impl Client {
         while Instant::now() < until
             && let Some(len) = self.receive(channel, until).await?
         {
-            if let Some(ack) = last.linger(&self.buffer[..len]) {
+            if let Some(ack) = last.linger(self.buffer.get(..len).unwrap_or_default()) {
                 self.send(channel, &ack).await?;
             }
         }
@@ -444,6 +404,9 @@ impl Client {
     /// [`Error::DryRun`].
     async fn prepare(&mut self, request: &Request) -> Result<(), Error> {
         self.authorize(request)?;
+        if request.data.len() > MAX_DATA {
+            return Err(Error::TooLarge { bytes: request.data.len() });
+        }
         if self.is_dry_run() {
             self.plan_next(request)?;
             return Err(Error::DryRun);
@@ -541,10 +504,13 @@ impl Client {
                     {
                         open.answered();
                     }
-                    let again = self.last_download.as_mut().and_then(|last| last.linger(&self.buffer[..len]));
+                    let again = self
+                        .last_download
+                        .as_mut()
+                        .and_then(|last| last.linger(self.buffer.get(..len).unwrap_or_default()));
                     match again {
                         Some(ack) => self.send(channel, &ack).await?,
-                        None => session.handle(now, &self.buffer[..len]),
+                        None => session.handle(now, self.buffer.get(..len).unwrap_or_default()),
                     }
                 }
                 Step::Done(outcome) => {
@@ -570,7 +536,11 @@ impl Client {
         let received = self.transport.receive(channel, &mut self.buffer[..], until).await;
         let Some(len) = received.map_err(|error| self.io_error(channel, error))? else { return Ok(None) };
         self.totals.received += 1;
-        self.watcher.frame(Direction::Received, self.transport.address_pair(channel), &self.buffer[..len]);
+        self.watcher.frame(
+            Direction::Received,
+            self.transport.address_pair(channel),
+            self.buffer.get(..len).unwrap_or_default(),
+        );
         Ok(Some(len))
     }
 

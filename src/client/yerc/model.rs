@@ -7,9 +7,8 @@
 
 use armctl_controller::Risk;
 use armctl_controller::yerc::Model;
-use armctl_controller::yerc::group::Group;
 use armctl_controller::yerc::payload::Text;
-use armctl_controller::yerc::query::{Query as _, ReadSystemInfo, SystemPart};
+use armctl_controller::yerc::query::{Query as _, ReadSystemInfo};
 use armctl_controller::yerc::request::Request;
 use armctl_controller::yerc::session::Reply;
 use armctl_controller::yerc::table::{Availability, service};
@@ -26,6 +25,20 @@ const SYSTEM_INFO: u16 = 0x89;
 const DEFAULT_MODEL: Model = Model::Dx200;
 
 /// Identification of a controller.
+///
+/// ```
+/// use armctl_client::yerc::{Client, Endpoint, Identity, Model, Options, ReadSystemInfo};
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut robot = Client::connect(Endpoint::simulator(Model::Fs100), Options::auto()).await?;
+/// robot.ask(&ReadSystemInfo::FIRST_ROBOT).await?;
+/// let Some(Identity { model, software }) = robot.identity() else { return Err("no identity".into()) };
+/// assert_eq!(*model, Some(Model::Fs100));
+/// println!("{software:?}");
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Identity {
     /// Model to which the software belongs; `None` if unknown.
@@ -135,8 +148,7 @@ impl Client {
 
     /// Reads the identification of the controller.
     async fn ask_model(&mut self) -> Result<Model, Error> {
-        let query =
-            ReadSystemInfo::new(DEFAULT_MODEL, SystemPart::Group(Group::R1)).expect("every model has a first robot");
+        let query = ReadSystemInfo::FIRST_ROBOT;
         let request = query.request();
         if self.is_dry_run() {
             let purpose = self.purpose.take();
@@ -166,7 +178,7 @@ impl Client {
         if request.command != SYSTEM_INFO || !has_version || !reply.status.is_ok() || reply.data.len() < VERSION {
             return;
         }
-        let software = Text::cut(&reply.data[..VERSION]);
+        let software = Text::cut(&reply.data);
         let model = Model::from_software(software.as_bytes());
         if let (Some(model), false) = (model, matches!(self.model_source, ModelSource::Configured(_))) {
             self.model_source = ModelSource::Reported(model);
@@ -209,7 +221,8 @@ const fn is_of_another_range(status: Status) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use armctl_controller::yerc::query::{Coordinates, QueryError, ReadPosition, ReadVariable};
+    use armctl_controller::yerc::group::Group;
+    use armctl_controller::yerc::query::{Coordinates, QueryError, ReadPosition, ReadVariable, SystemPart};
     use armctl_controller::yerc::simulator::Start;
     use armctl_controller::yerc::variables::VariableKind;
 

@@ -22,6 +22,7 @@ const fn division(channel: usize) -> Division {
 
 /// A simulated controller with numbered clients.
 #[derive(Debug)]
+#[doc(hidden)]
 pub struct Simulated(pub Simulator);
 
 impl Service for Simulated {

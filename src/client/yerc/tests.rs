@@ -168,3 +168,30 @@ fn implements_the_error_trait() {
     is_error::<Error>();
     is_error::<Refusal>();
 }
+
+#[tokio::test(start_paused = true)]
+async fn refuses_a_request_that_is_larger_than_a_frame() {
+    let mut dry_run = Client::dry_run(Options::new(MODEL).with_risk(Risk::Motion));
+    let mut client = simulated(Risk::Motion).await;
+    for bytes in [MAX_DATA + 1, 70_000] {
+        let request = Request { data: vec![0; bytes], ..ReadStatus.request() };
+        for client in [&mut client, &mut dry_run] {
+            let error = client.raw(&request).await.unwrap_err();
+            assert!(matches!(error, Error::TooLarge { bytes: found } if found == bytes), "{error}");
+        }
+        dry_run.plan(&request, "a frame that is never sent");
+    }
+    assert_eq!(client.totals.sent, 0);
+}
+
+#[tokio::test(start_paused = true)]
+async fn accepts_the_longest_time_limit() {
+    let options = Options { timeout: Duration::MAX, retries: u32::MAX, ..Options::new(MODEL) };
+    let mut client = Client::connect(Endpoint::simulator(MODEL), options).await.unwrap();
+    assert!(client.ask(&ReadStatus).await.unwrap().servo_on());
+    let take = |_: &[u8]| Ok::<_, Infallible>(());
+    let end = client.download(&list(FileType::Jbi), MAX_FILE, Some(Duration::MAX), take).await.unwrap();
+    assert!(matches!(end, DownloadEnd::Complete { .. }), "{end:?}");
+    client.stop().await.unwrap();
+    client.close().await.unwrap();
+}

@@ -17,6 +17,21 @@ use super::simulated::Simulated;
 use crate::{AddressPair, Plan};
 
 /// Address of a controller.
+///
+/// ```
+/// use armctl_client::yerc::{Client, Endpoint, Options, ReadVariable, Start, Value, VariableKind};
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let start = Start::parse("model = \"yrc1000\"\nvariables = { I7 = -2 }", |_| Err("no files".to_owned()))?;
+/// let endpoint = Endpoint::Simulator { start: Box::new(start), faults: Some("drop=10%".parse()?) };
+/// let mut robot = Client::connect(endpoint, Options::auto()).await?;
+/// assert_eq!(robot.ask(&ReadVariable::new(VariableKind::I, 7)).await?, Value::Integer(-2));
+/// let Endpoint::Udp { host, ports } = Endpoint::udp("192.0.2.10") else { unreachable!() };
+/// assert_eq!((host.as_str(), ports), ("192.0.2.10", [10040, 10041]));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone)]
 pub enum Endpoint {
     /// A controller on the network.
@@ -67,6 +82,7 @@ impl Endpoint {
     }
 
     /// Opens the transport for a session. The session shares the transport between clients.
+    #[doc(hidden)]
     pub async fn open_session_link(self) -> Result<Datagrams, Error> {
         Ok(match self {
             Self::Udp { host, ports } => Datagrams::udp(connect(host, ports).await?),
@@ -100,7 +116,9 @@ impl Transport {
         let loopback = |port| SocketAddr::from(([127, 0, 0, 1], port));
         match self {
             Self::Udp(udp) => (udp.local(channel).unwrap_or(loopback(0)), udp.peer(channel)),
-            Self::Sim(_) | Self::Session(_) | Self::DryRun(_) => (loopback(40000), loopback(PORTS[channel.min(1)])),
+            Self::Sim(_) | Self::Session(_) | Self::DryRun(_) => {
+                (loopback(40000), loopback(PORTS[usize::from(channel > 0)]))
+            }
         }
     }
 

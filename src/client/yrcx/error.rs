@@ -14,6 +14,27 @@ use thiserror::Error;
 use crate::NotAuthorized;
 
 /// Why a request has no usable answer.
+///
+/// ```
+/// use armctl_client::yrcx::{Client, Command, Error, Key, Options, Refusal, Start};
+/// use armctl_client::Risk;
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let start = Start::parse("mode = \"manual\"\nservo = false")?;
+/// let mut robot = Client::simulated(start, Options::default().with_risk(Risk::Motion)).await?;
+/// let go = Command::MovePtp.order().with(Key::Point, 1).with(Key::SpeedPercent, 10).build()?;
+/// match robot.ask(&go).await {
+///     Err(Error::Refused(refusal)) => {
+///         let Refusal { alarm, .. } = *refusal;
+///         println!("refused: {}.{}: {}", alarm.group, alarm.category, alarm.text());
+///     }
+///     Err(Error::OutcomeUnknown { why, .. }) => println!("{why}: the robot may move"),
+///     other => println!("{other:?}"),
+/// }
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -139,6 +160,8 @@ pub enum Error {
 }
 
 /// A refusal of a controller.
+///
+/// Example: [`enum@Error`]
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("the controller refused {}: alarm {alarm}, {}", .order.row().id, .alarm.text())]
 pub struct Refusal {

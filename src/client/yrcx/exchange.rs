@@ -19,6 +19,8 @@ use super::{Client, Event};
 use crate::Reason;
 
 /// Result of a completed command.
+///
+/// Example: [`Client`]
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CompletedCommand {
     /// Data of the answer. The names are those of the fields in the table row of the command (chapter 4 of the manual).
@@ -29,6 +31,22 @@ pub struct CompletedCommand {
 }
 
 /// A whole answer, which may be a refusal.
+///
+/// ```
+/// use armctl_client::yrcx::{Answer, Client, Command, Key, Options, Reply, Start};
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut robot = Client::simulated(Start::default(), Options::default()).await?;
+/// let read = Command::PointGet.order().with(Key::Point, 29_999).build()?;
+/// let Reply { answer, words, .. } = robot.raw(&read).await?;
+/// match answer {
+///     Answer::Done(values) | Answer::Running(values) => println!("{values:?}"),
+///     Answer::Refused { alarm, .. } => println!("refused: {}, status {:#06x}", alarm.text(), words[0]),
+/// }
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reply {
     /// The decoded answer.

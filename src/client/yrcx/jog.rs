@@ -16,7 +16,7 @@ use tokio::time::Instant;
 use super::error::Error;
 use super::event_loop::NO_DEADLINE;
 use super::{Client, CompletedCommand, Transport};
-use crate::Reason;
+use crate::{LONGEST_TIMEOUT, Reason};
 
 /// Maximum number of link errors while the client stops a jog.
 const MAX_LINK_ERRORS: u32 = 100;
@@ -100,7 +100,7 @@ impl Client {
     async fn run_for(&mut self, time: Option<Duration>) -> Result<(), Error> {
         while let Some(exchange) = &self.exchange {
             let until = match time.zip(exchange.sent()) {
-                Some((time, sent)) => self.started + sent + time,
+                Some((time, sent)) => self.started + sent + time.min(LONGEST_TIMEOUT),
                 None => Instant::now() + NO_DEADLINE,
             };
             if Instant::now() >= until {

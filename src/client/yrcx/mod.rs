@@ -8,12 +8,14 @@
 //! Any [`ImageLink`] works: EtherNet/IP, DeviceNet, PROFIBUS, a session, or a simulator in this process.
 
 mod continuous_output;
+mod eip;
 mod error;
 mod event_loop;
 mod exchange;
 mod general_words;
 mod jog;
 mod plan;
+mod protocol;
 mod session_rules;
 mod shared;
 mod signals;
@@ -25,26 +27,43 @@ mod tests;
 use std::time::Duration;
 
 use armctl_controller::Risk;
-use armctl_controller::yrcx::alarm::Alarm;
-use armctl_controller::yrcx::answer::Status;
-use armctl_controller::yrcx::image::{Image, Output, Words};
-use armctl_controller::yrcx::sequence::{self, Sequence};
+use armctl_controller::yrcx::image::Output;
+use armctl_controller::yrcx::sequence::Sequence;
 use armctl_controller::yrcx::session::{Exchange, Outcome, Policy};
 use armctl_controller::yrcx::signal::resting;
-use armctl_controller::yrcx::simulator::Start;
-use armctl_controller::yrcx::table::Command;
-use armctl_transport::image::{ImageLink, LinkError, Traffic};
 use tokio::time::Instant;
 
+pub use self::eip::{EIP_PORT, open_eip};
 pub use self::error::{Error, Refusal};
 pub use self::exchange::{CompletedCommand, Reply};
 pub use self::plan::hex;
+#[doc(inline)]
+pub use self::protocol::*;
 pub use self::session_rules::open_session_link;
 pub use self::simulated::Simulated;
 pub use self::stop::StopResult;
-use crate::{Grant, Plan, STOP_TIMEOUT, Watcher};
+use crate::{Grant, LONGEST_TIMEOUT, Plan, STOP_TIMEOUT, Watcher};
 
 /// A connection to one controller. The client must stay on one thread, because fieldbus links must too.
+///
+/// ```
+/// use armctl_client::yrcx::{Client, Command, CompletedCommand, Key, Options, Procedure, Start, Totals, output};
+/// use armctl_client::Risk;
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let options = Options { retries: 0, ..Options::default().with_risk(Risk::Motion) };
+/// let mut robot = Client::simulated(Start::default(), options).await?;
+/// robot.run_procedure(Procedure::power_on()).await?;
+/// assert!(output::SERVO_ON.is_on(&robot.input_image().await?));
+/// let read = Command::PointGet.order().with(Key::Point, 1).build()?;
+/// let CompletedCommand { values, .. } = robot.ask(&read).await?;
+/// println!("X is {:?}", values.millimetres(Key::Axis1));
+/// let totals: Totals = robot.close().await?;
+/// assert_eq!(totals.commands, 1);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent state")]
 pub struct Client {
@@ -100,6 +119,8 @@ enum Transport {
 }
 
 /// Settings of a client.
+///
+/// Example: [`Client`]
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Whether the client may send commands to the controller. If not, the client only monitors the signals.
@@ -134,6 +155,8 @@ impl Options {
 }
 
 /// An event of a client.
+///
+/// Example: [`Watcher`]
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub enum Event {
@@ -176,6 +199,8 @@ pub enum Event {
 }
 
 /// Activity of a client.
+///
+/// Example: [`Client`]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Totals {
     /// Remote commands sent.
@@ -240,6 +265,7 @@ impl Client {
 
     fn new(transport: Transport, size: usize, options: Options) -> Self {
         let Options { commands, is_held, grant, timeout, retries } = options;
+        let timeout = timeout.min(LONGEST_TIMEOUT);
         let policy = Policy {
             ready: timeout,
             accept: timeout,

@@ -100,6 +100,7 @@ fn fields(order: &Order) -> Vec<ReadableField> {
 }
 
 /// Formats words as text, for example `0x0604`.
+#[doc(hidden)]
 pub fn hex(words: &[u16]) -> Vec<String> {
     words.iter().map(|word| format!("0x{word:04X}")).collect()
 }

@@ -14,6 +14,7 @@ use super::Error;
 ///
 /// # Errors
 /// [`Error::Silent`] without an image.
+#[doc(hidden)]
 pub async fn open_session_link(link: ImageLink, commands: bool, until: Instant) -> Result<Images, Error> {
     let size = link.output_size();
     let has_commands = Image::has_commands(size);

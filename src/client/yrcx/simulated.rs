@@ -8,6 +8,7 @@ use armctl_transport::image::ImagePeer;
 
 /// A simulated controller.
 #[derive(Debug)]
+#[doc(hidden)]
 pub struct Simulated(pub Simulator);
 
 impl Simulated {

@@ -16,6 +16,17 @@ use super::{Client, Event};
 use crate::STOP_TIMEOUT;
 
 /// What a stop ended.
+///
+/// ```
+/// use armctl_client::yrcx::{Client, Options, Start, StopResult};
+///
+/// # #[tokio::main(flavor = "current_thread", start_paused = true)]
+/// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let mut robot = Client::simulated(Start::default(), Options::default()).await?;
+/// assert_eq!(robot.stop().await?, StopResult::Nothing, "this client moved nothing");
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub enum StopResult {
     /// No motion was sent, so there was nothing to stop.

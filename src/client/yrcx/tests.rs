@@ -286,3 +286,25 @@ fn implements_the_error_trait() {
     is_error::<Error>();
     is_error::<Refusal>();
 }
+
+#[tokio::test(start_paused = true)]
+async fn accepts_the_longest_time_limit() {
+    let options = Options { timeout: Duration::MAX, retries: u32::MAX, ..Options::default() };
+    let mut client = Client::simulated(Start::default(), options.with_risk(Risk::Motion)).await.unwrap();
+    assert!(output::SERVO_ON.is_on(&client.input_image().await.unwrap()));
+    client.ask(&point(1)).await.unwrap();
+    client.run_procedure(Procedure::power_on()).await.unwrap();
+    client.close().await.unwrap();
+}
+
+#[test]
+fn a_quantity_fits_only_a_field_of_its_unit() {
+    use crate::units::{Millimetres, MillimetresPerSecond, Percent, Pulses};
+    let go = || Command::MovePtp.order().with(Key::Point, 1);
+    let exact = go().with(Key::SpeedPercent, 50).build();
+    assert_eq!(go().with(Key::SpeedPercent, Percent::from(50)).build(), exact);
+    assert!(go().with(Key::SpeedPercent, Percent::from_steps(5_050)).build().is_err(), "50.5 %");
+    assert!(go().with(Key::SpeedPercent, MillimetresPerSecond::from(50)).build().is_err());
+    assert!(go().with(Key::Point, Millimetres::from(1)).build().is_err());
+    assert!(go().with(Key::Point, Pulses::from(1)).build().is_err());
+}

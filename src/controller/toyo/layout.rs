@@ -5,6 +5,7 @@ use std::ops::Range;
 use thiserror::Error;
 
 use super::field::{Field, FieldError, Form, Mask, Value};
+use crate::units::Millimetres;
 
 /// A text with fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,7 +91,7 @@ impl Layout {
         if let (true, [Value::Text(found)]) = (*self == UNLISTED, values) {
             return Err(LayoutProblem::Unlisted { found: found.clone() });
         }
-        self.join(|index, field| Ok(field.emit(&values[index])?))
+        self.join(values, |field, value| Ok(field.emit(value)?))
     }
 
     /// Formats the known values, and writes `?` for the others. Each known value must be in format and in range.
@@ -98,7 +99,7 @@ impl Layout {
         if values.len() != self.fields.len() {
             return Err(LayoutProblem::Count { expected: self.fields.len(), found: values.len() });
         }
-        self.join(|index, field| match &values[index] {
+        self.join(values, |field, value| match value {
             Some(value) => Ok(field.emit(value)?),
             None => Ok("?".to_owned()),
         })
@@ -169,16 +170,23 @@ impl Layout {
         }
     }
 
-    /// Joins words and fields; `write` formats a field.
-    fn join(
+    /// A record of values whose number may also be wrong. [`Record::emit`] then fails.
+    pub(super) fn unchecked(&self, values: Vec<Value>) -> Record {
+        Record { layout: *self, values }
+    }
+
+    /// Joins words and fields; `write` formats the value of a field.
+    fn join<V>(
         &self,
-        mut write: impl FnMut(usize, &Field) -> Result<String, LayoutProblem>,
+        values: &[V],
+        mut write: impl FnMut(&Field, &V) -> Result<String, LayoutProblem>,
     ) -> Result<String, LayoutProblem> {
         let mut text = String::with_capacity(self.text.len() + 8 * self.fields.len());
-        for (index, words) in self.text.split("{}").enumerate() {
+        let mut fields = self.fields.iter().zip(values);
+        for words in self.text.split("{}") {
             text.push_str(words);
-            if let Some(field) = self.fields.get(index) {
-                text.push_str(&write(index, field)?);
+            if let Some((field, value)) = fields.next() {
+                text.push_str(&write(field, value)?);
             }
         }
         Ok(text)
@@ -236,8 +244,9 @@ impl Record {
     /// Replaces the value of a field. Has no effect if the layout does not have this field.
     #[must_use]
     pub fn with(mut self, name: &str, value: Value) -> Self {
-        if let Some(index) = self.layout.fields.iter().position(|field| field.name == name) {
-            self.values[index] = value;
+        let mut fields = self.layout.fields.iter().zip(&mut self.values);
+        if let Some((_, own)) = fields.find(|(field, _)| field.name == name) {
+            *own = value;
         }
         self
     }
@@ -250,6 +259,15 @@ impl Record {
     /// Value of a number field by name, in units of its last decimal.
     pub fn number(&self, name: &str) -> Option<i32> {
         if let Value::Number(number) = self.value(name)? { Some(*number) } else { None }
+    }
+
+    /// Value of a number field in millimetres by name, for example `x` of a position.
+    pub fn millimetres(&self, name: &str) -> Option<Millimetres> {
+        let (field, value) = self.pairs().find(|(field, _)| field.name == name)?;
+        let (Form::Number(number), Value::Number(units)) = (field.form, value) else { return None };
+        let steps_per_mm = 10_i32.pow(Millimetres::UNIT.decimals.into());
+        let steps = units.checked_mul(steps_per_mm.checked_div(number.scale())?)?;
+        (steps_per_mm % number.scale() == 0).then_some(Millimetres::from_steps(steps))
     }
 
     /// Value of a word field by name, as the protocol spells it.
@@ -284,8 +302,7 @@ impl Record {
 
     /// Formats the record without a range check, for answers of a controller.
     pub fn written(&self) -> String {
-        let write = |index: usize, field: &Field| Ok(field.written(&self.values[index]));
-        self.layout.join(write).unwrap_or_default()
+        self.layout.join(&self.values, |field, value| Ok(field.written(value))).unwrap_or_default()
     }
 }
 

@@ -91,23 +91,20 @@ impl Request {
     /// A request in a certain form of a command.
     pub fn in_form(command: Command, form: usize, values: Vec<Value>) -> Result<Self, LayoutProblem> {
         let row = command.row();
-        let record = row.requests[form].record(values)?;
+        let no_form = LayoutProblem::Count { expected: 0, found: values.len() };
+        let record = row.requests.get(form).ok_or(no_form)?.record(values)?;
         record.emit()?;
         Ok(Self { row, record })
     }
 
-    /// A request with constant values.
-    ///
-    /// # Panics
-    /// If the values do not fit the command. Any test of the caller would find this.
+    /// A request in the first form of a command, with constant values. If they do not fit the command, [`Self::check`]
+    /// refuses the request, so that it is never sent.
     pub fn of<const N: usize>(command: Command, values: [Value; N]) -> Self {
-        Self::new(command, values.into()).expect("the caller's values fit")
+        let row = command.row();
+        Self { row, record: row.requests.first().unwrap_or(&UNLISTED).unchecked(values.into()) }
     }
 
-    /// A request without fields.
-    ///
-    /// # Panics
-    /// If the command has fields. Any test of the caller would find this.
+    /// A request without fields, like [`Self::of`].
     pub fn bare(command: Command) -> Self {
         Self::of(command, [])
     }

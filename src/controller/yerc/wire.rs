@@ -164,7 +164,6 @@ impl Header {
 
     /// Encodes a frame with an empty sub-header.
     fn emit(self, data: &[u8]) -> Vec<u8> {
-        assert!(data.len() <= MAX_DATA, "a frame can have {MAX_DATA} data bytes, not {}", data.len());
         let mut frame = vec![0; HEADER_LEN + data.len()];
         frame[field::IDENTIFIER].copy_from_slice(IDENTIFIER);
         frame[field::HEADER_SIZE].copy_from_slice(&le16(HEADER_LEN));
@@ -220,10 +219,7 @@ impl<'a> RequestFrame<'a> {
         })
     }
 
-    /// Encodes the datagram.
-    ///
-    /// # Panics
-    /// If `data` is longer than [`MAX_DATA`]. The callers build only data that fits.
+    /// Encodes the datagram. With more data than [`MAX_DATA`], no controller accepts it.
     pub fn emit(&self) -> Vec<u8> {
         let Self { division, ack, id, block, .. } = *self;
         let mut frame = Header { division, ack, id, block }.emit(self.data);
@@ -303,10 +299,7 @@ impl<'a> AnswerFrame<'a> {
         })
     }
 
-    /// Encodes the datagram.
-    ///
-    /// # Panics
-    /// If `data` is longer than [`MAX_DATA`].
+    /// Encodes the datagram. With more data than [`MAX_DATA`], no client accepts it.
     pub fn emit(&self) -> Vec<u8> {
         let Self { division, ack, id, block, .. } = *self;
         let mut frame = Header { division, ack, id, block }.emit(self.data);
@@ -330,9 +323,9 @@ fn array<const N: usize>(bytes: &[u8], range: Range<usize>) -> [u8; N] {
     out
 }
 
-/// Encodes a size. The size is at most 511, so it always fits.
+/// Encodes a size. The size of a valid frame is at most 511.
 fn le16(size: usize) -> [u8; 2] {
-    u16::try_from(size).expect("frame sizes are at most 511").to_le_bytes()
+    u16::try_from(size).unwrap_or(u16::MAX).to_le_bytes()
 }
 
 #[cfg(test)]

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::units::{Millimetres, MillimetresPerSecond, Percent, Pulses};
+
 /// Declares the keys with their names.
 macro_rules! keys {
     ($($key:ident $name:literal,)*) => {
@@ -202,6 +204,19 @@ impl From<String> for Value {
     }
 }
 
+/// Declares conversions of quantities. The text has the unit, so that a field with another unit refuses it.
+macro_rules! from_quantities {
+    ($($quantity:ident)*) => {$(
+        impl From<$quantity> for Value {
+            fn from(quantity: $quantity) -> Self {
+                Self::Text(quantity.short())
+            }
+        }
+    )*};
+}
+
+from_quantities! { Millimetres MillimetresPerSecond Percent Pulses }
+
 /// Values by key, in word order. Numbers are raw. Pulses, percent and mm/s are integers; mm and degrees are in
 /// thousandths; percent of the maximum is in hundredths. [`Field::show`](super::table::Field::show) formats them.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -219,6 +234,12 @@ impl Values {
             Value::Int(number) => Some(*number),
             Value::Real(_) | Value::Text(_) => None,
         }
+    }
+
+    /// A length, for example a linear axis; `None` in a position in pulses.
+    pub fn millimetres(&self, key: Key) -> Option<Millimetres> {
+        let is_in_pulses = self.int(Key::Unit) == Some(0);
+        self.int(key).filter(|_| !is_in_pulses).map(Millimetres::from_steps)
     }
 
     /// The text of a key.

@@ -15,6 +15,7 @@ use fastrand::Rng;
 use thiserror::Error;
 
 /// Declares the faults of a simulated device. Columns: variant, name, effect.
+#[cfg(feature = "fieldbus")]
 macro_rules! device_faults {
     ($(#[$doc:meta])* $device:ident { $($fault:ident $name:literal $effect:literal,)* }) => {
         $(#[$doc])*
@@ -31,6 +32,7 @@ macro_rules! device_faults {
 }
 
 pub use datagram::{FaultSpec, Faults};
+#[cfg(feature = "fieldbus")]
 pub(crate) use device_faults;
 pub use line::{FaultedCharacters, LineFaultSpec, LineFaults};
 

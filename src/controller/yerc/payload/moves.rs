@@ -1,7 +1,8 @@
 //! Data of move instructions (FS and DX 3.3.39, 3.3.40).
 
-use super::position::{ExtendedForm, Form, PositionKind};
+use super::position::{ExtendedForm, Form, Pose, PositionKind};
 use super::reader::{PayloadError, Reader, push_u32s, push_words};
+use crate::units::{DegreesPerSecond, MillimetresPerSecond, Percent, Pulses};
 
 /// Unit of the speed word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -35,6 +36,29 @@ impl SpeedClass {
             Self::Angular => 2,
             Self::Other(word) => word,
         }
+    }
+}
+
+/// Speed of a move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Speed {
+    /// Share of the maximum speed, for link moves.
+    Percent(Percent),
+    /// For straight moves.
+    Linear(MillimetresPerSecond),
+    /// For straight moves whose speed is a rotation.
+    Angular(DegreesPerSecond),
+}
+
+impl Speed {
+    /// Class and speed word. A negative speed becomes 0, which no move accepts.
+    fn words(self) -> (SpeedClass, u32) {
+        let (class, steps) = match self {
+            Self::Percent(speed) => (SpeedClass::Percent, speed.steps()),
+            Self::Linear(speed) => (SpeedClass::Linear, speed.steps()),
+            Self::Angular(speed) => (SpeedClass::Angular, speed.steps()),
+        };
+        (class, u32::try_from(steps).unwrap_or_default())
     }
 }
 
@@ -92,6 +116,28 @@ pub struct CartesianMove {
 }
 
 impl CartesianMove {
+    /// A move of a robot, numbered from 1, with tool 0, user coordinate 0, form 0, and without base and station axes.
+    /// Change the other fields as needed: `CartesianMove { tool: 2, ..CartesianMove::of_robot(..) }`.
+    pub fn of_robot(robot: u32, coordinate: PositionKind, target: Pose, speed: Speed) -> Self {
+        let (class, speed) = speed.words();
+        Self {
+            layout: MoveLayout::default(),
+            robot,
+            station: 0,
+            class,
+            speed,
+            coordinate,
+            target: target.steps(),
+            reserved: [0; 2],
+            form: Form(0),
+            extended: ExtendedForm(0),
+            tool: 0,
+            user: 0,
+            base: [0; 3],
+            station_axes: [0; 6],
+        }
+    }
+
     /// Parses either layout. The size of the data distinguishes the layouts.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {
         let layout = if data.len() < MoveLayout::Words26.size() { MoveLayout::Words25 } else { MoveLayout::Words26 };
@@ -158,6 +204,14 @@ pub struct PulseMove {
 impl PulseMove {
     /// Size in bytes: 22 words.
     pub const SIZE: usize = 88;
+
+    /// A move of a robot, numbered from 1, with tool 0 and without base and station axes. Change the other fields as
+    /// needed: `PulseMove { tool: 2, ..PulseMove::of_robot(..) }`.
+    pub fn of_robot(robot: u32, axes: [Pulses; 8], speed: Speed) -> Self {
+        let (class, speed) = speed.words();
+        let axes = axes.map(Pulses::steps);
+        Self { robot, station: 0, class, speed, axes, tool: 0, base: [0; 3], station_axes: [0; 6] }
+    }
 
     /// Parses the data, which must have at least 88 bytes.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {

@@ -2,7 +2,7 @@
 
 use super::axes::{Axes, MAX_AXES};
 use super::reader::{PayloadError, Reader, push_u32s};
-use crate::units::{self, Unit};
+use crate::units::{self, Degrees, Millimetres, Pulses, Unit};
 use crate::yerc::table::{EXTENDED_FORM_BITS, FORM_BITS};
 
 /// Coordinate system of a position.
@@ -93,6 +93,33 @@ flag_word! {
     ExtendedForm, EXTENDED_FORM_BITS
 }
 
+/// Position and rotation of a tool.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Pose {
+    /// X.
+    pub x: Millimetres,
+    /// Y.
+    pub y: Millimetres,
+    /// Z.
+    pub z: Millimetres,
+    /// Rotation Tx, which the pendant shows as Rx.
+    pub tx: Degrees,
+    /// Rotation Ty.
+    pub ty: Degrees,
+    /// Rotation Tz.
+    pub tz: Degrees,
+}
+
+impl Pose {
+    /// Protocol words: X, Y, Z, Tx, Ty, Tz.
+    pub(super) fn steps(self) -> [i32; 6] {
+        let ([x, y, z], [tx, ty, tz]) = ([self.x, self.y, self.z], [self.tx, self.ty, self.tz]);
+        let [x, y, z] = [x, y, z].map(Millimetres::steps);
+        let [tx, ty, tz] = [tx, ty, tz].map(Degrees::steps);
+        [x, y, z, tx, ty, tz]
+    }
+}
+
 /// A robot position: 13 words, or fewer words if the controller omits missing axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Position {
@@ -113,6 +140,20 @@ pub struct Position {
 impl Position {
     /// Size of all 13 words in bytes.
     pub const SIZE: usize = 52;
+
+    /// Pulses of the existing axes; `None` for a position in coordinates.
+    pub fn pulses(&self) -> Option<Vec<Pulses>> {
+        let axes = self.axes.as_slice().iter().copied().map(Pulses::from_steps);
+        (self.kind == PositionKind::Pulse).then(|| axes.collect())
+    }
+
+    /// Position and rotation; `None` for a position in pulses, or with fewer than six axes.
+    pub fn pose(&self) -> Option<Pose> {
+        let [x, y, z, tx, ty, tz] = *self.axes.as_slice().first_chunk()?;
+        let [x, y, z] = [x, y, z].map(Millimetres::from_steps);
+        let [tx, ty, tz] = [tx, ty, tz].map(Degrees::from_steps);
+        self.kind.is_cartesian().then_some(Pose { x, y, z, tx, ty, tz })
+    }
 
     /// Parses five words and all following axes.
     pub fn parse(data: &[u8]) -> Result<Self, PayloadError> {

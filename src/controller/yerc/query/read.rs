@@ -283,6 +283,9 @@ read_all! {
 }
 
 impl ReadSystemInfo {
+    /// Information of the first robot, which every model has.
+    pub const FIRST_ROBOT: Self = Self { instance: counter_offset(Group::R1) };
+
     /// Accepts any part except bases, because bases have no system information.
     pub fn new(model: Model, part: SystemPart) -> Result<Self, QueryError> {
         let instance = match part {

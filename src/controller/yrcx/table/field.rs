@@ -378,17 +378,21 @@ impl Field {
         }
     }
 
-    /// Parses user input: a number in the unit of the field, the name of a choice, or a list of axes such as `1,3`. A
+    /// Parses user input: a number in the unit of the field, with or without its symbol, the name of a choice, or a list of axes such as `1,3`. A
     /// variable is typed as in `SGI5`, a point as in `P19`. The complete command is validated later.
     pub fn parse(&self, text: &str) -> Result<Value, String> {
         // In robot programs, point 19 is written P19. The same form is accepted here.
         let is_point = matches!(self.key, Key::Point | Key::Point2 | Key::FirstPoint);
         let number = text.strip_prefix(['P', 'p']).filter(|number| number.bytes().all(|byte| byte.is_ascii_digit()));
         let text = number.filter(|_| is_point).unwrap_or(text);
+        let without_symbol = match self.symbol() {
+            "" => text,
+            symbol => text.strip_suffix(symbol).map_or(text, |number| number.trim_end_matches(' ')),
+        };
         let whole = |text: &str| PLAIN.parse(text).map(Value::Int).map_err(|error| plain(&error));
         let number = |unit: Unit| match unit.symbol {
             "" => whole(text),
-            _ => unit.parse(text).map(Value::Int).map_err(|error| error.to_string()),
+            _ => unit.parse(without_symbol).map(Value::Int).map_err(|error| error.to_string()),
         };
         match self.form {
             Form::Bits { show, .. } => match show {
