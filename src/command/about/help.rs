@@ -125,8 +125,9 @@ pub fn text(words: &[String], color: bool, root: fn() -> Command) -> Result<Stri
     let mut text = shown(page::page(&root, &path, true));
     if words.is_empty() {
         text.push_str("\nTopics (armctl help TOPIC):\n");
+        let width = topics().map(|(name, _)| name.len()).max().unwrap_or_default();
         for (name, about) in topics() {
-            text.push_str(&format!("  {name:<12} {about}\n"));
+            text.push_str(&format!("  {name:<width$}  {about}\n"));
         }
     }
     Ok(text)
