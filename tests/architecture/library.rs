@@ -202,6 +202,10 @@ fn statements(code: &str, indent: usize) -> Vec<Statement> {
     let begins = |line: &str| {
         line.len() > indent && line[..indent].trim().is_empty() && !line[indent..].starts_with([' ', '}', ')'])
     };
+    let ends = |head: &str, line: &str| {
+        let is_use = head.starts_with("use ") || head.starts_with("pub use ");
+        if is_use { line.ends_with(';') } else { line.ends_with(['{', ';', '}', ']', ',']) }
+    };
     let mut all = Vec::new();
     let mut attributes = String::new();
     let mut at = 0;
@@ -223,7 +227,7 @@ fn statements(code: &str, indent: usize) -> Vec<Statement> {
                 }
             }
             head = format!("{head} {line}").trim().to_owned();
-            if at >= lines.len() || depth == 0 && line.ends_with(['{', ';', '}', ']', ',']) {
+            if at >= lines.len() || depth == 0 && ends(&head, line) {
                 break;
             }
         }
@@ -353,6 +357,10 @@ fn declared_by_macros(file: &Source) -> Vec<String> {
 #[test]
 fn lists_declarations() {
     let code = "\
+pub use armctl_controller::yerc::query::{
+    Query, ReadStatus, Selection,
+};
+
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub enum Error {
@@ -410,7 +418,29 @@ mod tests {
     pub struct InTests;
 }
 ";
-    let file = Source::new("client/yerc/x.rs", code);
+    let protocol = "\
+macro_rules! order {
+    ($name:ident) => {
+        pub struct $name;
+    };
+}
+order! {
+    ReadStatus, 0x72
+}
+pub trait Query {
+    type Answer;
+}
+pub enum Selection {
+    Execute { line: u32 },
+    Master,
+}
+impl Selection {
+    pub fn line(self) -> u32 {
+        0
+    }
+}
+";
+    let files = [("client/yerc/x.rs", code), ("controller/yerc/query/read.rs", protocol)];
     let expected = "\
 release VERSION
 yerc: Client.pub totals: Totals
@@ -420,13 +450,18 @@ yerc: Error.NoAnswer { waited: Duration, }
 yerc: Error.Refused( Refusal)
 yerc: Error: Clone
 yerc: Error: Debug
+yerc: ReadStatus, by a macro
+yerc: Selection::fn line(self) -> u32
 yerc: Watcher::fn frame(&mut self)
 yerc: enum Error { .. }
+yerc: enum Selection { Execute { line: u32 }, Master }
 yerc: impl<E> Watcher<E> for () {}
 yerc: struct Client { .. }
 yerc: struct Id(_, pub u8)
 yerc: struct Options { pub retries: u32, pub timeout: Option<Duration> }
+yerc: trait Query { type Answer }
 yerc: trait Watcher<E> { fn event(&mut self, event: E) }
 ";
-    assert_eq!(listing(&[file]), expected.replace("VERSION", env!("CARGO_PKG_VERSION")));
+    let files = files.map(|(name, text)| Source::new(name, text));
+    assert_eq!(listing(&files), expected.replace("VERSION", env!("CARGO_PKG_VERSION")));
 }
