@@ -1,4 +1,4 @@
-//! Protocols of the controllers, without I/O.
+//! Protocols of the controllers, without I/O. Applications use `armctl-client`: this crate can change in each version.
 //!
 //! Nothing here opens a socket, reads a clock or uses the command line. A session is a state machine: it receives time
 //! and bytes and returns the next step. A driver outside of this module moves the bytes. Because of this, the same

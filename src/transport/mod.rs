@@ -1,6 +1,7 @@
 //! Transports: they carry bytes or images without interpreting them.
 //!
-//! Transports and controllers do not depend on each other.
+//! Transports and controllers do not depend on each other. Applications use `armctl-client`: this crate can change in each
+//! version.
 
 #[cfg(feature = "fieldbus")]
 mod bytes;

@@ -35,7 +35,7 @@ pub async fn check(robot: &Robot, access: Access, screen: &Screen) -> Result<Vec
         }
     }
     if held && image.is_none() && layers.is_passed() {
-        match through_session(robot, access, screen).await {
+        match Box::pin(through_session(robot, access, screen)).await {
             Err(failure) => layers.fail(last, &failure),
             Ok(seen) => {
                 layers.ok(last, "read through the session");

@@ -4,6 +4,7 @@
 
 mod concepts;
 mod generated;
+mod library;
 mod loopback;
 mod module_cycles;
 mod old_files;

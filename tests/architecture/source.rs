@@ -85,7 +85,7 @@ fn is_word(c: char) -> bool {
 }
 
 /// Splits a `use` tree: `a::{b, c::{d}}` becomes `a::b` and `a::c::d`.
-fn expand_tree(tree: &str, prefix: &str, take: &mut impl FnMut(&str)) {
+pub fn expand_tree(tree: &str, prefix: &str, take: &mut impl FnMut(&str)) {
     let tree = tree.trim();
     let Some(open) = tree.find('{') else {
         let path = tree.split(" as ").next().unwrap_or_default();

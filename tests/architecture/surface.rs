@@ -157,7 +157,7 @@ fn is_constant(value: &str) -> bool {
 }
 
 /// Whether a change between these versions may break: the first number is another, or the second one before 1.0.
-fn is_next_major(old: &str, new: &str) -> bool {
+pub fn is_next_major(old: &str, new: &str) -> bool {
     let numbers = |version: &str| -> Vec<u64> { version.split('.').filter_map(|number| number.parse().ok()).collect() };
     let (old, new) = (numbers(old), numbers(new));
     let count = if old.first() == Some(&0) { 2 } else { 1 };
@@ -165,7 +165,7 @@ fn is_next_major(old: &str, new: &str) -> bool {
 }
 
 /// Version in the first line of a surface.
-fn version(surface: &str) -> &str {
+pub fn version(surface: &str) -> &str {
     surface.lines().find_map(|line| line.strip_prefix("release ")).unwrap_or("0.0.0")
 }
 

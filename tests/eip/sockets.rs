@@ -4,6 +4,7 @@ use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use armctl_client::yrcx::{Client as Robot, Options, Start, open_eip, output};
 use armctl_transport::eip::adapter::server::{AdapterAddresses, Server};
 use armctl_transport::eip::adapter::{AdapterFault, Setup};
 use armctl_transport::eip::client::Client;
@@ -17,7 +18,7 @@ use armctl_transport::eip::scanner::Scanner;
 use armctl_transport::eip::settings::{Multiplier, Settings};
 use armctl_transport::eip::tap::Tap;
 use armctl_transport::eip::wire::Status;
-use armctl_transport::fault::{FaultSpec, Faults};
+use armctl_transport::fault::{FaultSpec, Faults, SimulatorFaults};
 
 use super::world::{MS, Mirror, identity, resting, setup, with_long_timeout};
 
@@ -264,4 +265,16 @@ async fn probe_finds_instances_and_sizes() {
     // The probe opened no connection, not even for a short time.
     assert_eq!(server.with(|adapter, _| adapter.application().events.clone()), []);
     client.close().await;
+}
+
+#[tokio::test]
+async fn the_library_connects_to_a_controller() {
+    let faults = SimulatorFaults { link: None, device: None };
+    let addresses = AdapterAddresses::anywhere(LOOPBACK);
+    let server = armctl_yrcx::eip::simulated::serve(Start::default(), addresses, faults).unwrap();
+    let link = open_eip("127.0.0.1", server.address().port()).await.unwrap();
+    // On a busy machine, the connection can be lost, and opens again.
+    let options = Options { timeout: Duration::from_secs(60), ..Options::default() };
+    let mut robot = Robot::connect(link, options).await.unwrap();
+    assert!(output::CPU_OK.is_on(&robot.input_image().await.unwrap()));
 }

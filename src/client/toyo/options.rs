@@ -9,7 +9,7 @@ use crate::Grant;
 
 /// Settings of a client.
 ///
-/// Example: [`Client`]
+/// Example: [`Client`](super::Client)
 #[derive(Debug, Clone)]
 pub struct Options {
     /// The highest risk that may be sent.
@@ -67,7 +67,7 @@ pub enum Event {
 
 /// Line statistics.
 ///
-/// Example: [`Client`]
+/// Example: [`Client`](super::Client)
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Totals {
     /// Blocks sent and received, and errors.

@@ -10,7 +10,7 @@ use crate::Grant;
 
 /// Settings of a client.
 ///
-/// Example: [`Client`]
+/// Example: [`Client`](super::Client)
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Model of the controller. Without a model, the client reads the model when a request depends on it. A simulator
@@ -58,7 +58,7 @@ pub enum Event {
 
 /// Traffic of a client.
 ///
-/// Example: [`Client`]
+/// Example: [`Client`](super::Client)
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Totals {
     /// Frames sent.

@@ -117,7 +117,7 @@ impl Transport {
         match self {
             Self::Udp(udp) => (udp.local(channel).unwrap_or(loopback(0)), udp.peer(channel)),
             Self::Sim(_) | Self::Session(_) | Self::DryRun(_) => {
-                (loopback(40000), loopback(PORTS[usize::from(channel > 0)]))
+                (loopback(40000), loopback(if channel == 0 { PORTS[0] } else { PORTS[1] }))
             }
         }
     }

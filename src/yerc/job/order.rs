@@ -131,7 +131,7 @@ impl<'t> Follower<'t> {
             match named(Role::Word) {
                 Some("END" | "RET") if !has_condition => return,
                 Some("CALL") => {
-                    self.order.lines[index].is_open_call = named(Role::Call).is_some_and(|name| !self.call(name))
+                    self.order.lines[index].is_open_call = named(Role::Call).is_some_and(|name| !self.call(name));
                 }
                 Some("JUMP") => {
                     if let Some(name) = named(Role::Start) {
