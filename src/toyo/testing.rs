@@ -280,7 +280,7 @@ pub(super) fn without_robot(words: &[&str]) -> Result<(Value, Option<Failure>), 
 }
 
 fn runtime() -> tokio::runtime::Runtime {
-    tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime")
+    tokio::runtime::Builder::new_current_thread().enable_time().start_paused(true).build().expect("a runtime")
 }
 
 /// The family.

@@ -97,7 +97,7 @@ impl Bench {
     /// Creates a bench for the simulator of a URL.
     pub(super) fn new(target: &str) -> Self {
         let runtime =
-            tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
+            tokio::runtime::Builder::new_current_thread().enable_time().start_paused(true).build().expect("a runtime");
         let (robot, _) = resolve_robot(target, &["status"]).expect("a robot");
         let link = runtime.block_on(Yerc::connect(&robot, unlimited_access(), &quiet())).expect("a link");
         Self { runtime, robot, link }

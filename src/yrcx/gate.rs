@@ -415,7 +415,7 @@ impl<P: ImagePeer> ImagePeer for RecordingPeer<P> {
 
 impl Bench {
     fn new() -> Self {
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().unwrap();
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_time().start_paused(true).build().unwrap();
         let (simulated, _) = resolved("sim:", &["status"]).unwrap();
         let shown = Arc::default();
         let peer = RecordingPeer(

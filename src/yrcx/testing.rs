@@ -230,7 +230,7 @@ impl Bench {
 
     fn bench_with(scripted: Scripted, grant: Risk, end: impl FnOnce(Handle) -> Box<dyn ImagePeer>) -> Self {
         let runtime =
-            tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().expect("a runtime");
+            tokio::runtime::Builder::new_current_thread().enable_time().start_paused(true).build().expect("a runtime");
         let (robot, _) = resolved("sim:", &["status"]).expect("a robot");
         let peer = SharedController::new(scripted.into());
         let access = Access { grant: Grant::up_to(grant), ..Access::reading(ConnectMode::Control) };

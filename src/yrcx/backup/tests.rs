@@ -24,7 +24,7 @@ impl Workspace {
     /// Controller in the built-in start state, or in this state.
     fn new(state: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().start_paused(true).build().unwrap();
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_time().start_paused(true).build().unwrap();
         let target = if state.is_empty() {
             "sim:".to_owned()
         } else {
