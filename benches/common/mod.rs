@@ -23,10 +23,14 @@ pub fn run<E>(comparisons: &[(&str, Compare<E>)], full: &E, quick: &E) -> anyhow
     let is_quick = args.iter().any(|arg| arg == "--quick") || !args.iter().any(|arg| arg == "--bench");
     let effort = if is_quick { quick } else { full };
     let selected: Vec<&String> = args.iter().filter(|arg| !arg.starts_with('-')).collect();
-    println!("{}", table::HEADER);
+    let is_markdown = args.iter().any(|arg| arg == "--markdown");
+    if !is_markdown {
+        println!("{}", table::HEADER);
+    }
     for (name, compare) in comparisons {
         if selected.is_empty() || selected.iter().any(|chosen| *chosen == name) {
-            println!("{}", compare(effort).with_context(|| (*name).to_owned())?);
+            let table = compare(effort).with_context(|| (*name).to_owned())?;
+            if is_markdown { println!("{table:#}") } else { println!("{table}") }
         }
     }
     if is_quick || cfg!(debug_assertions) {

@@ -87,8 +87,18 @@ impl Table {
     }
 }
 
+/// `{:#}` is Markdown.
 impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if f.alternate() {
+            writeln!(f, "### {}\n\n| what | median | ratio | goal |\n|---|---|---|---|", self.title)?;
+            for Row { name, figure, ratio, goal } in &self.rows {
+                let verdict = |is_met| if is_met { "met" } else { "missed" };
+                let goal = goal.map(|(goal, is_met)| format!("{goal}: {}", verdict(is_met))).unwrap_or_default();
+                writeln!(f, "| {name} | {figure} | {ratio} | {goal} |")?;
+            }
+            return Ok(());
+        }
         writeln!(f, "{}", self.title)?;
         for Row { name, figure, ratio, goal } in &self.rows {
             write!(f, "  {name:<46}{figure:>16}  {ratio:<18}")?;

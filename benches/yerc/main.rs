@@ -13,7 +13,9 @@ mod bare;
 #[path = "../common/mod.rs"]
 mod common;
 mod peers;
-mod process;
+
+use std::process::Command;
+use std::time::Duration;
 
 use anyhow::{Context as _, ensure};
 use armctl_controller::yerc::files::FileName;
@@ -28,6 +30,7 @@ use moto_hses_client::HsesClient;
 use tokio::runtime::Runtime;
 
 use common::controllers::{self, Delays};
+use common::process;
 use common::table::{Goal, Row, Table};
 use common::{Work, median, ratio, run, run_alternately, runtime};
 use peers::Controller;
@@ -42,6 +45,8 @@ struct Effort {
     download: u64,
     starts: usize,
     big: u64,
+    files: &'static [(&'static str, u64)],
+    readings: u32,
     lines: usize,
     line_rounds: usize,
 }
@@ -53,6 +58,8 @@ const FULL: Effort = Effort {
     download: 16 * MIB,
     starts: 200,
     big: 64 * MIB,
+    files: &[("1 kB", 1000), ("64 kB", 64_000), ("1 MB", 1_000_000), ("16 MB", 16_000_000), ("64 MB", 64_000_000)],
+    readings: 500,
     lines: 2000,
     line_rounds: 15,
 };
@@ -64,13 +71,22 @@ const QUICK: Effort = Effort {
     download: MIB / 2,
     starts: 5,
     big: 2 * MIB,
+    files: &[("1 kB", 1000), ("64 kB", 64_000)],
+    readings: 10,
     lines: 200,
     line_rounds: 3,
 };
 
 /// Comparisons, by their argument.
-const COMPARISONS: [(&str, common::Compare<Effort>); 5] =
-    [("status", status), ("download", download), ("start", start), ("memory", memory), ("lines", lines)];
+const COMPARISONS: [(&str, common::Compare<Effort>); 7] = [
+    ("status", status),
+    ("download", download),
+    ("files", files),
+    ("start", start),
+    ("memory", memory),
+    ("lines", lines),
+    ("watch", watch),
+];
 
 fn main() -> anyhow::Result<()> {
     run(&COMPARISONS, &FULL, &QUICK)
@@ -150,10 +166,48 @@ fn download(effort: &Effort) -> anyhow::Result<Table> {
     Ok(table)
 }
 
+/// Measures whole processes that fetch and store a file, for files of several sizes, and the same bare loop.
+fn files(effort: &Effort) -> anyhow::Result<Table> {
+    let folder = tempfile::tempdir()?;
+    let path = folder.path().to_str().context("the folder for temporary files is not UTF-8")?;
+    let mut table = Table::new("armctl yerc file get, from start to exit, and the bare loop in the same time");
+    for (name, size) in effort.files {
+        let controller = Controller::start(*size)?;
+        let mut plain = bare::Download::open(controller.file)?;
+        let mut get = armctl(&controller, &["yerc", "file", "get", "BIG.DAT", "--force", "--dir", path]);
+        let ours = || process::assert_success(&mut get);
+        let bare = || plain.run().map(|_| ()).map_err(Into::into);
+        let [ours, bare] = run_alternately(effort.line_rounds, [&mut { ours } as &mut dyn Work, &mut { bare }])?;
+        let figure = format!("{:.1} ms", median(&ours) * 1e3);
+        table.row(Row::new(name, figure).compared_with(ratio(&bare, &ours), Goal::AtLeast(0.9)));
+    }
+    Ok(table)
+}
+
+/// Measures a watch: its readings per time, compared with its interval.
+fn watch(effort: &Effort) -> anyhow::Result<Table> {
+    let controller = Controller::start(0)?;
+    let mut table = Table::new(format!("armctl yerc status --watch, {} readings", effort.readings));
+    for (name, interval, millis) in
+        [("every 10 ms", "10ms", 10), ("every 20 ms", "20ms", 20), ("every 100 ms", "100ms", 100)]
+    {
+        let count = (effort.readings * 10 / millis).max(5);
+        let mut watch =
+            armctl(&controller, &["--json", "--count", &count.to_string(), "--watch", interval, "yerc", "status"]);
+        let elapsed = common::measure_time(&mut || process::assert_success(&mut watch))?;
+        // The first reading is at the start.
+        let least = Duration::from_millis(u64::from(millis) * u64::from(count - 1)).as_secs_f64();
+        let figure = format!("{:.2} ms", elapsed.as_secs_f64() * 1e3 / f64::from(count - 1));
+        let ratio = least / elapsed.as_secs_f64();
+        table.row(Row::new(name, figure).with_comparison(ratio, "the interval", Goal::AtLeast(0.9)));
+    }
+    Ok(table)
+}
+
 /// Measures `armctl yerc status` from start to exit, compared with a process that does nothing.
 fn start(effort: &Effort) -> anyhow::Result<Table> {
     let controller = Controller::start(0)?;
-    let mut status = process::armctl(&controller, &["yerc", "status"]);
+    let mut status = armctl(&controller, &["yerc", "status"]);
     let ours = || process::assert_success(&mut status);
     let mut nothing = process::run_empty_process();
     let bare = || process::assert_success(&mut nothing);
@@ -171,7 +225,7 @@ fn memory(effort: &Effort) -> anyhow::Result<Table> {
     let controller = Controller::start(effort.big)?;
     let folder = tempfile::tempdir()?;
     let path = folder.path().to_str().context("the folder for temporary files is not UTF-8")?;
-    let mut get = process::armctl(&controller, &["yerc", "file", "get", "BIG.DAT", "--dir", path]);
+    let mut get = armctl(&controller, &["yerc", "file", "get", "BIG.DAT", "--dir", path]);
     let peak = process::peak_memory(&mut get)?;
     let received = std::fs::metadata(folder.path().join("BIG.DAT"))?.len();
     ensure!(received == effort.big, "{received} bytes were stored");
@@ -222,6 +276,13 @@ fn lines(effort: &Effort) -> anyhow::Result<Table> {
         goal,
     ));
     Ok(table)
+}
+
+/// Returns a command with the binary of the same build, for `controller`.
+fn armctl(controller: &Controller, args: &[&str]) -> Command {
+    let mut command = process::unconfigured();
+    command.arg("--target").arg(controller.url()).args(args);
+    command
 }
 
 /// Connects like a command of armctl.

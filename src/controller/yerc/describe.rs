@@ -3,6 +3,8 @@
 
 mod data;
 
+use std::fmt;
+
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -73,12 +75,16 @@ const ACK_AT: usize = 10;
 /// Decodes a frame. `request` is the request that an answer belongs to, if it is known: an answer does not contain its
 /// request.
 pub fn describe(frame: &[u8], sender: Sender, request: Option<&Request>) -> Description {
-    let mut notes = Notes::new(frame);
-    notes.header();
-    match sender {
-        Sender::Client => notes.client(),
-        Sender::Controller => notes.controller(request),
-    }
+    let mut notes = Notes { frame, has_fields: true, at: 0, fields: Vec::new(), problem: None };
+    let (title, row) = notes.walk(sender, request);
+    Description { title, section: row.map(Row::citation), fields: notes.fields, problem: notes.problem }
+}
+
+/// Row of the command table, and problem of a frame: [`describe`] without the cost of texts.
+pub fn outline(frame: &[u8], sender: Sender, request: Option<&Request>) -> (Option<&'static Row>, Option<String>) {
+    let mut notes = Notes { frame, has_fields: false, at: 0, fields: Vec::new(), problem: None };
+    let (_, row) = notes.walk(sender, request);
+    (row, notes.problem)
 }
 
 /// One-line summary of a frame, for traces.
@@ -101,7 +107,8 @@ fn damaged(error: &WireError) -> String {
 
 fn client_summary(frame: &RequestFrame<'_>) -> String {
     let request = request_of(frame);
-    let name = title_of(&request);
+    let row = request.row();
+    let name = title_of(row, &request);
     let id = frame.id;
     if frame.ack {
         let what = if frame.data.is_empty() { "ack" } else { "data" };
@@ -110,35 +117,37 @@ fn client_summary(frame: &RequestFrame<'_>) -> String {
     if frame.division == Division::File {
         return format!("#{id} {name} '{}'", frame.data.escape_ascii());
     }
-    let service = request.row().and_then(|row| row.service(request.service));
+    let service = row.and_then(|row| row.service(request.service));
     let action = service.map_or("unknown service", |service| service.meaning);
     format!(
         "#{id} {name}: instance {} {}, attribute {}, {action}, {} bytes",
         request.instance,
-        instance_words(&request),
+        instance_words(row, request.instance),
         request.attribute,
         frame.data.len()
     )
 }
 
 fn answer_summary(frame: &AnswerFrame<'_>, request: Option<&Request>) -> String {
-    let name = request.map(|request| format!(" to {}", title_of(request))).unwrap_or_default();
+    let name = request.map(|request| format!(" to {}", title_of(request.row(), request))).unwrap_or_default();
     let block = if frame.block == LAST_BLOCK { String::new() } else { format!(", {}", block_words(frame.block)) };
     format!("#{} answer{name}: {}{block}, {} bytes", frame.id, status_words(frame.status), frame.data.len())
 }
 
-fn request_of(frame: &RequestFrame<'_>) -> Request {
+/// Request in a frame. Its data is copied only if it identifies the request: for a file.
+pub fn request_of(frame: &RequestFrame<'_>) -> Request {
+    let is_file = frame.command == 0 && !frame.ack;
     Request {
         command: frame.command,
         instance: frame.instance,
         attribute: frame.attribute,
         service: frame.service,
-        data: if frame.ack { Vec::new() } else { frame.data.to_vec() },
+        data: if is_file { frame.data.to_vec() } else { Vec::new() },
     }
 }
 
-fn title_of(request: &Request) -> String {
-    match (request.row(), request.division()) {
+fn title_of(row: Option<&Row>, request: &Request) -> String {
+    match (row, request.division()) {
         (Some(row), Division::Robot) => format!("{:#04x} {}", row.number, row.name),
         (Some(row), Division::File) => row.name.to_owned(),
         (None, Division::Robot) => format!("unknown command {:#04x}", request.command),
@@ -167,11 +176,8 @@ fn block_words(block: u32) -> String {
 }
 
 /// Name of an instance in parentheses. Contains both names if the name depends on the model.
-fn instance_words(request: &Request) -> String {
-    let label = |model| {
-        let instances = request.row()?.instances;
-        instances.find(model, request.instance).map(|span| span.label(request.instance))
-    };
+fn instance_words(row: Option<&Row>, instance: u16) -> String {
+    let label = |model| row?.instances.find(model, instance).map(|span| span.label(instance));
     match (label(Model::Fs100), label(Model::Dx200)) {
         (Some(fs100), Some(dx200)) if fs100 == dx200 => format!("({dx200})"),
         (Some(fs100), Some(dx200)) => format!("(fs100: {fs100}; dx200: {dx200})"),
@@ -184,19 +190,25 @@ fn instance_words(request: &Request) -> String {
 /// Fields of a frame, collected from front to back.
 struct Notes<'a> {
     frame: &'a [u8],
+    /// Whether fields and title are needed, and not only the problem.
+    has_fields: bool,
     at: usize,
     fields: Vec<FieldNote>,
     problem: Option<String>,
 }
 
-impl<'a> Notes<'a> {
-    fn new(frame: &'a [u8]) -> Self {
-        Self { frame, at: 0, fields: Vec::new(), problem: None }
+impl Notes<'_> {
+    /// Adds all bytes. Returns the title, and the row of the command table.
+    fn walk(&mut self, sender: Sender, request: Option<&Request>) -> (String, Option<&'static Row>) {
+        self.header();
+        match sender {
+            Sender::Client => self.client(),
+            Sender::Controller => self.controller(request),
+        }
     }
 
     /// Adds the next `size` bytes. If bytes are missing, or were missing before, adds no field.
-    fn take(&mut self, size: usize, name: impl Into<String>, meaning: impl FnOnce(&[u8]) -> String) -> bool {
-        let name = name.into();
+    fn take(&mut self, size: usize, name: impl fmt::Display, meaning: impl FnOnce(&[u8]) -> String) -> bool {
         if self.problem.is_some() {
             return false;
         }
@@ -204,10 +216,16 @@ impl<'a> Notes<'a> {
             self.problem = Some(format!("the frame ends inside '{name}' at offset {}", self.at));
             return false;
         };
-        let field = FieldNote { offset: self.at, size, name, raw: hex(bytes), meaning: meaning(bytes) };
-        self.fields.push(field);
+        if self.has_fields {
+            let (offset, name, raw, meaning) = (self.at, name.to_string(), hex(bytes), meaning(bytes));
+            self.fields.push(FieldNote { offset, size, name, raw, meaning });
+        }
         self.at += size;
         true
+    }
+
+    fn title(&self, title: impl FnOnce() -> String) -> String {
+        if self.has_fields { title() } else { String::new() }
     }
 
     /// Adds the remaining bytes, if any.
@@ -247,18 +265,18 @@ impl<'a> Notes<'a> {
         self.take(8, "reserve 2", |_| "reserved, \"99999999\"".to_owned());
     }
 
-    fn client(mut self) -> Description {
+    fn client(&mut self) -> (String, Option<&'static Row>) {
         let Some(request) = self.sub_header() else {
             for (size, name) in [(2, "command"), (2, "instance"), (1, "attribute"), (1, "service")] {
                 self.take(size, name, |bytes| little(bytes).to_string());
             }
-            return self.finish("truncated frame of a client".to_owned(), None);
+            return ("truncated frame of a client".to_owned(), None);
         };
         let ack = self.frame.get(ACK_AT) == Some(&1);
         let row = request.row();
-        let name = title_of(&request);
+        let name = self.title(|| title_of(row, &request));
         self.take(2, "command", |_| row.map_or("not defined", |row| row.name).to_owned());
-        self.take(2, "instance", |_| format!("{} {}", request.instance, instance_words(&request)));
+        self.take(2, "instance", |_| format!("{} {}", request.instance, instance_words(row, request.instance)));
         let service = row.and_then(|row| row.service(request.service));
         self.take(1, "attribute", |_| match (row, service) {
             (Some(row), Some(service)) => {
@@ -271,7 +289,8 @@ impl<'a> Notes<'a> {
         let title = if ack {
             let size = self.left();
             self.take_rest("file data", |bytes| format!("{} bytes", bytes.len()));
-            if size == 0 { format!("ACK of the client: {name}") } else { format!("data block of the client: {name}") }
+            let what = if size == 0 { "ACK" } else { "data block" };
+            self.title(|| format!("{what} of the client: {name}"))
         } else {
             match (row, service) {
                 (Some(row), Some(service)) if row.division == Division::File || service.action == Action::Write => {
@@ -281,11 +300,11 @@ impl<'a> Notes<'a> {
                 _ => {}
             }
             self.take_rest("data", |_| "not expected".to_owned());
-            format!("request: {name}")
+            self.title(|| format!("request: {name}"))
         };
         let damage = RequestFrame::parse(self.frame).err().map(|error| error.to_string());
-        self.problem = damage.or(self.problem);
-        self.finish(title, row)
+        self.problem = damage.or(self.problem.take());
+        (title, row)
     }
 
     /// Parses command, instance, attribute and service, but does not add them to the fields.
@@ -293,13 +312,13 @@ impl<'a> Notes<'a> {
         let bytes = self.frame.get(24..30)?;
         let word = |at: usize| u16::try_from(little(&bytes[at..at + 2])).unwrap_or_default();
         let division = self.frame.get(9);
-        let data = self.frame.get(HEADER_LEN..).unwrap_or_default().to_vec();
-        // In a file frame, only the service has a meaning.
+        // In a file frame, only service and data have a meaning. In another frame, the data does not identify the request.
         let command = if division == Some(&2) { 0 } else { word(0) };
+        let data = self.frame.get(HEADER_LEN..).filter(|_| command == 0).unwrap_or_default().to_vec();
         Some(Request { command, instance: word(2), attribute: bytes[4], service: bytes[5], data })
     }
 
-    fn controller(mut self, request: Option<&Request>) -> Description {
+    fn controller(&mut self, request: Option<&Request>) -> (String, Option<&'static Row>) {
         let row = request.and_then(Request::row);
         let service = request.map(|request| request.service);
         self.take(1, "service", |bytes| match (bytes, service) {
@@ -340,16 +359,12 @@ impl<'a> Notes<'a> {
             _ => self.take_rest("data", |_| "depends on the command".to_owned()),
         }
         let damage = AnswerFrame::parse(self.frame).err().map(|error| error.to_string());
-        self.problem = damage.or(self.problem);
-        let title = match request {
-            Some(request) => format!("answer: {}", title_of(request)),
+        self.problem = damage.or(self.problem.take());
+        let title = self.title(|| match request {
+            Some(request) => format!("answer: {}", title_of(row, request)),
             None => "answer".to_owned(),
-        };
-        self.finish(title, row)
-    }
-
-    fn finish(self, title: String, row: Option<&Row>) -> Description {
-        Description { title, section: row.map(Row::citation), fields: self.fields, problem: self.problem }
+        });
+        (title, row)
     }
 }
 

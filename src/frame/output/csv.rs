@@ -5,6 +5,7 @@
 //! maximum length has one column per entry (`axes_1`). A list of plain values, or of named values, is one cell. A list
 //! of other objects in a row is omitted. If a report has several lists, their names precede the field names.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use serde_json::Value;
@@ -157,7 +158,7 @@ impl Sheet {
 
     /// Appends the row of a robot that has no report. `before` contains the cells of other columns.
     pub fn failed(&self, before: &[&str], error: &Value, out: &mut String) {
-        let before: Vec<String> = before.iter().map(|text| neutralize_formula(text)).collect();
+        let before: Vec<String> = before.iter().map(|text| neutralize_formula(text).into_owned()).collect();
         let cells: Vec<String> = self.columns().map(|column| outcome(column, Some(error))).collect();
         line(out, before.iter().chain(&cells).map(String::as_str));
     }
@@ -170,7 +171,7 @@ impl Sheet {
         let cells = |columns: &[Column], value: &Value| -> Vec<String> {
             columns.iter().map(|column| column.find(value).map_or_else(String::new, cell)).collect()
         };
-        let mut common: Vec<String> = before.iter().map(|text| neutralize_formula(text)).collect();
+        let mut common: Vec<String> = before.iter().map(|text| neutralize_formula(text).into_owned()).collect();
         common.extend(cells(&self.common, data));
         if self.lists.is_empty() {
             return line(out, common.iter().map(String::as_str).chain(outcome()));
@@ -294,7 +295,7 @@ fn pointer(place: &str, field: &str) -> String {
 
 /// Text of a cell.
 fn cell(value: &Value) -> String {
-    neutralize_formula(&text(value))
+    neutralize_formula(&text(value)).into_owned()
 }
 
 /// Returns the values of an entry whose value has no columns of its own. A position is the text that a user can type; a
@@ -335,14 +336,14 @@ fn named_values(values: &[Value]) -> Option<String> {
 
 /// Makes a text harmless for terminals and spreadsheets. A text that could be a formula gets an apostrophe (OWASP).
 /// Signed numbers, one or several, and a single dash are not formulas.
-pub(super) fn neutralize_formula(text: &str) -> String {
+pub fn neutralize_formula(text: &str) -> Cow<'_, str> {
     let shown = escape::lines(text);
-    let is_plain = shown == "-" || shown.split(' ').all(|number| number.parse::<f64>().is_ok());
-    if shown.starts_with(['=', '+', '-', '@']) && !is_plain { format!("'{shown}") } else { shown.into_owned() }
+    let is_plain = || shown == "-" || shown.split(' ').all(|number| number.parse::<f64>().is_ok());
+    if shown.starts_with(['=', '+', '-', '@']) && !is_plain() { format!("'{shown}").into() } else { shown }
 }
 
 /// Appends a line of fields. Fields are quoted if necessary.
-pub(super) fn line<'a>(out: &mut String, fields: impl Iterator<Item = &'a str>) {
+pub fn line<'a>(out: &mut String, fields: impl Iterator<Item = &'a str>) {
     for (index, field) in fields.enumerate() {
         if index > 0 {
             out.push(',');

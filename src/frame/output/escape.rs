@@ -51,6 +51,9 @@ pub struct Safe<F>(pub F);
 impl<F: Formatter> Formatter for Safe<F> {
     /// The fragment already contains the JSON escapes. This function adds the escapes for terminals.
     fn write_string_fragment<W: ?Sized + io::Write>(&mut self, writer: &mut W, fragment: &str) -> io::Result<()> {
+        if is_printable_ascii(fragment) {
+            return self.0.write_string_fragment(writer, fragment);
+        }
         let mut rest = fragment;
         while let Some((at, character)) = rest.char_indices().find(|(_, character)| is_hidden(*character)) {
             let (plain, tail) = rest.split_at(at);
@@ -153,7 +156,16 @@ fn is_hidden(character: char) -> bool {
             .is_ok()
 }
 
+/// Whether the text consists only of printable ASCII. The fold looks at all bytes, so that the compiler can compare
+/// several at once.
+fn is_printable_ascii(text: &str) -> bool {
+    text.bytes().fold(true, |all, byte| all & (0x20..0x7F).contains(&byte))
+}
+
 fn escape_hidden(text: &str, hidden: impl Fn(char) -> bool) -> Cow<'_, str> {
+    if is_printable_ascii(text) {
+        return Cow::Borrowed(text);
+    }
     let Some(first) = text.find(&hidden) else {
         return Cow::Borrowed(text);
     };

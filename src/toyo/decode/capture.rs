@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
+use std::sync::Arc;
 use std::time::Duration;
 
 use super::FieldRow;
@@ -160,11 +161,11 @@ impl Conversation {
 
     fn decode(mut self, connection: Connection, decoded: &mut DecodedCapture<FieldRow>) {
         let controller = self.controller(connection);
-        let link = match connection {
+        let link = Arc::new(match connection {
             Connection::Serial(_) => ("host".to_owned(), "serial line".to_owned()),
             Connection::Tcp(first, second) if controller == 1 => (first.to_string(), second.to_string()),
             Connection::Tcp(first, second) => (second.to_string(), first.to_string()),
-        };
+        });
         decoded.notes.append(&mut self.notes);
         for rest in self.pending.iter().filter(|rest| !rest.is_empty()) {
             decoded.notes.push(format!("incomplete last line: '{}'", rest.escape_ascii()));
@@ -182,7 +183,7 @@ impl Conversation {
                 number,
                 time,
                 direction,
-                link: link.clone(),
+                link: Arc::clone(&link),
                 text: format!("{text}  # {}", summary(&text, sender, request)),
                 answers: question.as_ref().map(|(number, _)| *number),
                 section: description.section,

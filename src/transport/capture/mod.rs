@@ -13,6 +13,7 @@ mod file;
 mod layers;
 mod stream;
 
+use std::cell::Cell;
 use std::io::{BufRead, BufReader, Read};
 use std::net::SocketAddr;
 use std::time::Duration;
@@ -111,6 +112,16 @@ pub struct Summary {
 /// Reads a file in pieces and delivers its messages. The bytes of a TCP stream are delivered in order. Bytes of
 /// segments that arrived out of order can therefore be delivered after later messages of other streams.
 pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summary, OpenError> {
+    read_while(file, |message| {
+        each(message);
+        true
+    })
+}
+
+/// Reads a file like [`read`], but only as long as `each` returns true. The summary describes the part that was read.
+pub fn read_while(file: impl Read, mut each: impl FnMut(&Message<'_>) -> bool) -> Result<Summary, OpenError> {
+    let is_wanted = Cell::new(true);
+    let mut each = |message: &Message<'_>| is_wanted.set(is_wanted.get() && each(message));
     let mut summary = Summary::default();
     let mut streams = Streams::default();
     let mut file = BufReader::new(file);
@@ -124,7 +135,9 @@ pub fn read(file: impl Read, mut each: impl FnMut(&Message<'_>)) -> Result<Summa
         return Ok(dump::read(file, form, each));
     }
     let mut packets = Packets::open(file)?;
-    while let Some(packet) = packets.next() {
+    while is_wanted.get()
+        && let Some(packet) = packets.next()
+    {
         let packet = match packet {
             Ok(packet) => packet,
             Err(damage) => {

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::fmt;
+use std::sync::Arc;
 
 use crate::field_row::FieldRow;
 use armctl_controller::text::hex;
@@ -141,7 +142,7 @@ pub fn decoded(
         number,
         time,
         direction,
-        link,
+        link: Arc::new(link),
         text,
         answers: None,
         section: None,

@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 use std::net::{IpAddr, SocketAddr};
+use std::sync::Arc;
 
 use super::cip::{explain, may_be_message};
 use crate::decode::images::{BusDecoder, Images, MAX_STORED, decoded};
@@ -110,7 +111,7 @@ impl Decoder {
             number: message.number,
             time: message.time,
             direction,
-            link: (client.ip().to_string(), controller.ip().to_string()),
+            link: Arc::new((client.ip().to_string(), controller.ip().to_string())),
             text: described.text,
             answers,
             section: None,

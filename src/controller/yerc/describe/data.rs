@@ -1,5 +1,7 @@
 //! Decoder of the data part, by the fields of its row.
 
+use std::fmt;
+
 use super::{Meaning, Notes, is_backup, little};
 use crate::units::{self, Unit};
 use crate::yerc::payload::PositionKind;
@@ -21,22 +23,22 @@ impl Notes<'_> {
             let mut number = u32::from(request.instance);
             let asks = service.action == Action::Read && self.is_request();
             while self.left() > 0 && !asks && self.problem.is_none() {
-                self.element(row.fields, &format!("{number} "));
+                self.element(row.fields, Some(number));
                 number += 1;
             }
             return;
         }
         let fields = row.fields_of(service, request.attribute);
         let fields = row.alternative.filter(|other| total(other) == self.left()).unwrap_or(fields);
-        self.element(fields, "");
+        self.element(fields, None);
     }
 
     fn is_request(&self) -> bool {
         self.frame.get(super::ACK_AT) == Some(&0)
     }
 
-    /// Adds one element. The element may end early after a complete field, because controllers omit missing axes.
-    fn element(&mut self, fields: &[Field], prefix: &str) {
+    /// Adds one element, with its number in a plural command. The element may end early after a complete field, because controllers omit missing axes.
+    fn element(&mut self, fields: &[Field], number: Option<u32>) {
         let mut known = Meaning::default();
         for field in fields {
             let free = matches!(field.kind, Kind::FileName | Kind::Filter);
@@ -44,10 +46,25 @@ impl Notes<'_> {
             if self.left() == 0 && !(free && size == 0) && !self.is_request() {
                 return;
             }
-            let name = format!("{prefix}{}", field.name);
+            let name = FieldName { number, name: field.name };
             if !self.take(size, name, |bytes| words(field.kind, bytes, &mut known)) {
                 return;
             }
+        }
+    }
+}
+
+/// Name of a field, with the number of its element.
+struct FieldName {
+    number: Option<u32>,
+    name: &'static str,
+}
+
+impl fmt::Display for FieldName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.number {
+            Some(number) => write!(f, "{number} {}", self.name),
+            None => f.write_str(self.name),
         }
     }
 }

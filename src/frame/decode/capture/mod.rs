@@ -9,6 +9,7 @@ pub mod testing;
 use std::io::{self, Read};
 use std::net::{IpAddr, SocketAddr};
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::Context as _;
@@ -24,7 +25,7 @@ use crate::output::envelope::ErrorBody;
 use crate::prelude::basics::*;
 use crate::run::{Run, RunError};
 use armctl_files as files;
-use armctl_transport::capture::{Carrier, Message, OpenError, Summary, read};
+use armctl_transport::capture::{Carrier, Message, OpenError, Summary, read_while};
 pub use armctl_transport::capture::{holds_telegram, parse_hex};
 use armctl_transport::tap::Direction;
 
@@ -112,9 +113,26 @@ pub trait CaptureDecoder: Sized {
     fn restart(self) -> Self;
 }
 
+/// Parts of a message that the output shows. Each level includes the levels before it. A decoder can leave out the
+/// other parts, because they cost most of its time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub enum Detail {
+    /// Packet, link and problem.
+    Problem,
+    /// Also the text.
+    Text,
+    /// Also the section and the raw data.
+    Raw,
+    /// Also the fields.
+    #[default]
+    Fields,
+}
+
 /// Decoded content of a file.
 #[derive(Debug)]
 pub struct DecodedCapture<F> {
+    /// Parts of the messages to decode.
+    pub detail: Detail,
     /// Messages that were not taken yet.
     pub messages: Vec<DecodedMessage<F>>,
     /// Number of packets of the family.
@@ -125,7 +143,7 @@ pub struct DecodedCapture<F> {
 
 impl<F> Default for DecodedCapture<F> {
     fn default() -> Self {
-        Self { messages: Vec::new(), packets: 0, notes: Vec::new() }
+        Self { detail: Detail::default(), messages: Vec::new(), packets: 0, notes: Vec::new() }
     }
 }
 
@@ -150,7 +168,7 @@ pub struct DecodedMessage<F> {
     /// Direction.
     pub direction: Direction,
     /// Client and controller, as in the table of links.
-    pub link: (String, String),
+    pub link: Arc<(String, String)>,
     /// Text, as in a trace.
     pub text: String,
     /// Packet of the request that this message answers.
@@ -171,8 +189,7 @@ struct MessageBuffer<F> {
     list: Vec<DecodedMessage<F>>,
     /// Only the messages of this packet.
     frame: Option<u64>,
-    /// Whether fields, bytes and section are left out, because one line per message is sufficient.
-    without_fields: bool,
+    detail: Detail,
     weight: usize,
     room: usize,
     /// Whether there were too many messages.
@@ -185,21 +202,14 @@ const NOTES_LIMIT: usize = 16 << 20;
 const MEMORY_LIMIT: usize = 256 << 20;
 
 impl<F> MessageBuffer<F> {
-    fn new(room: usize, frame: Option<u64>, without_fields: bool) -> Self {
-        Self {
-            list: Vec::new(),
-            frame,
-            without_fields: without_fields && frame.is_none(),
-            weight: 0,
-            room,
-            is_full: false,
-        }
+    fn new(room: usize, frame: Option<u64>, detail: Detail) -> Self {
+        Self { list: Vec::new(), frame, detail, weight: 0, room, is_full: false }
     }
 
     /// Stores a message, if it is selected. Returns whether there is space for more.
     fn push(&mut self, mut message: DecodedMessage<F>) -> bool {
         if !self.is_full && self.frame.is_none_or(|frame| frame == message.number) {
-            if self.without_fields {
+            if self.detail <= Detail::Text {
                 (message.fields, message.raw, message.section) = (Vec::new(), String::new(), None);
             }
             self.weight = self.weight.saturating_add(message.weight());
@@ -233,20 +243,23 @@ pub fn print<D: CaptureDecoder>(
 ) -> Result<(), RunError> {
     let name = input.name();
     let source = Source { name: &name, open: || input.open(), selection };
-    let (is_streamed, without_fields) = (run.filter.is_none() && run.line.is_none(), run.is_for_people());
+    // CSV rows are written immediately, except for the fields of one packet.
+    if run.screen.format == Format::Csv && selection.frame.is_none() {
+        return stream::print(run, id, &source, decoder);
+    }
+    let is_streamed = run.filter.is_none() && run.line.is_none();
     let room = if is_streamed { NOTES_LIMIT } else { MEMORY_LIMIT };
+    let detail = if run.is_for_people() && selection.frame.is_none() { Detail::Text } else { Detail::Fields };
     let (capture, decoder) = {
         let _busy = register();
-        source.capture(decoder, room, without_fields)?
+        source.capture(decoder, room, detail)?
     };
     if run.screen.format == Format::Value {
         return Err(Failure::usage("a capture has no list of values")
             .hint("use -o csv for one row per message")
             .into());
     }
-    // CSV rows are written immediately, except for the fields of one packet.
-    let is_whole = run.screen.format != Format::Csv || selection.frame.is_some();
-    let Some(capture) = capture.filter(|_| is_whole) else { return stream::print(run, id, &source, decoder) };
+    let Some(capture) = capture else { return stream::print(run, id, &source, decoder) };
     // The report is never an intermediate JSON value, because a JSON value needs many times the memory.
     if is_streamed && !run.is_for_people() {
         let failure = capture.failure();
@@ -288,17 +301,12 @@ struct Source<'a, O> {
 impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
     /// Content of the file, unless it does not fit into memory and must be streamed; also the decoder, ready to
     /// restart.
-    fn capture<D: CaptureDecoder>(
-        &self,
-        mut decoder: D,
-        room: usize,
-        without_fields: bool,
-    ) -> Result<Captured<D>, Failure> {
+    fn capture<D: CaptureDecoder>(&self, mut decoder: D, room: usize, detail: Detail) -> Result<Captured<D>, Failure> {
         let frame = self.selection.frame;
-        let mut kept = MessageBuffer::new(room, frame, without_fields);
+        let mut kept = MessageBuffer::new(room, frame, detail);
         // For one packet, the links are still those of the whole file.
         let mut links = Links::default();
-        let summary = self.decode(&mut decoder, |message| {
+        let summary = self.decode(&mut decoder, detail, |message| {
             if frame.is_some() {
                 links.count(&message.link);
             }
@@ -318,7 +326,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
         }
         let mut problems = Problems::default();
         for row in &messages {
-            problems.add(row);
+            problems.add(row.number(), row.problem());
         }
         let mut capture = Capture { messages, problems, links: links.list, ..self.about(&summary, packets, notes) };
         if kept.is_full {
@@ -349,37 +357,37 @@ impl<R: Read, O: Fn() -> io::Result<R>> Source<'_, O> {
         }
     }
 
-    /// Decodes the whole file and passes on its messages until the callback ends.
+    /// Decodes the file to this detail, and passes on its messages until the callback ends.
     fn decode<D: CaptureDecoder>(
         &self,
         decoder: &mut D,
+        detail: Detail,
         mut each: impl FnMut(DecodedMessage<D::Field>) -> bool,
     ) -> Result<Summary, Failure> {
+        decoder.decoded().detail = detail;
         let mut pass_on = |decoder: &mut D| decoder.decoded().messages.drain(..).all(&mut each);
         let mut is_wanted = true;
-        let summary = self.read(|message| {
-            if is_wanted && self.selection.admits(&message.carrier) {
+        let file = (self.open)().with_context(|| self.name.to_owned())?;
+        let summary = read_while(file, |message| {
+            if self.selection.admits(&message.carrier) {
                 decoder.take(message);
                 is_wanted = pass_on(decoder);
             }
-        })?;
-        decoder.finish();
-        if is_wanted {
-            pass_on(decoder);
-        }
-        Ok(summary)
-    }
-
-    fn read(&self, each: impl FnMut(&Message<'_>)) -> Result<Summary, Failure> {
-        let file = (self.open)().with_context(|| self.name.to_owned())?;
-        read(file, each).map_err(|error| {
+            is_wanted
+        });
+        let summary = summary.map_err(|error| {
             let hint = match error {
                 OpenError::Compressed => "decompress the file first with gunzip or unzstd",
                 OpenError::Unreadable => "check the disk of the file",
                 OpenError::Other => "use a file from tcpdump, Wireshark or --trace",
             };
             Failure::local(format!("{}: {error}", self.name)).hint(hint)
-        })
+        })?;
+        decoder.finish();
+        if is_wanted {
+            pass_on(decoder);
+        }
+        Ok(summary)
     }
 }
 

@@ -1,12 +1,17 @@
 //! Report of the messages of a family in a capture file.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
+use std::sync::Arc;
 use std::time::Duration;
+
+use serde::Serializer;
+use serde_json::Value;
 
 use super::DecodedMessage;
 use crate::Report;
 use crate::decode::{Field, field_table, in_parentheses, problem_lines};
-use crate::output::csv::RowsOf;
+use crate::output::csv::{self, RowsOf, neutralize_formula};
 use crate::prelude::basics::*;
 use armctl_transport::tap::Direction;
 
@@ -53,8 +58,10 @@ pub struct Row<F> {
     link: usize,
     /// `client` or `controller`.
     sender: &'static str,
-    from: String,
-    to: String,
+    #[schemars(with = "String")]
+    from: End,
+    #[schemars(with = "String")]
+    to: End,
     /// Text, as in --trace.
     text: String,
     /// Packet of the request that this message answers.
@@ -68,39 +75,133 @@ pub struct Row<F> {
     problem: Option<String>,
 }
 
-impl<F> Row<F> {
-    fn arrow(&self) -> &'static str {
-        if self.sender == "client" { "->" } else { "<-" }
+/// An end of a link. Its name is not copied, because a large file has millions of rows.
+#[derive(Debug, Clone)]
+struct End {
+    link: Arc<(String, String)>,
+    is_client: bool,
+}
+
+impl End {
+    fn name(&self) -> &str {
+        if self.is_client { &self.link.0 } else { &self.link.1 }
     }
 }
 
+impl Serialize for End {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+/// Columns of the table.
+pub(super) const COLUMNS: [&str; 6] = ["number", "time s", "link", "way", "answers", "message"];
+/// Index of the column with the text.
+pub(super) const MESSAGE: usize = 5;
+
 impl<F> Row<F> {
-    /// Columns of the table.
-    pub(super) const COLUMNS: [&'static str; 6] = ["number", "time s", "link", "way", "answers", "message"];
+    /// Number of the packet.
+    pub(super) fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// Problem found in the message.
+    pub(super) fn problem(&self) -> Option<&String> {
+        self.problem.as_ref()
+    }
 
     /// Cells of the columns, as in a trace.
     pub(super) fn cells(&self) -> [Cell; 6] {
-        // If the message cannot be identified, the text already contains the reason.
-        let text = match &self.problem {
-            Some(problem) if !self.text.contains("no valid") => format!("{}; problem: {problem}", self.text),
-            _ => self.text.clone(),
-        };
-        let tone = if self.problem.is_some() { Tone::Bad } else { Tone::Plain };
-        [
-            Cell::number(self.number.to_string()),
-            Cell::number(format!("{:.6}", self.time_s)),
-            self.link.into(),
-            self.arrow().into(),
-            self.answers.map_or_else(Cell::default, |packet| Cell::number(packet.to_string())),
-            Cell::from(text).tone(tone),
-        ]
+        let Self { number, time_s, link, answers, .. } = *self;
+        let message = message_cell(&self.text, self.problem.as_deref());
+        row_cells(number, time_s, link, self.from.is_client, answers, message)
+    }
+
+    /// Appends the row as CSV, without the list of fields. The columns are those of the schema.
+    pub(super) fn push_csv(&self, out: &mut String) {
+        let number = |number: u64| Cow::Owned(number.to_string());
+        let cells = [
+            number(self.number),
+            Value::from(self.time_s).to_string().into(),
+            self.link.to_string().into(),
+            self.sender.into(),
+            neutralize_formula(self.from.name()),
+            neutralize_formula(self.to.name()),
+            neutralize_formula(&self.text),
+            self.answers.map(number).unwrap_or_default(),
+            neutralize_formula(self.section.as_deref().unwrap_or_default()),
+            neutralize_formula(&self.raw),
+            neutralize_formula(self.problem.as_deref().unwrap_or_default()),
+        ];
+        csv::line(out, cells.iter().map(AsRef::as_ref));
+    }
+}
+
+/// Cell with the text of a message.
+pub(super) fn message_cell(text: &str, problem: Option<&str>) -> Cell {
+    // If the message cannot be identified, the text already contains the reason.
+    let shown = match problem {
+        Some(problem) if !text.contains("no valid") => format!("{text}; problem: {problem}"),
+        _ => text.to_owned(),
+    };
+    Cell::from(shown).tone(if problem.is_some() { Tone::Bad } else { Tone::Plain })
+}
+
+/// Cells of a row.
+fn row_cells(
+    number: u64,
+    time_s: f64,
+    link: usize,
+    is_from_client: bool,
+    answers: Option<u64>,
+    message: Cell,
+) -> [Cell; 6] {
+    [
+        Cell::number(number.to_string()),
+        Cell::number(format!("{time_s:.6}")),
+        link.into(),
+        (if is_from_client { "->" } else { "<-" }).into(),
+        answers.map_or_else(Cell::default, |packet| Cell::number(packet.to_string())),
+        message,
+    ]
+}
+
+/// Extreme values of the messages of a file. Their cells are as wide as the columns before the text.
+#[derive(Debug, Default)]
+pub(super) struct Extremes {
+    number: u64,
+    /// Earliest and latest time.
+    times: Option<(Duration, Duration)>,
+    /// Whether there is a message that answers no packet.
+    has_requests: bool,
+    answers: Option<u64>,
+}
+
+impl Extremes {
+    pub(super) fn add<F>(&mut self, message: &DecodedMessage<F>) {
+        self.number = self.number.max(message.number);
+        let (earliest, latest) = self.times.unwrap_or((message.time, message.time));
+        self.times = Some((earliest.min(message.time), latest.max(message.time)));
+        self.has_requests |= message.answers.is_none();
+        self.answers = self.answers.max(message.answers);
+    }
+
+    /// Rows with these values; none without messages.
+    pub(super) fn rows(&self, first: Duration, links: usize) -> impl Iterator<Item = [Cell; 6]> {
+        let answers = self.has_requests.then_some(None).into_iter().chain(self.answers.map(Some));
+        let times = self.times.into_iter().flat_map(|(earliest, latest)| [earliest, latest]);
+        let number = self.number;
+        let pairs: Vec<_> = times.flat_map(|time| answers.clone().map(move |answers| (time, answers))).collect();
+        pairs
+            .into_iter()
+            .map(move |(time, answers)| row_cells(number, seconds(time, first), links, true, answers, Cell::default()))
     }
 }
 
 impl<F: Field> Capture<F> {
     /// Table rows, as in a trace.
     pub(super) fn list(&self) -> View {
-        let mut table = Table::new(&Row::<F>::COLUMNS, "no message of this family");
+        let mut table = Table::new(&COLUMNS, "no message of this family");
         self.messages.iter().for_each(|row| table.row(row.cells()));
         let mut sections = vec![Section::Text(self.head()), Section::Table(table)];
         if !self.notes.is_empty() {
@@ -124,7 +225,8 @@ impl<F: Field> Capture<F> {
     pub(super) fn details(&self) -> View {
         let mut sections = Vec::new();
         for row in &self.messages {
-            let Row { number, time_s, from, to, text, .. } = row;
+            let Row { number, time_s, text, .. } = row;
+            let (from, to) = (row.from.name(), row.to.name());
             let section = in_parentheses(row.section.as_deref());
             let answers = row.answers.map(|packet| format!("\nanswers packet {packet}")).unwrap_or_default();
             let problem = problem_lines(&row.problem);
@@ -176,47 +278,41 @@ pub const TOO_MANY_MESSAGES: &str = "the capture has too many messages; only the
 #[derive(Debug, Default)]
 pub struct Links {
     pub(super) list: Vec<Link>,
-    numbers: HashMap<(String, String), usize>,
+    numbers: HashMap<Arc<(String, String)>, usize>,
     /// Whether the rows come from messages that were already counted.
     pub(super) are_counted: bool,
 }
 
 impl Links {
-    /// Index of a link.
-    fn index(&mut self, link: &(String, String)) -> usize {
-        if let Some(at) = self.numbers.get(link) {
-            return *at;
-        }
-        let at = self.list.len();
-        let (client, controller) = link.clone();
-        self.list.push(Link { link: at + 1, client, controller, messages: 0 });
-        self.numbers.insert(link.clone(), at);
-        at
+    /// Adds a message to its link, which gets the next number if it is new.
+    fn add(&mut self, link: &Arc<(String, String)>, count: u64) -> usize {
+        let at = self.numbers.get(link).copied().unwrap_or_else(|| {
+            let at = self.list.len();
+            let (client, controller) = (**link).clone();
+            self.list.push(Link { link: at + 1, client, controller, messages: 0 });
+            self.numbers.insert(Arc::clone(link), at);
+            at
+        });
+        let link = &mut self.list[at];
+        link.messages += count;
+        link.link
     }
 
-    pub(super) fn count(&mut self, link: &(String, String)) {
-        let at = self.index(link);
-        self.list[at].messages += 1;
+    pub(super) fn count(&mut self, link: &Arc<(String, String)>) {
+        self.add(link, 1);
     }
 
     /// Message with its link.
     pub(super) fn row<F>(&mut self, message: DecodedMessage<F>, first: Duration) -> Row<F> {
-        if !self.are_counted {
-            self.count(&message.link);
-        }
-        let at = self.index(&message.link);
-        let link = &self.list[at];
-        let (from, to, sender) = match message.direction {
-            Direction::Sent => (&link.client, &link.controller, "client"),
-            Direction::Received => (&link.controller, &link.client, "controller"),
-        };
+        let number = self.add(&message.link, u64::from(!self.are_counted));
+        let is_from_client = message.direction == Direction::Sent;
         Row {
             number: message.number,
             time_s: seconds(message.time, first),
-            link: link.link,
-            sender,
-            from: from.clone(),
-            to: to.clone(),
+            link: number,
+            sender: if is_from_client { "client" } else { "controller" },
+            from: End { link: Arc::clone(&message.link), is_client: is_from_client },
+            to: End { link: message.link, is_client: !is_from_client },
             text: message.text,
             answers: message.answers,
             section: message.section,
@@ -237,11 +333,12 @@ pub struct Problems {
 }
 
 impl Problems {
-    pub(super) fn add<F>(&mut self, row: &Row<F>) {
+    /// Adds the problem of the message in a packet, if it has one.
+    pub(super) fn add(&mut self, number: u64, problem: Option<&String>) {
         self.all += 1;
-        if let Some(problem) = &row.problem {
+        if let Some(problem) = problem {
             self.damaged += 1;
-            self.first.get_or_insert_with(|| (row.number, problem.clone()));
+            self.first.get_or_insert_with(|| (number, problem.clone()));
         }
     }
 }
@@ -257,4 +354,73 @@ fn seconds(time: Duration, first: Duration) -> f64 {
 /// Count with singular or plural noun.
 pub fn count_text(count: u64, what: &str) -> String {
     if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::output::csv::Sheet;
+    use crate::output::render::Layout;
+    use crate::schema_of;
+
+    /// A field, which no list shows.
+    #[derive(Debug, Serialize, JsonSchema)]
+    struct Offset {
+        offset: u8,
+    }
+
+    impl Field for Offset {
+        const COLUMNS: &'static [&'static str] = &[];
+
+        fn cells(&self) -> Vec<Cell> {
+            Vec::new()
+        }
+    }
+
+    fn messages() -> impl Iterator<Item = DecodedMessage<Offset>> {
+        let link = Arc::new(("10.0.0.9:50000".to_owned(), "=10.0.0.1".to_owned()));
+        let texts = ["=1+1", "a, \"b\"\n\u{1b}[0m", "-1.5 2", "no valid frame: one word of many", "溶接"];
+        (0..).zip(texts).map(move |(at, text)| DecodedMessage {
+            number: 98 + at,
+            time: Duration::from_micros(1_000_000_007 * (5 + at * 7 % 3)),
+            direction: if at % 2 == 0 { Direction::Sent } else { Direction::Received },
+            link: Arc::clone(&link),
+            text: text.to_owned(),
+            answers: (at % 2 == 1).then_some(97 + at),
+            section: (at == 2).then(|| "FS, DX 3".to_owned()),
+            raw: "-0f".to_owned(),
+            fields: vec![Offset { offset: 0 }],
+            problem: (at > 2).then(|| "@ a very_long_word".to_owned()),
+        })
+    }
+
+    #[test]
+    fn csv_row_has_the_columns_of_the_schema() {
+        let sheet = Sheet::from_schema(&schema_of::<Capture<Offset>>().to_value(), RowsOf::List("messages"));
+        let mut links = Links::default();
+        for message in messages() {
+            let row = links.row(message, Duration::from_secs(6000));
+            let (mut expected, mut written) = (String::new(), String::new());
+            sheet.rows(&[], &json!({ "messages": [row] }), None, &mut expected);
+            row.push_csv(&mut written);
+            assert_eq!(written, expected);
+        }
+        assert_eq!(links.list[0].messages, 5);
+    }
+
+    #[test]
+    fn extremes_give_the_widths_of_all_rows() {
+        let (first, mut links) = (Duration::from_secs(6000), Links::default());
+        let (mut of_rows, mut of_extremes) = (Layout::new(&COLUMNS), Layout::new(&COLUMNS));
+        let mut extremes = Extremes::default();
+        for message in messages() {
+            extremes.add(&message);
+            of_extremes.measure_cell(MESSAGE, &message_cell(&message.text, message.problem.as_deref()));
+            of_rows.measure(&links.row(message, first).cells());
+        }
+        extremes.rows(first, links.list.len()).for_each(|row| of_extremes.measure(&row));
+        assert_eq!(format!("{of_extremes:?}"), format!("{of_rows:?}"));
+    }
 }

@@ -5,17 +5,16 @@ use std::cell::RefCell;
 use std::io::{self, Read};
 
 use serde::ser::{Serialize, SerializeSeq as _, Serializer};
-use serde_json::json;
 
-use super::report::{Capture, Link, Links, Problems, Row};
-use super::{CaptureDecoder, DecodedCapture, DecodedMessage, ReportEnvelope, Source};
+use super::report::{COLUMNS, Capture, Extremes, Link, Links, MESSAGE, Problems, Row, message_cell};
+use super::{CaptureDecoder, DecodedCapture, DecodedMessage, Detail, ReportEnvelope, Source};
 use crate::Report as _;
 use crate::output::Format;
 use crate::output::busy_work::register;
 use crate::output::csv::{RowsOf, Sheet};
 use crate::output::render::{self, Layout};
 use crate::prelude::basics::*;
-use crate::run::{Run, RunError, as_value};
+use crate::run::{Run, RunError};
 use crate::schema_of;
 use armctl_transport::capture::Summary;
 
@@ -31,21 +30,32 @@ pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
 ) -> Result<(), RunError> {
     let mut links = Links::default();
     let mut problems = Problems::default();
-    let mut layout = Layout::new(&Row::<D::Field>::COLUMNS);
+    let mut layout = Layout::new(&COLUMNS);
+    let mut extremes = Extremes::default();
+    let is_table = run.is_for_people() && run.screen.format != Format::Csv;
+    let (first_detail, detail) = match run.screen.format {
+        _ if is_table => (Detail::Text, Detail::Text),
+        Format::Csv => (Detail::Problem, Detail::Raw),
+        _ => (Detail::Problem, Detail::Fields),
+    };
     let summary = {
         let _busy = register();
-        source.decode(&mut decoder, |message| {
-            let row = links.row(message, std::time::Duration::ZERO);
-            problems.add(&row);
-            layout.measure(&row.cells());
+        source.decode(&mut decoder, first_detail, |message| {
+            links.count(&message.link);
+            problems.add(message.number, message.problem.as_ref());
+            if is_table {
+                extremes.add(&message);
+                layout.measure_cell(MESSAGE, &message_cell(&message.text, message.problem.as_deref()));
+            }
             true
         })?
     };
+    extremes.rows(summary.first, links.list.len()).for_each(|row| layout.measure(&row));
     let DecodedCapture { packets, notes, .. } = std::mem::take(decoder.decoded());
     let mut about: Capture<D::Field> = source.about(&summary, packets, notes);
     (about.links, about.problems) = (links.list, problems);
     let failure = about.failure();
-    let second_pass = SecondPass { source, summary: &summary, all: about.problems.all };
+    let second_pass = SecondPass { source, detail, summary: &summary, all: about.problems.all };
     let _busy = register();
     if !run.is_for_people() {
         let Capture { file, packets, other_packets, links, notes, damage, .. } = &about;
@@ -67,6 +77,7 @@ pub fn print<R: Read, O: Fn() -> io::Result<R>, D: CaptureDecoder>(
 /// Second pass through the file, up to the number of messages of the first pass.
 struct SecondPass<'a, 'b, O> {
     source: &'a Source<'b, O>,
+    detail: Detail,
     summary: &'a Summary,
     all: u64,
 }
@@ -85,7 +96,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
             left = fewer;
             each(links.row(message, self.summary.first))
         };
-        self.source.decode(&mut decoder, row).map(|_| ())
+        self.source.decode(&mut decoder, self.detail, row).map(|_| ())
     }
 
     fn rows_for_people<D: CaptureDecoder>(
@@ -101,7 +112,7 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
         screen.data(&text(about.head()))?;
         screen.data("\n")?;
         let mut layout = layout.fit_width(width);
-        let mut table = Table::new(&Row::<D::Field>::COLUMNS, "");
+        let mut table = Table::new(&COLUMNS, "");
         let mut write = |table: &mut Table| {
             let piece = layout.piece(&table.rows, color);
             table.rows.clear();
@@ -131,11 +142,12 @@ impl<R: Read, O: Fn() -> io::Result<R>> SecondPass<'_, '_, O> {
         let (mut text, mut count) = (sheet.header(&[]), 0_usize);
         let mut written = Ok(());
         self.rows(decoder, |row| {
-            written = as_value(&row).and_then(|row| {
-                sheet.rows(&[], &json!({ "messages": [row] }), None, &mut text);
-                count += 1;
-                if count.is_multiple_of(ROWS_PER_BATCH) { run.screen.data(&std::mem::take(&mut text)) } else { Ok(()) }
-            });
+            row.push_csv(&mut text);
+            count += 1;
+            if count.is_multiple_of(ROWS_PER_BATCH) {
+                written = run.screen.data(&text);
+                text.clear();
+            }
             written.is_ok()
         })?;
         written?;

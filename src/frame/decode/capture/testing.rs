@@ -1,6 +1,6 @@
 //! Test support: a capture file in memory.
 
-use super::{Capture, CaptureDecoder, MEMORY_LIMIT, Selection, Source};
+use super::{Capture, CaptureDecoder, Detail, MEMORY_LIMIT, Selection, Source};
 use crate::failure::Failure;
 
 fn complete_capture<D: CaptureDecoder>(
@@ -9,7 +9,7 @@ fn complete_capture<D: CaptureDecoder>(
     decoder: D,
 ) -> Result<Capture<D::Field>, Failure> {
     let source = Source { name: "file", open: || Ok(file), selection };
-    let (capture, _) = source.capture(decoder, MEMORY_LIMIT, false)?;
+    let (capture, _) = source.capture(decoder, MEMORY_LIMIT, Detail::Fields)?;
     Ok(capture.expect("there is room"))
 }
 
