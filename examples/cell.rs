@@ -41,7 +41,9 @@ async fn main() -> Result<(), Box<dyn Error>> {
     }
     let (picker, (_, slider), welder) = tokio::join!(cell.picker.close(), cell.slider.close(), cell.welder.close());
     outcome?;
-    (picker?, slider?, welder?);
+    picker?;
+    slider?;
+    welder?;
     Ok(())
 }
 

@@ -44,7 +44,7 @@ fn every_type_of_the_client_has_an_example() {
         .iter()
         .flat_map(|file| {
             let lines: Vec<&str> = file.text.lines().collect();
-            let declared = statements(&file.code, 0).into_iter().filter(|statement| statement.is_public_type());
+            let declared = statements(&file.code, 0).into_iter().filter(Statement::is_public_type);
             declared.map(move |statement| {
                 let above = lines[..statement.line].iter().rev().take_while(|line| line.starts_with(['/', '#']));
                 let docs: Vec<&str> = above.filter(|line| line.starts_with("///")).copied().collect();
@@ -226,7 +226,7 @@ fn statements(code: &str, indent: usize) -> Vec<Statement> {
                     _ => {}
                 }
             }
-            head = format!("{head} {line}").trim().to_owned();
+            format!("{head} {line}").trim().clone_into(&mut head);
             if at >= lines.len() || depth == 0 && ends(&head, line) {
                 break;
             }
