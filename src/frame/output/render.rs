@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use comfy_table::presets::NOTHING;
+use comfy_table::{Attribute, CellAlignment, Color, ColumnConstraint, ContentArrangement, Width};
 use dialoguer::console::measure_text_width;
 
 use super::view::{Cell, Section, Table, Tone, View};
@@ -122,6 +124,7 @@ const LONG_VALUE: usize = 1000;
 pub struct Layout {
     names: Vec<&'static str>,
     columns: Vec<Column>,
+    width: u16,
     has_header: bool,
 }
 
@@ -142,7 +145,7 @@ impl Layout {
             let (width, least) = (measure_text_width(name), least(name));
             Column { width, min_width: least, is_number: true, is_whole: false }
         };
-        Self { names: names.to_vec(), columns: names.iter().map(column).collect(), has_header: false }
+        Self { names: names.to_vec(), columns: names.iter().map(column).collect(), width: 0, has_header: false }
     }
 
     /// Measures a row.
@@ -179,6 +182,7 @@ impl Layout {
     /// No column is narrower than its longest word.
     #[must_use]
     pub fn fit_width(mut self, width: u16) -> Self {
+        self.width = width;
         // If there is room, a space also follows the last column.
         let room =
             usize::from(width).saturating_sub(self.gaps() + usize::from(PADDING)).max(self.least() - self.gaps());
@@ -198,71 +202,35 @@ impl Layout {
 
     /// Renders the next rows. The first piece includes the header.
     pub fn piece(&mut self, rows: &[Vec<Cell>], color: bool) -> String {
-        let mut out = String::new();
+        let header = |(name, column): (&&str, &Column)| {
+            let cell = comfy_table::Cell::new(name.to_uppercase()).add_attribute(Attribute::Bold);
+            if column.is_number { cell.set_alignment(CellAlignment::Right) } else { cell }
+        };
+        let mut grid = grid(self.width, color);
         if !std::mem::replace(&mut self.has_header, true) {
-            let header = self.names.iter().zip(&self.columns).map(|(name, column)| GridCell {
-                lines: name.to_uppercase().into(),
-                is_right: column.is_number,
-                style: if color { BOLD } else { UNSTYLED },
-            });
-            self.push_row(&header.collect::<Vec<_>>(), &mut out);
+            grid.set_header(self.names.iter().zip(&self.columns).map(header).collect::<Vec<_>>());
         }
         for row in rows {
-            let cells = row.iter().zip(&self.columns).map(|(cell, column)| GridCell {
-                lines: folded(escape::line(&cell.text), column.width),
-                is_right: cell.is_number,
-                style: if color { grid_style(cell.tone) } else { UNSTYLED },
-            });
-            self.push_row(&cells.collect::<Vec<_>>(), &mut out);
+            let cells = row.iter().zip(&self.columns);
+            grid.add_row(cells.map(|(cell, column)| apply_tone(cell, column.width)).collect::<Vec<_>>());
         }
-        out
-    }
-
-    /// Appends a row: as many lines as its highest cell has, without blanks at their ends.
-    fn push_row(&self, cells: &[GridCell<'_>], out: &mut String) {
-        let mut lines: Vec<_> = cells.iter().map(|cell| cell.lines.split('\n')).collect();
-        let height = cells.iter().map(|cell| cell.lines.matches('\n').count() + 1).max().unwrap_or_default();
-        for _ in 0..height {
-            let start = out.len();
-            for ((cell, lines), column) in cells.iter().zip(&mut lines).zip(&self.columns) {
-                let (text, (on, off)) = lines.next().map_or(("", UNSTYLED), |text| (text, cell.style));
-                let blanks = column.width.saturating_sub(measure_text_width(text));
-                let (left, right) = if cell.is_right { (blanks, 0) } else { (0, blanks) };
-                out.push_str(on);
-                out.extend(std::iter::repeat_n(' ', left));
-                out.push_str(text);
-                out.extend(std::iter::repeat_n(' ', right + usize::from(PADDING)));
-                out.push_str(off);
-            }
-            let end = start + out[start..].trim_end().len();
-            out.truncate(end);
-            out.push('\n');
+        for (column, Column { width, .. }) in grid.column_iter_mut().zip(&self.columns) {
+            let width = u16::try_from(*width).unwrap_or(u16::MAX).saturating_add(PADDING);
+            column.set_padding((0, PADDING)).set_constraint(ColumnConstraint::Absolute(Width::Fixed(width)));
         }
+        grid.lines().flat_map(|line| [line.trim_end(), "\n"].map(ToOwned::to_owned)).collect()
     }
 }
 
-/// A cell of a row that is written.
-struct GridCell<'a> {
-    /// Text, broken into lines.
-    lines: Cow<'a, str>,
-    is_right: bool,
-    style: Style,
-}
-
-/// Codes before and after a text.
-type Style = (&'static str, &'static str);
-
-const UNSTYLED: Style = ("", "");
-const BOLD: Style = ("\x1b[1m", "\x1b[0m");
-
-/// Colors in a table are bright, so that they differ from the color of the text.
-fn grid_style(tone: Tone) -> Style {
-    match tone {
-        Tone::Plain => UNSTYLED,
-        Tone::Good => ("\x1b[38;5;10m", "\x1b[39m"),
-        Tone::Warning => ("\x1b[38;5;11m", "\x1b[39m"),
-        Tone::Bad => ("\x1b[38;5;9m", "\x1b[39m"),
+fn grid(width: u16, color: bool) -> comfy_table::Table {
+    let mut grid = comfy_table::Table::new();
+    grid.load_style(NOTHING).set_content_arrangement(ContentArrangement::Dynamic).set_width(width);
+    if color {
+        grid.enforce_styling();
+    } else {
+        grid.force_no_tty();
     }
+    grid
 }
 
 /// Maximum length of a part that is kept together in a breakable word.
@@ -343,6 +311,17 @@ fn fold(text: &str, room: usize) -> String {
         }
     }
     out
+}
+
+fn apply_tone(cell: &Cell, room: usize) -> comfy_table::Cell {
+    let shown = comfy_table::Cell::new(folded(escape::line(&cell.text), room));
+    let shown = match cell.tone {
+        Tone::Plain => shown,
+        Tone::Good => shown.fg(Color::Green),
+        Tone::Warning => shown.fg(Color::Yellow),
+        Tone::Bad => shown.fg(Color::Red),
+    };
+    if cell.is_number { shown.set_alignment(CellAlignment::Right) } else { shown }
 }
 
 /// Formats a line in its color, without line breaks.
