@@ -16,6 +16,7 @@ class World:
     needs_session, session_flags, timeout, stop = False, [], 0.2, None
     harmless = HARMLESS
     prefix = []  # words before those of armctl
+    probe = None  # a read that fails while a command of another client runs
 
     async def settle(self):
         pass
@@ -87,6 +88,7 @@ class ToyoTerminal(ToyoTcp):
 
 class Eip(World):
     name, family, faults, harmless = "yrcx-eip", "yrcx", CYCLIC_FAULTS, CYCLIC_HARMLESS
+    probe = ["info", "servo"]
     needs_session, session_flags, timeout = True, ["--yes"], 0.5
 
     async def open(self, folder, tag):

@@ -425,12 +425,14 @@ class Device(asyncio.DatagramProtocol):
         if kind.startswith("lose") or kind == "cut":
             return
         self.delay(kind)
-        if kind == "reorder":
-            held, self.images.held = self.images.held, data
-            if held is None:
-                return
+        held, self.images.held = self.images.held, None
+        if held is not None:
+            # One frame late: after more than 128 ms, the cycle counter no longer shows that a frame is old.
             self.consume(self.ar, source, data)
-            data, self.images.held = held, None
+            data = held
+        elif kind == "reorder":
+            self.images.held = data
+            return
         self.stall.pass_on(self.consume, self.ar, source, data)
         if kind == "double":
             self.consume(self.ar, source, data)

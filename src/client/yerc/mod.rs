@@ -363,7 +363,10 @@ impl Client {
     /// first.
     pub async fn close(mut self) -> Result<Totals, Error> {
         self.abandon().await;
-        self.linger().await?;
+        // The last download is complete. At worst, the controller keeps it open until its timer expires.
+        if self.linger().await.is_err() {
+            self.watcher.event(Event::TransferLeftOpen);
+        }
         if let Transport::Session(session) = self.transport {
             session.leave().await;
         }

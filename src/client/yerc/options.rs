@@ -51,8 +51,8 @@ impl Options {
 pub enum Event {
     /// An exchange or transfer ended. During it, the client received frames that do not belong to its requests.
     UnexpectedTraffic(Counters),
-    /// A transfer was aborted, and the controller did not confirm the end. The controller may stay busy until its timer
-    /// expires.
+    /// The controller may not know that a transfer has ended: it did not confirm an abort, or its last acknowledgement may
+    /// be lost. The controller may stay busy until its timer expires.
     TransferLeftOpen,
 }
 
