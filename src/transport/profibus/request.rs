@@ -10,7 +10,7 @@ use std::time::Duration;
 use super::Now;
 use super::error::UnexpectedBytes;
 use super::rates::{IDLE, Rate, SYNC};
-use super::wire::{Control, Frame, FrameCount, Piece, Service, Status, Stream, Telegram};
+use super::wire::{Control, Frame, FrameCount, Piece, Service, Status, Stream, Telegram, sap};
 
 /// Number of sent telegrams that are kept to detect the echo of an adapter.
 const ECHO_HISTORY_LEN: usize = 4;
@@ -133,7 +133,7 @@ impl Requester {
             from: self.own_address,
             control: Control::Request(service, FrameCount::None),
             to_sap: sap,
-            from_sap: sap.map(|_| super::wire::sap::MASTER),
+            from_sap: sap.map(|_| sap::MASTER),
             data,
         }
     }
@@ -266,6 +266,9 @@ impl Requester {
         };
         let Some(pending) = self.pending.take_if(|pending| is_answer_to(&pending.frame, &answer)) else {
             self.counters.unexpected += 1;
+            if let Some(pending) = self.pending.as_mut().filter(|_| matches!(answer, Answer::Short)) {
+                pending.heard.noise = true;
+            }
             return None;
         };
         if let Control::Request(service, count) = pending.frame.control
@@ -293,8 +296,9 @@ const TOKEN_WINDOW: Duration = Duration::from_secs(1);
 /// Whether this is a possible answer to the request.
 fn is_answer_to(request_name: &Frame, answer: &Answer) -> bool {
     match answer {
-        // A short acknowledgement does not contain its sender. It is not a valid answer to an FDL status request.
-        Answer::Short => request_name.control != Control::Request(Service::FdlStatus, FrameCount::None),
+        // A short acknowledgement is one byte without a sender or checksum. It answers only the services that have no data
+        // to return. Anywhere else it is noise.
+        Answer::Short => matches!(request_name.to_sap, Some(sap::SET_PRM | sap::CHK_CFG)),
         Answer::Frame(frame) => {
             let is_from = frame.from == request_name.to && frame.to == request_name.from;
             let refuses = matches!(

@@ -518,15 +518,12 @@ impl Master {
             }
             return Ok(());
         }
-        let (status, image) = match answer {
-            Answer::Short => (Status::Ok, Vec::new()),
-            frame @ Answer::Frame(_) => match data(station, sap::name(None), frame) {
-                Err(ProfibusError::Refused { status: Status::NoService, .. }) => {
-                    let why = Status::NoService.text().to_owned();
-                    return Err(ProfibusError::Left { station, why });
-                }
-                read => read?,
-            },
+        let (status, image) = match data(station, sap::name(None), answer) {
+            Err(ProfibusError::Refused { status: Status::NoService, .. }) => {
+                let why = Status::NoService.text().to_owned();
+                return Err(ProfibusError::Left { station, why });
+            }
+            read => read?,
         };
         if matches!(status, Status::DataNoResource | Status::DataHighNoResource) {
             return Err(ProfibusError::Refused { station, request_name: sap::name(None), status });

@@ -225,6 +225,20 @@ fn recovers_from_single_faults_by_repetition() {
 }
 
 #[test]
+fn noise_that_looks_like_an_acknowledgement_is_no_image() {
+    let mut world = World::new("500k", "");
+    let view = world.open();
+    for round in 1..=20 {
+        // Only while a request waits, the byte can be taken for its answer.
+        world.run(SEC, |now| now.statistics.sent > view.statistics.sent + round);
+        world.master.handle(world.now, &hex("E5"));
+    }
+    let after = world.run(SEC, |now| now.statistics.sent > view.statistics.sent + 40);
+    assert_eq!((after.state, after.generation), (State::Open, view.generation), "{:?}", after.last_error);
+    assert!(after.statistics.unexpected > 0);
+}
+
+#[test]
 fn restarted_slave_gets_the_resting_image() {
     let mut world = World::new("500k", "");
     let view = world.open();
