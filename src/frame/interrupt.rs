@@ -13,6 +13,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use futures_util::FutureExt;
+use futures_util::future::{Either, select};
 use tokio::sync::watch;
 use tokio::task::coop::unconstrained;
 
@@ -74,14 +75,15 @@ pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failur
 }
 
 /// Returns the result of `work`, or the request that ended `work`. The work may wait for the same request. For this
-/// reason, the work is polled once more after the request has arrived from the signal thread. This poll is
-/// `unconstrained`: if the work exhausted the task budget, its own `select!` would otherwise not look at the request.
+/// reason, the work is polled once more after the request has arrived from the signal thread.
+///
+/// This is not a `select!` of tokio, which does not look at the request while the work has used up the task budget. The
+/// last poll is within the budget: otherwise work whose peer answers at once would continue to its end.
 async fn run_until_request<T, R>(work: impl Future<Output = T>, request: impl Future<Output = R>) -> Result<T, R> {
-    let mut work = pin!(work);
-    tokio::select! {
-        biased;
-        done = &mut work => Ok(done),
-        how = request => unconstrained(work).now_or_never().ok_or(how),
+    let work = pin!(work);
+    match select(work, pin!(request)).await {
+        Either::Left((done, _)) => Ok(done),
+        Either::Right((how, work)) => work.now_or_never().ok_or(how),
     }
 }
 
@@ -387,6 +389,16 @@ mod tests {
             Poll::Ready("outer")
         }));
         assert_eq!(run_until_request(inner, outer).await, Ok(Err(KEYS)));
+    }
+
+    #[tokio::test]
+    async fn request_ends_work_whose_peer_answers_at_once() {
+        let busy = async {
+            for _ in 0..1_000_000 {
+                consume_budget().await;
+            }
+        };
+        assert_eq!(run_until_request(busy, async { KEYS }).await, Err(KEYS));
     }
 
     #[tokio::test]
