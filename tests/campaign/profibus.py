@@ -201,8 +201,9 @@ class Slave:
             self.wrong.append("%d bytes of data" % len(data))
             self.leave()
             return self.answer(sender, None, 3, b"")
-        if self.first and data != bytes(32) + b"\x41" + bytes(15):
-            self.wrong.append("the first image is not the resting image: %s" % data.hex())
+        # An emergency-stop or stop input that was off stays off.
+        if self.first and any(byte & ~rest for byte, rest in zip(data, bytes(32) + b"\x41" + bytes(15))):
+            self.wrong.append("the first image switches something on: %s" % data.hex())
         if not self.operates:
             self.wrong.append("data before the state operate")
         self.first = False

@@ -17,6 +17,7 @@ use super::session::{Ask, Session, Step, Token};
 use super::settings::{Role, Settings};
 use super::wire::{Close, Command, Cyclic, Net, Open, Opened, RUN, RrData, Triad};
 use super::{IO_PORT, Now};
+use crate::image::image_after_loss;
 
 mod identifiers;
 mod view;
@@ -435,7 +436,7 @@ impl Originator {
         self.view.last_error = Some(last_error);
         match self.phase {
             Phase::Open => {
-                self.image.clone_from(&self.settings.resting);
+                self.image = image_after_loss(&self.settings.resting, &self.image);
                 self.view.details.run = false;
                 self.show(State::Lost);
                 // Perhaps only the path from the device to this program is broken. ForwardClose closes the old

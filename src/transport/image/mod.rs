@@ -3,7 +3,8 @@
 //!
 //! A fieldbus sends the newest image in its own cycle. An image that is replaced before the next cycle is never sent.
 //! To be sure that an image was sent, call [`ImageLink::set_output`] and wait for [`Event::Sent`]. After a loss, the
-//! peer gets the resting image until a new image is set. Therefore no image from before a loss is sent again.
+//! peer gets the resting image ([`image_after_loss`]) until a new image is set. Therefore no image from before a loss is
+//! sent again.
 //!
 //! A fieldbus implements [`cyclic::Bus`] for a connection that controls the device, and [`ImageConnection`] for a
 //! connection that only reads. Errors of devices are converted to [`LinkError`]. [`InProcess`] is a connection to a
@@ -32,6 +33,14 @@ pub use self::error::{Cause, LinkError, Outputs};
 pub use self::in_process::{CYCLE, ImagePeer, InProcess};
 use super::session::client::{self, Attached, SessionBusy};
 use super::session::wire::Change;
+
+/// Image to the peer after a loss: the resting image. A bit that rests on stays off if it was off in the last image: an
+/// emergency-stop input that the user switched off must not go on again when the link returns.
+pub fn image_after_loss(resting: &[u8], last: &[u8]) -> Vec<u8> {
+    // Before the first opening there is no last image.
+    let last = last.iter().copied().chain(std::iter::repeat(u8::MAX));
+    resting.iter().zip(last).map(|(resting, last)| resting & last).collect()
+}
 
 /// Event of a link.
 #[derive(Debug, Clone, PartialEq, Eq)]

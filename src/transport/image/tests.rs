@@ -49,6 +49,13 @@ fn image(bytes: &[u8]) -> Event {
     Event::Image(bytes.into())
 }
 
+#[test]
+fn image_after_a_loss_switches_nothing_on() {
+    assert_eq!(image_after_loss(&[0x41, 0], &[]), [0x41, 0], "before the first opening");
+    assert_eq!(image_after_loss(&[0x41, 0], &[0xFF, 0xFF]), [0x41, 0]);
+    assert_eq!(image_after_loss(&[0x41, 0], &[0x40, 0x12]), [0x40, 0]);
+}
+
 #[tokio::test(start_paused = true)]
 async fn sends_images_at_the_interval_and_reports_changes_only() {
     let echo = Echo::default();

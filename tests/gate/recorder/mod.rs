@@ -209,7 +209,7 @@ impl<'a> Bench<'a> {
         let sent = self.recorder.take_effect();
         let is_known = came.exit.is_some_and(|exit| (0..=9).contains(&exit));
         match sent.iter().find(|(effect, _)| most.is_none_or(|most| *effect > most)) {
-            Some((effect, what)) => Some(format!("{effect:?} was sent: {what}; {came:?}")),
+            Some((effect, what)) => Some(format!("{effect:?} was sent: {what}; all: {sent:?}; {came:?}")),
             None => (!is_known).then(|| format!("{came:?}")),
         }
     }

@@ -17,6 +17,7 @@ use crate::devicenet::can::Frame;
 use crate::devicenet::error::Error;
 use crate::devicenet::settings::{Purpose, Settings};
 use crate::devicenet::wire::{Answer, Id, Mac, Request, class, connection, general, owner};
+use crate::image::image_after_loss;
 
 /// Pauses before attempts to reopen a lost connection. The last pause repeats.
 const BACKOFF: [Duration; 3] = [Duration::from_secs(1), Duration::from_secs(2), Duration::from_secs(5)];
@@ -384,7 +385,7 @@ impl Connection {
             let known = format!("the earlier {}", self.view.details.size.unwrap_or_default());
             return Err(Error::Size { mac, produced_size, consumed_size, known });
         }
-        self.image.clone_from(&profile.resting);
+        self.image = image_after_loss(&profile.resting, &self.image);
         self.view.details.size = Some(profile.resting.len());
         Ok(u16::try_from(images.rate.as_millis()).unwrap_or(u16::MAX))
     }

@@ -9,6 +9,7 @@ use crate::devicenet::error::Error;
 use crate::devicenet::scanner::State;
 use crate::devicenet::settings::{Purpose, Settings};
 use crate::devicenet::wire::{Answer, Request, class};
+use crate::image::image_after_loss;
 
 fn frames(world: &World) -> Vec<String> {
     world.trace.iter().map(|(_, frame)| frame.to_string()).collect()
@@ -179,7 +180,9 @@ fn reopened_link_starts_with_the_resting_image() {
     assert_eq!(world.view().generation, 2);
     world.run(MS * 100);
     assert_eq!(world.mirror().history.len(), 1);
-    assert_eq!(world.mirror().history[0].1, resting(48), "nothing of the time before");
+    let image = &world.mirror().history[0].1;
+    assert_eq!(*image, image_after_loss(&resting(48), &[9; 48]), "nothing of the time before goes on");
+    assert_ne!(*image, resting(48), "an input that rests on and was off stays off");
     assert_eq!(world.scanner.set_image(LINK, 1, &[9; 48]), Err(Error::Outdated));
     assert!(world.scanner.set_image(LINK, 2, &[9; 48]).is_ok());
 }

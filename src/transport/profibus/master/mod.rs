@@ -21,6 +21,8 @@ mod answer;
 mod view;
 
 use answer::{acknowledged, data};
+
+use crate::image::image_after_loss;
 pub use view::{Details, Input, State, Statistics, View, Views};
 
 /// Time limit for a slave to become ready.
@@ -383,6 +385,7 @@ impl Master {
             Step::Diagnose => {
                 let diagnosis = self.diagnosis(answer)?;
                 self.compare(&diagnosis)?;
+                self.image = image_after_loss(&self.settings.resting, &self.image);
                 self.enter_step(now, Step::Ask);
             }
             Step::Ask => self.configure(now, answer)?,
@@ -500,7 +503,6 @@ impl Master {
             return Ok(());
         }
         self.compare(&diagnosis)?;
-        self.image.clone_from(&self.settings.resting);
         self.view.generation += 1;
         self.next_cycle = now;
         self.jobs = VecDeque::from([Job::Operate]);
@@ -575,7 +577,6 @@ impl Master {
             return self.end();
         }
         self.set_state(State::Lost);
-        self.image.clone_from(&self.settings.resting);
         if must_be_quiet {
             return self.listen_until(now + self.timing.listen.max(REOPEN_PAUSE));
         }

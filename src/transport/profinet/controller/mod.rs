@@ -24,6 +24,7 @@ use super::wire::frame::{Frame, TAG_HIGH, id};
 use super::wire::rpc::{Datagram, Kind, PORT};
 use super::wire::status::Status;
 use super::wire::{Mac, Uuid};
+use crate::image::image_after_loss;
 
 mod alarms;
 mod answer;
@@ -218,8 +219,7 @@ impl Controller {
         Ok(self.revision)
     }
 
-    /// Closes the connection: sends the resting image, then releases the connection. Cyclic frames continue until the
-    /// device answers the release.
+    /// Releases the connection. Cyclic frames with the last image continue until the device answers the release.
     pub fn close(&mut self, now: Now) {
         if std::mem::replace(&mut self.is_over, true) {
             return;
@@ -457,7 +457,7 @@ impl Controller {
 
     /// Switches to the resting image, and drops the input image.
     fn enter_resting_image(&mut self) {
-        self.image.clone_from(&self.settings.resting);
+        self.image = image_after_loss(&self.settings.resting, &self.image);
         self.view.input = None;
     }
 

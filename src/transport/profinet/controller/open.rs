@@ -150,9 +150,8 @@ impl Controller {
     }
 
     /// Releases the connection. `trouble` is the error that caused the release; `None` if the caller closes the
-    /// connection.
+    /// connection. The image stays until the end: the resting image would switch an emergency-stop input on.
     pub(super) fn release(&mut self, now: Now, last_error: Option<ProfinetError>) {
-        self.enter_resting_image();
         let tries = match last_error {
             // The device probably does not answer, so one attempt is enough.
             Some(ProfinetError::NoAnswer { .. }) => 1,

@@ -8,9 +8,18 @@ use super::super::wire::alarm::{Notification, Priority};
 use super::super::wire::rpc::operation;
 use super::super::wire::status::Status;
 use super::world::{MS, World, native_order, resting, settings, setup};
+use crate::image::image_after_loss;
 
 fn image(mark: u8) -> Vec<u8> {
     (0..48).map(|at| mark.wrapping_add(at)).collect()
+}
+
+/// Image after a loss that followed `image(5)`: one of the two inputs that rest on was off.
+fn after_five() -> Vec<u8> {
+    let mut image = resting();
+    image[32] = 0x01;
+    assert_eq!(image, image_after_loss(&resting(), &self::image(5)));
+    image
 }
 
 fn alarm(priority: Priority, kind: u16) -> Notification {
@@ -91,7 +100,7 @@ fn reports_a_silent_device_as_lost() {
     assert_eq!(world.view().generation, 2);
     assert!(matches!(world.controller.set_image(1, &image(6)), Err(ProfinetError::Outdated)));
     let history = &world.device.application().history;
-    assert_eq!(history.last(), Some(&Some(resting())));
+    assert_eq!(history.last(), Some(&Some(after_five())));
     assert_eq!(history.iter().filter(|shown| **shown == Some(image(5))).count(), 1, "it is not shown again");
 }
 
@@ -110,7 +119,7 @@ fn bad_data_is_a_loss_and_the_link_restarts_at_rest() {
         world.until(100 * MS, |world| world.view().state == State::Lost);
         assert_eq!((world.view().last_error, world.view().input), (Some(ProfinetError::Unusable(why)), None));
         world.run(100 * MS);
-        assert_eq!(world.device.application().image, Some(resting()), "{fault:?}");
+        assert_eq!(world.device.application().image, Some(after_five()), "{fault:?}");
         world.device.set_fault(None);
         world.until_open();
         assert_eq!((world.view().generation, world.calls(operation::CONNECT).len()), (2, 1), "{fault:?}");
@@ -142,7 +151,7 @@ fn a_device_that_restarts_is_connected_again() {
     world.until_open();
     let view = world.view();
     assert_eq!((view.generation, view.statistics.losses), (2, 1));
-    assert_eq!(world.device.application().image, Some(resting()));
+    assert_eq!(world.device.application().image, Some(after_five()));
 }
 
 #[test]

@@ -219,6 +219,8 @@ fn sends_frames_until_the_release_is_complete() {
     let before = outputs(&world).len();
     let view = world.run_to_deadline();
     assert_eq!(view.last_error, None);
+    let history = &world.device.application().history;
+    assert_eq!(history[..], [Some(resting()), Some(image(9)), None], "no input goes on while the connection closes");
     assert!(matches!(world.device.application().events.last(), Some(Event::Ended(None))));
     assert_eq!(world.calls(operation::RELEASE).len(), 1);
     world.run(1000 * MS);

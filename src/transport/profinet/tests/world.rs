@@ -151,7 +151,9 @@ impl World {
     pub fn until_open(&mut self) {
         self.until(60_000 * MS, |world| {
             let view = world.view();
-            view.state == State::Open && view.input.is_some_and(|input| *input.image == *native_order(&resting()))
+            let is_resting =
+                |image: &[u8]| native_order(image).iter().zip(resting()).all(|(byte, rest)| byte & !rest == 0);
+            view.state == State::Open && view.input.is_some_and(|input| is_resting(&input.image))
         });
     }
 
