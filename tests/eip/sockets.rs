@@ -20,6 +20,8 @@ use armctl_transport::eip::tap::Tap;
 use armctl_transport::eip::wire::Status;
 use armctl_transport::fault::{FaultSpec, Faults, SimulatorFaults};
 
+use armctl_transport::image::image_after_loss;
+
 use super::world::{MS, Mirror, identity, resting, setup, with_long_timeout};
 
 const LOOPBACK: Ipv4Addr = Ipv4Addr::LOCALHOST;
@@ -178,7 +180,7 @@ async fn reopens_a_lost_link() {
     assert_eq!(connection.set_image(1, &[8; 48]), Err(EipError::Outdated));
     server.with(|adapter, _| adapter.set_fault(None));
     connection.until(|view| view.generation == 2 && view.state == State::Open).await;
-    let rest: Vec<u8> = resting().iter().map(|byte| !byte).collect();
+    let rest: Vec<u8> = image_after_loss(&resting(), &[7; 48]).iter().map(|byte| !byte).collect();
     connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == *rest)).await;
 }
 

@@ -9,6 +9,8 @@ use armctl_transport::eip::originator::State;
 use armctl_transport::eip::settings::{Multiplier, Role, Settings};
 use armctl_transport::eip::wire::{Command, Cyclic, Frame, Identity, Key, Open, Request, RrData, Status};
 
+use armctl_transport::image::image_after_loss;
+
 use super::world::{ADAPTER_ADDRESS, MS, Mirror, ORIGINATOR_ADDRESS, World, identity, resting, settings, setup};
 
 /// An image that can be recognized by its mark.
@@ -135,7 +137,8 @@ fn reopened_device_starts_with_resting_image() {
     world.run_until(20_000 * MS, |world| world.view().generation == 2);
     world.run(1000 * MS);
     assert_eq!(world.view().state, State::Open);
-    assert_eq!(world.adapter.application().history[before..], [(resting(), false)], "nothing of before is sent again");
+    let shown = &world.adapter.application().history[before..];
+    assert_eq!(shown, [(image_after_loss(&resting(), &image(7)), false)], "nothing of before goes on again");
     assert_eq!(world.originator.set_image(1, &image(8)), Err(EipError::Outdated));
     assert!(world.originator.set_image(2, &image(8)).is_ok());
 }
