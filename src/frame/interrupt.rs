@@ -4,11 +4,12 @@
 //! running work, which stops the robot. A second request ends the process at once. The first request also ends the
 //! process if the work is busy with a computation and does not react.
 
+use std::cell::RefCell;
 use std::future::{Future, poll_fn};
-use std::pin::pin;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{OnceLock, mpsc};
-use std::task::Poll;
+use std::pin::{Pin, pin};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock, mpsc};
+use std::task::{self, Poll};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -16,6 +17,7 @@ use futures_util::FutureExt;
 use futures_util::future::{Either, select};
 use tokio::sync::watch;
 use tokio::task::coop::unconstrained;
+use tokio::time::timeout;
 
 use crate::failure::{Failure, Kind};
 use crate::output::{busy_work, immediate_exit};
@@ -60,12 +62,13 @@ const REPORT_TIMEOUT: Duration = Duration::from_secs(5);
 /// There is one listener for the whole process, so that no signal is lost between two waits.
 static REQUEST: OnceLock<Result<TerminationRequest, String>> = OnceLock::new();
 
-/// Runs `work` until it ends or a termination request arrives. If calls are nested, the inner call handles the request
-/// first.
+/// Runs `work` until it ends or a termination request arrives. If calls are nested, the innermost call handles the
+/// request. The outer calls then leave the work [`REPORT_TIMEOUT`] to report what was done.
 pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failure> {
     let asked = requests()?.subscribe();
     let before = *asked.borrow();
     if let Some(how) = before {
+        Wait::begin().own.has_handled.store(true, Ordering::Relaxed);
         return Err(Failure::new(Kind::Interrupted, how));
     }
     // The wait is `unconstrained`, because work that exhausts the task budget must not delay the wait. Work exhausts
@@ -74,16 +77,73 @@ pub async fn interruptible<T>(work: impl Future<Output = T>) -> Result<T, Failur
     run_until_request(work, how).await.map_err(|how| Failure::new(Kind::Interrupted, how))
 }
 
-/// Returns the result of `work`, or the request that ended `work`. The work may wait for the same request. For this
-/// reason, the work is polled once more after the request has arrived from the signal thread.
-///
-/// This is not a `select!` of tokio, which does not look at the request while the work has used up the task budget. The
-/// last poll is within the budget: otherwise work whose peer answers at once would continue to its end.
+/// Returns the result of `work`, or the request that ended `work`.
 async fn run_until_request<T, R>(work: impl Future<Output = T>, request: impl Future<Output = R>) -> Result<T, R> {
-    let work = pin!(work);
-    match select(work, pin!(request)).await {
-        Either::Left((done, _)) => Ok(done),
-        Either::Right((how, work)) => work.now_or_never().ok_or(how),
+    let wait = Wait::begin();
+    let mut work = pin!(work);
+    // This is not a `select!` of tokio, which does not look at the request while the work has used up the task budget.
+    let how = match select(poll_fn(|context| wait.poll(work.as_mut(), context)), pin!(request)).await {
+        Either::Left((done, _)) => return Ok(done),
+        Either::Right((how, _)) => how,
+    };
+    let report = poll_fn(|context| match wait.poll(work.as_mut(), context) {
+        Poll::Pending if !wait.own.handles_request() => Poll::Ready(None),
+        polled => polled.map(Some),
+    });
+    let report = timeout(REPORT_TIMEOUT, report).await.ok().flatten();
+    wait.own.has_handled.store(true, Ordering::Relaxed);
+    report.ok_or(how)
+}
+
+thread_local! {
+    /// The innermost wait whose work this thread polls.
+    static CURRENT: RefCell<Option<Arc<WaitState>>> = const { RefCell::new(None) };
+}
+
+/// What a wait knows of the waits within its work.
+#[derive(Debug, Default)]
+struct WaitState {
+    /// Number of waits within the work.
+    inner: AtomicUsize,
+    /// Whether a wait within the work has handled the request. The work then reports.
+    has_handled: AtomicBool,
+}
+
+impl WaitState {
+    fn handles_request(&self) -> bool {
+        self.inner.load(Ordering::Relaxed) > 0 || self.has_handled.load(Ordering::Relaxed)
+    }
+}
+
+/// A running wait. It is known to the wait whose work it is a part of.
+struct Wait {
+    own: Arc<WaitState>,
+    outer: Option<Arc<WaitState>>,
+}
+
+impl Wait {
+    fn begin() -> Self {
+        let outer = CURRENT.with_borrow(Clone::clone);
+        if let Some(outer) = &outer {
+            outer.inner.fetch_add(1, Ordering::Relaxed);
+        }
+        Self { own: Arc::default(), outer }
+    }
+
+    fn poll<F: Future>(&self, work: Pin<&mut F>, context: &mut task::Context<'_>) -> Poll<F::Output> {
+        let before = CURRENT.replace(Some(Arc::clone(&self.own)));
+        let polled = work.poll(context);
+        CURRENT.set(before);
+        polled
+    }
+}
+
+impl Drop for Wait {
+    fn drop(&mut self) {
+        if let Some(outer) = &self.outer {
+            outer.inner.fetch_sub(1, Ordering::Relaxed);
+            outer.has_handled.fetch_or(self.own.has_handled.load(Ordering::Relaxed), Ordering::Relaxed);
+        }
     }
 }
 
@@ -369,7 +429,7 @@ mod tests {
 
     use super::*;
 
-    #[tokio::test]
+    #[tokio::test(start_paused = true)]
     async fn inner_wait_handles_the_request() {
         let (ask, asked) = watch::channel(None);
         // A peer that answers each request at once lets the work exhaust the task budget.
@@ -379,7 +439,12 @@ mod tests {
             }
             Poll::<()>::Pending
         });
-        let inner = run_until_request(busy, unconstrained(wait(asked.clone(), |_| true)));
+        // The report after the request waits, too.
+        let inner = async {
+            let ended = run_until_request(busy, unconstrained(wait(asked.clone(), |_| true))).await;
+            tokio::time::sleep(Duration::from_secs(1)).await;
+            ended
+        };
         // The request arrives after the work was polled. The channel has not woken the inner wait yet.
         let outer = unconstrained(poll_fn(|_| {
             ask.send_if_modified(|how| {
@@ -389,6 +454,15 @@ mod tests {
             Poll::Ready("outer")
         }));
         assert_eq!(run_until_request(inner, outer).await, Ok(Err(KEYS)));
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn work_that_never_reports_ends() {
+        let work = async {
+            let _ended = run_until_request(pending::<()>(), async { KEYS }).await;
+            pending::<()>().await;
+        };
+        assert_eq!(run_until_request(work, async { "outer" }).await, Err("outer"));
     }
 
     #[tokio::test]
