@@ -14,7 +14,6 @@ use tokio::time::Instant;
 
 use super::line::Pace;
 use super::port::{READ_TIMEOUT, Threaded};
-use super::port_list::ports;
 
 /// Time limit for a blocked write, in addition to the transmission time.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(2);
@@ -158,9 +157,9 @@ fn check(port: &dyn SerialPort, line: &Line, most_off: u32) -> Result<(), OpenEr
 
 fn open_error(error: &serialport::Error, path: &str) -> OpenError {
     match error.kind {
-        // On Unix, this kind means that another program has locked the port. Windows also uses it for an absent port.
-        ErrorKind::NoDevice if cfg!(unix) || is_listed(path) => OpenError::Busy,
-        ErrorKind::NoDevice | ErrorKind::Io(io::ErrorKind::NotFound) => OpenError::Absent,
+        ErrorKind::NoDevice => no_device(error, path),
+        ErrorKind::Io(io::ErrorKind::Other) if cfg!(windows) => no_device(error, path),
+        ErrorKind::Io(io::ErrorKind::NotFound) => OpenError::Absent,
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => OpenError::Forbidden,
         // The crate `serialport` has no error kinds for these errors, but its error texts are fixed and not translated.
         // The text "I/O error" means a port of the mainboard that does not exist.
@@ -184,9 +183,45 @@ impl OpenError {
     };
 }
 
-fn is_listed(path: &str) -> bool {
-    let name = path.trim_start_matches(r"\\.\");
-    ports().is_ok_and(|ports| ports.iter().any(|port| port.name.eq_ignore_ascii_case(name)))
+/// Another program has locked the port.
+#[cfg(unix)]
+fn no_device(_: &serialport::Error, _: &str) -> OpenError {
+    OpenError::Busy
+}
+
+/// Reason why Windows did not open a port. The crate `serialport` has one error kind for a busy and for an absent port,
+/// and translated texts, so the port is opened once more for the error code.
+#[cfg(windows)]
+fn no_device(error: &serialport::Error, path: &str) -> OpenError {
+    use std::os::windows::fs::OpenOptionsExt as _;
+
+    let device = if path.starts_with('\\') { path.to_owned() } else { format!(r"\\.\{path}") };
+    let opened = std::fs::OpenOptions::new().read(true).write(true).share_mode(0).open(device);
+    match opened {
+        Err(error) => error_of_code(error.raw_os_error()).unwrap_or(OpenError::Io(error)),
+        // The other program has closed the port in this moment.
+        Ok(_) if error.kind == ErrorKind::NoDevice => OpenError::Busy,
+        Ok(_) => OpenError::Io(error.clone().into()),
+    }
+}
+
+/// Meaning of an error code of Windows at the opening of a port; `None` if it has no special meaning.
+#[cfg(any(windows, test))]
+fn error_of_code(code: Option<i32>) -> Option<OpenError> {
+    const ERROR_FILE_NOT_FOUND: i32 = 2;
+    const ERROR_PATH_NOT_FOUND: i32 = 3;
+    const ERROR_ACCESS_DENIED: i32 = 5;
+    const ERROR_SHARING_VIOLATION: i32 = 32;
+    const ERROR_LOCK_VIOLATION: i32 = 33;
+    const ERROR_BUSY: i32 = 170;
+    const ERROR_DEVICE_NOT_CONNECTED: i32 = 1167;
+
+    match code? {
+        ERROR_FILE_NOT_FOUND | ERROR_PATH_NOT_FOUND | ERROR_DEVICE_NOT_CONNECTED => Some(OpenError::Absent),
+        // Most drivers deny access to a port that another program has open.
+        ERROR_ACCESS_DENIED | ERROR_SHARING_VIOLATION | ERROR_LOCK_VIOLATION | ERROR_BUSY => Some(OpenError::Busy),
+        _ => None,
+    }
 }
 
 #[cfg(test)]
@@ -299,6 +334,14 @@ mod tests {
             let error = open_error(&serialport::Error::new(kind, text), "/dev/ttyUSB0");
             assert_eq!(error.to_string(), message);
         }
+    }
+
+    #[test]
+    fn distinguishes_busy_and_absent_ports_of_windows() {
+        let error = |code| error_of_code(Some(code)).map(|error| error.to_string());
+        assert_eq!([5, 32, 33, 170].map(error), ["another program uses the port"; 4].map(|text| Some(text.to_owned())));
+        assert_eq!([2, 3, 1167].map(error), ["no such port"; 3].map(|text| Some(text.to_owned())));
+        assert_eq!(error(87), None, "the settings");
     }
 
     #[test]

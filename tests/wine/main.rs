@@ -1,11 +1,12 @@
-//! Runs the program for Windows under Wine: output, files, a serial port, sessions, Ctrl-C. Simulated controllers are
-//! processes of this system.
+//! Runs the program for Windows under Wine: output, files, a serial port, sessions, the console. Simulated controllers
+//! are processes of this system.
 //!
 //! `ARMCTL_WINE_EXE=PATH/armctl.exe cargo test --test wine` runs these tests; without the variable, or without Wine,
 //! they are skipped. CONTRIBUTING.md has the commands that build the program for Windows.
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
+mod console;
 #[path = "../support/simulator.rs"]
 mod simulator;
 #[path = "../support/terminal.rs"]
@@ -21,8 +22,9 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 
 use self::simulator::Simulator;
-use self::terminal::Terminal;
 
+/// Program that sends events of a console.
+const CONSOLE_EVENT: &str = "console_event.exe";
 /// Time limit for a condition.
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -62,11 +64,15 @@ impl Wine {
         for name in ["armctl.exe", "toyo.exe"] {
             std::fs::copy(&program, programs.join(name)).map_err(|error| format!("{}: {error}", program.display()))?;
         }
-        let mut compiler = Command::new("x86_64-w64-mingw32-gcc");
-        compiler.args(["-shared", "-o"]).arg(programs.join("bcryptprimitives.dll"));
-        compiler.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/wine/bcryptprimitives.c")).arg("-ladvapi32");
-        let result = compiler.status().map_err(|error| format!("x86_64-w64-mingw32-gcc: {error}"))?;
-        assert!(result.success(), "the stand-in for bcryptprimitives.dll does not compile");
+        let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/wine");
+        let products = [("bcryptprimitives.c", "bcryptprimitives.dll"), ("console_event.c", CONSOLE_EVENT)];
+        for (source, product) in products {
+            let mut compiler = Command::new("x86_64-w64-mingw32-gcc");
+            compiler.args(product.ends_with(".dll").then_some("-shared")).arg("-o").arg(programs.join(product));
+            compiler.arg(sources.join(source)).arg("-ladvapi32");
+            let result = compiler.status().map_err(|error| format!("x86_64-w64-mingw32-gcc: {error}"))?;
+            assert!(result.success(), "{source} does not compile");
+        }
         let wine = Self { loader, prefix, program: programs.join("armctl.exe") };
         let started = wine.wine().args(["wineboot", "--init"]).status().unwrap();
         assert!(started.success(), "Wine does not start");
@@ -74,7 +80,12 @@ impl Wine {
     }
 
     fn wine(&self) -> Command {
-        let mut command = Command::new(&self.loader);
+        let mut command = Command::new("setpriv");
+        if rustix::process::geteuid().is_root() {
+            // Root can open any port, also one that belongs to another program.
+            command.arg("--bounding-set=-sys_admin,-dac_override,-dac_read_search");
+        }
+        command.arg(&self.loader);
         command.env_clear().env("PATH", std::env::var_os("PATH").unwrap_or_default()).env("HOME", &self.prefix);
         command.env("WINEPREFIX", &self.prefix).env("WINEDEBUG", "-all").env("TZ", "UTC").stdin(Stdio::null());
         // Wine reads arguments in the encoding of the locale.
@@ -160,6 +171,9 @@ fn until(what: &str, is_so: impl Fn() -> bool) {
         assert!(start.elapsed() < PATIENCE, "it never came to this: {what}");
     }
 }
+
+/// A pseudo-terminal has no parity.
+const NO_PARITY: &str = "parity=none";
 
 /// A simulator on a pseudo-terminal, ended when it is dropped.
 struct SerialSimulator(Child);
@@ -271,18 +285,14 @@ fn transfers_files_with_names_in_japanese() {
     assert_eq!(std::fs::read(folder.path().join(name)).unwrap(), *renamed);
 }
 
-/// Wine lets two programs open one pseudo-terminal, so a busy port cannot be tried here.
 #[test]
 fn reads_a_serial_port_and_says_when_it_is_gone() {
     let Some(wine) = wine() else { return };
     let folder = tempfile::tempdir().unwrap();
     let robot = SerialSimulator::start(folder.path());
     let port = wine.map_port(&folder.path().join("port"));
-    // A pseudo-terminal has no parity.
-    let parity = "parity=none";
     for target in [&port, &port.to_lowercase(), &format!(r"\\.\{port}")] {
-        let target = format!("serial://{target}?{parity}");
-        let output = wine.run(folder.path(), &format!("-t {target} toyo status --jq .data.mode"));
+        let output = wine.run(folder.path(), &format!("-t serial://{target}?{NO_PARITY} toyo status --jq .data.mode"));
         assert!(output.status.success(), "{target}: {}", stderr(&output));
     }
     let absent = wine.run(folder.path(), "-t COM77 toyo status");
@@ -290,16 +300,46 @@ fn reads_a_serial_port_and_says_when_it_is_gone() {
     assert!(stderr(&absent).contains("the port COM77 does not exist"), "{}", stderr(&absent));
     let mut watching = wine.command(
         folder.path(),
-        &format!("-t serial://{port}?{parity} --no-session toyo status --watch 100ms -o jsonl"),
+        &format!("-t serial://{port}?{NO_PARITY} --no-session toyo status --watch 100ms -o jsonl"),
     );
     let mut watching = watching.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    let mut lines = BufReader::new(watching.stdout.take().unwrap()).lines();
-    lines.next().unwrap().unwrap();
+    let mut lines = BufReader::new(watching.stdout.take().unwrap()).lines().map(Result::unwrap);
+    lines.next().unwrap();
     drop(robot);
-    let failed = lines.map(Result::unwrap).find(|line| line.contains("\"ok\":false")).expect("a failure");
-    assert!(failed.contains("no_answer"), "{failed}");
+    let failed = lines.find(|line| line.contains("the connection is lost")).expect("a failure");
+    assert!(failed.contains("no_answer") && failed.contains(&port), "{failed}");
     watching.kill().unwrap();
     watching.wait().unwrap();
+}
+
+/// A driver of Windows denies access to a port of another program, as this system does with a port of another user.
+/// Wine has another error for a port that another program has locked.
+#[test]
+fn says_that_another_program_uses_the_port() {
+    let Some(wine) = wine() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let _robot = SerialSimulator::start(folder.path());
+    let terminal = folder.path().join("port").canonicalize().unwrap();
+    let port = wine.map_port(&terminal);
+    let is_busy = || {
+        for target in [&port, &format!(r"\\.\{port}")] {
+            let words = format!("--timeout 100ms -t serial://{target}?{NO_PARITY} toyo status");
+            let output = wine.run(folder.path(), &words);
+            let text = stderr(&output);
+            assert!(text.contains(&format!("another program uses {target}")), "{text}");
+            assert!(text.contains("hint: close the other program"), "{text}");
+            assert_eq!(output.status.code(), Some(4), "{text}");
+        }
+    };
+    let permissions = terminal.metadata().unwrap().permissions();
+    std::fs::set_permissions(&terminal, std::os::unix::fs::PermissionsExt::from_mode(0)).unwrap();
+    is_busy();
+    std::fs::set_permissions(&terminal, permissions).unwrap();
+    let holder = serialport::TTYPort::open(&serialport::new(terminal.to_str().unwrap(), 9600)).unwrap();
+    is_busy();
+    drop(holder);
+    let free = wine.run(folder.path(), &format!("-t serial://{port}?{NO_PARITY} toyo status"));
+    assert!(free.status.success(), "{}", stderr(&free));
 }
 
 #[test]
@@ -393,30 +433,4 @@ fn prompt_keeps_its_connection_open() {
     let mut prompt = wine.command(folder.path(), "-r prompt --yes yrcx repl");
     let output = prompt.stdin(std::fs::File::open(script).unwrap()).output().unwrap();
     assert!(output.status.success(), "{}", stderr(&output));
-}
-
-#[test]
-fn ctrl_c_stops_a_motion() {
-    let Some(wine) = wine() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let robot = Simulator::start("yerc");
-    inventory(folder.path(), &[("cell", "yerc", &robot.url)]);
-    assert!(wine.run(folder.path(), "-r cell yerc servo on --yes").status.success());
-    let mut command =
-        wine.command(folder.path(), "-r cell yerc move pulse joint --pulses 90000,0,0,0,0,0 --speed 0.1% --yes");
-    command.env("TERM", "xterm");
-    let mut terminal = Terminal::start(command, 100, 30).unwrap();
-    let status = |filter: &str| {
-        let output = here(folder.path(), &format!("-t {} yerc status --jq {filter}", robot.url));
-        String::from_utf8_lossy(&output.stdout).trim().to_owned()
-    };
-    until("the robot moves", || status(".data.running") == "true");
-    // Wine makes Ctrl-C of this signal, which the terminal of a person sends.
-    terminal.signal("INT");
-    // Wine keeps the terminal open after the end, so the test does not read to its end.
-    terminal.wait_for_text("HOLD is on");
-    let ended = terminal.child.wait().unwrap();
-    let written = String::from_utf8_lossy(&terminal.written).into_owned();
-    assert_eq!(ended.code(), Some(130), "{written}");
-    until("the robot stands still", || status(".data.running") == "false");
 }

@@ -158,6 +158,12 @@ impl Drop for Keys {
     }
 }
 
+/// Whether a key was pressed together with Ctrl. Windows reports AltGr, which types characters such as `<` or `@` on many
+/// keyboards, as Ctrl and Alt.
+pub fn has_control(key: KeyEvent) -> bool {
+    key.modifiers.contains(KeyModifiers::CONTROL) && !key.modifiers.contains(KeyModifiers::ALT)
+}
+
 /// Whether stdin is still a terminal. Waits at most `within` for a key.
 #[cfg(unix)]
 fn terminal_exists(within: Duration) -> bool {

@@ -1,6 +1,6 @@
 //! Key bindings of the teach panel.
 
-use armctl_frame::output::fullscreen::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use armctl_frame::output::fullscreen::{KeyCode, KeyEvent, KeyEventKind, has_control};
 use armctl_frame::output::painter::KeyHelp;
 
 /// Action of a key.
@@ -48,7 +48,7 @@ pub fn action(key: KeyEvent, is_asked: bool) -> Option<KeyAction> {
     if key.kind == KeyEventKind::Release {
         return None;
     }
-    if key.modifiers.contains(KeyModifiers::CONTROL) {
+    if has_control(key) {
         return match key.code {
             KeyCode::Char('c') => Some(KeyAction::Interrupt),
             KeyCode::Char('l') => Some(KeyAction::Refresh),
@@ -98,6 +98,8 @@ pub const KEYS: [KeyHelp; 12] = [
 
 #[cfg(test)]
 mod tests {
+    use armctl_frame::output::fullscreen::KeyModifiers;
+
     use super::*;
 
     fn pressed(code: KeyCode) -> KeyEvent {
@@ -109,6 +111,14 @@ mod tests {
         for is_asked in [false, true] {
             assert_eq!(action(pressed(KeyCode::Char(' ')), is_asked), Some(KeyAction::Stop));
         }
+    }
+
+    /// As on a Czech keyboard, where Windows reports AltGr as Ctrl and Alt.
+    #[test]
+    fn alt_gr_types_a_key() {
+        let with = |modifiers| action(KeyEvent::new(KeyCode::Char('<'), modifiers), false);
+        assert_eq!(with(KeyModifiers::CONTROL | KeyModifiers::ALT), Some(KeyAction::Speed(-1)));
+        assert_eq!(with(KeyModifiers::CONTROL), None);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Key bindings of `top`. No key sends anything to a robot.
 
-use armctl_frame::output::fullscreen::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use armctl_frame::output::fullscreen::{KeyCode, KeyEvent, KeyEventKind, has_control};
 use armctl_frame::output::painter::KeyHelp;
 
 /// Action of a key.
@@ -56,7 +56,7 @@ pub fn action(key: KeyEvent, is_typing: bool) -> Option<KeyAction> {
     if key.kind == KeyEventKind::Release {
         return None;
     }
-    if key.modifiers.contains(KeyModifiers::CONTROL) {
+    if has_control(key) {
         return match key.code {
             KeyCode::Char('c') => Some(KeyAction::Interrupt),
             KeyCode::Char('z') => Some(KeyAction::Suspend),
@@ -97,7 +97,7 @@ pub fn action(key: KeyEvent, is_typing: bool) -> Option<KeyAction> {
 }
 
 /// All keys in the order of the help, with their validity in the list and on the robot screen.
-pub const KEYS: [((bool, bool), KeyHelp); 15] = [
+pub const KEYS: &[((bool, bool), KeyHelp)] = &[
     with_help((true, false), "↑ ↓", "choose", "select a robot; also j k, PgUp PgDn, Home End"),
     with_help((true, false), "Enter", "open", "open the selected robot"),
     with_help((false, true), "Esc", "list", "back to the list; also Backspace"),
@@ -111,6 +111,7 @@ pub const KEYS: [((bool, bool), KeyHelp); 15] = [
     with_help((true, true), "?", "help", "this list; also h"),
     with_help((true, true), "q", "quit", "end"),
     with_help((true, true), "Ctrl-C", "", "end with exit code 130"),
+    #[cfg(unix)]
     with_help((true, true), "Ctrl-Z", "", "suspend; `fg` continues"),
     with_help((true, true), "Ctrl-L", "", "redraw the screen"),
 ];
@@ -126,6 +127,8 @@ const fn with_help(
 
 #[cfg(test)]
 mod tests {
+    use armctl_frame::output::fullscreen::KeyModifiers;
+
     use super::*;
 
     fn pressed(code: KeyCode) -> KeyEvent {
@@ -152,6 +155,12 @@ mod tests {
             assert_eq!(action(with_control('z'), is_typing), Some(KeyAction::Suspend));
             assert_eq!(action(with_control('q'), is_typing), None);
         }
+    }
+
+    #[test]
+    fn alt_gr_types_a_character() {
+        let alt_gr = KeyEvent::new(KeyCode::Char('@'), KeyModifiers::CONTROL | KeyModifiers::ALT);
+        assert_eq!(action(alt_gr, true), Some(KeyAction::Type('@')));
     }
 
     #[test]
