@@ -132,8 +132,7 @@ fn robot_type(world: &mut World, axis: usize, robot_type: i32) -> Reply {
 fn direct(world: &mut World, request: &Request) -> Result<(), Refusal> {
     refuse_if(
         world.switches.machine_changed,
-        "a machine parameter (parameter 2) was changed: switch the power off \
-                                               and on first",
+        "a machine parameter (parameter 2) was changed: switch the power off and on first",
     )?;
     let fields = Fields(request.record());
     let (port, mask) = if let Some(mask) = request.record().mask("data") {
