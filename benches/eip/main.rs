@@ -85,7 +85,7 @@ fn spread(effort: &Effort) -> anyhow::Result<()> {
         let runtime = runtime()?;
         let server = Server::start(setup(1), Mirror::default(), AdapterAddresses::anywhere(Ipv4Addr::LOCALHOST), None)?;
         let sent = Arc::new(Mutex::new(Vec::new()));
-        let images = SocketAddrV4::new(Ipv4Addr::LOCALHOST, server.io_port());
+        let images = SocketAddrV4::new(Ipv4Addr::LOCALHOST, server.io_port);
         let tap = {
             let sent = Arc::clone(&sent);
             Tap::new(move |passed| {
@@ -199,7 +199,7 @@ fn many_connections(effort: &Effort) -> anyhow::Result<()> {
         None,
     )?;
     hold_connections("our adapter", server.address(), effort)?;
-    let ended = server.with(|adapter, _| adapter.application().timed_out);
+    let ended = server.with(|adapter, _| adapter.application.timed_out);
     println!("  our adapter: {ended} connections timed out there; goal 0 {}", verdict(ended == 0));
     ensure!(ended == 0, "the adapter missed images");
 

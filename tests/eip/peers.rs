@@ -165,8 +165,8 @@ fn st_ethernet_ip_owns_our_adapter() {
     let error = String::from_utf8_lossy(&output.stderr);
     assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), "a5".repeat(48), "{error}");
     server.with(|adapter, _| {
-        assert_eq!(adapter.application().image, [0x5A; 48]);
-        assert!(adapter.application().run);
+        assert_eq!(adapter.application.image, [0x5A; 48]);
+        assert!(adapter.application.run);
     });
 }
 
@@ -189,7 +189,7 @@ fn pycomm3_asks_our_adapter() {
     assert_eq!(found["image"]["value"], "00".repeat(48));
     assert!(found["nothing"]["error"].as_str().unwrap().starts_with("Destination unknown"), "{found}");
     assert_eq!(found["write"]["error"], serde_json::Value::Null, "{found}");
-    assert_eq!(server.with(|adapter, _| adapter.application().image.clone()), [b'Z'; 48], "nobody owns it");
+    assert_eq!(server.with(|adapter, _| adapter.application.image.clone()), [b'Z'; 48], "nobody owns it");
     assert_eq!(found["refused"]["error"], "Attribute not settable");
 }
 

@@ -46,7 +46,7 @@ async fn exchanges_images_and_messages() {
     let is_back = |image: &[u8]| image == [0xA5; 48];
     let view = connection.until(|view| view.input.as_ref().is_some_and(|input| is_back(&input.image))).await;
     assert!(view.sent >= change);
-    assert!(server.with(|adapter, _| adapter.application().run));
+    assert!(server.with(|adapter, _| adapter.application.run));
 
     let answer = connection.ask("the size", &Message::get(4, 150, 4)).await.unwrap();
     assert_eq!(answer, Answer { status: Status::OK, data: vec![48, 0] });
@@ -55,7 +55,7 @@ async fn exchanges_images_and_messages() {
 
     connection.close().await.unwrap();
     assert_eq!(server.with(|adapter, _| adapter.peers().count()), 0);
-    assert!(server.with(|adapter, _| !adapter.application().run));
+    assert!(server.with(|adapter, _| !adapter.application.run));
 }
 
 #[tokio::test]
@@ -100,7 +100,7 @@ async fn survey_reads_assemblies_without_a_connection() {
     assert_eq!((found.connectable, found.attempts), (Some(expected), Vec::new()));
     assert_eq!(probe::survey(&mut client, &[absent]).await.unwrap().connectable, None);
     assert_eq!(probe::assembly(&mut client, 7).await.unwrap(), AssemblyPresence::Absent);
-    let events = server.with(|adapter, _| adapter.application().events.len());
+    let events = server.with(|adapter, _| adapter.application.events.len());
     assert_eq!(events, 0, "nothing was opened on the way");
     client.close().await;
 }
@@ -176,7 +176,7 @@ async fn reopens_a_lost_link() {
     connection.until(|view| view.input.as_ref().is_some_and(|input| *input.image == [!7; 48])).await;
     server.with(|adapter, _| adapter.set_fault(Some(AdapterFault::Stall)));
     let view = connection.until(|view| view.state == State::Lost).await;
-    assert_eq!(view.last_error, Some(EipError::Silent { after: 640 * MS }));
+    assert_eq!(view.last_error, Some(EipError::Silent(640 * MS)));
     assert_eq!(connection.set_image(1, &[8; 48]), Err(EipError::Outdated));
     server.with(|adapter, _| adapter.set_fault(None));
     connection.until(|view| view.generation == 2 && view.state == State::Open).await;
@@ -202,7 +202,7 @@ async fn reports_a_reset_and_uses_a_new_connection() {
     let message = Message::get(1, 1, 1);
     assert_eq!(client.ask("the vendor", &message).await.unwrap().data, [0x7C, 0x02]);
     server.with(|adapter, _| adapter.set_fault(Some(AdapterFault::Reset)));
-    assert_eq!(client.ask("the vendor", &message).await, Err(EipError::Hangup { what: "the vendor" }));
+    assert_eq!(client.ask("the vendor", &message).await, Err(EipError::Hangup("the vendor")));
     server.with(|adapter, _| adapter.set_fault(None));
     assert_eq!(client.ask("the vendor", &message).await.unwrap().data, [0x7C, 0x02]);
     client.close().await;
@@ -240,7 +240,7 @@ async fn tap_receives_all_packets() {
     connection.until(|view| view.input.is_some()).await;
     connection.close().await.unwrap();
     let seen = seen.lock().unwrap();
-    let images = SocketAddrV4::new(LOOPBACK, server.io_port());
+    let images = SocketAddrV4::new(LOOPBACK, server.io_port);
     assert!(seen.iter().any(|(tcp, _, to)| *tcp && *to == server.address()));
     assert!(seen.iter().any(|(tcp, from, _)| *tcp && *from == server.address()));
     assert!(seen.iter().any(|(tcp, _, to)| !tcp && *to == images));
@@ -265,7 +265,7 @@ async fn probe_finds_instances_and_sizes() {
         assert_eq!(findings.connectable, Some(found), "{:?}", findings.attempts);
     }
     // The probe opened no connection, not even for a short time.
-    assert_eq!(server.with(|adapter, _| adapter.application().events.clone()), []);
+    assert_eq!(server.with(|adapter, _| adapter.application.events.clone()), []);
     client.close().await;
 }
 

@@ -282,14 +282,14 @@ fn our_device() {
         im0: Im0 { order_id: "RCX340".to_owned(), software: ('V', 1, 2, 3), ..Im0::default() },
     };
     let server = Server::start(&interface, setup, Echo::default()).unwrap();
-    assert!(matches!(Network::shared("pd0"), Err(ProfinetError::PortTaken { .. })));
+    assert!(matches!(Network::shared("pd0"), Err(ProfinetError::PortTaken(_))));
     loop {
         // If the first word is 0x55, the controller requests that the device goes to stop.
-        let wants_stop = server.with(|device, _| device.application().0.first() == Some(&0x55));
+        let wants_stop = server.with(|device, _| device.application.0.first() == Some(&0x55));
         if wants_stop {
             server.with(|device, _| device.set_fault(Some(Fault::Stop)));
             // The fault stays until the controller has received the state and has disconnected.
-            while server.with(|device, _| device.application().0.first() == Some(&0x55)) {
+            while server.with(|device, _| device.application.0.first() == Some(&0x55)) {
                 std::thread::park_timeout(Duration::from_millis(5));
             }
             server.with(|device, _| device.set_fault(None));

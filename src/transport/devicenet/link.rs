@@ -245,7 +245,7 @@ fn advice(error: &Error) -> Option<std::borrow::Cow<'static, str>> {
              `master=` in the URL (0 to 63)"
                 .into()
         }
-        Error::Owned { .. } => {
+        Error::Owned(_) => {
             "remove this node from the scan list of the other master, or only read: `yrcx status` and `yrcx io get` \
              listen to its traffic"
                 .into()
@@ -265,11 +265,11 @@ fn advice(error: &Error) -> Option<std::borrow::Cow<'static, str>> {
         }
         Error::BusOff => "check the bit rate and the wiring (CAN_H and CAN_L, both terminators)".into(),
         Error::Port(PortError::Open { advice, .. }) => advice.clone(),
-        Error::Port(PortError::Setup { .. } | PortError::Mute { .. } | PortError::Flooded { .. }) => {
+        Error::Port(PortError::Setup { .. } | PortError::Mute(_) | PortError::Flooded(_)) => {
             "check that it is an SLCAN (Lawicel) adapter; check `baud=` in the URL".into()
         }
         Error::Port(PortError::Gone { .. }) => "plug the adapter in again".into(),
-        Error::Port(PortError::Stuck { .. }) => "set a longer `cycle=` in the URL, or check the bus".into(),
+        Error::Port(PortError::Stuck(_)) => "set a longer `cycle=` in the URL, or check the bus".into(),
         Error::Refused { .. } | Error::Senseless { .. } => {
             "check `mac=` in the URL: `yrcx devicenet identity` shows the device".into()
         }
@@ -285,14 +285,12 @@ impl From<Error> for LinkError {
         };
         let cause = Cause { code, advice: advice(&error), ..Cause::new(&error) };
         match error {
-            Error::Owned { .. } => Self::Owned(cause),
+            Error::Owned(_) => Self::Owned(cause),
             Error::Size { .. } => Self::Size(cause),
             Error::Refused { .. } => Self::Refused(cause),
             Error::Silent { .. } | Error::Lost { .. } | Error::BusOff => Self::Silent(cause),
-            Error::Port(PortError::Open { .. } | PortError::Mute { .. } | PortError::Gone { .. }) => {
-                Self::Silent(cause)
-            }
-            Error::Senseless { .. } | Error::Port(PortError::Setup { .. } | PortError::Flooded { .. }) => {
+            Error::Port(PortError::Open { .. } | PortError::Mute(_) | PortError::Gone { .. }) => Self::Silent(cause),
+            Error::Senseless { .. } | Error::Port(PortError::Setup { .. } | PortError::Flooded(_)) => {
                 Self::Malformed(cause)
             }
             Error::Settings(_) => Self::Settings(cause),

@@ -53,10 +53,7 @@ pub enum AdapterLocation {
         port: u16,
     },
     /// A Linux CAN interface.
-    SocketCan {
-        /// Interface name, for example `can0`.
-        interface: String,
-    },
+    SocketCan(String),
 }
 
 impl fmt::Display for AdapterLocation {
@@ -64,7 +61,7 @@ impl fmt::Display for AdapterLocation {
         match self {
             Self::Serial { path, .. } => f.write_str(path),
             Self::Tcp { host, port } => write!(f, "{host}:{port}"),
-            Self::SocketCan { interface } => f.write_str(interface),
+            Self::SocketCan(interface) => f.write_str(interface),
         }
     }
 }
@@ -545,7 +542,7 @@ async fn open(adapter: &Adapter, tap: Tap) -> Result<Box<dyn CanPort>, PortError
             })?;
             Pipe::tcp(stream).map_err(|error| failed(error.to_string(), advice))?
         }
-        AdapterLocation::SocketCan { interface } => return socket_can(interface),
+        AdapterLocation::SocketCan(interface) => return socket_can(interface),
     };
     Ok(Box::new(SlcanPort::start(name, pipe, adapter.bitrate, listens, tap).await?))
 }

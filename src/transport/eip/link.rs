@@ -137,12 +137,12 @@ impl ImageConnection for Reading {
 /// First IPv4 address of a host.
 pub async fn resolve(host: &str, port: u16) -> Result<SocketAddrV4, EipError> {
     let found = tokio::net::lookup_host((host, port)).await;
-    let mut addresses = found.map_err(|_| EipError::NotFound { host: host.to_owned() })?;
+    let mut addresses = found.map_err(|_| EipError::NotFound(host.to_owned()))?;
     let first = addresses.find_map(|address| match address {
         SocketAddr::V4(address) => Some(address),
         SocketAddr::V6(_) => None,
     });
-    first.ok_or_else(|| EipError::NotIpv4 { host: host.to_owned() })
+    first.ok_or_else(|| EipError::NotIpv4(host.to_owned()))
 }
 
 /// Extended status that means: another originator owns the outputs.
@@ -155,16 +155,13 @@ impl From<EipError> for LinkError {
         let reported = error.code();
         let cause = Cause { code: reported.map(|code| format!("{:#06x}", code.code)), ..Cause::new(&error) };
         match error {
-            EipError::NotFound { .. } => {
-                Self::Silent(cause.advice("check the name, or use the address of the controller"))
+            EipError::NotFound(_) => Self::Silent(cause.advice("check the name, or use the address of the controller")),
+            EipError::NotIpv4(_) => Self::Settings(cause.advice("use the IPv4 address of the controller")),
+            EipError::Unreachable { .. } | EipError::NoAnswer { .. } | EipError::Hangup(_) | EipError::Silent(_) => {
+                Self::Silent(cause.advice(
+                    "check the address; check that the controller is on, and that its EtherNet/IP board is enabled",
+                ))
             }
-            EipError::NotIpv4 { .. } => Self::Settings(cause.advice("use the IPv4 address of the controller")),
-            EipError::Unreachable { .. }
-            | EipError::NoAnswer { .. }
-            | EipError::Hangup { .. }
-            | EipError::Silent { .. } => Self::Silent(cause.advice(
-                "check the address; check that the controller is on, and that its EtherNet/IP board is enabled",
-            )),
             EipError::Encapsulation { .. } | EipError::Refused { .. } => match reported {
                 Some(code) if code.code == OWNED => Self::Owned(cause),
                 Some(code) => Self::Refused(cause.advice(with_advice(code.remedy))),

@@ -324,7 +324,7 @@ impl Originator {
         let Some(io) = &mut self.io else { return false };
         if now >= io.consumer.until() {
             let after = io.consumer.patience();
-            self.handle_timeout(EipError::Silent { after });
+            self.handle_timeout(EipError::Silent(after));
             return true;
         }
         if now < io.producer.due() {

@@ -141,8 +141,8 @@ impl Listening {
 
     async fn wait(&mut self, reported: ReportedState<'_>) -> Event {
         loop {
-            let before = self.hearing.heard().exchanges;
-            if let Some(input) = self.hearing.heard().input.clone().filter(|_| reported.is_up) {
+            let before = self.hearing.last.exchanges;
+            if let Some(input) = self.hearing.last.input.clone().filter(|_| reported.is_up) {
                 let image: Arc<[u8]> = self.byte_swap.native_order(&input).into();
                 if reported.is_new(&image) {
                     return Event::Image(image);
@@ -155,7 +155,7 @@ impl Listening {
                     return Event::Lost(LinkError::Lost { cause, outputs: Outputs::Never });
                 }
                 // Without a port, no more data can arrive, so this wait never ends.
-                Err(ProfibusError::Gone { .. }) => std::future::pending().await,
+                Err(ProfibusError::Gone(_)) => std::future::pending().await,
                 Ok(_) | Err(_) => {}
             }
         }
@@ -187,14 +187,14 @@ impl From<ProfibusError> for LinkError {
                 "check the name of the port (`armctl robots discover` lists the ports); check that the adapter \
                  supports the settings; close every session and program that uses the port",
             )),
-            ProfibusError::Gone { .. } => {
+            ProfibusError::Gone(_) => {
                 Self::Silent(cause.advice("check the plug and the power supply of the adapter"))
             }
             ProfibusError::OtherMaster { .. } => Self::Owned(cause.advice(
                 "disconnect the other master, because armctl must be the only master; or add `role=listen` to the URL \
                  to only read",
             )),
-            ProfibusError::Unreadable { .. } => Self::Owned(cause.advice(
+            ProfibusError::Unreadable(_) => Self::Owned(cause.advice(
                 "set `baud=` in the URL to the bit rate of the bus; check for another master, missing terminators, and \
                  crossed A and B wires",
             )),
@@ -202,7 +202,7 @@ impl From<ProfibusError> for LinkError {
                 "check `station=` and `baud=` in the URL, the A and B wires, and both terminators with their supply; check \
                  that the controller is on. With a slow adapter, set `slot=50ms`",
             )),
-            ProfibusError::IsMaster { .. } => {
+            ProfibusError::IsMaster(_) => {
                 Self::Malformed(cause.advice("check `station=` in the URL; `yrcx profibus scan` lists the stations"))
             }
             ProfibusError::Refused { .. } => Self::Refused(

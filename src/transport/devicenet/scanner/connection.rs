@@ -340,7 +340,7 @@ impl Connection {
                 Purpose::Messages { .. } => self.opened(now, 0),
             },
             Err(Error::Refused { additional: owner::ANOTHER_MASTER, mac, .. }) => {
-                self.give_up(now, Error::Owned { mac }, false);
+                self.give_up(now, Error::Owned(mac), false);
             }
             // The connections are already allocated. Either an earlier process with this MAC ended without a release,
             // or the answer to the first attempt was lost.
@@ -359,7 +359,7 @@ impl Connection {
             Ok([choice, master, ..]) if *master == self.own_mac.number() && *choice != 0 => {
                 self.request(now, Phase::Freeing, &Request::release(*choice));
             }
-            Ok([_, master, ..]) if Mac::new(*master).is_some() => self.give_up(now, Error::Owned { mac }, false),
+            Ok([_, master, ..]) if Mac::new(*master).is_some() => self.give_up(now, Error::Owned(mac), false),
             Ok([_, _, ..]) => self.allocate(now, true),
             Ok(_) => self.give_up(now, Error::Senseless { mac, what: OWNER, why: "it is too short" }, false),
             // There is no answer, so the explicit connection has timed out, but the poll connection still exists.

@@ -378,7 +378,7 @@ impl Master {
             Step::Find => {
                 let Answer::Frame(Frame { control: Control::Answer(kind, _), .. }) = answer else { return Ok(()) };
                 if kind != Station::Slave {
-                    return Err(ProfibusError::IsMaster { station });
+                    return Err(ProfibusError::IsMaster(station));
                 }
                 self.enter_step(now, Step::Diagnose);
             }
@@ -557,7 +557,7 @@ impl Master {
         self.pending = None;
         self.request_started_at = None;
         let was_closing = self.view.state == State::Closing;
-        let must_be_quiet = matches!(error, ProfibusError::OtherMaster { .. } | ProfibusError::Unreadable { .. });
+        let must_be_quiet = matches!(error, ProfibusError::OtherMaster { .. } | ProfibusError::Unreadable(_));
         // Whether the slave has left data exchange while the link was open. The master then retries at once. If this
         // happens again before the link is open, the master waits first.
         let has_left = self.view.state == State::Open

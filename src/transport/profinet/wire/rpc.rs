@@ -15,10 +15,7 @@ pub const MAX_ANSWER_LEN: usize = 65_536;
 
 /// Packet type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Kind(
-    /// Code of the packet type.
-    pub u8,
-);
+pub struct Kind(pub u8);
 
 impl Kind {
     /// A call.
