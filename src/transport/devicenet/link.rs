@@ -239,42 +239,39 @@ pub async fn read(connection: &Connection, mac: Mac, request: &Request) -> Resul
 
 /// Returns the advice for an error. `None` if the general advice for its kind is enough.
 fn advice(error: &Error) -> Option<std::borrow::Cow<'static, str>> {
-    Some(match error {
+    let advice = match error {
         Error::Duplicate { .. } => {
             "close the session that uses it (`armctl session list`), or set another number for this master with \
              `master=` in the URL (0 to 63)"
-                .into()
         }
         Error::Owned(_) => {
             "remove this node from the scan list of the other master, or only read: `yrcx status` and `yrcx io get` \
              listen to its traffic"
-                .into()
         }
         Error::Size { .. } => {
             "set the I/O size of the controller's unit to Normal (48 bytes) or Compact (4); check `mac=` in the URL: \
              `yrcx devicenet scan` lists the nodes"
-                .into()
         }
         Error::Silent { is_bus_alive: true, .. } => {
-            "check `mac=` in the URL: `yrcx devicenet scan` lists the nodes that answer".into()
+            "check `mac=` in the URL: `yrcx devicenet scan` lists the nodes that answer"
         }
         Error::Silent { .. } | Error::Lost { .. } => {
             "check the bit rate, the 24 V of the bus, its plugs and both terminators (121 ohm); check that the \
              controller is on"
-                .into()
         }
-        Error::BusOff => "check the bit rate and the wiring (CAN_H and CAN_L, both terminators)".into(),
-        Error::Port(PortError::Open { advice, .. }) => advice.clone(),
+        Error::BusOff => "check the bit rate and the wiring (CAN_H and CAN_L, both terminators)",
+        Error::Port(PortError::Open { advice, .. }) => return Some(advice.clone()),
         Error::Port(PortError::Setup { .. } | PortError::Mute(_) | PortError::Flooded(_)) => {
-            "check that it is an SLCAN (Lawicel) adapter; check `baud=` in the URL".into()
+            "check that it is an SLCAN (Lawicel) adapter; check `baud=` in the URL"
         }
-        Error::Port(PortError::Gone { .. }) => "plug the adapter in again".into(),
-        Error::Port(PortError::Stuck(_)) => "set a longer `cycle=` in the URL, or check the bus".into(),
+        Error::Port(PortError::Gone { .. }) => "plug the adapter in again",
+        Error::Port(PortError::Stuck(_)) => "set a longer `cycle=` in the URL, or check the bus",
         Error::Refused { .. } | Error::Senseless { .. } => {
-            "check `mac=` in the URL: `yrcx devicenet identity` shows the device".into()
+            "check `mac=` in the URL: `yrcx devicenet identity` shows the device"
         }
         Error::Settings(_) | Error::Outdated | Error::Ended => return None,
-    })
+    };
+    Some(advice.into())
 }
 
 impl From<Error> for LinkError {

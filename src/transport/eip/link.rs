@@ -152,27 +152,26 @@ const CONNECTION: &[&str] = &["in", "out", "config", "in_size", "out_size"];
 
 impl From<EipError> for LinkError {
     fn from(error: EipError) -> Self {
+        use EipError as E;
         let reported = error.code();
         let cause = Cause { code: reported.map(|code| format!("{:#06x}", code.code)), ..Cause::new(&error) };
         match error {
-            EipError::NotFound(_) => Self::Silent(cause.advice("check the name, or use the address of the controller")),
-            EipError::NotIpv4(_) => Self::Settings(cause.advice("use the IPv4 address of the controller")),
-            EipError::Unreachable { .. } | EipError::NoAnswer { .. } | EipError::Hangup(_) | EipError::Silent(_) => {
-                Self::Silent(cause.advice(
-                    "check the address; check that the controller is on, and that its EtherNet/IP board is enabled",
-                ))
-            }
-            EipError::Encapsulation { .. } | EipError::Refused { .. } => match reported {
+            E::NotFound(_) => Self::Silent(cause.advice("check the name, or use the address of the controller")),
+            E::NotIpv4(_) => Self::Settings(cause.advice("use the IPv4 address of the controller")),
+            E::Unreachable { .. } | E::NoAnswer { .. } | E::Hangup(_) | E::Silent(_) => Self::Silent(cause.advice(
+                "check the address; check that the controller is on, and that its EtherNet/IP board is enabled",
+            )),
+            E::Encapsulation { .. } | E::Refused { .. } => match reported {
                 Some(code) if code.code == OWNED => Self::Owned(cause),
                 Some(code) => Self::Refused(cause.advice(with_advice(code.remedy))),
                 None => Self::Refused(cause.options(CONNECTION)),
             },
-            EipError::Malformed { .. } | EipError::Senseless { .. } => {
+            E::Malformed { .. } | E::Senseless { .. } => {
                 Self::Malformed(cause.advice("check that this is the address of an EtherNet/IP device"))
             }
-            EipError::WrongSize { .. } => Self::Size(cause.options(&["in", "in_size"])),
-            EipError::Impossible(_) => Self::Settings(cause),
-            EipError::Local(_) | EipError::Outdated | EipError::Ended => {
+            E::WrongSize { .. } => Self::Size(cause.options(&["in", "in_size"])),
+            E::Impossible(_) => Self::Settings(cause),
+            E::Local(_) | E::Outdated | E::Ended => {
                 Self::Local(cause.advice("check the network settings and the firewall of this computer"))
             }
         }

@@ -17,6 +17,7 @@ use super::session::{Ask, Session, Step, Token};
 use super::settings::{Role, Settings};
 use super::wire::{Close, Command, Cyclic, Net, Open, Opened, RUN, RrData, Triad};
 use super::{IO_PORT, Now};
+use crate::BACKOFF;
 use crate::image::image_after_loss;
 
 mod identifiers;
@@ -33,14 +34,6 @@ const FORWARD_CLOSE: &str = "ForwardClose";
 const TRANSPORT: u8 = 1;
 /// Extended status of a refused ForwardClose: the connection does not exist.
 const NOT_FOUND: u16 = 0x0107;
-/// Pauses before attempts to reopen the connection. The last pause repeats.
-const BACKOFF: [Duration; 5] = [
-    Duration::from_millis(250),
-    Duration::from_millis(500),
-    Duration::from_secs(1),
-    Duration::from_secs(2),
-    Duration::from_secs(5),
-];
 
 /// An action that the driver must execute.
 #[derive(Debug, Clone, PartialEq, Eq)]

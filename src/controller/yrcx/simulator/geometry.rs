@@ -22,8 +22,10 @@ pub(super) enum Kind {
 }
 
 /// Arm side of a SCARA.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub(super) enum Arm {
+    #[default]
     Right,
     Left,
 }

@@ -13,8 +13,10 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::defaults::{self, STOCK};
+use super::geometry::Arm;
 use super::request::Request;
-use super::robot::{Method, Motor};
+use super::robot::{Method, Motor, Servo};
+use super::task::State;
 use super::world::{Mode, Switches, World};
 use super::{commands, console};
 use crate::Now;
@@ -243,21 +245,6 @@ enum KindEntry {
     Scara,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum ServoEntry {
-    Servo,
-    Brake,
-    Free,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum ArmEntry {
-    Right,
-    Left,
-}
-
 with_defaults! {
     #[derive(Debug, Deserialize)]
     #[serde(default, deny_unknown_fields)]
@@ -273,7 +260,7 @@ with_defaults! {
         methods: Vec<Method>,
         origin: Vec<bool>,
         position: Vec<i32>,
-        servos: Vec<ServoEntry>,
+        servos: Vec<Servo>,
         load: Vec<i32>,
         obstacles: BTreeMap<String, i32>,
         payload_g: i32 = 1000,
@@ -284,7 +271,7 @@ with_defaults! {
         inching: i32 = 100,
         shift: usize,
         hand: Option<usize>,
-        arm: ArmEntry = ArmEntry::Right,
+        arm: Arm,
         parameters: BTreeMap<String, Vec<i32>>,
     }
 }
@@ -294,7 +281,7 @@ with_defaults! {
 struct PointEntry {
     pulse: Option<[i32; 4]>,
     mm: Option<[f64; 4]>,
-    hand: Option<ArmEntry>,
+    hand: Option<Arm>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -319,15 +306,6 @@ struct ProgramEntry {
     text: String,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Default)]
-#[serde(rename_all = "lowercase")]
-enum StateEntry {
-    #[default]
-    Stop,
-    Run,
-    Suspend,
-}
-
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TaskEntry {
@@ -338,7 +316,7 @@ struct TaskEntry {
     #[serde(default = "first_line")]
     line: usize,
     #[serde(default)]
-    state: StateEntry,
+    state: State,
 }
 
 const fn usual_priority() -> u8 {

@@ -15,10 +15,14 @@ pub(super) const TASKS: u8 = 16;
 /// The program whose subroutines every program can call (4.6.4).
 const COMMON: &str = "COMMON";
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Deserialize)]
 pub(super) enum State {
+    #[default]
+    #[serde(rename = "stop")]
     Stopped,
+    #[serde(rename = "run")]
     Running,
+    #[serde(rename = "suspend")]
     Suspended,
 }
 

@@ -8,8 +8,6 @@ use super::{Reader, WireError, len16};
 pub mod kind {
     /// Null address of an unconnected message.
     pub const NULL: u16 = 0x0000;
-    /// Connection id.
-    pub const CONNECTED_ADDRESS: u16 = 0x00A1;
     /// Connected message.
     pub const CONNECTED_DATA: u16 = 0x00B1;
     /// Unconnected message.
