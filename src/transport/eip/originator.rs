@@ -67,19 +67,17 @@ struct Io {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
-    /// The originator has not been polled yet.
+    // The originator has not been polled yet.
     New,
-    /// ForwardOpen was sent; its answer is pending.
+    // ForwardOpen was sent; its answer is pending.
     Opening,
     Open,
-    /// One last image is sent in idle mode before the close. The number is the number of datagrams that were sent
-    /// before it.
+    // One last image is sent in idle mode before the close. The number is the number of datagrams that were sent
+    // before it.
     Parting(u64),
-    /// ForwardClose was sent. After its answer, the connection ends. If `again` is `true`, it opens again.
-    Closing {
-        is_reopening: bool,
-    },
-    /// The originator waits until the next attempt to open the connection.
+    // ForwardClose was sent. After its answer, the connection ends. If `again` is `true`, it opens again.
+    Closing { is_reopening: bool },
+    // The originator waits until the next attempt to open the connection.
     Waiting(Now),
     Ended,
 }

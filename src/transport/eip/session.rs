@@ -57,16 +57,10 @@ pub enum Step {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
     Down,
-    Connecting {
-        until: Now,
-    },
-    Registering {
-        until: Now,
-    },
-    /// The device has no free session. The session waits for the next attempt to register.
-    Full {
-        until: Now,
-    },
+    Connecting { until: Now },
+    Registering { until: Now },
+    // The device has no free session. The session waits for the next attempt to register.
+    Full { until: Now },
     Up,
 }
 

@@ -24,11 +24,8 @@ const PATH_LEN: usize = 64;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Content {
     Bytes(Arc<[u8]>),
-    /// Bytes that are generated from a seed.
-    Generated {
-        seed: u64,
-        size: u64,
-    },
+    // Bytes that are generated from a seed.
+    Generated { seed: u64, size: u64 },
 }
 
 impl Content {
