@@ -64,7 +64,6 @@ fn closed_error(why: impl Display) -> io::Error {
 }
 
 /// Refuses with `error` if `is_refused`.
-#[cfg(feature = "fieldbus")]
 fn refuse_if<E>(is_refused: bool, error: E) -> Result<(), E> {
     if is_refused { Err(error) } else { Ok(()) }
 }

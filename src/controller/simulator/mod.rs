@@ -31,8 +31,3 @@ macro_rules! with_defaults {
 }
 
 pub(crate) use with_defaults;
-
-/// Refuses with `error` if `is_refused`.
-pub(crate) fn refuse_if<E>(is_refused: bool, error: E) -> Result<(), E> {
-    if is_refused { Err(error) } else { Ok(()) }
-}

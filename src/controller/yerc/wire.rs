@@ -4,6 +4,7 @@
 //! sub-header. Parsing accepts what real controllers send: it ignores reserved bytes and padding bytes. Encoding
 //! follows the manual.
 
+use crate::refuse_if;
 use std::ops::Range;
 
 use thiserror::Error;
@@ -111,25 +112,15 @@ struct Header {
 impl Header {
     fn parse(bytes: &[u8]) -> Result<(Self, &[u8]), WireError> {
         let len = bytes.len();
-        if len < HEADER_LEN {
-            return Err(WireError::Truncated(len));
-        }
-        if len > MAX_FRAME {
-            return Err(WireError::Oversized(len));
-        }
+        refuse_if(len < HEADER_LEN, WireError::Truncated(len))?;
+        refuse_if(len > MAX_FRAME, WireError::Oversized(len))?;
         let found = array(bytes, field::IDENTIFIER);
-        if &found != IDENTIFIER {
-            return Err(WireError::Identifier(found));
-        }
+        refuse_if(&found != IDENTIFIER, WireError::Identifier(found))?;
         let found = u16::from_le_bytes(array(bytes, field::HEADER_SIZE));
-        if usize::from(found) != HEADER_LEN {
-            return Err(WireError::HeaderSize(found));
-        }
+        refuse_if(usize::from(found) != HEADER_LEN, WireError::HeaderSize(found))?;
         let data = &bytes[HEADER_LEN..];
         let stated = usize::from(u16::from_le_bytes(array(bytes, field::DATA_SIZE)));
-        if stated != data.len() {
-            return Err(WireError::DataSize { stated, present: data.len() });
-        }
+        refuse_if(stated != data.len(), WireError::DataSize { stated, present: data.len() })?;
         let division = match bytes[field::DIVISION] {
             1 => Division::Robot,
             2 => Division::File,

@@ -19,6 +19,7 @@ use super::wire::{Close, Command, Cyclic, Net, Open, Opened, RUN, RrData, Triad}
 use super::{IO_PORT, Now};
 use crate::BACKOFF;
 use crate::image::image_after_loss;
+use crate::refuse_if;
 
 mod identifiers;
 mod view;
@@ -377,9 +378,7 @@ impl Originator {
         let answer = Answer::parse(FORWARD_OPEN, data)?;
         let addresses = RrData::parse_answer(data).map_err(malformed)?;
         let opened = Opened::parse(&answer.done(FORWARD_OPEN)?).map_err(malformed)?;
-        if opened.triad != self.triad {
-            return Err(senseless("it belongs to another connection"));
-        }
+        refuse_if(opened.triad != self.triad, senseless("it belongs to another connection"))?;
         if opened.t_o_id != self.id && !self.settings.multicast {
             return Err(senseless("it changes the connection id that armctl chose"));
         }
@@ -398,9 +397,7 @@ impl Originator {
             None => SocketAddrV4::new(*self.target.ip(), IO_PORT),
         };
         let group = addresses.t_o.map(|address| *address.ip()).filter(Ipv4Addr::is_multicast);
-        if self.settings.multicast && group.is_none() {
-            return Err(senseless("it contains no multicast group"));
-        }
+        refuse_if(self.settings.multicast && group.is_none(), senseless("it contains no multicast group"))?;
         self.actions.extend(group.map(Action::Join));
         let intervals = self.settings.multiplier.intervals();
         let size = usize::from(self.settings.input_size);

@@ -3,7 +3,7 @@
 use super::operate::Refusal;
 use super::reply::{Fields, Reply};
 use super::world::{Mode, World};
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 use crate::toyo::field::{Mask, Value};
 use crate::toyo::request::{BlockError, Request};
 use crate::toyo::table::Command;

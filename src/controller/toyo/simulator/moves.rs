@@ -6,7 +6,7 @@ use super::motion::{AXES, Arc, Coordinates, Drive, Path, Segment, minus, plus};
 use super::position_effects::NEAR;
 use super::task::{Flow, Wait};
 use super::world::World;
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 
 /// Number of rows in the coordinate table.
 const LAST_POINT: i32 = 999;

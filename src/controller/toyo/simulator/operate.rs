@@ -8,7 +8,7 @@ use super::memory::{MAX_STEPS, TASKS};
 use super::routine::Routine;
 use super::settings::Special;
 use super::world::{Kind, Mode, World};
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 
 /// Reason of a refusal.
 pub(super) type Refusal = &'static str;
@@ -198,9 +198,7 @@ impl World {
     pub(super) fn servo(&mut self, on: bool) -> Result<(), Refusal> {
         self.unchanged()?;
         self.idle()?;
-        if on && (self.switches.estop || self.errors.current.is_some()) {
-            return Err("an error is active: cancel it first");
-        }
+        refuse_if(on && (self.switches.estop || self.errors.current.is_some()), "an error is active: cancel it first")?;
         self.switches.servo = std::array::from_fn(|axis| on && axis < self.axes);
         Ok(())
     }

@@ -21,10 +21,8 @@ use super::settings::{Machine, Settings};
 use super::task::Task;
 use super::trace::Trace;
 use super::world::{COUNTERS, Mode, Switches, TIMERS, World};
-use crate::Now;
 use crate::simulator::console;
 use crate::simulator::recording::{Recording, Replayable};
-use crate::simulator::refuse_if;
 use crate::simulator::run_options::RunOptions;
 use crate::simulator::start::{self, Event, Source, Table, default_entry, default_text};
 use crate::simulator::timeline::Timeline;
@@ -33,6 +31,7 @@ use crate::toyo::field::{Mask, Value};
 use crate::toyo::layout::Record;
 use crate::toyo::request::{Request, instruction};
 use crate::toyo::table::{Command, KCA};
+use crate::{Now, refuse_if};
 
 /// Start state of a simulated controller; [`Start::parse`] reads it (see [`EXAMPLE`]).
 #[derive(Debug, Clone)]
@@ -262,9 +261,7 @@ fn bare_world(entries: &Entries, source: Source<'_>) -> Result<World, String> {
         return Err(source.error(&entries.model, format!("model must be one of {}, or other", KCA.join(", "))));
     }
     let axes = *entries.axes.get_ref();
-    if !(1..=AXES).contains(&axes) {
-        return Err(source.error(&entries.axes, "axes must be from 1 to 4"));
-    }
+    refuse_if(!(1..=AXES).contains(&axes), source.error(&entries.axes, "axes must be from 1 to 4"))?;
     let version = source.read(&entries.version, |version| {
         hundredths(version).ok_or_else(|| "write a version, for example \"4.00\"".to_owned())
     })?;

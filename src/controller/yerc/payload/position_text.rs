@@ -9,6 +9,7 @@ use thiserror::Error;
 
 use super::axes::{Axes, MAX_AXES};
 use super::position::{BasePosition, ExtendedForm, ExternalPosition, Form, Position, PositionKind};
+use crate::refuse_if;
 use crate::units::{self, Unit, UnitError};
 use crate::user_input::unsigned;
 use crate::yerc::table::{Bit, EXTENDED_FORM_BITS, FORM_BITS};
@@ -235,13 +236,9 @@ impl<'a> Parts<'a> {
                 let parsed = unit(axis)
                     .parse_steps(value)
                     .map_err(|error| PositionTextError::Axis { key: key.clone(), error })?;
-                if self.axes[axis].replace(parsed).is_some() {
-                    return Err(PositionTextError::Twice(key));
-                }
+                refuse_if(self.axes[axis].replace(parsed).is_some(), PositionTextError::Twice(key))?;
             } else if let Some(slot) = self.others.iter_mut().find(|slot| slot.0 == key) {
-                if slot.1.replace(value).is_some() {
-                    return Err(PositionTextError::Twice(key));
-                }
+                refuse_if(slot.1.replace(value).is_some(), PositionTextError::Twice(key))?;
             } else {
                 let keys = self.names.into_iter().chain(self.others.iter().map(|slot| slot.0));
                 let allowed = keys.collect::<Vec<_>>().join(", ");

@@ -7,7 +7,7 @@ use super::job::Program;
 use super::name_lists;
 use super::variable_file;
 use super::world::{Refusal, World, code};
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 use crate::yerc::Model;
 use crate::yerc::table::BATCH_BACKUP_PATH;
 

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use super::alarms::{ARITHMETIC, AlarmSource, Fault, NO_AXIS, NO_PALLET, NO_POINT, POINT_UNIT};
 use super::geometry::{FourValues, STEPS, whole};
 use super::robot::AXES;
-use crate::simulator::{refuse_if, with_defaults};
+use crate::refuse_if;
+use crate::simulator::with_defaults;
 
 pub(super) const POINTS: u16 = 30_000;
 /// Number of pallets, and of shifts.

@@ -15,12 +15,12 @@ use super::motion::{End, Motion, Owner};
 use super::program::Program;
 use super::robot::{ALL, Robot, Servo};
 use super::task::Task;
-use crate::Now;
 use crate::simulator::timeline::Timeline;
-use crate::simulator::{refuse_if, with_defaults};
+use crate::simulator::with_defaults;
 use crate::yrcx::alarm::Alarm;
 use crate::yrcx::image::Image;
 use crate::yrcx::signal::{input, resting};
+use crate::{Now, refuse_if};
 
 /// Scan time of the controller (chapter 2, 1.2).
 pub(super) const SCAN: Duration = Duration::from_millis(5);
@@ -261,9 +261,7 @@ impl World {
 
     /// Checks that motor power can be switched on.
     pub(super) fn may_power(&self) -> Result<(), Fault> {
-        if self.emergency() {
-            return Err(Fault::emergency());
-        }
+        refuse_if(self.emergency(), Fault::emergency())?;
         self.no_alarm()
     }
 
@@ -278,9 +276,7 @@ impl World {
     /// Checks that programs can run.
     pub(super) fn may_run(&self) -> Result<(), Fault> {
         self.may_power()?;
-        if self.held() {
-            return Err(Fault::stopped());
-        }
+        refuse_if(self.held(), Fault::stopped())?;
         if self.switches.mode != Mode::Auto || self.switches.boxed {
             return Err(Fault::new(
                 NOT_AUTO,
@@ -294,9 +290,7 @@ impl World {
     /// Checks that these axes can move.
     pub(super) fn may_move(&self, number: usize, axes: u8) -> Result<(), Fault> {
         self.may_power()?;
-        if self.held() {
-            return Err(Fault::stopped());
-        }
+        refuse_if(self.held(), Fault::stopped())?;
         self.has_axes(number, axes)?;
         let robot = self.robot(number)?;
         let off = robot.axes.iter().enumerate().position(|(at, axis)| axes >> at & 1 == 1 && axis.servo != Servo::On);

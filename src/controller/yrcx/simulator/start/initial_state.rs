@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use toml::Spanned;
 
 use super::{AlarmEntry, Entries, KindEntry, Number, PalletEntry, PointEntry, RobotEntry};
-use crate::simulator::refuse_if;
+use crate::refuse_if;
 use crate::simulator::start::{Source, numbered};
 use crate::yrcx::alarm::Alarm;
 use crate::yrcx::simulator::alarms::{AlarmSource, Entry};
